@@ -1,0 +1,17 @@
+# Install rules and the package that find_package(sdm) reads.
+include(CMakePackageConfigHelpers)
+
+get_property(sdm_libraries GLOBAL PROPERTY SDM_LIBRARIES)
+install(TARGETS sdm ${sdm_libraries} EXPORT sdm-targets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY include/sdm DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES ${PROJECT_BINARY_DIR}/include/sdm/version.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sdm)
+install(EXPORT sdm-targets NAMESPACE sdm:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sdm)
+
+configure_package_config_file(cmake/sdm-config.cmake.in ${PROJECT_BINARY_DIR}/sdm-config.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sdm)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/sdm-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/sdm-config.cmake ${PROJECT_BINARY_DIR}/sdm-config-version.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sdm)

@@ -1,0 +1,51 @@
+/// Triangle meshes as they come: any soup, open or closed, manifold or not.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace sdm {
+
+/// A triangle soup with shared vertices.
+struct Mesh {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  /// Texture coordinates of each triangle's three corners, (0, 0) at the lower left of the image;
+  /// empty, or one entry a triangle.
+  std::vector<std::array<Vec2, 3>> corner_uvs;
+};
+
+/// Throws sdm::Error unless the mesh can be used: every index in range, every coordinate finite, at most
+/// 2^30 triangles, and at least one triangle with an area. Cost: linear.
+void validate(const Mesh& mesh);
+
+/// Bounds of all positions that a triangle refers to. Cost: linear.
+[[nodiscard]] Box bounds(const Mesh& mesh);
+
+/// What a mesh is, as `sdm info` prints it.
+struct MeshInfo {
+  std::size_t vertices = 0, triangles = 0, edges = 0;
+  Box bounds;
+  std::size_t components = 0;             ///< sets of faces connected over shared vertices
+  std::size_t boundary_edges = 0;         ///< edges of exactly one face
+  std::size_t nonmanifold_edges = 0;      ///< edges of three faces or more
+  std::size_t nonmanifold_vertices = 0;   ///< vertices whose faces do not form one fan
+  std::size_t degenerate_faces = 0;       ///< faces of zero area, repeated corners included
+  std::size_t duplicate_faces = 0;        ///< faces whose three vertices an earlier face has too
+  std::size_t unused_vertices = 0;        ///< vertices of no face
+  bool closed = false;                    ///< no boundary edge and no non-manifold edge
+  bool orientable = false;                ///< the faces can be turned so that all neighbours agree
+  bool oriented = false;                  ///< and they do agree as they are
+  bool manifold = false;                  ///< no non-manifold edge or vertex
+  bool has_uvs = false;
+  double area = 0;
+  double volume = 0;                      ///< enclosed; 0 unless closed and orientable
+};
+
+/// Counts and classifies. Duplicate faces, and degenerate faces with repeated corners, do not count as
+/// incident to edges. Cost: O(n log n).
+[[nodiscard]] MeshInfo inspect(const Mesh& mesh);
+
+}  // namespace sdm

@@ -1,0 +1,14 @@
+/// All of sdm but the reading and writing of files, which is <sdm/io.h>.
+#pragma once
+
+#include <sdm/error.h>
+#include <sdm/map.h>
+#include <sdm/mesh.h>
+#include <sdm/progress.h>
+#include <sdm/sites.h>
+#include <sdm/statistics.h>
+#include <sdm/surface.h>
+#include <sdm/threads.h>
+#include <sdm/transform.h>
+#include <sdm/types.h>
+#include <sdm/version.h>

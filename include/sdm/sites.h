@@ -1,0 +1,55 @@
+/// What distances are measured to (O2): the open faces, open edges and vertices of a mesh.
+#pragma once
+
+#include <sdm/mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace sdm {
+
+enum class SiteType : std::uint8_t { vertex = 0, edge = 1, face = 2, none = 0xFF };
+
+/// The closest point of O2 to a query, and the site it lies on.
+struct ClosestPoint {
+  Vec3 point{};
+  double distance = std::numeric_limits<double>::infinity();  ///< ≥ 0, = |point − query|
+  std::uint32_t site = kNone;           ///< index among the sites of its type
+  SiteType type = SiteType::none;       ///< none: nothing within the distance asked for
+  std::uint32_t face = kNone;           ///< a face that the site belongs to
+};
+
+/// O2: the sites of a mesh with their regions of influence, pseudonormals, and an AABB tree.
+///
+/// Vertices and faces are numbered as in the mesh, edges as in edges(). Duplicate faces, and degenerate faces with
+/// repeated corners, are ignored (they add no point to the set); other degenerate faces count by their edges.
+class Sites {
+ public:
+  /// Throws sdm::Error when the mesh is unusable (see validate). Cost: O(n log n), all cores.
+  explicit Sites(Mesh mesh);
+  ~Sites();
+  Sites(Sites&&) noexcept;
+  Sites& operator=(Sites&&) noexcept;
+
+  /// Moves the vertices, keeping the triangles: everything is brought up to date in linear time. Throws sdm::Error, and
+  /// changes nothing, when the count differs or a coordinate is not finite.
+  void refit(std::span<const Vec3> positions);
+
+  [[nodiscard]] const Mesh& mesh() const;
+  /// The two vertices of each edge, the smaller index first, in lexicographic order.
+  [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const;
+  /// Whether every edge has exactly two faces.
+  [[nodiscard]] bool closed() const;
+  /// Whether the faces can be turned so that all neighbours agree; Sites does so for itself.
+  [[nodiscard]] bool orientable() const;
+
+  struct Impl;
+  [[nodiscard]] const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sdm

@@ -1,0 +1,80 @@
+/// The surface on which distances are measured (O1): a mesh with a texture atlas.
+#pragma once
+
+#include <sdm/mesh.h>
+#include <sdm/progress.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace sdm {
+
+enum class AtlasKind {
+  charts,     ///< clusters of faces with like normals, projected orthogonally
+  triangles,  ///< a chart for each triangle, mapped without distortion
+  uv,         ///< the mesh's own texture coordinates
+};
+
+struct AtlasOptions {
+  AtlasKind kind = AtlasKind::charts;
+  std::uint32_t resolution = 1024;  ///< texels a side, in [16, 32768]
+  double max_stretch = 1.3;         ///< charts: no length grows by more than this from atlas to surface, > 1
+  std::uint32_t gutter = 1;         ///< free texels around each chart, its own (charts, triangles)
+  Progress progress;
+};
+
+/// O1: a mesh whose faces are laid out, without overlap, in a square texture.
+///
+/// Atlas coordinates (u, v) are in texels, u to the right, v *down* from the upper left corner of the image, so
+/// that texel (x, y) has its centre at (x + 0.5, y + 0.5) and the index y * resolution + x. Every face has an
+/// affine map M from its plane to the atlas; a texel belongs to the face that its centre lies in, at most one.
+class Surface {
+ public:
+  /// Lays out the atlas. Throws sdm::Error when the mesh is unusable (see validate), when the resolution is out of range
+  /// or too small for the charts, when there is no memory for it, and for AtlasKind::uv when coordinates are
+  /// missing or faces overlap (the message names two of them). Faces without area belong to no chart.
+  /// Cost: O(n log n) for charts, then packing.
+  explicit Surface(Mesh mesh, const AtlasOptions& options = {});
+  ~Surface();
+  Surface(Surface&&) noexcept;
+  Surface& operator=(Surface&&) noexcept;
+
+  [[nodiscard]] const Mesh& mesh() const;
+  [[nodiscard]] AtlasKind atlas_kind() const;
+  [[nodiscard]] std::uint32_t resolution() const;
+
+  /// The face that owns each texel, or kNone; resolution² values.
+  [[nodiscard]] std::span<const std::uint32_t> texel_faces() const;
+  /// The indices of all owned texels, in an order in which neighbours are near each other on the surface.
+  [[nodiscard]] std::span<const std::uint32_t> samples() const;
+  /// The surface point of an owned texel's centre: M⁻¹ of its face.
+  [[nodiscard]] Vec3 texel_point(std::uint32_t texel) const;
+
+  [[nodiscard]] std::size_t chart_count() const;
+  /// The chart of each face, or kNone for a face without area.
+  [[nodiscard]] std::span<const std::uint32_t> face_charts() const;
+  /// M: atlas coordinates of a point of the face's plane. The face must have a chart.
+  [[nodiscard]] Vec2 to_atlas(std::uint32_t face, const Vec3& point) const;
+  /// M⁻¹: the point of the face's plane at atlas coordinates. The face must have a chart.
+  [[nodiscard]] Vec3 to_surface(std::uint32_t face, const Vec2& uv) const;
+  /// The edges of a texel on the surface: the columns ∂p/∂u and ∂p/∂v of M⁻¹. The face must have a chart.
+  [[nodiscard]] std::array<Vec3, 2> texel_edges(std::uint32_t face) const;
+
+  /// Owned texels over all texels.
+  [[nodiscard]] double utilisation() const;
+  /// The largest factor by which a length grows from atlas to surface, relative to the atlas's own scale (for `uv`: the
+  /// scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for `charts`.
+  [[nodiscard]] double max_stretch() const;
+  /// An upper bound, computed once at the first call, on the distance of any point of the surface to the nearest sample:
+  /// since distances are 1-Lipschitz, also on the error of taking the nearest sample's distance. Bounded, not exact.
+  [[nodiscard]] double sampling_bound() const;
+
+  struct Impl;
+  [[nodiscard]] const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sdm

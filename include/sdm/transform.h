@@ -1,0 +1,30 @@
+/// Placing a mesh: lists of steps such as "fit,rotate:0:90:0,translate:0.8:0:0".
+#pragma once
+
+#include <sdm/mesh.h>
+
+#include <string_view>
+#include <vector>
+
+namespace sdm {
+
+/// One step of a placement.
+struct TransformStep {
+  enum class Kind {
+    fit,        ///< scale and move so that the longest side of the bounds is 1, centred at the origin
+    scale,      ///< multiply by value[0], about the origin
+    rotate,     ///< turn by value degrees about X, then Y, then Z, through the origin, right-handed
+    translate,  ///< add value
+  };
+  Kind kind;
+  Vec3 value{};
+};
+
+/// Reads steps separated by commas: fit, scale:S, rotate:X:Y:Z, translate:X:Y:Z. The empty text is no step.
+/// Throws sdm::Error that names the step at fault.
+[[nodiscard]] std::vector<TransformStep> parse_transform(std::string_view text);
+
+/// Applies the steps in order. Throws sdm::Error where a coordinate stops being finite. Cost: linear.
+void transform(Mesh& mesh, const std::vector<TransformStep>& steps);
+
+}  // namespace sdm

@@ -1,0 +1,28 @@
+/// Plain types shared by every public header. Lengths are in the units of the mesh.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace sdm {
+
+using Vec2 = std::array<double, 2>;
+using Vec3 = std::array<double, 3>;
+using Vec3f = std::array<float, 3>;
+/// Three indices of vertices, counter-clockwise seen from outside.
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// The one representation of "no face, no site, no texel".
+inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+/// Axis-aligned box; empty while lo > hi.
+struct Box {
+  Vec3 lo{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+          std::numeric_limits<double>::infinity()};
+  Vec3 hi{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+          -std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace sdm
