@@ -1,1 +1,77 @@
-// (to be written)
+#include <sdm/error.h>
+#include <sdm/mesh.h>
+
+#include <string>
+
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 30;
+
+// Distances are stored in single precision, and products of six coordinates must be finite in double: both
+// hold below.
+constexpr double kMaxCoordinate = 1e37;
+
+bool has_area(const Mesh& mesh, const Triangle& t) {
+  const Vec3& a = mesh.positions[t[0]];
+  const Vec3 n = cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
+  return n != Vec3{};
+}
+
+void validate_positions(const Mesh& mesh) {
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3& p = mesh.positions[v];
+    if (!finite(p)) throw Error("vertex " + std::to_string(v) + " has a NaN or infinite coordinate");
+    for (const double x : p)
+      if (std::abs(x) > kMaxCoordinate)
+        throw Error("vertex " + std::to_string(v) +
+                    " has a coordinate beyond 1e37, too large to compute with; scale the mesh down");
+  }
+}
+
+void validate_triangles(const Mesh& mesh) {
+  bool any_area = false;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    for (const std::uint32_t v : mesh.triangles[f])
+      if (v >= mesh.positions.size())
+        throw Error("index out of range: triangle " + std::to_string(f) + " refers to vertex " +
+                    std::to_string(v) + " of " + std::to_string(mesh.positions.size()));
+    any_area = any_area || has_area(mesh, mesh.triangles[f]);
+  }
+  if (!any_area) throw Error("all triangles are degenerate: none has an area");
+}
+
+void validate_uvs(const Mesh& mesh) {
+  if (!mesh.corner_uvs.empty() && mesh.corner_uvs.size() != mesh.triangles.size())
+    throw Error("there are texture coordinates for " + std::to_string(mesh.corner_uvs.size()) + " of " +
+                std::to_string(mesh.triangles.size()) + " triangles; give them for all or for none");
+  for (std::size_t f = 0; f < mesh.corner_uvs.size(); ++f)
+    for (const Vec2& uv : mesh.corner_uvs[f])
+      if (!std::isfinite(uv[0]) || !std::isfinite(uv[1]))
+        throw Error("triangle " + std::to_string(f) + " has a NaN or infinite texture coordinate");
+}
+
+}  // namespace
+
+void validate(const Mesh& mesh) {
+  if (mesh.triangles.empty()) throw Error("there are no triangles");
+  if (mesh.triangles.size() > kMaxTriangles)
+    throw Error("there are " + std::to_string(mesh.triangles.size()) + " triangles, more than 2^30");
+  if (mesh.positions.size() >= kNone)
+    throw Error("there are " + std::to_string(mesh.positions.size()) +
+                " vertices, too many for 32-bit indices");
+  validate_positions(mesh);
+  validate_triangles(mesh);
+  validate_uvs(mesh);
+}
+
+Box bounds(const Mesh& mesh) {
+  Box box;
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) extend(box, mesh.positions[v]);
+  return box;
+}
+
+}  // namespace sdm

@@ -1,1 +1,131 @@
-// (to be written)
+#include <sdm/error.h>
+#include <sdm/transform.h>
+
+#include <charconv>
+#include <numbers>
+#include <string>
+
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+[[noreturn]] void fail(std::string_view step, const std::string& fault) {
+  throw Error("transform step '" + std::string(step) + "' " + fault +
+              "; steps are fit, scale:S, rotate:X:Y:Z and translate:X:Y:Z");
+}
+
+// The numbers after the name of a step, each behind a colon.
+std::vector<double> parse_values(std::string_view step, std::string_view text) {
+  std::vector<double> values;
+  while (!text.empty()) {
+    text.remove_prefix(1);
+    const std::string_view number = text.substr(0, text.find(':'));
+    const char* end = number.data() + number.size();
+    double value = 0;
+    const auto [stop, error] = std::from_chars(number.data(), end, value);
+    if (error != std::errc{} || stop != end || !std::isfinite(value))
+      fail(step, "has '" + std::string(number) + "' where a number is needed");
+    values.push_back(value);
+    text.remove_prefix(number.size());
+  }
+  return values;
+}
+
+TransformStep parse_step(std::string_view step) {
+  using Kind = TransformStep::Kind;
+  struct Form {
+    std::string_view name;
+    Kind kind;
+    std::size_t values;
+  };
+  constexpr Form forms[] = {{"fit", Kind::fit, 0},
+                            {"scale", Kind::scale, 1},
+                            {"rotate", Kind::rotate, 3},
+                            {"translate", Kind::translate, 3}};
+  const std::string_view name = step.substr(0, step.find(':'));
+  for (const Form& form : forms) {
+    if (form.name != name) continue;
+    const std::vector<double> values = parse_values(step, step.substr(name.size()));
+    if (values.size() != form.values)
+      fail(step, "has " + std::to_string(values.size()) + " numbers, not " + std::to_string(form.values));
+    TransformStep result{form.kind, {}};
+    std::copy(values.begin(), values.end(), result.value.begin());
+    if (form.kind == Kind::scale && result.value[0] == 0) fail(step, "would flatten the mesh to a point");
+    return result;
+  }
+  fail(step, "is not known");
+}
+
+// Turns by `degrees` about an axis, counter-clockwise seen from its tip. Multiples of 90° are exact.
+void rotate(Mesh& mesh, int axis, double degrees) {
+  const double turn = std::remainder(degrees, 360);
+  const double radians = turn * (std::numbers::pi / 180);
+  const double s = std::abs(turn) == 180 ? 0 : std::sin(radians);
+  const double c = std::abs(turn) == 90 ? 0 : std::cos(radians);
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  for (Vec3& p : mesh.positions) {
+    const double x = p[i], y = p[j];
+    p[i] = c * x - s * y;
+    p[j] = s * x + c * y;
+  }
+}
+
+void scale(Mesh& mesh, double factor) {
+  for (Vec3& p : mesh.positions) p = factor * p;
+  // A mirror image: turn the faces, so that their outside stays outside.
+  if (factor < 0) {
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    for (auto& uv : mesh.corner_uvs) std::swap(uv[1], uv[2]);
+  }
+}
+
+void translate(Mesh& mesh, const Vec3& by) {
+  for (Vec3& p : mesh.positions) p += by;
+}
+
+void fit(Mesh& mesh) {
+  const Box box = bounds(mesh);
+  const Vec3 size = box.hi - box.lo;
+  const double longest = std::max({size[0], size[1], size[2]});
+  if (!(longest > 0)) throw Error("transform step 'fit' needs a mesh that has an extent");
+  translate(mesh, -centre(box));
+  for (Vec3& p : mesh.positions) p = {p[0] / longest, p[1] / longest, p[2] / longest};
+}
+
+}  // namespace
+
+std::vector<TransformStep> parse_transform(std::string_view text) {
+  std::vector<TransformStep> steps;
+  while (!text.empty()) {
+    const std::size_t comma = text.find(',');
+    steps.push_back(parse_step(text.substr(0, comma)));
+    if (comma == std::string_view::npos) break;
+    text.remove_prefix(comma + 1);
+    if (text.empty()) fail(text, "is empty");
+  }
+  return steps;
+}
+
+void transform(Mesh& mesh, const std::vector<TransformStep>& steps) {
+  for (const TransformStep& step : steps) {
+    switch (step.kind) {
+      case TransformStep::Kind::fit:
+        fit(mesh);
+        break;
+      case TransformStep::Kind::scale:
+        scale(mesh, step.value[0]);
+        break;
+      case TransformStep::Kind::rotate:
+        for (int axis = 0; axis < 3; ++axis) rotate(mesh, axis, step.value[axis]);
+        break;
+      case TransformStep::Kind::translate:
+        translate(mesh, step.value);
+        break;
+    }
+    for (const Vec3& p : mesh.positions)
+      if (!finite(p)) throw Error("the transform makes a coordinate infinite; use smaller numbers");
+  }
+}
+
+}  // namespace sdm
