@@ -1,0 +1,1 @@
+// sampling_bound(): how far the surface may be from its samples.
