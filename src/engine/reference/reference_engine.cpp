@@ -1,1 +1,56 @@
-// (to be written)
+// The reference engine: one query at a time, plain enough to be believed.
+#include <algorithm>
+#include <queue>
+
+#include "core/vec.h"
+#include "engine/closest_on_face.h"
+#include "engine/engine.h"
+
+namespace sdm {
+namespace {
+
+// The distance of a point of the unit frame to a box, less what double rounding may have added to it.
+double lower_bound(const FloatBox& box, const Vec3& p) {
+  Vec3 gap;
+  for (int k = 0; k < 3; ++k) gap[k] = std::max({box.lo[k] - p[k], p[k] - box.hi[k], 0.0});
+  return (1 - 1e-12) * norm(gap);
+}
+
+ClosestPoint closest(const Sites::Impl& sites, const Vec3& q, double max_distance) {
+  struct Open {
+    double bound;
+    std::uint32_t node;
+    bool operator<(const Open& other) const { return bound > other.bound; }  // nearest on top
+  };
+  const Vec3 unit = sites.frame.to_unit(q);
+  ClosestPoint best;
+  best.distance = max_distance;
+  std::priority_queue<Open> open;
+  open.push({0, 0});
+  // A node is opened even when its bound equals the best distance: O2 may lie at max_distance exactly.
+  while (!open.empty() && open.top().bound <= best.distance * sites.frame.scale) {
+    const AabbTree::Node& node = sites.tree.nodes[open.top().node];
+    const std::uint32_t left = open.top().node + 1;
+    open.pop();
+    if (node.leaf()) {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const ClosestPoint c = closest_on_face(sites, sites.tree.items[i], q);
+        if (c.distance < best.distance || (best.type == SiteType::none && c.distance <= max_distance)) best = c;
+      }
+    } else {
+      for (std::uint32_t child : {left, node.right}) open.push({lower_bound(sites.tree.nodes[child].box, unit), child});
+    }
+  }
+  if (best.type == SiteType::none) best.distance = std::numeric_limits<double>::infinity();
+  return best;
+}
+
+}  // namespace
+
+void reference_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
+                      std::span<ClosestPoint> out) {
+  std::transform(points.begin(), points.end(), out.begin(),
+                 [&](const Vec3& q) { return closest(sites, q, max_distance); });
+}
+
+}  // namespace sdm

@@ -1,0 +1,52 @@
+// A binary tree of axis-aligned boxes over any items that have boxes: build, refit.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+/// Moves a scene to the cube [-1, 1]³ about the origin, so that single precision serves any placement and size.
+/// The scale is a power of two: it adds no rounding.
+struct UnitFrame {
+  Vec3 origin{};
+  double scale = 1;
+
+  static UnitFrame of(const Box& box);
+  [[nodiscard]] Vec3 to_unit(const Vec3& p) const {
+    return {scale * (p[0] - origin[0]), scale * (p[1] - origin[1]), scale * (p[2] - origin[2])};
+  }
+};
+
+/// A box in single precision, rounded outwards: it contains the box it was made from.
+struct FloatBox {
+  std::array<float, 3> lo, hi;
+
+  static FloatBox around(const Box& box);
+};
+
+/// Nodes in depth-first order: the left child of node i is i + 1, every child comes after its parent.
+struct AabbTree {
+  struct Node {
+    FloatBox box;
+    std::uint32_t right = 0;  ///< inner node: its right child
+    std::uint32_t first = 0;  ///< leaf: items[first ... first + count]
+    std::uint32_t count = 0;  ///< 0 for an inner node
+
+    [[nodiscard]] bool leaf() const { return count > 0; }
+  };
+  std::vector<Node> nodes;           ///< empty when there are no items
+  std::vector<std::uint32_t> items;  ///< indices into the boxes given, leaf after leaf
+};
+
+/// Builds by the surface area heuristic over bins, with at most `leaf_size` items a leaf. Items are those of `indices`; boxes
+/// are in the unit frame. The result does not depend on the number of threads. Cost: O(n log n), all cores.
+[[nodiscard]] AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> indices,
+                                       std::uint32_t leaf_size);
+
+/// Brings all boxes up to date, bottom-up, keeping the tree. Cost: linear.
+void refit(AabbTree& tree, std::span<const Box> boxes);
+
+}  // namespace sdm

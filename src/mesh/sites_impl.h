@@ -1,0 +1,31 @@
+// What Sites holds, for the engines.
+#pragma once
+
+#include <sdm/sites.h>
+
+#include <vector>
+
+#include "hierarchy/aabb_tree.h"
+#include "hierarchy/wide_tree.h"
+#include "mesh/pseudonormals.h"
+#include "mesh/regions.h"
+#include "mesh/topology.h"
+
+namespace sdm {
+
+struct Sites::Impl {
+  Mesh mesh;
+  Topology topology;
+  VertexFaces vertex_faces;
+  bool closed = false;
+  bool orientable = false;
+  std::vector<std::uint8_t> inverted;  ///< of each face; all 0 unless closed and orientable
+
+  UnitFrame frame;         ///< of the faces that have sites
+  AabbTree tree;           ///< over those faces, in the unit frame
+  WideTree wide;           ///< the same, collapsed
+  Regions regions;         ///< by the leaves of both
+  Pseudonormals normals;
+};
+
+}  // namespace sdm
