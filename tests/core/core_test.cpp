@@ -1,0 +1,83 @@
+#include <gmock/gmock.h>
+#include <sdm/error.h>
+#include <sdm/threads.h>
+
+#include <atomic>
+#include <numeric>
+#include <random>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/spatial_order.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+TEST(ParallelFor, VisitsEveryIndexOnceForAnyGrainAndThreadCount) {
+  for (unsigned threads : {1u, 2u, 5u})
+    for (std::size_t grain : {1u, 7u, 100000u}) {
+      const ThreadLimit limit(threads);
+      EXPECT_EQ(thread_count(), threads);
+      std::vector<std::atomic<int>> visits(10007);
+      parallel_for(visits.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) ++visits[i];
+      });
+      EXPECT_TRUE(std::all_of(visits.begin(), visits.end(), [](const auto& v) { return v == 1; }));
+    }
+}
+
+TEST(ParallelFor, ReportsProgressUpToTheEndAndPassesExceptionsOn) {
+  double last = 0;
+  parallel_for(1000, 10, [&](std::string_view step, double fraction) {
+    EXPECT_EQ(step, "work");
+    last = std::max(last, fraction);
+    return true;
+  }, "work", [](std::size_t, std::size_t) {});
+  EXPECT_GT(last, 0.5);
+  EXPECT_THROW(parallel_for(100, 1, [](std::size_t, std::size_t) { throw Error("stop"); }), Error);
+}
+
+TEST(ParallelFor, StopsWhenProgressSaysSo) {
+  std::atomic<std::size_t> calls{0};
+  const auto work = [&](std::size_t, std::size_t) { ++calls; };
+  EXPECT_THROW(parallel_for(100000, 1, [](std::string_view, double) { return false; }, "work", work), Cancelled);
+  EXPECT_LT(calls, 100000u);
+}
+
+TEST(Memory, RefusesWhatTheMachineDoesNotHave) {
+  EXPECT_NO_THROW(require_memory(1 << 20, "a small map"));
+  EXPECT_GT(available_memory(), std::size_t{1} << 20);
+  try {
+    require_memory(std::size_t{1} << 60, "an absurd map");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("an absurd map needs 1.15e+09 GB"));
+  }
+}
+
+TEST(SpatialOrder, IsAPermutationThatKeepsNeighboursTogether) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(-1e5, 1e5);
+  std::vector<Vec3> points(20000);
+  for (Vec3& p : points) p = {u(random), u(random), u(random)};
+  const auto length = [&](const std::vector<std::uint32_t>& order) {
+    double sum = 0;
+    for (std::size_t i = 1; i < order.size(); ++i) sum += norm(points[order[i]] - points[order[i - 1]]);
+    return sum;
+  };
+  std::vector<std::uint32_t> as_is(points.size());
+  std::iota(as_is.begin(), as_is.end(), 0u);
+  std::vector<std::uint32_t> order = spatial_order(points);
+  EXPECT_LT(length(order), 0.2 * length(as_is));
+  std::sort(order.begin(), order.end());
+  EXPECT_EQ(order, as_is);
+}
+
+TEST(SpatialOrder, TakesNoPointsAndEqualPoints) {
+  EXPECT_TRUE(spatial_order({}).empty());
+  EXPECT_EQ(spatial_order(std::vector<Vec3>(5, Vec3{3, 3, 3})).size(), 5u);
+}
+
+}  // namespace
+}  // namespace sdm
