@@ -1,0 +1,36 @@
+// The nearest sample of a surface to a point in space.
+#pragma once
+
+#include <sdm/surface.h>
+
+#include <vector>
+
+#include "hierarchy/aabb_tree.h"
+
+namespace sdm {
+
+/// A tree over runs of samples, whose order keeps neighbours together: so it is built in a fraction of the
+/// time of a tree over the samples themselves. The surface, which must have a sample, must outlive it.
+class SampleTree {
+ public:
+  /// Runs stay within `radius` of their first sample: a few texels, so that a run that leaps to another place
+  /// is cut. Cost: linear in samples, all cores.
+  SampleTree(const Surface& surface, double radius);
+
+  /// The point of the nearest sample. Cost: O(log n) for queries near the surface.
+  [[nodiscard]] Vec3 nearest(const Vec3& query) const;
+
+ private:
+  struct Run;
+  struct Nearest;
+  [[nodiscard]] std::vector<Run> cut(std::size_t begin, std::size_t end, double radius) const;
+  [[nodiscard]] double squared_distance(std::uint32_t node, const Nearest& found) const;
+  void descend(std::uint32_t index, Nearest& found) const;
+
+  const Surface& surface_;
+  UnitFrame frame_;
+  std::vector<std::size_t> first_;  ///< sample of each run, and the end of the last run
+  AabbTree tree_;                   ///< over runs, one a leaf
+};
+
+}  // namespace sdm
