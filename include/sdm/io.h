@@ -28,9 +28,9 @@ enum class Colormap {
 
 struct PictureOptions {
   Colormap colormap = Colormap::automatic;
-  std::optional<std::array<double, 2>> range;  ///< of the colours; else from the map (symmetric if signed)
-  std::optional<double> tolerance;             ///< bands: green within ±tolerance, and out of it by sign
-  std::string units;                           ///< written in the legend: "mm", ...
+  std::optional<std::array<double, 2>> range{};  ///< of the colours; else from the map (symmetric if signed)
+  std::optional<double> tolerance{};             ///< bands: green within ±tolerance, and out of it by sign
+  std::string units{};                           ///< written in the legend: "mm", ...
 };
 
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Gutters are dilated;

@@ -28,20 +28,20 @@ void validate(const Mesh& mesh);
 struct MeshInfo {
   std::size_t vertices = 0, triangles = 0, edges = 0;
   Box bounds;
-  std::size_t components = 0;             ///< sets of faces connected over shared vertices
-  std::size_t boundary_edges = 0;         ///< edges of exactly one face
-  std::size_t nonmanifold_edges = 0;      ///< edges of three faces or more
-  std::size_t nonmanifold_vertices = 0;   ///< vertices whose faces do not form one fan
-  std::size_t degenerate_faces = 0;       ///< faces of zero area, repeated corners included
-  std::size_t duplicate_faces = 0;        ///< faces whose three vertices an earlier face has too
-  std::size_t unused_vertices = 0;        ///< vertices of no face
-  bool closed = false;                    ///< no boundary edge and no non-manifold edge
-  bool orientable = false;                ///< the faces can be turned so that all neighbours agree
-  bool oriented = false;                  ///< and they do agree as they are
-  bool manifold = false;                  ///< no non-manifold edge or vertex
+  std::size_t components = 0;            ///< sets of faces connected over shared vertices
+  std::size_t boundary_edges = 0;        ///< edges of exactly one face
+  std::size_t nonmanifold_edges = 0;     ///< edges of three faces or more
+  std::size_t nonmanifold_vertices = 0;  ///< vertices whose faces do not form one fan
+  std::size_t degenerate_faces = 0;      ///< faces of zero area, repeated corners included
+  std::size_t duplicate_faces = 0;       ///< faces whose three vertices an earlier face has too
+  std::size_t unused_vertices = 0;       ///< vertices of no face
+  bool closed = false;                   ///< no boundary edge and no non-manifold edge
+  bool orientable = false;               ///< the faces can be turned so that all neighbours agree
+  bool oriented = false;                 ///< and they do agree as they are
+  bool manifold = false;                 ///< no non-manifold edge or vertex
   bool has_uvs = false;
   double area = 0;
-  double volume = 0;                      ///< enclosed; 0 unless closed and orientable
+  double volume = 0;  ///< enclosed; 0 unless closed and orientable
 };
 
 /// Counts and classifies. Duplicate faces, and degenerate faces with repeated corners, do not count as

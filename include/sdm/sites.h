@@ -16,15 +16,15 @@ enum class SiteType : std::uint8_t { vertex = 0, edge = 1, face = 2, none = 0xFF
 struct ClosestPoint {
   Vec3 point{};
   double distance = std::numeric_limits<double>::infinity();  ///< ≥ 0, = |point − query|
-  std::uint32_t site = kNone;           ///< index among the sites of its type
-  SiteType type = SiteType::none;       ///< none: nothing within the distance asked for
-  std::uint32_t face = kNone;           ///< a face that the site belongs to
+  std::uint32_t site = kNone;                                 ///< index among the sites of its type
+  SiteType type = SiteType::none;                             ///< none: nothing within the distance asked for
+  std::uint32_t face = kNone;                                 ///< a face that the site belongs to
 };
 
 /// O2: the sites of a mesh with their regions of influence, pseudonormals, and an AABB tree.
 ///
-/// Vertices and faces are numbered as in the mesh, edges as in edges(). Duplicate faces, and degenerate faces with
-/// repeated corners, are ignored (they add no point to the set); other degenerate faces count by their edges.
+/// Vertices and faces are numbered as in the mesh, edges as in edges(). Duplicate faces, and degenerate faces
+/// with repeated corners, are ignored; other faces without area count by their edges and vertices.
 class Sites {
  public:
   /// Throws sdm::Error when the mesh is unusable (see validate). Cost: O(n log n), all cores.
@@ -33,8 +33,8 @@ class Sites {
   Sites(Sites&&) noexcept;
   Sites& operator=(Sites&&) noexcept;
 
-  /// Moves the vertices, keeping the triangles: everything is brought up to date in linear time. Throws sdm::Error, and
-  /// changes nothing, when the count differs or a coordinate is not finite.
+  /// Moves the vertices, keeping the triangles: everything is brought up to date in linear time. Throws
+  /// sdm::Error, and changes nothing, when the count differs or a coordinate is not finite.
   void refit(std::span<const Vec3> positions);
 
   [[nodiscard]] const Mesh& mesh() const;

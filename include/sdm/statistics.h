@@ -9,15 +9,20 @@
 
 namespace sdm {
 
-/// Of the texels that hold a value, each weighted by the area of surface that its centre stands for. All are NaN when there are none.
+/// Of the texels that hold a value, each weighted by the area of surface that its centre stands for. All are
+/// NaN when there are none.
 struct DistanceStatistics {
-  std::size_t texels = 0;           ///< with a value
+  std::size_t texels = 0;  ///< with a value
   std::size_t negative_texels = 0;
   double min = 0, max = 0, mean = 0, rms = 0;
-  double p50 = 0, p95 = 0, p99 = 0; ///< the smallest distance below which that share of the area lies
+  double p50 = 0, p95 = 0, p99 = 0;  ///< the smallest distance below which that share of the area lies
 };
 
 /// Over `map.distance` as it is, signed or not. Cost: O(n log n) in texels.
 [[nodiscard]] DistanceStatistics statistics(const Surface& surface, const DistanceMap& map);
+
+/// The share of the area, in [0, 1], whose |distance| is above `limit`; texels beyond the map's maximum
+/// distance count as above. 0 for a map without texels. Cost: O(n) in texels.
+[[nodiscard]] double area_fraction_beyond(const Surface& surface, const DistanceMap& map, double limit);
 
 }  // namespace sdm

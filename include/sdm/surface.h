@@ -21,7 +21,7 @@ struct AtlasOptions {
   std::uint32_t resolution = 1024;  ///< texels a side, in [16, 32768]
   double max_stretch = 1.3;         ///< charts: no length grows by more than this from atlas to surface, > 1
   std::uint32_t gutter = 1;         ///< free texels around each chart, its own (charts, triangles)
-  Progress progress;
+  Progress progress{};
 };
 
 /// O1: a mesh whose faces are laid out, without overlap, in a square texture.

@@ -45,7 +45,9 @@ std::size_t address_space() {
 
 }  // namespace
 
-std::size_t available_memory() { return std::min({machine_memory(), cgroup_memory(), address_space()}); }
+std::size_t available_memory() {
+  return std::min({machine_memory(), cgroup_memory(), address_space()});
+}
 
 void require_memory(std::size_t bytes, std::string_view purpose) {
   const std::size_t available = available_memory();

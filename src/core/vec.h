@@ -8,25 +8,53 @@
 
 namespace sdm {
 
-constexpr Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-constexpr Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-constexpr Vec3 operator-(const Vec3& a) { return {-a[0], -a[1], -a[2]}; }
-constexpr Vec3 operator*(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-constexpr Vec3& operator+=(Vec3& a, const Vec3& b) { return a = a + b; }
+constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+constexpr Vec3 operator-(const Vec3& a, const Vec3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+constexpr Vec3 operator-(const Vec3& a) {
+  return {-a[0], -a[1], -a[2]};
+}
+constexpr Vec3 operator*(double s, const Vec3& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+constexpr Vec3& operator+=(Vec3& a, const Vec3& b) {
+  return a = a + b;
+}
 
-constexpr Vec2 operator+(const Vec2& a, const Vec2& b) { return {a[0] + b[0], a[1] + b[1]}; }
-constexpr Vec2 operator-(const Vec2& a, const Vec2& b) { return {a[0] - b[0], a[1] - b[1]}; }
-constexpr Vec2 operator*(double s, const Vec2& a) { return {s * a[0], s * a[1]}; }
+constexpr Vec2 operator+(const Vec2& a, const Vec2& b) {
+  return {a[0] + b[0], a[1] + b[1]};
+}
+constexpr Vec2 operator-(const Vec2& a, const Vec2& b) {
+  return {a[0] - b[0], a[1] - b[1]};
+}
+constexpr Vec2 operator*(double s, const Vec2& a) {
+  return {s * a[0], s * a[1]};
+}
 
-constexpr double dot(const Vec2& a, const Vec2& b) { return a[0] * b[0] + a[1] * b[1]; }
-constexpr double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-constexpr double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
+constexpr double dot(const Vec2& a, const Vec2& b) {
+  return a[0] * b[0] + a[1] * b[1];
+}
+constexpr double dot(const Vec3& a, const Vec3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+constexpr double cross(const Vec2& a, const Vec2& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
 constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-constexpr double squared_norm(const Vec3& a) { return dot(a, a); }
-inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
-inline bool finite(const Vec3& a) { return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]); }
+constexpr double squared_norm(const Vec3& a) {
+  return dot(a, a);
+}
+inline double norm(const Vec3& a) {
+  return std::sqrt(dot(a, a));
+}
+inline bool finite(const Vec3& a) {
+  return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
+}
 
 /// a / |a|, or the zero vector where a has no direction.
 inline Vec3 normalized(const Vec3& a) {
@@ -44,7 +72,11 @@ inline void extend(Box& box, const Box& other) {
   extend(box, other.lo);
   extend(box, other.hi);
 }
-inline Vec3 centre(const Box& box) { return 0.5 * (box.lo + box.hi); }
-inline double diagonal(const Box& box) { return norm(box.hi - box.lo); }
+inline Vec3 centre(const Box& box) {
+  return 0.5 * (box.lo + box.hi);
+}
+inline double diagonal(const Box& box) {
+  return norm(box.hi - box.lo);
+}
 
 }  // namespace sdm

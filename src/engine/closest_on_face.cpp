@@ -23,7 +23,8 @@ bool foot_in_face(const std::array<Vec3, 3>& corner, const Vec3& q, Vec3& foot) 
   return true;
 }
 
-// Whether the direction from c to q points into any of the faces around the site: then that face is strictly closer.
+// Whether the direction from c to q points into any of the faces around the site: then that face is strictly
+// closer.
 bool improve(const Sites::Impl& sites, std::span<const std::uint32_t> faces, const Vec3& q, ClosestPoint& c) {
   const Vec3 to_query = q - c.point;
   for (std::uint32_t face : faces) {
@@ -54,11 +55,11 @@ ClosestPoint closest_on_face(const Sites::Impl& sites, std::uint32_t face, const
     const int next = (k + 1) % 3;
     const Vec3 along = corner[next] - corner[k];
     const double projection = dot(q - corner[k], along), length = squared_norm(along);
-    const ClosestPoint candidate =
-        projection <= 0       ? at(corner[k], q, SiteType::vertex, t[k], face)
-        : projection >= length ? at(corner[next], q, SiteType::vertex, t[next], face)
-                               : at(corner[k] + (projection / length) * along, q, SiteType::edge,
-                                    sites.topology.face_edges[face][k], face);
+    const ClosestPoint candidate = projection <= 0 ? at(corner[k], q, SiteType::vertex, t[k], face)
+                                   : projection >= length
+                                       ? at(corner[next], q, SiteType::vertex, t[next], face)
+                                       : at(corner[k] + (projection / length) * along, q, SiteType::edge,
+                                            sites.topology.face_edges[face][k], face);
     if (candidate.distance < best.distance) best = candidate;
   }
   return best;
@@ -71,8 +72,8 @@ ClosestPoint closest_around_face(const Sites::Impl& sites, std::uint32_t face, c
     const std::span<const std::uint32_t> faces =
         c.type == SiteType::edge
             ? sites.topology.edge_faces(c.site)
-            : std::span(around.faces).subspan(around.offsets[c.site],
-                                              around.offsets[c.site + 1] - around.offsets[c.site]);
+            : std::span(around.faces)
+                  .subspan(around.offsets[c.site], around.offsets[c.site + 1] - around.offsets[c.site]);
     improved = improve(sites, faces, q, c);
   }
   return c;

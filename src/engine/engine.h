@@ -1,4 +1,5 @@
-// The one interface of the engines: closest sites for points that come in an order where neighbours are near each other.
+// The one interface of the engines: closest sites for points that come in an order where neighbours are near
+// each other.
 #pragma once
 
 #include <sdm/map.h>
@@ -9,8 +10,8 @@
 
 namespace sdm {
 
-/// Finds, for each point, the closest point of O2 within max_distance; type `none` where there is none. One thread; called
-/// for batches of points from several threads at once.
+/// Finds, for each point, the closest point of O2 within max_distance; type `none` where there is none. One
+/// thread; called for batches of points from several threads at once.
 using ClosestSearch = void (*)(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
                                std::span<ClosestPoint> closest);
 
@@ -18,8 +19,9 @@ using ClosestSearch = void (*)(const Sites::Impl& sites, std::span<const Vec3> p
 void reference_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
                       std::span<ClosestPoint> closest);
 
-/// Packets of points against the wide tree and its regions in single precision; the winner recomputed in double. A winner can be
-/// another than the closest site only where the two differ by rounding: some 10⁻⁷ of the scene's extent.
+/// Packets of points against the wide tree and its regions in single precision; the winner recomputed in
+/// double. A winner can be another than the closest site only where the two differ by rounding: some 10⁻⁷ of
+/// the scene's extent.
 void cpu_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
                 std::span<ClosestPoint> closest);
 

@@ -15,7 +15,8 @@
 namespace sdm {
 namespace {
 
-// Points that one thread takes at a time: enough to amortise the start of a search, few enough to share evenly.
+// Points that one thread takes at a time: enough to amortise the start of a search, few enough to share
+// evenly.
 constexpr std::size_t kBatch = 2048;
 
 DistanceMap empty_map(std::uint32_t resolution) {
@@ -85,13 +86,14 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
   const ClosestSearch search = search_of(options.engine);
   const std::vector<std::uint32_t> order = spatial_order(points);
   std::vector<ClosestPoint> result(points.size());
-  parallel_for(points.size(), kBatch, options.progress, "closest points", [&](std::size_t begin, std::size_t end) {
-    std::vector<Vec3> batch(end - begin);
-    std::vector<ClosestPoint> closest(end - begin);
-    for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];
-    search(sites.impl(), batch, options.max_distance, closest);
-    for (std::size_t i = begin; i < end; ++i) result[order[i]] = closest[i - begin];
-  });
+  parallel_for(points.size(), kBatch, options.progress, "closest points",
+               [&](std::size_t begin, std::size_t end) {
+                 std::vector<Vec3> batch(end - begin);
+                 std::vector<ClosestPoint> closest(end - begin);
+                 for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];
+                 search(sites.impl(), batch, options.max_distance, closest);
+                 for (std::size_t i = begin; i < end; ++i) result[order[i]] = closest[i - begin];
+               });
   return result;
 }
 

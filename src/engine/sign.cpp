@@ -27,9 +27,12 @@ std::string open_reason(const Sites::Impl& sites) {
 
 Vec3 pseudonormal(const Sites::Impl& sites, const ClosestPoint& c) {
   switch (c.type) {
-    case SiteType::vertex: return sites.normals.vertex[c.site];
-    case SiteType::edge: return edge_pseudonormal(sites.normals, sites.topology, c.site);
-    default: return sites.normals.face[c.face];
+    case SiteType::vertex:
+      return sites.normals.vertex[c.site];
+    case SiteType::edge:
+      return edge_pseudonormal(sites.normals, sites.topology, c.site);
+    default:
+      return sites.normals.face[c.face];
   }
 }
 
@@ -38,7 +41,8 @@ Vec3 pseudonormal(const Sites::Impl& sites, const ClosestPoint& c) {
 SignUsed choose_sign(const Sites& sites, SignMethod asked) {
   const std::string open = open_reason(sites.impl());
   switch (asked) {
-    case SignMethod::none: return {SignMethod::none, "asked for"};
+    case SignMethod::none:
+      return {SignMethod::none, "asked for"};
     case SignMethod::winding:
       return {SignMethod::winding, open.empty() ? "asked for; O2 is closed and orientable"
                                                 : "asked for; an estimate, because " + open};
@@ -47,7 +51,8 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
         throw Error("distances cannot be signed by pseudonormals: " + open +
                     "; take sign none, or winding for an estimate");
       return {SignMethod::pseudonormal, "asked for; O2 is closed and orientable"};
-    case SignMethod::automatic: break;
+    case SignMethod::automatic:
+      break;
   }
   if (!open.empty()) return {SignMethod::none, open};
   return {SignMethod::pseudonormal, "O2 is closed and orientable"};
@@ -61,8 +66,10 @@ bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) cons
   switch (method_) {
     case SignMethod::pseudonormal:
       return closest.type != SiteType::none && dot(query - closest.point, pseudonormal(sites_, closest)) < 0;
-    case SignMethod::winding: return (*winding_)(query) > 0.5;
-    default: return false;
+    case SignMethod::winding:
+      return (*winding_)(query) > 0.5;
+    default:
+      return false;
   }
 }
 

@@ -10,7 +10,7 @@ namespace sdm {
 namespace {
 
 // A dipole stands for its faces from this many radii on.
-constexpr double kFar = 4;
+constexpr double kFar = 3;
 
 std::array<Vec3, 3> corners(const Sites::Impl& sites, std::uint32_t face) {
   const Triangle& t = sites.mesh.triangles[face];
@@ -23,7 +23,7 @@ std::array<Vec3, 3> corners(const Sites::Impl& sites, std::uint32_t face) {
 
 WindingNumber::WindingNumber(const Sites::Impl& sites) : sites_(sites), dipoles_(sites.tree.nodes.size()) {
   const auto& nodes = sites.tree.nodes;
-  for (std::size_t i = nodes.size(); i-- > 0;) {
+  for (std::size_t i = nodes.size(); i-- > 0;) {  // children before parents
     Dipole& d = dipoles_[i];
     const auto add = [&d](const Vec3& centre, const Vec3& moment, double area) {
       d.centre += area * centre;
@@ -37,22 +37,23 @@ WindingNumber::WindingNumber(const Sites::Impl& sites) : sites_(sites), dipoles_
         add((1.0 / 3) * (a + b + c), moment, norm(moment));
       }
     } else {
-      for (std::size_t child : {i + 1, static_cast<std::size_t>(nodes[i].right)})
-        add(dipoles_[child].centre, dipoles_[child].moment, dipoles_[child].area);
+      for (const Dipole& child : {dipoles_[i + 1], dipoles_[nodes[i].right]})
+        add(child.centre, child.moment, child.area);
     }
-    const Vec3 lo{nodes[i].box.lo[0], nodes[i].box.lo[1], nodes[i].box.lo[2]};
-    const Vec3 hi{nodes[i].box.hi[0], nodes[i].box.hi[1], nodes[i].box.hi[2]};
-    const Vec3 half = (0.5 / sites.frame.scale) * (hi - lo);
+    const FloatBox& box = nodes[i].box;
+    const Vec3 lo{box.lo[0], box.lo[1], box.lo[2]}, hi{box.hi[0], box.hi[1], box.hi[2]};
     const Vec3 middle = sites.frame.origin + (0.5 / sites.frame.scale) * (lo + hi);
-    // Children's centres are still sums weighted by area while their parent reads them: parents come first in the array.
-    const Vec3 centre = d.area > 0 ? (1 / d.area) * d.centre : middle;
-    d.radius = norm(half) + norm(centre - middle);
+    d.centre = d.area > 0 ? (1 / d.area) * d.centre : middle;
+    Vec3 farthest;  // from the centre to the box's farthest corner
+    for (int k = 0; k < 3; ++k)
+      farthest[k] = 0.5 / sites.frame.scale * (hi[k] - lo[k]) + std::abs(d.centre[k] - middle[k]);
+    d.radius = norm(farthest);
   }
-  for (Dipole& d : dipoles_)
-    if (d.area > 0) d.centre = (1 / d.area) * d.centre;
 }
 
-double WindingNumber::operator()(const Vec3& q) const { return at(0, q) / (4 * std::numbers::pi); }
+double WindingNumber::operator()(const Vec3& q) const {
+  return at(0, q) / (4 * std::numbers::pi);
+}
 
 double WindingNumber::at(std::uint32_t index, const Vec3& q) const {
   const Dipole& d = dipoles_[index];

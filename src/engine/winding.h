@@ -9,8 +9,9 @@
 
 namespace sdm {
 
-/// How many times the mesh winds around a point (Jacobson, Kavan & Sorkine 2013): 1 inside and 0 outside a closed mesh, in
-/// between around an open one. Far subtrees act as dipoles (Barill et al. 2018), which errs by about 10⁻³.
+/// How many times the mesh winds around a point (Jacobson, Kavan & Sorkine 2013): 1 inside and 0 outside a
+/// closed mesh, in between around an open one. Far subtrees act as dipoles (Barill et al. 2018), which errs
+/// by about 10⁻².
 class WindingNumber {
  public:
   explicit WindingNumber(const Sites::Impl& sites);
@@ -18,8 +19,8 @@ class WindingNumber {
 
  private:
   struct Dipole {
-    Vec3 centre{};      ///< area-weighted mean of the faces' centroids
-    Vec3 moment{};      ///< sum of the faces' normals times areas
+    Vec3 centre{};  ///< area-weighted mean of the faces' centroids
+    Vec3 moment{};  ///< sum of the faces' normals times areas
     double area = 0;
     double radius = 0;  ///< about the centre, of everything below
   };

@@ -20,7 +20,11 @@ double half_area(const Box& box) {
 class Builder {
  public:
   Builder(std::span<const Box> boxes, std::vector<std::uint32_t>& items, std::uint32_t leaf_size)
-      : boxes_(boxes), items_(items), leaf_size_(leaf_size), centres_(boxes.size()), nodes_(2 * items.size()) {
+      : boxes_(boxes),
+        items_(items),
+        leaf_size_(leaf_size),
+        centres_(boxes.size()),
+        nodes_(2 * items.size()) {
     for (std::uint32_t i : items_) centres_[i] = centre(boxes_[i]);
   }
 
@@ -33,8 +37,8 @@ class Builder {
   }
 
  private:
-  // A subtree of n items has at most 2n − 1 nodes: giving each that many slots lets threads work without talking, and copy()
-  // closes the gaps afterwards.
+  // A subtree of n items has at most 2n − 1 nodes: giving each that many slots lets threads work without
+  // talking, and copy() closes the gaps afterwards.
   void build(std::uint32_t slot, std::uint32_t begin, std::uint32_t end) {
     Box box, centre_box;
     for (std::uint32_t i = begin; i < end; ++i) {
@@ -68,7 +72,8 @@ class Builder {
     double best_cost = std::numeric_limits<double>::infinity();
     int best_axis = -1, best_bin = 0;
     const auto bin_of = [&](std::uint32_t item, int axis) {
-      const double t = (centres_[item][axis] - centre_box.lo[axis]) / (centre_box.hi[axis] - centre_box.lo[axis]);
+      const double t =
+          (centres_[item][axis] - centre_box.lo[axis]) / (centre_box.hi[axis] - centre_box.lo[axis]);
       return std::min(kBins - 1, static_cast<int>(kBins * t));
     };
     for (int axis = 0; axis < 3; ++axis) {

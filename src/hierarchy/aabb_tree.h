@@ -8,8 +8,8 @@
 
 namespace sdm {
 
-/// Moves a scene to the cube [-1, 1]³ about the origin, so that single precision serves any placement and size.
-/// The scale is a power of two: it adds no rounding.
+/// Moves a scene to the cube [-1, 1]³ about the origin, so that single precision serves any placement and
+/// size. The scale is a power of two: it adds no rounding.
 struct UnitFrame {
   Vec3 origin{};
   double scale = 1;
@@ -41,8 +41,9 @@ struct AabbTree {
   std::vector<std::uint32_t> items;  ///< indices into the boxes given, leaf after leaf
 };
 
-/// Builds by the surface area heuristic over bins, with at most `leaf_size` items a leaf. Items are those of `indices`; boxes
-/// are in the unit frame. The result does not depend on the number of threads. Cost: O(n log n), all cores.
+/// Builds by the surface area heuristic over bins, with at most `leaf_size` items a leaf. Items are those of
+/// `indices`; boxes are in the unit frame. The result does not depend on the number of threads. Cost: O(n log
+/// n), all cores.
 [[nodiscard]] AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> indices,
                                        std::uint32_t leaf_size);
 

@@ -42,9 +42,8 @@ class Collapser {
     wide_.nodes.emplace_back();
     for (std::size_t i = 0; i < open.size(); ++i) {
       const std::uint32_t node = open[i];
-      const std::uint32_t child = tree_.nodes[node].leaf()
-                                      ? leaf_number_[node] | WideTree::kLeafBit
-                                      : add({node + 1, tree_.nodes[node].right});
+      const std::uint32_t child = tree_.nodes[node].leaf() ? leaf_number_[node] | WideTree::kLeafBit
+                                                           : add({node + 1, tree_.nodes[node].right});
       wide_.nodes[index].child[i] = child;
       wide_.nodes[index].source[i] = node;
     }

@@ -30,8 +30,8 @@ struct Shell {
 };
 
 // Full turns of the shell's faces around q: ±1 inside, 0 outside.
-double winding(const Shell& shell, const Vec3& q, std::span<const Vec3> p, std::span<const Triangle> triangles,
-               std::span<const std::uint8_t> turned) {
+double winding(const Shell& shell, const Vec3& q, std::span<const Vec3> p,
+               std::span<const Triangle> triangles, std::span<const std::uint8_t> turned) {
   double sum = 0;
   for (std::uint32_t f : shell.faces) {
     const Triangle& t = triangles[f];
@@ -89,8 +89,8 @@ std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions, std::sp
       double volume = 0;  // six times; the corner as origin keeps digits for shells far from the mesh's
       for (std::uint32_t f : shells[s].faces) {
         const Triangle& t = triangles[f];
-        const double v = dot(positions[t[0]] - corner,
-                             cross(positions[t[1]] - corner, positions[t[2]] - corner));
+        const double v =
+            dot(positions[t[0]] - corner, cross(positions[t[1]] - corner, positions[t[2]] - corner));
         volume += orientation.turned[f] ? -v : v;
       }
       int depth = 0;

@@ -1,5 +1,6 @@
-// Outward normals of the sites of a closed, orientable mesh, for telling inside from outside (Bærentzen & Aanæs 2005): with c
-// the closest point of the mesh to q and n the pseudonormal of the site that c lies on, q is outside where (q − c)·n > 0.
+// Outward normals of the sites of a closed, orientable mesh, for telling inside from outside (Bærentzen &
+// Aanæs 2005): with c the closest point of the mesh to q and n the pseudonormal of the site that c lies on, q
+// is outside where (q − c)·n > 0.
 #pragma once
 
 #include <sdm/types.h>
@@ -12,22 +13,25 @@
 namespace sdm {
 
 struct Pseudonormals {
-  std::vector<Vec3> face;    ///< unit length, 0 for faces without area
-  std::vector<Vec3> vertex;  ///< sum of incident face normals, each weighted by the face's angle at the vertex
+  std::vector<Vec3> face;  ///< unit length, 0 for faces without area
+  std::vector<Vec3>
+      vertex;  ///< sum of incident face normals, each weighted by the face's angle at the vertex
 };
 
 /// The pseudonormal of an edge: the sum of its faces' normals.
-[[nodiscard]] Vec3 edge_pseudonormal(const Pseudonormals& normals, const Topology& topology, std::uint32_t edge);
+[[nodiscard]] Vec3 edge_pseudonormal(const Pseudonormals& normals, const Topology& topology,
+                                     std::uint32_t edge);
 
 /// `inverted[f]` tells that face f's vertices run clockwise seen from outside. Cost: linear, all cores.
 [[nodiscard]] Pseudonormals build_pseudonormals(std::span<const Vec3> positions,
-                                                std::span<const Triangle> triangles, const VertexFaces& vertex_faces,
+                                                std::span<const Triangle> triangles,
+                                                const VertexFaces& vertex_faces,
                                                 std::span<const std::uint8_t> inverted);
 
-/// For a closed, orientable mesh: which faces run clockwise seen from outside. Every component of `orientation` bounds solid
-/// where it lies inside an even number of the others, and hollow where inside an odd number: a point is inside
-/// when a ray from it meets the mesh an odd number of times. Cost: linear, and for components whose box lies
-/// in another's box, the product of their number and its faces.
+/// For a closed, orientable mesh: which faces run clockwise seen from outside. Every component of
+/// `orientation` bounds solid where it lies inside an even number of the others, and hollow where inside an
+/// odd number: a point is inside when a ray from it meets the mesh an odd number of times. Cost: linear, and
+/// for components whose box lies in another's box, the product of their number and its faces.
 [[nodiscard]] std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions,
                                                       std::span<const Triangle> triangles,
                                                       const Orientation& orientation);

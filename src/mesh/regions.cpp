@@ -28,8 +28,8 @@ void set_plane(float (&rows)[4][RegionBlock::kWidth], int lane, const Vec3& norm
 
 // The neighbours of a vertex whose directions spread the most: each the farthest from those chosen before.
 std::array<std::uint32_t, VertexBlock::kRays> spread_neighbours(std::uint32_t vertex,
-                                                               std::span<const std::uint32_t> neighbours,
-                                                               std::span<const Vec3> positions) {
+                                                                std::span<const std::uint32_t> neighbours,
+                                                                std::span<const Vec3> positions) {
   std::array<std::uint32_t, VertexBlock::kRays> chosen;
   chosen.fill(neighbours.front());
   const auto direction = [&](std::uint32_t w) { return normalized(positions[w] - positions[vertex]); };
@@ -37,7 +37,8 @@ std::array<std::uint32_t, VertexBlock::kRays> spread_neighbours(std::uint32_t ve
     double least = 2;  // the largest cosine to the chosen ones
     for (std::uint32_t w : neighbours) {
       double closest = -1;
-      for (std::size_t j = 0; j < i; ++j) closest = std::max(closest, dot(direction(w), direction(chosen[j])));
+      for (std::size_t j = 0; j < i; ++j)
+        closest = std::max(closest, dot(direction(w), direction(chosen[j])));
       if (closest < least) least = closest, chosen[i] = w;
     }
   }
@@ -92,9 +93,8 @@ void fill(EdgeBlock& block, std::span<const Vec3> p, std::span<const Triangle> t
     for (std::size_t j = 0; j < 2; ++j) {
       const Triangle& t = triangles[faces[std::min(j, faces.size() - 1)]];
       const Vec3 opposite = p[t[0] ^ t[1] ^ t[2] ^ a ^ b] - p[a];  // the corner that is neither a nor b
-      const Vec3 inward = face_normal(t, p) == Vec3{}
-                              ? Vec3{}
-                              : normalized(opposite - dot(opposite, direction) * direction);
+      const Vec3 inward =
+          face_normal(t, p) == Vec3{} ? Vec3{} : normalized(opposite - dot(opposite, direction) * direction);
       set_plane(block.wall[j], i, inward, p[a]);
     }
   }

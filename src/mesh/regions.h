@@ -1,11 +1,14 @@
 // The regions of influence of sites, laid out for vector instructions.
 //
-// A site can hold the closest point of x only if x lies in its region, by first-order conditions that any soup satisfies:
+// A site can hold the closest point of x only if x lies in its region, by first-order conditions that any
+// soup satisfies:
 //   face abc   the prism over it: x on the inner side of the three walls through its edges;
-//   edge ab    between the end planes through a and b, and for each incident face, with inward in-plane normal m ⟂ ab:
+//   edge ab    between the end planes through a and b, and for each incident face, with inward in-plane
+//   normal m ⟂ ab:
 //              (x − a)·m ≤ 0;
 //   vertex v   the polar cone (x − v)·(w − v) ≤ 0 over all incident edges vw.
-// Fewer conditions only make a region larger, which is always safe: edges keep two walls, vertices four edges.
+// Fewer conditions only make a region larger, which is always safe: edges keep two walls, vertices four
+// edges.
 #pragma once
 
 #include <sdm/types.h>
@@ -18,8 +21,9 @@
 
 namespace sdm {
 
-/// Sites that are tested together. `face` is a face that the site belongs to. Coordinates in the unit frame; all
-/// normals and directions have length 1, or 0 where geometry gives none (and then never exclude anything).
+/// Sites that are tested together. `face` is a face that the site belongs to. Coordinates in the unit frame;
+/// all normals and directions have length 1, or 0 where geometry gives none (and then never exclude
+/// anything).
 struct RegionBlock {
   static constexpr int kWidth = 8;
 };
@@ -51,7 +55,8 @@ struct VertexBlock : RegionBlock {
   std::uint32_t count = 0;
 };
 
-/// The sites of every leaf of a tree over the faces; each edge and vertex belongs to one leaf that holds a face of it.
+/// The sites of every leaf of a tree over the faces; each edge and vertex belongs to one leaf that holds a
+/// face of it.
 struct Regions {
   struct Leaf {
     std::uint32_t faces, edges, vertices;  ///< its first block of each kind; the next leaf's ends it

@@ -85,9 +85,17 @@ void Sites::refit(std::span<const Vec3> positions) {
   s.normals = build_pseudonormals(s.mesh.positions, s.mesh.triangles, s.vertex_faces, s.inverted);
 }
 
-const Mesh& Sites::mesh() const { return impl_->mesh; }
-std::span<const std::array<std::uint32_t, 2>> Sites::edges() const { return impl_->topology.edges; }
-bool Sites::closed() const { return impl_->closed; }
-bool Sites::orientable() const { return impl_->orientable; }
+const Mesh& Sites::mesh() const {
+  return impl_->mesh;
+}
+std::span<const std::array<std::uint32_t, 2>> Sites::edges() const {
+  return impl_->topology.edges;
+}
+bool Sites::closed() const {
+  return impl_->closed;
+}
+bool Sites::orientable() const {
+  return impl_->orientable;
+}
 
 }  // namespace sdm

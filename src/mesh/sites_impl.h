@@ -21,10 +21,10 @@ struct Sites::Impl {
   bool orientable = false;
   std::vector<std::uint8_t> inverted;  ///< of each face; all 0 unless closed and orientable
 
-  UnitFrame frame;         ///< of the faces that have sites
-  AabbTree tree;           ///< over those faces, in the unit frame
-  WideTree wide;           ///< the same, collapsed
-  Regions regions;         ///< by the leaves of both
+  UnitFrame frame;  ///< of the faces that have sites
+  AabbTree tree;    ///< over those faces, in the unit frame
+  WideTree wide;    ///< the same, collapsed
+  Regions regions;  ///< by the leaves of both
   Pseudonormals normals;
 };
 

@@ -9,8 +9,9 @@
 
 namespace sdm {
 
-/// The signed solid angle of triangle (a, b, c) seen from the origin, in (−2π, 2π], positive where it runs clockwise as seen
-/// from there: over a closed mesh around the origin the angles sum to 4π (van Oosterom & Strackee 1983).
+/// The signed solid angle of triangle (a, b, c) seen from the origin, in (−2π, 2π], positive where it runs
+/// clockwise as seen from there: over a closed mesh around the origin the angles sum to 4π (van Oosterom &
+/// Strackee 1983).
 inline double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = norm(a), lb = norm(b), lc = norm(c);
   const double numerator = dot(a, cross(b, c));

@@ -5,7 +5,8 @@
 namespace sdm {
 namespace {
 
-// Items sorted by a key below `bucket_count`, by counting: offsets of the buckets and the items in their order.
+// Items sorted by a key below `bucket_count`, by counting: offsets of the buckets and the items in their
+// order.
 struct Buckets {
   std::vector<std::uint32_t> offsets, items;
 };
@@ -61,9 +62,8 @@ Topology build_topology(std::size_t vertex_count, std::span<const Triangle> tria
     const std::uint32_t a = t[corner % 3], b = t[(corner + 1) % 3];
     return {std::min(a, b), std::max(a, b)};
   };
-  Buckets corners = bucket(vertex_count, 3 * triangles.size(), [&](std::size_t corner) {
-    return ignored[corner / 3] ? kNone : ends(corner)[0];
-  });
+  Buckets corners = bucket(vertex_count, 3 * triangles.size(),
+                           [&](std::size_t corner) { return ignored[corner / 3] ? kNone : ends(corner)[0]; });
   topology.edges.reserve(corners.items.size() / 2 + 1);
   topology.incident.reserve(corners.items.size());
   for (std::size_t v = 0; v < vertex_count; ++v) {

@@ -11,12 +11,13 @@ namespace sdm {
 /// Edges and their incident faces. Faces with repeated corners, and duplicates of an earlier face (same three
 /// vertices, in any order), are *ignored*: they have no edges here.
 struct Topology {
-  std::vector<std::array<std::uint32_t, 2>> edges;       ///< (smaller, larger) vertex, lexicographic order
-  std::vector<std::array<std::uint32_t, 3>> face_edges;  ///< edges (v0 v1), (v1 v2), (v2 v0); kNone if ignored
-  std::vector<std::uint32_t> edge_offsets;               ///< faces of edge e: incident[edge_offsets[e] ... e + 1]
-  std::vector<std::uint32_t> incident;                   ///< in increasing order for each edge
+  std::vector<std::array<std::uint32_t, 2>> edges;  ///< (smaller, larger) vertex, lexicographic order
+  std::vector<std::array<std::uint32_t, 3>>
+      face_edges;                           ///< edges (v0 v1), (v1 v2), (v2 v0); kNone if ignored
+  std::vector<std::uint32_t> edge_offsets;  ///< faces of edge e: incident[edge_offsets[e] ... e + 1]
+  std::vector<std::uint32_t> incident;      ///< in increasing order for each edge
   std::size_t duplicate_faces = 0;
-  std::size_t collapsed_faces = 0;                       ///< faces with repeated corners
+  std::size_t collapsed_faces = 0;  ///< faces with repeated corners
 
   [[nodiscard]] std::span<const std::uint32_t> edge_faces(std::size_t edge) const {
     return {incident.data() + edge_offsets[edge], incident.data() + edge_offsets[edge + 1]};
@@ -27,8 +28,9 @@ struct Topology {
 /// Cost: O(n log d), d the largest valence.
 [[nodiscard]] Topology build_topology(std::size_t vertex_count, std::span<const Triangle> triangles);
 
-/// For each face, whether to turn it so that neighbours over two-face edges agree (the first face of each component of
-/// such neighbours stays); `orientable` is false when no choice satisfies all of them. Ignored faces stay.
+/// For each face, whether to turn it so that neighbours over two-face edges agree (the first face of each
+/// component of such neighbours stays); `orientable` is false when no choice satisfies all of them. Ignored
+/// faces stay.
 struct Orientation {
   std::vector<std::uint8_t> turned;
   std::vector<std::uint32_t> component;  ///< of each face, over two-face edges; kNone if ignored
@@ -37,7 +39,8 @@ struct Orientation {
 };
 [[nodiscard]] Orientation orient(std::span<const Triangle> triangles, const Topology& topology);
 
-/// Faces of each vertex, ignored ones excluded, in compressed rows: faces[offsets[v]] ... faces[offsets[v + 1]].
+/// Faces of each vertex, ignored ones excluded, in compressed rows: faces[offsets[v]] ... faces[offsets[v +
+/// 1]].
 struct VertexFaces {
   std::vector<std::uint32_t> offsets, faces;
 };
@@ -45,6 +48,8 @@ struct VertexFaces {
                                        const Topology& topology);
 
 /// Whether the face runs along its k-th edge from the smaller to the larger vertex.
-inline bool runs_forward(const Triangle& triangle, int k) { return triangle[k] < triangle[(k + 1) % 3]; }
+inline bool runs_forward(const Triangle& triangle, int k) {
+  return triangle[k] < triangle[(k + 1) % 3];
+}
 
 }  // namespace sdm

@@ -29,11 +29,14 @@ TEST(ParallelFor, VisitsEveryIndexOnceForAnyGrainAndThreadCount) {
 
 TEST(ParallelFor, ReportsProgressUpToTheEndAndPassesExceptionsOn) {
   double last = 0;
-  parallel_for(1000, 10, [&](std::string_view step, double fraction) {
-    EXPECT_EQ(step, "work");
-    last = std::max(last, fraction);
-    return true;
-  }, "work", [](std::size_t, std::size_t) {});
+  parallel_for(
+      1000, 10,
+      [&](std::string_view step, double fraction) {
+        EXPECT_EQ(step, "work");
+        last = std::max(last, fraction);
+        return true;
+      },
+      "work", [](std::size_t, std::size_t) {});
   EXPECT_GT(last, 0.5);
   EXPECT_THROW(parallel_for(100, 1, [](std::size_t, std::size_t) { throw Error("stop"); }), Error);
 }
@@ -41,7 +44,9 @@ TEST(ParallelFor, ReportsProgressUpToTheEndAndPassesExceptionsOn) {
 TEST(ParallelFor, StopsWhenProgressSaysSo) {
   std::atomic<std::size_t> calls{0};
   const auto work = [&](std::size_t, std::size_t) { ++calls; };
-  EXPECT_THROW(parallel_for(100000, 1, [](std::string_view, double) { return false; }, "work", work), Cancelled);
+  EXPECT_THROW(parallel_for(
+                   100000, 1, [](std::string_view, double) { return false; }, "work", work),
+               Cancelled);
   EXPECT_LT(calls, 100000u);
 }
 

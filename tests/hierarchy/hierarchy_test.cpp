@@ -38,7 +38,8 @@ bool contains(const FloatBox& outer, const FloatBox& inner) {
   return contains(outer, {inner.lo[0], inner.lo[1], inner.lo[2]}, {inner.hi[0], inner.hi[1], inner.hi[2]});
 }
 
-// Every item in one leaf; every box holds what is below it; children after parents; leaves no larger than asked.
+// Every item in one leaf; every box holds what is below it; children after parents; leaves no larger than
+// asked.
 void expect_valid(const AabbTree& tree, std::span<const Box> boxes, std::uint32_t leaf_size) {
   std::vector<int> seen(boxes.size(), 0);
   std::uint32_t next_item = 0;

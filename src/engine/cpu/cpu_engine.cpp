@@ -1,4 +1,5 @@
-// The CPU engine: points in packets against the wide tree, in the unit frame of O2 and single precision; then the winner in double.
+// The CPU engine: points in packets against the wide tree, in the unit frame of O2 and single precision; then
+// the winner in double.
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +11,8 @@
 namespace sdm {
 namespace {
 
-// Beyond this many sizes of O2 squares come near the end of single precision; there O2 is as good as a point, and the reference
-// engine's few steps do.
+// Beyond this many sizes of O2 squares come near the end of single precision; there O2 is as good as a point,
+// and the reference engine's few steps do.
 constexpr double kFarAway = 1e15;
 
 Vec3f to_float(const Vec3& v) {
@@ -27,7 +28,8 @@ bool far_away(std::span<const Vec3> unit_points) {
 // A bound in the unit frame, squared, enlarged so that rounding never excludes what lies within max_distance.
 float squared_limit(const UnitFrame& frame, double max_distance) {
   const double limit = (1 + 1e-5) * frame.scale * max_distance + 1e-6;
-  return static_cast<float>(std::min(limit * limit, static_cast<double>(std::numeric_limits<float>::infinity())));
+  return static_cast<float>(
+      std::min(limit * limit, static_cast<double>(std::numeric_limits<float>::infinity())));
 }
 
 }  // namespace
@@ -52,7 +54,8 @@ void cpu_search(const Sites::Impl& sites, std::span<const Vec3> points, double m
     if (seed_face == kNone) {
       packet.start(limit, nullptr, kNone);
     } else {
-      // The neighbour's closest face, its closest point to a point of this packet: a bound within a packet's size of the truth.
+      // The neighbour's closest face, its closest point to a point of this packet: a bound within a packet's
+      // size of the truth.
       const ClosestPoint seed = closest_on_face(sites, seed_face, queries[count / 2]);
       const Vec3f point = to_float(sites.frame.to_unit(seed.point));
       packet.start(limit, &point, seed_face);

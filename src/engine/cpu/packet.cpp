@@ -40,8 +40,8 @@ HWY_INLINE BlockVec height(Block d, const float (&plane)[4][RegionBlock::kWidth]
 }
 
 // plane·(p, −1) for one plane and many points.
-HWY_INLINE PointVec height(Points d, const float (&plane)[4][RegionBlock::kWidth], int lane, PointVec x, PointVec y,
-                           PointVec z) {
+HWY_INLINE PointVec height(Points d, const float (&plane)[4][RegionBlock::kWidth], int lane, PointVec x,
+                           PointVec y, PointVec z) {
   PointVec h = hn::MulSub(hn::Set(d, plane[0][lane]), x, hn::Set(d, plane[3][lane]));
   h = hn::MulAdd(hn::Set(d, plane[1][lane]), y, h);
   return hn::MulAdd(hn::Set(d, plane[2][lane]), z, h);
@@ -69,7 +69,8 @@ HWY_INLINE void for_each_bit(uint32_t bits, const Body& body) {
   for (; bits != 0; bits &= bits - 1) body(std::countr_zero(bits));
 }
 
-// A site can matter to the packet only if the packet's sphere meets its region and comes within `reach` of the bounds.
+// A site can matter to the packet only if the packet's sphere meets its region and comes within `reach` of
+// the bounds.
 
 uint32_t select_faces(const FaceBlock& block, const Packet& p, float reach) {
   return select(block.count, [&](Block d, size_t i) HWY_ATTR {
@@ -111,8 +112,9 @@ uint32_t select_vertices(const VertexBlock& block, const Packet& p, float reach)
   });
 }
 
-// Offers a site at squared(d, x, y, z) to every point of the packet. A site's distance is never less than that of its closed
-// face, so that no region has to be tested exactly but the face's prism, outside of which its plane is too close.
+// Offers a site at squared(d, x, y, z) to every point of the packet. A site's distance is never less than
+// that of its closed face, so that no region has to be tested exactly but the face's prism, outside of which
+// its plane is too close.
 template <typename Squared>
 HWY_INLINE void offer(Packet& p, uint32_t face, const Squared& squared) {
   const Points d;
@@ -131,8 +133,9 @@ HWY_INLINE void offer(Packet& p, uint32_t face, const Squared& squared) {
 void offer_face(Packet& p, const FaceBlock& block, int lane) {
   offer(p, block.face[lane], [&](Points d, PointVec x, PointVec y, PointVec z) HWY_ATTR {
     const PointVec h = height(d, block.plane, lane, x, y, z);
-    const PointVec inner = hn::Min(hn::Min(height(d, block.wall[0], lane, x, y, z), height(d, block.wall[1], lane, x, y, z)),
-                                   height(d, block.wall[2], lane, x, y, z));
+    const PointVec inner =
+        hn::Min(hn::Min(height(d, block.wall[0], lane, x, y, z), height(d, block.wall[1], lane, x, y, z)),
+                height(d, block.wall[2], lane, x, y, z));
     return hn::IfThenElse(hn::Ge(inner, hn::Zero(d)), hn::Mul(h, h), hn::Inf(d));
   });
 }
@@ -181,7 +184,8 @@ void visit_leaf(const Regions& regions, uint32_t leaf, Packet& p) {
   update_bound(p);
 }
 
-// Pushes the children of a node whose boxes come closer to the packet's box than its bound, the nearest on top.
+// Pushes the children of a node whose boxes come closer to the packet's box than its bound, the nearest on
+// top.
 void visit_node(const WideTree& tree, uint32_t index, const Packet& p, std::vector<Traversal::Entry>& stack) {
   const WideTree::Node& node = tree.nodes[index];
   alignas(32) float bound[WideTree::kWidth], order[WideTree::kWidth];
@@ -208,8 +212,9 @@ void visit_node(const WideTree& tree, uint32_t index, const Packet& p, std::vect
   });
 }
 
-// Whether a child's box is closer to any point than that point's own bound: for packets far from O2, where the shell between the
-// nearest and the farthest point's bounds holds hundreds of faces, this is what keeps the traversal short.
+// Whether a child's box is closer to any point than that point's own bound: for packets far from O2, where
+// the shell between the nearest and the farthest point's bounds holds hundreds of faces, this is what keeps
+// the traversal short.
 bool any_closer(const WideTree::Node& node, uint32_t slot, const Packet& p) {
   const Points d;
   for (size_t i = 0; i < Packet::kSize; i += hn::Lanes(d)) {
@@ -263,7 +268,8 @@ void Packet::place(std::span<const Vec3f> points) {
     for (int k = 0; k < 3; ++k) squared += (position[k][i] - centre[k]) * (position[k][i] - centre[k]);
     squared_radius = std::max(squared_radius, squared);
   }
-  // Heights over planes err by a few units in the last place of the coordinates: O2's are at most 1, the points' `magnitude`.
+  // Heights over planes err by a few units in the last place of the coordinates: O2's are at most 1, the
+  // points' `magnitude`.
   radius = 1.0001f * std::sqrt(squared_radius) + 1e-6f * (1 + magnitude);
 }
 

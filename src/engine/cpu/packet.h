@@ -16,15 +16,16 @@ struct Packet {
   static constexpr int kSize = 16;
 
   alignas(64) float position[3][kSize];
-  alignas(64) float best[kSize];           ///< squared distance to the closest site so far, for each point
-  alignas(64) std::uint32_t face[kSize];   ///< a face of that site, or kNone
+  alignas(64) float best[kSize];          ///< squared distance to the closest site so far, for each point
+  alignas(64) std::uint32_t face[kSize];  ///< a face of that site, or kNone
   // The points' box, and a sphere around it that also covers the rounding of region tests.
   float lo[3], hi[3], centre[3], radius;
-  float bound;                             ///< the largest of `best`
+  float bound;  ///< the largest of `best`
 
   /// Places up to kSize points; the last one fills the lanes left over. `best` and `face` are left to set.
   void place(std::span<const Vec3f> points);
-  /// Sets every point's bound to its distance to `seed`, a point of `seed_face`, unless `limit` (squared) is less.
+  /// Sets every point's bound to its distance to `seed`, a point of `seed_face`, unless `limit` (squared) is
+  /// less.
   void start(float limit, const Vec3f* seed, std::uint32_t seed_face);
 };
 
@@ -38,8 +39,8 @@ struct Traversal {
   std::vector<Entry> stack;
 };
 
-/// Finds the closest site of each point that is closer than its bound. Chooses the best vector instructions that the machine
-/// has, at run time.
+/// Finds the closest site of each point that is closer than its bound. Chooses the best vector instructions
+/// that the machine has, at run time.
 void traverse(const WideTree& tree, const Regions& regions, Packet& packet, Traversal& traversal);
 
 }  // namespace sdm

@@ -35,10 +35,12 @@ ClosestPoint closest(const Sites::Impl& sites, const Vec3& q, double max_distanc
     if (node.leaf()) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
         const ClosestPoint c = closest_on_face(sites, sites.tree.items[i], q);
-        if (c.distance < best.distance || (best.type == SiteType::none && c.distance <= max_distance)) best = c;
+        if (c.distance < best.distance || (best.type == SiteType::none && c.distance <= max_distance))
+          best = c;
       }
     } else {
-      for (std::uint32_t child : {left, node.right}) open.push({lower_bound(sites.tree.nodes[child].box, unit), child});
+      for (std::uint32_t child : {left, node.right})
+        open.push({lower_bound(sites.tree.nodes[child].box, unit), child});
     }
   }
   if (best.type == SiteType::none) best.distance = std::numeric_limits<double>::infinity();
