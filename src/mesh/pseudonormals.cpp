@@ -1,11 +1,9 @@
 #include "mesh/pseudonormals.h"
 
-#include <algorithm>
-#include <numbers>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "core/vec.h"
-#include "mesh/solid_angle.h"
 
 namespace sdm {
 namespace {
@@ -15,30 +13,6 @@ constexpr std::size_t kGrain = 1024;
 double angle_at(const Vec3& corner, const Vec3& p, const Vec3& q) {
   const Vec3 u = p - corner, v = q - corner;
   return std::atan2(norm(cross(u, v)), dot(u, v));
-}
-
-bool encloses(const Box& outer, const Box& inner) {
-  for (int k = 0; k < 3; ++k)
-    if (!(outer.lo[k] <= inner.lo[k] && inner.hi[k] <= outer.hi[k])) return false;
-  return true;
-}
-
-// One component of faces, all turned alike.
-struct Shell {
-  std::vector<std::uint32_t> faces;
-  Box box;
-};
-
-// Full turns of the shell's faces around q: ±1 inside, 0 outside.
-double winding(const Shell& shell, const Vec3& q, std::span<const Vec3> p,
-               std::span<const Triangle> triangles, std::span<const std::uint8_t> turned) {
-  double sum = 0;
-  for (std::uint32_t f : shell.faces) {
-    const Triangle& t = triangles[f];
-    const double angle = solid_angle(p[t[0]] - q, p[t[1]] - q, p[t[2]] - q);
-    sum += turned[f] ? -angle : angle;
-  }
-  return sum / (4 * std::numbers::pi);
 }
 
 }  // namespace
@@ -71,37 +45,6 @@ Pseudonormals build_pseudonormals(std::span<const Vec3> positions, std::span<con
       }
   });
   return n;
-}
-
-std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                                        const Orientation& orientation) {
-  std::vector<Shell> shells(orientation.components);
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    if (orientation.component[f] == kNone) continue;
-    Shell& shell = shells[orientation.component[f]];
-    shell.faces.push_back(static_cast<std::uint32_t>(f));
-    for (std::uint32_t v : triangles[f]) extend(shell.box, positions[v]);
-  }
-  std::vector<std::uint8_t> inverted = orientation.turned;
-  parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const Vec3& corner = positions[triangles[shells[s].faces[0]][0]];
-      double volume = 0;  // six times; the corner as origin keeps digits for shells far from the mesh's
-      for (std::uint32_t f : shells[s].faces) {
-        const Triangle& t = triangles[f];
-        const double v =
-            dot(positions[t[0]] - corner, cross(positions[t[1]] - corner, positions[t[2]] - corner));
-        volume += orientation.turned[f] ? -v : v;
-      }
-      int depth = 0;
-      for (std::size_t o = 0; o < shells.size(); ++o)
-        if (o != s && encloses(shells[o].box, shells[s].box))
-          depth += std::abs(winding(shells[o], corner, positions, triangles, orientation.turned)) > 0.5;
-      if ((volume < 0) != (depth % 2 == 1))
-        for (std::uint32_t f : shells[s].faces) inverted[f] ^= 1;
-    }
-  });
-  return inverted;
 }
 
 }  // namespace sdm

@@ -28,12 +28,4 @@ struct Pseudonormals {
                                                 const VertexFaces& vertex_faces,
                                                 std::span<const std::uint8_t> inverted);
 
-/// For a closed, orientable mesh: which faces run clockwise seen from outside. Every component of
-/// `orientation` bounds solid where it lies inside an even number of the others, and hollow where inside an
-/// odd number: a point is inside when a ray from it meets the mesh an odd number of times. Cost: linear, and
-/// for components whose box lies in another's box, the product of their number and its faces.
-[[nodiscard]] std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions,
-                                                      std::span<const Triangle> triangles,
-                                                      const Orientation& orientation);
-
 }  // namespace sdm

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "mesh/outward.h"
 #include "mesh/sites_impl.h"
 
 namespace sdm {
@@ -52,13 +53,12 @@ Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
   s.orientable = orientation.orientable;
   s.closed = true;
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) s.closed &= s.topology.edge_faces(e).size() == 2;
-  s.inverted = s.closed && s.orientable ? find_inverted(s.mesh.positions, triangles, orientation)
-                                        : std::vector<std::uint8_t>(triangles.size(), 0);
-
   s.frame = UnitFrame::of(bounds(s.mesh));
   const std::vector<Vec3> unit = to_unit(s.frame, s.mesh.positions);
   s.tree = build_aabb_tree(face_boxes(unit, triangles), faces_with_sites(s.topology), kLeafFaces);
   s.wide = collapse(s.tree);
+  s.inverted = s.closed && s.orientable ? find_inverted(unit, triangles, orientation, s.tree)
+                                        : std::vector<std::uint8_t>(triangles.size(), 0);
   s.regions = build_regions(unit, triangles, s.topology, s.tree);
   s.normals = build_pseudonormals(s.mesh.positions, triangles, s.vertex_faces, s.inverted);
 }
