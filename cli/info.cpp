@@ -1,1 +1,100 @@
-// (to be written)
+#include "info.h"
+
+#include <sdm/io.h>
+#include <sdm/mesh.h>
+
+#include <CLI/CLI.hpp>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+struct Options {
+  std::string file;
+  bool json = false;
+};
+
+nlohmann::ordered_json to_json(const std::string& file, const sdm::MeshInfo& info) {
+  return {{"file", file},
+          {"vertices", info.vertices},
+          {"edges", info.edges},
+          {"triangles", info.triangles},
+          {"bounds", {{"lo", info.bounds.lo}, {"hi", info.bounds.hi}}},
+          {"components", info.components},
+          {"closed", info.closed},
+          {"orientable", info.orientable},
+          {"oriented", info.oriented},
+          {"manifold", info.manifold},
+          {"boundary_edges", info.boundary_edges},
+          {"nonmanifold_edges", info.nonmanifold_edges},
+          {"nonmanifold_vertices", info.nonmanifold_vertices},
+          {"degenerate_faces", info.degenerate_faces},
+          {"duplicate_faces", info.duplicate_faces},
+          {"unused_vertices", info.unused_vertices},
+          {"uvs", info.has_uvs},
+          {"area", info.area},
+          {"volume", info.volume}};
+}
+
+std::string text(bool value) {
+  return value ? "yes" : "no";
+}
+std::string text(double value) {
+  std::ostringstream out;
+  out << std::setprecision(9) << value;
+  return out.str();
+}
+std::string text(const sdm::Vec3& value) {
+  return text(value[0]) + "  " + text(value[1]) + "  " + text(value[2]);
+}
+
+void print_table(std::ostream& out, const std::string& file, const sdm::MeshInfo& info) {
+  const auto row = [&](const char* name, const std::string& value) {
+    out << std::left << std::setw(18) << name << value << '\n';
+  };
+  const sdm::Vec3 &lo = info.bounds.lo, &hi = info.bounds.hi;
+  row("file", file);
+  row("vertices", std::to_string(info.vertices));
+  row("edges", std::to_string(info.edges));
+  row("triangles", std::to_string(info.triangles));
+  row("lowest corner", text(lo));
+  row("highest corner", text(hi));
+  row("size", text(sdm::Vec3{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}));
+  row("components", std::to_string(info.components));
+  row("closed", info.closed ? "yes"
+                            : "no, " + std::to_string(info.boundary_edges) + " boundary and " +
+                                  std::to_string(info.nonmanifold_edges) + " non-manifold edges");
+  row("orientable", text(info.orientable));
+  row("oriented", text(info.oriented));
+  row("manifold", info.manifold ? "yes"
+                                : "no, " + std::to_string(info.nonmanifold_edges) + " edges and " +
+                                      std::to_string(info.nonmanifold_vertices) + " vertices are not");
+  row("degenerate faces", std::to_string(info.degenerate_faces));
+  row("duplicate faces", std::to_string(info.duplicate_faces));
+  row("uvs", text(info.has_uvs));
+  row("area", text(info.area));
+  row("volume", info.closed && info.orientable ? text(info.volume) : "none, not closed and orientable");
+}
+
+void run(const Options& options) {
+  const sdm::MeshInfo info = sdm::inspect(sdm::read_mesh(options.file));
+  if (options.json)
+    std::cout << to_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+              << '\n';
+  else
+    print_table(std::cout, options.file, info);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("info", "Tell what a mesh is: counts, bounds, topology, area, volume");
+  const auto options = std::make_shared<Options>();
+  command->add_option("MESH", options->file, "OBJ, PLY, STL, OFF, glTF, GLB or 3DS file")->required();
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options] { run(*options); });
+}

@@ -1,0 +1,22 @@
+// A whole file in memory.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+namespace sdm {
+
+struct FileBytes {
+  std::unique_ptr<char[]> data;
+  std::size_t size = 0;
+
+  [[nodiscard]] std::string_view view() const { return {data.get(), size}; }
+};
+
+/// Reads a regular file, after checking that there is memory for it and for a mesh made of it. Throws
+/// sdm::Error that names the fault, not the file.
+[[nodiscard]] FileBytes read_bytes(const std::filesystem::path& file);
+
+}  // namespace sdm

@@ -1,0 +1,203 @@
+#include "io/read/gltf_document.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include "io/read/byte_scanner.h"
+
+namespace sdm {
+namespace {
+
+using nlohmann::json;
+
+struct Chunks {
+  std::string_view json;
+  std::optional<std::string_view> binary;
+};
+
+// GLB: magic, version, length; then chunks of a length, a kind, and data.
+Chunks split(std::string_view bytes) {
+  if (!bytes.starts_with("glTF")) return {bytes, std::nullopt};
+  ByteScanner in(bytes);
+  in.take(4);
+  if (const auto version = in.number<std::uint32_t>(); version != 2)
+    throw Error("glTF version " + std::to_string(version) + " is not read, only version 2");
+  if (in.number<std::uint32_t>() > bytes.size()) throw Error("the GLB file is truncated");
+  Chunks chunks;
+  while (in.remaining() >= 8) {
+    const auto length = in.number<std::uint32_t>();
+    const std::string_view kind = in.take(4), data = in.take(length);
+    if (kind == "JSON" && chunks.json.empty()) chunks.json = data;
+    if (kind == std::string_view("BIN\0", 4) && !chunks.binary) chunks.binary = data;
+  }
+  return chunks;
+}
+
+FileBytes decode_base64(std::string_view text) {
+  const auto digit = [](char c) {
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    if (c == '+' || c == '-') return 62;
+    if (c == '/' || c == '_') return 63;
+    throw Error("a buffer within the glTF file is not base64");
+  };
+  while (text.ends_with('=')) text.remove_suffix(1);
+  FileBytes bytes{std::make_unique_for_overwrite<char[]>(text.size() * 3 / 4 + 1), text.size() * 3 / 4};
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0, out = 0; i < text.size(); ++i) {
+    bits = bits << 6 | static_cast<std::uint32_t>(digit(text[i]));
+    if (i % 4 != 0) bytes.data[out++] = static_cast<char>(bits >> (6 - 2 * (i % 4)) & 0xFF);
+  }
+  return bytes;
+}
+
+// Turns %20 and the like into what they stand for.
+std::string decode_percent(std::string_view uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned char code = 0;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(uri.data() + i + 1, uri.data() + i + 3, code, 16).ptr == uri.data() + i + 3) {
+      text += static_cast<char>(code);
+      i += 2;
+    } else {
+      text += uri[i];
+    }
+  }
+  return text;
+}
+
+FileBytes read_uri(const std::string& uri, const std::filesystem::path& folder) {
+  if (uri.starts_with("data:")) {
+    const std::size_t comma = uri.find(";base64,");
+    if (comma == std::string::npos) throw Error("a buffer within the glTF file is not base64");
+    return decode_base64(std::string_view(uri).substr(comma + 8));
+  }
+  try {
+    return read_bytes(folder / decode_percent(uri));
+  } catch (const Error& fault) {
+    throw Error("its buffer '" + decode_percent(uri) + "': " + fault.what());
+  }
+}
+
+std::size_t column_count(const std::string& type) {
+  constexpr std::pair<std::string_view, std::size_t> types[] = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
+  for (const auto& [name, columns] : types)
+    if (type == name) return columns;
+  throw Error("an accessor of type " + type.substr(0, 32) + " where numbers or vectors are needed");
+}
+
+// Calls visit with a zero of the type that glTF's code means.
+template <typename Visit>
+auto with_component_type(int code, const Visit& visit) {
+  switch (code) {
+    case 5120:
+      return visit(std::int8_t{});
+    case 5121:
+      return visit(std::uint8_t{});
+    case 5122:
+      return visit(std::int16_t{});
+    case 5123:
+      return visit(std::uint16_t{});
+    case 5125:
+      return visit(std::uint32_t{});
+    case 5126:
+      return visit(float{});
+    default:
+      throw Error("component type " + std::to_string(code) + " is not one of glTF's");
+  }
+}
+
+std::size_t member(const json& object, const char* name, std::size_t otherwise) {
+  return object.value(name, otherwise);
+}
+
+}  // namespace
+
+GltfDocument::GltfDocument(std::string_view bytes, const std::filesystem::path& folder) {
+  const Chunks chunks = split(bytes);
+  try {
+    root_ = json::parse(chunks.json);
+  } catch (const json::parse_error& fault) {
+    throw Error("its JSON is at fault at byte " + std::to_string(fault.byte) +
+                "; the file is truncated or damaged");
+  }
+  if (!root_.is_object() || !root_.contains("asset"))
+    throw Error("this is JSON, but not glTF: it has no asset");
+  if (root_["asset"].at("version").get<std::string>().substr(0, 2) != "2.")
+    throw Error("only glTF version 2 is read");
+  for (const json& extension : root_.value("extensionsRequired", json::array()))
+    if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression")
+      throw Error("is compressed by " + extension.get<std::string>() +
+                  ", which is not read; save it without");
+  load_buffers(chunks.binary, folder);
+}
+
+void GltfDocument::load_buffers(std::optional<std::string_view> binary_chunk,
+                                const std::filesystem::path& folder) {
+  for (const json& buffer : root_.value("buffers", json::array())) {
+    if (buffer.contains("uri")) {
+      files_.push_back(read_uri(buffer["uri"], folder));
+      buffers_.push_back(files_.back().view());
+    } else {
+      buffers_.push_back(buffers_.empty() ? binary_chunk.value_or("") : "");
+    }
+    const std::size_t length = buffer.at("byteLength");
+    if (length > buffers_.back().size())
+      throw Error("buffer " + std::to_string(buffers_.size() - 1) + " promises " + std::to_string(length) +
+                  " bytes and has " + std::to_string(buffers_.back().size()) +
+                  "; it is truncated or missing");
+  }
+}
+
+const json& GltfDocument::item(const char* list, std::size_t index) const {
+  const auto items = root_.find(list);
+  if (items == root_.end() || !items->is_array() || index >= items->size())
+    throw Error("refers to item " + std::to_string(index) + " of " + list + ", which is not there");
+  return (*items)[index];
+}
+
+GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
+  const json& accessor = item("accessors", accessor_index);
+  if (accessor.contains("sparse")) throw Error("sparse accessors are not read");
+  const json& view = item("bufferViews", accessor.at("bufferView"));
+  const std::size_t buffer = view.at("buffer");
+  if (buffer >= buffers_.size())
+    throw Error("refers to buffer " + std::to_string(buffer) + ", which is not there");
+  const std::size_t view_begin = member(view, "byteOffset", 0), view_length = view.at("byteLength");
+  if (view_begin > buffers_[buffer].size() || view_length > buffers_[buffer].size() - view_begin)
+    throw Error("a buffer view reaches beyond its buffer");
+  const std::string_view bytes = buffers_[buffer].substr(view_begin, view_length);
+
+  GltfNumbers numbers;
+  numbers.columns = column_count(accessor.at("type"));
+  const std::size_t rows = accessor.at("count"), begin = member(accessor, "byteOffset", 0);
+  const bool normalized = accessor.value("normalized", false);
+  with_component_type(accessor.at("componentType"), [&](auto zero) {
+    using Component = decltype(zero);
+    const std::size_t row_bytes = numbers.columns * sizeof(Component),
+                      stride = member(view, "byteStride", row_bytes);
+    // The first row must fit, and each further one takes `stride` more bytes.
+    if (rows > 0 && (begin > bytes.size() || row_bytes > bytes.size() - begin || stride == 0 ||
+                     rows - 1 > (bytes.size() - begin - row_bytes) / stride))
+      throw Error("accessor " + std::to_string(accessor_index) + " reaches beyond its buffer view");
+    const bool divide = normalized && std::numeric_limits<Component>::is_integer;
+    numbers.values.reserve(rows * numbers.columns);
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t c = 0; c < numbers.columns; ++c) {
+        const double value = load<Component>(bytes.data() + begin + r * stride + c * sizeof(Component));
+        // The lowest signed integer stands for −1 too.
+        numbers.values.push_back(
+            divide ? std::max(value / static_cast<double>(std::numeric_limits<Component>::max()), -1.0)
+                   : value);
+      }
+  });
+  return numbers;
+}
+
+}  // namespace sdm

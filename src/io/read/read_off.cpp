@@ -1,0 +1,99 @@
+#include <sdm/error.h>
+
+#include "io/read/formats.h"
+#include "io/read/text_scanner.h"
+
+namespace sdm {
+namespace {
+
+// Which prefixes a header has; in the order of Geomview they are [ST][C][N][4][n]OFF.
+struct Header {
+  bool is_off = false, uvs = false, colours = false, normals = false, four = false, any_dimension = false;
+};
+
+Header parse_header(std::string_view word) {
+  Header header;
+  const auto prefix = [&](std::string_view p) {
+    if (!word.starts_with(p)) return false;
+    word.remove_prefix(p.size());
+    return true;
+  };
+  header.uvs = prefix("ST");
+  header.colours = prefix("C");
+  header.normals = prefix("N");
+  header.four = prefix("4");
+  header.any_dimension = prefix("n");
+  header.is_off = word == "OFF";
+  return header;
+}
+
+std::size_t parse_count(TextScanner& in) {
+  if (!in.next_word()) in.fail("the counts of vertices and faces are missing");
+  const char* at = in.position();
+  const std::int64_t count = in.integer();
+  if (count < 0) in.fail_at(at, "a count is negative");
+  return static_cast<std::size_t>(count);
+}
+
+// The last two numbers of a line.
+Vec2 parse_last_two(TextScanner& in) {
+  Vec2 last{};
+  for (int count = 0; in.more_on_line() || count < 2; ++count) last = {last[1], in.number()};
+  return last;
+}
+
+}  // namespace
+
+bool is_off_header(std::string_view word) {
+  return parse_header(word).is_off;
+}
+
+PolygonMesh read_off(std::string_view text) {
+  TextScanner in(text);
+  Header header;
+  if (in.next_word()) {
+    TextScanner ahead = in;
+    header = parse_header(ahead.word());
+    if (header.is_off) in = ahead;  // without one, the counts come first
+  }
+  if (header.four || header.any_dimension) throw Error("OFF in other than three dimensions is not read");
+  if (header.is_off && in.more_on_line() && in.accept("BINARY"))
+    throw Error("binary OFF is not read; save it as text");
+
+  const std::size_t vertices = parse_count(in), faces = parse_count(in);
+  in.skip_line();  // the count of edges, if any, says nothing
+  // A vertex takes at least the 6 bytes "0 0 0\n", a face the 2 bytes "0\n"; the last newline may be missing.
+  if (vertices > in.remaining() || faces > in.remaining() || 6 * vertices + 2 * faces > in.remaining() + 1)
+    throw Error("the header promises " + std::to_string(vertices) + " vertices and " + std::to_string(faces) +
+                " faces, more than the file can hold; it is truncated or damaged");
+
+  PolygonMesh mesh;
+  mesh.positions.reserve(vertices);
+  for (std::size_t v = 0; v < vertices; ++v, in.skip_line()) {
+    const double x = in.number_across_lines(), y = in.number_across_lines(), z = in.number_across_lines();
+    mesh.positions.push_back({x, y, z});
+    for (int k = 0; header.normals && k < 3; ++k) in.number_across_lines();
+    if (header.uvs) mesh.uvs.push_back(parse_last_two(in));
+  }
+  mesh.ends.reserve(faces);
+  mesh.corners.reserve(3 * faces);
+  for (std::size_t f = 0; f < faces; ++f, in.skip_line()) {
+    if (!in.next_word())
+      in.fail("the text ends before face " + std::to_string(f) + "; the file is truncated");
+    const std::int64_t corners = in.integer();
+    for (std::int64_t k = 0; k < corners; ++k) {
+      if (!in.next_word()) in.fail("the text ends within a face; the file is truncated");
+      const char* at = in.position();
+      const std::int64_t v = in.integer();
+      if (v < 0 || static_cast<std::size_t>(v) >= vertices)
+        in.fail_at(at, "index out of range: a face refers to vertex " + std::to_string(v) + " of " +
+                           std::to_string(vertices));
+      mesh.corners.push_back(static_cast<std::uint32_t>(v));
+    }
+    mesh.end_polygon();
+  }
+  if (header.uvs) mesh.corner_uvs = mesh.corners;
+  return mesh;
+}
+
+}  // namespace sdm

@@ -1,0 +1,214 @@
+#include <sdm/error.h>
+
+#include <cmath>
+
+#include "io/read/byte_scanner.h"
+#include "io/read/formats.h"
+#include "io/read/ply_header.h"
+#include "io/read/text_scanner.h"
+
+namespace sdm {
+namespace {
+
+using Type = PlyHeader::Type;
+using Element = PlyHeader::Element;
+using Property = PlyHeader::Property;
+
+// The two sources of numbers. All types of PLY fit a double without loss.
+class TextSource {
+ public:
+  explicit TextSource(std::string_view text) : in_(text) {}
+  double number(Type) { return in_.number_across_lines(); }
+  [[nodiscard]] std::size_t remaining() const {
+    return in_.remaining() + 1;
+  }                                                                 // the last newline may be missing
+  [[nodiscard]] static std::size_t least_bytes(Type) { return 2; }  // a digit and a blank
+
+ private:
+  TextScanner in_;
+};
+
+class BinarySource {
+ public:
+  BinarySource(std::string_view bytes, std::endian order) : in_(bytes, order) {}
+  double number(Type type) {
+    switch (type) {
+      case Type::int8:
+        return in_.number<std::int8_t>();
+      case Type::uint8:
+        return in_.number<std::uint8_t>();
+      case Type::int16:
+        return in_.number<std::int16_t>();
+      case Type::uint16:
+        return in_.number<std::uint16_t>();
+      case Type::int32:
+        return in_.number<std::int32_t>();
+      case Type::uint32:
+        return in_.number<std::uint32_t>();
+      case Type::float32:
+        return in_.number<float>();
+      case Type::float64:
+        return in_.number<double>();
+    }
+    return 0;
+  }
+  [[nodiscard]] std::size_t remaining() const { return in_.remaining(); }
+  [[nodiscard]] static std::size_t least_bytes(Type type) { return size_of(type); }
+
+ private:
+  ByteScanner in_;
+};
+
+template <typename Source>
+class PlyReader {
+ public:
+  PlyReader(const PlyHeader& header, Source source) : header_(header), in_(source) {}
+
+  PolygonMesh read() {
+    for (const Element& element : header_.elements) {
+      if (element.properties.empty()) continue;
+      check_size(element);
+      if (element.name == "vertex")
+        read_vertices(element);
+      else if (element.name == "face")
+        read_faces(element);
+      else if (element.name == "tristrips")
+        read_strips(element);
+      else
+        for (std::size_t row = 0; row < element.count; ++row) read_row(element);
+    }
+    if (mesh_.corner_uvs.size() != mesh_.corners.size()) {
+      // Not every face has its own: those of the vertices, if they have any.
+      mesh_.uvs = std::move(vertex_uvs_);
+      mesh_.corner_uvs = mesh_.uvs.empty() ? std::vector<std::uint32_t>{} : mesh_.corners;
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void check_size(const Element& element) const {
+    std::size_t row_bytes = 0;
+    for (const Property& p : element.properties)
+      row_bytes += Source::least_bytes(p.count_type.value_or(p.type));
+    if (element.count > in_.remaining() / row_bytes)
+      throw Error("the header promises " + std::to_string(element.count) + " rows of element " +
+                  element.name + ", more than the file can hold; it is truncated or damaged");
+  }
+
+  // Reads a row into scalars_ and lists_, by the places of its properties.
+  void read_row(const Element& element) {
+    scalars_.resize(element.properties.size());
+    lists_.resize(element.properties.size());
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const Property& property = element.properties[p];
+      if (!property.count_type) {
+        scalars_[p] = in_.number(property.type);
+        continue;
+      }
+      lists_[p].clear();
+      const double count = in_.number(*property.count_type);
+      for (double k = 0; k < count; ++k) lists_[p].push_back(in_.number(property.type));
+    }
+  }
+
+  void read_vertices(const Element& element) {
+    std::array<std::size_t, 3> place{};
+    constexpr std::string_view names[] = {"x", "y", "z"};
+    for (int k = 0; k < 3; ++k) {
+      const auto found = element.find({names[k]});
+      if (!found || element.properties[*found].count_type)
+        throw Error("the vertices of the PLY file have no " + std::string(names[k]));
+      place[k] = *found;
+    }
+    const auto u = element.find({"s", "u", "texture_u", "texture_s"});
+    const auto v = element.find({"t", "v", "texture_v", "texture_t"});
+    mesh_.positions.reserve(element.count);
+    for (std::size_t row = 0; row < element.count; ++row) {
+      read_row(element);
+      mesh_.positions.push_back({scalars_[place[0]], scalars_[place[1]], scalars_[place[2]]});
+      if (u && v) vertex_uvs_.push_back({scalars_[*u], scalars_[*v]});
+    }
+  }
+
+  // An index that stands in element `name` as any type of number.
+  [[nodiscard]] std::uint32_t index(double value, const Element& element, std::size_t row) const {
+    if (value >= 0 && value < kNone && std::trunc(value) == value) return static_cast<std::uint32_t>(value);
+    std::string text = std::to_string(value);
+    throw Error("index out of range: row " + std::to_string(row) + " of element " + element.name +
+                " refers to vertex " + text.substr(0, text.find('.')));
+  }
+
+  void read_faces(const Element& element) {
+    const std::size_t indices = list_place(element, {"vertex_indices", "vertex_index"});
+    const auto texcoord = element.find({"texcoord"});
+    mesh_.ends.reserve(element.count);
+    mesh_.corners.reserve(3 * element.count);
+    for (std::size_t row = 0; row < element.count; ++row) {
+      read_row(element);
+      const std::vector<double>& face = lists_[indices];
+      for (const double value : face) mesh_.corners.push_back(index(value, element, row));
+      if (texcoord && lists_[*texcoord].size() == 2 * face.size()) {
+        const std::vector<double>& uv = lists_[*texcoord];
+        for (std::size_t k = 0; k < face.size(); ++k) {
+          mesh_.corner_uvs.push_back(static_cast<std::uint32_t>(mesh_.uvs.size()));
+          mesh_.uvs.push_back({uv[2 * k], uv[2 * k + 1]});
+        }
+      }
+      mesh_.end_polygon();
+    }
+  }
+
+  // Strips follow each other in a list, parted by −1; every other triangle of a strip is turned.
+  void read_strips(const Element& element) {
+    const std::size_t indices = list_place(element, {"vertex_indices", "vertex_index"});
+    for (std::size_t row = 0; row < element.count; ++row) {
+      read_row(element);
+      std::vector<std::uint32_t> strip;
+      for (const double value : lists_[indices]) {
+        if (value == -1) {
+          strip.clear();
+          continue;
+        }
+        strip.push_back(index(value, element, row));
+        const std::size_t n = strip.size();
+        if (n < 3) continue;
+        const bool turned = n % 2 == 0;
+        mesh_.corners.insert(mesh_.corners.end(),
+                             {strip[n - 3 + turned], strip[n - 2 - turned], strip[n - 1]});
+        mesh_.end_polygon();
+      }
+    }
+  }
+
+  static std::size_t list_place(const Element& element, std::initializer_list<std::string_view> names) {
+    const auto place = element.find(names);
+    if (!place || !element.properties[*place].count_type)
+      throw Error("element " + element.name + " of the PLY file has no list vertex_indices");
+    return *place;
+  }
+
+  const PlyHeader& header_;
+  Source in_;
+  PolygonMesh mesh_;
+  std::vector<Vec2> vertex_uvs_;
+  std::vector<double> scalars_;
+  std::vector<std::vector<double>> lists_;
+};
+
+}  // namespace
+
+PolygonMesh read_ply(std::string_view bytes) {
+  const PlyHeader header = parse_ply_header(bytes);
+  const std::string_view data = bytes.substr(header.size);
+  switch (header.encoding) {
+    case PlyHeader::Encoding::text:
+      return PlyReader(header, TextSource(data)).read();
+    case PlyHeader::Encoding::little_endian:
+      return PlyReader(header, BinarySource(data, std::endian::little)).read();
+    case PlyHeader::Encoding::big_endian:
+      break;
+  }
+  return PlyReader(header, BinarySource(data, std::endian::big)).read();
+}
+
+}  // namespace sdm
