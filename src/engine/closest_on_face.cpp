@@ -8,21 +8,6 @@
 namespace sdm {
 namespace {
 
-ClosestPoint at(const Vec3& point, const Vec3& q, SiteType type, std::uint32_t site, std::uint32_t face) {
-  return {.point = point, .distance = norm(point - q), .site = site, .type = type, .face = face};
-}
-
-// Over the face's prism the closest point is the foot of the perpendicular. Returns whether q is there.
-bool foot_in_face(const std::array<Vec3, 3>& corner, const Vec3& q, Vec3& foot) {
-  const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-  const double squared = squared_norm(normal);
-  if (!(squared > 0)) return false;
-  for (int k = 0; k < 3; ++k)
-    if (!(dot(q - corner[k], cross(normal, corner[(k + 1) % 3] - corner[k])) > 0)) return false;
-  foot = q - (dot(q - corner[0], normal) / squared) * normal;
-  return true;
-}
-
 // Whether the direction from c to q points into any of the faces around the site: then that face is strictly
 // closer.
 bool improve(const Sites::Impl& sites, std::span<const std::uint32_t> faces, const Vec3& q, ClosestPoint& c) {
@@ -47,21 +32,38 @@ bool improve(const Sites::Impl& sites, std::span<const std::uint32_t> faces, con
 ClosestPoint closest_on_face(const Sites::Impl& sites, std::uint32_t face, const Vec3& q) {
   const Triangle& t = sites.mesh.triangles[face];
   const auto& p = sites.mesh.positions;
-  const std::array<Vec3, 3> corner{p[t[0]], p[t[1]], p[t[2]]};
-  if (Vec3 foot; foot_in_face(corner, q, foot)) return at(foot, q, SiteType::face, face, face);
+  const Vec3 corner[3] = {p[t[0]], p[t[1]], p[t[2]]};
+  const Vec3 side[3] = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
+  const Vec3 to_query[3] = {q - corner[0], q - corner[1], q - corner[2]};
+  const Vec3 normal = cross(side[0], side[1]);
 
-  ClosestPoint best;
+  ClosestPoint best{.face = face};
+  double best_squared = std::numeric_limits<double>::infinity();
+  bool over_face = true;
   for (int k = 0; k < 3; ++k) {
+    // The closest point is on a side that q lies beyond (or on every side of a face without area), if there
+    // is one.
+    if (dot(to_query[k], cross(normal, side[k])) > 0) continue;
+    over_face = false;
+    const double projection = dot(to_query[k], side[k]), length = squared_norm(side[k]);
     const int next = (k + 1) % 3;
-    const Vec3 along = corner[next] - corner[k];
-    const double projection = dot(q - corner[k], along), length = squared_norm(along);
-    const ClosestPoint candidate = projection <= 0 ? at(corner[k], q, SiteType::vertex, t[k], face)
-                                   : projection >= length
-                                       ? at(corner[next], q, SiteType::vertex, t[next], face)
-                                       : at(corner[k] + (projection / length) * along, q, SiteType::edge,
-                                            sites.topology.face_edges[face][k], face);
-    if (candidate.distance < best.distance) best = candidate;
+    ClosestPoint candidate{.face = face};
+    if (projection <= 0) {
+      candidate.point = corner[k], candidate.type = SiteType::vertex, candidate.site = t[k];
+    } else if (projection >= length) {
+      candidate.point = corner[next], candidate.type = SiteType::vertex, candidate.site = t[next];
+    } else {
+      candidate.point = corner[k] + (projection / length) * side[k];
+      candidate.type = SiteType::edge, candidate.site = sites.topology.face_edges[face][k];
+    }
+    if (const double squared = squared_norm(candidate.point - q); squared < best_squared)
+      best = candidate, best_squared = squared;
   }
+  if (over_face) {
+    best.point = q - (dot(to_query[0], normal) / squared_norm(normal)) * normal;
+    best.type = SiteType::face, best.site = face;
+  }
+  best.distance = norm(best.point - q);
   return best;
 }
 
