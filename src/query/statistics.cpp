@@ -1,1 +1,84 @@
-// (to be written)
+#include <sdm/statistics.h>
+
+#include "core/vec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace sdm {
+namespace {
+
+struct WeightedDistance {
+  float distance, weight;
+};
+
+// The area of surface of a texel: |∂p/∂u × ∂p/∂v|, the same for all texels of a face.
+std::vector<float> texel_areas(const Surface& surface) {
+  const auto charts = surface.face_charts();
+  std::vector<float> areas(charts.size());
+  for (std::uint32_t face = 0; face < charts.size(); ++face) {
+    if (charts[face] == kNone) continue;
+    const auto [du, dv] = surface.texel_edges(face);
+    areas[face] = static_cast<float>(norm(cross(du, dv)));
+  }
+  return areas;
+}
+
+}  // namespace
+
+DistanceStatistics statistics(const Surface& surface, const DistanceMap& map) {
+  const auto areas = texel_areas(surface);
+  const auto owners = surface.texel_faces();
+  std::vector<WeightedDistance> values;
+  values.reserve(surface.samples().size());
+  DistanceStatistics result;
+  double area = 0, sum = 0, squares = 0;
+  for (std::size_t texel = 0; texel < owners.size(); ++texel) {
+    const float d = map.distance[texel];
+    if (owners[texel] == kNone || std::isnan(d)) continue;
+    const float weight = areas[owners[texel]];
+    values.push_back({d, weight});
+    result.negative_texels += d < 0;
+    area += weight, sum += double{weight} * d, squares += double{weight} * d * d;
+  }
+  result.texels = values.size();
+  if (values.empty()) {
+    result.min = result.max = result.mean = result.rms = std::numeric_limits<double>::quiet_NaN();
+    result.p50 = result.p95 = result.p99 = result.min;
+    return result;
+  }
+  std::sort(values.begin(), values.end(),
+            [](const auto& a, const auto& b) { return a.distance < b.distance; });
+  result.min = values.front().distance;
+  result.max = values.back().distance;
+  result.mean = sum / area;
+  result.rms = std::sqrt(squares / area);
+
+  double below = 0;
+  auto value = values.begin();
+  const auto percentile = [&](double share) {
+    while (value + 1 != values.end() && below + value->weight < share * area) below += (value++)->weight;
+    return double{value->distance};
+  };
+  result.p50 = percentile(0.50);
+  result.p95 = percentile(0.95);
+  result.p99 = percentile(0.99);
+  return result;
+}
+
+double area_fraction_beyond(const Surface& surface, const DistanceMap& map, double limit) {
+  const auto areas = texel_areas(surface);
+  const auto owners = surface.texel_faces();
+  double area = 0, beyond = 0;
+  for (std::size_t texel = 0; texel < owners.size(); ++texel) {
+    if (owners[texel] == kNone) continue;
+    const double weight = areas[owners[texel]];
+    area += weight;
+    if (!(std::abs(map.distance[texel]) <= limit)) beyond += weight;  // NaN: farther than was looked for
+  }
+  return area > 0 ? beyond / area : 0;
+}
+
+}  // namespace sdm

@@ -1,1 +1,258 @@
-// (to be written)
+#include "core/vec.h"
+#include "io/write/atomic_file.h"
+#include "io/write/color_scale.h"
+#include "io/write/gutter.h"
+#include "io/write/png.h"
+
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/version.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sdm {
+namespace {
+
+/// Vertices as glTF has them: one for each place in the atlas that a vertex of the mesh appears at.
+struct SplitVertices {
+  std::vector<std::uint32_t> vertex;     ///< of the mesh
+  std::vector<std::array<float, 2>> uv;  ///< in [0, 1], v down: the atlas over its resolution
+  std::vector<Triangle> triangles;
+};
+
+// Places closer than this, in texels, are one: two charts are never that close, rounding stays well below.
+constexpr double kSamePlace = 1.0 / 64;
+
+SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint32_t>& faces) {
+  const Mesh& mesh = surface.mesh();
+  const auto charts = surface.face_charts();
+  SplitVertices result;
+  std::vector<Vec2> places;
+  // The splits of each vertex are a linked list: first[vertex], next[split], ...
+  std::vector<std::uint32_t> first(mesh.positions.size(), kNone), next;
+  result.triangles.reserve(faces.size());
+  for (const std::uint32_t face : faces) {
+    Triangle& triangle = result.triangles.emplace_back();
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t vertex = mesh.triangles[face][corner];
+      // A face without area, or hardly any, is not seen: any place will do.
+      Vec2 place = charts[face] == kNone ? Vec2{} : surface.to_atlas(face, mesh.positions[vertex]);
+      if (!std::isfinite(place[0]) || !std::isfinite(place[1])) place = {};
+      std::uint32_t split = first[vertex];
+      while (split != kNone && std::max(std::abs(places[split][0] - place[0]),
+                                        std::abs(places[split][1] - place[1])) > kSamePlace)
+        split = next[split];
+      if (split == kNone) {
+        split = static_cast<std::uint32_t>(places.size());
+        places.push_back(place);
+        result.vertex.push_back(vertex);
+        next.push_back(std::exchange(first[vertex], split));
+      }
+      triangle[corner] = split;
+    }
+  }
+  for (const Vec2& place : places)
+    result.uv.push_back({static_cast<float>(std::clamp(place[0] / surface.resolution(), 0.0, 1.0)),
+                         static_cast<float>(std::clamp(place[1] / surface.resolution(), 0.0, 1.0))});
+  return result;
+}
+
+/// The model under construction: a single buffer, filled from front to back.
+struct GlbModel {
+  tinygltf::Model model;
+
+  GlbModel() { model.buffers.emplace_back(); }
+
+  int add_view(const void* bytes, std::size_t size, int target) {
+    auto& data = model.buffers[0].data;
+    data.resize((data.size() + 3) / 4 * 4);  // accessors of floats start at multiples of 4
+    if (data.size() + size > std::numeric_limits<std::uint32_t>::max() - (1u << 20))
+      throw Error("the model is larger than the 4 GB that a GLB file holds");
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = data.size();
+    view.byteLength = size;
+    view.target = target;
+    const auto* begin = static_cast<const unsigned char*>(bytes);
+    data.insert(data.end(), begin, begin + size);
+    model.bufferViews.push_back(view);
+    return static_cast<int>(model.bufferViews.size()) - 1;
+  }
+
+  /// `Element`: a scalar or an array of N scalars, as the type says.
+  template <class Element>
+  int add_accessor(const std::vector<Element>& values, int type, int component_type, int target) {
+    tinygltf::Accessor accessor;
+    accessor.bufferView = add_view(values.data(), values.size() * sizeof(Element), target);
+    accessor.componentType = component_type;
+    accessor.type = type;
+    accessor.count =
+        values.size() * sizeof(Element) /
+        (4 * static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type))));
+    model.accessors.push_back(accessor);
+    return static_cast<int>(model.accessors.size()) - 1;
+  }
+};
+
+/// glTF has single precision: positions are stored relative to an origin near the mesh where they lie far
+/// from (0, 0, 0).
+struct Placement {
+  Vec3 origin{};
+  double scale = 1;  ///< metres per unit
+};
+
+Placement placement(const Mesh& mesh, const std::string& units) {
+  static const std::map<std::string, double> metres{{"m", 1},     {"cm", 1e-2},   {"mm", 1e-3},
+                                                    {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
+  Placement result;
+  if (const auto unit = metres.find(units); unit != metres.end()) result.scale = unit->second;
+  const Box box = bounds(mesh);
+  if (norm(centre(box)) > 8 * diagonal(box)) result.origin = centre(box);
+  if (!(diagonal(box) < std::numeric_limits<float>::max() / 8))
+    throw Error("coordinates are too large for glTF's single precision; scale the meshes (fit)");
+  return result;
+}
+
+void add_primitive(GlbModel& glb, const Mesh& mesh, const SplitVertices& vertices, const Placement& place,
+                   std::span<const float> vertex_distances, bool with_distances) {
+  if (vertices.triangles.empty()) return;
+  std::vector<Vec3f> positions;
+  Vec3f lo, hi;
+  lo.fill(std::numeric_limits<float>::infinity()), hi.fill(-std::numeric_limits<float>::infinity());
+  for (const std::uint32_t vertex : vertices.vertex) {
+    const Vec3 p = mesh.positions[vertex] - place.origin;
+    const Vec3f& q = positions.emplace_back(
+        Vec3f{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], q[k]), hi[k] = std::max(hi[k], q[k]);
+  }
+
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.material = 0;
+  primitive.indices =
+      glb.add_accessor(vertices.triangles, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                       TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+  const auto add_attribute = [&](const char* name, const auto& values, int type) {
+    return primitive.attributes[name] =
+               glb.add_accessor(values, type, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
+  };
+  auto& accessor = glb.model.accessors[add_attribute("POSITION", positions, TINYGLTF_TYPE_VEC3)];
+  accessor.minValues.assign(lo.begin(), lo.end());
+  accessor.maxValues.assign(hi.begin(), hi.end());
+  add_attribute("TEXCOORD_0", vertices.uv, TINYGLTF_TYPE_VEC2);
+  if (with_distances) {
+    std::vector<float> distances;
+    for (const std::uint32_t vertex : vertices.vertex) distances.push_back(vertex_distances[vertex]);
+    add_attribute("_DISTANCE", distances, TINYGLTF_TYPE_SCALAR);
+  }
+  glb.model.meshes[0].primitives.push_back(primitive);
+}
+
+/// The coloured map, its gutters filled. Charts too small to own a texel take their colour from their
+/// vertices.
+std::string texture_png(const Surface& surface, const DistanceMap& map, const ColorScale& scale,
+                        std::span<const SplitVertices> parts, std::span<const float> vertex_distances) {
+  const std::uint32_t n = surface.resolution();
+  std::vector<std::uint32_t> owners(surface.texel_faces().begin(), surface.texel_faces().end());
+  std::vector<float> distance = map.distance;
+  for (const SplitVertices& part : parts)
+    for (std::size_t i = 0; i < part.vertex.size(); ++i) {
+      const auto to_texel = [n](float t) {
+        return std::min(static_cast<std::uint32_t>(t * static_cast<float>(n)), n - 1);
+      };
+      const std::size_t texel = std::size_t{to_texel(part.uv[i][1])} * n + to_texel(part.uv[i][0]);
+      if (owners[texel] != kNone) continue;
+      owners[texel] = part.vertex[i];
+      distance[texel] = vertex_distances[part.vertex[i]];
+    }
+  std::ostringstream png;
+  write_png(png, n, n, [&](std::uint32_t y, std::span<Rgb> pixels) {
+    for (std::uint32_t x = 0; x < n; ++x) {
+      const std::uint32_t source = gutter_source(n, owners, x, y);
+      pixels[x] = source == kNone ? kBackground : scale(distance[source]);
+    }
+  });
+  return std::move(png).str();
+}
+
+void add_material(GlbModel& glb, const std::string& png) {
+  tinygltf::Model& model = glb.model;
+  tinygltf::Image image;
+  image.bufferView = glb.add_view(png.data(), png.size(), 0);
+  image.mimeType = "image/png";
+  model.images.push_back(image);
+  // No mip levels: they would mix charts that are neighbours in the atlas only.
+  tinygltf::Sampler sampler;
+  sampler.minFilter = sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+  sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  model.samplers.push_back(sampler);
+  tinygltf::Texture texture;
+  texture.sampler = 0;
+  texture.source = 0;
+  model.textures.push_back(texture);
+  tinygltf::Material material;
+  material.name = "distance";
+  material.doubleSided = true;
+  material.pbrMetallicRoughness.baseColorTexture.index = 0;
+  material.pbrMetallicRoughness.metallicFactor = 0;  // where a viewer knows no unlit materials
+  material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object{});
+  model.materials.push_back(material);
+  model.extensionsUsed.push_back("KHR_materials_unlit");
+}
+
+void add_scene(GlbModel& glb, const Placement& place) {
+  tinygltf::Node node;
+  node.name = "O1";
+  node.mesh = 0;
+  if (place.origin != Vec3{})
+    for (const double x : place.origin) node.translation.push_back(x * place.scale);
+  if (place.scale != 1) node.scale.assign(3, place.scale);
+  glb.model.nodes.push_back(node);
+  tinygltf::Scene scene;
+  scene.nodes.push_back(0);
+  glb.model.scenes.push_back(scene);
+  glb.model.defaultScene = 0;
+  glb.model.asset.version = "2.0";
+  glb.model.asset.generator = std::string("sdm ") + kVersion;
+}
+
+}  // namespace
+
+void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+               std::span<const float> vertex_distances, const PictureOptions& options) {
+  const Mesh& mesh = surface.mesh();
+  if (vertex_distances.size() != mesh.positions.size())
+    throw Error("cannot write " + file.string() +
+                ": pass one distance for each vertex of the surface's mesh");
+  // glTF forbids NaN: faces with a vertex that has no value are a primitive of their own, without _DISTANCE.
+  std::array<std::vector<std::uint32_t>, 2> faces;
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+    const bool known =
+        std::ranges::all_of(mesh.triangles[face], [&](auto v) { return std::isfinite(vertex_distances[v]); });
+    faces[known ? 0 : 1].push_back(face);
+  }
+  const std::array parts{split_vertices(surface, faces[0]), split_vertices(surface, faces[1])};
+
+  AtomicFile out(file);
+  GlbModel glb;
+  const Placement place = placement(mesh, options.units);
+  glb.model.meshes.emplace_back().name = "O1";
+  add_primitive(glb, mesh, parts[0], place, vertex_distances, true);
+  add_primitive(glb, mesh, parts[1], place, vertex_distances, false);
+  add_material(glb, texture_png(surface, map, color_scale(map, options), parts, vertex_distances));
+  add_scene(glb, place);
+  tinygltf::TinyGLTF().WriteGltfSceneToStream(&glb.model, out.stream(), false, true);
+  out.commit();
+}
+
+}  // namespace sdm

@@ -1,1 +1,95 @@
-// (to be written)
+#include "io/write/atomic_file.h"
+#include "io/write/color_scale.h"
+#include "io/write/legend.h"
+#include "io/write/png.h"
+
+#include <sdm/io.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sdm {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  std::string result = text;
+  if (result[0] == '-') result.replace(0, 1, "\u2212");
+  return result;
+}
+
+LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const std::string& units) {
+  LegendText text{"Distance", units, {}, map.beyond_max_distance > 0};
+  float least = std::numeric_limits<float>::infinity(), most = -least;
+  for (const float d : map.distance)
+    if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
+  if (least <= most) text.notes = {"min  " + number(least), "max  " + number(most)};
+  if (scale.tolerance) text.notes.push_back("green: within \u00b1" + number(*scale.tolerance));
+  text.notes.push_back(map.sign.method == SignMethod::none ? "unsigned" : "negative: inside");
+  return text;
+}
+
+std::uint8_t unit_to_byte(double x) {
+  return static_cast<std::uint8_t>(std::lround(127.5 * (1 + std::clamp(x, -1.0, 1.0))));
+}
+
+// A picture of the map's own size: the background where no face is, else color(texel).
+template <class Color>
+void write_map_png(const std::filesystem::path& file, const Surface& surface, Color&& color) {
+  AtomicFile out(file);
+  const std::uint32_t n = surface.resolution();
+  const auto owners = surface.texel_faces();
+  write_png(out.stream(), n, n, [&](std::uint32_t y, std::span<Rgb> pixels) {
+    out.check();
+    for (std::size_t x = 0, texel = std::size_t{y} * n; x < n; ++x, ++texel)
+      pixels[x] = owners[texel] == kNone ? kBackground : color(texel);
+  });
+  out.commit();
+}
+
+}  // namespace
+
+void write_distance_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                        const PictureOptions& options) {
+  const ColorScale scale = color_scale(map, options);
+  const std::uint32_t n = surface.resolution();
+  const Picture legend = draw_legend(scale, legend_text(map, scale, options.units), n);
+  const auto owners = surface.texel_faces();
+
+  AtomicFile out(file);
+  write_png(out.stream(), n + legend.width, std::max(n, legend.height),
+            [&](std::uint32_t y, std::span<Rgb> pixels) {
+              out.check();
+              const auto map_row = pixels.first(n), legend_row = pixels.subspan(n);
+              std::fill(map_row.begin(), map_row.end(), kBackground);
+              std::fill(legend_row.begin(), legend_row.end(), Rgb{255, 255, 255});
+              if (y < n)
+                for (std::size_t x = 0, texel = std::size_t{y} * n; x < n; ++x, ++texel)
+                  if (owners[texel] != kNone) map_row[x] = scale(map.distance[texel]);
+              if (y < legend.height)
+                std::copy_n(&legend.pixels[std::size_t{y} * legend.width], legend.width, legend_row.begin());
+            });
+  out.commit();
+}
+
+void write_voronoi_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
+  write_map_png(file, surface, [&](std::size_t texel) {
+    return map.site_type[texel] == SiteType::none ? kNoValue
+                                                  : site_color(map.site_type[texel], map.site[texel]);
+  });
+}
+
+void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
+  write_map_png(file, surface, [&](std::size_t texel) {
+    const Vec3f& v = map.vector[texel];
+    const double length = std::hypot(v[0], v[1], v[2]);
+    // At distance zero there is no direction: the middle of the colour cube.
+    const double scale = length > 0 ? 1 / length : 0;
+    if (std::isnan(length)) return kNoValue;
+    return Rgb{unit_to_byte(scale * v[0]), unit_to_byte(scale * v[1]), unit_to_byte(scale * v[2])};
+  });
+}
+
+}  // namespace sdm

@@ -1,0 +1,130 @@
+#include "io/write/color_scale.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace sdm {
+namespace {
+
+// Ten equal steps of Matplotlib's viridis, and ColorBrewer's RdBu reversed with a pure white middle.
+constexpr std::array<Rgb, 11> kViridis{{{68, 1, 84},
+                                        {72, 36, 117},
+                                        {65, 68, 135},
+                                        {53, 95, 141},
+                                        {42, 120, 142},
+                                        {33, 145, 140},
+                                        {34, 168, 132},
+                                        {68, 191, 112},
+                                        {122, 209, 81},
+                                        {189, 223, 38},
+                                        {253, 231, 37}}};
+constexpr std::array<Rgb, 11> kDiverging{{{5, 48, 97},
+                                          {33, 102, 172},
+                                          {67, 147, 195},
+                                          {146, 197, 222},
+                                          {209, 229, 240},
+                                          {255, 255, 255},
+                                          {253, 219, 199},
+                                          {244, 165, 130},
+                                          {214, 96, 77},
+                                          {178, 24, 43},
+                                          {103, 0, 31}}};
+constexpr std::array<Rgb, 3> kPaper2006{{{255, 0, 0}, {255, 255, 0}, {0, 255, 0}}};
+constexpr Rgb kWithin{92, 184, 92};
+constexpr std::array<Rgb, 3> kAbove{{{255, 214, 94}, {240, 120, 40}, {165, 15, 21}}};
+constexpr std::array<Rgb, 3> kBelow{{{150, 200, 235}, {60, 130, 200}, {8, 48, 107}}};
+
+// Piecewise linear through equally spaced colours; t is clamped to [0, 1].
+Rgb gradient(std::span<const Rgb> colors, double t) {
+  const double s = std::clamp(t, 0.0, 1.0) * static_cast<double>(colors.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(s), colors.size() - 2);
+  const double f = s - static_cast<double>(i);
+  const auto mix = [f](int a, int b) { return static_cast<std::uint8_t>(std::lround(a + f * (b - a))); };
+  const Rgb &a = colors[i], &b = colors[i + 1];
+  return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
+}
+
+// How far `x` is on the way from `from` to `to`.
+double fraction(double x, double from, double to) {
+  return to > from ? (x - from) / (to - from) : 1;
+}
+
+Rgb hsl(double hue, double saturation, double lightness) {
+  const double chroma = saturation * std::min(lightness, 1 - lightness);
+  const auto channel = [&](double n) {
+    const double k = std::fmod(n + 12 * hue, 12);
+    return static_cast<std::uint8_t>(
+        std::lround(255 * (lightness - chroma * std::clamp(std::min(k - 3, 9 - k), -1.0, 1.0))));
+  };
+  return {channel(0), channel(8), channel(4)};
+}
+
+// A bijection of 32-bit numbers whose every bit depends on all bits of x.
+std::uint32_t scramble(std::uint32_t x) {
+  x = (x ^ (x >> 16)) * 0x7feb352du;
+  x = (x ^ (x >> 15)) * 0x846ca68bu;
+  return x ^ (x >> 16);
+}
+
+}  // namespace
+
+Rgb ColorScale::operator()(double distance) const {
+  if (!std::isfinite(distance)) return kNoValue;
+  if (tolerance) {
+    if (std::abs(distance) <= *tolerance) return kWithin;
+    return distance > 0 ? gradient(kAbove, fraction(distance, *tolerance, hi))
+                        : gradient(kBelow, fraction(-distance, *tolerance, -lo));
+  }
+  if (map == Colormap::diverging)
+    return gradient(kDiverging, 0.5 + 0.5 * distance / std::max(std::abs(lo), std::abs(hi)));
+  if (map == Colormap::paper2006) return gradient(kPaper2006, fraction(distance, lo, hi));
+  return gradient(kViridis, fraction(distance, lo, hi));
+}
+
+ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
+  ColorScale scale;
+  const bool is_signed = map.sign.method != SignMethod::none;
+  if (options.colormap == Colormap::automatic) {
+    scale.map = is_signed ? Colormap::diverging : Colormap::viridis;
+    scale.tolerance = options.tolerance;
+  } else {
+    scale.map = options.colormap;
+  }
+  if (options.tolerance && !(std::isfinite(*options.tolerance) && *options.tolerance >= 0))
+    throw Error("the tolerance of the picture must be a finite number, 0 or more");
+
+  if (options.range) {
+    std::tie(scale.lo, scale.hi) = std::pair((*options.range)[0], (*options.range)[1]);
+    if (!(std::isfinite(scale.lo) && std::isfinite(scale.hi) && scale.lo < scale.hi))
+      throw Error("the range of the colours must be two finite numbers, the smaller one first");
+    return scale;
+  }
+  scale.lo = std::numeric_limits<double>::infinity(), scale.hi = -scale.lo;
+  for (const float d : map.distance) {
+    if (!std::isfinite(d)) continue;
+    scale.lo = std::min<double>(scale.lo, d), scale.hi = std::max<double>(scale.hi, d);
+  }
+  if (scale.lo > scale.hi) scale.lo = scale.hi = 0;
+  if (scale.tolerance) {
+    scale.hi = std::max(scale.hi, 2 * *scale.tolerance);
+    scale.lo = is_signed ? std::min(scale.lo, -2 * *scale.tolerance) : 0;
+  } else if (scale.map == Colormap::diverging) {
+    scale.hi = std::max(std::abs(scale.lo), std::abs(scale.hi)), scale.lo = -scale.hi;
+  }
+  if (!(scale.lo < scale.hi)) scale.hi = scale.lo + (scale.lo != 0 ? std::abs(scale.lo) : 1);
+  return scale;
+}
+
+Rgb site_color(SiteType type, std::uint32_t site) {
+  const std::uint32_t hash = scramble(site * 4 + static_cast<std::uint32_t>(type));
+  const double hue = (hash >> 16) / 65536.0, vary = (hash & 0xFFFF) / 65536.0;
+  if (type == SiteType::face) return hsl(hue, 0.45 + 0.35 * vary, 0.66 + 0.16 * vary);
+  if (type == SiteType::edge) return hsl(hue, 0.75 + 0.2 * vary, 0.42 + 0.12 * vary);
+  return hsl(hue, 0.6 + 0.3 * vary, 0.16 + 0.12 * vary);
+}
+
+}  // namespace sdm

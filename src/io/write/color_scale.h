@@ -1,0 +1,36 @@
+// Colours for distances.
+#pragma once
+
+#include <sdm/io.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace sdm {
+
+struct Rgb {
+  std::uint8_t r = 0, g = 0, b = 0;
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+inline constexpr Rgb kBackground{222, 224, 228};  ///< texels of no face
+inline constexpr Rgb kNoValue{128, 130, 134};     ///< owned, but beyond the maximum distance
+
+/// From distances to colours, continuous but for the edges of the tolerance bands.
+struct ColorScale {
+  Colormap map = Colormap::viridis;  ///< never automatic
+  double lo = 0, hi = 1;             ///< lo < hi; colours stay the same beyond
+  std::optional<double> tolerance;   ///< bands in place of the map
+
+  [[nodiscard]] Rgb operator()(double distance) const;
+};
+
+/// The scale that `options` ask for; what they leave open follows from the map.
+/// Throws sdm::Error unless the range is finite and increasing and the tolerance finite and ≥ 0.
+[[nodiscard]] ColorScale color_scale(const DistanceMap& map, const PictureOptions& options);
+
+/// A colour of its own for each site: pale for faces, strong for edges, dark for vertices.
+[[nodiscard]] Rgb site_color(SiteType type, std::uint32_t site);
+
+}  // namespace sdm

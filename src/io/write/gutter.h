@@ -1,0 +1,21 @@
+// Values for the free texels around charts, so that filtering at a chart's border does not mix in the
+// background.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <cstdint>
+#include <span>
+
+namespace sdm {
+
+/// How far, in texels, values reach beyond the charts: bilinear filtering needs 1, the rest serves smaller
+/// mip levels.
+inline constexpr int kGutter = 4;
+
+/// The owned texel nearest to (x, y), itself where it is owned; kNone where there is none within kGutter
+/// texels. `owners`: resolution² values, kNone for a free texel.
+[[nodiscard]] std::uint32_t gutter_source(std::uint32_t resolution, std::span<const std::uint32_t> owners,
+                                          std::uint32_t x, std::uint32_t y);
+
+}  // namespace sdm

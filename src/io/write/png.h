@@ -1,0 +1,18 @@
+// 8-bit RGB images as PNG, row by row.
+#pragma once
+
+#include "io/write/color_scale.h"
+
+#include <cstdint>
+#include <functional>
+#include <ostream>
+#include <span>
+
+namespace sdm {
+
+/// Writes `height` rows that `row(y, pixels)` fills. Compresses for speed. Failures of the stream are left to
+/// its state.
+void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
+               const std::function<void(std::uint32_t y, std::span<Rgb> pixels)>& row);
+
+}  // namespace sdm
