@@ -9,6 +9,8 @@
 namespace sdm {
 namespace {
 
+constexpr std::size_t kGrain = 256;  // blocks
+
 // The next free lane of the blocks from `first` on, opening a block when the last is full.
 template <typename Block>
 std::pair<Block&, int> next_lane(std::vector<Block>& blocks, std::size_t first) {
@@ -24,25 +26,6 @@ void set3(float (&rows)[3][RegionBlock::kWidth], int lane, const Vec3& v) {
 void set_plane(float (&rows)[4][RegionBlock::kWidth], int lane, const Vec3& normal, const Vec3& p) {
   for (int k = 0; k < 3; ++k) rows[k][lane] = static_cast<float>(normal[k]);
   rows[3][lane] = static_cast<float>(dot(normal, p));
-}
-
-// The neighbours of a vertex whose directions spread the most: each the farthest from those chosen before.
-std::array<std::uint32_t, VertexBlock::kRays> spread_neighbours(std::uint32_t vertex,
-                                                                std::span<const std::uint32_t> neighbours,
-                                                                std::span<const Vec3> positions) {
-  std::array<std::uint32_t, VertexBlock::kRays> chosen;
-  chosen.fill(neighbours.front());
-  const auto direction = [&](std::uint32_t w) { return normalized(positions[w] - positions[vertex]); };
-  for (std::size_t i = 1; i < chosen.size(); ++i) {
-    double least = 2;  // the largest cosine to the chosen ones
-    for (std::uint32_t w : neighbours) {
-      double closest = -1;
-      for (std::size_t j = 0; j < i; ++j)
-        closest = std::max(closest, dot(direction(w), direction(chosen[j])));
-      if (closest < least) least = closest, chosen[i] = w;
-    }
-  }
-  return chosen;
 }
 
 // For each vertex, the neighbours over edges, in compressed rows.
@@ -61,6 +44,25 @@ Neighbours vertex_neighbours(std::size_t vertex_count, const Topology& topology)
   std::vector<std::uint32_t> next(n.offsets.begin(), n.offsets.end() - 1);
   for (const auto& [a, b] : topology.edges) n.vertices[next[a]++] = b, n.vertices[next[b]++] = a;
   return n;
+}
+
+// The neighbours of a vertex whose directions spread the most: each the farthest from those chosen before.
+std::array<std::uint32_t, VertexBlock::kRays> spread_neighbours(std::uint32_t vertex,
+                                                                std::span<const std::uint32_t> neighbours,
+                                                                std::span<const Vec3> positions) {
+  std::vector<Vec3> direction(neighbours.size());
+  for (std::size_t i = 0; i < neighbours.size(); ++i)
+    direction[i] = normalized(positions[neighbours[i]] - positions[vertex]);
+  std::vector<double> cosine(neighbours.size(), -1);  // to the nearest chosen direction
+  std::array<std::uint32_t, VertexBlock::kRays> chosen;
+  std::size_t next = 0;
+  for (std::uint32_t& neighbour : chosen) {
+    neighbour = neighbours[next];
+    for (std::size_t i = 0; i < neighbours.size(); ++i)
+      cosine[i] = std::max(cosine[i], dot(direction[i], direction[next]));
+    next = static_cast<std::size_t>(std::min_element(cosine.begin(), cosine.end()) - cosine.begin());
+  }
+  return chosen;
 }
 
 Vec3 face_normal(const Triangle& t, std::span<const Vec3> p) {
@@ -114,7 +116,6 @@ void fill(VertexBlock& block, std::span<const Vec3> p) {
 Regions build_regions(std::span<const Vec3> unit_positions, std::span<const Triangle> triangles,
                       const Topology& topology, const AabbTree& tree) {
   Regions regions;
-  const Neighbours neighbours = vertex_neighbours(unit_positions.size(), topology);
   std::vector<std::uint8_t> edge_taken(topology.edges.size(), 0), vertex_taken(unit_positions.size(), 0);
   const auto add_leaf_start = [&] {
     regions.leaves.push_back({static_cast<std::uint32_t>(regions.faces.size()),
@@ -139,20 +140,29 @@ Regions build_regions(std::span<const Vec3> unit_positions, std::span<const Tria
           auto [vertices, lane] = next_lane(regions.vertices, start.vertices);
           vertices.face[lane] = face;
           vertices.vertex[lane] = vertex;
-          const auto chosen = spread_neighbours(vertex, neighbours.of(vertex), unit_positions);
-          for (int j = 0; j < VertexBlock::kRays; ++j) vertices.neighbour[j][lane] = chosen[j];
         }
       }
     }
   }
   add_leaf_start();
+
+  const Neighbours neighbours = vertex_neighbours(unit_positions.size(), topology);
+  parallel_for(regions.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      VertexBlock& block = regions.vertices[i];
+      for (std::uint32_t lane = 0; lane < block.count; ++lane) {
+        const std::uint32_t vertex = block.vertex[lane];
+        const auto chosen = spread_neighbours(vertex, neighbours.of(vertex), unit_positions);
+        for (int k = 0; k < VertexBlock::kRays; ++k) block.neighbour[k][lane] = chosen[k];
+      }
+    }
+  });
   refit(regions, unit_positions, triangles, topology);
   return regions;
 }
 
 void refit(Regions& regions, std::span<const Vec3> unit_positions, std::span<const Triangle> triangles,
            const Topology& topology) {
-  constexpr std::size_t kGrain = 256;
   parallel_for(regions.faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) fill(regions.faces[i], unit_positions, triangles);
   });
