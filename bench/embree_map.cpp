@@ -1,0 +1,105 @@
+#include "embree_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+
+namespace sdm::bench {
+namespace {
+
+Vec3f operator+(const Vec3f& a, const Vec3f& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+Vec3f operator-(const Vec3f& a, const Vec3f& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Vec3f operator*(float s, const Vec3f& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+float dot(const Vec3f& a, const Vec3f& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// The closest point of a triangle to the origin, by the sign of the barycentric coordinates of its
+/// projection.
+Vec3f closest_to_origin(const std::array<Vec3f, 3>& triangle) {
+  const auto& [a, b, c] = triangle;
+  const Vec3f ab = b - a, ac = c - a, bc = c - b;
+  const float a_ab = -dot(a, ab), a_ac = -dot(a, ac);
+  if (a_ab <= 0 && a_ac <= 0) return a;
+  const float b_ab = -dot(b, ab), b_ac = -dot(b, ac);
+  if (b_ab >= 0 && b_ac <= b_ab) return b;
+  const float c_ab = -dot(c, ab), c_ac = -dot(c, ac);
+  if (c_ac >= 0 && c_ab <= c_ac) return c;
+  const float weight_c = a_ab * b_ac - b_ab * a_ac;
+  if (weight_c <= 0 && a_ab >= 0 && b_ab <= 0) return a + (a_ab / (a_ab - b_ab)) * ab;
+  const float weight_b = c_ab * a_ac - a_ab * c_ac;
+  if (weight_b <= 0 && a_ac >= 0 && c_ac <= 0) return a + (a_ac / (a_ac - c_ac)) * ac;
+  const float weight_a = b_ab * c_ac - c_ab * b_ac;
+  const float towards_c = b_ac - b_ab, towards_b = c_ab - c_ac;
+  if (weight_a <= 0 && towards_c >= 0 && towards_b >= 0)
+    return b + (towards_c / (towards_c + towards_b)) * bc;
+  const float scale = 1 / (weight_a + weight_b + weight_c);
+  return a + (weight_b * scale) * ab + (weight_c * scale) * ac;
+}
+
+struct Query {
+  const std::vector<std::array<Vec3f, 3>>* triangles;
+  EmbreeTexel* texel;
+};
+
+bool visit(RTCPointQueryFunctionArguments* arguments) {
+  const auto& query = *static_cast<const Query*>(arguments->userPtr);
+  EmbreeTexel& texel = *query.texel;
+  const auto& [a, b, c] = (*query.triangles)[arguments->primID];
+  const Vec3f vector = closest_to_origin({a - texel.point, b - texel.point, c - texel.point});
+  const float distance = std::sqrt(dot(vector, vector));
+  if (distance >= arguments->query->radius) return false;
+  texel.vector = vector;
+  texel.distance = distance;
+  texel.face = arguments->primID;
+  arguments->query->radius = distance;  // and tell Embree that it shrank
+  return true;
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(const Mesh& mesh) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), mesh.positions.size()));
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    for (int k = 0; k < 3; ++k) positions[i][k] = static_cast<float>(mesh.positions[i][k]);
+  auto* indices = static_cast<Triangle*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), mesh.triangles.size()));
+  std::ranges::copy(mesh.triangles, indices);
+  for (const auto& [a, b, c] : mesh.triangles)
+    triangles_.push_back({positions[a], positions[b], positions[c]});
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene_);
+}
+
+EmbreeScene::~EmbreeScene() {
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
+}
+
+void EmbreeScene::closest(std::span<EmbreeTexel> texels) const {
+  parallel_for(texels.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3f& p = texels[i].point;
+      RTCPointQuery query{p[0], p[1], p[2], 0, std::numeric_limits<float>::infinity()};
+      Query user{&triangles_, &texels[i]};
+      rtcPointQuery(scene_, &query, &context, visit, &user);
+    }
+  });
+}
+
+}  // namespace sdm::bench

@@ -1,0 +1,38 @@
+// The peer: one closest-point query of Embree's a texel.
+#pragma once
+
+#include <embree3/rtcore.h>
+#include <sdm/mesh.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace sdm::bench {
+
+/// What Embree is given and gives, in single precision as Embree itself.
+struct EmbreeTexel {
+  Vec3f point{};
+  Vec3f vector{};
+  float distance = 0;
+  unsigned face = kNone;
+};
+
+/// A mesh in a scene of Embree's, built at its highest quality.
+class EmbreeScene {
+ public:
+  explicit EmbreeScene(const Mesh& mesh);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  /// Fills in vector, distance and face for every point, on as many threads as the library uses.
+  void closest(std::span<EmbreeTexel> texels) const;
+
+ private:
+  RTCDevice device_;
+  RTCScene scene_;
+  std::vector<std::array<Vec3f, 3>> triangles_;
+};
+
+}  // namespace sdm::bench
