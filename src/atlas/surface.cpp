@@ -1,1 +1,124 @@
-// (to be written)
+#include <sdm/error.h>
+
+#include <string>
+
+#include "atlas/sampling_bound.h"
+#include "atlas/surface_impl.h"
+#include "atlas/texels.h"
+#include "core/memory.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+constexpr std::uint32_t kMinResolution = 16, kMaxResolution = 32768;
+
+void check(const Mesh& mesh, const AtlasOptions& options) {
+  validate(mesh);
+  const std::uint32_t n = options.resolution;
+  if (n < kMinResolution || n > kMaxResolution)
+    throw Error("an atlas resolution of " + std::to_string(n) + " is out of range; use 16 to 32768");
+  if (!(options.max_stretch > 1))
+    throw Error("a largest stretch of " + std::to_string(options.max_stretch) +
+                " is out of range; use more than 1");
+  if (options.gutter > n / 4)
+    throw Error("a gutter of " + std::to_string(options.gutter) + " texels is too wide for an atlas of " +
+                std::to_string(n) + "² texels; use a quarter of that at most");
+  // The texel table and its order, sorted by 64-bit keys; and what charts and layout keep of each face.
+  constexpr std::size_t kBytesPerTexel = 16, kBytesPerFace = 600;
+  require_memory(kBytesPerTexel * n * n + kBytesPerFace * mesh.triangles.size(), "the atlas");
+}
+
+Vec3 point_at(const Surface::Impl& surface, std::uint32_t face, const Vec2& uv) {
+  const FaceMap& map = surface.maps[face];
+  const Vec2 d = uv - map.origin;
+  return surface.mesh.positions[surface.mesh.triangles[face][0]] + d[0] * map.edges[0] + d[1] * map.edges[1];
+}
+
+}  // namespace
+
+Surface::Surface(Mesh mesh, const AtlasOptions& options) {
+  check(mesh, options);
+  Layout layout = options.kind == AtlasKind::uv ? uv_layout(mesh, options) : chart_layout(mesh, options);
+  std::vector<std::uint32_t> face_charts(mesh.triangles.size(), kNone);
+  for (std::uint32_t c = 0; c < layout.charts.size(); ++c)
+    for (const std::uint32_t f : layout.charts[c]) face_charts[f] = c;
+  std::vector<std::uint32_t> texel_faces = rasterise(layout, options.kind, options.resolution);
+  std::vector<std::uint32_t> samples =
+      order_samples(mesh, layout, texel_faces, face_charts, options.resolution);
+  if (samples.empty())
+    throw Error("no face of the mesh is large enough in the texture to own a texel; use a larger resolution");
+  impl_.reset(new Impl{std::move(mesh),
+                       options.kind,
+                       options.resolution,
+                       layout.charts.size(),
+                       layout.max_stretch,
+                       std::move(layout.maps),
+                       std::move(face_charts),
+                       std::move(texel_faces),
+                       std::move(samples),
+                       {}});
+}
+
+Surface::~Surface() = default;
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+
+const Mesh& Surface::mesh() const {
+  return impl_->mesh;
+}
+AtlasKind Surface::atlas_kind() const {
+  return impl_->kind;
+}
+std::uint32_t Surface::resolution() const {
+  return impl_->resolution;
+}
+std::span<const std::uint32_t> Surface::texel_faces() const {
+  return impl_->texel_faces;
+}
+std::span<const std::uint32_t> Surface::samples() const {
+  return impl_->samples;
+}
+std::size_t Surface::chart_count() const {
+  return impl_->chart_count;
+}
+std::span<const std::uint32_t> Surface::face_charts() const {
+  return impl_->face_charts;
+}
+double Surface::max_stretch() const {
+  return impl_->max_stretch;
+}
+
+Vec3 Surface::texel_point(std::uint32_t texel) const {
+  const Vec2 centre = {texel % impl_->resolution + 0.5, texel / impl_->resolution + 0.5};
+  return point_at(*impl_, impl_->texel_faces[texel], centre);
+}
+
+Vec3 Surface::to_surface(std::uint32_t face, const Vec2& uv) const {
+  return point_at(*impl_, face, uv);
+}
+
+// Solves p − vertex 0 = a ∂p/∂u + b ∂p/∂v in the plane of the two, with normal n = ∂p/∂u × ∂p/∂v: a |n|² = (p
+// × ∂p/∂v)·n, b |n|² = (∂p/∂u × p)·n.
+Vec2 Surface::to_atlas(std::uint32_t face, const Vec3& point) const {
+  const auto& [origin, edges] = impl_->maps[face];
+  const Vec3 p = point - impl_->mesh.positions[impl_->mesh.triangles[face][0]];
+  const Vec3 n = cross(edges[0], edges[1]);
+  const double area = squared_norm(n);
+  return origin + Vec2{dot(cross(p, edges[1]), n) / area, dot(cross(edges[0], p), n) / area};
+}
+
+std::array<Vec3, 2> Surface::texel_edges(std::uint32_t face) const {
+  return impl_->maps[face].edges;
+}
+
+double Surface::utilisation() const {
+  return static_cast<double>(impl_->samples.size()) / static_cast<double>(impl_->texel_faces.size());
+}
+
+double Surface::sampling_bound() const {
+  std::call_once(impl_->bounded, [&] { impl_->sampling_bound = sdm::sampling_bound(*this); });
+  return impl_->sampling_bound;
+}
+
+}  // namespace sdm

@@ -1,0 +1,57 @@
+// A square of cells into which shapes of cells are packed, row by row.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+/// Cells [begin, begin + length) of a row.
+struct Run {
+  std::uint32_t row, begin, length;
+};
+
+/// A shape of cells in a rectangle: its runs, the longest first (they fail first).
+struct Stamp {
+  std::uint32_t width = 0, height = 0;
+  std::vector<Run> runs;
+};
+
+/// Each row is kept as bitmaps of 64 columns a word: level k has bit x set when one of the 2^k cells from x
+/// on is taken. A run of length l, 2^k ≤ l < 2^(k+1), then fits at x where neither bit x nor bit x + l − 2^k
+/// of level k is set: two shifted words tell of 64 positions.
+class BitmapBin {
+ public:
+  struct Spot {
+    std::uint32_t x, y;
+  };
+
+  explicit BitmapBin(std::uint32_t size);
+  /// Memory that a bin of this size takes.
+  [[nodiscard]] static std::size_t bytes(std::uint32_t size);
+
+  /// The spot of the least y in [first_y, end_y), then of the least x, where no cell of the stamp is taken.
+  [[nodiscard]] std::optional<Spot> first_fit(const Stamp& stamp, std::uint32_t first_y,
+                                              std::uint32_t end_y) const;
+  void place(const Stamp& stamp, Spot spot);
+
+ private:
+  [[nodiscard]] std::optional<std::uint32_t> fit_in_row(const Stamp& stamp, std::uint32_t y,
+                                                        std::vector<std::uint64_t>& blocked) const;
+  [[nodiscard]] std::uint64_t* row(std::uint32_t level, std::uint32_t y) {
+    return &bits_[(std::size_t{level} * size_ + y) * stride_];
+  }
+  [[nodiscard]] const std::uint64_t* row(std::uint32_t level, std::uint32_t y) const {
+    return &bits_[(std::size_t{level} * size_ + y) * stride_];
+  }
+  void update_row(std::uint32_t y);
+
+  std::uint32_t size_, levels_;
+  std::size_t stride_;  // words a row; bits from size_ on are always set
+  std::vector<std::uint64_t> bits_;
+  std::vector<std::uint32_t> longest_;  // free run of each row: rejects most rows at a glance
+};
+
+}  // namespace sdm

@@ -1,0 +1,87 @@
+#include <sdm/error.h>
+
+#include <algorithm>
+
+#include "atlas/cluster.h"
+#include "atlas/layout.h"
+#include "atlas/pack.h"
+#include "atlas/shape.h"
+#include "atlas/split.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+// Charts gain nothing by more, and their axes stay well away from the planes of their faces.
+constexpr double kMaxStretch = 100;
+
+std::vector<Chart> single_faces(const FaceGeometry& faces) {
+  std::vector<Chart> charts;
+  for (std::uint32_t f = 0; f < faces.normal.size(); ++f)
+    if (faces.area[f] > 0) charts.push_back({faces.normal[f], {f}});
+  return charts;
+}
+
+void report(const Progress& progress, double fraction) {
+  if (progress && !progress("atlas", fraction)) throw Cancelled();
+}
+
+// The projection of a chart followed by its placement maps along the unit vectors right and down (times the
+// scale s) of the chart's plane. Back, p moves in the face's plane, normal n, so that its projection along
+// the axis moves by right / s: ∂p/∂u = (right − axis (n·right)/(n·axis)) / s, and ∂p/∂v likewise. Well
+// conditioned for any sliver, as n·axis ≥ cos θ; the singular values are 1/s and 1/(s n·axis).
+std::array<Vec3, 2> lifted(const std::array<Vec3, 2>& plane, double scale, const Vec3& axis,
+                           const Vec3& normal) {
+  const auto lift = [&](const Vec3& e) {
+    return (1 / scale) * (e - dot(normal, e) / dot(normal, axis) * axis);
+  };
+  return {lift(plane[0]), lift(plane[1])};
+}
+
+}  // namespace
+
+Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
+  report(options.progress, 0);
+  const FaceGeometry faces = face_geometry(mesh);
+  std::vector<Chart> charts;
+  if (options.kind == AtlasKind::triangles) {
+    charts = single_faces(faces);
+  } else {
+    charts = cluster_faces(mesh, faces, 1 / std::min(options.max_stretch, kMaxStretch));
+    report(options.progress, 0.3);
+    charts = split_overlaps(mesh, faces, std::move(charts));
+  }
+  report(options.progress, 0.4);
+  const std::vector<Shape> shapes = chart_shapes(mesh, faces, charts);
+  const std::vector<Placement> placements =
+      pack(shapes, options.resolution, options.gutter, options.progress);
+
+  Layout layout;
+  layout.maps.resize(mesh.triangles.size());
+  layout.corners.resize(mesh.triangles.size());
+  layout.charts.resize(charts.size());
+  std::vector<double> least_cos(charts.size(), 1);
+  parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const auto& [matrix, offset] = placements[c];
+      const ShapeFrame& frame = shapes[c].frame;
+      const double scale = std::hypot(matrix[0][0], matrix[0][1]);
+      std::array<Vec3, 2> plane;
+      for (int k = 0; k < 2; ++k)
+        plane[k] = (1 / scale) * (matrix[k][0] * frame.right + matrix[k][1] * frame.down);
+      for (std::size_t i = 0; i < charts[c].faces.size(); ++i) {
+        const std::uint32_t f = charts[c].faces[i];
+        for (int k = 0; k < 3; ++k) layout.corners[f][k] = placements[c].apply(shapes[c].triangles[i][k]);
+        layout.maps[f] = {layout.corners[f][0], lifted(plane, scale, charts[c].axis, faces.normal[f])};
+        if (charts[c].faces.size() > 1)
+          least_cos[c] = std::min(least_cos[c], dot(faces.normal[f], charts[c].axis));
+      }
+      layout.charts[c] = std::move(charts[c].faces);
+    }
+  });
+  for (const double cos : least_cos) layout.max_stretch = std::max(layout.max_stretch, 1 / cos);
+  return layout;
+}
+
+}  // namespace sdm

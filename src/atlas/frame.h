@@ -1,0 +1,45 @@
+// Planes and convex hulls in them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace sdm {
+
+/// Unit vectors (right, up) so that right, up and the unit axis are a right-handed frame.
+inline std::array<Vec3, 2> tangent_frame(const Vec3& axis) {
+  const Vec3 other = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 right = normalized(cross(other, axis));
+  return {right, cross(axis, right)};
+}
+
+/// The corners of the convex hull, counter-clockwise (Andrew's monotone chain), of points whose position `at`
+/// gives.
+template <class Point, class At>
+std::vector<Point> convex_hull(std::vector<Point> points, At at) {
+  const auto lower = [&](const Point& p, const Point& q) { return at(p) < at(q); };
+  const auto same = [&](const Point& p, const Point& q) { return at(p) == at(q); };
+  std::sort(points.begin(), points.end(), lower);
+  points.erase(std::unique(points.begin(), points.end(), same), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Point> hull;
+  const auto chain = [&](auto begin, auto end) {
+    const std::size_t base = hull.size();
+    for (auto p = begin; p != end; ++p) {
+      while (hull.size() >= base + 2 &&
+             cross(at(hull.back()) - at(hull[hull.size() - 2]), at(*p) - at(hull.back())) <= 0)
+        hull.pop_back();
+      hull.push_back(*p);
+    }
+    hull.pop_back();
+  };
+  chain(points.begin(), points.end());
+  chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+}  // namespace sdm

@@ -1,0 +1,29 @@
+// Where each face lies in the atlas.
+#pragma once
+
+#include <sdm/surface.h>
+
+#include <vector>
+
+namespace sdm {
+
+/// M⁻¹ of a face: atlas coordinates (u, v) ↦ vertex 0 + (u − origin.u) edges[0] + (v − origin.v) edges[1].
+struct FaceMap {
+  Vec2 origin{};                ///< atlas coordinates of the face's vertex 0
+  std::array<Vec3, 2> edges{};  ///< ∂p/∂u and ∂p/∂v
+};
+
+struct Layout {
+  std::vector<std::vector<std::uint32_t>> charts;  ///< the faces of each
+  std::vector<FaceMap> maps;
+  std::vector<std::array<Vec2, 3>>
+      corners;  ///< atlas coordinates; of a chart's vertex the same for each of its faces
+  double max_stretch = 1;
+};
+
+/// AtlasKind::charts and AtlasKind::triangles.
+[[nodiscard]] Layout chart_layout(const Mesh& mesh, const AtlasOptions& options);
+/// AtlasKind::uv. A chart is a set of faces that join at edges where their coordinates agree.
+[[nodiscard]] Layout uv_layout(const Mesh& mesh, const AtlasOptions& options);
+
+}  // namespace sdm

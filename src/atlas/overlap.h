@@ -1,0 +1,32 @@
+// Whether triangles in the plane overlap: exactly, on integer coordinates.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace sdm {
+
+/// Coordinates lie in [0, 2^29]: differences fit 30 bits with their sign, products 58, so that an orientation
+/// determinant, the difference of two products, is exact in 64 bits.
+using GridPoint = std::array<std::int32_t, 2>;
+inline constexpr std::int32_t kGridSteps = 1 << 29;
+
+/// Counter-clockwise, or of zero area.
+using GridTriangle = std::array<GridPoint, 3>;
+
+/// Twice the signed area.
+constexpr std::int64_t orientation(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
+  return std::int64_t{b[0] - a[0]} * (c[1] - a[1]) - std::int64_t{b[1] - a[1]} * (c[0] - a[0]);
+}
+
+/// Two triangles whose interiors meet, if any do. With `slack` > 0, an overlap no deeper than this, in grid
+/// steps, is none. Triangles of zero area overlap nothing. Gives up after about `budget` pairs with an
+/// arbitrary pair of triangles (which is what a caller who splits the set wants). Cost: linear for triangles
+/// of like size.
+[[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> find_overlap(
+    std::span<const GridTriangle> triangles, double slack = 0, std::uint64_t budget = UINT64_MAX);
+
+}  // namespace sdm

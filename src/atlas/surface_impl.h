@@ -1,0 +1,24 @@
+// What a Surface holds.
+#pragma once
+
+#include <sdm/surface.h>
+
+#include <mutex>
+
+#include "atlas/layout.h"
+
+namespace sdm {
+
+struct Surface::Impl {
+  Mesh mesh;
+  AtlasKind kind;
+  std::uint32_t resolution;
+  std::size_t chart_count;
+  double max_stretch;
+  std::vector<FaceMap> maps;
+  std::vector<std::uint32_t> face_charts, texel_faces, samples;
+  std::once_flag bounded;
+  double sampling_bound = 0;  ///< once `bounded`
+};
+
+}  // namespace sdm

@@ -1,0 +1,127 @@
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "atlas/face_geometry.h"
+#include "atlas/layout.h"
+#include "atlas/overlap.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+// Coordinates this far outside [0, 1] are taken for rounding; overlaps this deep, in texels, too.
+constexpr double kOutside = 1e-6;
+constexpr double kTexelSlack = 1.0 / 1024;
+
+[[noreturn]] void fail(const std::string& fault) {
+  throw Error("the mesh's own texture coordinates make no atlas: " + fault + "; use --atlas charts");
+}
+
+void place_corners(const Mesh& mesh, const FaceGeometry& faces, std::uint32_t resolution, Layout& layout) {
+  const double n = resolution;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (faces.area[f] == 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const auto [u, v] = mesh.corner_uvs[f][k];
+      if (!(u >= -kOutside && u <= 1 + kOutside && v >= -kOutside && v <= 1 + kOutside))
+        fail("those of face " + std::to_string(f) + " lie outside [0, 1]");
+      layout.corners[f][k] = {std::clamp(u, 0.0, 1.0) * n, (1 - std::clamp(v, 0.0, 1.0)) * n};
+    }
+    const auto& [a, b, c] = layout.corners[f];
+    if (cross(b - a, c - a) == 0)
+      fail("face " + std::to_string(f) + " has an area on the surface but none in the texture");
+  }
+}
+
+void check_overlaps(const FaceGeometry& faces, std::uint32_t resolution, const Layout& layout) {
+  const double steps_per_texel = static_cast<double>(kGridSteps) / resolution;
+  std::vector<GridTriangle> triangles;
+  std::vector<std::uint32_t> face_of;
+  for (std::uint32_t f = 0; f < layout.corners.size(); ++f) {
+    if (faces.area[f] == 0) continue;
+    GridTriangle t;
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 2; ++i)
+        t[k][i] = static_cast<std::int32_t>(std::lround(layout.corners[f][k][i] * steps_per_texel));
+    if (orientation(t[0], t[1], t[2]) < 0) std::swap(t[1], t[2]);
+    triangles.push_back(t);
+    face_of.push_back(f);
+  }
+  if (const auto pair = find_overlap(triangles, kTexelSlack * steps_per_texel))
+    fail("faces " + std::to_string(face_of[pair->first]) + " and " + std::to_string(face_of[pair->second]) +
+         " overlap");
+}
+
+// p is affine in (u, v): the edges solve p1 − p0 = (u1 − u0) ∂p/∂u + (v1 − v0) ∂p/∂v, and the same for p2.
+std::array<Vec3, 2> affine_edges(const Mesh& mesh, const std::array<Vec2, 3>& uv, const Triangle& t) {
+  const Vec3& origin = mesh.positions[t[0]];
+  const Vec3 first = mesh.positions[t[1]] - origin, second = mesh.positions[t[2]] - origin;
+  const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
+  const double det = cross(a, b);
+  return {(1 / det) * (b[1] * first - a[1] * second), (1 / det) * (a[0] * second - b[0] * first)};
+}
+
+// The larger singular value of the matrix with these columns.
+double largest_stretch(const std::array<Vec3, 2>& edges) {
+  const double e = squared_norm(edges[0]), f = dot(edges[0], edges[1]), g = squared_norm(edges[1]);
+  return std::sqrt((e + g) / 2 + std::hypot((e - g) / 2, f));
+}
+
+// Whether faces f and g agree on the atlas coordinates of two vertices that they share.
+bool joined(const Mesh& mesh, const Layout& layout, std::uint32_t f, std::uint32_t g) {
+  int agreeing = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      agreeing +=
+          mesh.triangles[f][i] == mesh.triangles[g][j] && layout.corners[f][i] == layout.corners[g][j];
+  return agreeing >= 2;
+}
+
+std::vector<std::vector<std::uint32_t>> uv_charts(const Mesh& mesh, const FaceGeometry& faces,
+                                                  const Layout& layout) {
+  std::vector<std::vector<std::uint32_t>> charts;
+  std::vector<std::uint8_t> reached(mesh.triangles.size(), 0);
+  for (std::uint32_t seed = 0; seed < reached.size(); ++seed) {
+    if (reached[seed] || faces.area[seed] == 0) continue;
+    std::vector<std::uint32_t>& chart = charts.emplace_back(1, seed);
+    reached[seed] = 1;
+    for (std::size_t i = 0; i < chart.size(); ++i)
+      for (const std::uint32_t next : faces.neighbours[chart[i]])
+        if (next != kNone && !reached[next] && faces.area[next] > 0 && joined(mesh, layout, chart[i], next)) {
+          reached[next] = 1;
+          chart.push_back(next);
+        }
+  }
+  return charts;
+}
+
+}  // namespace
+
+Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
+  if (mesh.corner_uvs.empty()) fail("there are none");
+  const FaceGeometry faces = face_geometry(mesh);
+  Layout layout;
+  layout.corners.resize(mesh.triangles.size());
+  layout.maps.resize(mesh.triangles.size());
+  place_corners(mesh, faces, options.resolution, layout);
+  check_overlaps(faces, options.resolution, layout);
+
+  double surface_area = 0, atlas_area = 0, largest = 0;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (faces.area[f] == 0) continue;
+    const auto& uv = layout.corners[f];
+    layout.maps[f] = {uv[0], affine_edges(mesh, uv, mesh.triangles[f])};
+    surface_area += faces.area[f];
+    atlas_area += 0.5 * std::abs(cross(uv[1] - uv[0], uv[2] - uv[0]));
+    largest = std::max(largest, largest_stretch(layout.maps[f].edges));
+  }
+  layout.max_stretch = largest / std::sqrt(surface_area / atlas_area);
+  layout.charts = uv_charts(mesh, faces, layout);
+  return layout;
+}
+
+}  // namespace sdm
