@@ -1,0 +1,121 @@
+// Every texel of every map against CGAL's AABB tree.
+#include "core/vec.h"
+#include "engine/oracle.h"
+#include "engine/support.h"
+
+namespace sdm {
+namespace {
+
+struct Scene {
+  const char *o1, *steps1, *o2, *steps2;
+  std::uint32_t resolution;
+};
+void PrintTo(const Scene& s, std::ostream* out) {
+  *out << s.o1 << " [" << s.steps1 << "] " << s.o2 << " [" << s.steps2 << ']';
+}
+
+const Scene kScenes[] = {
+    // The two that everything is measured by, standing close and penetrating.
+    {"bunny.obj", "fit", "armadillo.off", "fit,translate:0.8:0:0", 512},
+    {"bunny.obj", "fit", "armadillo.off", "fit", 256},
+    {"armadillo.off", "fit", "bunny.obj", "fit,translate:0.8:0:0", 512},
+    {"armadillo.off", "fit", "bunny.obj", "fit", 256},
+    // As they come: the bunny is fifty times smaller, and somewhere else.
+    {"armadillo.off", "", "bunny.obj", "", 256},
+    {"bunny.obj", "", "armadillo.off", "", 256},
+    // Holes, many components, polygons, non-manifold and degenerate faces.
+    {"elephant-with-holes.off", "fit", "lion-head.off", "fit,translate:0.3:0.2:0.1", 256},
+    {"blobby_3cc.off", "fit", "bear_bis.off", "fit", 256},
+    {"dino.off", "fit", "boeing.off", "fit", 256},
+    {"boeing.off", "fit", "b9_mesh.off", "fit,rotate:0:90:0", 256},
+    {"ALSTOM_TEST4.off", "fit", "polygon_mesh.off", "fit,rotate:30:60:90", 256},
+    {"triceratops.off", "fit", "degtri_sliding.off", "fit,translate:0.4:0:0", 256},
+    {"degtri_sliding.off", "", "tetra_intersected_by_triangle.off", "", 128},
+    {"mech-holes-shark.off", "fit", "pig.off", "fit", 256},
+    {"cheese.off", "fit", "anchor_dense.off", "fit,rotate:45:0:0,translate:0:1:0", 256},
+    {"mpi.off", "fit", "horizons.off", "fit,translate:0:0:0.2", 256},
+    {"knot2.off", "fit", "cylinder_locally_refined.off", "fit", 256},
+    {"ChineseDragon-10kv.off", "fit", "turbine.off", "fit,scale:30,translate:100:0:0", 256},
+    {"head.off", "fit", "triangle.off", "fit,translate:0.2:0.3:0", 256},
+    {"triangle.off", "fit", "retinal.off", "fit", 128},
+    {"corner_tris_with_hole.off", "fit", "cross.off", "fit,scale:0.001", 128},
+};
+
+void expect_agreement(const Mesh& o1, const Mesh& o2, std::uint32_t resolution) {
+  const Surface surface(o1, {.resolution = resolution});
+  const Sites sites(o2);
+  const double tolerance = 1e-6 * test::scene_diagonal(o1, o2);
+  ASSERT_GT(surface.samples().size(), 100u);
+
+  const std::vector<Vec3> points = test::sample_points(surface);
+  const std::vector<double> expected = test::evaluate(oracle::CgalDistance(o2), points);
+  std::vector<DistanceMap> maps;
+  for (const EngineKind engine : test::kEngines) {
+    SCOPED_TRACE(test::name(engine));
+    maps.push_back(compute_map(surface, sites, {.engine = engine}));
+    test::expect_map(surface, sites, maps.back(), expected, tolerance);
+    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = engine}), expected,
+                                tolerance);
+  }
+  test::Disagreements between_engines(tolerance);
+  for (const std::uint32_t t : surface.samples())
+    between_engines.compare(t, maps[0].distance[t], maps[1].distance[t]);
+  EXPECT_TRUE(between_engines.none()) << "cpu against reference";
+}
+
+class Exactness : public testing::TestWithParam<Scene> {};
+
+TEST_P(Exactness, EveryTexelAgreesWithCgal) {
+  const Scene& scene = GetParam();
+  expect_agreement(test::load(scene.o1, scene.steps1), test::load(scene.o2, scene.steps2), scene.resolution);
+}
+
+std::string scene_name(const testing::TestParamInfo<Scene>& info) {
+  std::string text = std::to_string(info.index) + "_" + info.param.o1 + "_to_" + info.param.o2;
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return text;
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, Exactness, testing::ValuesIn(kScenes), scene_name);
+
+// The scenes are worth what their meshes are: this fails when one of the awkward kinds is no longer among
+// them.
+TEST(Exactness, ScenesHaveMeshesOfEveryKind) {
+  bool open = false, degenerate = false, many = false, pinched = false;
+  for (const Scene& scene : kScenes) {
+    const MeshInfo info = inspect(test::load(scene.o2));
+    open |= info.boundary_edges > 0;
+    degenerate |= info.degenerate_faces > 0;
+    many |= info.components > 1;
+    pinched |= info.nonmanifold_vertices > 0;
+  }
+  EXPECT_TRUE(open && degenerate && many && pinched);
+}
+
+// What no file at hand has: edges of three faces and more, faces turned at random, duplicates, faces of no
+// area.
+TEST(Exactness, SpoiltMesh) {
+  std::mt19937 random(9);
+  Mesh mesh = test::turned(test::load("bear_bis.off", "fit"), 3);
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t i = 0; i < count; i += 20) {
+    const auto [a, b, c] = mesh.triangles[i];
+    const auto added = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(mesh.positions[a] +
+                             test::random_point({{-.05, -.05, -.05}, {.05, .05, .05}}, random));
+    mesh.positions.push_back(0.5 * (mesh.positions[b] + mesh.positions[c]));
+    mesh.triangles.insert(
+        mesh.triangles.end(),
+        {{a, b, added}, {c, b, a}, {a, a, b}, {b, c, added + 1}, {added + 1, added + 1, added + 1}});
+  }
+  const MeshInfo info = inspect(mesh);
+  ASSERT_GT(info.nonmanifold_edges, 0u);
+  ASSERT_GT(info.degenerate_faces, 0u);
+  ASSERT_GT(info.duplicate_faces, 0u);
+  ASSERT_FALSE(info.oriented);
+  expect_agreement(test::load("head.off", "fit"), mesh, 256);
+  expect_agreement(mesh, test::load("head.off", "fit"), 1024);  // turned faces make many charts
+}
+
+}  // namespace
+}  // namespace sdm

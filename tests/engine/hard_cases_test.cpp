@@ -1,0 +1,131 @@
+// Inputs that break careless engines: ties everywhere, contact, extreme scales, slivers, soup.
+#include "core/vec.h"
+#include "engine/oracle.h"
+#include "engine/support.h"
+
+namespace sdm {
+namespace {
+
+class HardCases : public testing::TestWithParam<EngineKind> {
+ protected:
+  /// Maps and closest points against brute force; the tolerance is relative to the scene's diagonal.
+  void expect_exact(const Mesh& o1, const Mesh& o2, std::uint32_t resolution = 64) const {
+    const Surface surface(o1, {.resolution = resolution});
+    const Sites sites(o2);
+    const double tolerance = 1e-6 * test::scene_diagonal(o1, o2);
+    const std::vector<Vec3> points = test::sample_points(surface);
+    const auto expected = test::evaluate([&](const Vec3& p) { return oracle::brute_force(o2, p); }, points);
+    test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam()}), expected,
+                     tolerance);
+    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = GetParam()}),
+                                expected, tolerance);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Engines, HardCases, testing::ValuesIn(test::kEngines), test::engine_name);
+
+TEST_P(HardCases, ConcentricSpheres) {
+  expect_exact(test::sphere(2), test::placed(test::sphere(3), "scale:2"));
+  expect_exact(test::placed(test::sphere(2), "scale:0.001"), test::sphere(4));
+}
+
+TEST_P(HardCases, EverySiteEquallyNear) {
+  const Sites sites(test::sphere(5));
+  const std::vector<Vec3> centre(1000, Vec3{});
+  const double expected = oracle::brute_force(sites.mesh(), {});
+  test::expect_closest_points(sites, centre, closest_points(sites, centre, {.engine = GetParam()}),
+                              std::vector<double>(centre.size(), expected), 1e-6);
+}
+
+TEST_P(HardCases, CoplanarContact) {
+  expect_exact(test::cube(), test::placed(test::cube(), "translate:2:0.5:0.25"));
+  expect_exact(test::cube(), test::placed(test::cube(), "translate:2:2:0"));
+}
+
+TEST_P(HardCases, IdenticalMeshes) {
+  const Mesh mesh = test::load("head.off", "fit");
+  const Surface surface(mesh, {.resolution = 256});
+  const Sites sites(mesh);
+  test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam()}),
+                   std::vector<double>(surface.samples().size(), 0.0),
+                   1e-6 * test::scene_diagonal(mesh, mesh));
+}
+
+TEST_P(HardCases, TinyAndFar) {
+  expect_exact(test::cube(), test::placed(test::sphere(1), "scale:1e-6,translate:1000:200:-300"));
+  expect_exact(test::cube(), test::placed(test::sphere(1), "scale:1e-6,translate:1:1:1"));
+  expect_exact(test::placed(test::cube(), "scale:1e-6"), test::placed(test::sphere(3), "translate:0:0:1.5"));
+}
+
+TEST_P(HardCases, ExtremeUnits) {
+  for (const char* scale : {"scale:1e-12", "scale:1e12", "scale:1e-30", "scale:1e30"}) {
+    SCOPED_TRACE(scale);
+    expect_exact(test::placed(test::cube(), scale),
+                 test::placed(test::sphere(2), "translate:0.5:0.7:0.9," + std::string(scale)), 32);
+  }
+}
+
+TEST_P(HardCases, SmallDetailFarFromTheOrigin) {
+  const std::string away = "scale:0.001,translate:100000:-100000:100000";
+  expect_exact(test::placed(test::cube(), away),
+               test::placed(test::sphere(2), "translate:0.5:0.7:0.9," + away));
+}
+
+TEST_P(HardCases, Slivers) {
+  // A fan of needles, a thousand times longer than wide and worse, of which many share the tip.
+  for (const double width : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    SCOPED_TRACE(width);
+    Mesh fan;
+    fan.positions = {{0, 0, 0}};
+    for (std::uint32_t i = 0; i <= 200; ++i)
+      fan.positions.push_back({1, width * i, 0.1 * std::sin(0.05 * i)});
+    for (std::uint32_t i = 1; i <= 200; ++i) fan.triangles.push_back({0, i, i + 1});
+    expect_exact(test::placed(test::sphere(2), "translate:0.5:0:0"), fan);
+    expect_exact(test::placed(test::sphere(2), "scale:0.01,translate:0.5:0:0.02"), fan);
+  }
+}
+
+TEST_P(HardCases, SingleTriangle) {
+  const Mesh triangle{
+      .positions = {{0, 0, 0}, {1, 0, 0.2}, {0.3, 0.8, 0}}, .triangles = {{0, 1, 2}}, .corner_uvs = {}};
+  expect_exact(test::sphere(2), triangle);
+  expect_exact(triangle, test::sphere(2));
+  expect_exact(triangle, triangle);
+}
+
+TEST_P(HardCases, Soup) {
+  std::mt19937 random(5);
+  for (const std::size_t count : {3u, 17u, 64u, 500u, 2000u})
+    expect_exact(test::sphere(2), test::soup(count, random));
+}
+
+TEST_P(HardCases, ManyFacesOnOneVertexAndOneEdge) {
+  std::mt19937 random(6);
+  const Box unit{{-1, -1, -1}, {1, 1, 1}};
+  Mesh book{
+      .positions = {{0, 0, -0.5}, {0, 0, 0.5}}, .triangles = {}, .corner_uvs = {}};  // pages on one spine
+  Mesh star{.positions = {{0, 0, 0}}, .triangles = {}, .corner_uvs = {}};
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    book.positions.push_back(test::random_point(unit, random));
+    book.triangles.push_back({0, 1, i + 2});
+    star.positions.push_back(test::random_point(unit, random));
+    star.positions.push_back(test::random_point(unit, random));
+    star.triangles.push_back({0, 2 * i + 1, 2 * i + 2});
+  }
+  expect_exact(test::sphere(2), book);
+  expect_exact(test::sphere(2), star);
+}
+
+TEST_P(HardCases, RandomQueries) {
+  std::mt19937 random(7);
+  const Mesh mesh = test::soup(1000, random);
+  const Sites sites(mesh);
+  std::vector<Vec3> queries;  // scattered: nothing that neighbours could share
+  for (int i = 0; i < 5000; ++i) queries.push_back(test::random_point({{-2, -2, -2}, {3, 3, 3}}, random));
+  const auto expected = test::evaluate([&](const Vec3& p) { return oracle::brute_force(mesh, p); }, queries);
+  test::expect_closest_points(sites, queries, closest_points(sites, queries, {.engine = GetParam()}),
+                              expected, 1e-6 * 8);
+  EXPECT_TRUE(closest_points(sites, {}, {.engine = GetParam()}).empty());
+}
+
+}  // namespace
+}  // namespace sdm

@@ -1,0 +1,121 @@
+// The sign at every texel against CGAL's Side_of_triangle_mesh.
+#include "core/vec.h"
+#include "engine/oracle.h"
+#include "engine/support.h"
+
+namespace sdm {
+namespace {
+
+/// Compares the sign at every texel farther than 1e-5 of the scene's diagonal from O2, and asks for both
+/// kinds.
+void expect_signs(const Mesh& o1, const Mesh& o2, SignMethod method = SignMethod::automatic,
+                  std::uint32_t resolution = 256) {
+  const Surface surface(o1, {.resolution = resolution});
+  const Sites sites(o2);
+  const double least = 1e-5 * test::scene_diagonal(o1, o2);
+  const oracle::CgalInside cgal(o2);
+  const std::vector<double> inside = test::evaluate(cgal, test::sample_points(surface));
+  for (const EngineKind engine : test::kEngines) {
+    SCOPED_TRACE(test::name(engine));
+    const DistanceMap map = compute_map(surface, sites, {.engine = engine, .sign = method});
+    EXPECT_EQ(map.sign.method, method == SignMethod::automatic ? SignMethod::pseudonormal : method);
+    std::size_t counts[2] = {0, 0}, wrong = 0;
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      const double distance = map.distance[surface.samples()[i]];
+      ASSERT_FALSE(std::isnan(distance));
+      if (std::abs(distance) <= least) continue;
+      ++counts[inside[i] != 0];
+      wrong += (distance < 0) != (inside[i] != 0);
+    }
+    EXPECT_EQ(wrong, 0u) << "of " << counts[0] << " outside and " << counts[1] << " inside";
+    EXPECT_GT(counts[0], 0u);
+    EXPECT_GT(counts[1], 0u);
+  }
+}
+
+struct Scene {
+  const char *o1, *steps1, *o2, *steps2;
+};
+void PrintTo(const Scene& s, std::ostream* out) {
+  *out << s.o1 << " [" << s.steps1 << "] " << s.o2 << " [" << s.steps2 << ']';
+}
+
+// O2 is closed and does not intersect itself.
+const Scene kScenes[] = {
+    {"bunny.obj", "fit", "armadillo.off", "fit"},
+    {"head.off", "fit", "elephant.off", "fit"},
+    {"armadillo.off", "fit", "dino.off", "fit"},
+    {"pig.off", "fit", "knot2.off", "fit"},
+    {"triceratops.off", "fit", "anchor_dense.off", "fit"},
+    {"lion-head.off", "fit", "fandisk.off", "fit"},
+    {"blobby.off", "fit", "rotor.off", "fit"},
+    {"cow.off", "fit", "star.off", "fit"},
+    {"camel.off", "fit", "couplingdown.off", "fit"},
+    {"head.off", "fit", "blobby-shuffled.off", "fit"},  // faces turned at random
+};
+
+class Sign : public testing::TestWithParam<Scene> {};
+
+TEST_P(Sign, AgreesWithCgal) {
+  const Scene& scene = GetParam();
+  expect_signs(test::load(scene.o1, scene.steps1), test::load(scene.o2, scene.steps2));
+}
+std::string scene_name(const testing::TestParamInfo<Scene>& info) {
+  std::string text = std::string(info.param.o1) + "_in_" + info.param.o2;
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return text;
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, Sign, testing::ValuesIn(kScenes), scene_name);
+
+// A ball with a spherical cavity, which holds a smaller ball; a second ball stands beside.
+Mesh nested_balls() {
+  const Mesh ball = test::sphere(3);
+  Mesh mesh = test::joined(ball, test::turned(test::placed(ball, "scale:0.7")));
+  mesh = test::joined(mesh, test::placed(ball, "scale:0.3"));
+  return test::joined(mesh, test::placed(ball, "scale:0.5,translate:2:0:0"));
+}
+
+TEST(Sign, NestedCavities) {
+  expect_signs(test::load("knot2.off", "fit,scale:2.2,translate:0.3:0:0"), nested_balls());
+}
+
+TEST(Sign, ComponentsFacingAnyWay) {
+  // Nothing in the file tells the cavity from a ball but where it is.
+  const Mesh ball = test::sphere(3);
+  const Mesh o1 = test::load("knot2.off", "fit,scale:2.2");
+  expect_signs(o1, test::joined(ball, test::placed(ball, "scale:0.7")));
+  expect_signs(o1, test::joined(test::turned(ball), test::placed(ball, "scale:0.7")));
+}
+
+TEST(Sign, InwardAndLocallyTurnedFaces) {
+  const Mesh o1 = test::load("head.off", "fit"), o2 = test::load("elephant.off", "fit");
+  expect_signs(o1, test::turned(o2));
+  expect_signs(o1, test::turned(o2, 7));
+}
+
+TEST(Sign, WindingAgreesOnAClosedMesh) {
+  expect_signs(test::load("head.off", "fit"), test::load("elephant.off", "fit"), SignMethod::winding, 128);
+  expect_signs(test::load("head.off", "fit"), test::turned(test::load("elephant.off", "fit")),
+               SignMethod::winding, 128);
+}
+
+TEST(Sign, OpenMeshIsUnsignedAndSaysWhy) {
+  const Surface surface(test::cube(), {.resolution = 32});
+  const Sites open(test::load("elephant-with-holes.off", "fit"));
+  const DistanceMap map = compute_map(surface, open);
+  EXPECT_EQ(map.sign.method, SignMethod::none);
+  EXPECT_FALSE(map.sign.reason.empty());
+  for (const std::uint32_t t : surface.samples()) ASSERT_GE(map.distance[t], 0);
+  EXPECT_THROW((void)compute_map(surface, open, {.sign = SignMethod::pseudonormal}), Error);
+}
+
+TEST(Sign, NoneIsNone) {
+  const Surface surface(test::cube(0.5), {.resolution = 32});
+  const DistanceMap map = compute_map(surface, Sites(test::sphere(2)), {.sign = SignMethod::none});
+  EXPECT_EQ(map.sign.method, SignMethod::none);
+  for (const std::uint32_t t : surface.samples()) ASSERT_GT(map.distance[t], 0);
+}
+
+}  // namespace
+}  // namespace sdm
