@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+#include <sdm/mesh.h>
+
+#include <algorithm>
+
+#include "mesh/shapes.h"
+
+namespace sdm {
+namespace {
+
+TEST(Inspect, ClosedMesh) {
+  const MeshInfo info = inspect(test::tetrahedron());
+  EXPECT_EQ(info.vertices, 4u);
+  EXPECT_EQ(info.triangles, 4u);
+  EXPECT_EQ(info.edges, 6u);
+  EXPECT_EQ(info.components, 1u);
+  EXPECT_TRUE(info.closed && info.orientable && info.oriented && info.manifold);
+  EXPECT_FALSE(info.has_uvs);
+  EXPECT_NEAR(info.area, 1.5 + std::sqrt(3) / 2, 1e-15);
+  EXPECT_NEAR(info.volume, 1.0 / 6, 1e-16);
+  EXPECT_EQ(info.bounds.hi, (Vec3{1, 1, 1}));
+}
+
+TEST(Inspect, EulerCharacteristicOfATorusIsZero) {
+  const MeshInfo info = inspect(test::torus(20, 13));
+  EXPECT_EQ(info.vertices + info.triangles, info.edges);
+  EXPECT_TRUE(info.closed && info.oriented && info.manifold && info.has_uvs);
+}
+
+TEST(Inspect, VolumeDoesNotDependOnThePlaceOrTheSenseOfTurn) {
+  Mesh mesh = test::torus(20, 13);
+  const double volume = inspect(mesh).volume;
+  EXPECT_GT(volume, 0);
+  for (Vec3& p : mesh.positions) p[0] += 1000;
+  EXPECT_NEAR(inspect(mesh).volume, volume, 1e-9 * volume);
+  for (Triangle& t : mesh.triangles) std::swap(t[0], t[1]);
+  EXPECT_NEAR(inspect(mesh).volume, volume, 1e-9 * volume);
+  EXPECT_TRUE(inspect(mesh).oriented);
+}
+
+TEST(Inspect, OpenMesh) {
+  Mesh mesh = test::torus(6, 5);
+  mesh.triangles.pop_back();
+  mesh.corner_uvs.pop_back();
+  const MeshInfo info = inspect(mesh);
+  EXPECT_EQ(info.boundary_edges, 3u);
+  EXPECT_FALSE(info.closed);
+  EXPECT_TRUE(info.orientable && info.oriented && info.manifold);
+  EXPECT_EQ(info.volume, 0);
+}
+
+TEST(Inspect, BandsAndMoebiusBands) {
+  const MeshInfo plain = inspect(test::band(9, false)), crossed = inspect(test::band(9, true));
+  EXPECT_TRUE(plain.orientable && plain.oriented && plain.manifold);
+  EXPECT_FALSE(crossed.orientable || crossed.oriented);
+  EXPECT_TRUE(crossed.manifold);
+  EXPECT_EQ(plain.boundary_edges, 18u);
+  EXPECT_EQ(crossed.boundary_edges, 18u);
+}
+
+TEST(Inspect, FlippedFacesAreOrientableButNotOriented) {
+  Mesh mesh = test::tetrahedron();
+  std::swap(mesh.triangles[2][0], mesh.triangles[2][1]);
+  const MeshInfo info = inspect(mesh);
+  EXPECT_TRUE(info.closed && info.orientable && info.manifold);
+  EXPECT_FALSE(info.oriented);
+  EXPECT_NEAR(info.volume, 1.0 / 6, 1e-16);
+}
+
+TEST(Inspect, TetrahedraThatShareAVertex) {
+  Mesh mesh = test::tetrahedron();
+  mesh.positions.insert(mesh.positions.end(), {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}});
+  mesh.triangles.insert(mesh.triangles.end(), {{0, 5, 4}, {0, 4, 6}, {0, 6, 5}, {4, 5, 6}});
+  const MeshInfo info = inspect(mesh);
+  EXPECT_EQ(info.nonmanifold_vertices, 1u);
+  EXPECT_EQ(info.nonmanifold_edges, 0u);
+  EXPECT_EQ(info.components, 1u);
+  EXPECT_TRUE(info.closed);
+  EXPECT_FALSE(info.manifold);
+}
+
+TEST(Inspect, TetrahedraThatShareAnEdge) {
+  Mesh mesh = test::tetrahedron();
+  mesh.positions.insert(mesh.positions.end(), {{0, -1, 0}, {0, 0, -1}});
+  mesh.triangles.insert(mesh.triangles.end(), {{0, 4, 1}, {0, 1, 5}, {0, 5, 4}, {1, 4, 5}});
+  const MeshInfo info = inspect(mesh);
+  EXPECT_EQ(info.nonmanifold_edges, 1u);
+  EXPECT_EQ(info.nonmanifold_vertices, 2u);
+  EXPECT_FALSE(info.closed || info.manifold);
+}
+
+TEST(Inspect, TwoFansOfOpenFacesAtAVertex) {
+  const MeshInfo info =
+      inspect({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}, {}});
+  EXPECT_EQ(info.nonmanifold_vertices, 1u);
+  EXPECT_EQ(info.boundary_edges, 6u);
+}
+
+TEST(Inspect, CountsDegenerateDuplicateAndUnused) {
+  Mesh mesh = test::tetrahedron();
+  mesh.positions.insert(mesh.positions.end(), {{2, 0, 0}, {9, 9, 9}});
+  mesh.triangles.insert(mesh.triangles.end(), {{0, 1, 1}, {2, 1, 0}, {1, 0, 2}, {0, 1, 4}});
+  const MeshInfo info = inspect(mesh);
+  EXPECT_EQ(info.degenerate_faces, 2u);  // a repeated corner, and three corners in line
+  EXPECT_EQ(info.duplicate_faces, 2u);
+  EXPECT_EQ(info.unused_vertices, 1u);
+}
+
+TEST(Inspect, DuplicatesAndRepeatedCornersLeaveAMeshClosed) {
+  Mesh mesh = test::tetrahedron();
+  mesh.triangles.insert(mesh.triangles.end(), {{0, 1, 1}, {2, 1, 0}});
+  const MeshInfo info = inspect(mesh);
+  EXPECT_TRUE(info.closed && info.oriented && info.manifold);
+  EXPECT_NEAR(info.volume, 1.0 / 6, 1e-16);
+}
+
+TEST(Inspect, CountsComponents) {
+  Mesh mesh;
+  for (int k = 0; k < 5; ++k) test::append(mesh, test::tetrahedron());
+  EXPECT_EQ(inspect(mesh).components, 5u);
+  EXPECT_NEAR(inspect(mesh).volume, 5.0 / 6, 1e-15);
+}
+
+TEST(Inspect, NothingIsNothing) {
+  const MeshInfo info = inspect({});
+  EXPECT_EQ(info.components, 0u);
+  EXPECT_FALSE(info.closed);
+}
+
+}  // namespace
+}  // namespace sdm

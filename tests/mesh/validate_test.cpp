@@ -1,0 +1,78 @@
+#include <gmock/gmock.h>
+#include <sdm/error.h>
+#include <sdm/mesh.h>
+
+#include <limits>
+
+#include "mesh/shapes.h"
+
+namespace sdm {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+void expect_refused(const Mesh& mesh, const char* fault) {
+  EXPECT_THAT([&] { validate(mesh); }, ThrowsMessage<Error>(HasSubstr(fault)));
+}
+
+TEST(Validate, AcceptsSoundMeshes) {
+  EXPECT_NO_THROW(validate(test::tetrahedron()));
+  EXPECT_NO_THROW(validate(test::torus(8, 5)));
+}
+
+TEST(Validate, ToleratesSingleDegenerateAndDuplicateFaces) {
+  Mesh mesh = test::tetrahedron();
+  mesh.triangles.insert(mesh.triangles.end(), {{0, 0, 1}, {2, 2, 2}, {0, 2, 1}});
+  EXPECT_NO_THROW(validate(mesh));
+}
+
+TEST(Validate, RefusesMeshesWithoutTriangles) {
+  expect_refused({}, "no triangles");
+  expect_refused({{{0, 0, 0}}, {}, {}}, "no triangles");
+}
+
+TEST(Validate, RefusesIndicesOutOfRange) {
+  Mesh mesh = test::tetrahedron();
+  mesh.triangles[2][1] = 4;
+  expect_refused(mesh, "index out of range: triangle 2 refers to vertex 4 of 4");
+}
+
+TEST(Validate, RefusesCoordinatesThatAreNotFiniteOrTooLarge) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Mesh mesh = test::tetrahedron();
+    mesh.positions[3][1] = bad;
+    expect_refused(mesh, "vertex 3 has a NaN or infinite coordinate");
+  }
+  Mesh mesh = test::tetrahedron();
+  mesh.positions[1][0] = -1e38;
+  expect_refused(mesh, "too large");
+  mesh.positions[1][0] = -1e37;
+  EXPECT_NO_THROW(validate(mesh));
+}
+
+TEST(Validate, RefusesMeshesWithoutArea) {
+  const std::vector<Vec3> line = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
+  expect_refused({line, {{0, 1, 2}, {0, 0, 1}, {2, 2, 2}}, {}}, "all triangles are degenerate");
+}
+
+TEST(Validate, RefusesTextureCoordinatesForSomeTriangles) {
+  Mesh mesh = test::torus(4, 4);
+  mesh.corner_uvs.pop_back();
+  expect_refused(mesh, "texture coordinates for 31 of 32 triangles");
+  mesh = test::torus(4, 4);
+  mesh.corner_uvs[7][2][1] = std::numeric_limits<double>::quiet_NaN();
+  expect_refused(mesh, "triangle 7 has a NaN or infinite texture coordinate");
+}
+
+TEST(Bounds, EncloseExactlyTheVerticesInUse) {
+  Mesh mesh = test::tetrahedron();
+  mesh.positions.push_back({100, 100, 100});
+  EXPECT_EQ(bounds(mesh).lo, (Vec3{0, 0, 0}));
+  EXPECT_EQ(bounds(mesh).hi, (Vec3{1, 1, 1}));
+  EXPECT_GT(bounds({}).lo[0], bounds({}).hi[0]);
+}
+
+}  // namespace
+}  // namespace sdm
