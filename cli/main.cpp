@@ -1,1 +1,38 @@
-// (to be written)
+// The command sdm. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded.
+#include "info.h"
+#include "map.h"
+
+#include <sdm/error.h>
+#include <sdm/version.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <new>
+
+int main(int argc, char** argv) {
+  CLI::App app("Surface distance maps: how far one triangle mesh is from another, everywhere on its surface.",
+               "sdm");
+  app.set_version_flag("--version", std::string("sdm ") + sdm::kVersion);
+  app.require_subcommand(0, 1);
+  app.footer(
+      "Example:\n"
+      "  sdm map scan.ply part.stl -o out --units mm\n"
+      "  sdm map --help");
+  try {
+    add_map_command(app);
+    add_info_command(app);
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty()) std::cout << app.help();
+    return 0;
+  } catch (const CLI::RuntimeError& outcome) {
+    return outcome.get_exit_code();
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;  // 0: --help and --version
+  } catch (const std::bad_alloc&) {
+    std::cerr << "sdm: error: not enough memory; choose a lower --resolution or smaller meshes\n";
+  } catch (const std::exception& error) {
+    std::cerr << "sdm: error: " << error.what() << '\n';
+  }
+  return 1;
+}

@@ -1,0 +1,78 @@
+#include "output_folder.h"
+
+#include <sdm/error.h>
+#include <unistd.h>
+
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const fs::path& path, const std::string& fault) {
+  throw sdm::Error("cannot write to " + path.string() + ": " + fault + "; choose another folder with -o");
+}
+
+void create_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) fail(path, error.message());
+}
+
+fs::path without_trailing_slash(fs::path path) {
+  path = fs::absolute(path).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& folder)
+    : folder_(without_trailing_slash(folder)),
+      staging_(folder_ / (".sdm-" + std::to_string(getpid()) + ".part")) {
+  std::error_code ignored;
+  existing_ = folder_;
+  while (!fs::exists(existing_, ignored) && existing_.has_relative_path())
+    existing_ = existing_.parent_path();
+  if (!fs::is_directory(existing_, ignored)) fail(existing_, "it is not a folder");
+  try {
+    create_folder(staging_);
+  } catch (...) {
+    remove_traces();
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  remove_traces();
+}
+
+void OutputFolder::remove_traces() {
+  std::error_code ignored;
+  fs::remove_all(staging_, ignored);
+  // Folders with results in them are not empty, and stay.
+  for (fs::path made = folder_; made != existing_; made = made.parent_path()) fs::remove(made, ignored);
+}
+
+fs::path OutputFolder::staging(const fs::path& subfolder) {
+  const fs::path path = staging_ / subfolder;
+  create_folder(path);
+  return path;
+}
+
+void OutputFolder::commit() {
+  std::vector<std::pair<fs::path, fs::path>> moves;
+  for (const auto& entry : fs::recursive_directory_iterator(staging_)) {
+    if (!entry.is_regular_file()) continue;
+    moves.emplace_back(entry.path(), folder_ / fs::relative(entry.path(), staging_));
+    if (fs::is_directory(moves.back().second)) fail(moves.back().second, "a folder has the name of a result");
+  }
+  for (const auto& [from, to] : moves) create_folder(to.parent_path());
+  for (const auto& [from, to] : moves) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error) fail(to, error.message());
+  }
+}

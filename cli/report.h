@@ -1,0 +1,52 @@
+// What a run found, as JSON and in words. The keys are documented in docs/report.md.
+#pragma once
+
+#include <sdm/io.h>
+#include <sdm/sdm.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+/// A mesh of the command line, placed.
+struct Input {
+  std::string role;  ///< "o1" or "o2"
+  std::string file, transform;
+  sdm::Mesh mesh;
+  sdm::MeshInfo info;
+};
+
+struct Tolerance {
+  double value = 0;
+  double exceeded_area_fraction = 0;
+  bool within = true;     ///< of every texel and every vertex
+  bool certified = true;  ///< `within` holds for every point of the surface
+};
+
+/// Wall-clock milliseconds. Steps that run at the same time each count in full.
+struct Times {
+  double import = 0, atlas = 0, sites = 0, map = 0, output = 0, total = 0;
+};
+
+/// The numbers of one map.
+struct Outcome {
+  sdm::DistanceStatistics distance;
+  sdm::SignUsed sign;
+  std::size_t beyond_max_distance = 0;
+  double error_bound = 0;
+  std::optional<Tolerance> tolerance;
+  Times time;
+};
+
+/// Throughout, `on` is the mesh that carries the map and `to` the other one.
+[[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::Surface& surface);
+[[nodiscard]] nlohmann::ordered_json to_json(const Outcome& outcome);
+
+/// JSON text; file names that are not UTF-8 lose the bytes at fault.
+[[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);
+
+/// Some lines for a reader in a hurry.
+[[nodiscard]] std::string summary(const Input& on, const Input& to, const Outcome& outcome,
+                                  const std::string& units);
