@@ -122,9 +122,9 @@ ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
 Rgb site_color(SiteType type, std::uint32_t site) {
   const std::uint32_t hash = scramble(site * 4 + static_cast<std::uint32_t>(type));
   const double hue = (hash >> 16) / 65536.0, vary = (hash & 0xFFFF) / 65536.0;
-  if (type == SiteType::face) return hsl(hue, 0.45 + 0.35 * vary, 0.66 + 0.16 * vary);
-  if (type == SiteType::edge) return hsl(hue, 0.75 + 0.2 * vary, 0.42 + 0.12 * vary);
-  return hsl(hue, 0.6 + 0.3 * vary, 0.16 + 0.12 * vary);
+  if (type == SiteType::face) return hsl(hue, 0.5 + 0.3 * vary, 0.74 + 0.12 * vary);
+  if (type == SiteType::edge) return hsl(hue, 0.8 + 0.2 * vary, 0.5 + 0.1 * vary);
+  return hsl(hue, 0.45 + 0.35 * vary, 0.26 + 0.14 * vary);
 }
 
 }  // namespace sdm

@@ -19,9 +19,9 @@ inline constexpr Rgb kNoValue{128, 130, 134};     ///< owned, but beyond the max
 
 /// From distances to colours, continuous but for the edges of the tolerance bands.
 struct ColorScale {
-  Colormap map = Colormap::viridis;  ///< never automatic
-  double lo = 0, hi = 1;             ///< lo < hi; colours stay the same beyond
-  std::optional<double> tolerance;   ///< bands in place of the map
+  Colormap map = Colormap::viridis;   ///< never automatic
+  double lo = 0, hi = 1;              ///< lo < hi; colours stay the same beyond
+  std::optional<double> tolerance{};  ///< bands in place of the map
 
   [[nodiscard]] Rgb operator()(double distance) const;
 };
