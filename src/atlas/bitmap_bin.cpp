@@ -30,12 +30,13 @@ BitmapBin::BitmapBin(std::uint32_t size)
       levels_(level_of(size) + 1),
       stride_(words_per_row(size)),
       bits_(stride_ * size * levels_, kFull),
-      longest_(size, size) {
+      longest_(size, size),
+      stale_(size, 0) {
   for (std::uint32_t y = 0; y < size; ++y) {
     std::uint64_t* cells = row(0, y);
     std::fill_n(cells, size / 64, 0);
     cells[size / 64] = kFull << size % 64;
-    update_row(y);
+    update_levels(y, 0, size);
   }
 }
 
@@ -44,7 +45,7 @@ std::size_t BitmapBin::bytes(std::uint32_t size) {
 }
 
 std::optional<BitmapBin::Spot> BitmapBin::first_fit(const Stamp& stamp, std::uint32_t first_y,
-                                                    std::uint32_t end_y) const {
+                                                    std::uint32_t end_y) {
   if (stamp.width > size_ || stamp.height > size_) return std::nullopt;
   end_y = std::min(end_y, size_ - stamp.height + 1);
   std::vector<std::uint64_t> blocked((size_ - stamp.width) / 64 + 1);
@@ -53,6 +54,8 @@ std::optional<BitmapBin::Spot> BitmapBin::first_fit(const Stamp& stamp, std::uin
                                       [&](const Run& r) { return longest_[y + r.row] < r.length; });
     if (hopeless) continue;
     if (const auto x = fit_in_row(stamp, y, blocked)) return Spot{*x, y};
+    for (std::uint32_t r = y; r < y + stamp.height; ++r)
+      if (stale_[r]) update_longest(r);
   }
   return std::nullopt;
 }
@@ -77,44 +80,51 @@ std::optional<std::uint32_t> BitmapBin::fit_in_row(const Stamp& stamp, std::uint
 }
 
 void BitmapBin::place(const Stamp& stamp, Spot spot) {
-  std::vector<std::uint8_t> touched(stamp.height, 0);
   for (const Run& run : stamp.runs) {
-    touched[run.row] = 1;
-    std::uint64_t* cells = row(0, spot.y + run.row);
-    const std::uint32_t begin = spot.x + run.begin, end = begin + run.length;
+    const std::uint32_t y = spot.y + run.row, begin = spot.x + run.begin, end = begin + run.length;
+    std::uint64_t* cells = row(0, y);
     for (std::uint32_t x = begin; x < end;) {
       const std::uint32_t count = std::min(end - x, 64 - x % 64);
       cells[x / 64] |= kFull >> (64 - count) << x % 64;
       x += count;
     }
+    update_levels(y, begin, end);
+    stale_[y] = 1;
   }
-  for (std::uint32_t r = 0; r < stamp.height; ++r)
-    if (touched[r]) update_row(spot.y + r);
 }
 
-// Level k + 1 from level k, which tells of half the cells each; then the longest run of zeros in level 0.
-void BitmapBin::update_row(std::uint32_t y) {
-  const std::size_t used = size_ / 64 + 1;
+// Level k + 1 from level k, which tells of half as many cells, where cells [begin, end) of level 0 have
+// changed: from 2^(k+1) before them on. Done where a level stays as it was, since the next depends on it
+// alone.
+void BitmapBin::update_levels(std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t k = 0; k + 1 < levels_; ++k) {
     const std::uint64_t* lower = row(k, y);
     std::uint64_t* upper = row(k + 1, y);
-    const std::size_t reach = std::size_t{1} << k;
-    for (std::size_t i = 0; i < used; ++i)
-      upper[i] = 64 * i + reach <= size_ ? lower[i] | load(lower, 64 * i + reach) : kFull;
+    const std::size_t half = std::size_t{1} << k;
+    std::uint64_t changed = 0;
+    for (std::size_t i = (begin - std::min<std::size_t>(begin, 2 * half)) / 64; i <= end / 64; ++i) {
+      const std::uint64_t bits = 64 * i + half <= size_ ? lower[i] | load(lower, 64 * i + half) : kFull;
+      changed |= bits ^ upper[i];
+      upper[i] = bits;
+    }
+    if (changed == 0) return;
   }
+}
+
+void BitmapBin::update_longest(std::uint32_t y) {
   const std::uint64_t* cells = row(0, y);
-  std::uint32_t longest = 0, run_start = 0;
-  bool taken_before = true;
-  for (std::uint32_t x = 0; x <= size_;) {
+  std::uint32_t longest = 0, run = 0;
+  for (std::uint32_t x = 0; x < size_;) {
     const std::uint64_t word = cells[x / 64] >> x % 64;
     const bool taken = word & 1;
-    if (taken_before && !taken) run_start = x;
-    if (!taken_before && taken) longest = std::max(longest, x - run_start);
-    taken_before = taken;
-    x += std::min(64 - x % 64,
-                  static_cast<std::uint32_t>(taken ? std::countr_one(word) : std::countr_zero(word)));
+    const int same = taken ? std::countr_one(word) : std::countr_zero(word);
+    const std::uint32_t count = std::min(64 - x % 64, static_cast<std::uint32_t>(same));
+    run = taken ? 0 : run + count;
+    longest = std::max(longest, run);
+    x += count;
   }
   longest_[y] = longest;
+  stale_[y] = 0;
 }
 
 }  // namespace sdm

@@ -13,7 +13,8 @@ struct Run {
   std::uint32_t row, begin, length;
 };
 
-/// A shape of cells in a rectangle: its runs, the longest first (they fail first).
+/// A shape of cells in a rectangle: its runs, the longest first (it fails first), then best such that runs of
+/// neighbouring rows, which tend to fail at the same places, are far apart.
 struct Stamp {
   std::uint32_t width = 0, height = 0;
   std::vector<Run> runs;
@@ -33,8 +34,7 @@ class BitmapBin {
   [[nodiscard]] static std::size_t bytes(std::uint32_t size);
 
   /// The spot of the least y in [first_y, end_y), then of the least x, where no cell of the stamp is taken.
-  [[nodiscard]] std::optional<Spot> first_fit(const Stamp& stamp, std::uint32_t first_y,
-                                              std::uint32_t end_y) const;
+  [[nodiscard]] std::optional<Spot> first_fit(const Stamp& stamp, std::uint32_t first_y, std::uint32_t end_y);
   void place(const Stamp& stamp, Spot spot);
 
  private:
@@ -46,12 +46,15 @@ class BitmapBin {
   [[nodiscard]] const std::uint64_t* row(std::uint32_t level, std::uint32_t y) const {
     return &bits_[(std::size_t{level} * size_ + y) * stride_];
   }
-  void update_row(std::uint32_t y);
+  void update_levels(std::uint32_t y, std::uint32_t begin, std::uint32_t end);
+  void update_longest(std::uint32_t y);
 
   std::uint32_t size_, levels_;
   std::size_t stride_;  // words a row; bits from size_ on are always set
   std::vector<std::uint64_t> bits_;
-  std::vector<std::uint32_t> longest_;  // free run of each row: rejects most rows at a glance
+  // No free run of a row is longer: rejects most rows at a glance. Exact but for stale rows.
+  std::vector<std::uint32_t> longest_;
+  std::vector<std::uint8_t> stale_;
 };
 
 }  // namespace sdm

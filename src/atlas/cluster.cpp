@@ -5,6 +5,7 @@
 #include <queue>
 
 #include "atlas/normal_cone.h"
+#include "atlas/scatter.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
@@ -49,7 +50,7 @@ class Clustering {
   // Every face that has no cluster yet begins one, with its normal as the axis, and takes all it can reach.
   void flood_rest() {
     std::vector<std::uint32_t> stack;
-    for (const std::uint32_t seed : scattered_faces()) {
+    for (const std::uint32_t seed : scattered_order(label_.size())) {
       if (label_[seed] != kNone || faces_.area[seed] == 0) continue;
       const auto cluster = static_cast<std::uint32_t>(axes_.size());
       const Vec3 axis = faces_.normal[seed];
@@ -66,16 +67,6 @@ class Clustering {
           }
       }
     }
-  }
-
-  // All faces, neighbours far apart: multiplication by a number without common divisor permutes.
-  [[nodiscard]] std::vector<std::uint32_t> scattered_faces() const {
-    const std::uint64_t count = label_.size();
-    std::uint64_t step = static_cast<std::uint64_t>(0.6180339887 * static_cast<double>(count)) | 1;
-    while (std::gcd(step, count) != 1) ++step;
-    std::vector<std::uint32_t> order(count);
-    for (std::uint64_t i = 0; i < count; ++i) order[i] = static_cast<std::uint32_t>(i * step % count);
-    return order;
   }
 
   // All clusters grow at once from their most central faces, each face going to the one that is nearest along

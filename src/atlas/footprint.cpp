@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "atlas/rasterise.h"
+#include "atlas/scatter.h"
 #include "core/vec.h"
 
 namespace sdm {
@@ -55,7 +56,8 @@ void fill_touched(Bitmap& bitmap, const std::array<Vec2, 3>& t, std::uint32_t re
   for (std::size_t y = first; y <= last; ++y) {
     // The part of the triangle between two horizontal lines is convex: its leftmost and rightmost points are
     // ends of clipped edges.
-    const auto top = static_cast<double>(y), bottom = top + 1;
+    const double top = y == first ? lo : static_cast<double>(y);
+    const double bottom = y == last ? hi : static_cast<double>(y) + 1;
     double left = std::numeric_limits<double>::infinity(), right = -left;
     for (int k = 0; k < 3; ++k) {
       const Vec2 &a = t[k], &b = t[(k + 1) % 3];
@@ -84,13 +86,6 @@ Bitmap spread_rows(const Bitmap& bitmap, std::uint32_t reach) {
   return result;
 }
 
-Bitmap coarsen(const Bitmap& bitmap, std::uint32_t cell) {
-  Bitmap result(bitmap.width / cell, bitmap.height / cell);
-  for (std::uint32_t y = 0; y < bitmap.height; ++y)
-    for (std::uint32_t x = 0; x < bitmap.width; ++x) result.row(y / cell)[x / cell] |= bitmap.row(y)[x];
-  return result;
-}
-
 // (x, y) → (height − 1 − y, x), as `turned` has it.
 Bitmap turn(const Bitmap& bitmap) {
   Bitmap result(bitmap.height, bitmap.width);
@@ -100,18 +95,21 @@ Bitmap turn(const Bitmap& bitmap) {
 }
 
 Stamp make_stamp(const Bitmap& bitmap) {
-  Stamp stamp{bitmap.width, bitmap.height, {}};
+  std::vector<Run> runs;
   for (std::uint32_t y = 0; y < bitmap.height; ++y) {
     const std::uint8_t* row = bitmap.row(y);
     for (std::uint32_t x = 0; x < bitmap.width;) {
       const std::uint32_t begin = x;
       while (x < bitmap.width && row[x]) ++x;
-      if (x > begin) stamp.runs.push_back({y, begin, x - begin});
+      if (x > begin) runs.push_back({y, begin, x - begin});
       while (x < bitmap.width && !row[x]) ++x;
     }
   }
-  std::stable_sort(stamp.runs.begin(), stamp.runs.end(),
-                   [](const Run& a, const Run& b) { return a.length > b.length; });
+  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
+    return std::pair(b.length, a.row) < std::pair(a.length, b.row);
+  });
+  Stamp stamp{bitmap.width, bitmap.height, {}};
+  for (const std::uint32_t i : scattered_order(runs.size())) stamp.runs.push_back(runs[i]);
   return stamp;
 }
 
@@ -127,20 +125,22 @@ Stamp half_turned(Stamp stamp) {
 
 Footprint make_footprint(const Shape& shape, const FootprintOptions& options) {
   const auto [scale, gutter, cell] = options;
+  const std::uint32_t reach = (gutter + cell - 1) / cell;  // of the gutter, in cells
   Footprint result;
   if (!owns_texel(shape, scale, {0, 0})) result.shift = centring_shift(shape, scale);
-  const auto texels = [&](int k) {
-    const auto extent = static_cast<std::uint32_t>(std::ceil(scale * shape.size[k] + result.shift[k]));
-    return (std::max(extent, 1u) + 2 * gutter + cell - 1) / cell * cell;
+  const auto cells = [&](int k) {
+    // A point on the line between two cells touches both.
+    const double extent = (scale * shape.size[k] + result.shift[k]) / cell;
+    return static_cast<std::uint32_t>(extent) + 1 + 2 * reach;
   };
-  result.width = texels(0);
-  result.height = texels(1);
-  result.shift = result.shift + Vec2{1.0 * gutter, 1.0 * gutter};
+  Bitmap bitmap(cells(0), cells(1));
+  result.width = bitmap.width * cell;
+  result.height = bitmap.height * cell;
+  result.shift = result.shift + Vec2{1.0 * reach * cell, 1.0 * reach * cell};
 
-  Bitmap bitmap(result.width, result.height);
-  for (const auto& t : shape.triangles) fill_touched(bitmap, placed(t, scale, result.shift), gutter);
-  if (gutter > 0) bitmap = spread_rows(bitmap, gutter);
-  if (cell > 1) bitmap = coarsen(bitmap, cell);
+  for (const auto& t : shape.triangles)
+    fill_touched(bitmap, placed(t, scale / cell, (1.0 / cell) * result.shift), reach);
+  if (reach > 0) bitmap = spread_rows(bitmap, reach);
   result.stamps[0] = make_stamp(bitmap);
   result.stamps[1] = make_stamp(turn(bitmap));
   for (int k = 0; k < 2; ++k) result.stamps[k + 2] = half_turned(result.stamps[k]);

@@ -9,8 +9,8 @@
 namespace sdm {
 
 /// A shape scaled to texels, in a rectangle of texels: in-rectangle position = scale · shape + shift. The
-/// stamp for a number of quarter turns holds every cell of `cell`² texels with a texel that a face touches or
-/// that is `gutter` or fewer texels off such a one.
+/// stamp for a number of quarter turns holds every cell of `cell`² texels that a face touches, and the
+/// gutter, rounded up to cells.
 struct Footprint {
   Vec2 shift{};
   std::uint32_t width = 0, height = 0;  ///< of the rectangle, multiples of the cell

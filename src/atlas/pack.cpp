@@ -19,11 +19,13 @@ namespace {
 
 // Beyond this many cells a side, a cell is a square of several texels: shapes are large then, and lose little
 // by it.
-constexpr std::uint32_t kMaxCells = 4096;
+constexpr std::uint32_t kMaxCells = 2048;
 // The search tries this many scales at once, whatever the number of threads, and ends at this share of the
 // atlas.
 constexpr int kTrials = 4;
 constexpr double kPrecision = 0.005;
+// From so many charts on, speed goes before filling the last holes.
+constexpr std::size_t kManyCharts = 4096;
 
 class Packer {
  public:
@@ -34,8 +36,8 @@ class Packer {
         cell_((resolution + kMaxCells - 1) / kMaxCells) {
     order_.resize(shapes.size());
     std::iota(order_.begin(), order_.end(), 0u);
-    const auto longest = [&](std::uint32_t s) { return std::max(shapes[s].size[0], shapes[s].size[1]); };
-    std::stable_sort(order_.begin(), order_.end(), [&](auto a, auto b) { return longest(a) > longest(b); });
+    const auto extent = [&](std::uint32_t s) { return shapes[s].size[0] * shapes[s].size[1]; };
+    std::stable_sort(order_.begin(), order_.end(), [&](auto a, auto b) { return extent(a) > extent(b); });
   }
 
   [[nodiscard]] std::uint32_t cells() const { return resolution_ / cell_; }
@@ -43,7 +45,8 @@ class Packer {
   // The scale at which footprints take about the given share of the atlas: a region dilated by r grows by r
   // times its perimeter and a few texels for its corners. None where corners alone take more.
   [[nodiscard]] std::optional<double> scale_for(double share) const {
-    const double reach = gutter_ + 0.5 * cell_, corner = 2.0 * gutter_ + cell_;
+    const double gutter = std::ceil(1.0 * gutter_ / cell_) * cell_;
+    const double reach = gutter + 0.5 * cell_, corner = 2 * gutter + cell_;
     double area = 0, perimeter = 0;
     for (const Shape& s : shapes_) {
       area += s.area;
@@ -64,6 +67,7 @@ class Packer {
     std::vector<Placement> placements(shapes_.size());
     // Where the last stamp of the same size went, a later one hardly finds a place above: with many small
     // charts this saves nearly all of the search.
+    const bool many = shapes_.size() > kManyCharts;
     std::unordered_map<std::uint64_t, std::uint32_t> first_rows;
     for (const std::uint32_t s : order_) {
       const Vec2& size = shapes_[s].size;
@@ -71,16 +75,16 @@ class Packer {
       const Footprint footprint = make_footprint(shapes_[s], {scale, gutter_, cell_});
       std::optional<BitmapBin::Spot> best;
       unsigned best_turn = 0;
+      std::uint32_t bottom = cells() + 1;  // to be undercut
       for (unsigned turn = 0; turn < 4; ++turn) {
         const Stamp& stamp = footprint.stamps[turn];
-        const std::uint32_t end_y =
-            best ? best->y + footprint.stamps[best_turn].height - stamp.height : cells();
-        if (best && best->y + footprint.stamps[best_turn].height < stamp.height) continue;
+        if (stamp.height >= bottom) continue;
         std::uint32_t& first_row = first_rows[std::uint64_t{stamp.width} << 32 | stamp.height];
-        if (const auto spot = bin.first_fit(stamp, first_row, end_y)) {
+        if (const auto spot = bin.first_fit(stamp, first_row, bottom - stamp.height)) {
           best = spot;
           best_turn = turn;
-          first_row = spot->y;
+          bottom = spot->y + stamp.height;
+          if (many) first_row = spot->y;
         }
       }
       if (!best) return std::nullopt;

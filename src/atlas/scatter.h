@@ -1,0 +1,20 @@
+// An order in which what comes one after the other is far apart.
+#pragma once
+
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace sdm {
+
+/// A permutation of 0 ... count − 1 that begins with 0: multiples, modulo count, of a number without common
+/// divisor, near the golden section of count.
+inline std::vector<std::uint32_t> scattered_order(std::size_t count) {
+  auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(count)) | 1;
+  while (std::gcd(step, count) != 1) ++step;
+  std::vector<std::uint32_t> order(count);
+  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::uint32_t>(i * step % count);
+  return order;
+}
+
+}  // namespace sdm

@@ -1,0 +1,39 @@
+#include <gmock/gmock.h>
+#include <sdm/error.h>
+#include <sdm/surface.h>
+
+#include "atlas/meshes.h"
+
+namespace sdm {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+void expect_error(const Mesh& mesh, const AtlasOptions& options, const char* words) {
+  EXPECT_THAT([&] { Surface(mesh, options); }, ThrowsMessage<Error>(HasSubstr(words)));
+}
+
+TEST(AtlasErrors, OptionsOutOfRange) {
+  const Mesh mesh = test::load("cube.off");
+  expect_error(mesh, {.resolution = 15}, "resolution of 15 is out of range");
+  expect_error(mesh, {.resolution = 32769}, "out of range");
+  expect_error(mesh, {.max_stretch = 1}, "stretch");
+  expect_error(mesh, {.max_stretch = std::numeric_limits<double>::quiet_NaN()}, "stretch");
+  expect_error(mesh, {.resolution = 64, .gutter = 17}, "gutter of 17");
+  expect_error(mesh, {.resolution = 64, .gutter = 0xFFFFFFFF}, "gutter");
+  expect_error({}, {}, "no triangles");
+}
+
+// The resolution that the message asks for is enough.
+TEST(AtlasErrors, TooSmallAResolutionNamesOneThatWillDo) {
+  const Mesh mesh = test::soup(1000, 1);
+  EXPECT_THAT([&] { Surface(mesh, {.resolution = 64}); },
+              ThrowsMessage<Error>(
+                  AllOf(HasSubstr("64"), HasSubstr("too small for 1080 charts"), HasSubstr("about 256"))));
+  EXPECT_NO_THROW(Surface(mesh, {.resolution = 256}));
+}
+
+}  // namespace
+}  // namespace sdm

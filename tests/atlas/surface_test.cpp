@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <sdm/threads.h>
+
+#include <algorithm>
+
+#include "atlas/invariants.h"
+#include "atlas/meshes.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+void expect_packed(const Surface& surface, const AtlasOptions& options) {
+  test::expect_charts(surface);
+  test::expect_owners(surface);
+  test::expect_gutters(surface, options.gutter);
+  test::expect_maps(surface);
+  test::expect_samples(surface);
+  EXPECT_LE(surface.max_stretch(), options.max_stretch);
+}
+
+class RealMeshes : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealMeshes, ChartsKeepTheInvariants) {
+  const AtlasOptions options{.resolution = 512};
+  const Surface surface(test::load(GetParam()), options);
+  expect_packed(surface, options);
+  test::expect_stretch(surface);
+  EXPECT_LT(surface.chart_count(), surface.mesh().triangles.size() / 2 + 7);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RealMeshes,
+                         testing::Values("bunny.obj", "armadillo.off", "elephant-with-holes.off",
+                                         "mannequin-devil.off", "double-torus-example.off", "holes.off",
+                                         "knot1.off", "cube.off", "pinion.off", "turbine.off", "boeing.off",
+                                         "degtri_sliding.off", "triceratops.off", "ChineseDragon-10kv.off"),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param;
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
+                           return name;
+                         });
+
+TEST(Charts, SoupsKeepTheInvariants) {
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(seed);
+    const AtlasOptions options{.resolution = 700, .gutter = seed};
+    expect_packed(Surface(test::soup(400, seed), options), options);
+  }
+}
+
+TEST(Charts, StripsOfOneSideAndRampsAreCut) {
+  const AtlasOptions options{.resolution = 256};
+  const Surface strip(test::moebius_strip(60), options);
+  expect_packed(strip, options);
+  const Surface ramp(test::spiral_ramp(5, 40), options);
+  expect_packed(ramp, options);
+  EXPECT_GE(ramp.chart_count(), 5u);  // all of it lies in one cone, and covers itself five times
+}
+
+TEST(Charts, AFanOfSliversStaysWholeAndFast) {
+  const AtlasOptions options{.resolution = 256};
+  const Surface surface(test::fan(3000), options);
+  expect_packed(surface, options);
+  EXPECT_EQ(surface.chart_count(), 1u);
+}
+
+TEST(Charts, GrowWithTheStretchAllowed) {
+  std::size_t before = SIZE_MAX;
+  for (const double stretch : {1.001, 1.05, 1.2, 2.0, 500.0}) {
+    SCOPED_TRACE(stretch);
+    const AtlasOptions options{.resolution = 512, .max_stretch = stretch};
+    const Surface surface(test::load("hand.off"), options);
+    expect_packed(surface, options);
+    test::expect_stretch(surface);
+    EXPECT_LE(surface.chart_count(), before);
+    before = surface.chart_count();
+  }
+}
+
+TEST(Charts, FillTheAtlas) {
+  const Surface surface(test::load("bunny.obj"), {.resolution = 1024});
+  EXPECT_GE(surface.utilisation(), 0.65);
+  EXPECT_LE(surface.chart_count(), 600u);
+}
+
+// Cells of packing are several texels here.
+TEST(Charts, HighResolutionsKeepTheInvariants) {
+  const AtlasOptions options{.resolution = 2100, .gutter = 2};
+  expect_packed(Surface(test::load("elephant.off"), options), options);
+}
+
+TEST(Charts, DoNotDependOnThreads) {
+  const Mesh mesh = test::load("camel.off");
+  const Surface parallel(mesh, {.resolution = 256});
+  const ThreadLimit limit(1);
+  const Surface serial(mesh, {.resolution = 256});
+  EXPECT_TRUE(std::ranges::equal(parallel.texel_faces(), serial.texel_faces()));
+  EXPECT_TRUE(std::ranges::equal(parallel.samples(), serial.samples()));
+}
+
+TEST(Charts, DoNotDependOnTheUnit) {
+  Mesh mesh = test::load("camel.off");
+  const Surface surface(mesh, {.resolution = 256});
+  for (Vec3& p : mesh.positions) p = 0x1p-60 * p;
+  const Surface tiny(mesh, {.resolution = 256});
+  EXPECT_TRUE(std::ranges::equal(surface.texel_faces(), tiny.texel_faces()));
+}
+
+TEST(Triangles, AreIsometricAndKeepTheInvariants) {
+  const AtlasOptions options{.kind = AtlasKind::triangles, .resolution = 1024};
+  const Surface surface(test::load("double-torus-example.off"), options);
+  expect_packed(surface, options);
+  test::expect_stretch(surface);
+  EXPECT_EQ(surface.max_stretch(), 1);
+  EXPECT_EQ(surface.chart_count(), surface.mesh().triangles.size());
+}
+
+// Faces are far smaller than texels: each still owns one.
+TEST(Triangles, SmallOnesOwnATexelEach) {
+  const AtlasOptions options{.kind = AtlasKind::triangles, .resolution = 256};
+  expect_packed(Surface(test::load("pig.off"), options), options);
+}
+
+TEST(Samples, SixteenInARowAreNearEachOther) {
+  const Surface surface(test::load("bunny.obj"), {.resolution = 512});
+  const auto samples = surface.samples();
+  double sum = 0;
+  std::size_t groups = 0;
+  for (std::size_t i = 0; i + 16 <= samples.size(); i += 16, ++groups) {
+    Box box;
+    for (std::size_t k = i; k < i + 16; ++k) extend(box, surface.texel_point(samples[k]));
+    sum += diagonal(box) / norm(surface.texel_edges(surface.texel_faces()[samples[i]])[0]);
+  }
+  // A full 4×4 block has a diagonal of 3√2 texels; borders of charts break blocks, and the way from chart to
+  // chart is long.
+  EXPECT_LT(sum / static_cast<double>(groups), 12);
+}
+
+TEST(Progress, CanCancel) {
+  AtlasOptions options{.resolution = 256};
+  options.progress = [](std::string_view, double fraction) { return fraction < 0.35; };
+  EXPECT_THROW(Surface(test::load("cube.off"), options), Cancelled);
+}
+
+}  // namespace
+}  // namespace sdm
