@@ -30,7 +30,7 @@ namespace sdm {
 /// tells where buffers outside of it lie.
 [[nodiscard]] PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file);
 
-/// Autodesk 3DS: all meshes. They are stored in the coordinates of the scene.
+/// Autodesk 3DS: all meshes. They are stored in the coordinates of the scene; its axes are kept.
 [[nodiscard]] PolygonMesh read_3ds(std::string_view bytes);
 
 }  // namespace sdm

@@ -32,8 +32,14 @@ std::uint64_t mix(std::uint64_t h) {
   return h ^ h >> 32;
 }
 
-// An open hash table of positions. The seed differs from run to run, so that no file can be made to collide;
-// what is found does not depend on it.
+// Differs from run to run, so that no file can be made to collide; what the table finds does not depend on
+// it.
+std::uint64_t hash_seed() {
+  static const std::uint64_t seed = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
+  return seed;
+}
+
+// An open hash table of positions.
 class PositionTable {
  public:
   PositionTable(std::size_t capacity, const std::vector<Vec3>& positions)
@@ -58,7 +64,7 @@ class PositionTable {
 
   const std::vector<Vec3>& positions_;
   std::vector<std::uint32_t> slots_;
-  std::uint64_t seed_ = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
+  std::uint64_t seed_ = hash_seed();
 };
 
 // Fills mesh.positions; returns the new index of each old vertex, kNone for those of no face.

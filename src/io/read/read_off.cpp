@@ -24,7 +24,7 @@ Header parse_header(std::string_view word) {
   header.four = prefix("4");
   header.any_dimension = prefix("n");
   header.is_off = word == "OFF";
-  return header;
+  return header.is_off ? header : Header{};
 }
 
 std::size_t parse_count(TextScanner& in) {

@@ -15,7 +15,9 @@ void TextScanner::fail_at_word(const std::string& fault) {
   std::string found(in_word() ? word().substr(0, 32) : std::string_view());
   for (char& c : found)
     if (c < ' ' || c > '~') c = '?';
-  fail_at(start, fault + (found.empty() ? "" : ", not '" + found + "'"));
+  if (!found.empty()) found = ", not '" + found + "'";
+  if (at_end()) found += "; the text ends here, so that the file seems truncated";
+  fail_at(start, fault + found);
 }
 
 }  // namespace sdm

@@ -72,17 +72,17 @@ class TextScanner {
   }
   /// The number next on this line.
   double number() {
-    if (!more_on_line()) fail("a number is missing");
+    if (!more_on_line()) fail_at_word("a number is needed");
     return parse_number();
   }
   /// The number next in the text, over any number of lines.
   double number_across_lines() {
-    if (!next_word()) fail("the text ends where a number is needed; the file is truncated");
+    if (!next_word()) fail_at_word("a number is needed");
     return parse_number();
   }
   /// The whole number next on this line; '/' may follow.
   std::int64_t integer() {
-    if (!more_on_line()) fail("a whole number is missing");
+    if (!more_on_line()) fail_at_word("a whole number is needed");
     std::int64_t value = 0;
     const auto [stop, error] = std::from_chars(at_, end_, value);
     if (error != std::errc{} || (stop != end_ && *stop != '/' && !is_delimiter(*stop)))
@@ -94,7 +94,7 @@ class TextScanner {
   [[noreturn]] void fail(const std::string& fault) const { fail_at(at_, fault); }
   /// Throws with the line of `position`.
   [[noreturn]] void fail_at(const char* position, const std::string& fault) const;
-  /// Throws with the word here.
+  /// Throws with the word here, and says so where the text ends.
   [[noreturn]] void fail_at_word(const std::string& fault);
 
  private:

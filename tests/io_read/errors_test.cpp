@@ -1,0 +1,262 @@
+// Every fault is told in one sentence that names the file and the fault.
+#include <gmock/gmock.h>
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "io_read/writers.h"
+#include "mesh/shapes.h"
+
+namespace sdm {
+namespace {
+
+using namespace test;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+void expect_fault(const std::string& name, std::string_view contents, const char* fault) {
+  EXPECT_THAT(fault_of(name, contents), HasSubstr(fault)) << contents.substr(0, 200);
+}
+
+constexpr const char* kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST(Errors, FilesThatCannotBeRead) {
+  const auto expect_refused = [](const std::filesystem::path& file, const char* fault) {
+    EXPECT_THAT([&] { static_cast<void>(read_mesh(file)); },
+                ThrowsMessage<Error>(AllOf(HasSubstr(file.string()), HasSubstr(fault))));
+  };
+  const std::filesystem::path folder = write_file("a.obj", "").parent_path();
+  expect_refused(folder / "missing.obj", "no such file");
+  expect_refused("/no/such/folder/a.obj", "no such file");
+  expect_refused(folder / "a.obj" / "b.obj", "no such file");
+  expect_refused(folder, "is a folder");
+  expect_refused("/dev/zero", "not a regular file");
+  const std::filesystem::path pipe = folder / "pipe.obj";
+  mkfifo(pipe.c_str(), 0600);
+  expect_refused(pipe, "not a regular file");
+  expect_fault("a.obj", "", "empty");
+  if (geteuid() != 0) {
+    const std::filesystem::path secret = write_file("secret.obj", kVertices);
+    chmod(secret.c_str(), 0);
+    expect_refused(secret, "cannot be opened");
+  }
+}
+
+TEST(Errors, UnknownFormats) {
+  const std::string garbage("\x7F\x45\x4C\x46\x02\x01\x01\x00garbage\x00\xFF\xFE", 18);
+  expect_fault("a.dat", garbage, "format is not known");
+  expect_fault("a", "Dear Sir or Madam", "format is not known");
+  expect_fault("a.obj", garbage, "binary data where text is needed");
+  expect_fault("a.off", garbage, "binary data where text is needed");
+  expect_fault("a.ply", garbage, "begins with 'ply'");
+  expect_fault("a.stl", garbage, "fewer than the header of a binary STL");
+  expect_fault("a.stl", garbage + std::string(100, '\xAA'), "truncated or no STL");
+  expect_fault("a.3ds", garbage, "does not fit in");
+  expect_fault("a.glb", garbage, "JSON is at fault");
+  expect_fault("a.obj", "Dear Sir or Madam", "no triangles");
+  expect_fault("a.obj", "# only a comment", "no triangles");
+}
+
+TEST(Errors, NoTriangles) {
+  expect_fault("a.obj", kVertices, "only a cloud of 3 points");
+  expect_fault("a.off", "OFF 3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "only a cloud of 3 points");
+  expect_fault("a.off", "OFF 0 0 0\n", "no triangles");
+  expect_fault("a.stl", "solid a\nendsolid a\n", "no triangles");
+  expect_fault("a.stl", stl_binary({}), "no triangles");
+  expect_fault("a.ply",
+               "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float "
+               "z\nend_header\n"
+               "0 0 0\n1 1 1\n",
+               "only a cloud of 2 points");
+  expect_fault("a.gltf", R"({"asset":{"version":"2.0"}})", "no triangles");
+  expect_fault("a.obj", std::string(kVertices) + "f 1 2\nl 1 2 3\n", "only a cloud");
+}
+
+TEST(Errors, AllTrianglesDegenerate) {
+  expect_fault("a.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\nf 1 1 2\n", "all triangles are degenerate");
+}
+
+TEST(Errors, NumbersThatAreNotFiniteOrTooLarge) {
+  for (const char* bad : {"nan", "-inf", "infinity", "NaN"}) {
+    expect_fault("a.obj", std::string(kVertices) + "v 0 0 " + bad + "\nf 1 2 4\n",
+                 "vertex 3 has a NaN or infinite");
+    expect_fault("a.off", std::string("OFF 3 1 0\n0 0 0\n1 0 ") + bad + "\n0 1 0\n3 0 1 2\n",
+                 "vertex 1 has a NaN");
+  }
+  Mesh mesh = torus(4, 4);
+  mesh.positions[5][1] = std::numeric_limits<double>::quiet_NaN();
+  for (const std::string& contents :
+       {stl_binary(mesh), ply_binary(mesh, std::endian::big), glb(mesh), tds(mesh)})
+    expect_fault("a", contents, "has a NaN or infinite coordinate");
+  expect_fault("a.obj", std::string(kVertices) + "v 1e999 0 0\n", "line 4: a number is needed, not '1e999'");
+  expect_fault("a.obj", std::string(kVertices) + "v 1e200 0 0\nf 1 2 4\n", "too large");
+}
+
+TEST(Errors, IndicesOutOfRange) {
+  expect_fault("a.obj", std::string(kVertices) + "f 1 2 3\nf 1 2 4\n",
+               "line 5: index out of range: a face refers to vertex 4 of 3");
+  expect_fault("a.obj", std::string(kVertices) + "f 1 2 0\n", "line 4: index out of range");
+  expect_fault("a.obj", std::string(kVertices) + "f -1 -2 -4\n", "line 4: index out of range");
+  expect_fault("a.obj", std::string(kVertices) + "f 1 2 99999999999\n", "line 4: index out of range");
+  expect_fault("a.obj", std::string(kVertices) + "f 1 2 99999999999999999999999\n",
+               "line 4: a whole number is needed");
+  expect_fault("a.obj", std::string(kVertices) + "f 1/1 2/1 3/1\n", "texture coordinate 1 of 0");
+  expect_fault("a.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+               "line 5: index out of range: a face refers to vertex 3 of 3");
+  expect_fault("a.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", "vertex -1 of 3");
+  Mesh mesh = torus(4, 4);
+  mesh.triangles[9][2] = 16;
+  expect_fault("a.ply", ply_text(mesh), "index out of range: face 9 refers to vertex 16 of 16");
+  mesh.triangles[9][2] = 0xFFFFFFFF;
+  expect_fault("a.ply", ply_binary(mesh, std::endian::little),
+               "index out of range: row 9 of element face refers to vertex -1");
+  std::string contents = tds(torus(4, 4));
+  contents[contents.size() - 6 - 2 - 96 * 8 - 8] =
+      '\x7F';  // the last face of the chunk before the texture coordinates
+  expect_fault("a.3ds", contents, "index out of range");
+  std::string buffer = gltf_buffer(torus(4, 4));
+  buffer[buffer.size() - 2] = 1;
+  expect_fault("a.glb", glb(gltf_json(torus(4, 4), R"([{"mesh":0}])", ""), buffer), "index out of range");
+}
+
+TEST(Errors, TruncatedFiles) {
+  const Mesh mesh = torus(4, 4);
+  const auto cut = [](const std::string& whole) { return whole.substr(0, whole.size() * 3 / 4); };
+  expect_fault("a.off", cut(off(mesh)), "truncated");
+  expect_fault("a.stl", cut(stl_text(mesh)), "truncated");
+  expect_fault("a.stl", cut(stl_binary(mesh)), "truncated");
+  expect_fault("a.ply", cut(ply_text(mesh)), "truncated");
+  expect_fault("a.ply", cut(ply_binary(mesh, std::endian::big)), "truncated");
+  expect_fault("a.ply", ply_text(mesh).substr(0, 40), "truncated");
+  expect_fault("a.glb", cut(glb(mesh)), "truncated");
+  expect_fault("a.3ds", cut(tds(mesh)), "truncated");
+  expect_fault("a.gltf", gltf_json(mesh, R"([{"mesh":0}])", "").substr(0, 300), "truncated");
+}
+
+TEST(Errors, CountsBeyondTheFile) {
+  expect_fault("a.off", "OFF\n4000000000000000000 1 0\n0 0 0\n", "more than the file can hold");
+  expect_fault("a.off", "OFF\n1 9223372036854775807 0\n0 0 0\n", "more than the file can hold");
+  expect_fault("a.off", "OFF\n-1 1 0\n", "negative");
+  const std::string ply =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 9223372036854775807\nproperty float x\n"
+      "property float y\nproperty float z\nend_header\n";
+  expect_fault("a.ply", ply + "0123456789", "more than the file can hold");
+  expect_fault("a.ply",
+               "ply\nformat ascii 1.0\nelement vertex 99\nproperty list uchar int n\nend_header\n0\n",
+               "more than the file can hold");
+  std::string stl = stl_binary(torus(4, 4));
+  stl[83] = '\x7F';
+  expect_fault("a.stl", stl, "more than the file");
+}
+
+TEST(Errors, ObjStatements) {
+  expect_fault("a.obj", "v 0 0\n", "line 1: a number is needed");
+  expect_fault("a.obj", "v 0 0 0x10\n", "line 1: a number is needed, not '0x10'");
+  expect_fault("a.obj", "v 0 0 zero\n", "not 'zero'");
+  expect_fault("a.obj", "v 0 0 0\nf 1 2 c\n", "line 2: a whole number is needed, not 'c'");
+  expect_fault("a.obj", "v 0 0 0\nf 1.5 2 3\n", "line 2: a whole number is needed");
+  expect_fault("a.obj", "v 0 0 0\nf 1 2 \\3\n", "line 2: a whole number is needed");
+}
+
+TEST(Errors, PlyHeaders) {
+  expect_fault("a.ply", "ply\nformat ebcdic 1.0\n", "line 2: ascii, binary_little_endian");
+  expect_fault("a.ply", "ply\nelement vertex 1\nproperty real x\n",
+               "line 3: a type of PLY is needed, not 'real'");
+  expect_fault("a.ply", "ply\nproperty float x\n", "before the first element");
+  expect_fault("a.ply", "ply\nelement vertex -1\n", "negative");
+  expect_fault("a.ply", "ply\nelement vertex\n", "whole number is needed");
+  expect_fault("a.ply", "ply\nend_header\n", "does not tell its format");
+  expect_fault("a.ply", "ply\nformat ascii 1.0\nnonsense\n", "not 'nonsense'");
+  expect_fault(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0 0\n",
+      "no z");
+  expect_fault("a.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty int vertex_indices\nend_header\n0\n",
+               "no list vertex_indices");
+}
+
+TEST(Errors, OffOfOtherKinds) {
+  expect_fault("a.off", "4OFF\n1 1 0\n", "three dimensions");
+  expect_fault("a.off", "nOFF\n4\n1 1 0\n", "three dimensions");
+  expect_fault("a.off", std::string("OFF BINARY\n\0\0\0\1", 15), "binary data");
+  expect_fault("a.off", "OFF BINARY\n", "binary OFF is not read");
+}
+
+TEST(Errors, StlOutOfOrder) {
+  expect_fault("a.stl", "solid\nvertex 0 0 0\n", "line 2: a vertex outside of a loop");
+}
+
+TEST(Errors, FacesWithTooManyCorners) {
+  std::string contents = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
+  for (int k = 0; k < 9000; ++k) contents += std::array{" 1", " 2", " 3"}[k % 3];
+  expect_fault("a.obj", contents, "triangulate it first");
+}
+
+// A glTF file with one triangle, some of whose text is replaced.
+std::string gltf_with(const std::string& from, const std::string& to) {
+  const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+  std::string json =
+      gltf_json(mesh, R"([{"mesh":0}])", R"(,"uri":"data:;base64,)" + base64(gltf_buffer(mesh)) + '"');
+  const std::size_t at = json.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return json.replace(at, from.size(), to);
+}
+
+TEST(Errors, Gltf) {
+  EXPECT_EQ(fault_of("a.gltf", gltf_with("asset", "asset")), "");
+  const std::array<const char*, 3> cases[] = {
+      {"\"asset\"", "\"assets\"", "no asset"},
+      {"2.0", "1.0", "version 2"},
+      {"\"2.0\"", "2", "not valid glTF"},
+      {"\"mesh\":0", "\"mesh\":1", "item 1 of meshes"},
+      {"\"mesh\":0", "\"mesh\":-1", "of meshes, which is not there"},
+      {"\"mesh\":0", "\"mesh\":\"0\"", "not valid glTF"},
+      {"\"mesh\":0", "\"mesh\":0,\"children\":[0]", "two parents"},
+      {"\"mesh\":0", "\"mesh\":0,\"children\":[7]", "item 7 of nodes"},
+      {"\"mesh\":0", "\"mesh\":0,\"matrix\":[1,2]", "not valid glTF"},
+      {"\"POSITION\":0", "\"POSITION\":9", "item 9 of accessors"},
+      {"\"POSITION\":0", "\"POSITION\":2", "not vectors of three"},
+      {"\"count\":3", "\"count\":4", "reaches beyond its buffer view"},
+      {"\"count\":3", "\"count\":18446744073709551615", "more than 2^32"},
+      {"\"bufferView\":0", "\"bufferView\":0,\"byteOffset\":40", "reaches beyond its buffer view"},
+      {"\"bufferView\":0", "\"bufferView\":0,\"sparse\":{}", "sparse"},
+      {"\"bufferView\":0,", "", "not valid glTF"},
+      {"5126", "9", "component type 9"},
+      {"VEC3", "MAT4", "type MAT4"},
+      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":0", "reaches beyond"},
+      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":18446744073709551615", "reaches beyond"},
+      {"{\"buffer\":0", "{\"buffer\":5", "buffer 5"},
+      {"\"byteLength\":36", "\"byteLength\":99999", "beyond its buffer"},
+      {"\"byteLength\":72", "\"byteLength\":73", "promises 73 bytes and has 72"},
+      {"base64,", "base64,!", "not base64"},
+      {"base64,", "base32,", "not base64"},
+      {"data:;base64,", "nowhere.bin?", "no such file"},
+      {"\"asset\"", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"asset\"",
+       "compressed by KHR_draco"},
+      {"{\"asset\"", "[{\"asset\"", "JSON is at fault"},
+      {"{\"asset\"", "{\"a\":\"\xFF\",\"asset\"", "JSON is at fault"},
+  };
+  for (const auto& [from, to, fault] : cases) expect_fault("a.gltf", gltf_with(from, to), fault);
+}
+
+TEST(Errors, DeeplyNestedJson) {
+  const std::size_t depth = 1000000;
+  expect_fault("a.gltf", "{\"a\":" + std::string(depth, '[') + std::string(depth, ']') + "}", "no asset");
+  expect_fault("a.gltf", "{\"a\":" + std::string(depth, '['), "JSON is at fault");
+}
+
+// A small file that shows one mesh very often asks for more memory than there is.
+TEST(Errors, ScenesThatGrow) {
+  const Mesh mesh = torus(100, 100);
+  std::string nodes = "[{\"children\":[1";
+  const int count = 100000;
+  for (int n = 2; n < count; ++n) nodes += ',' + std::to_string(n);
+  nodes += "]}";
+  for (int n = 1; n < count; ++n) nodes += ",{\"mesh\":0}";
+  expect_fault("a.glb", glb(gltf_json(mesh, nodes + "]", ""), gltf_buffer(mesh)), "more than 2^32");
+}
+
+}  // namespace
+}  // namespace sdm

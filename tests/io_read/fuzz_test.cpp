@@ -1,0 +1,126 @@
+// Whatever the bytes are: a valid mesh or sdm::Error.
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <sdm/io.h>
+
+#include <random>
+
+#include "io_read/writers.h"
+#include "mesh/shapes.h"
+
+namespace sdm {
+namespace {
+
+using namespace test;
+
+struct Seed {
+  std::string name, contents;
+};
+
+std::vector<Seed> seeds() {
+  Mesh mesh = tetrahedron();
+  mesh.corner_uvs.assign(4, {{{0, 0}, {1, 0}, {0, 1}}});
+  const std::string nodes = R"([{"children":[1],"translation":[1,0,0]},{"mesh":0,"scale":[1,2,3]}])";
+  return {{"a.obj", obj(mesh) + "f 1 2 3 4 1 2 3\n"},
+          {"a.off", off(mesh)},
+          {"b.off",
+           "STCNOFF # all\n4 2 0\n0 0 0 0 0 1 9 9 9 9 0 0\n2 0 0 0 0 1 9 9 9 1 1 0\n2 1 0 0 0 1 9 9 1 1\n0 1 "
+           "0 0 0 1 0 "
+           "1\n4 0 1 2 3\n3 0 1 2\n"},
+          {"a.stl", stl_text(mesh)},
+          {"b.stl", stl_binary(mesh)},
+          {"a.ply", ply_text(mesh)},
+          {"b.ply", ply_binary(mesh, std::endian::little)},
+          {"c.ply", ply_binary(mesh, std::endian::big)},
+          {"a.glb", glb(gltf_json(mesh, nodes, ""), gltf_buffer(mesh))},
+          {"a.gltf", gltf_json(mesh, nodes, R"(,"uri":"data:;base64,)" + base64(gltf_buffer(mesh)) + '"')},
+          {"a.3ds", tds(mesh)}};
+}
+
+// Whether it is read; fails the test where the outcome is neither of the two that are allowed.
+bool try_read(const Seed& seed) {
+  const std::filesystem::path file = write_file(seed.name, seed.contents);
+  try {
+    const Mesh mesh = read_mesh(file);
+    EXPECT_NO_THROW(validate(mesh));
+    return true;
+  } catch (const Error& fault) {
+    EXPECT_EQ(std::string(fault.what()).find('\n'), std::string::npos) << fault.what();
+    return false;
+  }
+}
+
+class Mutator {
+ public:
+  void mutate(std::string& s) {
+    for (std::size_t edits = 1 + below(4); edits > 0 && !s.empty(); --edits) {
+      const std::size_t at = below(s.size()), length = 1 + below(std::min<std::size_t>(16, s.size() - at));
+      switch (below(8)) {
+        case 0:  // a bit
+          s[at] = static_cast<char>(s[at] ^ 1 << below(8));
+          break;
+        case 1:  // any byte
+          s[at] = static_cast<char>(below(256));
+          break;
+        case 2:  // a digit or a sign
+          s[at] = "0123456789-+.e"[below(14)];
+          break;
+        case 3:
+          s.erase(at, length);
+          break;
+        case 4:
+          s.insert(at, s.substr(below(s.size()), length));
+          break;
+        case 5:
+          s.insert(
+              at, std::array{"999999999", "-1", "nan", "1e300", "\n", " ", "\\\n", "{", "]", "/"}[below(10)]);
+          break;
+        case 6:  // an extreme number of 16 or 32 bits
+          s.replace(at, std::min<std::size_t>(length > 8 ? 4 : 2, s.size() - at), length > 8 ? 4 : 2,
+                    below(2) ? '\xFF' : '\x7F');
+          break;
+        default:
+          if (below(8) == 0) s.resize(at);
+      }
+    }
+  }
+
+ private:
+  std::size_t below(std::size_t n) { return random_() % n; }
+  std::mt19937 random_{12345};
+};
+
+TEST(Fuzz, MutatedFiles) {
+  Mutator mutator;
+  for (const Seed& seed : seeds()) {
+    ASSERT_TRUE(try_read(seed)) << seed.name;
+    std::size_t refused = 0;
+    for (int round = 0; round < 3000; ++round) {
+      Seed mutated = seed;
+      mutator.mutate(mutated.contents);
+      refused += !try_read(mutated);
+    }
+    EXPECT_GT(refused, 100u) << seed.name;   // the mutations do harm
+    EXPECT_LT(refused, 3000u) << seed.name;  // and do not always
+  }
+}
+
+// Where a cut cannot be told: OBJ has no end, and text may be cut within its last numbers or after its last
+// face.
+std::size_t shortest_whole(const Seed& seed) {
+  if (seed.name == "a.obj") return 0;
+  if (seed.name == "a.stl") return seed.contents.rfind("endsolid") + 8;
+  if (seed.name.ends_with(".off") || seed.name == "a.ply") return seed.contents.rfind(' ');
+  return seed.contents.size();
+}
+
+TEST(Fuzz, FilesCutAtEveryLength) {
+  for (const Seed& seed : seeds())
+    for (std::size_t length = 0; length < seed.contents.size(); ++length) {
+      const bool is_read = try_read({seed.name, seed.contents.substr(0, length)});
+      EXPECT_FALSE(is_read && length < shortest_whole(seed)) << seed.name << " cut at " << length;
+    }
+}
+
+}  // namespace
+}  // namespace sdm
