@@ -35,7 +35,7 @@ const Scene kScenes[] = {
     {"cheese.off", "fit", "anchor_dense.off", "fit,rotate:45:0:0,translate:0:1:0", 256},
     {"mpi.off", "fit", "horizons.off", "fit,translate:0:0:0.2", 256},
     {"knot2.off", "fit", "cylinder_locally_refined.off", "fit", 256},
-    {"ChineseDragon-10kv.off", "fit", "turbine.off", "fit,scale:30,translate:100:0:0", 256},
+    {"ChineseDragon-10kv.off", "fit", "turbine.off", "fit,scale:30,translate:100:0:0", 128},
     {"head.off", "fit", "triangle.off", "fit,translate:0.2:0.3:0", 256},
     {"triangle.off", "fit", "retinal.off", "fit", 128},
     {"corner_tris_with_hole.off", "fit", "cross.off", "fit,scale:0.001", 128},
@@ -96,7 +96,7 @@ TEST(Exactness, ScenesHaveMeshesOfEveryKind) {
 // area.
 TEST(Exactness, SpoiltMesh) {
   std::mt19937 random(9);
-  Mesh mesh = test::turned(test::load("bear_bis.off", "fit"), 3);
+  Mesh mesh = test::turned(test::load("blobby.off", "fit"), 3);
   const std::size_t count = mesh.triangles.size();
   for (std::size_t i = 0; i < count; i += 20) {
     const auto [a, b, c] = mesh.triangles[i];
@@ -114,7 +114,7 @@ TEST(Exactness, SpoiltMesh) {
   ASSERT_GT(info.duplicate_faces, 0u);
   ASSERT_FALSE(info.oriented);
   expect_agreement(test::load("head.off", "fit"), mesh, 256);
-  expect_agreement(mesh, test::load("head.off", "fit"), 1024);  // turned faces make many charts
+  expect_agreement(mesh, test::load("head.off", "fit"), 512);  // turned faces make many charts
 }
 
 }  // namespace
