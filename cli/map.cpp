@@ -13,6 +13,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace {
@@ -213,14 +214,16 @@ void add_choice(CLI::App& app, const std::string& name, Enum& target, const std:
                 const std::vector<std::pair<std::string, Enum>>& choices) {
   std::string names;
   for (const auto& choice : choices) names += (names.empty() ? "" : "|") + choice.first;
-  const auto find = [choices](const std::string& text) {
-    return std::ranges::find(choices, text, &std::pair<std::string, Enum>::first);
+  const auto find = [choices](const std::string& text) -> std::optional<Enum> {
+    for (const auto& [word, value] : choices)
+      if (word == text) return value;
+    return std::nullopt;
   };
   app.add_option_function<std::string>(
-         name, [=, &target](const std::string& text) { target = find(text)->second; }, description)
+         name, [=, &target](const std::string& text) { target = *find(text); }, description)
       ->check(CLI::Validator(
           [=](const std::string& text) {
-            return find(text) != choices.end() ? std::string() : text + " is not one of " + names;
+            return find(text) ? std::string() : text + " is not one of " + names;
           },
           ""))
       ->type_name(names)

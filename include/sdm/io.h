@@ -46,8 +46,9 @@ void write_voronoi_png(const std::filesystem::path& file, const Surface& surface
 void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
 
 /// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex, opens coloured in any
-/// viewer. `vertex_distances`: one for each vertex of surface.mesh(). Units m, cm, mm, um, in, ft scale
-/// the node to metres; none or others leave it.
+/// viewer. `vertex_distances`: one for each vertex of surface.mesh(), NaN where there is none: as glTF knows no NaN, the
+/// faces of such vertices form a primitive without `_DISTANCE`. Units m, cm, mm, um, in, ft scale the node to
+/// metres; none or others leave it.
 void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                std::span<const float> vertex_distances, const PictureOptions& options = {});
 

@@ -58,15 +58,17 @@ void draw_bar(cairo_t* cairo, const ColorScale& scale, double top, double bottom
   const auto height_of = [&](double d) {
     return bottom - (d - scale.lo) / (scale.hi - scale.lo) * (bottom - top);
   };
-  constexpr int kSteps = 2048;  // finer than any pixel of the bar
+  constexpr int kSteps = 4096;  // finer than any pixel of the bar
+  // Without smoothing every pixel has the colour of one step, not one that is mixed with the paper. Each step
+  // reaches above itself, where the next one covers it, so that rounding leaves no seams.
+  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
   for (int i = 0; i < kSteps; ++i) {
-    const double d = scale.lo + (i + 0.5) / kSteps * (scale.hi - scale.lo);
-    const double y = bottom - (i + 1.0) / kSteps * (bottom - top);
-    set_color(cairo, scale(d));
-    // Each strip reaches below the one before it, so that no seam shows between them.
-    cairo_rectangle(cairo, kMargin, y, kBarWidth, std::min(2.0 * (bottom - top) / kSteps, bottom - y));
+    const double foot = bottom - i * (bottom - top) / kSteps, head = std::max(top, foot - 3);
+    set_color(cairo, scale(scale.lo + (i + 0.5) / kSteps * (scale.hi - scale.lo)));
+    cairo_rectangle(cairo, kMargin, head, kBarWidth, foot - head);
     cairo_fill(cairo);
   }
+  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_DEFAULT);
   set_color(cairo, {60, 62, 66});
   cairo_set_line_width(cairo, 1);
   cairo_rectangle(cairo, kMargin, top, kBarWidth, bottom - top);

@@ -32,6 +32,13 @@ struct SplitVertices {
 
 // Places closer than this, in texels, are one: two charts are never that close, rounding stays well below.
 constexpr double kSamePlace = 1.0 / 64;
+// How many places of a vertex are looked through: a vertex of a million single-face charts must not take
+// 10^12 steps.
+constexpr int kMostSplits = 64;
+
+bool same(const Vec2& a, const Vec2& b) {
+  return std::abs(a[0] - b[0]) <= kSamePlace && std::abs(a[1] - b[1]) <= kSamePlace;
+}
 
 SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint32_t>& faces) {
   const Mesh& mesh = surface.mesh();
@@ -49,10 +56,9 @@ SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint
       Vec2 place = charts[face] == kNone ? Vec2{} : surface.to_atlas(face, mesh.positions[vertex]);
       if (!std::isfinite(place[0]) || !std::isfinite(place[1])) place = {};
       std::uint32_t split = first[vertex];
-      while (split != kNone && std::max(std::abs(places[split][0] - place[0]),
-                                        std::abs(places[split][1] - place[1])) > kSamePlace)
-        split = next[split];
-      if (split == kNone) {
+      for (int looked_at = 0; split != kNone; split = next[split])
+        if (same(places[split], place) || ++looked_at == kMostSplits) break;
+      if (split == kNone || !same(places[split], place)) {
         split = static_cast<std::uint32_t>(places.size());
         places.push_back(place);
         result.vertex.push_back(vertex);
@@ -158,23 +164,29 @@ void add_primitive(GlbModel& glb, const Mesh& mesh, const SplitVertices& vertice
   glb.model.meshes[0].primitives.push_back(primitive);
 }
 
-/// The coloured map, its gutters filled. Charts too small to own a texel take their colour from their
-/// vertices.
+/// The coloured map, its gutters filled. Corners of charts reach beyond the texels that the chart owns, and
+/// small charts own hardly any: the free texels that are blended at a vertex take the vertex's own distance.
 std::string texture_png(const Surface& surface, const DistanceMap& map, const ColorScale& scale,
-                        std::span<const SplitVertices> parts, std::span<const float> vertex_distances) {
+                        std::span<const float> vertex_distances) {
   const std::uint32_t n = surface.resolution();
+  const Mesh& mesh = surface.mesh();
   std::vector<std::uint32_t> owners(surface.texel_faces().begin(), surface.texel_faces().end());
   std::vector<float> distance = map.distance;
-  for (const SplitVertices& part : parts)
-    for (std::size_t i = 0; i < part.vertex.size(); ++i) {
-      const auto to_texel = [n](float t) {
-        return std::min(static_cast<std::uint32_t>(t * static_cast<float>(n)), n - 1);
-      };
-      const std::size_t texel = std::size_t{to_texel(part.uv[i][1])} * n + to_texel(part.uv[i][0]);
-      if (owners[texel] != kNone) continue;
-      owners[texel] = part.vertex[i];
-      distance[texel] = vertex_distances[part.vertex[i]];
+  const auto seed = [&](double x, double y, float d) {
+    if (!(x >= 0 && y >= 0 && x < n && y < n)) return;
+    const std::size_t texel = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);
+    if (owners[texel] != kNone) return;
+    owners[texel] = 0;
+    distance[texel] = d;
+  };
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+    if (surface.face_charts()[face] == kNone) continue;
+    for (const std::uint32_t vertex : mesh.triangles[face]) {
+      const auto [u, v] = surface.to_atlas(face, mesh.positions[vertex]);
+      for (const double dx : {-0.5, 0.5})
+        for (const double dy : {-0.5, 0.5}) seed(u + dx, v + dy, vertex_distances[vertex]);
     }
+  }
   std::ostringstream png;
   write_png(png, n, n, [&](std::uint32_t y, std::span<Rgb> pixels) {
     for (std::uint32_t x = 0; x < n; ++x) {
@@ -249,7 +261,7 @@ void write_glb(const std::filesystem::path& file, const Surface& surface, const 
   glb.model.meshes.emplace_back().name = "O1";
   add_primitive(glb, mesh, parts[0], place, vertex_distances, true);
   add_primitive(glb, mesh, parts[1], place, vertex_distances, false);
-  add_material(glb, texture_png(surface, map, color_scale(map, options), parts, vertex_distances));
+  add_material(glb, texture_png(surface, map, color_scale(map, options), vertex_distances));
   add_scene(glb, place);
   tinygltf::TinyGLTF().WriteGltfSceneToStream(&glb.model, out.stream(), false, true);
   out.commit();

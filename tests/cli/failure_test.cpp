@@ -1,0 +1,115 @@
+#include "run.h"
+#include "samples.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct Failure : ::testing::Test, TwoTori {
+  /// The run fails with one sentence that names `thing`, and leaves no trace.
+  void expect_failure(const Outcome& run, const std::string& thing) {
+    EXPECT_EQ(run.code, 1) << run.out << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_THAT(run.err, StartsWith("sdm: error: "));
+    EXPECT_THAT(run.err, HasSubstr(thing));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_EQ(names_in(folder.path()), before) << thing;
+  }
+  std::vector<std::string> before = names_in(folder.path());
+};
+
+TEST_F(Failure, BadInputIsNamed) {
+  const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const std::vector<std::pair<std::string, std::string>> bad{
+      {"empty.obj", ""},
+      {"no_triangles.obj", v},
+      {"index.obj", v + "f 1 2 4\n"},
+      {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+      {"infinite.obj", "v inf 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+      {"flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"},
+      {"garbage.stl", std::string("\x01\x02\xff\x00\x7f garbage", 14)},
+      {"truncated.ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n"},
+      {"truncated.off", "OFF\n3 1 0\n0 0 0\n1 0"},
+      {"garbage.glb", "glTF\x02"},
+  };
+  for (const auto& [name, text] : bad) std::ofstream(folder / name, std::ios::binary) << text;
+  before = names_in(folder.path());
+  for (const auto& [name, text] : bad) {
+    expect_failure(run_sdm({"map", folder / name, o2, "-o", out}), name);
+    expect_failure(run_sdm({"map", o1, folder / name, "-o", out}), name);
+  }
+  expect_failure(run_sdm({"map", o1, folder / "missing.obj", "-o", out}), "missing.obj");
+  expect_failure(run_sdm({"map", o1, folder.path(), "-o", out}), folder.path());
+}
+
+TEST_F(Failure, AFullDiskLeavesNoTrace) {
+  for (const std::uint64_t bytes : {0, 500, 4000, 30000})
+    expect_failure(run_sdm(map({"--both"}), {.file_size = bytes}), "cannot write");
+}
+
+TEST_F(Failure, AFullDiskLeavesEarlierResultsAlone) {
+  ASSERT_EQ(run_sdm(map()).code, 0);
+  const auto earlier = names_in(out);
+  const std::string exr = contents(out + "/map.exr");
+  EXPECT_EQ(run_sdm(map({"--resolution", "256"}), {.file_size = 20000}).code, 1);
+  EXPECT_EQ(names_in(out), earlier);
+  EXPECT_EQ(contents(out + "/map.exr"), exr);
+}
+
+TEST_F(Failure, AFolderThatCannotBeWrittenToIsRefusedBeforeAnyWork) {
+  // O1 does not exist either: the folder is looked at first.
+  const auto into = [&](const std::string& place) {
+    return run_sdm({"map", folder / "missing.obj", o2, "-o", place});
+  };
+  expect_failure(into(o1), "first.obj");
+  expect_failure(into(o1 + "/below"), "first.obj");
+  expect_failure(into("/proc/sdm/out"), "/proc/sdm");
+  if (geteuid() != 0) {
+    std::filesystem::permissions(folder.path(),
+                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+    expect_failure(into(out), out);
+    std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+  }
+}
+
+TEST_F(Failure, AResultWhosePlaceIsTakenByAFolderReplacesNothing) {
+  std::filesystem::create_directories(out + "/model.glb");
+  const Outcome run = run_sdm(map());
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("model.glb"));
+  EXPECT_EQ(names_in(out), std::vector<std::string>{"model.glb"});
+}
+
+TEST_F(Failure, ResolutionsTooSmallForTheChartsOrTheMemory) {
+  write_obj(o1, torus(60));
+  expect_failure(run_sdm({"map", o1, o2, "-o", out, "--resolution", "16", "--atlas", "triangles"}), "16");
+  // 32768² texels take tens of gigabytes.
+  expect_failure(run_sdm(map({"--resolution", "32768"}), {.memory = std::uint64_t{2} << 30}), "memory");
+}
+
+TEST_F(Failure, OptionsThatTheMeshesDoNotAllow) {
+  expect_failure(run_sdm(map({"--atlas", "uv"})), "texture coordinates");
+  Mesh open = torus(16);
+  open.triangles.resize(100);
+  write_obj(o2, open);
+  expect_failure(run_sdm(map({"--sign", "pseudonormal"})), "O2 is open");
+}
+
+TEST_F(Failure, AnInterruptedRunLeavesNoTrace) {
+  write_obj(o1, torus(250));
+  write_obj(o2, torus(250, 1, {0.3, 0, 0}));
+  const Outcome run = run_sdm({"map", o1, o2, "-o", out, "--resolution", "4096", "--engine", "reference"},
+                              {.interrupt_after_ms = 1500});
+  expect_failure(run, "cancelled");
+}
+
+}  // namespace
+}  // namespace sdm::test

@@ -1,0 +1,202 @@
+#include "run.h"
+#include "samples.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/map.h>
+#include <sdm/sites.h>
+#include <sdm/statistics.h>
+#include <sdm/version.h>
+
+#include <nlohmann/json.hpp>
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+struct MapCommand : ::testing::Test, TwoTori {};
+
+TEST_F(MapCommand, WritesAllResultsAndTellsWhere) {
+  const Outcome run = run_sdm(map());
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(names_in(out), kResults);
+  EXPECT_THAT(run.out, HasSubstr(out));
+  EXPECT_THAT(run.out, HasSubstr("max"));
+  EXPECT_EQ(run.err, "") << "progress is for terminals";
+}
+
+TEST_F(MapCommand, ReportHasTheNumbersOfTheLibrary) {
+  const Outcome run = run_sdm(map({"--json", "--units", "mm", "--threads", "1"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, contents(out + "/report.json"));
+  const Json report = Json::parse(run.out);
+
+  const Surface surface(read_mesh(o1), {.resolution = 128});
+  const Sites sites(read_mesh(o2));
+  const DistanceMap map = compute_map(surface, sites);
+  const DistanceStatistics expected = statistics(surface, map);
+  EXPECT_EQ(report["version"], kVersion);
+  EXPECT_EQ(report["units"], "mm");
+  EXPECT_EQ(report["engine"], "cpu");
+  EXPECT_EQ(report["measured_on"], "o1");
+  EXPECT_EQ(report["o1"]["file"], o1);
+  EXPECT_EQ(report["o1"]["vertices"], 144);
+  EXPECT_EQ(report["o1"]["triangles"], 288);
+  EXPECT_EQ(report["o2"]["triangles"], 512);
+  EXPECT_EQ(report["o2"]["closed"], true);
+  EXPECT_EQ(report["o2"]["degenerate_faces"], 0);
+  EXPECT_EQ(report["atlas"]["kind"], "charts");
+  EXPECT_EQ(report["atlas"]["resolution"], 128);
+  EXPECT_EQ(report["atlas"]["charts"], surface.chart_count());
+  EXPECT_EQ(report["atlas"]["texels"], surface.samples().size());
+  EXPECT_EQ(report["atlas"]["utilisation"], surface.utilisation());
+  EXPECT_EQ(report["atlas"]["max_stretch"], surface.max_stretch());
+  EXPECT_EQ(report["sign"]["method"], "pseudonormal");
+  EXPECT_EQ(report["sign"]["reason"], map.sign.reason);
+  EXPECT_EQ(report["distance"]["kind"], "estimate");
+  const std::vector<std::pair<std::string, double>> distances{
+      {"min", expected.min}, {"max", expected.max}, {"mean", expected.mean}, {"rms", expected.rms},
+      {"p50", expected.p50}, {"p95", expected.p95}, {"p99", expected.p99}};
+  for (const auto& [key, value] : distances) EXPECT_NEAR(report["distance"][key], value, 1e-6) << key;
+  EXPECT_EQ(report["negative_texels"], expected.negative_texels);
+  EXPECT_GT(expected.negative_texels, 0u);
+  EXPECT_EQ(report["texels_with_value"], expected.texels);
+  EXPECT_EQ(report["beyond_max_distance"], 0);
+  EXPECT_TRUE(report["max_distance"].is_null());
+  EXPECT_EQ(report["error_bound"], surface.sampling_bound());
+  EXPECT_EQ(report["error_bound_kind"], "bounded");
+  for (const char* step : {"import", "atlas", "sites", "map", "export", "total"})
+    EXPECT_GT(report["time_ms"][step], 0) << step;
+  EXPECT_FALSE(report.contains("tolerance"));
+}
+
+TEST_F(MapCommand, BothMeasuresEitherWay) {
+  const Outcome run = run_sdm(map({"--both", "--json"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"o1", "o2"}));
+  EXPECT_EQ(names_in(out + "/o1"), kResults);
+  EXPECT_EQ(names_in(out + "/o2"), kResults);
+  const Json reports = Json::parse(run.out);
+  EXPECT_EQ(reports["o1"]["measured_on"], "o1");
+  EXPECT_EQ(reports["o2"]["measured_on"], "o2");
+  EXPECT_EQ(reports["o2"]["o1"]["file"], o1);
+  EXPECT_EQ(reports["o2"], Json::parse(contents(out + "/o2/report.json")));
+  // The other way round is another surface.
+  EXPECT_NE(reports["o1"]["atlas"], reports["o2"]["atlas"]);
+
+  const Outcome swapped = run_sdm({"map", o2, o1, "-o", folder / "swapped", "--resolution", "128", "--json"});
+  EXPECT_EQ(Json::parse(swapped.out)["distance"], reports["o2"]["distance"]);
+}
+
+TEST_F(MapCommand, ExceededToleranceEndsWithThreeAndStillWrites) {
+  const Outcome run = run_sdm(map({"--tolerance", "0.05", "--json"}));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_EQ(names_in(out), kResults);
+  const Json tolerance = Json::parse(run.out)["tolerance"];
+  EXPECT_EQ(tolerance["value"], 0.05);
+  EXPECT_EQ(tolerance["within"], false);
+  EXPECT_EQ(tolerance["certified"], true);
+  EXPECT_GT(tolerance["exceeded_area_fraction"], 0.1);
+  EXPECT_LT(tolerance["exceeded_area_fraction"], 1);
+}
+
+TEST_F(MapCommand, KeptToleranceIsCertifiedOnlyWithRoomForTheErrorBound) {
+  const Json plain = Json::parse(run_sdm(map({"--json"})).out);
+  const double largest =
+      std::max(std::abs(plain["distance"]["min"].get<double>()), plain["distance"]["max"].get<double>());
+  const double bound = plain["error_bound"];
+  for (const bool certified : {true, false}) {
+    // Vertices are looked at too, and lie at most the bound away from a texel.
+    const double tolerance = largest + (certified ? 2.01 : 1.0) * bound;
+    const Outcome run = run_sdm(map({"--json", "--tolerance", std::to_string(tolerance)}));
+    EXPECT_EQ(run.code, 0);
+    const Json verdict = Json::parse(run.out)["tolerance"];
+    EXPECT_EQ(verdict["within"], true);
+    EXPECT_EQ(verdict["exceeded_area_fraction"], 0);
+    if (certified) {
+      EXPECT_EQ(verdict["certified"], true);
+    }
+  }
+  const Outcome run = run_sdm(map({"--json", "--tolerance", std::to_string(largest + 1e-6)}));
+  EXPECT_EQ(Json::parse(run.out)["tolerance"]["certified"], run.code == 3);
+}
+
+TEST_F(MapCommand, TexelsBeyondTheMaximumDistanceAreCounted) {
+  const Json all = Json::parse(run_sdm(map({"--json"})).out);
+  const Outcome run = run_sdm(map({"--json", "--max-distance", "0.1", "--range", "-0.2", "0.3"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["max_distance"], 0.1);
+  EXPECT_GT(report["beyond_max_distance"], 0);
+  EXPECT_GT(report["texels_with_value"], 0);
+  EXPECT_EQ(report["beyond_max_distance"].get<int>() + report["texels_with_value"].get<int>(),
+            all["texels_with_value"]);
+  EXPECT_LE(report["distance"]["max"], 0.1);
+}
+
+TEST_F(MapCommand, AMapWithoutAnyValueIsReportedWithNulls) {
+  const Outcome run =
+      run_sdm(map({"--json", "--max-distance", "0.001", "--transform-o2", "translate:50:0:0"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["texels_with_value"], 0);
+  EXPECT_TRUE(report["distance"]["mean"].is_null());
+  EXPECT_EQ(report["o2"]["transform"], "translate:50:0:0");
+  EXPECT_EQ(names_in(out), kResults);
+  EXPECT_EQ(
+      run_sdm(map({"--max-distance", "0.001", "--tolerance", "0.001", "--transform-o2", "translate:50:0:0"}))
+          .code,
+      3);
+}
+
+TEST_F(MapCommand, EnginesAtlasesAndSignsCanBeChosen) {
+  const Json cpu = Json::parse(run_sdm(map({"--json"})).out);
+  const Json reference = Json::parse(run_sdm(map({"--json", "--engine", "reference"})).out);
+  EXPECT_EQ(reference["engine"], "reference");
+  EXPECT_NEAR(cpu["distance"]["mean"], reference["distance"]["mean"], 1e-6);
+  const Json triangles = Json::parse(run_sdm(map({"--json", "--atlas", "triangles"})).out);
+  EXPECT_EQ(triangles["atlas"]["kind"], "triangles");
+  EXPECT_EQ(triangles["atlas"]["charts"], 288);
+  const Json unsigned_map = Json::parse(run_sdm(map({"--json", "--sign", "none"})).out);
+  EXPECT_EQ(unsigned_map["sign"]["method"], "none");
+  EXPECT_EQ(unsigned_map["negative_texels"], 0);
+  EXPECT_EQ(Json::parse(run_sdm(map({"--json", "--sign", "winding"})).out)["sign"]["method"], "winding");
+}
+
+TEST_F(MapCommand, RunsAgainOverEarlierResultsAndKeepsOtherFiles) {
+  ASSERT_EQ(run_sdm(map()).code, 0);
+  std::ofstream(out + "/notes.txt") << "mine";
+  const std::string before = contents(out + "/map.exr");
+  ASSERT_EQ(run_sdm(map({"--transform-o2", "translate:0.5:0:0"})).code, 0);
+  EXPECT_NE(contents(out + "/map.exr"), before);
+  EXPECT_EQ(contents(out + "/notes.txt"), "mine");
+  EXPECT_EQ(names_in(out).size(), kResults.size() + 1);
+}
+
+TEST_F(MapCommand, QuietIsQuietAndATerminalSeesProgress) {
+  const Outcome quiet = run_sdm(map({"--quiet"}), {.terminal = true});
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  const Outcome shown = run_sdm(map(), {.terminal = true});
+  EXPECT_THAT(shown.err, HasSubstr("map"));
+  EXPECT_THAT(shown.err, HasSubstr(" %"));
+  EXPECT_THAT(shown.err, ::testing::EndsWith("\r\033[K")) << "the line is removed at the end";
+  EXPECT_THAT(shown.err, Not(HasSubstr("\n")));
+}
+
+TEST_F(MapCommand, FlawedFacesAreToleratedAndCounted) {
+  Mesh mesh = torus(10);
+  mesh.triangles.push_back({0, 0, 1});
+  mesh.triangles.push_back(mesh.triangles[3]);
+  write_obj(o1, mesh);
+  const Outcome run = run_sdm(map({"--json"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["o1"]["degenerate_faces"], 1);
+  EXPECT_EQ(report["o1"]["duplicate_faces"], 1);
+}
+
+}  // namespace
+}  // namespace sdm::test

@@ -1,0 +1,122 @@
+#include "samples.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <map>
+#include <random>
+
+namespace sdm::test {
+namespace {
+
+/// All channels as bits, so that NaN equals NaN.
+using Channels = std::map<std::string, std::vector<std::uint32_t>>;
+
+Channels read_exr(const std::filesystem::path& file, std::uint32_t n) {
+  Imf::InputFile exr(file.c_str());
+  EXPECT_EQ(exr.header().dataWindow().max, Imath::V2i(static_cast<int>(n - 1), static_cast<int>(n - 1)));
+  Channels channels;
+  Imf::FrameBuffer frame;
+  for (auto channel = exr.header().channels().begin(); channel != exr.header().channels().end(); ++channel) {
+    auto& values = channels[channel.name()];
+    values.resize(std::size_t{n} * n);
+    const std::string name = channel.name();
+    const bool is_id = name == "site.id" || name == "site.type" || name == "face.id";
+    EXPECT_EQ(channel.channel().type, is_id ? Imf::UINT : Imf::FLOAT) << name;
+    frame.insert(channel.name(),
+                 Imf::Slice(channel.channel().type, reinterpret_cast<char*>(values.data()), 4, 4 * n));
+  }
+  exr.setFrameBuffer(frame);
+  exr.readPixels(0, static_cast<int>(n) - 1);
+  return channels;
+}
+
+/// What the file holds for a texel whose values are those of texel `source`.
+std::vector<std::uint32_t> expected(const Surface& surface, const DistanceMap& map, std::size_t source) {
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+  const Vec3f& v = map.vector[source];
+  const SiteType type = map.site_type[source];
+  return {bits(map.distance[source]),
+          bits(v[0]),
+          bits(v[1]),
+          bits(v[2]),
+          map.site[source],
+          type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
+          surface.texel_faces()[source]};
+}
+
+std::vector<std::uint32_t> found(const Channels& channels, std::size_t texel) {
+  std::vector<std::uint32_t> values;
+  for (const char* name :
+       {"distance.D", "vector.X", "vector.Y", "vector.Z", "site.id", "site.type", "face.id"})
+    values.push_back(channels.at(name)[texel]);
+  return values;
+}
+
+void expect_holds(const Surface& surface, const DistanceMap& map) {
+  const TemporaryFolder folder;
+  write_exr(folder / "map.exr", surface, map);
+  const int n = static_cast<int>(map.resolution);
+  const Channels channels = read_exr(folder / "map.exr", map.resolution);
+  EXPECT_EQ(channels.size(), 8u);
+
+  const auto owners = surface.texel_faces();
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const std::size_t texel = static_cast<std::size_t>(y) * map.resolution + static_cast<std::size_t>(x);
+      const bool owned = owners[texel] != kNone;
+      ASSERT_EQ(std::bit_cast<float>(channels.at("coverage.A")[texel]), owned ? 1.f : 0.f);
+      const auto values = found(channels, texel);
+      if (owned) {
+        ASSERT_EQ(values, expected(surface, map, texel)) << x << ", " << y;
+        continue;
+      }
+      // A free texel has the values of one of its nearest owned texels, within four.
+      int nearest = 17;
+      bool matches = false;
+      for (int sy = std::max(0, y - 4); sy <= std::min(n - 1, y + 4); ++sy)
+        for (int sx = std::max(0, x - 4); sx <= std::min(n - 1, x + 4); ++sx) {
+          const std::size_t source =
+              static_cast<std::size_t>(sy) * map.resolution + static_cast<std::size_t>(sx);
+          const int distance = (sx - x) * (sx - x) + (sy - y) * (sy - y);
+          if (owners[source] == kNone || distance > nearest || distance > 16) continue;
+          if (distance < nearest) matches = false;
+          nearest = distance;
+          matches = matches || values == expected(surface, map, source);
+        }
+      if (nearest <= 16) {
+        ASSERT_TRUE(matches) << x << ", " << y;
+      } else {
+        ASSERT_TRUE(std::isnan(std::bit_cast<float>(values[0])) &&
+                    std::isnan(std::bit_cast<float>(values[3])));
+        ASSERT_THAT((std::vector<std::uint32_t>(values.begin() + 4, values.end())), ::testing::Each(kNone));
+      }
+    }
+}
+
+TEST(Exr, HoldsTheMapBitByBitAndFillsGutters) {
+  for (const AtlasKind kind : {AtlasKind::triangles, AtlasKind::charts}) {
+    const Surface surface(torus(6), {.kind = kind, .resolution = 200});
+    expect_holds(surface, map_of(surface, [](const Vec3& p) { return p[0] * p[1] - p[2]; }));
+  }
+}
+
+TEST(Exr, HoldsMissingValuesAsNaNAndNone) {
+  const Surface surface(torus(6), {.kind = AtlasKind::triangles, .resolution = 300});
+  const DistanceMap map = map_of(surface, [](const Vec3& p) { return p[0] < 0 ? p[1] : std::nan(""); });
+  ASSERT_GT(map.beyond_max_distance, 0u);
+  expect_holds(surface, map);
+}
+
+TEST(Exr, HoldsTheSmallestMap) {
+  const Surface surface(torus(3), {.kind = AtlasKind::charts, .resolution = 64});
+  expect_holds(surface, map_of(surface, [](const Vec3&) { return -0.0; }));
+}
+
+}  // namespace
+}  // namespace sdm::test

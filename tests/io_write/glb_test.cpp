@@ -1,0 +1,183 @@
+#include "io/write/color_scale.h"
+#include "samples.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <tiny_gltf.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <set>
+
+namespace sdm::test {
+namespace {
+
+tinygltf::Model read_glb(const std::filesystem::path& file) {
+  tinygltf::Model model;
+  std::string errors, warnings;
+  EXPECT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &errors, &warnings, file.string())) << errors;
+  EXPECT_EQ(warnings, "");
+  return model;
+}
+
+template <class Element>
+std::vector<Element> values(const tinygltf::Model& model, int accessor_index) {
+  const auto& accessor = model.accessors.at(static_cast<std::size_t>(accessor_index));
+  const auto& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
+  std::vector<Element> result(view.byteLength / sizeof(Element));
+  std::memcpy(result.data(), model.buffers[0].data.data() + view.byteOffset, view.byteLength);
+  return result;
+}
+
+/// The texture as a viewer shows it: bilinear, clamped; in [0, 255].
+std::array<double, 3> sample(const tinygltf::Image& image, const std::array<float, 2>& uv) {
+  const double x = double{uv[0]} * image.width - 0.5, y = double{uv[1]} * image.height - 0.5;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  std::array<double, 3> color{};
+  for (int k = 0; k < 4; ++k) {
+    const int ix = std::clamp(x0 + k % 2, 0, image.width - 1),
+              iy = std::clamp(y0 + k / 2, 0, image.height - 1);
+    const double weight = (k % 2 ? x - x0 : 1 - (x - x0)) * (k / 2 ? y - y0 : 1 - (y - y0));
+    for (int c = 0; c < 3; ++c)
+      color[c] +=
+          weight * image.image[static_cast<std::size_t>((iy * image.width + ix) * image.component + c)];
+  }
+  return color;
+}
+
+TEST(Glb, HasTheColourOfItsDistanceAtEveryVertex) {
+  const Field field = [](const Vec3& p) { return p[0]; };
+  for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
+    const Surface surface(torus(24), {.kind = kind, .resolution = 1024});
+    const DistanceMap map = map_of(surface, field);
+    const PictureOptions options{.colormap = Colormap::viridis};
+    const TemporaryFolder folder;
+    write_glb(folder / "model.glb", surface, map, at_vertices(surface.mesh(), field), options);
+    const tinygltf::Model model = read_glb(folder / "model.glb");
+    const ColorScale scale = color_scale(map, options);
+    ASSERT_EQ(model.meshes[0].primitives.size(), 1u);
+    const auto& primitive = model.meshes[0].primitives[0];
+    const auto uvs = values<std::array<float, 2>>(model, primitive.attributes.at("TEXCOORD_0"));
+    const auto distances = values<float>(model, primitive.attributes.at("_DISTANCE"));
+    ASSERT_EQ(uvs.size(), distances.size());
+    for (std::size_t i = 0; i < uvs.size(); ++i) {
+      const auto color = sample(model.images[0], uvs[i]);
+      const Rgb expected = scale(distances[i]);
+      ASSERT_NEAR(color[0], expected.r, 8) << i;
+      ASSERT_NEAR(color[1], expected.g, 8) << i;
+      ASSERT_NEAR(color[2], expected.b, 8) << i;
+    }
+  }
+}
+
+TEST(Glb, HoldsTheMeshItself) {
+  const Field field = [](const Vec3& p) { return p[0]; };
+  const Surface surface(torus(9), {.resolution = 256});
+  const Mesh& mesh = surface.mesh();
+  const TemporaryFolder folder;
+  write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(mesh, field));
+  const tinygltf::Model model = read_glb(folder / "model.glb");
+  const auto& primitive = model.meshes[0].primitives.at(0);
+  const auto triangles = values<Triangle>(model, primitive.indices);
+  const auto positions = values<Vec3f>(model, primitive.attributes.at("POSITION"));
+  const auto distances = values<float>(model, primitive.attributes.at("_DISTANCE"));
+  const auto uvs = values<std::array<float, 2>>(model, primitive.attributes.at("TEXCOORD_0"));
+  ASSERT_EQ(triangles.size(), mesh.triangles.size());
+  for (std::uint32_t face = 0; face < triangles.size(); ++face)
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t i = triangles[face][corner];
+      const Vec3& p = mesh.positions[mesh.triangles[face][corner]];
+      EXPECT_EQ(positions[i],
+                (Vec3f{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}));
+      EXPECT_EQ(distances[i], static_cast<float>(p[0]));
+      const Vec2 place = surface.to_atlas(face, p);
+      EXPECT_NEAR(uvs[i][0] * 256, place[0], 0.02);
+      EXPECT_NEAR(uvs[i][1] * 256, place[1], 0.02);
+    }
+  // Vertices are shared within a chart: far fewer than three a face.
+  EXPECT_LT(positions.size(), 2 * triangles.size());
+}
+
+TEST(Glb, IsPlacedInMetresAndKeepsItsPrecisionFarFromTheOrigin) {
+  const Field field = [](const Vec3&) { return 1; };
+  const Vec3 far{4e6, -5e6, 1e6};
+  const Surface surface(torus(6, 1, far), {.kind = AtlasKind::triangles, .resolution = 256});
+  const TemporaryFolder folder;
+  write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(surface.mesh(), field),
+            {.units = "mm"});
+  const tinygltf::Model model = read_glb(folder / "model.glb");
+  const tinygltf::Node& node = model.nodes[0];
+  ASSERT_EQ(node.scale, std::vector<double>(3, 1e-3));
+  const auto& primitive = model.meshes[0].primitives[0];
+  const auto positions = values<Vec3f>(model, primitive.attributes.at("POSITION"));
+  const auto triangles = values<Triangle>(model, primitive.indices);
+  for (std::size_t face = 0; face < triangles.size(); ++face)
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vec3& p = surface.mesh().positions[surface.mesh().triangles[face][corner]];
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(positions[triangles[face][corner]][k] * 1e-3 + node.translation[k], p[k] * 1e-3, 1e-9);
+    }
+}
+
+TEST(Glb, FacesWithoutAValueArePartOfItWithoutDistances) {
+  const Field field = [](const Vec3& p) { return p[0] < 0 ? p[1] : std::nan(""); };
+  const Surface surface(torus(9), {.resolution = 256});
+  const TemporaryFolder folder;
+  write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(surface.mesh(), field));
+  const tinygltf::Model model = read_glb(folder / "model.glb");
+  ASSERT_EQ(model.meshes[0].primitives.size(), 2u);
+  const auto &with = model.meshes[0].primitives[0], &without = model.meshes[0].primitives[1];
+  EXPECT_EQ(without.attributes.count("_DISTANCE"), 0u);
+  EXPECT_THAT(values<float>(model, with.attributes.at("_DISTANCE")),
+              ::testing::Each(::testing::Not(::testing::IsNan())));
+  EXPECT_EQ(values<Triangle>(model, with.indices).size() + values<Triangle>(model, without.indices).size(),
+            surface.mesh().triangles.size());
+}
+
+TEST(Glb, RefusesWhatItCannotHold) {
+  const Field field = [](const Vec3&) { return 1; };
+  const Surface surface(torus(4), {.resolution = 128});
+  const TemporaryFolder folder;
+  const std::vector<float> too_few(3);
+  EXPECT_THROW(write_glb(folder / "model.glb", surface, map_of(surface, field), too_few), Error);
+  EXPECT_TRUE(folder.empty());
+}
+
+// One case for all models, so that the validator is installed and started once.
+TEST(Glb, PassesTheKhronosValidator) {
+  const TemporaryFolder folder;
+  std::string files;
+  const auto add = [&](const std::string& name, const Mesh& mesh, const AtlasOptions& atlas,
+                       const Field& field, const PictureOptions& options = {}) {
+    const Surface surface(mesh, atlas);
+    write_glb(folder / name, surface, map_of(surface, field), at_vertices(mesh, field), options);
+    files += " " + (folder / name).string();
+  };
+  const Field linear = [](const Vec3& p) { return p[0] + p[1]; };
+  Mesh flawed = torus(8);
+  flawed.triangles.push_back({0, 0, 1});            // repeated corner
+  flawed.triangles.push_back(flawed.triangles[0]);  // duplicate
+  flawed.positions.push_back(flawed.positions[0]);  // no area, three vertices
+  flawed.triangles.push_back({0, 1, static_cast<std::uint32_t>(flawed.positions.size() - 1)});
+  flawed.positions.push_back({9, 9, 9});  // of no face
+
+  add("charts.glb", torus(16), {.resolution = 256}, linear);
+  add("triangles.glb", torus(16), {.kind = AtlasKind::triangles, .resolution = 512}, linear, {.units = "in"});
+  add("flawed.glb", flawed, {.resolution = 256}, linear);
+  add("far.glb", torus(8, 1, {1e9, 1e9, -1e9}), {.resolution = 256}, linear, {.units = "mm"});
+  add("huge.glb", torus(8, 1e30), {.resolution = 256}, linear);
+  add("tiny.glb", torus(8, 1e-30), {.resolution = 256}, linear, {.units = "um"});
+  add("empty.glb", torus(8), {.resolution = 256}, [](const Vec3&) { return std::nan(""); });
+  add("partly.glb", torus(8), {.resolution = 256}, [](const Vec3& p) { return p[2] > 0 ? 1 : std::nan(""); });
+  add("single.glb", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}}, {.resolution = 16}, linear);
+
+  const std::string install =
+      "cd '" SDM_VALIDATOR_FOLDER "' && flock package.json npm ci --silent --no-audit --no-fund";
+  ASSERT_EQ(std::system(install.c_str()), 0) << "npm is needed to install the validator";
+  const std::string validate = "cd '" SDM_VALIDATOR_FOLDER "' && node '" SDM_VALIDATOR_SCRIPT "'" + files;
+  EXPECT_EQ(std::system(validate.c_str()), 0);
+}
+
+}  // namespace
+}  // namespace sdm::test

@@ -1,0 +1,99 @@
+#include "read_png.h"
+#include "samples.h"
+
+namespace sdm::test {
+namespace {
+
+struct Pictures : ::testing::Test {
+  const Surface surface{torus(6), {.kind = AtlasKind::charts, .resolution = 256}};
+  const DistanceMap map = map_of(surface, [](const Vec3& p) { return p[2] < 0.2 ? p[0] : std::nan(""); });
+  const std::size_t n = surface.resolution();
+  TemporaryFolder folder;
+
+  /// Calls check(texel, colour) for every owned texel, and finds the background everywhere else.
+  void for_each_texel(const Pixels& pixels, const std::function<void(std::size_t, Rgb)>& check) {
+    for (std::size_t y = 0; y < n; ++y)
+      for (std::size_t x = 0; x < n; ++x) {
+        const std::size_t texel = y * n + x;
+        if (surface.texel_faces()[texel] == kNone)
+          ASSERT_EQ(pixels.at(x, y), kBackground);
+        else
+          check(texel, pixels.at(x, y));
+      }
+  }
+};
+
+TEST_F(Pictures, DistanceHasTheScalesColoursAndALegendBesideThem) {
+  for (const PictureOptions& options : {PictureOptions{}, PictureOptions{.units = "mm"},
+                                        PictureOptions{.colormap = Colormap::viridis, .range = {{-1, 0.5}}},
+                                        PictureOptions{.tolerance = 0.3}}) {
+    write_distance_png(folder / "distance.png", surface, map, options);
+    const Pixels pixels = read_png(folder / "distance.png");
+    const ColorScale scale = color_scale(map, options);
+    for_each_texel(pixels,
+                   [&](std::size_t texel, Rgb color) { ASSERT_EQ(color, scale(map.distance[texel])); });
+
+    ASSERT_GT(pixels.width, n + 100);
+    ASSERT_GE(pixels.height, n);
+    std::size_t dark = 0, colored = 0;
+    for (std::size_t y = 0; y < pixels.height; ++y)
+      for (std::size_t x = n; x < pixels.width; ++x) {
+        const Rgb c = pixels.at(x, y);
+        dark += c.r < 80 && c.g < 80 && c.b < 80;
+        colored += std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}) > 40;
+      }
+    EXPECT_GT(dark, 200u) << "no text";
+    EXPECT_GT(colored, 1000u) << "no colour bar";
+  }
+}
+
+TEST_F(Pictures, UnitsAreWrittenInTheLegend) {
+  write_distance_png(folder / "a.png", surface, map, {.units = "mm"});
+  write_distance_png(folder / "b.png", surface, map, {.units = "inches of the old kind"});
+  const Pixels a = read_png(folder / "a.png"), b = read_png(folder / "b.png");
+  ASSERT_EQ(a.width, b.width);
+  EXPECT_NE(a.colors, b.colors);
+}
+
+TEST_F(Pictures, VoronoiHasOneColourASite) {
+  write_voronoi_png(folder / "voronoi.png", surface, map);
+  const Pixels pixels = read_png(folder / "voronoi.png");
+  EXPECT_EQ(pixels.width, n);
+  EXPECT_EQ(pixels.height, n);
+  for_each_texel(pixels, [&](std::size_t texel, Rgb color) {
+    const bool missing = map.site_type[texel] == SiteType::none;
+    ASSERT_EQ(color, missing ? kNoValue : site_color(map.site_type[texel], map.site[texel]));
+  });
+}
+
+TEST_F(Pictures, DirectionDecodesToTheUnitVector) {
+  DistanceMap directed = map;
+  for (const std::uint32_t texel : surface.samples()) {
+    const auto t = static_cast<float>(texel);
+    if (!std::isnan(map.distance[texel]))
+      directed.vector[texel] = {std::sin(t) * 1e-3f, std::cos(t) * 1e-3f, -2e-3f};
+  }
+  write_direction_png(folder / "direction.png", surface, directed);
+  for_each_texel(read_png(folder / "direction.png"), [&](std::size_t texel, Rgb color) {
+    const Vec3f& v = directed.vector[texel];
+    if (std::isnan(v[0])) {
+      ASSERT_EQ(color, kNoValue);
+      return;
+    }
+    const float length = std::hypot(v[0], v[1], v[2]);
+    ASSERT_NEAR(color.r / 127.5 - 1, v[0] / length, 0.005);
+    ASSERT_NEAR(color.g / 127.5 - 1, v[1] / length, 0.005);
+    ASSERT_NEAR(color.b / 127.5 - 1, v[2] / length, 0.005);
+  });
+}
+
+TEST(SmallPicture, IsNoLowerThanItsLegend) {
+  const Surface surface(torus(3), {.kind = AtlasKind::charts, .resolution = 64});
+  const DistanceMap map = map_of(surface, [](const Vec3& p) { return p[0]; });
+  const TemporaryFolder folder;
+  write_distance_png(folder / "distance.png", surface, map);
+  EXPECT_GT(read_png(folder / "distance.png").height, 200u);
+}
+
+}  // namespace
+}  // namespace sdm::test
