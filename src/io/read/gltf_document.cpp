@@ -94,7 +94,7 @@ std::size_t column_count(const std::string& type) {
 
 // Calls visit with a zero of the type that glTF's code means.
 template <typename Visit>
-auto with_component_type(int code, const Visit& visit) {
+auto with_component_type(std::size_t code, const Visit& visit) {
   switch (code) {
     case 5120:
       return visit(std::int8_t{});
@@ -113,11 +113,29 @@ auto with_component_type(int code, const Visit& visit) {
   }
 }
 
-std::size_t member(const json& object, const char* name, std::size_t otherwise) {
-  return object.value(name, otherwise);
+// Checked, for converting other numbers, or too large ones, would be undefined.
+std::size_t checked(const json& value, const char* name) {
+  if (!value.is_number_unsigned())
+    throw Error(std::string(name) + " must be a whole number that is not negative");
+  return value.get<std::size_t>();
 }
 
 }  // namespace
+
+std::size_t whole_number(const json& object, const char* name) {
+  return checked(object.at(name), name);
+}
+
+std::size_t whole_number(const json& object, const char* name, std::size_t otherwise) {
+  return object.contains(name) ? whole_number(object, name) : otherwise;
+}
+
+std::vector<std::size_t> whole_numbers(const json& object, const char* name) {
+  std::vector<std::size_t> numbers;
+  if (object.contains(name))
+    for (const json& value : object.at(name)) numbers.push_back(checked(value, name));
+  return numbers;
+}
 
 GltfDocument::GltfDocument(std::string_view bytes, const std::filesystem::path& folder) {
   const Chunks chunks = split(bytes);
@@ -147,7 +165,7 @@ void GltfDocument::load_buffers(std::optional<std::string_view> binary_chunk,
     } else {
       buffers_.push_back(buffers_.empty() ? binary_chunk.value_or("") : "");
     }
-    const std::size_t length = buffer.at("byteLength");
+    const std::size_t length = whole_number(buffer, "byteLength");
     if (length > buffers_.back().size())
       throw Error("buffer " + std::to_string(buffers_.size() - 1) + " promises " + std::to_string(length) +
                   " bytes and has " + std::to_string(buffers_.back().size()) +
@@ -165,23 +183,24 @@ const json& GltfDocument::item(const char* list, std::size_t index) const {
 GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
   const json& accessor = item("accessors", accessor_index);
   if (accessor.contains("sparse")) throw Error("sparse accessors are not read");
-  const json& view = item("bufferViews", accessor.at("bufferView"));
-  const std::size_t buffer = view.at("buffer");
+  const json& view = item("bufferViews", whole_number(accessor, "bufferView"));
+  const std::size_t buffer = whole_number(view, "buffer");
   if (buffer >= buffers_.size())
     throw Error("refers to buffer " + std::to_string(buffer) + ", which is not there");
-  const std::size_t view_begin = member(view, "byteOffset", 0), view_length = view.at("byteLength");
+  const std::size_t view_begin = whole_number(view, "byteOffset", 0),
+                    view_length = whole_number(view, "byteLength");
   if (view_begin > buffers_[buffer].size() || view_length > buffers_[buffer].size() - view_begin)
     throw Error("a buffer view reaches beyond its buffer");
   const std::string_view bytes = buffers_[buffer].substr(view_begin, view_length);
 
   GltfNumbers numbers;
   numbers.columns = column_count(accessor.at("type"));
-  const std::size_t rows = accessor.at("count"), begin = member(accessor, "byteOffset", 0);
+  const std::size_t rows = whole_number(accessor, "count"), begin = whole_number(accessor, "byteOffset", 0);
   const bool normalized = accessor.value("normalized", false);
-  with_component_type(accessor.at("componentType"), [&](auto zero) {
+  with_component_type(whole_number(accessor, "componentType"), [&](auto zero) {
     using Component = decltype(zero);
     const std::size_t row_bytes = numbers.columns * sizeof(Component),
-                      stride = member(view, "byteStride", row_bytes);
+                      stride = whole_number(view, "byteStride", row_bytes);
     // The first row must fit, and each further one takes `stride` more bytes.
     if (rows > 0 && (begin > bytes.size() || row_bytes > bytes.size() - begin || stride == 0 ||
                      rows - 1 > (bytes.size() - begin - row_bytes) / stride))

@@ -13,6 +13,12 @@
 
 namespace sdm {
 
+/// A member that is an index, a count or a size. Throws sdm::Error where it is not a whole number.
+[[nodiscard]] std::size_t whole_number(const nlohmann::json& object, const char* name);
+[[nodiscard]] std::size_t whole_number(const nlohmann::json& object, const char* name, std::size_t otherwise);
+/// A member that is a list of them; empty where there is none.
+[[nodiscard]] std::vector<std::size_t> whole_numbers(const nlohmann::json& object, const char* name);
+
 /// The numbers of an accessor, row by row: three a row for VEC3.
 struct GltfNumbers {
   std::size_t columns = 0;
@@ -34,7 +40,7 @@ class GltfDocument {
   [[nodiscard]] const nlohmann::json& item(const char* list, std::size_t index) const;
   /// The rows that an accessor promises.
   [[nodiscard]] std::size_t count(std::size_t accessor) const {
-    return item("accessors", accessor).at("count");
+    return whole_number(item("accessors", accessor), "count");
   }
   /// The numbers of an accessor; integers are divided by their largest value where it says `normalized`.
   [[nodiscard]] GltfNumbers numbers(std::size_t accessor) const;

@@ -55,12 +55,11 @@ struct Instance {
 std::vector<std::size_t> roots(const GltfDocument& document) {
   const json& root = document.root();
   if (root.contains("scenes") && !root["scenes"].empty())
-    return document.item("scenes", root.value("scene", std::size_t{0}))
-        .value("nodes", std::vector<std::size_t>{});
+    return whole_numbers(document.item("scenes", whole_number(root, "scene", 0)), "nodes");
   const json nodes = root.value("nodes", json::array());
   std::vector<bool> is_child(nodes.size(), false);
   for (const json& node : nodes)
-    for (const std::size_t child : node.value("children", std::vector<std::size_t>{}))
+    for (const std::size_t child : whole_numbers(node, "children"))
       if (child < is_child.size()) is_child[child] = true;
   std::vector<std::size_t> result;
   for (std::size_t n = 0; n < is_child.size(); ++n)
@@ -85,22 +84,22 @@ std::vector<Instance> instances(const GltfDocument& document) {
     if (met[index]) throw Error("node " + std::to_string(index) + " has two parents, which glTF forbids");
     met[index] = true;
     const Affine to_scene = to_parent * node_transform(node);
-    if (node.contains("mesh")) result.push_back({node["mesh"], to_scene});
-    push(node.value("children", std::vector<std::size_t>{}), to_scene);
+    if (node.contains("mesh")) result.push_back({whole_number(node, "mesh"), to_scene});
+    push(whole_numbers(node, "children"), to_scene);
   }
   return result;
 }
 
-enum Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
+enum Mode : std::size_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 
 // Points and lines have no surface.
 bool has_triangles(const json& primitive) {
-  const int mode = primitive.value("mode", static_cast<int>(kTriangles));
+  const std::size_t mode = whole_number(primitive, "mode", kTriangles);
   return mode >= kTriangles && mode <= kFan && primitive.at("attributes").contains("POSITION");
 }
 
 // The places in the list of indices of the i-th triangle's corners.
-std::array<std::size_t, 3> corner_places(int mode, std::size_t i) {
+std::array<std::size_t, 3> corner_places(std::size_t mode, std::size_t i) {
   if (mode == kStrip) return i % 2 == 0 ? std::array{i, i + 1, i + 2} : std::array{i + 1, i, i + 2};
   if (mode == kFan) return {0, i + 1, i + 2};
   return {3 * i, 3 * i + 1, 3 * i + 2};
@@ -109,7 +108,7 @@ std::array<std::size_t, 3> corner_places(int mode, std::size_t i) {
 void add_primitive(const GltfDocument& document, const json& primitive, const Affine& to_scene,
                    PolygonMesh& mesh) {
   const json& attributes = primitive.at("attributes");
-  const GltfNumbers positions = document.numbers(attributes["POSITION"]);
+  const GltfNumbers positions = document.numbers(whole_number(attributes, "POSITION"));
   if (positions.columns != 3) throw Error("the positions of a mesh are not vectors of three");
   const std::size_t first_vertex = mesh.positions.size();
   for (std::size_t v = 0; v < positions.rows(); ++v) {
@@ -120,7 +119,7 @@ void add_primitive(const GltfDocument& document, const json& primitive, const Af
   const std::size_t first_uv = mesh.uvs.size();
   bool has_uvs = attributes.contains("TEXCOORD_0");
   if (has_uvs) {
-    const GltfNumbers uvs = document.numbers(attributes["TEXCOORD_0"]);
+    const GltfNumbers uvs = document.numbers(whole_number(attributes, "TEXCOORD_0"));
     has_uvs = uvs.columns == 2 && uvs.rows() == positions.rows();
     // glTF's v runs down from the upper left.
     for (std::size_t v = 0; has_uvs && v < uvs.rows(); ++v)
@@ -128,9 +127,9 @@ void add_primitive(const GltfDocument& document, const json& primitive, const Af
   }
 
   GltfNumbers indices{1, {}};
-  if (primitive.contains("indices")) indices = document.numbers(primitive["indices"]);
+  if (primitive.contains("indices")) indices = document.numbers(whole_number(primitive, "indices"));
   const std::size_t count = primitive.contains("indices") ? indices.values.size() : positions.rows();
-  const int mode = primitive.value("mode", static_cast<int>(kTriangles));
+  const std::size_t mode = whole_number(primitive, "mode", kTriangles);
   const std::size_t triangles = mode == kTriangles ? count / 3 : count < 3 ? 0 : count - 2;
   for (std::size_t i = 0; i < triangles; ++i) {
     std::array<std::size_t, 3> places = corner_places(mode, i);
@@ -138,9 +137,8 @@ void add_primitive(const GltfDocument& document, const json& primitive, const Af
     for (const std::size_t place : places) {
       const double index = primitive.contains("indices") ? indices.values[place] : static_cast<double>(place);
       if (!(index >= 0 && index < static_cast<double>(positions.rows())))
-        throw Error("index out of range: a triangle refers to vertex " +
-                    std::to_string(static_cast<std::int64_t>(index)) + " of " +
-                    std::to_string(positions.rows()));
+        throw Error("index out of range: a triangle refers to a vertex beyond the " +
+                    std::to_string(positions.rows()) + " of its mesh");
       const auto v = static_cast<std::size_t>(index);
       mesh.corners.push_back(static_cast<std::uint32_t>(first_vertex + v));
       mesh.corner_uvs.push_back(has_uvs ? static_cast<std::uint32_t>(first_uv + v) : kNone);
@@ -160,8 +158,8 @@ void check_memory(const GltfDocument& document, const std::vector<Instance>& sce
   for (const Instance& instance : scene)
     for (const json& primitive : document.item("meshes", instance.mesh).at("primitives")) {
       if (!has_triangles(primitive)) continue;
-      add(document.count(primitive["attributes"]["POSITION"]));
-      if (primitive.contains("indices")) add(document.count(primitive["indices"]));
+      add(document.count(whole_number(primitive["attributes"], "POSITION")));
+      if (primitive.contains("indices")) add(document.count(whole_number(primitive, "indices")));
     }
   require_memory(items * bytes_per_item, "the scene");
 }
