@@ -119,40 +119,47 @@ class Clustering {
   }
 
   // Joins pairs of neighbours whose normals fit one cone, the smallest clusters first, each with the
-  // neighbour that it shares the longest border with; until no pair is left.
+  // neighbour that it shares the longest border with; until no pair is left. A pair that did not fit is tried
+  // again only after one of the two has grown.
   void merge() {
     std::vector<NormalCone> cones = all_cones();
+    std::vector<double> area = areas();
+    std::vector<Link> links = all_links();
+    std::vector<std::uint32_t> target(axes_.size());  // the cluster that each has become part of, or itself
+    std::iota(target.begin(), target.end(), 0u);
+    std::vector<std::uint8_t> grown(axes_.size(), 1);
     for (bool merged = true; merged;) {
       merged = false;
-      const std::vector<Link> links = all_links();
-      std::vector<std::uint32_t> target(axes_.size(), kNone);
       std::vector<std::uint8_t> busy(axes_.size(), 0);
-      for (const std::uint32_t c : by_area()) {
+      for (const std::uint32_t c : by_area(area, target)) {
         if (busy[c]) continue;
         auto [first, last] = std::equal_range(links.begin(), links.end(), Link{c, 0, 0},
                                               [](const Link& a, const Link& b) { return a.from < b.from; });
-        std::vector<Link> choice(first, last);
+        std::vector<Link> choice;
+        std::copy_if(first, last, std::back_inserter(choice),
+                     [&](const Link& link) { return !busy[link.to] && (grown[c] || grown[link.to]); });
         std::sort(choice.begin(), choice.end(),
                   [](const Link& a, const Link& b) { return a.length > b.length; });
         for (const Link& link : choice) {
-          if (busy[link.to]) continue;
           auto joined = join(cones[c], cones[link.to], cos_);
           if (!joined) continue;
           cones[link.to] = std::move(*joined);
           axes_[link.to] = cones[link.to].axis;
+          area[link.to] += area[c];
           target[c] = link.to;
           busy[c] = busy[link.to] = 1;
           merged = true;
           break;
         }
       }
+      // A busy cluster is in one merger a round, so that targets are never themselves joined to others in it.
+      for (Link& link : links) link = {target[link.from], target[link.to], link.length};
+      unite(links);
       for (std::uint32_t& l : label_)
-        if (l != kNone && target[l] != kNone) l = target[l];
-      const std::vector<std::uint32_t> kept = drop_empty_clusters();
-      for (std::size_t c = 0; c < kept.size(); ++c)
-        if (kept[c] != c) cones[c] = std::move(cones[kept[c]]);
-      cones.resize(kept.size());
+        if (l != kNone) l = target[l];
+      grown = std::move(busy);
     }
+    drop_empty_clusters();
   }
 
   [[nodiscard]] std::vector<NormalCone> all_cones() {
@@ -182,6 +189,13 @@ class Clustering {
         const double length = norm(mesh_.positions[t[(k + 1) % 3]] - mesh_.positions[t[k]]);
         links.push_back({label_[f], label_[next], length});
       }
+    unite(links);
+    return links;
+  }
+
+  // Sorts links, adds up those between the same two clusters, and drops those of a cluster with itself.
+  static void unite(std::vector<Link>& links) {
+    std::erase_if(links, [](const Link& link) { return link.from == link.to; });
     std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) {
       return std::pair(a.from, a.to) < std::pair(b.from, b.to);
     });
@@ -193,15 +207,21 @@ class Clustering {
         links[count++] = link;
     }
     links.resize(count);
-    return links;
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> by_area() const {
+  [[nodiscard]] std::vector<double> areas() const {
     std::vector<double> area(axes_.size());
     for (std::uint32_t f = 0; f < label_.size(); ++f)
       if (label_[f] != kNone) area[label_[f]] += faces_.area[f];
-    std::vector<std::uint32_t> order(axes_.size());
-    std::iota(order.begin(), order.end(), 0u);
+    return area;
+  }
+
+  // The clusters that are not part of others, the smallest first.
+  [[nodiscard]] static std::vector<std::uint32_t> by_area(const std::vector<double>& area,
+                                                          const std::vector<std::uint32_t>& target) {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t c = 0; c < target.size(); ++c)
+      if (target[c] == c) order.push_back(c);
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return area[a] < area[b]; });
     return order;
   }
@@ -222,21 +242,20 @@ class Clustering {
     drop_empty_clusters();
   }
 
-  // Renumbers the clusters that have faces; returns their old numbers, in order.
-  std::vector<std::uint32_t> drop_empty_clusters() {
-    std::vector<std::uint32_t> renumber(axes_.size(), kNone), kept;
+  // Renumbers the clusters that have faces, keeping their order.
+  void drop_empty_clusters() {
+    std::vector<std::uint32_t> renumber(axes_.size(), kNone);
+    std::uint32_t kept = 0;
     for (const std::uint32_t l : label_)
       if (l != kNone) renumber[l] = 0;
     for (std::uint32_t c = 0; c < axes_.size(); ++c)
       if (renumber[c] == 0) {
-        renumber[c] = static_cast<std::uint32_t>(kept.size());
-        axes_[kept.size()] = axes_[c];
-        kept.push_back(c);
+        axes_[kept] = axes_[c];
+        renumber[c] = kept++;
       }
-    axes_.resize(kept.size());
+    axes_.resize(kept);
     for (std::uint32_t& l : label_)
       if (l != kNone) l = renumber[l];
-    return kept;
   }
 
   [[nodiscard]] std::vector<Chart> charts() const {

@@ -55,6 +55,12 @@ Cap find_cap(std::span<const Vec3> rays, Vec3 centre, double cos_angle) {
   return best;
 }
 
+const Vec3& farthest(std::span<const Vec3> rays, const Vec3& direction) {
+  return *std::min_element(rays.begin(), rays.end(), [&](const Vec3& a, const Vec3& b) {
+    return dot(a, direction) < dot(b, direction);
+  });
+}
+
 }  // namespace
 
 NormalCone spanned_cone(std::span<const Vec3> normals, const Vec3& axis) {
@@ -65,6 +71,9 @@ NormalCone spanned_cone(std::span<const Vec3> normals, const Vec3& axis) {
 }
 
 std::optional<NormalCone> join(const NormalCone& a, const NormalCone& b, double cos_angle) {
+  // Two rays more than 2θ apart fit no cap of angle θ: most pairs that do not fit show it by their extremes.
+  const Vec3& from_b = farthest(a.rays, b.axis);
+  if (dot(from_b, farthest(b.rays, from_b)) < 2 * cos_angle * cos_angle - 1) return std::nullopt;
   std::vector<Vec3> rays = a.rays;
   rays.insert(rays.end(), b.rays.begin(), b.rays.end());
   const Cap cap = find_cap(rays, normalized(a.axis + b.axis), cos_angle);
