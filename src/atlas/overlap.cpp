@@ -128,16 +128,16 @@ std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const 
   std::uint64_t pairs = 0;
   for (std::size_t cell = 0; cell < buckets.cells(); ++cell) {
     const auto list = buckets.list(cell);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      if ((pairs += i) > budget) return std::pair(solid[list[0]], solid[list[i]]);
-      for (std::size_t j = 0; j < i; ++j) {
+    // The last of the list first: where layers lie on each other, a pair far apart cuts their stack in the
+    // middle.
+    for (std::size_t i = 0; i + 1 < list.size(); ++i) {
+      if ((pairs += list.size() - i) > budget) return std::pair(solid[list[i]], solid[list.back()]);
+      for (std::size_t j = list.size() - 1; j > i; --j) {
         const Rectangle &a = boxes[list[i]], &b = boxes[list[j]];
-        // Of the cells that two boxes share, the one that holds the low corner of their intersection tests
-        // them.
-        if (!boxes_meet(a, b) ||
-            buckets.cell_of(std::max(a.lo[0], b.lo[0]), std::max(a.lo[1], b.lo[1])) != cell)
-          continue;
-        const std::size_t first = solid[list[j]], second = solid[list[i]];
+        // Of the cells that two boxes share, the one with the low corner of their intersection tests them.
+        if (!boxes_meet(a, b)) continue;
+        if (buckets.cell_of(std::max(a.lo[0], b.lo[0]), std::max(a.lo[1], b.lo[1])) != cell) continue;
+        const std::size_t first = solid[list[i]], second = solid[list[j]];
         if (interiors_meet(triangles[first], triangles[second], slack)) return std::pair(first, second);
       }
     }

@@ -3,6 +3,7 @@
 #include <sdm/error.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -17,15 +18,27 @@
 namespace sdm {
 namespace {
 
-// Beyond this many cells a side, a cell is a square of several texels: shapes are large then, and lose little
-// by it.
-constexpr std::uint32_t kMaxCells = 2048;
-// The search tries this many scales at once, whatever the number of threads, and ends at this share of the
+// Beyond this many cells a side, a cell is a square of several texels: charts are large then, and lose little
+// by it. Many small charts have more cells.
+constexpr double kCells = 2048, kCellsPerChart = 10;
+// The search tries this many scales at once, whatever the number of threads, and ends at a share of the
 // atlas.
 constexpr int kTrials = 4;
 constexpr double kPrecision = 0.005;
 // From so many charts on, speed goes before filling the last holes.
 constexpr std::size_t kManyCharts = 4096;
+constexpr double kPrecisionOfMany = 0.02;
+
+std::uint32_t texels_per_cell(std::uint32_t resolution, std::size_t charts) {
+  const double cells = std::max(kCells, kCellsPerChart * std::sqrt(static_cast<double>(charts)));
+  return static_cast<std::uint32_t>(std::ceil(resolution / cells));
+}
+
+// Lengths of the same three leading bits share a class.
+std::uint64_t size_class(std::uint32_t length) {
+  const auto shift = static_cast<std::uint32_t>(std::max(0, static_cast<int>(std::bit_width(length)) - 3));
+  return std::uint64_t{shift} << 3 | length >> shift;
+}
 
 class Packer {
  public:
@@ -33,7 +46,7 @@ class Packer {
       : shapes_(shapes),
         resolution_(resolution),
         gutter_(gutter),
-        cell_((resolution + kMaxCells - 1) / kMaxCells) {
+        cell_(texels_per_cell(resolution, shapes.size())) {
     order_.resize(shapes.size());
     std::iota(order_.begin(), order_.end(), 0u);
     const auto extent = [&](std::uint32_t s) { return shapes[s].size[0] * shapes[s].size[1]; };
@@ -65,8 +78,8 @@ class Packer {
   [[nodiscard]] std::optional<std::vector<Placement>> try_scale(double scale) const {
     BitmapBin bin(cells());
     std::vector<Placement> placements(shapes_.size());
-    // Where the last stamp of the same size went, a later one hardly finds a place above: with many small
-    // charts this saves nearly all of the search.
+    // Where the last stamp of about the same size went, a later one hardly finds a place above: with many
+    // small charts this saves nearly all of the search.
     const bool many = shapes_.size() > kManyCharts;
     std::unordered_map<std::uint64_t, std::uint32_t> first_rows;
     for (const std::uint32_t s : order_) {
@@ -79,13 +92,14 @@ class Packer {
       for (unsigned turn = 0; turn < 4; ++turn) {
         const Stamp& stamp = footprint.stamps[turn];
         if (stamp.height >= bottom) continue;
-        std::uint32_t& first_row = first_rows[std::uint64_t{stamp.width} << 32 | stamp.height];
-        if (const auto spot = bin.first_fit(stamp, first_row, bottom - stamp.height)) {
-          best = spot;
-          best_turn = turn;
-          bottom = spot->y + stamp.height;
-          if (many) first_row = spot->y;
-        }
+        std::uint32_t& first_row = first_rows[size_class(stamp.width) << 32 | size_class(stamp.height)];
+        const std::uint32_t end_y = bottom - stamp.height;
+        const auto spot = bin.first_fit(stamp, first_row, end_y);
+        if (many) first_row = std::max(first_row, spot ? spot->y : end_y);
+        if (!spot) continue;
+        best = spot;
+        best_turn = turn;
+        bottom = spot->y + stamp.height;
       }
       if (!best) return std::nullopt;
       bin.place(footprint.stamps[best_turn], *best);
@@ -132,7 +146,8 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
   // Shares of the atlas: `low` is known to fit once there is a best packing, `high` is not expected to.
   double low = 0.66, high = 1.0;
   std::optional<std::vector<Placement>> best;
-  while (high - low > kPrecision) {
+  const double precision = shapes.size() > kManyCharts ? kPrecisionOfMany : kPrecision;
+  while (!best || high - low > precision) {
     std::array<double, kTrials> shares{};
     std::array<std::optional<std::vector<Placement>>, kTrials> packings;
     for (int k = 0; k < kTrials; ++k)
@@ -149,7 +164,7 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
       best = std::move(packings[fitting]);
     } else if (!best) {
       low = high / 2;
-      if (low < 0.01) throw_too_small(shapes.size(), resolution, gutter);
+      if (low < kPrecisionOfMany) throw_too_small(shapes.size(), resolution, gutter);
     }
   }
   return std::move(*best);
