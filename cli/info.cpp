@@ -37,7 +37,7 @@ nlohmann::ordered_json to_json(const std::string& file, const sdm::MeshInfo& inf
           {"unused_vertices", info.unused_vertices},
           {"uvs", info.has_uvs},
           {"area", info.area},
-          {"volume", info.volume}};
+          {"volume", info.closed && info.orientable ? nlohmann::ordered_json(info.volume) : nullptr}};
 }
 
 std::string text(bool value) {
@@ -97,5 +97,6 @@ void add_info_command(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command->add_option("MESH", options->file, "OBJ, PLY, STL, OFF, glTF, GLB or 3DS file")->required();
   command->add_flag("--json", options->json, "Print JSON");
+  command->footer("Example:\n  sdm info scan.ply");
   command->callback([options] { run(*options); });
 }

@@ -10,6 +10,14 @@
 #include <iostream>
 #include <new>
 
+namespace {
+
+void flush_output() {
+  if (!std::cout.flush()) throw sdm::Error("cannot write to the standard output; where it goes may be full");
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App app("Surface distance maps: how far one triangle mesh is from another, everywhere on its surface.",
                "sdm");
@@ -24,6 +32,7 @@ int main(int argc, char** argv) {
     add_info_command(app);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) std::cout << app.help();
+    flush_output();
     return 0;
   } catch (const CLI::RuntimeError& outcome) {
     return outcome.get_exit_code();

@@ -171,9 +171,13 @@ int run(MapCommand command) {
   const double import_ms = import.ms();
 
   std::vector<Result> results;
-  results.push_back(measure(command, o1, o2, import_ms, out.staging(command.both ? "o1" : ""), progress));
-  if (command.both) results.push_back(measure(command, o2, o1, import_ms, out.staging("o2"), progress));
-  out.commit();
+  try {
+    results.push_back(measure(command, o1, o2, import_ms, out.staging(command.both ? "o1" : ""), progress));
+    if (command.both) results.push_back(measure(command, o2, o1, import_ms, out.staging("o2"), progress));
+    out.commit();
+  } catch (const sdm::Error& error) {
+    throw sdm::Error(out.publicly(error.what()));
+  }
 
   if (command.json) {
     std::cout << to_text(command.both
@@ -209,6 +213,18 @@ CLI::Validator number(const std::string& description, bool (*accepts)(double)) {
       "");
 }
 
+CLI::Validator whole_number(int lowest, int highest) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        int value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && lowest <= value && value <= highest;
+        return good ? std::string()
+                    : text + " is not a whole number from " + std::to_string(lowest) + " to " +
+                          std::to_string(highest);
+      },
+      "");
+}
+
 template <class Enum>
 void add_choice(CLI::App& app, const std::string& name, Enum& target, const std::string& description,
                 const std::vector<std::pair<std::string, Enum>>& choices) {
@@ -236,6 +252,8 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_option("O2", c.o2, "The mesh that distances are measured to")->required();
   app.add_option("-o,--output", c.out, "The folder of the results, made if it is not there")
       ->required()
+      ->check(CLI::Validator(
+          [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
       ->type_name("DIR");
   app.add_flag("--both", c.both, "Measure O2 as well: results in DIR/o1 and DIR/o2");
 
@@ -244,7 +262,7 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_option("--transform-o2", c.transform_o2, "O2" + steps)->check(check_transform)->type_name("STEPS");
 
   app.add_option("--resolution", c.atlas.resolution, "Texels along each side of the map")
-      ->check(CLI::Range(16, 32768))
+      ->check(whole_number(16, 32768))
       ->type_name("N")
       ->capture_default_str();
   add_choice<sdm::AtlasKind>(app, "--atlas", c.atlas.kind,
@@ -276,7 +294,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->type_name("D");
 
   add_choice<sdm::Colormap>(app, "--colormap", c.picture.colormap,
-                            "Colours; auto: diverging if signed, else viridis",
+                            "Colours; auto: diverging where distances have both signs, else viridis",
                             {{"auto", sdm::Colormap::automatic},
                              {"viridis", sdm::Colormap::viridis},
                              {"diverging", sdm::Colormap::diverging},
@@ -290,7 +308,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->type_name("NAME");
 
   app.add_option("--threads", c.threads, "Threads to use, 0 for all cores")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_number(0, 1024))
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--json", c.json, "Print the report (report.json) instead of a summary");

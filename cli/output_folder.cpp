@@ -38,7 +38,9 @@ OutputFolder::OutputFolder(const fs::path& folder)
     existing_ = existing_.parent_path();
   if (!fs::is_directory(existing_, ignored)) fail(existing_, "it is not a folder");
   try {
-    create_folder(staging_);
+    std::error_code error;
+    fs::create_directories(staging_, error);
+    if (error) fail(folder_, error.message());
   } catch (...) {
     remove_traces();
     throw;
@@ -60,6 +62,12 @@ fs::path OutputFolder::staging(const fs::path& subfolder) {
   const fs::path path = staging_ / subfolder;
   create_folder(path);
   return path;
+}
+
+std::string OutputFolder::publicly(std::string message) const {
+  const std::string hidden = fs::path::preferred_separator + staging_.filename().string();
+  for (std::size_t at; (at = message.find(hidden)) != std::string::npos;) message.erase(at, hidden.size());
+  return message;
 }
 
 void OutputFolder::commit() {

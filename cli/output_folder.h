@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 /// Results are first written to a hidden folder inside; commit() moves them to their places. Without it
 /// nothing remains: no file, and no folder that was not there before.
@@ -15,6 +16,8 @@ class OutputFolder {
 
   /// Where to write what commit() moves to `folder`/`subfolder`.
   [[nodiscard]] std::filesystem::path staging(const std::filesystem::path& subfolder = {});
+  /// A message about the staging folder, in terms of the folder of the results.
+  [[nodiscard]] std::string publicly(std::string message) const;
   /// Replaces files of an earlier run. Throws sdm::Error when a result's place is taken by a folder.
   void commit();
 

@@ -91,8 +91,8 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
   if (outcome.beyond_max_distance > 0)
     text += "            " + std::to_string(outcome.beyond_max_distance) +
             " texels are farther than --max-distance\n";
-  text +=
-      "  error     at most " + number(outcome.error_bound) + unit + " from a sample to any point around it\n";
+  text += "  error     at most " + number(outcome.error_bound) + unit +
+          ", anywhere between the texels (where the values are exact)\n";
   if (outcome.tolerance)
     text += std::string("  tolerance ") + (outcome.tolerance->within ? "kept" : "exceeded on ") +
             (outcome.tolerance->within

@@ -14,13 +14,14 @@
 namespace sdm {
 
 /// Reads OBJ, PLY, STL, OFF, glTF/GLB or 3DS, told apart by content first, then by extension. Polygons are
-/// triangulated; node transforms applied; all meshes of the file become one. Vertices of the file that the faces use are kept in
-/// their order, positions that are bit-identical become one vertex. The result is valid in the sense of validate().
+/// triangulated; node transforms applied; all meshes of the file become one. Vertices of the file that the
+/// faces use are kept in their order, positions that are bit-identical become one vertex. The result is valid
+/// in the sense of validate().
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& file);
 
 /// Colours for looking at maps.
 enum class Colormap {
-  automatic,  ///< viridis for unsigned maps, diverging for signed ones
+  automatic,  ///< diverging where the map has both signs; else viridis, which then uses its whole scale
   viridis,
   diverging,  ///< blue (negative) – white – red (positive), centred on zero
   paper2006,  ///< red (near) to green (far), as in the paper's figures
@@ -28,13 +29,14 @@ enum class Colormap {
 
 struct PictureOptions {
   Colormap colormap = Colormap::automatic;
-  std::optional<std::array<double, 2>> range{};  ///< of the colours; else from the map (symmetric if signed)
-  std::optional<double> tolerance{};             ///< bands: green within ±tolerance, and out of it by sign
-  std::string units{};                           ///< written in the legend: "mm", ...
+  std::optional<std::array<double, 2>>
+      range{};                        ///< of the colours; else from the map (symmetric if diverging)
+  std::optional<double> tolerance{};  ///< bands: green within ±tolerance, and out of it by sign
+  std::string units{};                ///< written in the legend: "mm", ...
 };
 
-/// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Gutters are dilated;
-/// coverage.A is the true coverage. Invalid: NaN and 0xFFFFFFFF.
+/// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A.
+/// Gutters are dilated; coverage.A is the true coverage. Invalid: NaN and 0xFFFFFFFF.
 void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
 
 /// distance.png: the distance in colours, with a legend of range and units.
@@ -45,10 +47,10 @@ void write_voronoi_png(const std::filesystem::path& file, const Surface& surface
 /// direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
 void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
 
-/// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex, opens coloured in any
-/// viewer. `vertex_distances`: one for each vertex of surface.mesh(), NaN where there is none: as glTF knows no NaN, the
-/// faces of such vertices form a primitive without `_DISTANCE`. Units m, cm, mm, um, in, ft scale the node to
-/// metres; none or others leave it.
+/// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex, opens
+/// coloured in any viewer. `vertex_distances`: one for each vertex of surface.mesh(), NaN where there is
+/// none: as glTF knows no NaN, the faces of such vertices form a primitive without `_DISTANCE`. Units m, cm,
+/// mm, um, in, ft scale the node to metres; none or others leave it.
 void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                std::span<const float> vertex_distances, const PictureOptions& options = {});
 

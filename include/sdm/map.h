@@ -36,7 +36,7 @@ struct SignUsed {
 struct MapOptions {
   EngineKind engine = EngineKind::cpu;
   SignMethod sign = SignMethod::automatic;
-  /// Texels farther than this hold no value (NaN).
+  /// Greater than 0, in units of the meshes. Texels farther than this hold no value (NaN).
   double max_distance = std::numeric_limits<double>::infinity();
   Progress progress{};
 };
@@ -60,7 +60,8 @@ struct DistanceMap {
                                       const MapOptions& options = {});
 
 /// Closest points of O2 to any points, in any order, by the same engines. `distance` in the result is
-/// unsigned; options.sign is not used. Throws sdm::Error for a point that is not finite; Cancelled.
+/// unsigned; options.sign is not used. Throws sdm::Error for a coordinate that is NaN or beyond 1e37;
+/// Cancelled.
 [[nodiscard]] std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
                                                        const MapOptions& options = {});
 
@@ -69,7 +70,8 @@ struct DistanceMap {
 [[nodiscard]] SignUsed choose_sign(const Sites& sites, SignMethod asked);
 
 /// For each closest point: whether its query lies inside O2 (1) or not (0), by `method` (pseudonormal or
-/// winding).
+/// winding, else none is). `closest` comes from closest_points with the same sites; where it has no site, the
+/// answer of pseudonormal is 0. Throws sdm::Error for a method that O2 does not allow.
 [[nodiscard]] std::vector<std::uint8_t> inside(const Sites& sites, std::span<const Vec3> queries,
                                                std::span<const ClosestPoint> closest, SignMethod method);
 

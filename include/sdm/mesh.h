@@ -17,8 +17,9 @@ struct Mesh {
   std::vector<std::array<Vec2, 3>> corner_uvs;
 };
 
-/// Throws sdm::Error unless the mesh can be used: every index in range, every coordinate finite, at most
-/// 2^30 triangles, and at least one triangle with an area. Cost: linear.
+/// Throws sdm::Error unless the mesh can be used: every index in range, every coordinate finite and at most
+/// 1e37 in magnitude, the mesh larger than 1e-30, at most 2^30 triangles, at least one of them with an area,
+/// and texture coordinates finite and for all triangles or none. Cost: linear.
 void validate(const Mesh& mesh);
 
 /// Bounds of all positions that a triangle refers to. Cost: linear.

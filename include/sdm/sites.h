@@ -33,8 +33,9 @@ class Sites {
   Sites(Sites&&) noexcept;
   Sites& operator=(Sites&&) noexcept;
 
-  /// Moves the vertices, keeping the triangles: everything is brought up to date in linear time. Throws
-  /// sdm::Error, and changes nothing, when the count differs or a coordinate is not finite.
+  /// Moves the vertices, keeping the triangles: everything is brought up to date in linear time (and a few
+  /// rays for each component of a closed mesh). Throws sdm::Error, and changes nothing, when the count
+  /// differs or a coordinate is not finite or beyond 1e37.
   void refit(std::span<const Vec3> positions);
 
   [[nodiscard]] const Mesh& mesh() const;

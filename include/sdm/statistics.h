@@ -18,7 +18,8 @@ struct DistanceStatistics {
   double p50 = 0, p95 = 0, p99 = 0;  ///< the smallest distance below which that share of the area lies
 };
 
-/// Over `map.distance` as it is, signed or not. Cost: O(n log n) in texels.
+/// Over `map.distance` as it is, signed or not. Throws sdm::Error when the map is not one of this surface.
+/// Cost: O(n log n) in texels.
 [[nodiscard]] DistanceStatistics statistics(const Surface& surface, const DistanceMap& map);
 
 /// The share of the area, in [0, 1], whose |distance| is above `limit`; texels beyond the map's maximum

@@ -26,15 +26,16 @@ struct AtlasOptions {
 
 /// O1: a mesh whose faces are laid out, without overlap, in a square texture.
 ///
-/// Atlas coordinates (u, v) are in texels, u to the right, v *down* from the upper left corner of the image, so
-/// that texel (x, y) has its centre at (x + 0.5, y + 0.5) and the index y * resolution + x. Every face has an
-/// affine map M from its plane to the atlas; a texel belongs to the face that its centre lies in, at most one.
+/// Atlas coordinates (u, v) are in texels, u to the right, v *down* from the upper left corner of the image,
+/// so that texel (x, y) has its centre at (x + 0.5, y + 0.5) and the index y * resolution + x. Every face has
+/// an affine map M from its plane to the atlas; a texel belongs to the face that its centre lies in, at most
+/// one.
 class Surface {
  public:
-  /// Lays out the atlas. Throws sdm::Error when the mesh is unusable (see validate), when the resolution is out of range
-  /// or too small for the charts, when there is no memory for it, and for AtlasKind::uv when coordinates are
-  /// missing or faces overlap (the message names two of them). Faces without area belong to no chart.
-  /// Cost: O(n log n) for charts, then packing.
+  /// Lays out the atlas. Throws sdm::Error when the mesh is unusable (see validate), when the resolution is
+  /// out of range or too small for the charts, when there is no memory for it, and for AtlasKind::uv when
+  /// coordinates are missing or faces overlap (the message names two of them). Faces without area belong to
+  /// no chart. Cost: O(n log n) for charts, then packing.
   explicit Surface(Mesh mesh, const AtlasOptions& options = {});
   ~Surface();
   Surface(Surface&&) noexcept;
@@ -63,11 +64,13 @@ class Surface {
 
   /// Owned texels over all texels.
   [[nodiscard]] double utilisation() const;
-  /// The largest factor by which a length grows from atlas to surface, relative to the atlas's own scale (for `uv`: the
-  /// scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for `charts`.
+  /// The largest factor by which a length grows from atlas to surface, relative to the atlas's own scale (for
+  /// `uv`: the scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for
+  /// `charts`.
   [[nodiscard]] double max_stretch() const;
-  /// An upper bound, computed once at the first call, on the distance of any point of the surface to the nearest sample:
-  /// since distances are 1-Lipschitz, also on the error of taking the nearest sample's distance. Bounded, not exact.
+  /// An upper bound, computed once at the first call, on the distance of any point of the surface to the
+  /// nearest sample: since distances are 1-Lipschitz, also on the error of taking the nearest sample's
+  /// distance. Bounded, not exact.
   [[nodiscard]] double sampling_bound() const;
 
   struct Impl;

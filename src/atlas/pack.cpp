@@ -47,6 +47,7 @@ class Packer {
         resolution_(resolution),
         gutter_(gutter),
         cell_(texels_per_cell(resolution, shapes.size())) {
+    for (const Shape& s : shapes) longest_ = std::max({longest_, s.size[0], s.size[1]});
     order_.resize(shapes.size());
     std::iota(order_.begin(), order_.end(), 0u);
     const auto extent = [&](std::uint32_t s) { return shapes[s].size[0] * shapes[s].size[1]; };
@@ -68,9 +69,11 @@ class Packer {
     const double room =
         share * resolution_ * resolution_ - corner * corner * static_cast<double>(shapes_.size());
     if (room <= 0) return std::nullopt;
-    // area s² + reach perimeter s = room, without cancellation
+    // area s² + reach perimeter s = room, without cancellation; a long thin shape may reach across before
+    // that
     const double b = reach * perimeter;
-    return 2 * room / (b + std::sqrt(b * b + 4 * area * room));
+    const double longest_fit = (resolution_ - 2 * gutter - 2 * cell_) / longest_;
+    return std::min(2 * room / (b + std::sqrt(b * b + 4 * area * room)), longest_fit);
   }
 
   // First fit, large shapes first, in the turn that reaches least far down. None where a shape finds no
@@ -120,17 +123,18 @@ class Packer {
 
   std::span<const Shape> shapes_;
   std::uint32_t resolution_, gutter_, cell_;
+  double longest_ = 0;                // side of a shape's rectangle
   std::vector<std::uint32_t> order_;  // of placing
 };
 
 [[noreturn]] void throw_too_small(std::size_t charts, std::uint32_t resolution, std::uint32_t gutter) {
-  const double side = (2.0 * gutter + 2) * std::sqrt(2.0 * static_cast<double>(charts));
+  // Charts of a texel or two, packed to four fifths.
+  const double side = (2.0 * gutter + 1) * std::sqrt(1.25 * static_cast<double>(charts));
   const auto enough =
       static_cast<std::uint64_t>(std::exp2(std::ceil(std::log2(std::max(side, resolution + 1.0)))));
   throw Error("an atlas of " + std::to_string(resolution) + "² texels is too small for " +
               std::to_string(charts) + " charts with gutters of " + std::to_string(gutter) +
-              "; use a resolution of about " + std::to_string(enough) +
-              (gutter > 0 ? ", or a smaller gutter" : ""));
+              "; use a resolution of about " + std::to_string(enough));
 }
 
 }  // namespace

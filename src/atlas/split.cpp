@@ -138,7 +138,10 @@ std::vector<Chart> split_overlaps(const Mesh& mesh, const FaceGeometry& faces, s
   });
   std::vector<Chart> result;
   for (std::vector<Chart>& list : pieces)
-    for (Chart& piece : list) result.push_back(std::move(piece));
+    for (Chart& piece : list) {
+      if (piece.faces.size() == 1) piece.axis = faces.normal[piece.faces[0]];
+      result.push_back(std::move(piece));
+    }
   return result;
 }
 

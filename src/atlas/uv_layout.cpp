@@ -16,6 +16,7 @@ namespace {
 // Coordinates this far outside [0, 1] are taken for rounding; overlaps this deep, in texels, too.
 constexpr double kOutside = 1e-6;
 constexpr double kTexelSlack = 1.0 / 1024;
+constexpr double kLeastArea = 1e-12;  // square texels; below it the map back to the surface loses its meaning
 
 [[noreturn]] void fail(const std::string& fault) {
   throw Error("the mesh's own texture coordinates make no atlas: " + fault + "; use --atlas charts");
@@ -32,7 +33,7 @@ void place_corners(const Mesh& mesh, const FaceGeometry& faces, std::uint32_t re
       layout.corners[f][k] = {std::clamp(u, 0.0, 1.0) * n, (1 - std::clamp(v, 0.0, 1.0)) * n};
     }
     const auto& [a, b, c] = layout.corners[f];
-    if (cross(b - a, c - a) == 0)
+    if (!(std::abs(cross(b - a, c - a)) > kLeastArea))
       fail("face " + std::to_string(f) + " has an area on the surface but none in the texture");
   }
 }
@@ -102,7 +103,7 @@ std::vector<std::vector<std::uint32_t>> uv_charts(const Mesh& mesh, const FaceGe
 }  // namespace
 
 Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
-  if (mesh.corner_uvs.empty()) fail("there are none");
+  if (mesh.corner_uvs.empty()) fail("not every corner of every face has them");
   const FaceGeometry faces = face_geometry(mesh);
   Layout layout;
   layout.corners.resize(mesh.triangles.size());

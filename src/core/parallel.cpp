@@ -7,6 +7,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <mutex>
@@ -27,12 +28,19 @@ unsigned thread_count() {
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
+// Isolated contexts: otherwise an exception would cancel every loop that runs below a sibling of its thrower,
+// and that sibling would go on with ranges its loops silently left out. Isolated tasks: a thread that waits
+// for a loop must not take up other work, which might want a lock that the thread holds.
+
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, count, grain),
-      [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
-      tbb::simple_partitioner());
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, grain),
+        [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
+        tbb::simple_partitioner(), context);
+  });
 }
 
 void parallel_for(std::size_t count, std::size_t grain, const Progress& progress, std::string_view step,
@@ -53,7 +61,8 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
 }
 
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
-  tbb::parallel_invoke(first, second);
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(first, second, context); });
 }
 
 }  // namespace sdm

@@ -16,7 +16,8 @@ void parallel_for(std::size_t count, std::size_t grain,
 void parallel_for(std::size_t count, std::size_t grain, const Progress& progress, std::string_view step,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Runs both, at the same time where a core is free.
+/// Runs both, at the same time where a core is free. An exception of one comes out after the other is done or
+/// was not begun; it never cuts loops within the other short.
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
 
 /// Threads that parallel_for uses now.

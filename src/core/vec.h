@@ -72,6 +72,11 @@ inline void extend(Box& box, const Box& other) {
   extend(box, other.lo);
   extend(box, other.hi);
 }
+inline bool contains(const Box& box, const Vec3& p) {
+  for (int k = 0; k < 3; ++k)
+    if (!(box.lo[k] <= p[k] && p[k] <= box.hi[k])) return false;
+  return true;
+}
 inline Vec3 centre(const Box& box) {
   return 0.5 * (box.lo + box.hi);
 }

@@ -70,12 +70,8 @@ ClosestPoint closest_on_face(const Sites::Impl& sites, std::uint32_t face, const
 ClosestPoint closest_around_face(const Sites::Impl& sites, std::uint32_t face, const Vec3& q) {
   ClosestPoint c = closest_on_face(sites, face, q);
   for (bool improved = true; improved && c.type != SiteType::face;) {
-    const VertexFaces& around = sites.vertex_faces;
     const std::span<const std::uint32_t> faces =
-        c.type == SiteType::edge
-            ? sites.topology.edge_faces(c.site)
-            : std::span(around.faces)
-                  .subspan(around.offsets[c.site], around.offsets[c.site + 1] - around.offsets[c.site]);
+        c.type == SiteType::edge ? sites.topology.edge_faces(c.site) : sites.vertex_faces.of(c.site);
     improved = improve(sites, faces, q, c);
   }
   return c;

@@ -81,8 +81,11 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
 std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
                                          const MapOptions& options) {
   check(options);
+  constexpr double kMaxCoordinate = 1e37;  // as for meshes
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (!finite(points[i])) throw Error("query point " + std::to_string(i) + " is not finite");
+    for (const double x : points[i])
+      if (!(std::abs(x) <= kMaxCoordinate))
+        throw Error("query point " + std::to_string(i) + " has a coordinate that is NaN or beyond 1e37");
   const ClosestSearch search = search_of(options.engine);
   const std::vector<std::uint32_t> order = spatial_order(points);
   std::vector<ClosestPoint> result(points.size());

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "mesh/ray_parity.h"
 
 namespace sdm {
 namespace {
@@ -21,7 +22,7 @@ std::string open_reason(const Sites::Impl& sites) {
   if (boundary > 0) return "O2 is open (" + std::to_string(boundary) + " boundary edges)";
   if (nonmanifold > 0)
     return "O2 is not manifold (" + std::to_string(nonmanifold) + " edges of more than two faces)";
-  if (!sites.orientable) return "O2 is not orientable";
+  if (!sites.orientation.orientable) return "O2 is not orientable";
   return {};
 }
 
@@ -58,14 +59,30 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
   return {SignMethod::pseudonormal, "O2 is closed and orientable"};
 }
 
-InsideTest::InsideTest(const Sites::Impl& sites, SignMethod method) : sites_(sites), method_(method) {
+InsideTest::InsideTest(const Sites::Impl& sites, SignMethod method)
+    : sites_(sites), method_(method), box_(bounds(sites.mesh)) {
   if (method == SignMethod::winding) winding_.emplace(sites);
+  if (method == SignMethod::pseudonormal &&
+      std::find(sites.sliver.begin(), sites.sliver.end(), 1) != sites.sliver.end())
+    for (const Vec3& p : sites.mesh.positions) unit_positions_.push_back(sites.frame.to_unit(p));
+}
+
+bool InsideTest::beside_sliver(const ClosestPoint& c) const {
+  if (unit_positions_.empty()) return false;
+  const auto is_sliver = [&](std::uint32_t face) { return sites_.sliver[face] != 0; };
+  if (c.type == SiteType::edge) return std::ranges::any_of(sites_.topology.edge_faces(c.site), is_sliver);
+  if (c.type == SiteType::vertex) return std::ranges::any_of(sites_.vertex_faces.of(c.site), is_sliver);
+  return is_sliver(c.face);
 }
 
 bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) const {
   switch (method_) {
     case SignMethod::pseudonormal:
-      return closest.type != SiteType::none && dot(query - closest.point, pseudonormal(sites_, closest)) < 0;
+      if (closest.type == SiteType::none || !contains(box_, query)) return false;
+      if (beside_sliver(closest))
+        return closest.distance > 0 && odd_crossings(unit_positions_, sites_.mesh.triangles, sites_.tree,
+                                                     sites_.frame.to_unit(query));
+      return dot(query - closest.point, pseudonormal(sites_, closest)) < 0;
     case SignMethod::winding:
       return (*winding_)(query) > 0.5;
     default:

@@ -4,6 +4,7 @@
 #include <sdm/map.h>
 
 #include <optional>
+#include <vector>
 
 #include "engine/winding.h"
 #include "mesh/sites_impl.h"
@@ -20,8 +21,13 @@ class InsideTest {
   [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
 
  private:
+  /// Whether a face around the site is too thin for its normal to be trusted: there, a ray decides.
+  [[nodiscard]] bool beside_sliver(const ClosestPoint& c) const;
+
   const Sites::Impl& sites_;
   SignMethod method_;
+  Box box_;                           ///< of O2: nothing outside of it is inside O2, however near the tie
+  std::vector<Vec3> unit_positions_;  ///< of O2, where it has slivers
   std::optional<WindingNumber> winding_;
 };
 

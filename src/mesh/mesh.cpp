@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/vec.h"
+#include "mesh/validate.h"
 
 namespace sdm {
 namespace {
@@ -12,23 +13,12 @@ constexpr std::size_t kMaxTriangles = std::size_t{1} << 30;
 
 // Distances are stored in single precision, and products of six coordinates must be finite in double: both
 // hold below.
-constexpr double kMaxCoordinate = 1e37;
+constexpr double kMaxCoordinate = 1e37, kMinSize = 1e-30;
 
 bool has_area(const Mesh& mesh, const Triangle& t) {
   const Vec3& a = mesh.positions[t[0]];
   const Vec3 n = cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
   return n != Vec3{};
-}
-
-void validate_positions(const Mesh& mesh) {
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3& p = mesh.positions[v];
-    if (!finite(p)) throw Error("vertex " + std::to_string(v) + " has a NaN or infinite coordinate");
-    for (const double x : p)
-      if (std::abs(x) > kMaxCoordinate)
-        throw Error("vertex " + std::to_string(v) +
-                    " has a coordinate beyond 1e37, too large to compute with; scale the mesh down");
-  }
 }
 
 void validate_triangles(const Mesh& mesh) {
@@ -55,6 +45,17 @@ void validate_uvs(const Mesh& mesh) {
 
 }  // namespace
 
+void validate_positions(std::span<const Vec3> positions) {
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (!finite(positions[v]))
+      throw Error("vertex " + std::to_string(v) + " has a NaN or infinite coordinate");
+    for (const double x : positions[v])
+      if (std::abs(x) > kMaxCoordinate)
+        throw Error("vertex " + std::to_string(v) +
+                    " has a coordinate beyond 1e37, too large to compute with; scale the mesh down");
+  }
+}
+
 void validate(const Mesh& mesh) {
   if (mesh.triangles.empty()) throw Error("there are no triangles");
   if (mesh.triangles.size() > kMaxTriangles)
@@ -62,8 +63,10 @@ void validate(const Mesh& mesh) {
   if (mesh.positions.size() >= kNone)
     throw Error("there are " + std::to_string(mesh.positions.size()) +
                 " vertices, too many for 32-bit indices");
-  validate_positions(mesh);
+  validate_positions(mesh.positions);
   validate_triangles(mesh);
+  if (!(diagonal(bounds(mesh)) > kMinSize))
+    throw Error("the mesh is smaller than 1e-30, too small to compute with; scale it up");
   validate_uvs(mesh);
 }
 

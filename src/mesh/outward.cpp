@@ -1,104 +1,66 @@
 #include "mesh/outward.h"
 
-#include <array>
-
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "mesh/ray_parity.h"
 
 namespace sdm {
 namespace {
 
-// Rays run along (1, kSlopeY, kSlopeZ): a direction that no modelled edge or face is likely to contain.
-constexpr double kSlopeY = 0.0137035999, kSlopeZ = 0.0072973525;
-
-// A point seen along the ray from `origin`: its distance along X, and where it is beside the ray.
-struct Seen {
-  double along;
-  Vec2 beside;
+struct Shell {
+  std::uint32_t component;
+  std::vector<std::uint32_t> faces;
+  bool inward = false;  ///< as turned by the orientation, the faces enclose a negative volume
 };
-Seen seen(const Vec3& p, const Vec3& origin) {
-  const Vec3 r = p - origin;
-  return {r[0], {r[1] - kSlopeY * r[0], r[2] - kSlopeZ * r[0]}};
-}
 
-bool meets(const FloatBox& box, const Vec3& origin) {
-  // The part of the ray at 0 ≤ x ≤ hi: the slopes are positive, so that y and z grow with x.
-  const double end = box.hi[0] - origin[0];
-  if (end < 0) return false;
-  const double begin = std::max(0.0, box.lo[0] - origin[0]);
-  return origin[1] + kSlopeY * begin <= box.hi[1] && origin[1] + kSlopeY * end >= box.lo[1] &&
-         origin[2] + kSlopeZ * begin <= box.hi[2] && origin[2] + kSlopeZ * end >= box.lo[2];
-}
-
-bool meets(const Triangle& t, std::span<const Vec3> positions, const Vec3& origin) {
-  std::array<Seen, 3> corner;
-  for (int k = 0; k < 3; ++k) corner[k] = seen(positions[t[k]], origin);
-  // An edge is evaluated from its smaller vertex to its larger, a ray through it counted to its left: its two
-  // faces always agree on the side.
-  std::array<double, 3> area;  // opposite to corner k + 2
-  int on_left = 0;
-  for (int k = 0; k < 3; ++k) {
-    const bool forward = runs_forward(t, k);
-    const Vec2 &from = corner[forward ? k : (k + 1) % 3].beside,
-               &to = corner[forward ? (k + 1) % 3 : k].beside;
-    const double signed_area = cross(from, to);
-    area[k] = forward ? signed_area : -signed_area;
-    on_left += (signed_area >= 0) == forward;
+// Six times the volume; a corner of the shell as origin keeps the digits of small shells.
+double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Triangle> triangles,
+              std::span<const std::uint8_t> turned) {
+  const Vec3& origin = p[triangles[shell.faces.front()][0]];
+  double sum = 0;
+  for (std::uint32_t f : shell.faces) {
+    const Triangle& t = triangles[f];
+    const double v = dot(p[t[0]] - origin, cross(p[t[1]] - origin, p[t[2]] - origin));
+    sum += turned[f] ? -v : v;
   }
-  if (on_left != 0 && on_left != 3) return false;
-  const double sum = area[0] + area[1] + area[2];
-  if (sum == 0) return false;
-  const double along = area[1] * corner[0].along + area[2] * corner[1].along + area[0] * corner[2].along;
-  return along / sum > 0;
+  return sum;
 }
 
-// Whether a ray from `origin` meets the faces of other shells than `shell` an odd number of times.
-bool odd_crossings(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                   const Orientation& orientation, const AabbTree& tree, const Vec3& origin,
-                   std::uint32_t shell) {
-  bool odd = false;
-  std::vector<std::uint32_t> stack{0};
-  while (!stack.empty()) {
-    const std::uint32_t index = stack.back();
-    const AabbTree::Node& node = tree.nodes[index];
-    stack.pop_back();
-    if (!meets(node.box, origin)) continue;
-    if (!node.leaf()) {
-      stack.insert(stack.end(), {index + 1, node.right});
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const std::uint32_t face = tree.items[i];
-      if (orientation.component[face] != shell) odd ^= meets(triangles[face], positions, origin);
-    }
+// Whether the shell lies inside an odd number of others. Shells that touch or overlap others lie partly
+// inside at most: a few points just outside faces far apart must all agree.
+bool hollow(const Shell& shell, std::span<const Vec3> p, std::span<const Triangle> triangles,
+            const Orientation& orientation, const AabbTree& tree) {
+  constexpr std::size_t kPoints = 5;
+  constexpr double kOff = 1e-7;  // in the unit frame
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const std::uint32_t f = shell.faces[i * shell.faces.size() / kPoints];
+    const Triangle& t = triangles[f];
+    const Vec3 normal = normalized(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
+    const bool inward = shell.inward != static_cast<bool>(orientation.turned[f]);
+    const Vec3 point = (1.0 / 3) * (p[t[0]] + p[t[1]] + p[t[2]]) + (inward ? -kOff : kOff) * normal;
+    if (!odd_crossings(p, triangles, tree, point, orientation.component, shell.component)) return false;
   }
-  return odd;
+  return true;
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                         const Orientation& orientation, const AabbTree& tree) {
-  std::vector<std::vector<std::uint32_t>> shells(orientation.components);
+  std::vector<Shell> shells(orientation.components);
   for (std::size_t f = 0; f < triangles.size(); ++f)
-    if (orientation.component[f] != kNone)
-      shells[orientation.component[f]].push_back(static_cast<std::uint32_t>(f));
+    if (const std::uint32_t component = orientation.component[f]; component != kNone)
+      shells[component].faces.push_back(static_cast<std::uint32_t>(f));
 
   std::vector<std::uint8_t> inverted = orientation.turned;
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const Vec3& corner = positions[triangles[shells[s].front()][0]];
-      double volume = 0;  // six times; taking the corner as origin keeps the digits of small shells
-      for (std::uint32_t f : shells[s]) {
-        const Triangle& t = triangles[f];
-        const double v =
-            dot(positions[t[0]] - corner, cross(positions[t[1]] - corner, positions[t[2]] - corner));
-        volume += orientation.turned[f] ? -v : v;
-      }
-      const bool hollow =
-          odd_crossings(positions, triangles, orientation, tree, corner, static_cast<std::uint32_t>(s));
-      if ((volume < 0) != hollow)
-        for (std::uint32_t f : shells[s]) inverted[f] ^= 1;
+      Shell& shell = shells[s];
+      shell.component = static_cast<std::uint32_t>(s);
+      shell.inward = volume(shell, positions, triangles, orientation.turned) < 0;
+      const bool is_hollow = shells.size() > 1 && hollow(shell, positions, triangles, orientation, tree);
+      if (shell.inward != is_hollow)
+        for (std::uint32_t f : shell.faces) inverted[f] ^= 1;
     }
   });
   return inverted;

@@ -69,16 +69,27 @@ Vec3 face_normal(const Triangle& t, std::span<const Vec3> p) {
   return normalized(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
 }
 
+// In single precision the walls of a face thinner than this, in the unit frame, would close in nothing. Its
+// edges stand for it: no point of it is farther from them than half of this.
+constexpr double kThin = 1e-6;
+
+bool thin(const Triangle& t, std::span<const Vec3> p) {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, norm(p[t[(k + 1) % 3]] - p[t[k]]));
+  return !(norm(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]])) > kThin * longest);
+}
+
 void fill(FaceBlock& block, std::span<const Vec3> p, std::span<const Triangle> triangles) {
   for (std::uint32_t i = 0; i < block.count; ++i) {
     const Triangle& t = triangles[block.face[i]];
     const Vec3 normal = face_normal(t, p);
+    const bool no_prism = thin(t, p);
     set_plane(block.plane, i, normal, p[t[0]]);
     for (int k = 0; k < 3; ++k) {
       const Vec3 inward = normalized(cross(normal, p[t[(k + 1) % 3]] - p[t[k]]));
       set_plane(block.wall[k], i, inward, p[t[k]]);
-      // Without area there is no prism: −∞ is on the inner side of nothing.
-      if (normal == Vec3{}) block.wall[k][3][i] = std::numeric_limits<float>::infinity();
+      // A wall that nothing is on the inner side of.
+      if (no_prism) block.wall[k][3][i] = std::numeric_limits<float>::infinity();
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "core/vec.h"
 #include "mesh/outward.h"
 #include "mesh/sites_impl.h"
+#include "mesh/validate.h"
 
 namespace sdm {
 namespace {
@@ -40,6 +41,32 @@ std::vector<Box> face_boxes(const std::vector<Vec3>& positions, const std::vecto
   return boxes;
 }
 
+// Faces whose smallest height is below this share of their longest side have normals of rounding errors.
+constexpr double kSliver = 1e-9;
+
+std::vector<std::uint8_t> find_slivers(const std::vector<Vec3>& p, const std::vector<Triangle>& triangles) {
+  std::vector<std::uint8_t> sliver(triangles.size());
+  parallel_for(triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto [a, b, c] = triangles[f];
+      const double longest =
+          std::max({squared_norm(p[b] - p[a]), squared_norm(p[c] - p[b]), squared_norm(p[a] - p[c])});
+      sliver[f] = !(norm(cross(p[b] - p[a], p[c] - p[a])) > kSliver * longest);
+    }
+  });
+  return sliver;
+}
+
+// What signs need, brought up to date with the positions and the tree.
+void find_outside(Sites::Impl& s, const std::vector<Vec3>& unit) {
+  const auto& triangles = s.mesh.triangles;
+  s.inverted = !s.orientation.orientable ? std::vector<std::uint8_t>(triangles.size(), 0)
+               : s.closed                ? find_inverted(unit, triangles, s.orientation, s.tree)
+                                         : s.orientation.turned;
+  s.normals = build_pseudonormals(s.mesh.positions, triangles, s.vertex_faces, s.inverted);
+  s.sliver = find_slivers(unit, triangles);
+}
+
 }  // namespace
 
 Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
@@ -49,18 +76,16 @@ Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
   const auto& triangles = s.mesh.triangles;
   s.topology = build_topology(s.mesh.positions.size(), triangles);
   s.vertex_faces = vertex_faces(s.mesh.positions.size(), triangles, s.topology);
-  const Orientation orientation = orient(triangles, s.topology);
-  s.orientable = orientation.orientable;
+  s.orientation = orient(triangles, s.topology);
   s.closed = true;
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) s.closed &= s.topology.edge_faces(e).size() == 2;
+
   s.frame = UnitFrame::of(bounds(s.mesh));
   const std::vector<Vec3> unit = to_unit(s.frame, s.mesh.positions);
   s.tree = build_aabb_tree(face_boxes(unit, triangles), faces_with_sites(s.topology), kLeafFaces);
   s.wide = collapse(s.tree);
-  s.inverted = s.closed && s.orientable ? find_inverted(unit, triangles, orientation, s.tree)
-                                        : std::vector<std::uint8_t>(triangles.size(), 0);
   s.regions = build_regions(unit, triangles, s.topology, s.tree);
-  s.normals = build_pseudonormals(s.mesh.positions, triangles, s.vertex_faces, s.inverted);
+  find_outside(s, unit);
 }
 
 Sites::~Sites() = default;
@@ -72,9 +97,7 @@ void Sites::refit(std::span<const Vec3> positions) {
   if (positions.size() != s.mesh.positions.size())
     throw Error("the mesh has " + std::to_string(s.mesh.positions.size()) + " vertices, but " +
                 std::to_string(positions.size()) + " new positions were given");
-  for (std::size_t v = 0; v < positions.size(); ++v)
-    if (!finite(positions[v]))
-      throw Error("the new position of vertex " + std::to_string(v) + " is not finite");
+  validate_positions(positions);
   std::copy(positions.begin(), positions.end(), s.mesh.positions.begin());
 
   s.frame = UnitFrame::of(bounds(s.mesh));
@@ -82,7 +105,7 @@ void Sites::refit(std::span<const Vec3> positions) {
   sdm::refit(s.tree, face_boxes(unit, s.mesh.triangles));
   sdm::refit(s.wide, s.tree);
   sdm::refit(s.regions, unit, s.mesh.triangles, s.topology);
-  s.normals = build_pseudonormals(s.mesh.positions, s.mesh.triangles, s.vertex_faces, s.inverted);
+  find_outside(s, unit);
 }
 
 const Mesh& Sites::mesh() const {
@@ -95,7 +118,7 @@ bool Sites::closed() const {
   return impl_->closed;
 }
 bool Sites::orientable() const {
-  return impl_->orientable;
+  return impl_->orientation.orientable;
 }
 
 }  // namespace sdm

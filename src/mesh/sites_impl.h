@@ -18,14 +18,16 @@ struct Sites::Impl {
   Topology topology;
   VertexFaces vertex_faces;
   bool closed = false;
-  bool orientable = false;
-  std::vector<std::uint8_t> inverted;  ///< of each face; all 0 unless closed and orientable
+  Orientation orientation;
+  std::vector<std::uint8_t>
+      inverted;  ///< of each face: turned against the outside; if open, against its neighbours
 
   UnitFrame frame;  ///< of the faces that have sites
   AabbTree tree;    ///< over those faces, in the unit frame
   WideTree wide;    ///< the same, collapsed
   Regions regions;  ///< by the leaves of both
   Pseudonormals normals;
+  std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a normal that could be trusted
 };
 
 }  // namespace sdm

@@ -119,6 +119,16 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
       }
     }
   }
+  // Of two ways to agree, the one that turns fewer faces.
+  std::vector<std::uint32_t> faces(result.components), turned(result.components);
+  for (std::size_t f = 0; f < triangles.size(); ++f)
+    if (result.component[f] != kNone) {
+      ++faces[result.component[f]];
+      turned[result.component[f]] += result.turned[f];
+    }
+  for (std::size_t f = 0; f < triangles.size(); ++f)
+    if (const std::uint32_t c = result.component[f]; c != kNone && turned[c] > faces[c] - turned[c])
+      result.turned[f] ^= 1;
   return result;
 }
 

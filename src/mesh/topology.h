@@ -28,8 +28,8 @@ struct Topology {
 /// Cost: O(n log d), d the largest valence.
 [[nodiscard]] Topology build_topology(std::size_t vertex_count, std::span<const Triangle> triangles);
 
-/// For each face, whether to turn it so that neighbours over two-face edges agree (the first face of each
-/// component of such neighbours stays); `orientable` is false when no choice satisfies all of them. Ignored
+/// For each face, whether to turn it so that neighbours over two-face edges agree, turning the fewer faces of
+/// each component of such neighbours; `orientable` is false when no choice satisfies all of them. Ignored
 /// faces stay.
 struct Orientation {
   std::vector<std::uint8_t> turned;
@@ -43,6 +43,10 @@ struct Orientation {
 /// 1]].
 struct VertexFaces {
   std::vector<std::uint32_t> offsets, faces;
+
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {
+    return {faces.data() + offsets[vertex], faces.data() + offsets[vertex + 1]};
+  }
 };
 [[nodiscard]] VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> triangles,
                                        const Topology& topology);

@@ -1,3 +1,4 @@
+#include <sdm/error.h>
 #include <sdm/statistics.h>
 
 #include "core/vec.h"
@@ -14,21 +15,33 @@ struct WeightedDistance {
   float distance, weight;
 };
 
-// The area of surface of a texel: |∂p/∂u × ∂p/∂v|, the same for all texels of a face.
+// The area of surface of a texel, |∂p/∂u × ∂p/∂v|, the same for all texels of a face; over the largest, so
+// that it fits a float for meshes of any size.
 std::vector<float> texel_areas(const Surface& surface) {
   const auto charts = surface.face_charts();
-  std::vector<float> areas(charts.size());
+  std::vector<double> areas(charts.size());
+  double largest = 0;
   for (std::uint32_t face = 0; face < charts.size(); ++face) {
     if (charts[face] == kNone) continue;
     const auto [du, dv] = surface.texel_edges(face);
-    areas[face] = static_cast<float>(norm(cross(du, dv)));
+    areas[face] = norm(cross(du, dv));
+    largest = std::max(largest, areas[face]);
   }
-  return areas;
+  std::vector<float> relative(areas.size());
+  std::transform(areas.begin(), areas.end(), relative.begin(),
+                 [&](double area) { return static_cast<float>(area / largest); });
+  return relative;
+}
+
+void check(const Surface& surface, const DistanceMap& map) {
+  if (map.distance.size() != surface.texel_faces().size())
+    throw Error("the map is not one of this surface: it has another number of texels");
 }
 
 }  // namespace
 
 DistanceStatistics statistics(const Surface& surface, const DistanceMap& map) {
+  check(surface, map);
   const auto areas = texel_areas(surface);
   const auto owners = surface.texel_faces();
   std::vector<WeightedDistance> values;
@@ -69,6 +82,7 @@ DistanceStatistics statistics(const Surface& surface, const DistanceMap& map) {
 }
 
 double area_fraction_beyond(const Surface& surface, const DistanceMap& map, double limit) {
+  check(surface, map);
   const auto areas = texel_areas(surface);
   const auto owners = surface.texel_faces();
   double area = 0, beyond = 0;

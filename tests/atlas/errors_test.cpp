@@ -31,8 +31,21 @@ TEST(AtlasErrors, TooSmallAResolutionNamesOneThatWillDo) {
   const Mesh mesh = test::soup(1000, 1);
   EXPECT_THAT([&] { Surface(mesh, {.resolution = 64}); },
               ThrowsMessage<Error>(
-                  AllOf(HasSubstr("64"), HasSubstr("too small for 1080 charts"), HasSubstr("about 256"))));
-  EXPECT_NO_THROW(Surface(mesh, {.resolution = 256}));
+                  AllOf(HasSubstr("64"), HasSubstr("too small for 1080 charts"), HasSubstr("about 128"))));
+  EXPECT_NO_THROW(Surface(mesh, {.resolution = 128}));
+}
+
+// A strip across the whole atlas takes little of it: once taken for a lack of room.
+TEST(AtlasErrors, LongThinMeshesAreLaidOutAcross) {
+  for (const double width : {0.1, 0.01, 1e-3, 1e-5})
+    for (const std::uint32_t resolution : {64u, 1024u, 4096u}) {
+      SCOPED_TRACE(width);
+      const Mesh strip{.positions = {{0, 0, 0}, {1, 0, 0}, {1, width, 0}, {0, width, 0}},
+                       .triangles = {{0, 1, 2}, {0, 2, 3}},
+                       .corner_uvs = {}};
+      const Surface surface(strip, {.resolution = resolution});
+      EXPECT_GE(surface.samples().size(), resolution / 2);
+    }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <sdm/threads.h>
 
 #include <atomic>
+#include <mutex>
 #include <numeric>
 #include <random>
 
@@ -48,6 +49,40 @@ TEST(ParallelFor, StopsWhenProgressSaysSo) {
                    100000, 1, [](std::string_view, double) { return false; }, "work", work),
                Cancelled);
   EXPECT_LT(calls, 100000u);
+}
+
+// Once, a failing branch left loops in the other branch undone without telling it.
+TEST(ParallelInvoke, AnExceptionLeavesTheLoopsOfTheOtherBranchWhole) {
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    std::atomic<int> expected{0}, visited{0};
+    const auto loops = [&] {
+      for (int loop = 0; loop < 100; ++loop) {
+        expected += 64;
+        parallel_for(64, 1, [&](std::size_t, std::size_t) { ++visited; });
+      }
+    };
+    EXPECT_THROW(parallel_invoke([] { throw Error("stop"); }, loops), Error);
+    EXPECT_EQ(visited, expected);
+    EXPECT_THROW(parallel_for(2, 1,
+                              [&](std::size_t begin, std::size_t) {
+                                if (begin == 0) throw Error("stop");
+                                loops();
+                              }),
+                 Error);
+    EXPECT_EQ(visited, expected);
+  }
+}
+
+// Once, a thread that waited in a nested loop took up another turn of the outer one, and the lock it held.
+TEST(ParallelFor, AWaitingThreadTakesUpNoOtherWork) {
+  const ThreadLimit limit(4);
+  std::mutex mutex;
+  std::atomic<int> visits{0};
+  parallel_for(200, 1, [&](std::size_t, std::size_t) {
+    const std::lock_guard lock(mutex);
+    parallel_for(50, 1, [&](std::size_t, std::size_t) { ++visits; });
+  });
+  EXPECT_EQ(visits, 200 * 50);
 }
 
 TEST(Memory, RefusesWhatTheMachineDoesNotHave) {

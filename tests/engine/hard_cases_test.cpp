@@ -84,6 +84,19 @@ TEST_P(HardCases, Slivers) {
   }
 }
 
+// Once, the walls of a flat triangle let points on its extension through in single precision.
+TEST_P(HardCases, CapsAlmostWithoutHeight) {
+  for (const double height : {1e-5, 1e-7, 1e-9, 1e-12, 0.0}) {
+    SCOPED_TRACE(height);
+    Mesh caps = test::placed(test::cube(0.01), "translate:-1:0:0");
+    const auto first = static_cast<std::uint32_t>(caps.positions.size());
+    caps.positions.insert(caps.positions.end(), {{0, 0.3, 0}, {1, 0.3, 0}, {0.5, 0.3 + height, 0}});
+    caps.triangles.push_back({first, first + 1, first + 2});
+    expect_exact(test::placed(test::sphere(2), "scale:0.5,translate:3:0.3:0"), caps);
+    expect_exact(test::placed(test::sphere(2), "scale:0.5,translate:0.5:0.3:0"), caps);
+  }
+}
+
 TEST_P(HardCases, SingleTriangle) {
   const Mesh triangle{
       .positions = {{0, 0, 0}, {1, 0, 0.2}, {0.3, 0.8, 0}}, .triangles = {{0, 1, 2}}, .corner_uvs = {}};

@@ -79,6 +79,8 @@ TEST(Refit, LeavesEverythingAsItWasWhenRefused) {
   for (Vec3& p : positions) p[0] += 5;
   positions.back()[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(sites.refit(positions), Error);
+  positions.back()[1] = 1e200;
+  EXPECT_THROW(sites.refit(positions), Error);
   EXPECT_EQ(sites.mesh().positions, mesh.positions);
   const std::vector<Vec3> query{{5, 0, 0}};
   EXPECT_NEAR(closest_points(sites, query)[0].distance, oracle::brute_force(mesh, query[0]), 1e-6);

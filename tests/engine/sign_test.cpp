@@ -1,4 +1,6 @@
 // The sign at every texel against CGAL's Side_of_triangle_mesh.
+#include <numbers>
+
 #include "core/vec.h"
 #include "engine/oracle.h"
 #include "engine/support.h"
@@ -92,6 +94,84 @@ TEST(Sign, InwardAndLocallyTurnedFaces) {
   const Mesh o1 = test::load("head.off", "fit"), o2 = test::load("elephant.off", "fit");
   expect_signs(o1, test::turned(o2));
   expect_signs(o1, test::turned(o2, 7));
+}
+
+// How many of the points are found inside, by the sign's method, with either engine.
+std::size_t count_inside(const Sites& sites, const std::vector<Vec3>& points) {
+  std::size_t count = 0;
+  for (const EngineKind engine : test::kEngines)
+    for (const std::uint8_t in :
+         inside(sites, points, closest_points(sites, points, {.engine = engine}), SignMethod::pseudonormal))
+      count += in;
+  return count;
+}
+
+// A wedge whose sharp edge has a vertex on one side only, closed by a sliver: the sliver's normal is zero or
+// made of rounding errors, and its neighbours' pseudonormals were wrong.
+TEST(Sign, SliversAtSharpEdges) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (const double degrees : {20.0, 60.0, 90.0, 120.0})
+    for (const char* steps : {"", "rotate:31:127:201,translate:0.1:0.2:0.3", "rotate:-70:15:8"}) {
+      SCOPED_TRACE(degrees);
+      const double a = degrees * std::numbers::pi / 360, c = std::cos(a), s = std::sin(a);
+      const Mesh wedge{
+          .positions = {{0, 0, 0}, {1, 0, 0}, {0, c, s}, {1, c, s}, {0, c, -s}, {1, c, -s}, {0.37, 0, 0}},
+          .triangles = {{0, 2, 3},
+                        {0, 3, 1},
+                        {0, 6, 4},
+                        {6, 5, 4},
+                        {6, 1, 5},
+                        {2, 4, 5},
+                        {2, 5, 3},
+                        {0, 4, 2},
+                        {1, 3, 5},
+                        {0, 1, 6}},
+          .corner_uvs = {}};
+      std::vector<Vec3> outside, within;
+      for (int i = 0; i < 500; ++i) {
+        const double x = 0.05 + 0.9 * u(random), m = u(random), n = u(random);
+        outside.push_back({x, -s * (m + n), c * (m - n)});
+        within.push_back({x, c * (0.05 + 0.9 * m), 0.9 * s * (0.05 + 0.9 * m) * (2 * n - 1)});
+      }
+      const Sites sites(test::placed(wedge, steps));
+      ASSERT_EQ(choose_sign(sites, SignMethod::automatic).method, SignMethod::pseudonormal);
+      EXPECT_EQ(count_inside(sites, test::placed(outside, steps)), 0u);
+      EXPECT_EQ(count_inside(sites, test::placed(within, steps)), 1000u);
+    }
+}
+
+// A shell with a vertex on another shell is not inside of it, in whatever order the file lists them.
+TEST(Sign, TouchingShellsAreSolid) {
+  const Mesh big = test::cube(1);
+  for (const char* steps : {"scale:0.5,translate:1.5:0:0", "scale:0.5,translate:-1.5:0.2:0",
+                            "translate:2:0:0", "scale:0.3,translate:0:0.1:-1.3"}) {
+    SCOPED_TRACE(steps);
+    const Mesh small = test::placed(test::cube(1), steps);
+    const Vec3 middle = centre(bounds(small));
+    for (const Mesh& mesh : {test::joined(big, small), test::joined(small, big)})
+      EXPECT_EQ(count_inside(Sites(mesh), {middle, {0.1, 0.2, 0.3}, 3.0 * middle}), 4u);
+  }
+}
+
+// From far away both sides of a wall are equally close in single precision.
+TEST(Sign, ThinPlatesAreThinFromFarAway) {
+  for (const double thickness : {1e-2, 1e-4, 1e-7})
+    for (const double away : {1.0, 10.0, 1e3, 1e6}) {
+      Mesh plate = test::cube(1);
+      for (Vec3& p : plate.positions) p[2] *= thickness / 2;
+      std::vector<Vec3> points;
+      for (int i = 0; i < 100; ++i) points.push_back({0.01 * i - 0.5, 0.3, i % 2 ? away : -away});
+      EXPECT_EQ(count_inside(Sites(plate), points), 0u) << thickness << ' ' << away;
+    }
+}
+
+TEST(Sign, FollowsARefitThatTurnsTheMeshInsideOut) {
+  Sites sites(test::sphere(2));
+  std::vector<Vec3> mirrored = sites.mesh().positions;
+  for (Vec3& p : mirrored) p[0] = -p[0];
+  sites.refit(mirrored);
+  EXPECT_EQ(count_inside(sites, {{0.1, 0.2, 0.3}, {0.9, 0.9, 0.1}}), 2u);
 }
 
 TEST(Sign, WindingAgreesOnAClosedMesh) {

@@ -40,8 +40,17 @@ TEST(ColorScale, IsSymmetricAboutZeroForSignedMaps) {
   EXPECT_GT(scale(1).r, scale(1).b);
 }
 
+TEST(ColorScale, SpendsTheWholeScaleOnAMapOfOneSign) {
+  for (const auto& distances : {std::vector<float>{0.5f, 4}, std::vector<float>{-4, -0.5f}}) {
+    const ColorScale scale = color_scale(map_with(distances, SignMethod::pseudonormal), {});
+    EXPECT_EQ(scale.map, Colormap::viridis);
+    EXPECT_EQ(scale.lo, distances[0]);
+    EXPECT_EQ(scale.hi, distances[1]);
+  }
+}
+
 TEST(ColorScale, StaysCentredOnZeroInALopsidedRange) {
-  const ColorScale scale = color_scale(map_with({0}, SignMethod::pseudonormal), {.range = {{-1, 3}}});
+  const ColorScale scale = color_scale(map_with({-1, 2}, SignMethod::pseudonormal), {.range = {{-1, 3}}});
   EXPECT_EQ(scale(0), (Rgb{255, 255, 255}));
   EXPECT_EQ(scale(3), (Rgb{103, 0, 31}));
 }

@@ -1,6 +1,7 @@
 #include "io_write/samples.h"
 
 #include <gtest/gtest.h>
+#include <sdm/error.h>
 #include <sdm/statistics.h>
 
 #include <algorithm>
@@ -85,6 +86,28 @@ TEST(Statistics, WeighTexelsByTheirAreaOfSurface) {
   EXPECT_NEAR(area_fraction_beyond(surface, map, 1), 0.9, 0.01);
   EXPECT_NEAR(area_fraction_beyond(surface, map, 0.5), 1, 1e-9);
   EXPECT_EQ(area_fraction_beyond(surface, map, 2), 0);
+}
+
+// Weights once were areas in single precision, which vanish or overflow.
+TEST(Statistics, HoldForMeshesOfAnySize) {
+  const auto mean = [](double scale) {
+    Mesh mesh = torus(10);
+    for (Vec3& p : mesh.positions)
+      for (double& x : p) x *= scale;
+    const Surface surface(mesh, {.resolution = 128});
+    const DistanceMap map = map_of(surface, [](const Vec3& p) { return std::abs(p[0]); });
+    EXPECT_EQ(area_fraction_beyond(surface, map, 0), 1);
+    return statistics(surface, map).mean / scale;
+  };
+  const double expected = mean(1);
+  for (const double scale : {1e-28, 1e-10, 1e10, 1e28}) EXPECT_NEAR(mean(scale), expected, 1e-3 * expected);
+}
+
+TEST(Statistics, RefuseAMapOfAnotherSurface) {
+  const Surface small(torus(10), {.resolution = 64}), large(torus(10), {.resolution = 128});
+  const DistanceMap map = map_of(large, [](const Vec3&) { return 1; });
+  EXPECT_THROW((void)statistics(small, map), Error);
+  EXPECT_THROW((void)area_fraction_beyond(small, map, 1), Error);
 }
 
 TEST(Statistics, AreNaNWithoutAnyValue) {

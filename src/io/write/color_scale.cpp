@@ -88,8 +88,14 @@ Rgb ColorScale::operator()(double distance) const {
 ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
   ColorScale scale;
   const bool is_signed = map.sign.method != SignMethod::none;
+  scale.lo = std::numeric_limits<double>::infinity(), scale.hi = -scale.lo;
+  for (const float d : map.distance) {
+    if (!std::isfinite(d)) continue;
+    scale.lo = std::min<double>(scale.lo, d), scale.hi = std::max<double>(scale.hi, d);
+  }
+  if (scale.lo > scale.hi) scale.lo = scale.hi = 0;
   if (options.colormap == Colormap::automatic) {
-    scale.map = is_signed ? Colormap::diverging : Colormap::viridis;
+    scale.map = scale.lo < 0 && scale.hi > 0 ? Colormap::diverging : Colormap::viridis;
     scale.tolerance = options.tolerance;
   } else {
     scale.map = options.colormap;
@@ -103,12 +109,6 @@ ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
       throw Error("the range of the colours must be two finite numbers, the smaller one first");
     return scale;
   }
-  scale.lo = std::numeric_limits<double>::infinity(), scale.hi = -scale.lo;
-  for (const float d : map.distance) {
-    if (!std::isfinite(d)) continue;
-    scale.lo = std::min<double>(scale.lo, d), scale.hi = std::max<double>(scale.hi, d);
-  }
-  if (scale.lo > scale.hi) scale.lo = scale.hi = 0;
   if (scale.tolerance) {
     scale.hi = std::max(scale.hi, 2 * *scale.tolerance);
     scale.lo = is_signed ? std::min(scale.lo, -2 * *scale.tolerance) : 0;

@@ -1,0 +1,79 @@
+#include "mesh/ray_parity.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+// Rays run along (1, kSlopeY, kSlopeZ): a direction that no modelled edge or face is likely to contain.
+constexpr double kSlopeY = 0.0137035999, kSlopeZ = 0.0072973525;
+
+// A point seen along the ray from `origin`: its distance along X, and where it is beside the ray.
+struct Seen {
+  double along;
+  Vec2 beside;
+};
+Seen seen(const Vec3& p, const Vec3& origin) {
+  const Vec3 r = p - origin;
+  return {r[0], {r[1] - kSlopeY * r[0], r[2] - kSlopeZ * r[0]}};
+}
+
+bool meets(const FloatBox& box, const Vec3& origin) {
+  // The part of the ray at 0 ≤ x ≤ hi: the slopes are positive, so that y and z grow with x.
+  const double end = box.hi[0] - origin[0];
+  if (end < 0) return false;
+  const double begin = std::max(0.0, box.lo[0] - origin[0]);
+  return origin[1] + kSlopeY * begin <= box.hi[1] && origin[1] + kSlopeY * end >= box.lo[1] &&
+         origin[2] + kSlopeZ * begin <= box.hi[2] && origin[2] + kSlopeZ * end >= box.lo[2];
+}
+
+bool meets(const Triangle& t, std::span<const Vec3> positions, const Vec3& origin) {
+  std::array<Seen, 3> corner;
+  for (int k = 0; k < 3; ++k) corner[k] = seen(positions[t[k]], origin);
+  // An edge is evaluated from its smaller vertex to its larger, a ray through it counted to its left: its two
+  // faces always agree on the side.
+  std::array<double, 3> area;  // opposite to corner k + 2
+  int on_left = 0;
+  for (int k = 0; k < 3; ++k) {
+    const bool forward = runs_forward(t, k);
+    const Vec2 &from = corner[forward ? k : (k + 1) % 3].beside,
+               &to = corner[forward ? (k + 1) % 3 : k].beside;
+    const double signed_area = cross(from, to);
+    area[k] = forward ? signed_area : -signed_area;
+    on_left += (signed_area >= 0) == forward;
+  }
+  if (on_left != 0 && on_left != 3) return false;
+  const double sum = area[0] + area[1] + area[2];
+  if (sum == 0) return false;
+  const double along = area[1] * corner[0].along + area[2] * corner[1].along + area[0] * corner[2].along;
+  return along / sum > 0;
+}
+
+}  // namespace
+
+bool odd_crossings(std::span<const Vec3> positions, std::span<const Triangle> triangles, const AabbTree& tree,
+                   const Vec3& origin, std::span<const std::uint32_t> component, std::uint32_t left_out) {
+  bool odd = false;
+  std::vector<std::uint32_t> stack{0};
+  while (!stack.empty()) {
+    const std::uint32_t index = stack.back();
+    const AabbTree::Node& node = tree.nodes[index];
+    stack.pop_back();
+    if (!meets(node.box, origin)) continue;
+    if (!node.leaf()) {
+      stack.insert(stack.end(), {index + 1, node.right});
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const std::uint32_t face = tree.items[i];
+      if (left_out == kNone || component[face] != left_out) odd ^= meets(triangles[face], positions, origin);
+    }
+  }
+  return odd;
+}
+
+}  // namespace sdm

@@ -1,0 +1,13 @@
+// The checks of positions, for meshes and for their refits.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <span>
+
+namespace sdm {
+
+/// Throws sdm::Error for a coordinate that is not finite or too large to compute with.
+void validate_positions(std::span<const Vec3> positions);
+
+}  // namespace sdm
