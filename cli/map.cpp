@@ -90,6 +90,18 @@ struct Result {
   nlohmann::ordered_json report;
 };
 
+/// How far a value of the map can be off: the engine's 1e-6 of the diagonal of both meshes, which covers the
+/// rounding to single precision too.
+double engine_error(const Input& on, const Input& to) {
+  double squared = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double lo = std::min(on.info.bounds.lo[k], to.info.bounds.lo[k]);
+    const double hi = std::max(on.info.bounds.hi[k], to.info.bounds.hi[k]);
+    squared += (hi - lo) * (hi - lo);
+  }
+  return 1e-6 * std::sqrt(squared);
+}
+
 /// Computes the map on `on` of the distances to `to`, and writes all its files into `folder`.
 Result measure(const MapCommand& command, const Input& on, const Input& to, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
@@ -134,7 +146,8 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
     for (std::size_t i = begin; i < end; ++i) tasks[i]();
   });
   if (command.picture.tolerance)
-    outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices, outcome.error_bound);
+    outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices,
+                              outcome.error_bound + engine_error(on, to));
   outcome.time.output = export_watch.ms();
   outcome.time.total = import_ms + total.ms();
 
