@@ -22,8 +22,8 @@ enum class EngineKind {
 enum class SignMethod {
   automatic,     ///< pseudonormal where O2 is closed and orientable, else none
   none,          ///< unsigned distances
-  pseudonormal,  ///< the closest site's angle-weighted pseudonormal (Bærentzen & Aanæs 2005); exact for
-                 ///< closed O2
+  pseudonormal,  ///< the closest site's angle-weighted pseudonormal (Bærentzen & Aanæs 2005); for closed O2,
+                 ///< exact but at walls thinner than 1e-7 of the distance to them
   winding,       ///< generalised winding number above 1/2 (Jacobson et al. 2013): an estimate for open O2
 };
 

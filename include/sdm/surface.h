@@ -19,7 +19,7 @@ enum class AtlasKind {
 struct AtlasOptions {
   AtlasKind kind = AtlasKind::charts;
   std::uint32_t resolution = 1024;  ///< texels a side, in [16, 32768]
-  double max_stretch = 1.3;         ///< charts: no length grows by more than this from atlas to surface, > 1
+  double max_stretch = 1.3;         ///< charts: lengths grow by no more from atlas to surface; > 1, 100 at most
   std::uint32_t gutter = 1;         ///< free texels around each chart, its own (charts, triangles)
   Progress progress{};
 };

@@ -11,8 +11,8 @@
 namespace sdm {
 namespace {
 
-// Beyond this many sizes of O2 squares come near the end of single precision; there O2 is as good as a point,
-// and the reference engine's few steps do.
+// Beyond this many sizes of O2 squares come near the end of single precision. The reference engine is slow there,
+// since no box is nearer than another, but right.
 constexpr double kFarAway = 1e15;
 
 Vec3f to_float(const Vec3& v) {
