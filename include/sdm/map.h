@@ -2,11 +2,13 @@
 #pragma once
 
 #include <sdm/progress.h>
+#include <sdm/raster.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +18,7 @@ namespace sdm {
 enum class EngineKind {
   cpu,        ///< packets of texels, SIMD, all cores
   reference,  ///< scalar, double, plain: the oracle
+  gl,         ///< the paper's: polygons of sites rasterised by OpenGL; maps only
 };
 
 /// How the inside of O2 is told from the outside. Negative means inside.
@@ -24,7 +27,7 @@ enum class SignMethod {
   none,          ///< unsigned distances
   pseudonormal,  ///< the closest site's angle-weighted pseudonormal (Bærentzen & Aanæs 2005); for closed O2,
                  ///< exact but at walls thinner than 1e-7 of the distance to them
-  winding,       ///< generalised winding number above 1/2 (Jacobson et al. 2013): an estimate for open O2
+  winding,  ///< generalised winding number above 1/2 (Jacobson et al. 2013): an estimate for open O2
 };
 
 /// The method that was used, and why, in words for a report.
@@ -38,6 +41,7 @@ struct MapOptions {
   SignMethod sign = SignMethod::automatic;
   /// Greater than 0, in units of the meshes. Texels farther than this hold no value (NaN).
   double max_distance = std::numeric_limits<double>::infinity();
+  RasterOptions raster{};  ///< for EngineKind::gl
   Progress progress{};
 };
 
@@ -51,6 +55,7 @@ struct DistanceMap {
   std::vector<SiteType> site_type;
   SignUsed sign;
   std::size_t beyond_max_distance = 0;  ///< owned texels without a value
+  std::optional<RasterReport> raster;   ///< of EngineKind::gl
 };
 
 /// Computes the map. Distance and vector are those of a site found exactly (cpu: to 1e-6 of the diagonal of

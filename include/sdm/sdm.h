@@ -5,6 +5,7 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/progress.h>
+#include <sdm/raster.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>

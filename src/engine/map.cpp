@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/spatial_order.h"
 #include "core/vec.h"
+#include "engine/closest_on_face.h"
 #include "engine/engine.h"
+#include "engine/gl/gl_engine.h"
 #include "engine/sign.h"
 
 namespace sdm {
@@ -37,9 +40,22 @@ void check(const MapOptions& options) {
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
 }
 
+// The closest points of texels whose winning face of O2 is known.
+void recompute(const Sites::Impl& sites, std::span<const std::uint32_t> winners,
+               std::span<const std::uint32_t> texels, std::span<const Vec3> points, double max_distance,
+               std::span<ClosestPoint> closest) {
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    if (winners[texels[i]] == kNone) continue;
+    closest[i] = closest_around_face(sites, winners[texels[i]], points[i]);
+    if (closest[i].distance > max_distance) closest[i] = {};
+  }
+}
+
 }  // namespace
 
 ClosestSearch search_of(EngineKind engine) {
+  if (engine == EngineKind::gl)
+    throw Error("the gl engine computes maps only: for closest points choose cpu or reference");
   return engine == EngineKind::reference ? reference_search : cpu_search;
 }
 
@@ -47,10 +63,15 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
   check(options);
   const SignUsed sign = choose_sign(sites, options.sign);
   const InsideTest is_inside(sites.impl(), sign.method);
-  const ClosestSearch search = search_of(options.engine);
 
   DistanceMap map = empty_map(surface.resolution());
   map.sign = sign;
+  const bool raster = options.engine == EngineKind::gl;
+  std::vector<std::uint32_t> winners;  // of the gl engine, a face a texel
+  if (raster) winners = gl_winners(surface, sites, options, map.raster.emplace());
+  const ClosestSearch search = raster ? nullptr : search_of(options.engine);
+  const auto start = std::chrono::steady_clock::now();
+
   const std::span<const std::uint32_t> samples = surface.samples();
   std::atomic<std::size_t> beyond{0};
   parallel_for(samples.size(), kBatch, options.progress, "map", [&](std::size_t begin, std::size_t end) {
@@ -59,7 +80,10 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
     std::vector<ClosestPoint> closest(texels.size());
     std::transform(texels.begin(), texels.end(), points.begin(),
                    [&](std::uint32_t texel) { return surface.texel_point(texel); });
-    search(sites.impl(), points, options.max_distance, closest);
+    if (raster)
+      recompute(sites.impl(), winners, texels, points, options.max_distance, closest);
+    else
+      search(sites.impl(), points, options.max_distance, closest);
     for (std::size_t i = 0; i < texels.size(); ++i) {
       const ClosestPoint& c = closest[i];
       if (c.type == SiteType::none) {
@@ -75,6 +99,9 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
     }
   });
   map.beyond_max_distance = beyond;
+  if (raster)
+    map.raster->time_ms.finish =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return map;
 }
 

@@ -1,0 +1,82 @@
+/// The gl engine: surface distance maps by rasterisation on OpenGL (Sud et al. 2006), its choices and what it
+/// did.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sdm {
+
+/// A device that OpenGL 4.5 runs on.
+struct GlDevice {
+  std::string name;    ///< the driver's GL_RENDERER
+  std::string driver;  ///< its GL_VERSION
+  bool software = false;
+};
+
+/// All devices that can run the gl engine, in the order in which it prefers them: hardware first. Needs
+/// neither a window nor a display server. Throws sdm::Error where there is none, or where sdm was built
+/// without OpenGL (SDM_BUILD_GL).
+[[nodiscard]] std::vector<GlDevice> gl_devices();
+
+/// How the polygons of sites are kept within the faces of O1.
+enum class RasterClip {
+  planes,   ///< cut at the face's sides before they are drawn; the fragments at the border ask who owns the
+            ///< texel
+  stencil,  ///< the paper's way (4.1): each face has a value in the stencil buffer, of a cache of them
+};
+
+struct RasterOptions {
+  /// Index into gl_devices() or a part of a name there, in any case; empty: the first one.
+  std::string device;
+  RasterClip clip = RasterClip::planes;
+  /// Stencil values that faces share, in [1, 255]; for RasterClip::stencil.
+  int stencil_values = 255;
+  /// Leave out sites that are farther from a face than an upper bound on its distances (4.2). Never changes a
+  /// distance.
+  bool bound_culling = true;
+};
+
+/// What the gl engine did. Counts are exact and do not depend on the number of threads; a pair is a site of
+/// O2 and a face of O1 that owns a texel. Each pair has one fate:
+///   pairs = culled_by_bound + culled_by_obb + clipped_away + polygons.
+struct RasterReport {
+  GlDevice device;
+  RasterClip clip = RasterClip::planes;
+
+  std::uint64_t sites = 0;          ///< of O2
+  std::uint64_t sites_dropped = 0;  ///< whose region of influence has no interior; in no pair
+  std::uint64_t faces = 0;          ///< of O1 that own a texel
+  std::uint64_t pairs = 0;          ///< (sites − sites_dropped) × faces
+  std::uint64_t bound_tests = 0;    ///< site or group of sites against a node of O1's tree
+  std::uint64_t obb_tests = 0;      ///< region's oriented box against a node of O1's tree
+  std::uint64_t culled_by_bound = 0;
+  std::uint64_t culled_by_obb = 0;
+  std::uint64_t clipped_away = 0;  ///< region does not meet the face
+  std::uint64_t polygons = 0;      ///< drawn
+  std::uint64_t fragments = 0;     ///< shaded and within their face and region
+  std::uint64_t texels = 0;        ///< owned by a face: fragments / texels is the overdraw
+  std::uint64_t batches = 0;       ///< of polygons sent to the device
+
+  // RasterClip::stencil, else 0. lookups = hits + misses; misses − evictions values are in use at the end.
+  std::uint64_t stencil_lookups = 0;
+  std::uint64_t stencil_hits = 0;
+  std::uint64_t stencil_misses = 0;
+  std::uint64_t stencil_evictions = 0;
+  std::uint64_t stencil_clears =
+      0;  ///< of a face's texels, one an eviction, and of the buffer, one at the start
+
+  /// Wall-clock milliseconds. The device draws while the next batch is culled and clipped.
+  struct Times {
+    double context = 0;    ///< device, shaders: 0 but for the first map of a process
+    double refit = 0;      ///< affine maps, boxes of O1's tree
+    double bounds = 0;     ///< upper bounds on distance
+    double cull = 0;       ///< bounds, oriented boxes, clipping
+    double draw = 0;       ///< upload, stencil, draw calls
+    double read_back = 0;  ///< waiting for the device, reading
+    double finish = 0;     ///< winners in double precision, sign
+  } time_ms;
+};
+
+}  // namespace sdm

@@ -1,0 +1,4 @@
+#version 450 core
+// Writes nothing but the stencil.
+
+void main() {}

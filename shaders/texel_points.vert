@@ -1,0 +1,13 @@
+#version 450 core
+// A texel of a face, as a point: what a face's stencil is drawn with, so that it covers exactly its texels.
+
+uniform float resolution;
+
+layout(location = 0) in uint texel;
+
+void main() {
+  const uint side = uint(resolution);
+  const vec2 centre = vec2(texel % side, texel / side) + 0.5;
+  gl_Position = vec4(2.0 * centre / resolution - 1.0, 0.0, 1.0);
+  gl_PointSize = 1.0;
+}

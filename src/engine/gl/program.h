@@ -1,0 +1,33 @@
+// Shader programs, from the sources that the build embeds.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <string_view>
+
+namespace sdm::gl {
+
+/// A file of shaders/, embedded by the build (shaders.h, generated).
+struct ShaderSource {
+  std::string_view name;  ///< of the file
+  std::string_view text;
+};
+
+/// A vertex and a fragment shader, linked. Needs a current context, for its whole life.
+class Program {
+ public:
+  /// Throws sdm::Error with the name of the file, the device and what its compiler says, if it refuses.
+  Program(const ShaderSource& vertex, const ShaderSource& fragment);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  [[nodiscard]] GLuint id() const { return id_; }
+  /// The location of a uniform, which must be in use.
+  [[nodiscard]] GLint uniform(const char* name) const;
+
+ private:
+  GLuint id_ = 0;
+};
+
+}  // namespace sdm::gl

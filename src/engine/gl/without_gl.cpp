@@ -1,0 +1,23 @@
+// Stands for the gl engine where sdm is built without OpenGL.
+#include <sdm/error.h>
+
+#include "engine/gl/gl_engine.h"
+
+namespace sdm {
+namespace {
+
+[[noreturn]] void refuse() {
+  throw Error("this sdm was built without OpenGL (SDM_BUILD_GL=OFF): choose another engine");
+}
+
+}  // namespace
+
+std::vector<GlDevice> gl_devices() {
+  refuse();
+}
+
+std::vector<std::uint32_t> gl_winners(const Surface&, const Sites&, const MapOptions&, RasterReport&) {
+  refuse();
+}
+
+}  // namespace sdm
