@@ -16,14 +16,14 @@ struct ShaderSource {
 /// A vertex and a fragment shader, linked. Needs a current context, for its whole life.
 class Program {
  public:
-  /// Throws sdm::Error with the name of the file, the device and what its compiler says, if it refuses.
+  /// Throws sdm::Error with the names of the files, the device and what its compiler says, if it refuses.
   Program(const ShaderSource& vertex, const ShaderSource& fragment);
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
   [[nodiscard]] GLuint id() const { return id_; }
-  /// The location of a uniform, which must be in use.
+  /// The location of a uniform, which must be in use, else sdm::Error.
   [[nodiscard]] GLint uniform(const char* name) const;
 
  private:
