@@ -1,14 +1,17 @@
 #include "embree_map.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/parallel.h"
+#include "embree_mesh.h"
 
 namespace sdm::bench {
 namespace {
 
+Vec3f single(const Vec3& a) {
+  return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
+}
 Vec3f operator+(const Vec3f& a, const Vec3f& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
@@ -68,20 +71,10 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
 
 EmbreeScene::EmbreeScene(const Mesh& mesh) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), mesh.positions.size()));
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    for (int k = 0; k < 3; ++k) positions[i][k] = static_cast<float>(mesh.positions[i][k]);
-  auto* indices = static_cast<Triangle*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), mesh.triangles.size()));
-  std::ranges::copy(mesh.triangles, indices);
-  for (const auto& [a, b, c] : mesh.triangles)
-    triangles_.push_back({positions[a], positions[b], positions[c]});
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene_, geometry);
-  rtcReleaseGeometry(geometry);
+  attach(device_, scene_, mesh);
   rtcCommitScene(scene_);
+  for (const auto& [a, b, c] : mesh.triangles)
+    triangles_.push_back({single(mesh.positions[a]), single(mesh.positions[b]), single(mesh.positions[c])});
 }
 
 EmbreeScene::~EmbreeScene() {

@@ -5,7 +5,6 @@
 //
 //   build/dev/bench/map_vs_embree [--benchmark_repetitions=N ...]
 #include <benchmark/benchmark.h>
-#include <sdm/io.h>
 #include <sdm/sdm.h>
 
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "embree_map.h"
+#include "scenes.h"
 
 namespace sdm::bench {
 namespace {
@@ -64,12 +64,6 @@ class MedianReporter : public benchmark::ConsoleReporter {
   }
   std::map<std::string, double> medians;
 };
-
-Mesh load(const char* name, const char* steps) {
-  Mesh mesh = read_mesh(std::string(SDM_BENCH_MESHES) + "/" + name);
-  transform(mesh, parse_transform(steps));
-  return mesh;
-}
 
 template <class Work>
 void add(const std::string& name, std::size_t texels, Work work) {

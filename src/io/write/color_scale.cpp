@@ -120,11 +120,23 @@ ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
 }
 
 Rgb site_color(SiteType type, std::uint32_t site) {
+  if (type == SiteType::none) return kNoValue;
   const std::uint32_t hash = scramble(site * 4 + static_cast<std::uint32_t>(type));
   const double hue = (hash >> 16) / 65536.0, vary = (hash & 0xFFFF) / 65536.0;
   if (type == SiteType::face) return hsl(hue, 0.5 + 0.3 * vary, 0.74 + 0.12 * vary);
   if (type == SiteType::edge) return hsl(hue, 0.8 + 0.2 * vary, 0.5 + 0.1 * vary);
   return hsl(hue, 0.45 + 0.35 * vary, 0.26 + 0.14 * vary);
+}
+
+Rgb direction_color(const Vec3f& vector) {
+  const double length = std::hypot(vector[0], vector[1], vector[2]);
+  if (std::isnan(length)) return kNoValue;
+  // At distance zero there is no direction: the middle of the colour cube.
+  const double scale = length > 0 ? 1 / length : 0;
+  const auto channel = [scale](double x) {
+    return static_cast<std::uint8_t>(std::lround(127.5 * (1 + std::clamp(scale * x, -1.0, 1.0))));
+  };
+  return {channel(vector[0]), channel(vector[1]), channel(vector[2])};
 }
 
 }  // namespace sdm

@@ -31,10 +31,6 @@ LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const st
   return text;
 }
 
-std::uint8_t unit_to_byte(double x) {
-  return static_cast<std::uint8_t>(std::lround(127.5 * (1 + std::clamp(x, -1.0, 1.0))));
-}
-
 // A picture of the map's own size: the background where no face is, else color(texel).
 template <class Color>
 void write_map_png(const std::filesystem::path& file, const Surface& surface, Color&& color) {
@@ -75,21 +71,12 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
 }
 
 void write_voronoi_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
-  write_map_png(file, surface, [&](std::size_t texel) {
-    return map.site_type[texel] == SiteType::none ? kNoValue
-                                                  : site_color(map.site_type[texel], map.site[texel]);
-  });
+  write_map_png(file, surface,
+                [&](std::size_t texel) { return site_color(map.site_type[texel], map.site[texel]); });
 }
 
 void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
-  write_map_png(file, surface, [&](std::size_t texel) {
-    const Vec3f& v = map.vector[texel];
-    const double length = std::hypot(v[0], v[1], v[2]);
-    // At distance zero there is no direction: the middle of the colour cube.
-    const double scale = length > 0 ? 1 / length : 0;
-    if (std::isnan(length)) return kNoValue;
-    return Rgb{unit_to_byte(scale * v[0]), unit_to_byte(scale * v[1]), unit_to_byte(scale * v[2])};
-  });
+  write_map_png(file, surface, [&](std::size_t texel) { return direction_color(map.vector[texel]); });
 }
 
 }  // namespace sdm

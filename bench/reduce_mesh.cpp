@@ -1,0 +1,29 @@
+#include "reduce_mesh.h"
+
+#include <meshoptimizer.h>
+
+namespace sdm::bench {
+
+Mesh reduce_mesh(const Mesh& mesh, std::size_t triangles) {
+  std::vector<Vec3f> points;
+  points.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions)
+    points.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+
+  constexpr float kAnyError = 1;  // of the mesh's size: the count alone decides
+  std::vector<Triangle> kept(mesh.triangles.size());
+  const std::size_t corners = meshopt_simplify(
+      kept.data()->data(), mesh.triangles.data()->data(), 3 * mesh.triangles.size(), points.data()->data(),
+      points.size(), sizeof(Vec3f), 3 * triangles, kAnyError, 0, nullptr);
+  kept.resize(corners / 3);
+
+  Mesh result;
+  result.positions.resize(mesh.positions.size());
+  result.positions.resize(meshopt_optimizeVertexFetch(result.positions.data(), kept.data()->data(), corners,
+                                                      mesh.positions.data(), mesh.positions.size(),
+                                                      sizeof(Vec3)));
+  result.triangles = std::move(kept);
+  return result;
+}
+
+}  // namespace sdm::bench

@@ -1,0 +1,37 @@
+// Which texels of maps a camera sees, by ray casting.
+#pragma once
+
+#include <sdm/surface.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace sdm::bench {
+
+/// A perspective camera.
+struct View {
+  Vec3 eye{}, target{};
+  Vec3 up{0, 0, 1};
+  double field_of_view = 30;  ///< degrees, of the height
+  std::uint32_t width = 0, height = 0;
+};
+
+/// A surface before the camera.
+struct Shown {
+  const Surface* surface = nullptr;
+  /// Leave out the faces that show their outside to the camera, as the near walls of a box around the scene.
+  bool only_inside = false;
+};
+
+/// What is seen at a point of the picture.
+struct Seen {
+  std::uint32_t object = kNone;  ///< index into the list of what is shown, or kNone
+  std::uint32_t texel = kNone;   ///< the one whose sample is nearest in the atlas
+  float light = 1;               ///< of the face, by its angle to the ray: 1 if looked at straight
+};
+
+/// What is seen at the centres of width x height pixels, rows from the top.
+[[nodiscard]] std::vector<Seen> visible_texels(const View& view, std::span<const Shown> objects);
+
+}  // namespace sdm::bench
