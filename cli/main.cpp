@@ -1,4 +1,5 @@
 // The command sdm. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded.
+#include "devices.h"
 #include "info.h"
 #include "map.h"
 
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
   try {
     add_map_command(app);
     add_info_command(app);
+    add_devices_command(app);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) std::cout << app.help();
     flush_output();

@@ -21,6 +21,47 @@ const char* name(sdm::SignMethod method) {
   }
 }
 
+const char* name(sdm::RasterClip clip) {
+  return clip == sdm::RasterClip::planes ? "planes" : "stencil";
+}
+
+double overdraw(const sdm::RasterReport& r) {
+  return r.texels == 0 ? 0 : static_cast<double>(r.fragments) / static_cast<double>(r.texels);
+}
+
+Json to_json(const sdm::RasterReport& r) {
+  const sdm::RasterReport::Times& t = r.time_ms;
+  return {{"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
+          {"clip", name(r.clip)},
+          {"sites", r.sites},
+          {"sites_dropped", r.sites_dropped},
+          {"faces", r.faces},
+          {"pairs", r.pairs},
+          {"bound_tests", r.bound_tests},
+          {"obb_tests", r.obb_tests},
+          {"culled_by_bound", r.culled_by_bound},
+          {"culled_by_obb", r.culled_by_obb},
+          {"clipped_away", r.clipped_away},
+          {"polygons", r.polygons},
+          {"fragments", r.fragments},
+          {"texels", r.texels},
+          {"overdraw", overdraw(r)},
+          {"batches", r.batches},
+          {"stencil_lookups", r.stencil_lookups},
+          {"stencil_hits", r.stencil_hits},
+          {"stencil_misses", r.stencil_misses},
+          {"stencil_evictions", r.stencil_evictions},
+          {"stencil_clears", r.stencil_clears},
+          {"time_ms",
+           {{"context", t.context},
+            {"refit", t.refit},
+            {"bounds", t.bounds},
+            {"cull", t.cull},
+            {"draw", t.draw},
+            {"read_back", t.read_back},
+            {"finish", t.finish}}}};
+}
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.5g", value);
@@ -28,6 +69,17 @@ std::string number(double value) {
 }
 
 }  // namespace
+
+const char* name(sdm::EngineKind engine) {
+  switch (engine) {
+    case sdm::EngineKind::reference:
+      return "reference";
+    case sdm::EngineKind::gl:
+      return "gl";
+    default:
+      return "cpu";
+  }
+}
 
 Json to_json(const Input& input) {
   return {{"file", input.file},
@@ -62,6 +114,7 @@ Json to_json(const Outcome& outcome) {
                          {"exceeded_area_fraction", outcome.tolerance->exceeded_area_fraction},
                          {"within", outcome.tolerance->within},
                          {"certified", outcome.tolerance->certified}};
+  if (outcome.raster) json["raster"] = to_json(*outcome.raster);
   const Times& t = outcome.time;
   json["time_ms"] = {{"import", t.import}, {"atlas", t.atlas},   {"sites", t.sites},
                      {"map", t.map},       {"export", t.output}, {"total", t.total}};
@@ -99,5 +152,8 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
                  ? ""
                  : number(100 * outcome.tolerance->exceeded_area_fraction) + " % of the area") +
             (outcome.tolerance->certified ? "\n" : " at the samples, not certified between them\n");
+  if (outcome.raster)
+    text += "  raster    " + outcome.raster->device.name + ", " + std::to_string(outcome.raster->polygons) +
+            " polygons, overdraw " + number(overdraw(*outcome.raster)) + "\n";
   return text;
 }

@@ -36,8 +36,11 @@ struct Outcome {
   std::size_t beyond_max_distance = 0;
   double error_bound = 0;
   std::optional<Tolerance> tolerance;
+  std::optional<sdm::RasterReport> raster;
   Times time;
 };
+
+[[nodiscard]] const char* name(sdm::EngineKind engine);
 
 /// Throughout, `on` is the mesh that carries the map and `to` the other one.
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);

@@ -1,0 +1,47 @@
+#include "devices.h"
+
+#include <sdm/raster.h>
+
+#include <CLI/CLI.hpp>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace {
+
+nlohmann::ordered_json to_json(const std::vector<sdm::GlDevice>& devices) {
+  auto list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    list.push_back({{"index", i},
+                    {"name", devices[i].name},
+                    {"driver", devices[i].driver},
+                    {"software", devices[i].software}});
+  return list;
+}
+
+void print_table(std::ostream& out, const std::vector<sdm::GlDevice>& devices) {
+  std::size_t width = 0;
+  for (const sdm::GlDevice& device : devices) width = std::max(width, device.name.size());
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    out << i << "  " << std::left << std::setw(static_cast<int>(width)) << devices[i].name << "  "
+        << (devices[i].software ? "software" : "hardware") << "  " << devices[i].driver << '\n';
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("devices", "List what --engine gl can run on, in the order in which it chooses");
+  const auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "Print JSON");
+  command->footer("Example:\n  sdm devices");
+  command->callback([json] {
+    const std::vector<sdm::GlDevice> devices = sdm::gl_devices();
+    if (*json)
+      std::cout << to_json(devices).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    else
+      print_table(std::cout, devices);
+  });
+}

@@ -1,0 +1,9 @@
+// `sdm devices`: what the gl engine can run on.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+/// Adds the command to the application; it runs while the application parses.
+void add_devices_command(CLI::App& app);

@@ -1,0 +1,160 @@
+#include "map_options.h"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace {
+
+// Checks of the command line: each returns what is wrong, or nothing.
+std::string check_transform(const std::string& text) try {
+  (void)sdm::parse_transform(text);
+  return {};
+} catch (const sdm::Error& error) {
+  return error.what();
+}
+
+CLI::Validator number(const std::string& description, bool (*accepts)(double)) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && accepts(value);
+        return good ? std::string() : text + " is not " + description;
+      },
+      "");
+}
+
+CLI::Validator whole_number(int lowest, int highest) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        int value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && lowest <= value && value <= highest;
+        return good ? std::string()
+                    : text + " is not a whole number from " + std::to_string(lowest) + " to " +
+                          std::to_string(highest);
+      },
+      "");
+}
+
+template <class Enum>
+void add_choice(CLI::App& app, const std::string& name, Enum& target, const std::string& description,
+                const std::vector<std::pair<std::string, Enum>>& choices) {
+  std::string names;
+  for (const auto& choice : choices) names += (names.empty() ? "" : "|") + choice.first;
+  const auto find = [choices](const std::string& text) -> std::optional<Enum> {
+    for (const auto& [word, value] : choices)
+      if (word == text) return value;
+    return std::nullopt;
+  };
+  app.add_option_function<std::string>(
+         name, [=, &target](const std::string& text) { target = *find(text); }, description)
+      ->check(CLI::Validator(
+          [=](const std::string& text) {
+            return find(text) ? std::string() : text + " is not one of " + names;
+          },
+          ""))
+      ->type_name(names)
+      ->default_str(choices[0].first);
+}
+
+}  // namespace
+
+void add_options(CLI::App& app, MapCommand& c) {
+  const auto positive = number("a positive number", [](double x) { return x > 0; });
+  app.add_option("O1", c.o1, "The mesh that is measured on (OBJ, PLY, STL, OFF, glTF, 3DS)")->required();
+  app.add_option("O2", c.o2, "The mesh that distances are measured to")->required();
+  app.add_option("-o,--output", c.out, "The folder of the results, made if it is not there")
+      ->required()
+      ->check(CLI::Validator(
+          [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
+      ->type_name("DIR");
+  app.add_flag("--both", c.both, "Measure O2 as well: results in DIR/o1 and DIR/o2");
+
+  const std::string steps = ", placed by steps such as fit,rotate:0:90:0,scale:2,translate:0.8:0:0";
+  app.add_option("--transform-o1", c.transform_o1, "O1" + steps)->check(check_transform)->type_name("STEPS");
+  app.add_option("--transform-o2", c.transform_o2, "O2" + steps)->check(check_transform)->type_name("STEPS");
+
+  app.add_option("--resolution", c.atlas.resolution, "Texels along each side of the map")
+      ->check(whole_number(16, 32768))
+      ->type_name("N")
+      ->capture_default_str();
+  add_choice<sdm::AtlasKind>(app, "--atlas", c.atlas.kind,
+                             "How O1 is laid out in the map: few charts, a chart a triangle, or O1's own UVs",
+                             {{"charts", sdm::AtlasKind::charts},
+                              {"triangles", sdm::AtlasKind::triangles},
+                              {"uv", sdm::AtlasKind::uv}});
+  app.add_option("--max-stretch", c.atlas.max_stretch,
+                 "Charts: the largest growth of a length from map to surface")
+      ->check(number("a number above 1", [](double x) { return x > 1; }))
+      ->type_name("S")
+      ->capture_default_str();
+
+  app.add_option("--max-distance", c.map.max_distance, "Texels farther than this hold no value")
+      ->check(positive)
+      ->type_name("D");
+  add_choice<sdm::SignMethod>(app, "--sign", c.map.sign,
+                              "How the inside of O2 (negative) is told; auto: only where O2 is closed",
+                              {{"auto", sdm::SignMethod::automatic},
+                               {"none", sdm::SignMethod::none},
+                               {"pseudonormal", sdm::SignMethod::pseudonormal},
+                               {"winding", sdm::SignMethod::winding}});
+  add_choice<sdm::EngineKind>(
+      app, "--engine", c.map.engine,
+      "The fast engine, the plain one to compare it with, or the paper's, which draws with OpenGL",
+      {{"cpu", sdm::EngineKind::cpu},
+       {"reference", sdm::EngineKind::reference},
+       {"gl", sdm::EngineKind::gl}});
+  app.add_option("--gl-device", c.map.raster.device,
+                 "gl: the device, by its number in `sdm devices` or a part of its name")
+      ->type_name("NAME");
+  add_choice<sdm::RasterClip>(
+      app, "--clip", c.map.raster.clip,
+      "gl: what keeps polygons within faces of O1, planes or, as in the paper, a cache of stencil values",
+      {{"planes", sdm::RasterClip::planes}, {"stencil", sdm::RasterClip::stencil}});
+  app.add_option("--stencil-values", c.map.raster.stencil_values,
+                 "gl, --clip stencil: how many values the faces share")
+      ->check(whole_number(1, 255))
+      ->type_name("K")
+      ->capture_default_str();
+  app.add_flag_callback(
+      "--no-bound-culling", [&c] { c.map.raster.bound_culling = false; },
+      "gl: keep sites that upper bounds on the distance rule out; the map is the same");
+  app.add_option("--tolerance", c.picture.tolerance,
+                 "Colour bands and exit code 3 where a distance is above D, inside or outside")
+      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
+      ->type_name("D");
+
+  add_choice<sdm::Colormap>(app, "--colormap", c.picture.colormap,
+                            "Colours; auto: diverging where distances have both signs, else viridis",
+                            {{"auto", sdm::Colormap::automatic},
+                             {"viridis", sdm::Colormap::viridis},
+                             {"diverging", sdm::Colormap::diverging},
+                             {"paper2006", sdm::Colormap::paper2006}});
+  app.add_option("--range", c.range, "The distances at the ends of the colours")
+      ->expected(2)
+      ->check(number("a number", [](double) { return true; }))
+      ->type_name("LO HI");
+  app.add_option("--units", c.picture.units,
+                 "Of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
+      ->type_name("NAME");
+
+  app.add_option("--threads", c.threads, "Threads to use, 0 for all cores")
+      ->check(whole_number(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_flag("--json", c.json, "Print the report (report.json) instead of a summary");
+  app.add_flag("--quiet", c.quiet, "Print nothing but errors, and what --json asks for");
+}
+
+void check_combination(const CLI::App& app, const MapCommand& c) {
+  if (!c.range.empty() && !(c.range[0] < c.range[1]))
+    throw CLI::ValidationError("--range", "LO must be below HI");
+  if (c.picture.tolerance && *c.picture.tolerance > c.map.max_distance)
+    throw CLI::ValidationError("--tolerance",
+                               "must not be above --max-distance, which hides what exceeds it");
+  for (const char* option : {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling"})
+    if (app.count(option) > 0 && c.map.engine != sdm::EngineKind::gl)
+      throw CLI::ValidationError(option, "needs --engine gl");
+  if (app.count("--stencil-values") > 0 && c.map.raster.clip != sdm::RasterClip::stencil)
+    throw CLI::ValidationError("--stencil-values", "needs --clip stencil");
+}

@@ -1,0 +1,27 @@
+// The command line of `sdm map`.
+#pragma once
+
+#include <sdm/io.h>
+#include <sdm/sdm.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+struct MapCommand {
+  std::string o1, o2, transform_o1, transform_o2;
+  std::filesystem::path out;
+  sdm::AtlasOptions atlas;
+  sdm::MapOptions map;
+  sdm::PictureOptions picture;
+  std::vector<double> range;
+  unsigned threads = 0;
+  bool both = false, json = false, quiet = false;
+};
+
+/// The options set `command`, which must outlive the parsing.
+void add_options(CLI::App& app, MapCommand& command);
+
+/// Throws CLI::ValidationError for options that do not go together.
+void check_combination(const CLI::App& app, const MapCommand& command);
