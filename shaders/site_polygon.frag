@@ -3,17 +3,17 @@
 // texel (Lemma 1). It is evaluated here rather than interpolated from the polygon's corners: rasterisers move
 // corners to a grid of 1/256 texel, and interpolate with them.
 
-uniform bool by_owner;         // whether the fragment asks who owns its texel
-uniform usampler2D owner;      // the domain that owns each texel
+uniform bool by_owner;     // whether the fragment asks who owns its texel
+uniform usampler2D owner;  // the domain that owns each texel
 
 flat in vec2 origin;           // texel coordinates that the affine functions start from
 flat in vec3 distance_vector, vector_du, vector_dv;
 flat in vec3 wall_0, wall_1, wall_2;  // (value, d/du, d/dv): the region is where none is negative
-flat in uint site, domain;
+flat in uint face, domain;  // the face of O2 that the site belongs to, and the domain drawn on
 
 layout(binding = 0, offset = 0) uniform atomic_uint fragments;
 
-layout(location = 0) out uint closest_site;
+layout(location = 0) out uint closest_face;
 
 void main() {
   if (by_owner && texelFetch(owner, ivec2(gl_FragCoord.xy), 0).r != domain) discard;
@@ -21,6 +21,6 @@ void main() {
   const vec3 walls = vec3(wall_0.x + dot(wall_0.yz, o), wall_1.x + dot(wall_1.yz, o), wall_2.x + dot(wall_2.yz, o));
   if (any(lessThan(walls, vec3(0.0)))) discard;
   atomicCounterIncrement(fragments);
-  closest_site = site;
+  closest_face = face;
   gl_FragDepth = length(distance_vector + o.x * vector_du + o.y * vector_dv);
 }

@@ -9,5 +9,4 @@ void main() {
   const uint side = uint(resolution);
   const vec2 centre = vec2(texel % side, texel / side) + 0.5;
   gl_Position = vec4(2.0 * centre / resolution - 1.0, 0.0, 1.0);
-  gl_PointSize = 1.0;
 }

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "atlas/layout.h"
+#include "hierarchy/aabb_tree.h"
 
 namespace sdm {
 
@@ -19,6 +20,8 @@ struct Surface::Impl {
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
   std::once_flag bounded;
   double sampling_bound = 0;  ///< once `bounded`
+  mutable std::once_flag treed{};
+  mutable AabbTree face_tree{};  ///< once `treed`: see face_tree.h
 };
 
 }  // namespace sdm

@@ -106,8 +106,8 @@ void fill(EdgeBlock& block, std::span<const Vec3> p, std::span<const Triangle> t
     for (std::size_t j = 0; j < 2; ++j) {
       const Triangle& t = triangles[faces[std::min(j, faces.size() - 1)]];
       const Vec3 opposite = p[t[0] ^ t[1] ^ t[2] ^ a ^ b] - p[a];  // the corner that is neither a nor b
-      const Vec3 inward =
-          face_normal(t, p) == Vec3{} ? Vec3{} : normalized(opposite - dot(opposite, direction) * direction);
+      // No wall towards a face that its edges stand for.
+      const Vec3 inward = thin(t, p) ? Vec3{} : normalized(opposite - dot(opposite, direction) * direction);
       set_plane(block.wall[j], i, inward, p[a]);
     }
   }

@@ -2,10 +2,234 @@
 
 #include <sdm/error.h>
 
-namespace sdm {
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <utility>
 
-std::vector<std::uint32_t> gl_winners(const Surface&, const Sites&, const MapOptions&, RasterReport&) {
-  throw Error("not yet");
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "engine/gl/domain_tree.h"
+#include "engine/gl/pair_culling.h"
+#include "engine/gl/rasteriser.h"
+
+namespace sdm {
+namespace gl {
+namespace {
+
+// Faces of O1 drawn together, at most: no more than the stencil has values, so that none is needed twice.
+constexpr std::uint32_t kBlockFaces = 255;
+// Leaves of O2's tree whose polygons are made at a time, and polygons that are enough for a batch: together
+// they bound the memory of a batch, whatever the meshes.
+constexpr std::size_t kLeaves = 64, kBatchPolygons = 1 << 15;
+
+class Stopwatch {
+ public:
+  /// Milliseconds since it was made or last asked.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void check(const RasterOptions& options) {
+  if (options.stencil_values < 1 || options.stencil_values > 255)
+    throw Error(std::to_string(options.stencil_values) + " stencil values are out of range; use 1 to 255");
+}
+
+// The devices of the process, by what was asked for. One map at a time is drawn. They live as long as the
+// process: at its end drivers may be gone before anything that could be destroyed.
+struct Devices {
+  std::mutex drawing;
+  std::map<std::string, std::unique_ptr<RasterDevice>, std::less<>> open;
+};
+
+Devices& devices() {
+  static Devices& all = *new Devices;
+  return all;
+}
+
+// How long lengths are, in the unit frame of O2.
+struct Extent {
+  double size;   // no coordinate is larger
+  double reach;  // no sample is farther from O2
+
+  Extent(const FloatBox& o1, const FloatBox& o2) : size(0), reach(0) {
+    for (int k = 0; k < 3; ++k) {
+      for (const FloatBox* box : {&o1, &o2})
+        size = std::max({size, std::abs(double{box->lo[k]}), std::abs(double{box->hi[k]})});
+      const double farthest = std::max(double{o1.hi[k]} - o2.lo[k], double{o2.hi[k]} - o1.lo[k]);
+      reach += farthest * farthest;
+    }
+    reach = std::sqrt(reach);
+  }
+};
+
+// What single precision may get wrong, as a part of the scene's size: regions are larger by this.
+constexpr double kRegionSlack = 0x1p-20;
+// Distances that differ by less may be mistaken for each other, so bounds leave more.
+constexpr double kBoundSlack = 0x1p-17;
+
+// Makes the polygons of all pairs and hands them to the rasteriser in batches.
+class PairStream {
+ public:
+  PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterScale& scale,
+             Rasteriser& rasteriser, RasterReport& report)
+      : sites_(sites),
+        tree_(tree),
+        reach_(reach),
+        scale_(scale),
+        rasteriser_(rasteriser),
+        report_(report),
+        parts_(kLeaves),
+        counts_(kLeaves) {}
+
+  void draw(const DomainBlock& block) {
+    Stopwatch watch;
+    const std::vector<std::uint32_t> leaves = leaves_within_bound(sites_, tree_, block, total_);
+    for (std::size_t begin = 0; begin < leaves.size(); begin += kLeaves) {
+      const std::size_t count = std::min(kLeaves, leaves.size() - begin);
+      parallel_for(count, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+          draw_leaf(sites_, leaves[begin + i], tree_, block, reach_, scale_, parts_[i], counts_[i]);
+      });
+      for (std::size_t i = 0; i < count; ++i) {
+        total_ += std::exchange(counts_[i], {});
+        batch_.append(parts_[i]);
+        parts_[i].clear();
+      }
+      if (batch_.size() < kBatchPolygons) continue;
+      report_.time_ms.cull += watch.lap();
+      flush();
+      watch.lap();
+    }
+    report_.time_ms.cull += watch.lap();
+  }
+
+  void flush() {
+    Stopwatch watch;
+    rasteriser_.draw(batch_);
+    batch_.clear();
+    report_.time_ms.draw += watch.lap();
+  }
+
+  [[nodiscard]] const PairCounts& counts() const { return total_; }
+
+ private:
+  const SiteIndex& sites_;
+  const DomainTree& tree_;
+  double reach_;
+  const RasterScale& scale_;
+  Rasteriser& rasteriser_;
+  RasterReport& report_;
+  std::vector<RasterBatch> parts_;
+  std::vector<PairCounts> counts_;
+  RasterBatch batch_;
+  PairCounts total_;
+};
+
+void store(const PairCounts& counts, const SiteIndex& sites, const DomainTree& tree, RasterReport& report) {
+  const std::uint64_t kept = sites.before.back();
+  report.sites = kept + sites.dropped;
+  report.sites_dropped = sites.dropped;
+  report.faces = tree.tree.items.size();
+  report.pairs = kept * report.faces;
+  report.bound_tests = counts.bound_tests;
+  report.obb_tests = counts.obb_tests;
+  report.culled_by_bound = counts.culled_by_bound;
+  report.culled_by_obb = counts.culled_by_obb;
+  report.clipped_away = counts.clipped_away;
+  report.polygons = counts.polygons;
+}
+
+std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface::Impl& surface,
+                                    const Sites::Impl& sites, const MapOptions& options,
+                                    RasterReport& report) {
+  Stopwatch watch;
+  const FaceTexels texels(surface);
+  DomainTree tree(surface, texels, sites.frame);
+  const SiteIndex index(sites);
+  report.time_ms.refit = watch.lap();
+
+  const Extent extent(tree.root().box, sites.tree.nodes[0].box);
+  const double slack = kBoundSlack * extent.size;
+  const double farthest = std::min(extent.reach, sites.frame.scale * options.max_distance) + slack;
+  if (options.raster.bound_culling)
+    set_bounds(tree, sites, slack, farthest);
+  else
+    set_bounds(tree, farthest);
+  const double reach = tree.bound[0];
+  report.time_ms.bounds = watch.lap();
+
+  const RasterScale scale{kRegionSlack * extent.size, std::exp2(-std::ceil(std::log2(reach)))};
+  const Ownership owned =
+      options.raster.clip == RasterClip::planes
+          ? Ownership(OwnerTable{surface.texel_faces})
+          : Ownership(StencilValues{texels.offsets, texels.texels, options.raster.stencil_values});
+  Rasteriser rasteriser(device, surface.resolution, owned);
+  PairStream stream(index, tree, reach, scale, rasteriser, report);
+  report.time_ms.draw = watch.lap();
+
+  std::vector<DomainBlock> blocks = cut_into_blocks(tree, kBlockFaces);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    DomainBlock& block = blocks[b];
+    for (std::uint32_t i = tree.leaves.before[block.node]; i < tree.leaves.before[block.end]; ++i)
+      block.domains.push_back(
+          face_domain(surface, texels, tree.tree.items[i], sites.frame, options.raster.clip));
+    stream.draw(block);
+    block.domains = {};
+    if (options.progress &&
+        !options.progress("raster", static_cast<double>(b + 1) / static_cast<double>(blocks.size())))
+      throw Cancelled();
+  }
+  stream.flush();
+  store(stream.counts(), index, tree, report);
+
+  watch.lap();
+  std::vector<std::uint32_t> winners = rasteriser.read_back();
+  rasteriser.count_into(report);
+  report.time_ms.read_back = watch.lap();
+  return winners;
+}
+
+void expect_no_cracks(const Surface::Impl& surface, const std::vector<std::uint32_t>& winners,
+                      const MapOptions& options, const RasterReport& report) {
+  if (options.max_distance < std::numeric_limits<double>::infinity()) return;
+  for (const std::uint32_t texel : surface.samples)
+    if (winners[texel] == kNone)
+      throw Error(report.device.name + " left texel " + std::to_string(texel) +
+                  " without a value, which OpenGL does not allow; use another device or engine");
+}
+
+}  // namespace
+}  // namespace gl
+
+std::vector<std::uint32_t> gl_winners(const Surface& surface, const Sites& sites, const MapOptions& options,
+                                      RasterReport& report) {
+  gl::check(options.raster);
+  gl::Stopwatch watch;
+  gl::Devices& devices = gl::devices();
+  const std::lock_guard lock(devices.drawing);
+  const std::string& wanted = options.raster.device;
+  try {
+    std::unique_ptr<gl::RasterDevice>& device = devices.open[wanted];
+    if (!device) device = std::make_unique<gl::RasterDevice>(wanted);
+    const gl::Context::Current current(device->context());
+    report.device = device->context().device();
+    report.clip = options.raster.clip;
+    report.texels = surface.samples().size();
+    report.time_ms.context = watch.lap();
+    std::vector<std::uint32_t> winners = gl::draw_map(*device, surface.impl(), sites.impl(), options, report);
+    gl::expect_no_cracks(surface.impl(), winners, options, report);
+    return winners;
+  } catch (const Error&) {
+    devices.open.erase(wanted);  // it may be lost: the next map starts afresh
+    throw;
+  }
 }
 
 }  // namespace sdm

@@ -1,0 +1,77 @@
+#include "engine/gl/domain_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atlas/face_tree.h"
+#include "core/parallel.h"
+#include "engine/engine.h"
+
+namespace sdm::gl {
+namespace {
+
+constexpr std::size_t kGrain = 1024;
+
+Box box_of(const PlanarDomain& domain) {
+  Box box;
+  for (const Vec2& corner : domain.outline.corners()) extend(box, domain.point(corner));
+  return box;
+}
+
+void raise_to_root(DomainTree& tree) {
+  for (std::uint32_t i = tree.node_count(); i-- > 0;)
+    if (const AabbTree::Node& node = tree.tree.nodes[i]; !node.leaf())
+      tree.bound[i] = std::max(tree.bound[i + 1], tree.bound[node.right]);
+}
+
+}  // namespace
+
+LeafOrder::LeafOrder(const AabbTree& tree) : before(tree.nodes.size() + 1, 0) {
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+    before[i + 1] = before[i] + (tree.nodes[i].leaf() ? 1 : 0);
+}
+
+DomainTree::DomainTree(const Surface::Impl& surface, const FaceTexels& texels, const UnitFrame& frame)
+    : tree(face_tree(surface)), leaves(tree), bound(tree.nodes.size()) {
+  std::vector<Box> boxes(surface.mesh.triangles.size());
+  parallel_for(tree.items.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      boxes[tree.items[i]] = box_of(face_domain(surface, texels, tree.items[i], frame, RasterClip::planes));
+  });
+  refit(tree, boxes);
+}
+
+void set_bounds(DomainTree& tree, double bound) {
+  std::fill(tree.bound.begin(), tree.bound.end(), bound);
+}
+
+void set_bounds(DomainTree& tree, const Sites::Impl& sites, double slack, double largest) {
+  std::vector<std::uint32_t> nodes;
+  for (std::uint32_t i = 0; i < tree.node_count(); ++i)
+    if (tree.tree.nodes[i].leaf()) nodes.push_back(i);
+
+  const UnitFrame& frame = sites.frame;
+  parallel_for(nodes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Vec3> middles;
+    for (std::size_t i = begin; i < end; ++i) {
+      const FloatBox& box = tree.tree.nodes[nodes[i]].box;
+      Vec3 middle;
+      for (int k = 0; k < 3; ++k)
+        middle[k] = 0.5 * (double{box.lo[k]} + box.hi[k]) / frame.scale + frame.origin[k];
+      middles.push_back(middle);
+    }
+    std::vector<ClosestPoint> closest(middles.size());
+    cpu_search(sites, middles, std::numeric_limits<double>::infinity(), closest);
+    for (std::size_t i = begin; i < end; ++i) {
+      const FloatBox& box = tree.tree.nodes[nodes[i]].box;
+      const Vec3 p = frame.to_unit(closest[i - begin].point);
+      Vec3 farthest;
+      for (int k = 0; k < 3; ++k)
+        farthest[k] = std::max(std::abs(box.lo[k] - p[k]), std::abs(box.hi[k] - p[k]));
+      tree.bound[nodes[i]] = std::min(largest, norm(farthest) + slack);
+    }
+  });
+  raise_to_root(tree);
+}
+
+}  // namespace sdm::gl

@@ -1,0 +1,143 @@
+#include "engine/gl/oriented_box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sdm::gl {
+namespace {
+
+// Any unit vector across `axis`, which has length 1.
+Vec3 across(const Vec3& axis) {
+  const int least =
+      static_cast<int>(std::min_element(axis.begin(), axis.end(),
+                                        [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+                       axis.begin());
+  Vec3 unit{};
+  unit[least] = 1;
+  return normalized(cross(axis, unit));
+}
+
+// A box by its axes and the interval that it covers along each, from `origin`.
+OrientedBox from_intervals(const Vec3& origin, const std::array<Vec3, 3>& axes, const Vec3& lo,
+                           const Vec3& hi, double slack) {
+  OrientedBox box{origin, axes, {}};
+  for (int k = 0; k < 3; ++k) {
+    box.centre += 0.5 * (lo[k] + hi[k]) * axes[k];
+    box.half[k] = 0.5 * (hi[k] - lo[k]) + slack;
+  }
+  return box;
+}
+
+OrientedBox cube(const Vec3& centre, double half) {
+  return {centre, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, {half, half, half}};
+}
+
+// The prism over the face: its rectangle along the longest side, times both sides of the plane.
+OrientedBox around_face(const SiteRegion& region, double reach, double slack) {
+  Vec3 longest{};
+  for (int k = 0; k < 3; ++k)
+    if (const Vec3 side = region.corners[(k + 1) % 3] - region.corners[k];
+        squared_norm(side) > squared_norm(longest))
+      longest = side;
+  const Vec3 along = normalized(longest - dot(longest, region.axis) * region.axis);
+  const std::array<Vec3, 3> axes{along, normalized(cross(region.axis, along)), normalized(region.axis)};
+  Vec3 lo{0, 0, -reach}, hi{0, 0, reach};
+  for (int k = 0; k < 2; ++k)
+    for (const Vec3& corner : region.corners) {
+      const double t = dot(axes[k], corner - region.anchor);
+      lo[k] = std::min(lo[k], t);
+      hi[k] = std::max(hi[k], t);
+    }
+  return from_intervals(region.anchor, axes, lo, hi, slack);
+}
+
+// The wedge where y·n ≥ 0 for one or two normals: symmetric about b = Σ n. A ray that bounds it makes with b
+// an angle whose sine is n·b, so that the wedge, cut off at `reach`, covers [0, reach] along b and ± reach
+// n·b across.
+OrientedBox around_edge(const SiteRegion& region, double reach, double slack) {
+  const Vec3 along = normalized(region.axis);
+  if (along == Vec3{}) return cube(region.anchor, reach + slack);
+  std::array<Vec3, 2>
+      normals{};  // across the edge and of length 1 in double: their sum may be nearly nothing
+  const int count = region.wall_count - region.exact;
+  for (int k = 0; k < count; ++k) {
+    const Vec3& n = region.walls[region.exact + k].normal;
+    normals[k] = normalized(n - dot(n, along) * along);
+  }
+  const Vec3 sum = normals[0] + normals[1];
+  const bool wedge = norm(sum) > 1e-6;
+  const Vec3 middle = wedge ? normalized(sum) : across(along);
+  const double sine = wedge ? std::max(dot(normals[0], middle), dot(normals[1], middle)) : 1;
+  const double length = norm(region.corners[1] - region.corners[0]);
+  return from_intervals(region.anchor, {along, middle, cross(along, middle)},
+                        {0, wedge ? 0 : -reach, -sine * reach}, {length, reach, sine * reach}, slack);
+}
+
+// The cone {y·ray ≤ 0 for every ray}, pointed if its extreme rays e, each across two of the rays, lie to one
+// side: y·b ≥ 0 with b = −Σ ray. A unit vector y = Σ λ e of it has Σ λ ≤ 1 / min(e·b), so y·t ≤ max(e·t) /
+// min(e·b) along any t.
+OrientedBox around_vertex(const SiteRegion& region, double reach, double slack) {
+  Vec3 sum{};
+  for (int k = 0; k < region.wall_count; ++k) sum += region.walls[k].normal;
+  if (region.wall_count < 3 || !(norm(sum) > 1e-3)) return cube(region.anchor, reach + slack);
+  const Vec3 middle = normalized(sum);
+  const Vec3 side = across(middle), other = cross(middle, side);
+
+  double least = std::numeric_limits<double>::infinity();
+  Vec3 lo{}, hi{0, 0, reach};
+  for (int i = 0; i < region.wall_count; ++i)
+    for (int j = 0; j < region.wall_count; ++j) {
+      if (i == j) continue;
+      const Vec3 ray = normalized(cross(region.walls[i].normal, region.walls[j].normal));
+      if (ray == Vec3{}) return cube(region.anchor, reach + slack);
+      bool inside = true;
+      for (int k = 0; k < region.wall_count; ++k) inside &= dot(region.walls[k].normal, ray) >= -1e-6;
+      if (!inside) continue;
+      least = std::min(least, dot(ray, middle));
+      const double s = dot(ray, side), t = dot(ray, other);
+      lo[0] = std::min(lo[0], s), hi[0] = std::max(hi[0], s);
+      lo[1] = std::min(lo[1], t), hi[1] = std::max(hi[1], t);
+    }
+  for (int k = 0; k < 2; ++k) {
+    lo[k] = least > 0.01 ? reach * std::max(lo[k] / least, -1.0) : -reach;
+    hi[k] = least > 0.01 ? reach * std::min(hi[k] / least, 1.0) : reach;
+  }
+  return from_intervals(region.anchor, {side, other, middle}, lo, hi, slack);
+}
+
+}  // namespace
+
+OrientedBox oriented_box(const SiteRegion& region, double reach, double slack) {
+  switch (region.type) {
+    case SiteType::face:
+      return around_face(region, reach, slack);
+    case SiteType::edge:
+      return around_edge(region, reach, slack);
+    default:
+      return around_vertex(region, reach, slack);
+  }
+}
+
+bool may_meet(const OrientedBox& box, const FloatBox& other) {
+  Vec3 centre, half;
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = 0.5 * (double{other.lo[k]} + other.hi[k]);
+    half[k] = 0.5 * (double{other.hi[k]} - other.lo[k]);
+  }
+  const Vec3 between = centre - box.centre;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& axis = box.axes[k];
+    const double radius =
+        std::abs(axis[0]) * half[0] + std::abs(axis[1]) * half[1] + std::abs(axis[2]) * half[2];
+    if (std::abs(dot(axis, between)) > box.half[k] + radius) return false;
+  }
+  for (int i = 0; i < 3; ++i) {
+    double radius = half[i];
+    for (int k = 0; k < 3; ++k) radius += std::abs(box.axes[k][i]) * box.half[k];
+    if (std::abs(between[i]) > radius) return false;
+  }
+  return true;
+}
+
+}  // namespace sdm::gl

@@ -1,0 +1,57 @@
+// What is drawn: the part of a domain that lies in a site's region, with the distance vector to the site.
+#pragma once
+
+#include <vector>
+
+#include "engine/gl/planar_domain.h"
+#include "engine/gl/site_region.h"
+
+namespace sdm::gl {
+
+/// A record of the table that the vertex shader reads. Affine functions are given by their value at `origin`,
+/// the centre of a texel, and their change over one texel to the right and down. Lengths in units of
+/// RasterScale.
+struct RasterPolygon {
+  float vector[3], origin_u;
+  float vector_du[3], origin_v;
+  float vector_dv[3];
+  std::uint32_t face;  ///< of O2
+  float wall_0[3];
+  std::uint32_t domain;
+  float wall_1[3], padding_1;
+  float wall_2[3], padding_2;
+};
+inline constexpr int kTexelsPerPolygon = 6;
+static_assert(sizeof(RasterPolygon) == kTexelsPerPolygon * 4 * sizeof(float));
+
+struct RasterCorner {
+  float u, v;
+  std::uint32_t polygon;
+};
+
+/// Polygons to be drawn together.
+struct RasterBatch {
+  std::vector<RasterPolygon> polygons;
+  std::vector<RasterCorner> corners;  ///< of polygon i: first_corner[i] ... first_corner[i + 1]
+  std::vector<std::uint32_t> first_corner{0};
+
+  [[nodiscard]] std::size_t size() const { return polygons.size(); }
+  void clear() {
+    polygons.clear();
+    corners.clear();
+    first_corner.assign(1, 0);
+  }
+  void append(const RasterBatch& other);
+};
+
+struct RasterScale {
+  double slack;     ///< walls are loosened by this: their rounding must not open cracks
+  double to_depth;  ///< a power of two that takes every distance of the map below 1
+};
+
+/// Cuts the domain's outline by the walls of the region, and adds what is left to the batch. Returns whether
+/// anything is.
+bool add_polygon(RasterBatch& batch, const SiteRegion& region, const PlanarDomain& domain,
+                 const RasterScale& scale);
+
+}  // namespace sdm::gl

@@ -1,0 +1,322 @@
+#include "engine/gl/rasteriser.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "core/memory.h"
+#include "engine/gl/gl_objects.h"
+#include "engine/gl/program.h"
+#include "engine/gl/shaders.h"
+#include "engine/gl/stencil_cache.h"
+
+namespace sdm::gl {
+namespace {
+
+constexpr std::size_t kPiece = 1 << 16;  // polygons a draw call
+constexpr std::size_t kCounters = 1024;  // of fragments, one a piece
+
+// Fragments that a polygon can have at most: the texels of its bounding rectangle.
+double fragment_bound(std::span<const RasterCorner> corners) {
+  float lo[2] = {corners[0].u, corners[0].v}, hi[2] = {corners[0].u, corners[0].v};
+  for (const RasterCorner& c : corners) {
+    lo[0] = std::min(lo[0], c.u), hi[0] = std::max(hi[0], c.u);
+    lo[1] = std::min(lo[1], c.v), hi[1] = std::max(hi[1], c.v);
+  }
+  return (hi[0] - lo[0] + 1.0) * (hi[1] - lo[1] + 1.0);
+}
+
+std::span<const RasterCorner> corners_of(const RasterBatch& batch, std::size_t polygon) {
+  return {batch.corners.data() + batch.first_corner[polygon],
+          batch.corners.data() + batch.first_corner[polygon + 1]};
+}
+
+template <class T>
+void upload(GLuint buffer, std::span<const T> data) {
+  // New storage each time: the device may still draw from the old one.
+  glNamedBufferData(buffer, static_cast<GLsizeiptr>(data.size_bytes()), data.data(), GL_STREAM_DRAW);
+}
+
+const void* offset(std::size_t bytes) {
+  return reinterpret_cast<const void*>(bytes);
+}
+
+}  // namespace
+
+struct RasterDevice::Programs {
+  Program polygons{kSitePolygonVert, kSitePolygonFrag};
+  Program points{kTexelPointsVert, kTexelPointsFrag};
+};
+
+RasterDevice::RasterDevice(std::string_view wanted) : context_(wanted) {
+  const Context::Current current(context_);
+  programs_ = std::make_unique<Programs>();
+}
+
+RasterDevice::~RasterDevice() {
+  const Context::Current current(context_);
+  programs_.reset();
+}
+
+struct Rasteriser::Impl {
+  const RasterDevice& device;
+  std::uint32_t resolution;
+  std::optional<StencilValues> stencil;
+  std::optional<StencilCache> cache;
+  std::size_t piece_limit;
+  std::uint64_t batches = 0, fragments = 0;
+  std::size_t counters_used = 0;
+
+  Texture<GL_TEXTURE_2D> faces, depth, owners;
+  Framebuffer target;
+  Buffer polygons, corners, indices, counters, stencil_texels;
+  Texture<GL_TEXTURE_BUFFER> polygon_table;
+  VertexArray polygon_corners, texel_points;
+  std::vector<std::uint32_t> index_data;
+  std::vector<std::uint32_t> order;
+
+  Impl(const RasterDevice& d, std::uint32_t n, const Ownership& owned);
+
+  void make_target();
+  void make_inputs(const Ownership& owned);
+  void clear();
+  void draw_piece(const RasterBatch& batch, std::size_t begin, std::size_t end);
+  void draw_by_domain(const RasterBatch& batch);
+  void set_stencil(std::uint32_t domain);
+  void fill_stencil(std::uint32_t domain, int value);
+  void begin_polygons() const;
+  void collect_counters();
+};
+
+Rasteriser::Impl::Impl(const RasterDevice& d, std::uint32_t n, const Ownership& owned)
+    : device(d), resolution(n) {
+  if (const StencilValues* values = std::get_if<StencilValues>(&owned)) {
+    stencil = *values;
+    cache.emplace(values->values);
+  }
+  piece_limit = std::min<std::size_t>(
+      kPiece, static_cast<std::size_t>(device.context().max_texture_buffer_size()) / kTexelsPerPolygon);
+  make_target();
+  make_inputs(owned);
+  clear();
+  device.context().check("preparing the map");
+}
+
+void Rasteriser::Impl::make_target() {
+  std::array<GLint, 2> viewport{};
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+  const int largest = std::min({device.context().max_texture_size(), viewport[0], viewport[1]});
+  if (resolution > static_cast<std::uint32_t>(largest))
+    throw Error("a map of " + std::to_string(resolution) + "² texels is too large for " +
+                device.context().device().name + ", whose images have at most " + std::to_string(largest) +
+                "²; use a lower resolution or another engine");
+  const auto side = static_cast<GLsizei>(resolution);
+  glTextureStorage2D(faces, 1, GL_R32UI, side, side);
+  glTextureStorage2D(depth, 1, GL_DEPTH32F_STENCIL8, side, side);
+  glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT0, faces, 0);
+  glNamedFramebufferTexture(target, GL_DEPTH_STENCIL_ATTACHMENT, depth, 0);
+  device.context().check("making a map of " + std::to_string(resolution) + "² texels");
+  if (glCheckNamedFramebufferStatus(target, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    throw Error(device.context().device().name +
+                " cannot draw into a 32-bit depth buffer with stencil; use another device or engine");
+}
+
+void Rasteriser::Impl::make_inputs(const Ownership& owned) {
+  const auto side = static_cast<GLsizei>(resolution);
+  if (const OwnerTable* table = std::get_if<OwnerTable>(&owned)) {
+    glTextureStorage2D(owners, 1, GL_R32UI, side, side);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})  // integers cannot be blended
+      glTextureParameteri(owners, filter, GL_NEAREST);
+    glTextureSubImage2D(owners, 0, 0, 0, side, side, GL_RED_INTEGER, GL_UNSIGNED_INT, table->owners.data());
+  }
+  if (stencil) upload(stencil_texels, stencil->texels);
+
+  glVertexArrayVertexBuffer(polygon_corners, 0, corners, 0, sizeof(RasterCorner));
+  glVertexArrayElementBuffer(polygon_corners, indices);
+  glEnableVertexArrayAttrib(polygon_corners, 0);
+  glEnableVertexArrayAttrib(polygon_corners, 1);
+  glVertexArrayAttribFormat(polygon_corners, 0, 2, GL_FLOAT, GL_FALSE, offsetof(RasterCorner, u));
+  glVertexArrayAttribIFormat(polygon_corners, 1, 1, GL_UNSIGNED_INT, offsetof(RasterCorner, polygon));
+  for (const GLuint attribute : {0u, 1u}) glVertexArrayAttribBinding(polygon_corners, attribute, 0);
+
+  glVertexArrayVertexBuffer(texel_points, 0, stencil_texels, 0, sizeof(std::uint32_t));
+  glEnableVertexArrayAttrib(texel_points, 0);
+  glVertexArrayAttribIFormat(texel_points, 0, 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(texel_points, 0, 0);
+
+  glNamedBufferStorage(counters, kCounters * sizeof(GLuint), nullptr, 0);
+  const float width = static_cast<float>(resolution);
+  const Program& program = device.programs_->polygons;
+  glProgramUniform1f(program.id(), program.uniform("resolution"), width);
+  glProgramUniform1i(program.id(), program.uniform("polygons"), 0);
+  glProgramUniform1i(program.id(), program.uniform("owner"), 1);
+  glProgramUniform1i(program.id(), program.uniform("by_owner"), std::holds_alternative<OwnerTable>(owned));
+  const Program& points = device.programs_->points;
+  glProgramUniform1f(points.id(), points.uniform("resolution"), width);
+}
+
+void Rasteriser::Impl::clear() {
+  glBindFramebuffer(GL_FRAMEBUFFER, target);
+  glViewport(0, 0, static_cast<GLsizei>(resolution), static_cast<GLsizei>(resolution));
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_STENCIL_TEST);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glStencilMask(0xFF);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  const std::array<GLuint, 4> nothing{kNone, 0, 0, 0};
+  glClearNamedFramebufferuiv(target, GL_COLOR, 0, nothing.data());
+  glClearNamedFramebufferfi(target, GL_DEPTH_STENCIL, 0, 1.0f, 0);
+  const GLuint zero = 0;
+  glClearNamedBufferData(counters, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+}
+
+// The state for polygons; that of the stencil differs in what it masks.
+void Rasteriser::Impl::begin_polygons() const {
+  glUseProgram(device.programs_->polygons.id());
+  glBindVertexArray(polygon_corners);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+  glStencilMask(0);
+}
+
+void Rasteriser::Impl::draw_piece(const RasterBatch& batch, std::size_t begin, std::size_t end) {
+  upload(polygons, std::span(batch.polygons).subspan(begin, end - begin));
+  const std::size_t first = batch.first_corner[begin];
+  upload(corners, std::span(batch.corners).subspan(first, batch.first_corner[end] - first));
+
+  order.resize(end - begin);
+  std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(begin));
+  if (stencil)
+    std::ranges::stable_sort(order, {},
+                             [&](std::uint32_t polygon) { return batch.polygons[polygon].domain; });
+  index_data.clear();
+  for (const std::uint32_t polygon : order) {
+    const auto from = static_cast<std::uint32_t>(batch.first_corner[polygon] - first);
+    const auto to = static_cast<std::uint32_t>(batch.first_corner[polygon + 1] - first);
+    for (std::uint32_t c = from + 1; c + 1 < to; ++c) index_data.insert(index_data.end(), {from, c, c + 1});
+  }
+  upload(indices, std::span<const std::uint32_t>(index_data));
+
+  if (counters_used == kCounters) collect_counters();
+  glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, 0, counters,
+                    static_cast<GLintptr>(counters_used++ * sizeof(GLuint)), sizeof(GLuint));
+  glTextureBuffer(polygon_table, GL_RGBA32UI, polygons);
+  glBindTextureUnit(0, polygon_table);
+  glBindTextureUnit(1, owners);
+  const Program& program = device.programs_->polygons;
+  glProgramUniform1ui(program.id(), program.uniform("first_polygon"), static_cast<GLuint>(begin));
+  begin_polygons();
+  if (stencil)
+    draw_by_domain(batch);
+  else
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(index_data.size()), GL_UNSIGNED_INT, nullptr);
+  device.context().check("drawing the polygons");
+  ++batches;
+}
+
+// One draw call for each domain's run of polygons: its stencil value holds for the whole call.
+void Rasteriser::Impl::draw_by_domain(const RasterBatch& batch) {
+  std::size_t first_index = 0;
+  for (std::size_t i = 0; i < order.size();) {
+    const std::uint32_t domain = batch.polygons[order[i]].domain;
+    std::size_t count = 0;
+    for (; i < order.size() && batch.polygons[order[i]].domain == domain; ++i)
+      count += 3 * (corners_of(batch, order[i]).size() - 2);
+    set_stencil(domain);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT,
+                   offset(first_index * sizeof(std::uint32_t)));
+    first_index += count;
+  }
+}
+
+// From here on only texels of the domain are drawn.
+void Rasteriser::Impl::set_stencil(std::uint32_t domain) {
+  const StencilCache::Use use = cache->use(domain);
+  if (!use.hit) {
+    glUseProgram(device.programs_->points.id());
+    glBindVertexArray(texel_points);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDisable(GL_DEPTH_TEST);
+    glStencilMask(0xFF);
+    glEnable(GL_STENCIL_TEST);
+    glStencilOp(GL_REPLACE, GL_REPLACE, GL_REPLACE);
+    if (use.evicted != StencilCache::kNobody) fill_stencil(use.evicted, 0);
+    fill_stencil(domain, use.value);
+    begin_polygons();
+  }
+  glStencilFunc(GL_EQUAL, use.value, 0xFF);
+}
+
+void Rasteriser::Impl::fill_stencil(std::uint32_t domain, int value) {
+  glStencilFunc(GL_ALWAYS, value, 0xFF);
+  glDrawArrays(GL_POINTS, static_cast<GLint>(stencil->offsets[domain]),
+               static_cast<GLsizei>(stencil->offsets[domain + 1] - stencil->offsets[domain]));
+}
+
+void Rasteriser::Impl::collect_counters() {
+  std::array<GLuint, kCounters> counts{};
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glGetNamedBufferSubData(counters, 0, sizeof counts, counts.data());
+  fragments = std::accumulate(counts.begin(), counts.end(), fragments);
+  const GLuint zero = 0;
+  glClearNamedBufferData(counters, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+  counters_used = 0;
+}
+
+Rasteriser::Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned) {
+  // The image, its owners and its copy; a device that shares the machine's memory takes it from there.
+  const std::size_t texels = std::size_t{resolution} * resolution;
+  require_memory((device.context().device().software ? 20 : 4) * texels,
+                 "a map of " + std::to_string(resolution) + "² texels");
+  impl_ = std::make_unique<Impl>(device, resolution, owned);
+}
+
+Rasteriser::~Rasteriser() = default;
+
+void Rasteriser::draw(const RasterBatch& batch) {
+  // A piece's counter must not overflow, nor its draw call run for so long that a driver takes it for a hang.
+  constexpr double kMostFragments = 1u << 31;
+  for (std::size_t begin = 0; begin < batch.size();) {
+    double bound = 0;
+    std::size_t end = begin;
+    while (end < batch.size() && end - begin < impl_->piece_limit) {
+      bound += fragment_bound(corners_of(batch, end));
+      if (end > begin && bound > kMostFragments) break;
+      ++end;
+    }
+    impl_->draw_piece(batch, begin, end);
+    begin = end;
+  }
+}
+
+std::vector<std::uint32_t> Rasteriser::read_back() {
+  std::vector<std::uint32_t> faces(std::size_t{impl_->resolution} * impl_->resolution);
+  glGetTextureImage(impl_->faces, 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                    static_cast<GLsizei>(faces.size() * sizeof(std::uint32_t)), faces.data());
+  impl_->device.context().check("reading the map back");
+  return faces;
+}
+
+void Rasteriser::count_into(RasterReport& report) {
+  impl_->collect_counters();
+  report.fragments += impl_->fragments;
+  impl_->fragments = 0;
+  report.batches += impl_->batches;
+  if (const auto& cache = impl_->cache) {
+    report.stencil_lookups += cache->lookups();
+    report.stencil_hits += cache->hits();
+    report.stencil_misses += cache->lookups() - cache->hits();
+    report.stencil_evictions += cache->evictions();
+    report.stencil_clears += cache->evictions() + 1;
+  }
+}
+
+}  // namespace sdm::gl

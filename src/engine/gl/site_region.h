@@ -1,0 +1,74 @@
+// A site of O2 with its region of influence, and the distance vector to it, which is affine there (Lemma 1).
+#pragma once
+
+#include <sdm/sites.h>
+
+#include <array>
+
+#include "core/vec.h"
+#include "mesh/sites_impl.h"
+
+namespace sdm::gl {
+
+/// Where normal·x ≥ offset.
+struct HalfSpace {
+  Vec3 normal{};
+  double offset = 0;
+};
+
+/// All in the unit frame of O2. The region is the intersection of the walls; see mesh/regions.h.
+struct SiteRegion {
+  SiteType type = SiteType::none;
+  std::uint32_t face = kNone;  ///< one that the site belongs to
+  Vec3 anchor{};               ///< a point of the site's plane or line, or the vertex
+  Vec3 axis{};                 ///< face: its normal; edge: its direction; vertex: none
+  std::array<Vec3, 3> corners{};
+  int corner_count = 0;
+  std::array<HalfSpace, 4> walls{};
+  int wall_count = 0;
+  int exact =
+      0;  ///< the first walls, beyond which the distance vector is not that to the site: it is too short
+
+  /// The linear part of x ↦ closest point − x.
+  [[nodiscard]] Vec3 change(const Vec3& dx) const {
+    switch (type) {
+      case SiteType::face:
+        return -dot(axis, dx) * axis;
+      case SiteType::edge:
+        return dot(axis, dx) * axis - dx;
+      default:
+        return -dx;
+    }
+  }
+  [[nodiscard]] Vec3 distance_vector(const Vec3& x) const { return change(x - anchor); }
+  [[nodiscard]] Box box() const {
+    Box b;
+    for (int k = 0; k < corner_count; ++k) extend(b, corners[k]);
+    return b;
+  }
+};
+
+/// Whether the region has an interior. A face too thin for its walls has none, nor has an edge whose two
+/// faces lie in one plane: the sites around them hold all closest points.
+[[nodiscard]] bool has_interior(const FaceBlock& block, int lane);
+[[nodiscard]] bool has_interior(const EdgeBlock& block, int lane);
+[[nodiscard]] bool has_interior(const VertexBlock& block, int lane);
+
+[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const FaceBlock& block, int lane);
+[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const EdgeBlock& block, int lane);
+[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const VertexBlock& block, int lane);
+
+/// Calls visit(block, lane) for every site of a leaf of O2's tree.
+template <class Visit>
+void for_each_site(const Regions& regions, std::size_t leaf, Visit&& visit) {
+  const auto over = [&](const auto& blocks, std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b)
+      for (std::uint32_t lane = 0; lane < blocks[b].count; ++lane) visit(blocks[b], static_cast<int>(lane));
+  };
+  const Regions::Leaf &first = regions.leaves[leaf], &last = regions.leaves[leaf + 1];
+  over(regions.faces, first.faces, last.faces);
+  over(regions.edges, first.edges, last.edges);
+  over(regions.vertices, first.vertices, last.vertices);
+}
+
+}  // namespace sdm::gl
