@@ -19,8 +19,9 @@ Mesh paper_figure() {
   return reduce_mesh(load("man.off", "fit"), 17200);
 }
 
-Mesh box_around(const Mesh& mesh, double margin) {
-  const Box box = bounds(mesh);
+Mesh paper_box(const Mesh& figure) {
+  constexpr double margin = 0.12;
+  const Box box = bounds(figure);
   Mesh result;
   // Corner 4z + 2y + x lies at the high end of the axes whose bit is set.
   for (int corner = 0; corner < 8; ++corner) {

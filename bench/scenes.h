@@ -14,7 +14,7 @@ namespace sdm::bench {
 /// triangles.
 [[nodiscard]] Mesh paper_figure();
 
-/// The 12 triangles around a mesh, `margin` beyond its bounds, seen from outside counter-clockwise.
-[[nodiscard]] Mesh box_around(const Mesh& mesh, double margin);
+/// The box of Figure 1: 12 triangles, 0.12 beyond the figure's bounds.
+[[nodiscard]] Mesh paper_box(const Mesh& figure);
 
 }  // namespace sdm::bench

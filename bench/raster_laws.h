@@ -1,0 +1,15 @@
+// What the counters of the gl engine must satisfy.
+#pragma once
+
+#include <sdm/map.h>
+
+#include <string>
+#include <vector>
+
+namespace sdm::bench {
+
+/// The laws of <sdm/raster.h> that the map's report breaks, in words; none if all is well.
+[[nodiscard]] std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& map,
+                                                   const RasterOptions& options);
+
+}  // namespace sdm::bench
