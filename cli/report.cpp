@@ -36,6 +36,7 @@ Json to_json(const sdm::RasterReport& r) {
           {"sites", r.sites},
           {"sites_dropped", r.sites_dropped},
           {"faces", r.faces},
+          {"tiles", r.tiles},
           {"pairs", r.pairs},
           {"bound_tests", r.bound_tests},
           {"obb_tests", r.obb_tests},

@@ -29,7 +29,7 @@ enum class RasterClip {
 
 struct RasterOptions {
   /// Index into gl_devices() or a part of a name there, in any case; empty: the first one.
-  std::string device;
+  std::string device{};
   RasterClip clip = RasterClip::planes;
   /// Stencil values that faces share, in [1, 255]; for RasterClip::stencil.
   int stencil_values = 255;
@@ -48,12 +48,13 @@ struct RasterReport {
   std::uint64_t sites = 0;          ///< of O2
   std::uint64_t sites_dropped = 0;  ///< whose region of influence has no interior; in no pair
   std::uint64_t faces = 0;          ///< of O1 that own a texel
-  std::uint64_t pairs = 0;          ///< (sites − sites_dropped) × faces
+  std::uint64_t tiles = 0;          ///< of those faces
+  std::uint64_t pairs = 0;          ///< (sites − sites_dropped) × tiles
   std::uint64_t bound_tests = 0;    ///< site or group of sites against a node of O1's tree
   std::uint64_t obb_tests = 0;      ///< region's oriented box against a node of O1's tree
   std::uint64_t culled_by_bound = 0;
   std::uint64_t culled_by_obb = 0;
-  std::uint64_t clipped_away = 0;  ///< region does not meet the face
+  std::uint64_t clipped_away = 0;  ///< region does not meet the tile
   std::uint64_t polygons = 0;      ///< drawn
   std::uint64_t fragments = 0;     ///< shaded and within their face and region
   std::uint64_t texels = 0;        ///< owned by a face: fragments / texels is the overdraw

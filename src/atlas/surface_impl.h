@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "atlas/layout.h"
-#include "hierarchy/aabb_tree.h"
+#include "atlas/tiles.h"
 
 namespace sdm {
 
@@ -20,8 +20,8 @@ struct Surface::Impl {
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
   std::once_flag bounded;
   double sampling_bound = 0;  ///< once `bounded`
-  mutable std::once_flag treed{};
-  mutable AabbTree face_tree{};  ///< once `treed`: see face_tree.h
+  mutable std::once_flag tiled{};
+  mutable Tiles tiles{};  ///< once `tiled`: see tiles_of
 };
 
 }  // namespace sdm

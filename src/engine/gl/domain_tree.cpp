@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atlas/face_tree.h"
 #include "core/parallel.h"
 #include "engine/engine.h"
 
@@ -31,12 +30,13 @@ LeafOrder::LeafOrder(const AabbTree& tree) : before(tree.nodes.size() + 1, 0) {
     before[i + 1] = before[i] + (tree.nodes[i].leaf() ? 1 : 0);
 }
 
-DomainTree::DomainTree(const Surface::Impl& surface, const FaceTexels& texels, const UnitFrame& frame)
-    : tree(face_tree(surface)), leaves(tree), bound(tree.nodes.size()) {
-  std::vector<Box> boxes(surface.mesh.triangles.size());
-  parallel_for(tree.items.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+DomainTree::DomainTree(const Surface& surface, const Tiles& tiles, const UnitFrame& frame)
+    : tree(tiles.tree), leaves(tree), bound(tree.nodes.size()) {
+  std::vector<Box> boxes(tiles.count());
+  parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      boxes[tree.items[i]] = box_of(face_domain(surface, texels, tree.items[i], frame, RasterClip::planes));
+      boxes[i] =
+          box_of(face_domain(surface, tiles, static_cast<std::uint32_t>(i), frame, RasterClip::planes));
   });
   refit(tree, boxes);
 }

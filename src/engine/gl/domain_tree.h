@@ -29,7 +29,7 @@ struct DomainTree {
   std::vector<double> bound;  ///< of each node: no sample of its domains is farther from O2
 
   /// Boxes brought up to date with the domains as they lie now. Cost: linear.
-  DomainTree(const Surface::Impl& surface, const FaceTexels& texels, const UnitFrame& frame);
+  DomainTree(const Surface& surface, const Tiles& tiles, const UnitFrame& frame);
 
   [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(tree.nodes.size()); }
   [[nodiscard]] const AabbTree::Node& root() const { return tree.nodes[0]; }

@@ -14,43 +14,31 @@ Vec2 centre(std::uint32_t texel, std::uint32_t resolution) {
   return {texel % resolution + 0.5, texel / resolution + 0.5};
 }
 
-// The corners of the face in the atlas, by the inverse of its map.
-std::array<Vec2, 3> atlas_corners(const Surface::Impl& surface, std::uint32_t face) {
-  const auto& [origin, edges] = surface.maps[face];
-  const Triangle& t = surface.mesh.triangles[face];
-  const Vec3 n = cross(edges[0], edges[1]);
+// The corners of the face in the atlas.
+std::array<Vec2, 3> atlas_corners(const Surface& surface, std::uint32_t face) {
   std::array<Vec2, 3> corners;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 p = surface.mesh.positions[t[k]] - surface.mesh.positions[t[0]];
-    corners[k] =
-        origin + (1 / squared_norm(n)) * Vec2{dot(cross(p, edges[1]), n), dot(cross(edges[0], p), n)};
-  }
+  for (int k = 0; k < 3; ++k)
+    corners[k] = surface.to_atlas(face, surface.mesh().positions[surface.mesh().triangles[face][k]]);
   return corners;
 }
 
 }  // namespace
 
-FaceTexels::FaceTexels(const Surface::Impl& surface)
-    : offsets(surface.mesh.triangles.size() + 1, 0), texels(surface.samples.size()) {
-  for (const std::uint32_t texel : surface.samples) ++offsets[surface.texel_faces[texel] + 1];
-  for (std::size_t face = 1; face < offsets.size(); ++face) offsets[face] += offsets[face - 1];
-  std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
-  for (const std::uint32_t texel : surface.samples) texels[next[surface.texel_faces[texel]]++] = texel;
-}
-
-PlanarDomain face_domain(const Surface::Impl& surface, const FaceTexels& texels, std::uint32_t face,
+PlanarDomain face_domain(const Surface& surface, const Tiles& tiles, std::uint32_t tile,
                          const UnitFrame& frame, RasterClip clip) {
-  const auto& [origin, edges] = surface.maps[face];
+  const std::uint32_t face = tiles.faces[tile];
+  const std::span<const std::uint32_t> texels = tiles.of(tile);
   PlanarDomain domain;
   domain.id = face;
-  domain.image_origin = origin;
-  domain.origin = frame.to_unit(surface.mesh.positions[surface.mesh.triangles[face][0]]);
+  domain.image_origin = centre(texels.front(), surface.resolution());
+  domain.origin = frame.to_unit(surface.texel_point(texels.front()));
+  const std::array<Vec3, 2> edges = surface.texel_edges(face);
   for (int k = 0; k < 2; ++k) domain.edges[k] = frame.scale * edges[k];
 
   constexpr double inf = std::numeric_limits<double>::infinity();
   Vec2 lo{inf, inf}, hi{-inf, -inf};
-  for (const std::uint32_t texel : texels.of(face)) {
-    const Vec2 c = centre(texel, surface.resolution);
+  for (const std::uint32_t texel : texels) {
+    const Vec2 c = centre(texel, surface.resolution());
     for (int k = 0; k < 2; ++k) lo[k] = std::min(lo[k], c[k]), hi[k] = std::max(hi[k], c[k]);
   }
   domain.outline = ConvexPolygon::rectangle(lo - Vec2{kMargin, kMargin}, hi + Vec2{kMargin, kMargin});
@@ -66,8 +54,8 @@ PlanarDomain face_domain(const Surface::Impl& surface, const FaceTexels& texels,
     const Vec2 inward = (turn / length) * Vec2{-side[1], side[0]};
     if (!std::isfinite(inward[0]) || !std::isfinite(inward[1])) continue;
     double least = inf;
-    for (const std::uint32_t texel : texels.of(face))
-      least = std::min(least, dot(inward, centre(texel, surface.resolution)));
+    for (const std::uint32_t texel : texels)
+      least = std::min(least, dot(inward, centre(texel, surface.resolution())));
     domain.outline.cut({kMargin - least, inward});
   }
   return domain;

@@ -2,6 +2,7 @@
 
 #include <sdm/error.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -18,11 +19,11 @@ namespace sdm {
 namespace gl {
 namespace {
 
-// Faces of O1 drawn together, at most: no more than the stencil has values, so that none is needed twice.
-constexpr std::uint32_t kBlockFaces = 255;
+// Tiles of O1 drawn together, at most. A site's region and box are made once for each block.
+constexpr std::uint32_t kBlockTiles = 4096;
 // Leaves of O2's tree whose polygons are made at a time, and polygons that are enough for a batch: together
 // they bound the memory of a batch, whatever the meshes.
-constexpr std::size_t kLeaves = 64, kBatchPolygons = 1 << 15;
+constexpr std::size_t kLeaves = 32, kBatchPolygons = 1 << 15;
 
 class Stopwatch {
  public:
@@ -132,12 +133,15 @@ class PairStream {
   PairCounts total_;
 };
 
-void store(const PairCounts& counts, const SiteIndex& sites, const DomainTree& tree, RasterReport& report) {
+void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles, RasterReport& report) {
   const std::uint64_t kept = sites.before.back();
   report.sites = kept + sites.dropped;
   report.sites_dropped = sites.dropped;
-  report.faces = tree.tree.items.size();
-  report.pairs = kept * report.faces;
+  report.faces = static_cast<std::uint64_t>(std::ranges::count_if(
+      tiles.face_offsets,
+      [last = std::uint32_t{0}](std::uint32_t o) mutable { return std::exchange(last, o) != o; }));
+  report.tiles = tiles.count();
+  report.pairs = kept * report.tiles;
   report.bound_tests = counts.bound_tests;
   report.obb_tests = counts.obb_tests;
   report.culled_by_bound = counts.culled_by_bound;
@@ -146,12 +150,12 @@ void store(const PairCounts& counts, const SiteIndex& sites, const DomainTree& t
   report.polygons = counts.polygons;
 }
 
-std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface::Impl& surface,
+std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface& surface,
                                     const Sites::Impl& sites, const MapOptions& options,
                                     RasterReport& report) {
   Stopwatch watch;
-  const FaceTexels texels(surface);
-  DomainTree tree(surface, texels, sites.frame);
+  const Tiles& tiles = tiles_of(surface);
+  DomainTree tree(surface, tiles, sites.frame);
   const SiteIndex index(sites);
   report.time_ms.refit = watch.lap();
 
@@ -168,18 +172,18 @@ std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface::I
   const RasterScale scale{kRegionSlack * extent.size, std::exp2(-std::ceil(std::log2(reach)))};
   const Ownership owned =
       options.raster.clip == RasterClip::planes
-          ? Ownership(OwnerTable{surface.texel_faces})
-          : Ownership(StencilValues{texels.offsets, texels.texels, options.raster.stencil_values});
-  Rasteriser rasteriser(device, surface.resolution, owned);
+          ? Ownership(OwnerTable{surface.texel_faces()})
+          : Ownership(StencilValues{tiles.face_offsets, tiles.texels, options.raster.stencil_values});
+  Rasteriser rasteriser(device, surface.resolution(), owned);
   PairStream stream(index, tree, reach, scale, rasteriser, report);
   report.time_ms.draw = watch.lap();
 
-  std::vector<DomainBlock> blocks = cut_into_blocks(tree, kBlockFaces);
+  std::vector<DomainBlock> blocks = cut_into_blocks(tree, kBlockTiles);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     DomainBlock& block = blocks[b];
     for (std::uint32_t i = tree.leaves.before[block.node]; i < tree.leaves.before[block.end]; ++i)
       block.domains.push_back(
-          face_domain(surface, texels, tree.tree.items[i], sites.frame, options.raster.clip));
+          face_domain(surface, tiles, tree.tree.items[i], sites.frame, options.raster.clip));
     stream.draw(block);
     block.domains = {};
     if (options.progress &&
@@ -187,7 +191,7 @@ std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface::I
       throw Cancelled();
   }
   stream.flush();
-  store(stream.counts(), index, tree, report);
+  store(stream.counts(), index, tiles, report);
 
   watch.lap();
   std::vector<std::uint32_t> winners = rasteriser.read_back();
@@ -196,10 +200,10 @@ std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface::I
   return winners;
 }
 
-void expect_no_cracks(const Surface::Impl& surface, const std::vector<std::uint32_t>& winners,
+void expect_no_cracks(const Surface& surface, const std::vector<std::uint32_t>& winners,
                       const MapOptions& options, const RasterReport& report) {
   if (options.max_distance < std::numeric_limits<double>::infinity()) return;
-  for (const std::uint32_t texel : surface.samples)
+  for (const std::uint32_t texel : surface.samples())
     if (winners[texel] == kNone)
       throw Error(report.device.name + " left texel " + std::to_string(texel) +
                   " without a value, which OpenGL does not allow; use another device or engine");
@@ -223,8 +227,8 @@ std::vector<std::uint32_t> gl_winners(const Surface& surface, const Sites& sites
     report.clip = options.raster.clip;
     report.texels = surface.samples().size();
     report.time_ms.context = watch.lap();
-    std::vector<std::uint32_t> winners = gl::draw_map(*device, surface.impl(), sites.impl(), options, report);
-    gl::expect_no_cracks(surface.impl(), winners, options, report);
+    std::vector<std::uint32_t> winners = gl::draw_map(*device, surface, sites.impl(), options, report);
+    gl::expect_no_cracks(surface, winners, options, report);
     return winners;
   } catch (const Error&) {
     devices.open.erase(wanted);  // it may be lost: the next map starts afresh
