@@ -158,13 +158,10 @@ int run(int argc, char** argv) {
   const std::vector<Scene> all = scenes(resolution);
   // The first map of a process pays for the context.
   const Measured warm_up = run_once(all[0], {.engine = EngineKind::gl, .raster = {.device = device}});
-  std::printf(
-      "%s, %u threads, %u² texels.\n"
-      "Counts are per texel: pairs of a site and a face, tests against nodes of the tree of faces, pairs "
-      "that\n"
-      "were clipped, polygons and fragments drawn. Time is the median of three runs, or one of over %g "
-      "s.\n\n",
-      warm_up.map.raster->device.name.c_str(), thread_count(), resolution, kLongRun / 1000);
+  std::printf("%s, %u threads, %u² texels. Times are the median of three runs, or one of over %g s.\n",
+              warm_up.map.raster->device.name.c_str(), thread_count(), resolution, kLongRun / 1000);
+  std::puts("Counts are per texel: pairs of a site and a tile of a face, tests against nodes of the tree of");
+  std::puts("tiles, pairs that were clipped, polygons and fragments drawn.\n");
   print_heading();
   bool good = true;
   for (const Scene& scene : all) good &= tabulate(scene, device);

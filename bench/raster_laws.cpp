@@ -11,7 +11,8 @@ std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& 
   const auto law = [&broken](bool holds, const char* words) {
     if (!holds) broken.emplace_back(words);
   };
-  law(r.pairs == (r.sites - r.sites_dropped) * r.faces, "pairs = (sites - sites_dropped) * faces");
+  law(r.faces <= r.tiles && r.tiles <= r.texels, "faces <= tiles <= texels");
+  law(r.pairs == (r.sites - r.sites_dropped) * r.tiles, "pairs = (sites - sites_dropped) * tiles");
   law(r.pairs == r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons,
       "pairs = culled_by_bound + culled_by_obb + clipped_away + polygons");
   law(options.bound_culling || r.culled_by_bound == 0, "without bounds culled_by_bound = 0");
