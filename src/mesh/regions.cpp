@@ -46,21 +46,24 @@ Neighbours vertex_neighbours(std::size_t vertex_count, const Topology& topology)
   return n;
 }
 
-// The neighbours of a vertex whose directions spread the most: each the farthest from those chosen before.
+// Neighbours of a vertex on all its sides: each the most opposed to the sum of those chosen before, so that
+// no half of the directions around it is left open, in which the cone would reach far out. With fewer than
+// kRays, the first stands for the rest.
 std::array<std::uint32_t, VertexBlock::kRays> spread_neighbours(std::uint32_t vertex,
                                                                 std::span<const std::uint32_t> neighbours,
                                                                 std::span<const Vec3> positions) {
-  std::vector<Vec3> direction(neighbours.size());
-  for (std::size_t i = 0; i < neighbours.size(); ++i)
-    direction[i] = normalized(positions[neighbours[i]] - positions[vertex]);
-  std::vector<double> cosine(neighbours.size(), -1);  // to the nearest chosen direction
   std::array<std::uint32_t, VertexBlock::kRays> chosen;
-  std::size_t next = 0;
-  for (std::uint32_t& neighbour : chosen) {
-    neighbour = neighbours[next];
-    for (std::size_t i = 0; i < neighbours.size(); ++i)
-      cosine[i] = std::max(cosine[i], dot(direction[i], direction[next]));
-    next = static_cast<std::size_t>(std::min_element(cosine.begin(), cosine.end()) - cosine.begin());
+  Vec3 sum{};
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    std::uint32_t best = neighbours[0];
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t neighbour : neighbours) {
+      if (std::find(chosen.begin(), chosen.begin() + k, neighbour) != chosen.begin() + k) continue;
+      const double along = dot(normalized(positions[neighbour] - positions[vertex]), sum);
+      if (along < least) least = along, best = neighbour;
+    }
+    chosen[k] = best;
+    sum += normalized(positions[best] - positions[vertex]);
   }
   return chosen;
 }

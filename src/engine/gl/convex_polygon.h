@@ -35,7 +35,8 @@ class ConvexPolygon {
   [[nodiscard]] std::span<const Vec2> corners() const { return {corners_.data(), count_}; }
   [[nodiscard]] bool empty() const { return count_ == 0; }
 
-  /// Keeps what lies in the half-plane (Sutherland & Hodgman 1974).
+  /// Keeps what lies in the half-plane (Sutherland & Hodgman 1974). Corners beyond kMaxCorners, which only
+  /// rounding could make, are left out.
   void cut(const HalfPlane& keep) {
     std::array<double, kMaxCorners> height;
     bool all = true;
@@ -45,7 +46,7 @@ class ConvexPolygon {
     std::size_t n = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const std::size_t j = i + 1 < count_ ? i + 1 : 0;
-      if (height[i] >= 0) kept[n++] = corners_[i];
+      if (height[i] >= 0 && n < kMaxCorners) kept[n++] = corners_[i];
       if ((height[i] >= 0) != (height[j] >= 0) && n < kMaxCorners)
         kept[n++] = corners_[i] + height[i] / (height[i] - height[j]) * (corners_[j] - corners_[i]);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -70,6 +71,8 @@ struct Extent {
   }
 };
 
+// Beyond this many sizes of O2 squares come near the end of single precision.
+constexpr double kFarAway = 1e15;
 // What single precision may get wrong, as a part of the scene's size: regions are larger by this.
 constexpr double kRegionSlack = 0x1p-20;
 // Distances that differ by less may be mistaken for each other, so bounds leave more.
@@ -89,7 +92,8 @@ class PairStream {
         parts_(kLeaves),
         counts_(kLeaves) {}
 
-  void draw(const DomainBlock& block) {
+  /// `progress` is told the fraction of the block that is done.
+  void draw(const DomainBlock& block, const std::function<void(double)>& progress) {
     Stopwatch watch;
     const std::vector<std::uint32_t> leaves = leaves_within_bound(sites_, tree_, block, total_);
     for (std::size_t begin = 0; begin < leaves.size(); begin += kLeaves) {
@@ -103,9 +107,9 @@ class PairStream {
         batch_.append(parts_[i]);
         parts_[i].clear();
       }
-      if (batch_.size() < kBatchPolygons) continue;
       report_.time_ms.cull += watch.lap();
-      flush();
+      if (batch_.size() >= kBatchPolygons) flush();
+      progress(static_cast<double>(begin + count) / static_cast<double>(leaves.size()));
       watch.lap();
     }
     report_.time_ms.cull += watch.lap();
@@ -160,6 +164,9 @@ std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface& s
   report.time_ms.refit = watch.lap();
 
   const Extent extent(tree.root().box, sites.tree.nodes[0].box);
+  if (!(extent.size < kFarAway))
+    throw Error(
+        "O1 is more than 10^15 sizes of O2 away, which is too far for the gl engine; use another one");
   const double slack = kBoundSlack * extent.size;
   const double farthest = std::min(extent.reach, sites.frame.scale * options.max_distance) + slack;
   if (options.raster.bound_culling)
@@ -184,11 +191,11 @@ std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface& s
     for (std::uint32_t i = tree.leaves.before[block.node]; i < tree.leaves.before[block.end]; ++i)
       block.domains.push_back(
           face_domain(surface, tiles, tree.tree.items[i], sites.frame, options.raster.clip));
-    stream.draw(block);
+    stream.draw(block, [&](double fraction) {
+      const double done = (static_cast<double>(b) + fraction) / static_cast<double>(blocks.size());
+      if (options.progress && !options.progress("raster", done)) throw Cancelled();
+    });
     block.domains = {};
-    if (options.progress &&
-        !options.progress("raster", static_cast<double>(b + 1) / static_cast<double>(blocks.size())))
-      throw Cancelled();
   }
   stream.flush();
   store(stream.counts(), index, tiles, report);

@@ -74,34 +74,50 @@ OrientedBox around_edge(const SiteRegion& region, double reach, double slack) {
                         {0, wedge ? 0 : -reach, -sine * reach}, {length, reach, sine * reach}, slack);
 }
 
-// The cone {y·ray ≤ 0 for every ray}, pointed if its extreme rays e, each across two of the rays, lie to one
-// side: y·b ≥ 0 with b = −Σ ray. A unit vector y = Σ λ e of it has Σ λ ≤ 1 / min(e·b), so y·t ≤ max(e·t) /
-// min(e·b) along any t.
-OrientedBox around_vertex(const SiteRegion& region, double reach, double slack) {
-  Vec3 sum{};
-  for (int k = 0; k < region.wall_count; ++k) sum += region.walls[k].normal;
-  if (region.wall_count < 3 || !(norm(sum) > 1e-3)) return cube(region.anchor, reach + slack);
-  const Vec3 middle = normalized(sum);
-  const Vec3 side = across(middle), other = cross(middle, side);
+// The unit vectors along the edges of the cone where y·n ≥ 0 for every wall: each across two of the normals.
+struct ConeEdges {
+  std::array<Vec3, 12> rays;  // both ways for each pair of four walls
+  int count = 0;
+  bool degenerate = false;  // two normals have no direction across both
 
-  double least = std::numeric_limits<double>::infinity();
+  explicit ConeEdges(const SiteRegion& region) {
+    for (int i = 0; i < region.wall_count; ++i)
+      for (int j = 0; j < region.wall_count; ++j) {
+        if (i == j) continue;
+        const Vec3 ray = normalized(cross(region.walls[i].normal, region.walls[j].normal));
+        degenerate |= ray == Vec3{};
+        bool inside = true;
+        for (int k = 0; k < region.wall_count; ++k) inside &= dot(region.walls[k].normal, ray) >= -1e-6;
+        if (inside) rays[count++] = ray;
+      }
+  }
+};
+
+// About b, the middle of the cone's edges e, if all of them have e·b > 0: a unit vector y = Σ λ e of the cone
+// then has y·b ≥ 0 and Σ λ ≤ 1 / min(e·b), so that y·t ≤ max(e·t) / min(e·b) along any t.
+OrientedBox around_vertex(const SiteRegion& region, double reach, double slack) {
+  const ConeEdges edges(region);
+  Vec3 sum{};
+  for (int i = 0; i < edges.count; ++i) sum += edges.rays[i];
+  const Vec3 middle = normalized(sum);
+  double least = 1;
+  for (int i = 0; i < edges.count; ++i) least = std::min(least, dot(edges.rays[i], middle));
+  // A saddle's cone is the vertex alone. A cone that is no cone, or nearly fills a half-space, is not worth a
+  // box.
+  if (edges.count == 0 && region.wall_count == VertexBlock::kRays && !edges.degenerate)
+    return cube(region.anchor, slack);
+  if (edges.count < 3 || edges.degenerate || least < 0.01) return cube(region.anchor, reach + slack);
+
+  const Vec3 side = across(middle), other = cross(middle, side);
   Vec3 lo{}, hi{0, 0, reach};
-  for (int i = 0; i < region.wall_count; ++i)
-    for (int j = 0; j < region.wall_count; ++j) {
-      if (i == j) continue;
-      const Vec3 ray = normalized(cross(region.walls[i].normal, region.walls[j].normal));
-      if (ray == Vec3{}) return cube(region.anchor, reach + slack);
-      bool inside = true;
-      for (int k = 0; k < region.wall_count; ++k) inside &= dot(region.walls[k].normal, ray) >= -1e-6;
-      if (!inside) continue;
-      least = std::min(least, dot(ray, middle));
-      const double s = dot(ray, side), t = dot(ray, other);
-      lo[0] = std::min(lo[0], s), hi[0] = std::max(hi[0], s);
-      lo[1] = std::min(lo[1], t), hi[1] = std::max(hi[1], t);
-    }
+  for (int i = 0; i < edges.count; ++i) {
+    const double s = dot(edges.rays[i], side), t = dot(edges.rays[i], other);
+    lo[0] = std::min(lo[0], s), hi[0] = std::max(hi[0], s);
+    lo[1] = std::min(lo[1], t), hi[1] = std::max(hi[1], t);
+  }
   for (int k = 0; k < 2; ++k) {
-    lo[k] = least > 0.01 ? reach * std::max(lo[k] / least, -1.0) : -reach;
-    hi[k] = least > 0.01 ? reach * std::min(hi[k] / least, 1.0) : reach;
+    lo[k] = reach * std::max(lo[k] / least, -1.0);
+    hi[k] = reach * std::min(hi[k] / least, 1.0);
   }
   return from_intervals(region.anchor, {side, other, middle}, lo, hi, slack);
 }
