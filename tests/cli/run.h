@@ -16,6 +16,7 @@ struct Outcome {
 struct Conditions {
   std::optional<std::uint64_t> file_size{};  ///< no file can grow beyond it: a full disk
   std::optional<std::uint64_t> memory{};     ///< address space
+  std::vector<std::string> environment{};    ///< NAME=value, besides that of this program
   bool terminal = false;                     ///< stderr is a terminal
   int interrupt_after_ms = 0;                ///< send SIGINT then, unless 0
 };

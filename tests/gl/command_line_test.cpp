@@ -1,0 +1,104 @@
+// `sdm devices`, the options of the gl engine, and machines without a device.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/raster.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run.h"
+#include "cli/samples.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+
+TEST(DevicesCommand, ListsWhatTheLibraryLists) {
+  const std::vector<GlDevice> devices = gl_devices();
+  const Outcome table = run_sdm({"devices"});
+  const Outcome json = run_sdm({"devices", "--json"});
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_EQ(json.code, 0) << json.err;
+  EXPECT_EQ(std::ranges::count(table.out, '\n'), devices.size());
+  Json expected = Json::array();
+  for (const GlDevice& device : devices) {
+    EXPECT_THAT(table.out,
+                AllOf(HasSubstr(std::to_string(expected.size()) + "  " + device.name),
+                      HasSubstr(device.driver), HasSubstr(device.software ? "software" : "hardware")));
+    expected.push_back({{"index", expected.size()},
+                        {"name", device.name},
+                        {"driver", device.driver},
+                        {"software", device.software}});
+  }
+  EXPECT_EQ(Json::parse(json.out), expected);
+}
+
+struct GlOptions : ::testing::Test, TwoTori {};
+
+TEST_F(GlOptions, AreForTheGlEngineOnly) {
+  for (const std::vector<std::string>& option : {std::vector<std::string>{"--gl-device", "0"},
+                                                 {"--clip", "planes"},
+                                                 {"--clip", "stencil"},
+                                                 {"--stencil-values", "255"},
+                                                 {"--no-bound-culling"}})
+    for (const std::vector<std::string>& engine :
+         {std::vector<std::string>{}, {"--engine", "cpu"}, {"--engine", "reference"}}) {
+      auto more = option;
+      more.insert(more.end(), engine.begin(), engine.end());
+      const Outcome run = run_sdm(map(more));
+      EXPECT_EQ(run.code, 2);
+      EXPECT_THAT(run.err, StartsWith(option[0] + ": needs --engine gl\n"));
+      EXPECT_EQ(run.out, "");
+    }
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(GlOptions, StencilValuesAreForTheStencilAndFromOneTo255) {
+  EXPECT_THAT(run_sdm(map({"--engine", "gl", "--stencil-values", "3"})).err,
+              StartsWith("--stencil-values: needs --clip stencil\n"));
+  for (const char* values : {"0", "256", "-1", "many", "1.5"}) {
+    const Outcome run = run_sdm(map({"--engine", "gl", "--clip", "stencil", "--stencil-values", values}));
+    EXPECT_EQ(run.code, 2) << values;
+    EXPECT_THAT(run.err, HasSubstr("from 1 to 255"));
+  }
+}
+
+struct WithoutDevice : ::testing::Test, TwoTori {
+  /// The run fails with one sentence that has both words, and leaves no trace.
+  void expect_failure(const Outcome& run, const std::string& fault, const std::string& advice) const {
+    EXPECT_EQ(run.code, 1);
+    EXPECT_EQ(run.out, "");
+    EXPECT_THAT(run.err, AllOf(StartsWith("sdm: error: "), HasSubstr(fault), HasSubstr(advice)));
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
+};
+
+TEST_F(WithoutDevice, NoDriverIsOneSentence) {
+  for (const char* name : {"__EGL_VENDOR_LIBRARY_DIRS", "__EGL_VENDOR_LIBRARY_FILENAMES"}) {
+    const Conditions conditions{.environment = {std::string(name) + "=/nowhere"}};
+    expect_failure(run_sdm({"devices"}, conditions), "no device", "libgl1-mesa-dri");
+    expect_failure(run_sdm(map({"--engine", "gl"}), conditions), "no device", "libgl1-mesa-dri");
+    EXPECT_EQ(run_sdm(map({"--quiet"}), conditions).code, 0) << "the cpu engine needs none";
+    std::filesystem::remove_all(out);
+  }
+}
+
+TEST_F(WithoutDevice, TooOldAnOpenGLIsOneSentence) {
+  const Conditions mesa_44{
+      .environment = {"__EGL_VENDOR_LIBRARY_FILENAMES=/usr/share/glvnd/egl_vendor.d/50_mesa.json",
+                      "MESA_GL_VERSION_OVERRIDE=4.4"}};
+  expect_failure(run_sdm({"devices"}, mesa_44), "no OpenGL 4.5", "driver");
+  expect_failure(run_sdm(map({"--engine", "gl"}), mesa_44), "no OpenGL 4.5", "driver");
+}
+
+TEST_F(WithoutDevice, AnUnknownOneIsRefusedWithAList) {
+  expect_failure(run_sdm(map({"--engine", "gl", "--gl-device", "no such device"})), "no such device",
+                 gl_devices()[0].name);
+}
+
+}  // namespace
+}  // namespace sdm::test
