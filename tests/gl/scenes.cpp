@@ -1,0 +1,191 @@
+#include "gl/scenes.h"
+
+#include <algorithm>
+
+#include "core/vec.h"
+
+namespace sdm::test {
+namespace {
+
+using Maker = std::function<Mesh()>;
+
+Maker file(const char* name, const char* steps = "fit") {
+  return [=] { return load(name, steps); };
+}
+Maker box(double half_side, const char* steps = "") {
+  return [=] { return placed(cube(half_side), steps); };
+}
+Maker ball(int levels, const char* steps = "") {
+  return [=] { return placed(sphere(levels), steps); };
+}
+
+Mesh triangle() {
+  return {.positions = {{0, 0, 0}, {1, 0, 0.2}, {0.3, 0.8, 0}}, .triangles = {{0, 1, 2}}, .corner_uvs = {}};
+}
+
+// A fan whose blades share their tip.
+Mesh needles(double width) {
+  Mesh fan{.positions = {{0, 0, 0}}, .triangles = {}, .corner_uvs = {}};
+  for (std::uint32_t i = 0; i <= 200; ++i) fan.positions.push_back({1, width * i, 0.1 * std::sin(0.05 * i)});
+  for (std::uint32_t i = 1; i <= 200; ++i) fan.triangles.push_back({0, i, i + 1});
+  return fan;
+}
+
+// Triangles with an angle of almost 180°, and a small box, for a mesh needs some area.
+Mesh caps() {
+  Mesh mesh = placed(cube(0.01), "translate:-1:0:0");
+  double y = 0;
+  for (const double height : {1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 0.0}) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {{0, y, 0}, {1, y, 0}, {0.4, y + height, 0}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    y += 0.2;
+  }
+  return mesh;
+}
+
+// Pages on one spine.
+Mesh book() {
+  std::mt19937 random(6);
+  Mesh mesh{.positions = {{0, 0, -0.5}, {0, 0, 0.5}}, .triangles = {}, .corner_uvs = {}};
+  for (std::uint32_t i = 2; i < 40; ++i) {
+    mesh.positions.push_back(random_point({{-1, -1, -1}, {1, 1, 1}}, random));
+    mesh.triangles.push_back({0, 1, i});
+  }
+  return mesh;
+}
+
+Maker triangles_at_random(std::size_t count) {
+  return [=] {
+    std::mt19937 random(5);
+    return soup(count, random);
+  };
+}
+
+// Details of 1e-3 at 1e5.
+#define SDM_FAR_AWAY "scale:0.001,translate:100000:-100000:100000"
+
+const std::vector<Scene> kScenes{
+    // Closed: standing beside each other, penetrating, and too far apart to tell much.
+    {"Apart", file("bunny.obj"), file("armadillo.off", "fit,translate:0.8:0:0")},
+    {"Penetrating", file("head.off"), file("armadillo.off"), {.resolution = 256}, true},
+    {"LargeMap", file("head.off"), file("elephant.off"), {.resolution = 1024}, true},
+    {"SmallMap", ball(1), file("blobby.off"), {.resolution = 16}},
+    {"TenSizesApart", file("elephant.off"), file("head.off", "fit,translate:10:3:-2"), {.resolution = 128}},
+    {"ThousandSizesApart",
+     file("head.off"),
+     file("elephant.off", "fit,translate:1000:0:0"),
+     {.resolution = 128}},
+    // Open, of many components, non-manifold, degenerate.
+    {"Holes", file("lion-head.off", "fit,translate:0.3:0.2:0.1"), file("elephant-with-holes.off")},
+    {"Parts", file("bear_bis.off"), file("blobby_3cc.off")},
+    {"Spoilt", file("head.off"), [] { return spoilt("blobby.off"); }},
+    {"OnSpoilt", [] { return spoilt("blobby.off"); }, file("head.off"), {.resolution = 512}},
+    {"ZeroAreaFaces", file("triceratops.off"), file("degtri_sliding.off", "fit,translate:0.4:0:0")},
+    {"Polygons", file("dino.off"), file("boeing.off")},
+    {"Soup", ball(2), triangles_at_random(400)},
+    {"OnSoup",
+     triangles_at_random(300),
+     ball(3, "scale:0.4,translate:0.5:0.5:0.5"),
+     {.resolution = 256},
+     true},
+    {"Book", ball(2), [] { return book(); }},
+    // Few faces, and large ones.
+    {"FigureInBox", file("lion-head.off"), box(0.55)},
+    {"BoxAroundFigure", box(0.55), file("lion-head.off")},
+    {"OneTriangle", ball(2), [] { return triangle(); }},
+    {"OnOneTriangle", [] { return triangle(); }, ball(3, "scale:0.4"), {.resolution = 128}, true},
+    // Ties and contact.
+    {"Identical", file("elephant.off"), file("elephant.off")},
+    {"CoplanarContact", box(1), box(1, "translate:2:0.5:0.25"), {.resolution = 128}},
+    {"BoxesCrossing", box(1), box(1, "translate:0.5:0.5:0.5"), {.resolution = 128}, true},
+    {"ConcentricSpheres", ball(3), ball(4, "scale:2"), {.resolution = 128}},
+    {"SmallConcentricSphere", ball(2, "scale:0.001"), ball(3), {.resolution = 128}},
+    // Slivers.
+    {"Needles", ball(2, "translate:0.5:0:0"), [] { return needles(1e-3); }, {.resolution = 128}},
+    {"ThinNeedles",
+     ball(2, "scale:0.1,translate:0.5:0:0.02"),
+     [] { return needles(1e-9); },
+     {.resolution = 128}},
+    {"OnNeedles",
+     [] { return needles(1e-3); },
+     ball(2, "scale:0.1,translate:0.5:0:0.02"),
+     {.kind = AtlasKind::triangles, .resolution = 512}},
+    {"Caps", ball(2, "scale:0.7,translate:0.5:0.5:0"), [] { return caps(); }, {.resolution = 128}},
+    // Units.
+    {"SmallDetailFarAway",
+     box(1, SDM_FAR_AWAY),
+     ball(2, "translate:0.5:0.7:0.9," SDM_FAR_AWAY),
+     {.resolution = 128},
+     true},
+    {"Tiny",
+     file("head.off", "fit,scale:1e-6"),
+     file("elephant.off", "fit,scale:1e-6"),
+     {.resolution = 128},
+     true},
+    {"Huge",
+     file("head.off", "fit,scale:1e6"),
+     file("elephant.off", "fit,scale:1e6"),
+     {.resolution = 128},
+     true},
+    {"TinyBesideLarge", box(1), ball(1, "scale:1e-6,translate:1:1:1"), {.resolution = 64}},
+    // The other atlases.
+    {"AtlasOfTriangles",
+     file("head.off"),
+     file("elephant.off"),
+     {.kind = AtlasKind::triangles, .resolution = 512},
+     true},
+    {"OwnCoordinates",
+     [] { return with_uvs(load("head.off", "fit"), 256); },
+     file("elephant.off"),
+     {.kind = AtlasKind::uv, .resolution = 512},
+     true},
+};
+
+}  // namespace
+
+const std::vector<Scene>& scenes() {
+  return kScenes;
+}
+
+const Scene& scene(std::string_view name) {
+  return *std::ranges::find(kScenes, name, &Scene::name);
+}
+
+std::string scene_name(const testing::TestParamInfo<Scene>& info) {
+  return info.param.name;
+}
+
+void PrintTo(const Scene& scene, std::ostream* out) {
+  *out << scene.name;
+}
+
+Mesh spoilt(std::string_view name) {
+  std::mt19937 random(9);
+  Mesh mesh = turned(load(std::string(name), "fit"), 3);
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t i = 0; i < count; i += 20) {
+    const auto [a, b, c] = mesh.triangles[i];
+    const auto added = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(mesh.positions[a] + random_point({{-.05, -.05, -.05}, {.05, .05, .05}}, random));
+    mesh.positions.push_back(0.5 * (mesh.positions[b] + mesh.positions[c]));
+    mesh.triangles.insert(
+        mesh.triangles.end(),
+        {{a, b, added}, {c, b, a}, {a, a, b}, {b, c, added + 1}, {added + 1, added + 1, added + 1}});
+  }
+  return mesh;
+}
+
+Mesh with_uvs(Mesh mesh, std::uint32_t resolution) {
+  const Surface charts(mesh, {.resolution = resolution});
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    auto& corners = mesh.corner_uvs.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 texel = charts.to_atlas(f, mesh.positions[mesh.triangles[f][k]]);
+      corners[k] = {texel[0] / resolution, 1 - texel[1] / resolution};
+    }
+  }
+  return mesh;
+}
+
+}  // namespace sdm::test

@@ -1,0 +1,30 @@
+// Pairs of meshes for the gl engine: every kind that can trouble a rasteriser of regions.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "engine/support.h"
+
+namespace sdm::test {
+
+struct Scene {
+  const char* name;
+  std::function<Mesh()> o1, o2;
+  AtlasOptions atlas{.resolution = 256};
+  bool both_signs = false;  ///< O2 is closed, and O1 has texels on either side of it
+};
+
+[[nodiscard]] const std::vector<Scene>& scenes();
+[[nodiscard]] const Scene& scene(std::string_view name);
+[[nodiscard]] std::string scene_name(const testing::TestParamInfo<Scene>& info);
+void PrintTo(const Scene& scene, std::ostream* out);
+
+/// A closed mesh spoilt: edges of three faces, faces turned, duplicates, faces without area.
+[[nodiscard]] Mesh spoilt(std::string_view name);
+
+/// The mesh with texture coordinates of its own, laid out as an atlas of charts: the same texels in the same
+/// places wherever the mesh is moved to.
+[[nodiscard]] Mesh with_uvs(Mesh mesh, std::uint32_t resolution);
+
+}  // namespace sdm::test

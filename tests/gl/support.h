@@ -1,0 +1,21 @@
+// Maps by the gl engine, and what holds for each of them and its report.
+#pragma once
+
+#include "gl/scenes.h"
+
+namespace sdm::test {
+
+[[nodiscard]] DistanceMap gl_map(const Surface& surface, const Sites& sites,
+                                 const RasterOptions& raster = {});
+
+/// Whether two maps have the very same bits in every value.
+[[nodiscard]] testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b);
+
+/// Fails unless the counters obey the laws of <sdm/raster.h>, for a map without a maximum distance.
+void expect_laws(const RasterReport& report, const Surface& surface, const Sites& sites,
+                 const RasterOptions& options);
+
+/// Fails unless the two reports have the same counts; times may differ.
+void expect_same_counts(const RasterReport& a, const RasterReport& b);
+
+}  // namespace sdm::test
