@@ -104,9 +104,10 @@ TEST(GlCurrent, NestsAndRestoresTheFormerContext) {
 }
 
 TEST(GlCurrent, RestoresTheApiThatTheThreadHasBound) {
-  const Context context("");
   for (const EGLenum api : {EGL_OPENGL_ES_API, EGL_OPENGL_API}) {
     ASSERT_TRUE(eglBindAPI(api));
+    const Context context("");
+    EXPECT_EQ(eglQueryAPI(), api);
     { const Context::Current current(context); }
     EXPECT_EQ(eglQueryAPI(), api);
   }

@@ -27,6 +27,13 @@ bool names_software(std::string_view renderer) {
                              [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
+// Binds OpenGL as the API that EGL's functions speak of on this thread, for as long as it lives.
+struct BoundApi {
+  const EGLenum former = eglQueryAPI();
+  const bool bound = eglBindAPI(EGL_OPENGL_API);
+  ~BoundApi() { eglBindAPI(former); }
+};
+
 EGLContext create_context(EGLDisplay display) {
   if (display == EGL_NO_DISPLAY) throw Error("no driver");
   if (!eglInitialize(display, nullptr, nullptr)) throw Error("no driver (" + last_egl_error() + ")");
@@ -41,7 +48,8 @@ EGLContext create_context(EGLDisplay display) {
     if (!eglChooseConfig(display, any.data(), &config, 1, &count) || count == 0)
       throw Error("no configuration for OpenGL");
   }
-  if (!eglBindAPI(EGL_OPENGL_API)) throw Error("only OpenGL ES");
+  const BoundApi api;
+  if (!api.bound) throw Error("only OpenGL ES");
   std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
                                    4,
                                    EGL_CONTEXT_MINOR_VERSION,
