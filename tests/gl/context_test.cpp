@@ -10,14 +10,15 @@
 
 #include <algorithm>
 #include <thread>
-#include <utility>
 
 #include "gl/error_of.h"
+#include "gl/replaced.h"
 
 namespace sdm::gl {
 namespace {
 
 using test::error_of;
+using test::Replaced;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -138,18 +139,6 @@ TEST(GlCurrent, RefusesASecondThreadAtTheSameTime) {
   }).join();
   context.check("being refused");
 }
-
-// Replaces one of libepoxy's pointers to functions.
-template <class Function>
-class Replaced {
- public:
-  Replaced(Function& pointer, Function by) : pointer_(pointer), former_(std::exchange(pointer, by)) {}
-  ~Replaced() { pointer_ = former_; }
-
- private:
-  Function& pointer_;
-  Function former_;
-};
 
 struct GlCheck : ::testing::Test {
   Context context{""};

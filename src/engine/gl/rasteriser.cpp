@@ -57,9 +57,11 @@ RasterDevice::RasterDevice(std::string_view wanted) : context_(wanted) {
   programs_ = std::make_unique<Programs>();
 }
 
-RasterDevice::~RasterDevice() {
+RasterDevice::~RasterDevice() try {
   const Context::Current current(context_);
   programs_.reset();
+} catch (const Error&) {
+  (void)programs_.release();  // a lost device took them along
 }
 
 struct Rasteriser::Impl {

@@ -1,0 +1,73 @@
+// Devices that fail in the middle of a map: one sentence, and the next map works.
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "engine/support.h"
+#include "gl/error_of.h"
+#include "gl/replaced.h"
+
+namespace sdm {
+namespace {
+
+using test::Replaced;
+using ::testing::HasSubstr;
+
+class DeviceFailure : public testing::TestWithParam<RasterClip> {
+ protected:
+  [[nodiscard]] DistanceMap map() const {
+    return compute_map(surface_, sites_, {.engine = EngineKind::gl, .raster = {.clip = GetParam()}});
+  }
+  void SetUp() override { expected_ = map().distance; }
+  void TearDown() override {
+    const std::vector<float> after = map().distance;
+    ASSERT_EQ(after.size(), expected_.size());
+    EXPECT_EQ(std::memcmp(after.data(), expected_.data(), after.size() * sizeof(float)), 0);
+  }
+
+  Surface surface_{test::load("cow.off", "fit"), {.resolution = 64}};
+  Sites sites_{test::load("head.off", "fit,translate:0.5:0:0")};
+  std::vector<float> expected_;
+};
+INSTANTIATE_TEST_SUITE_P(Clips, DeviceFailure, testing::Values(RasterClip::planes, RasterClip::stencil));
+
+TEST_P(DeviceFailure, AResetWhileDrawing) {
+  const Replaced reset(epoxy_glGetGraphicsResetStatus,
+                       PFNGLGETGRAPHICSRESETSTATUSPROC([]() -> GLenum { return GL_GUILTY_CONTEXT_RESET; }));
+  EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("was reset"));
+}
+
+TEST_P(DeviceFailure, MemoryThatIsShort) {
+  const Replaced error(epoxy_glGetError, PFNGLGETERRORPROC([]() -> GLenum { return GL_OUT_OF_MEMORY; }));
+  EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("not enough memory"));
+}
+
+TEST_P(DeviceFailure, AFramebufferThatIsNotSupported) {
+  const Replaced status(epoxy_glCheckNamedFramebufferStatus,
+                        PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC(
+                            [](GLuint, GLenum) -> GLenum { return GL_FRAMEBUFFER_UNSUPPORTED; }));
+  EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("cannot draw"));
+}
+
+// A device that draws nothing must not pass for one that found nothing.
+TEST_P(DeviceFailure, TexelsLeftOut) {
+  const Replaced draw(epoxy_glDrawElements,
+                      PFNGLDRAWELEMENTSPROC([](GLenum, GLsizei, GLenum, const void*) {}));
+  EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("without a value"));
+}
+
+TEST_P(DeviceFailure, AShaderThatIsRefused) {
+  {  // the device at hand is given up first: the next map compiles anew
+    const Replaced reset(epoxy_glGetGraphicsResetStatus, PFNGLGETGRAPHICSRESETSTATUSPROC([]() -> GLenum {
+                           return GL_UNKNOWN_CONTEXT_RESET;
+                         }));
+    EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("was reset"));
+  }
+  const Replaced status(epoxy_glGetShaderiv,
+                        PFNGLGETSHADERIVPROC([](GLuint, GLenum, GLint* value) { *value = GL_FALSE; }));
+  EXPECT_THAT(test::error_of([&] { return map(); }),
+              testing::AllOf(HasSubstr("site_polygon.vert"), HasSubstr("does not compile")));
+}
+
+}  // namespace
+}  // namespace sdm

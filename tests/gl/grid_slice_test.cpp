@@ -1,0 +1,57 @@
+// The rasteriser on a slice of a grid: any plane with an affine map is a domain, not only a face of O1.
+#include "engine/closest_on_face.h"
+#include "engine/engine.h"
+#include "engine/gl/rasteriser.h"
+#include "engine/support.h"
+
+namespace sdm::gl {
+namespace {
+
+constexpr std::uint32_t kSide = 64;
+
+/// The slice at height z of the grid over [-1.5, 1.5]², in the unit frame of O2.
+PlanarDomain slice(double z) {
+  PlanarDomain domain;
+  domain.origin = {-1.5, -1.5, z};
+  domain.edges = {Vec3{3.0 / kSide, 0, 0}, Vec3{0, 3.0 / kSide, 0}};
+  domain.outline = ConvexPolygon::rectangle({0, 0}, {kSide, kSide});
+  return domain;
+}
+
+TEST(GridSlice, HoldsTheClosestFaces) {
+  const Sites sites(test::load("cow.off", "fit"));
+  const Sites::Impl& impl = sites.impl();
+  const RasterDevice device("");
+  const Context::Current current(device.context());
+  for (const double z : {-0.9, 0.0, 0.37, 1.4}) {
+    const PlanarDomain domain = slice(z);
+    RasterBatch batch;
+    for (std::size_t leaf = 0; leaf + 1 < impl.regions.leaves.size(); ++leaf)
+      for_each_site(impl.regions, leaf, [&](const auto& block, int lane) {
+        if (has_interior(block, lane))
+          add_polygon(batch, region_of(impl, block, lane), domain, {1e-5, 0.125});
+      });
+    ASSERT_GT(batch.size(), 100u);
+    Rasteriser rasteriser(device, kSide, WholeImage{});
+    rasteriser.draw(batch);
+    const std::vector<std::uint32_t> faces = rasteriser.read_back();
+    RasterReport report;
+    rasteriser.count_into(report);
+    EXPECT_GE(report.fragments, faces.size());
+    EXPECT_EQ(report.stencil_lookups, 0u);
+
+    test::Disagreements wrong(1e-6 / impl.frame.scale);
+    for (std::uint32_t texel = 0; texel < faces.size(); ++texel) {
+      ASSERT_NE(faces[texel], kNone);
+      const Vec3 unit = domain.point({texel % kSide + 0.5, texel / kSide + 0.5});
+      const Vec3 q = (1 / impl.frame.scale) * unit + impl.frame.origin;
+      ClosestPoint expected;
+      reference_search(impl, {&q, 1}, 1e30, {&expected, 1});
+      wrong.compare(texel, closest_on_face(impl, faces[texel], q).distance, expected.distance);
+    }
+    EXPECT_TRUE(wrong.none());
+  }
+}
+
+}  // namespace
+}  // namespace sdm::gl

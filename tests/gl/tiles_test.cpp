@@ -1,0 +1,115 @@
+// Tiles part the owned texels; their domains and bounds hold for every sample.
+#include "atlas/tiles.h"
+
+#include <algorithm>
+#include <set>
+
+#include "atlas/surface_impl.h"
+#include "engine/engine.h"
+#include "engine/gl/domain_tree.h"
+#include "engine/support.h"
+
+namespace sdm::gl {
+namespace {
+
+struct Scene {
+  std::string name;
+  Mesh o1, o2;
+  AtlasKind kind = AtlasKind::charts;
+};
+
+std::vector<Scene> scenes() {
+  std::mt19937 random(4);
+  return {{"cow", test::load("cow.off", "fit"), test::load("head.off", "fit,translate:0.3:0:0")},
+          {"box", test::cube(2), test::load("bones.off", "fit")},
+          {"triangles", test::sphere(3), test::cube(0.4), AtlasKind::triangles},
+          {"soup", test::soup(80, random), test::soup(50, random)}};
+}
+
+TEST(Tiles, PartTheOwnedTexels) {
+  for (const Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
+    const Tiles& tiles = tiles_of(surface);
+    std::vector<std::uint32_t> all(tiles.texels), owned(surface.samples().begin(), surface.samples().end());
+    std::ranges::sort(all);
+    std::ranges::sort(owned);
+    EXPECT_EQ(all, owned);
+    std::set<std::uint32_t> leaves;
+    for (const AabbTree::Node& node : tiles.tree.nodes)
+      if (node.leaf()) {
+        EXPECT_EQ(node.count, 1u);
+        leaves.insert(tiles.tree.items[node.first]);
+      }
+    EXPECT_EQ(leaves.size(), tiles.count());
+    for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
+      std::uint32_t lo[2] = {kNone, kNone}, hi[2] = {0, 0};
+      ASSERT_FALSE(tiles.of(tile).empty());
+      for (const std::uint32_t texel : tiles.of(tile)) {
+        EXPECT_EQ(surface.texel_faces()[texel], tiles.faces[tile]);
+        const std::uint32_t at[2] = {texel % 256, texel / 256};
+        for (int k = 0; k < 2; ++k) lo[k] = std::min(lo[k], at[k]), hi[k] = std::max(hi[k], at[k]);
+      }
+      for (int k = 0; k < 2; ++k) EXPECT_LT(hi[k] - lo[k], Tiles::kSide);
+    }
+  }
+}
+
+TEST(Tiles, DomainsHoldTheirSamples) {
+  for (const Scene& scene : scenes())
+    for (const RasterClip clip : {RasterClip::planes, RasterClip::stencil}) {
+      SCOPED_TRACE(scene.name);
+      const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
+      const Tiles& tiles = tiles_of(surface);
+      const UnitFrame frame = UnitFrame::of(bounds(scene.o2));
+      for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
+        const PlanarDomain domain = face_domain(surface, tiles, tile, frame, clip);
+        ASSERT_EQ(domain.id, tiles.faces[tile]);
+        for (const std::uint32_t texel : tiles.of(tile)) {
+          const Vec2 centre{texel % 256 + 0.5, texel / 256 + 0.5};
+          ASSERT_NEAR(norm(domain.point(centre) - frame.to_unit(surface.texel_point(texel))), 0, 1e-12);
+          // Inside by 1/16 texel, beyond what a rasteriser moves a side: cutting there changes nothing but
+          // corners.
+          const std::span<const Vec2> corners = domain.outline.corners();
+          ASSERT_GE(corners.size(), 3u);
+          double turn = 0;
+          for (std::size_t i = 0; i < corners.size(); ++i) {
+            const Vec2 side = corners[(i + 1) % corners.size()] - corners[i];
+            const double length = std::sqrt(dot(side, side));
+            if (length < 1e-9) continue;
+            const double height = cross(side, centre - corners[i]) / length;
+            if (turn == 0) turn = height > 0 ? 1 : -1;
+            ASSERT_GT(turn * height, 0.06);
+          }
+        }
+      }
+    }
+}
+
+TEST(Tiles, BoundsHoldForEverySample) {
+  for (const Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 128});
+    const Sites sites(scene.o2);
+    const Tiles& tiles = tiles_of(surface);
+    DomainTree tree(surface, tiles, sites.impl().frame);
+    set_bounds(tree, sites.impl(), 0, 1e9);
+    for (std::uint32_t i = 0; i < tree.node_count(); ++i) {
+      const AabbTree::Node& node = tree.tree.nodes[i];
+      if (!node.leaf()) {
+        EXPECT_EQ(tree.bound[i], std::max(tree.bound[i + 1], tree.bound[node.right]));
+        continue;
+      }
+      std::vector<Vec3> points;
+      for (const std::uint32_t texel : tiles.of(tree.tree.items[node.first]))
+        points.push_back(surface.texel_point(texel));
+      double farthest = 0;
+      for (const ClosestPoint& c : closest_points(sites, points, {.engine = EngineKind::reference}))
+        farthest = std::max(farthest, sites.impl().frame.scale * c.distance);
+      EXPECT_LE(farthest, tree.bound[i]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sdm::gl
