@@ -22,8 +22,7 @@ struct GlDevice {
 
 /// How the polygons of sites are kept within the faces of O1.
 enum class RasterClip {
-  planes,   ///< cut at the face's sides before they are drawn; the fragments at the border ask who owns the
-            ///< texel
+  planes,   ///< cut at the face's sides before they are drawn; fragments look up who owns their texel
   stencil,  ///< the paper's way (4.1): each face has a value in the stencil buffer, of a cache of them
 };
 
@@ -50,13 +49,14 @@ struct RasterReport {
   std::uint64_t faces = 0;          ///< of O1 that own a texel
   std::uint64_t tiles = 0;          ///< of those faces
   std::uint64_t pairs = 0;          ///< (sites − sites_dropped) × tiles
-  std::uint64_t bound_tests = 0;    ///< site or group of sites against a node of O1's tree
-  std::uint64_t obb_tests = 0;      ///< region's oriented box against a node of O1's tree
+  std::uint64_t bound_tests = 0;    ///< site or group of sites against a node of O1's tree, of which without
+  ///< bound_culling all have one bound: max_distance, or what no distance exceeds
+  std::uint64_t obb_tests = 0;  ///< region's oriented box against a node of O1's tree
   std::uint64_t culled_by_bound = 0;
   std::uint64_t culled_by_obb = 0;
   std::uint64_t clipped_away = 0;  ///< region does not meet the tile
   std::uint64_t polygons = 0;      ///< drawn
-  std::uint64_t fragments = 0;     ///< shaded and within their face and region
+  std::uint64_t fragments = 0;     ///< shaded and within their region; planes: and face
   std::uint64_t texels = 0;        ///< owned by a face: fragments / texels is the overdraw
   std::uint64_t batches = 0;       ///< of polygons sent to the device
 
@@ -70,7 +70,7 @@ struct RasterReport {
 
   /// Wall-clock milliseconds. The device draws while the next batch is culled and clipped.
   struct Times {
-    double context = 0;    ///< device, shaders: 0 but for the first map of a process
+    double context = 0;    ///< device, shaders: next to nothing but for the first map of a process
     double refit = 0;      ///< affine maps, boxes of O1's tree
     double bounds = 0;     ///< upper bounds on distance
     double cull = 0;       ///< bounds, oriented boxes, clipping

@@ -39,11 +39,12 @@ ClosestPoint closest_on_face(const Sites::Impl& sites, std::uint32_t face, const
 
   ClosestPoint best{.face = face};
   double best_squared = std::numeric_limits<double>::infinity();
-  bool over_face = true;
+  // A sliver's normal is rounding noise, by which q may seem to lie over it: its sides stand for all of it.
+  const bool sliver = sites.sliver[face] != 0;
+  bool over_face = !sliver;
   for (int k = 0; k < 3; ++k) {
-    // The closest point is on a side that q lies beyond (or on every side of a face without area), if there
-    // is one.
-    if (dot(to_query[k], cross(normal, side[k])) > 0) continue;
+    // The closest point is on a side that q lies beyond, if there is one.
+    if (!sliver && dot(to_query[k], cross(normal, side[k])) > 0) continue;
     over_face = false;
     const double projection = dot(to_query[k], side[k]), length = squared_norm(side[k]);
     const int next = (k + 1) % 3;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -64,14 +65,15 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
   const SignUsed sign = choose_sign(sites, options.sign);
   const InsideTest is_inside(sites.impl(), sign.method);
 
-  DistanceMap map = empty_map(surface.resolution());
-  map.sign = sign;
   const bool raster = options.engine == EngineKind::gl;
+  RasterReport report;
   std::vector<std::uint32_t> winners;  // of the gl engine, a face a texel
-  if (raster) winners = gl_winners(surface, sites, options, map.raster.emplace());
+  if (raster) winners = gl_winners(surface, sites, options, report);
   const ClosestSearch search = raster ? nullptr : search_of(options.engine);
   const auto start = std::chrono::steady_clock::now();
 
+  DistanceMap map = empty_map(surface.resolution());
+  map.sign = sign;
   const std::span<const std::uint32_t> samples = surface.samples();
   std::atomic<std::size_t> beyond{0};
   parallel_for(samples.size(), kBatch, options.progress, "map", [&](std::size_t begin, std::size_t end) {
@@ -99,9 +101,11 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
     }
   });
   map.beyond_max_distance = beyond;
-  if (raster)
-    map.raster->time_ms.finish =
+  if (raster) {
+    report.time_ms.finish =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    map.raster = std::move(report);
+  }
   return map;
 }
 

@@ -50,6 +50,37 @@ TEST_P(HardCases, IdenticalMeshes) {
                    1e-6 * test::scene_diagonal(mesh, mesh));
 }
 
+// A face whose third corner is on its longest side but for rounding: by its normal, which is noise, points
+// may seem to lie over it that are far away.
+TEST_P(HardCases, SliversWhoseNormalIsNoise) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  constexpr Box kBox{{-1, -1, -1}, {1, 1, 1}};
+  for (int i = 0; i < 500; ++i) {
+    Mesh mesh{.positions = {{-.6, .9, .9}, {0, -.4, -.7}, {.4, -.8, 0}},
+              .triangles = {{0, 1, 2}, {1, 2, 3}},
+              .corner_uvs = {}};
+    double t = 0.5, s = 0.7;
+    if (i > 0) {
+      for (Vec3& p : mesh.positions) p = test::random_point(kBox, random);
+      t = unit(random), s = unit(random);
+    }
+    const Vec3 a = mesh.positions[1], b = mesh.positions[2];
+    mesh.positions.push_back(t * a + (1 - t) * b);
+    const Sites sites(mesh);
+    std::vector<Vec3> queries{(1 - s) * a + s * b};
+    for (int k = 0; k < 20; ++k) queries.push_back(test::random_point(kBox, random));
+    const auto expected =
+        test::evaluate([&](const Vec3& p) { return oracle::brute_force(mesh, p); }, queries);
+    ASSERT_NEAR(expected[0], 0, 1e-12);
+    const auto closest = closest_points(sites, queries, {.engine = GetParam()});
+    for (std::size_t k = 0; k < queries.size(); ++k) {
+      EXPECT_NEAR(closest[k].distance, expected[k], 1e-9);
+      EXPECT_NEAR(norm(closest[k].point - queries[k]), closest[k].distance, 1e-12);
+    }
+  }
+}
+
 TEST_P(HardCases, TinyAndFar) {
   expect_exact(test::cube(), test::placed(test::sphere(1), "scale:1e-6,translate:1000:200:-300"));
   expect_exact(test::cube(), test::placed(test::sphere(1), "scale:1e-6,translate:1:1:1"));
