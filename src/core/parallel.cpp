@@ -49,14 +49,20 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
   std::atomic<std::size_t> done{0};
   std::atomic<bool> cancelled{false};
   std::mutex reporting;
+  std::size_t reported = 0;
+  const auto report = [&] {
+    reported = done.load();
+    if (!progress(step, static_cast<double>(reported) / static_cast<double>(count))) cancelled = true;
+  };
   parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
     if (cancelled.load(std::memory_order_relaxed)) return;
     body(begin, end);
     done += end - begin;
     // Who finds another thread reporting goes on working: the next report tells its share too.
-    if (std::unique_lock lock(reporting, std::try_to_lock); lock.owns_lock())
-      if (!progress(step, static_cast<double>(done.load()) / static_cast<double>(count))) cancelled = true;
+    if (std::unique_lock lock(reporting, std::try_to_lock); lock.owns_lock()) report();
   });
+  // The last to end may have been such a one.
+  if (!cancelled && reported < count) report();
   if (cancelled) throw Cancelled();
 }
 

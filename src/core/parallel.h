@@ -10,7 +10,8 @@
 namespace sdm {
 
 /// Calls body(begin, end) for disjoint ranges that cover [0, count), of about `grain` or less, on all cores
-/// allowed. With a progress callback, reports the fraction done and throws Cancelled when it says so.
+/// allowed. With a progress callback, reports the fraction done, 1 at the end, and throws Cancelled when it
+/// says so.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 void parallel_for(std::size_t count, std::size_t grain, const Progress& progress, std::string_view step,
