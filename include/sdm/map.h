@@ -59,8 +59,8 @@ struct DistanceMap {
 };
 
 /// Computes the map. Distance and vector are those of a site found exactly (cpu: to 1e-6 of the diagonal of
-/// both meshes; reference: to double rounding), evaluated in double and stored in float. Throws sdm::Error
-/// for a sign method that O2 does not allow, or for want of memory; Cancelled.
+/// both meshes; gl: to 2e-6; reference: to double rounding), evaluated in double and stored in float. Throws
+/// sdm::Error for a sign method that O2 does not allow, or for want of memory; Cancelled.
 [[nodiscard]] DistanceMap compute_map(const Surface& surface, const Sites& sites,
                                       const MapOptions& options = {});
 

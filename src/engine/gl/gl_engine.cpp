@@ -3,40 +3,22 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <mutex>
 #include <utility>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "engine/gl/domain_tree.h"
-#include "engine/gl/pair_culling.h"
-#include "engine/gl/rasteriser.h"
+#include "engine/gl/pair_stream.h"
+#include "engine/gl/stopwatch.h"
 
 namespace sdm {
 namespace gl {
 namespace {
 
 // Tiles of O1 drawn together, at most. A site's region and box are made once for each block.
-constexpr std::uint32_t kBlockTiles = 4096;
-// Leaves of O2's tree whose polygons are made at a time, and polygons that are enough for a batch: together
-// they bound the memory of a batch, whatever the meshes.
-constexpr std::size_t kLeaves = 32, kBatchPolygons = 1 << 15;
-
-class Stopwatch {
- public:
-  /// Milliseconds since it was made or last asked.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+constexpr std::uint32_t kBlockTiles = 2048;
 
 void check(const RasterOptions& options) {
   if (options.stencil_values < 1 || options.stencil_values > 255)
@@ -78,65 +60,6 @@ constexpr double kRegionSlack = 0x1p-20;
 // Distances that differ by less may be mistaken for each other, so bounds leave more.
 constexpr double kBoundSlack = 0x1p-17;
 
-// Makes the polygons of all pairs and hands them to the rasteriser in batches.
-class PairStream {
- public:
-  PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterScale& scale,
-             Rasteriser& rasteriser, RasterReport& report)
-      : sites_(sites),
-        tree_(tree),
-        reach_(reach),
-        scale_(scale),
-        rasteriser_(rasteriser),
-        report_(report),
-        parts_(kLeaves),
-        counts_(kLeaves) {}
-
-  /// `progress` is told the fraction of the block that is done.
-  void draw(const DomainBlock& block, const std::function<void(double)>& progress) {
-    Stopwatch watch;
-    const std::vector<std::uint32_t> leaves = leaves_within_bound(sites_, tree_, block, total_);
-    for (std::size_t begin = 0; begin < leaves.size(); begin += kLeaves) {
-      const std::size_t count = std::min(kLeaves, leaves.size() - begin);
-      parallel_for(count, 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i)
-          draw_leaf(sites_, leaves[begin + i], tree_, block, reach_, scale_, parts_[i], counts_[i]);
-      });
-      for (std::size_t i = 0; i < count; ++i) {
-        total_ += std::exchange(counts_[i], {});
-        batch_.append(parts_[i]);
-        parts_[i].clear();
-      }
-      report_.time_ms.cull += watch.lap();
-      if (batch_.size() >= kBatchPolygons) flush();
-      progress(static_cast<double>(begin + count) / static_cast<double>(leaves.size()));
-      watch.lap();
-    }
-    report_.time_ms.cull += watch.lap();
-  }
-
-  void flush() {
-    Stopwatch watch;
-    rasteriser_.draw(batch_);
-    batch_.clear();
-    report_.time_ms.draw += watch.lap();
-  }
-
-  [[nodiscard]] const PairCounts& counts() const { return total_; }
-
- private:
-  const SiteIndex& sites_;
-  const DomainTree& tree_;
-  double reach_;
-  const RasterScale& scale_;
-  Rasteriser& rasteriser_;
-  RasterReport& report_;
-  std::vector<RasterBatch> parts_;
-  std::vector<PairCounts> counts_;
-  RasterBatch batch_;
-  PairCounts total_;
-};
-
 void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles, RasterReport& report) {
   const std::uint64_t kept = sites.before.back();
   report.sites = kept + sites.dropped;
@@ -152,6 +75,17 @@ void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles,
   report.culled_by_obb = counts.culled_by_obb;
   report.clipped_away = counts.clipped_away;
   report.polygons = counts.polygons;
+}
+
+std::vector<PlanarDomain> domains_of(const DomainBlock& block, const DomainTree& tree, const Surface& surface,
+                                     const Tiles& tiles, const UnitFrame& frame, RasterClip clip) {
+  const std::uint32_t first = tree.leaves.before[block.node];
+  std::vector<PlanarDomain> domains(tree.leaves.count(block.node, block.end));
+  parallel_for(domains.size(), 128, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      domains[i] = face_domain(surface, tiles, tree.tree.items[first + i], frame, clip);
+  });
+  return domains;
 }
 
 std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface& surface,
@@ -182,25 +116,24 @@ std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface& s
           ? Ownership(OwnerTable{surface.texel_faces()})
           : Ownership(StencilValues{tiles.face_offsets, tiles.texels, options.raster.stencil_values});
   Rasteriser rasteriser(device, surface.resolution(), owned);
-  PairStream stream(index, tree, reach, scale, rasteriser, report);
+  PairStream stream(index, tree, reach, scale, rasteriser, report.time_ms);
   report.time_ms.draw = watch.lap();
 
   std::vector<DomainBlock> blocks = cut_into_blocks(tree, kBlockTiles);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     DomainBlock& block = blocks[b];
-    for (std::uint32_t i = tree.leaves.before[block.node]; i < tree.leaves.before[block.end]; ++i)
-      block.domains.push_back(
-          face_domain(surface, tiles, tree.tree.items[i], sites.frame, options.raster.clip));
+    block.domains = domains_of(block, tree, surface, tiles, sites.frame, options.raster.clip);
     stream.draw(block, [&](double fraction) {
       const double done = (static_cast<double>(b) + fraction) / static_cast<double>(blocks.size());
       if (options.progress && !options.progress("raster", done)) throw Cancelled();
     });
     block.domains = {};
   }
-  stream.flush();
+  watch.lap();
+  stream.finish();
+  report.time_ms.draw += watch.lap();
   store(stream.counts(), index, tiles, report);
 
-  watch.lap();
   std::vector<std::uint32_t> winners = rasteriser.read_back();
   rasteriser.count_into(report);
   report.time_ms.read_back = watch.lap();

@@ -1,0 +1,21 @@
+// Wall-clock time of steps that follow each other.
+#pragma once
+
+#include <chrono>
+#include <utility>
+
+namespace sdm::gl {
+
+class Stopwatch {
+ public:
+  /// Milliseconds since it was made or last asked.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace sdm::gl
