@@ -1,5 +1,6 @@
 #include "report.h"
 
+#include <cmath>
 #include <cstdio>
 
 using Json = nlohmann::ordered_json;
@@ -29,6 +30,11 @@ double overdraw(const sdm::RasterReport& r) {
   return r.texels == 0 ? 0 : static_cast<double>(r.fragments) / static_cast<double>(r.texels);
 }
 
+// Milliseconds, to the microsecond.
+double rounded(double ms) {
+  return std::round(1000 * ms) / 1000;
+}
+
 Json to_json(const sdm::RasterReport& r) {
   const sdm::RasterReport::Times& t = r.time_ms;
   return {{"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
@@ -48,19 +54,20 @@ Json to_json(const sdm::RasterReport& r) {
           {"texels", r.texels},
           {"overdraw", overdraw(r)},
           {"batches", r.batches},
+          {"unconfirmed", r.unconfirmed},
           {"stencil_lookups", r.stencil_lookups},
           {"stencil_hits", r.stencil_hits},
           {"stencil_misses", r.stencil_misses},
           {"stencil_evictions", r.stencil_evictions},
           {"stencil_clears", r.stencil_clears},
           {"time_ms",
-           {{"context", t.context},
-            {"refit", t.refit},
-            {"bounds", t.bounds},
-            {"cull", t.cull},
-            {"draw", t.draw},
-            {"read_back", t.read_back},
-            {"finish", t.finish}}}};
+           {{"context", rounded(t.context)},
+            {"refit", rounded(t.refit)},
+            {"bounds", rounded(t.bounds)},
+            {"cull", rounded(t.cull)},
+            {"draw", rounded(t.draw)},
+            {"read_back", rounded(t.read_back)},
+            {"finish", rounded(t.finish)}}}};
 }
 
 std::string number(double value) {

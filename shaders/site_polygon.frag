@@ -8,7 +8,7 @@ uniform usampler2D owner;  // the domain that owns each texel
 
 flat in vec2 origin;           // texel coordinates that the affine functions start from
 flat in vec3 distance_vector, vector_du, vector_dv;
-flat in vec3 wall_0, wall_1, wall_2;  // (value, d/du, d/dv): the region is where none is negative
+flat in vec3 walls[5];  // (value, d/du, d/dv): the region is where none is negative
 flat in uint face, domain;  // the face of O2 that the site belongs to, and the domain drawn on
 
 layout(binding = 0, offset = 0) uniform atomic_uint fragments;
@@ -18,8 +18,8 @@ layout(location = 0) out uint closest_face;
 void main() {
   if (by_owner && texelFetch(owner, ivec2(gl_FragCoord.xy), 0).r != domain) discard;
   const vec2 o = gl_FragCoord.xy - origin;
-  const vec3 walls = vec3(wall_0.x + dot(wall_0.yz, o), wall_1.x + dot(wall_1.yz, o), wall_2.x + dot(wall_2.yz, o));
-  if (any(lessThan(walls, vec3(0.0)))) discard;
+  for (int i = 0; i < walls.length(); ++i)
+    if (walls[i].x + dot(walls[i].yz, o) < 0.0) discard;
   atomicCounterIncrement(fragments);
   closest_face = face;
   gl_FragDepth = length(distance_vector + o.x * vector_du + o.y * vector_dv);

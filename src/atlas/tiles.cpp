@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "atlas/surface_impl.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
@@ -80,9 +82,18 @@ AabbTree build_tree(const Surface& surface, const Tiles& tiles) {
 const Tiles& tiles_of(const Surface& surface) {
   const Surface::Impl& impl = surface.impl();
   std::call_once(impl.tiled, [&] {
-    sort_by_face(surface, impl.tiles);
-    cut(surface, impl.tiles);
-    impl.tiles.tree = build_tree(surface, impl.tiles);
+    // Texels and the tile of each; tiles with boxes and nodes while the tree is built, a few a face and more
+    // where faces are large.
+    constexpr std::size_t kBytesPerTexel = 8, kBytesPerTile = 300;
+    const std::size_t texels = surface.samples().size();
+    const std::size_t most_tiles =
+        std::min(texels, 4 * surface.mesh().triangles.size() + texels / Tiles::kSide);
+    require_memory(kBytesPerTexel * texels + kBytesPerTile * most_tiles, "the tiles of the atlas");
+    Tiles tiles;
+    sort_by_face(surface, tiles);
+    cut(surface, tiles);
+    tiles.tree = build_tree(surface, tiles);
+    impl.tiles = std::move(tiles);
   });
   return impl.tiles;
 }

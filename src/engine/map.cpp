@@ -41,15 +41,22 @@ void check(const MapOptions& options) {
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
 }
 
-// The closest points of texels whose winning face of O2 is known.
-void recompute(const Sites::Impl& sites, std::span<const std::uint32_t> winners,
-               std::span<const std::uint32_t> texels, std::span<const Vec3> points, double max_distance,
-               std::span<ClosestPoint> closest) {
+// The closest points of texels by their winners. Returns for how many these were not confirmed.
+std::size_t recompute(const Sites::Impl& sites, const RasterWinners& winners,
+                      std::span<const std::uint32_t> texels, std::span<const Vec3> points,
+                      double max_distance, std::span<ClosestPoint> closest) {
+  std::size_t unconfirmed = 0;
   for (std::size_t i = 0; i < texels.size(); ++i) {
-    if (winners[texels[i]] == kNone) continue;
-    closest[i] = closest_around_face(sites, winners[texels[i]], points[i]);
+    const std::uint32_t face = winners.faces[texels[i]];
+    if (face == kNone) continue;
+    closest[i] = closest_around_face(sites, face, points[i]);
+    if (!winners.confirms(texels[i], closest[i].distance)) {
+      ++unconfirmed;
+      cpu_search(sites, points.subspan(i, 1), max_distance, closest.subspan(i, 1));
+    }
     if (closest[i].distance > max_distance) closest[i] = {};
   }
+  return unconfirmed;
 }
 
 }  // namespace
@@ -67,7 +74,7 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
 
   const bool raster = options.engine == EngineKind::gl;
   RasterReport report;
-  std::vector<std::uint32_t> winners;  // of the gl engine, a face a texel
+  RasterWinners winners;
   if (raster) winners = gl_winners(surface, sites, options, report);
   const ClosestSearch search = raster ? nullptr : search_of(options.engine);
   const auto start = std::chrono::steady_clock::now();
@@ -75,33 +82,36 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
   DistanceMap map = empty_map(surface.resolution());
   map.sign = sign;
   const std::span<const std::uint32_t> samples = surface.samples();
-  std::atomic<std::size_t> beyond{0};
-  parallel_for(samples.size(), kBatch, options.progress, "map", [&](std::size_t begin, std::size_t end) {
-    const std::span<const std::uint32_t> texels = samples.subspan(begin, end - begin);
-    std::vector<Vec3> points(texels.size());
-    std::vector<ClosestPoint> closest(texels.size());
-    std::transform(texels.begin(), texels.end(), points.begin(),
-                   [&](std::uint32_t texel) { return surface.texel_point(texel); });
-    if (raster)
-      recompute(sites.impl(), winners, texels, points, options.max_distance, closest);
-    else
-      search(sites.impl(), points, options.max_distance, closest);
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      const ClosestPoint& c = closest[i];
-      if (c.type == SiteType::none) {
-        ++beyond;
-        continue;
-      }
-      const Vec3 vector = c.point - points[i];
-      const std::uint32_t texel = texels[i];
-      map.distance[texel] = static_cast<float>(is_inside(points[i], c) ? -c.distance : c.distance);
-      for (int k = 0; k < 3; ++k) map.vector[texel][k] = static_cast<float>(vector[k]);
-      map.site[texel] = c.site;
-      map.site_type[texel] = c.type;
-    }
-  });
+  std::atomic<std::size_t> beyond{0}, unconfirmed{0};
+  parallel_for(
+      samples.size(), kBatch, options.progress, raster ? "finish" : "map",
+      [&](std::size_t begin, std::size_t end) {
+        const std::span<const std::uint32_t> texels = samples.subspan(begin, end - begin);
+        std::vector<Vec3> points(texels.size());
+        std::vector<ClosestPoint> closest(texels.size());
+        std::transform(texels.begin(), texels.end(), points.begin(),
+                       [&](std::uint32_t texel) { return surface.texel_point(texel); });
+        if (raster)
+          unconfirmed += recompute(sites.impl(), winners, texels, points, options.max_distance, closest);
+        else
+          search(sites.impl(), points, options.max_distance, closest);
+        for (std::size_t i = 0; i < texels.size(); ++i) {
+          const ClosestPoint& c = closest[i];
+          if (c.type == SiteType::none) {
+            ++beyond;
+            continue;
+          }
+          const Vec3 vector = c.point - points[i];
+          const std::uint32_t texel = texels[i];
+          map.distance[texel] = static_cast<float>(is_inside(points[i], c) ? -c.distance : c.distance);
+          for (int k = 0; k < 3; ++k) map.vector[texel][k] = static_cast<float>(vector[k]);
+          map.site[texel] = c.site;
+          map.site_type[texel] = c.type;
+        }
+      });
   map.beyond_max_distance = beyond;
   if (raster) {
+    report.unconfirmed = unconfirmed;
     report.time_ms.finish =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     map.raster = std::move(report);

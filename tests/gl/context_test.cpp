@@ -63,7 +63,7 @@ TEST(GlContext, IsOpenGL45CoreThatTellsOfResetsWhereItCan) {
   GLint profile = 0;
   glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
   EXPECT_EQ(profile, GL_CONTEXT_CORE_PROFILE_BIT);
-  EXPECT_GE(context.max_texture_size(), 16384) << "OpenGL 4.5 promises it";
+  EXPECT_GE(context.max_image_size(), 16384) << "OpenGL 4.5 promises it";
   EXPECT_GE(context.max_texture_buffer_size(), 65536) << "OpenGL 4.5 promises it";
   if (context.device().name.starts_with("llvmpipe")) {
     GLint strategy = 0;

@@ -37,6 +37,14 @@ TEST_P(DeviceFailure, AResetWhileDrawing) {
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("was reset"));
 }
 
+// Once, a device whose context could not be made current again ended the process.
+TEST_P(DeviceFailure, AContextThatIsGone) {
+  const Replaced current(epoxy_eglMakeCurrent,
+                         PFNEGLMAKECURRENTPROC([](EGLDisplay, EGLSurface, EGLSurface,
+                                                  EGLContext) -> EGLBoolean { return EGL_FALSE; }));
+  EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("cannot be used"));
+}
+
 TEST_P(DeviceFailure, MemoryThatIsShort) {
   const Replaced error(epoxy_glGetError, PFNGLGETERRORPROC([]() -> GLenum { return GL_OUT_OF_MEMORY; }));
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("not enough memory"));
@@ -54,6 +62,24 @@ TEST_P(DeviceFailure, TexelsLeftOut) {
   const Replaced draw(epoxy_glDrawElements,
                       PFNGLDRAWELEMENTSPROC([](GLenum, GLsizei, GLenum, const void*) {}));
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("without a value"));
+}
+
+// A driver that lets the wrong site win would have drawn another distance than that site's.
+TEST_P(DeviceFailure, WrongDepthsAreNotedAndDoNoHarm) {
+  static const PFNGLGETTEXTURESUBIMAGEPROC read = epoxy_glGetTextureSubImage;
+  const Replaced wrong(epoxy_glGetTextureSubImage,
+                       PFNGLGETTEXTURESUBIMAGEPROC([](GLuint texture, GLint level, GLint x, GLint y, GLint z,
+                                                      GLsizei width, GLsizei height, GLsizei depth,
+                                                      GLenum format, GLenum type, GLsizei size, void* out) {
+                         read(texture, level, x, y, z, width, height, depth, format, type, size, out);
+                         if (format == GL_DEPTH_COMPONENT)
+                           std::memset(out, 0, static_cast<std::size_t>(size));
+                       }));
+  const DistanceMap found = map();
+  EXPECT_GT(found.raster->unconfirmed, surface_.samples().size() / 2);
+  test::Disagreements distances(1e-6);
+  for (const std::uint32_t t : surface_.samples()) distances.compare(t, found.distance[t], expected_[t]);
+  EXPECT_TRUE(distances.none());
 }
 
 TEST_P(DeviceFailure, AShaderThatIsRefused) {

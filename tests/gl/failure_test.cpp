@@ -34,6 +34,15 @@ TEST_F(Refusal, OfUnknownDevices) {
   EXPECT_EQ(error({}), "") << "the next map works";
 }
 
+TEST_F(Refusal, BeforeThereIsASurface) {
+  EXPECT_FALSE(gl_device({}, 256).name.empty());
+  EXPECT_THAT(error_of([] { return gl_device({.device = "no such device"}, 256); }),
+              HasSubstr("no such device"));
+  EXPECT_THAT(error_of([] { return gl_device({}, 1u << 20); }),
+              AllOf(HasSubstr("1048576"), HasSubstr("resolution")));
+  EXPECT_THAT(error_of([] { return gl_device({.stencil_values = 0}, 256); }), HasSubstr("255"));
+}
+
 TEST_F(Refusal, OfClosestPoints) {
   const std::vector<Vec3> query{{0, 0, 0}};
   EXPECT_THAT(error_of([&] { return closest_points(sites, query, {.engine = EngineKind::gl}); }),

@@ -34,7 +34,7 @@ TEST(GridSlice, HoldsTheClosestFaces) {
     ASSERT_GT(batch.size(), 100u);
     Rasteriser rasteriser(device, kSide, WholeImage{});
     rasteriser.draw(batch);
-    const std::vector<std::uint32_t> faces = rasteriser.read_back();
+    const std::vector<std::uint32_t> faces = rasteriser.read_back().faces;
     RasterReport report;
     rasteriser.count_into(report);
     EXPECT_GE(report.fragments, faces.size());

@@ -1,6 +1,7 @@
 // A driver that does what a test wants.
 #pragma once
 
+#include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
 #include <utility>

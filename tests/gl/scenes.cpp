@@ -55,6 +55,30 @@ Mesh book() {
   return mesh;
 }
 
+// A triangle with a tip so sharp that walls moved outwards by little move it by much.
+Mesh sharp_tip(double width) {
+  return {.positions = {{0.2, 0, 0}, {-1, width / 2, 0}, {-1, -width / 2, 0}},
+          .triangles = {{0, 1, 2}},
+          .corner_uvs = {}};
+}
+
+// A square above it, with a row of its 32² texels on the tip's axis.
+Mesh over_the_tip() {
+  const double y = 0.5 / 32;
+  Mesh mesh{.positions = {{-0.5, -0.5 - y, 0.05},
+                          {0.5, -0.5 - y, 0.05},
+                          {0.5, 0.5 - y, 0.05},
+                          {-0.5, 0.5 - y, 0.05}},
+            .triangles = {{0, 1, 2}, {0, 2, 3}},
+            .corner_uvs = {}};
+  for (const Triangle& t : mesh.triangles) {
+    auto& corners = mesh.corner_uvs.emplace_back();
+    for (int k = 0; k < 3; ++k)
+      corners[k] = {mesh.positions[t[k]][0] + 0.5, mesh.positions[t[k]][1] + 0.5 + y};
+  }
+  return mesh;
+}
+
 Maker triangles_at_random(std::size_t count) {
   return [=] {
     std::mt19937 random(5);
@@ -112,6 +136,8 @@ const std::vector<Scene> kScenes{
      ball(2, "scale:0.1,translate:0.5:0:0.02"),
      {.kind = AtlasKind::triangles, .resolution = 512}},
     {"Caps", ball(2, "scale:0.7,translate:0.5:0.5:0"), [] { return caps(); }, {.resolution = 128}},
+    {"SharpTip", over_the_tip, [] { return sharp_tip(1e-3); }, {.kind = AtlasKind::uv, .resolution = 32}},
+    {"SharperTip", over_the_tip, [] { return sharp_tip(1e-5); }, {.kind = AtlasKind::uv, .resolution = 32}},
     // Units.
     {"SmallDetailFarAway",
      box(1, SDM_FAR_AWAY),

@@ -86,7 +86,7 @@ struct Context::Impl {
   EGLDisplay display;
   EGLContext context;
   GlDevice device{};
-  GLint max_texture_size = 0, max_texture_buffer_size = 0;
+  GLint max_image_size = 0, max_texture_buffer_size = 0;
 
   ~Impl() { eglDestroyContext(display, context); }
 };
@@ -97,7 +97,10 @@ Context::Context(const DisplayCandidate& candidate)
   if (epoxy_gl_version() < 45) throw Error("only OpenGL " + text_of(GL_VERSION));
   impl_->device = {.name = text_of(GL_RENDERER), .driver = text_of(GL_VERSION)};
   impl_->device.software = candidate.software || names_software(impl_->device.name);
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &impl_->max_texture_size);
+  std::array<GLint, 3> sides{};
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &sides[0]);
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, &sides[1]);
+  impl_->max_image_size = *std::ranges::min_element(sides);
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &impl_->max_texture_buffer_size);
 }
 
@@ -120,8 +123,8 @@ std::vector<Context> Context::open(bool only_the_first) {
   }
   if (opened.empty())
     throw Error("no device with OpenGL 4.5 was found (" + faults +
-                "): install the driver of a graphics card, or libgl1-mesa-dri (Debian) for OpenGL on the "
-                "processor");
+                "): install or update the driver of a graphics card, or libgl1-mesa-dri (Debian) for "
+                "OpenGL on the processor, or use another engine");
   std::ranges::stable_partition(opened, [](const Context& c) { return !c.device().software; });
   return opened;
 }
@@ -152,8 +155,8 @@ Context Context::choose(std::string_view wanted) {
 const GlDevice& Context::device() const {
   return impl_->device;
 }
-int Context::max_texture_size() const {
-  return impl_->max_texture_size;
+int Context::max_image_size() const {
+  return impl_->max_image_size;
 }
 int Context::max_texture_buffer_size() const {
   return impl_->max_texture_buffer_size;

@@ -1,7 +1,6 @@
 // An OpenGL 4.5 core context without window or display server, by EGL.
 #pragma once
 
-#include <epoxy/gl.h>
 #include <sdm/raster.h>
 
 #include <memory>
@@ -26,7 +25,7 @@ class Context {
   [[nodiscard]] static std::vector<Context> on_all_devices();
 
   [[nodiscard]] const GlDevice& device() const;
-  [[nodiscard]] int max_texture_size() const;         ///< texels a side
+  [[nodiscard]] int max_image_size() const;           ///< texels a side
   [[nodiscard]] int max_texture_buffer_size() const;  ///< texels
 
   /// Makes the context current on this thread for as long as it lives; then the thread's former one again.

@@ -21,7 +21,7 @@ struct HalfPlane {
 /// Corners in order around it; none for the empty polygon.
 class ConvexPolygon {
  public:
-  /// A cut adds one corner at most: seven of a domain's outline and four walls of a region stay below.
+  /// A cut adds one corner at most: seven of a domain's outline and five walls of a region fit.
   static constexpr int kMaxCorners = 12;
 
   ConvexPolygon() = default;

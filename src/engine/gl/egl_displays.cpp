@@ -18,8 +18,7 @@ void require_libraries() {
   if (!loads("libGL.so.1") && !loads("libOpenGL.so.0"))
     throw Error(
         "OpenGL needs the library libOpenGL.so.0 or libGL.so.1, and neither can be loaded: install "
-        "libopengl0 "
-        "or libgl1 (Debian)");
+        "libopengl0 or libgl1 (Debian)");
 }
 
 bool has_client_extension(const char* name) {

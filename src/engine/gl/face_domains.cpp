@@ -6,10 +6,6 @@
 namespace sdm::gl {
 namespace {
 
-// An outline keeps this far from the centres of its texels, in texels: rasterisers move corners by up to
-// 1/256.
-constexpr double kMargin = 1.0 / 16;
-
 Vec2 centre(std::uint32_t texel, std::uint32_t resolution) {
   return {texel % resolution + 0.5, texel / resolution + 0.5};
 }

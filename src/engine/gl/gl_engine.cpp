@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -37,6 +38,25 @@ Devices& devices() {
   return all;
 }
 
+// Calls use(device, ms) for the device wanted, with its context current. Opening it takes ms, once.
+template <class Use>
+auto with_device(const std::string& wanted, Use use) {
+  Devices& all = devices();
+  const std::lock_guard lock(all.drawing);
+  Stopwatch watch;
+  try {
+    std::unique_ptr<RasterDevice>& device = all.open[wanted];
+    if (!device) device = std::make_unique<RasterDevice>(wanted);
+    const Context::Current current(device->context());
+    return use(*device, watch.lap());
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error&) {
+    all.open.erase(wanted);  // it may be lost: the next map starts afresh
+    throw;
+  }
+}
+
 // How long lengths are, in the unit frame of O2.
 struct Extent {
   double size;   // no coordinate is larger
@@ -64,10 +84,9 @@ void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles,
   const std::uint64_t kept = sites.before.back();
   report.sites = kept + sites.dropped;
   report.sites_dropped = sites.dropped;
-  report.faces = static_cast<std::uint64_t>(std::ranges::count_if(
-      tiles.face_offsets,
-      [last = std::uint32_t{0}](std::uint32_t o) mutable { return std::exchange(last, o) != o; }));
   report.tiles = tiles.count();
+  for (std::size_t i = 0; i < tiles.faces.size(); ++i)
+    report.faces += i == 0 || tiles.faces[i] != tiles.faces[i - 1];
   report.pairs = kept * report.tiles;
   report.bound_tests = counts.bound_tests;
   report.obb_tests = counts.obb_tests;
@@ -88,9 +107,8 @@ std::vector<PlanarDomain> domains_of(const DomainBlock& block, const DomainTree&
   return domains;
 }
 
-std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface& surface,
-                                    const Sites::Impl& sites, const MapOptions& options,
-                                    RasterReport& report) {
+RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const Sites::Impl& sites,
+                       const MapOptions& options, RasterReport& report) {
   Stopwatch watch;
   const Tiles& tiles = tiles_of(surface);
   DomainTree tree(surface, tiles, sites.frame);
@@ -122,7 +140,9 @@ std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface& s
   std::vector<DomainBlock> blocks = cut_into_blocks(tree, kBlockTiles);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     DomainBlock& block = blocks[b];
+    watch.lap();
     block.domains = domains_of(block, tree, surface, tiles, sites.frame, options.raster.clip);
+    report.time_ms.refit += watch.lap();
     stream.draw(block, [&](double fraction) {
       const double done = (static_cast<double>(b) + fraction) / static_cast<double>(blocks.size());
       if (options.progress && !options.progress("raster", done)) throw Cancelled();
@@ -134,17 +154,20 @@ std::vector<std::uint32_t> draw_map(const RasterDevice& device, const Surface& s
   report.time_ms.draw += watch.lap();
   store(stream.counts(), index, tiles, report);
 
-  std::vector<std::uint32_t> winners = rasteriser.read_back();
+  RasterImage image = rasteriser.read_back();
   rasteriser.count_into(report);
   report.time_ms.read_back = watch.lap();
-  return winners;
+  return {.faces = std::move(image.faces),
+          .depths = std::move(image.depths),
+          .depth_unit = 1 / scale.to_depth / sites.frame.scale,
+          .tolerance = 1.5 * scale.slack / sites.frame.scale};
 }
 
-void expect_no_cracks(const Surface& surface, const std::vector<std::uint32_t>& winners,
-                      const MapOptions& options, const RasterReport& report) {
+void expect_no_cracks(const Surface& surface, const RasterWinners& winners, const MapOptions& options,
+                      const RasterReport& report) {
   if (options.max_distance < std::numeric_limits<double>::infinity()) return;
   for (const std::uint32_t texel : surface.samples())
-    if (winners[texel] == kNone)
+    if (winners.faces[texel] == kNone)
       throw Error(report.device.name + " left texel " + std::to_string(texel) +
                   " without a value, which OpenGL does not allow; use another device or engine");
 }
@@ -152,28 +175,26 @@ void expect_no_cracks(const Surface& surface, const std::vector<std::uint32_t>& 
 }  // namespace
 }  // namespace gl
 
-std::vector<std::uint32_t> gl_winners(const Surface& surface, const Sites& sites, const MapOptions& options,
-                                      RasterReport& report) {
+GlDevice gl_device(const RasterOptions& options, std::uint32_t resolution) {
+  gl::check(options);
+  return gl::with_device(options.device, [&](const gl::RasterDevice& device, double) {
+    gl::Rasteriser::check_size(device.context(), resolution);
+    return device.context().device();
+  });
+}
+
+RasterWinners gl_winners(const Surface& surface, const Sites& sites, const MapOptions& options,
+                         RasterReport& report) {
   gl::check(options.raster);
-  gl::Stopwatch watch;
-  gl::Devices& devices = gl::devices();
-  const std::lock_guard lock(devices.drawing);
-  const std::string& wanted = options.raster.device;
-  try {
-    std::unique_ptr<gl::RasterDevice>& device = devices.open[wanted];
-    if (!device) device = std::make_unique<gl::RasterDevice>(wanted);
-    const gl::Context::Current current(device->context());
-    report.device = device->context().device();
+  return gl::with_device(options.raster.device, [&](const gl::RasterDevice& device, double ms) {
+    report.device = device.context().device();
     report.clip = options.raster.clip;
     report.texels = surface.samples().size();
-    report.time_ms.context = watch.lap();
-    std::vector<std::uint32_t> winners = gl::draw_map(*device, surface, sites.impl(), options, report);
+    report.time_ms.context = ms;
+    RasterWinners winners = gl::draw_map(device, surface, sites.impl(), options, report);
     gl::expect_no_cracks(surface, winners, options, report);
     return winners;
-  } catch (const Error&) {
-    devices.open.erase(wanted);  // it may be lost: the next map starts afresh
-    throw;
-  }
+  });
 }
 
 }  // namespace sdm

@@ -3,6 +3,8 @@
 
 #include <epoxy/gl.h>
 
+#include <utility>
+
 namespace sdm::gl {
 
 template <void (*Create)(GLuint&), void (*Delete)(GLuint&)>
@@ -47,6 +49,35 @@ inline void delete_vertex_array(GLuint& id) {
   glDeleteVertexArrays(1, &id);
 }
 }  // namespace detail
+
+/// A place in the stream of commands; none after the default constructor.
+class Fence {
+ public:
+  Fence() = default;
+  ~Fence() { glDeleteSync(sync_); }
+  Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)) {}
+  Fence& operator=(Fence&& other) noexcept {
+    std::swap(sync_, other.sync_);
+    return *this;
+  }
+
+  /// Also sets the device to work on them.
+  [[nodiscard]] static Fence after_all_commands() {
+    Fence fence;
+    fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    glFlush();
+    return fence;
+  }
+  /// Until the device has come here, or is lost.
+  void wait() const {
+    constexpr GLuint64 kSecond = 1'000'000'000;  // in the unit of OpenGL
+    while (sync_ != nullptr && glClientWaitSync(sync_, 0, kSecond) == GL_TIMEOUT_EXPIRED)
+      if (glGetGraphicsResetStatus() != GL_NO_ERROR) return;
+  }
+
+ private:
+  GLsync sync_ = nullptr;
+};
 
 using Buffer = Object<detail::create_buffer, detail::delete_buffer>;
 template <GLenum Target>

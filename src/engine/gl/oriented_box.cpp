@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sdm::gl {
 namespace {
@@ -60,9 +59,9 @@ OrientedBox around_edge(const SiteRegion& region, double reach, double slack) {
   if (along == Vec3{}) return cube(region.anchor, reach + slack);
   std::array<Vec3, 2>
       normals{};  // across the edge and of length 1 in double: their sum may be nearly nothing
-  const int count = region.wall_count - region.exact;
+  const int count = region.wall_count - region.strict_walls;
   for (int k = 0; k < count; ++k) {
-    const Vec3& n = region.walls[region.exact + k].normal;
+    const Vec3& n = region.walls[region.strict_walls + k].normal;
     normals[k] = normalized(n - dot(n, along) * along);
   }
   const Vec3 sum = normals[0] + normals[1];

@@ -12,8 +12,9 @@ namespace {
 // Polygons that are enough for a batch.
 constexpr std::size_t kBatchPolygons = 1 << 15;
 // Leaves of O2's tree at a time: few at first, and more as long as they do not make more than a batch. What
-// waits in memory then stays near two batches, unless all sites of a few leaves meet all domains of a block.
-constexpr std::size_t kFewestLeaves = 4, kMostLeaves = 64;
+// waits in memory then is mostly two batches; at the very most, all sites of so many leaves meet all domains
+// of a block.
+constexpr std::size_t kFirstLeaves = 4, kMostLeaves = 64;
 
 }  // namespace
 
@@ -32,7 +33,7 @@ void PairStream::draw(const DomainBlock& block, const std::function<void(double)
   Stopwatch watch;
   const std::vector<std::uint32_t> leaves = leaves_within_bound(sites_, tree_, block, total_);
   time_.cull += watch.lap();
-  std::size_t at_once = kFewestLeaves;
+  std::size_t at_once = kFirstLeaves;
   for (std::size_t begin = 0; begin < leaves.size();) {
     const std::size_t count = std::min(at_once, leaves.size() - begin);
     const std::uint64_t before = total_.polygons;

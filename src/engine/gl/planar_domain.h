@@ -9,6 +9,10 @@
 
 namespace sdm::gl {
 
+/// What is drawn reaches this far beyond the texel centres that it is meant for, in texels: OpenGL promises
+/// corners on a grid of 1/16 only, and fragments decide for themselves.
+inline constexpr double kMargin = 1.0 / 8;
+
 /// (u, v) ↦ origin + (u − image_origin.u) edges[0] + (v − image_origin.v) edges[1], in texels.
 struct PlanarDomain {
   std::uint32_t id = 0;  ///< of its texels in the rasteriser's tables

@@ -5,10 +5,6 @@
 namespace sdm::gl {
 namespace {
 
-// The rasteriser may move a polygon's sides by 1/256 texel; they are drawn this far out, and the fragments
-// decide.
-constexpr double kMargin = 1.0 / 16;
-
 // A wall, restricted to the domain's plane.
 HalfPlane restrict(const HalfSpace& wall, const PlanarDomain& domain) {
   HalfPlane h;
@@ -34,7 +30,7 @@ void RasterBatch::append(const RasterBatch& other) {
 
 bool add_polygon(RasterBatch& batch, const SiteRegion& region, const PlanarDomain& domain,
                  const RasterScale& scale) {
-  std::array<HalfPlane, 4> walls;
+  std::array<HalfPlane, SiteRegion::kWalls> walls;
   ConvexPolygon polygon = domain.outline;
   for (int k = 0; k < region.wall_count; ++k) {
     walls[k] = restrict(region.walls[k], domain);
@@ -59,12 +55,13 @@ bool add_polygon(RasterBatch& batch, const SiteRegion& region, const PlanarDomai
   store(p.vector_dv, scale.to_depth * region.change(domain.edges[1]));
   p.face = region.face;
   p.domain = domain.id;
-  float(*const out[3])[3] = {&p.wall_0, &p.wall_1, &p.wall_2};
-  for (int k = 0; k < 3; ++k) {
-    const HalfPlane none{1, {}};
-    const HalfPlane& w = k < region.exact ? walls[k] : none;
-    const double loosened = k < region.exact ? w(origin) + scale.slack : 1;
-    store(*out[k], scale.to_depth * Vec3{loosened, w.gradient[0], w.gradient[1]});
+  for (int k = 0; k < SiteRegion::kStrictWalls; ++k) {
+    if (k >= region.strict_walls) {
+      store(p.walls[k], {1, 0, 0});
+      continue;
+    }
+    const HalfPlane& w = walls[k];
+    store(p.walls[k], scale.to_depth * Vec3{w(origin) + scale.slack, w.gradient[0], w.gradient[1]});
   }
   return true;
 }

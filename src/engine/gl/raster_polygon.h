@@ -15,13 +15,11 @@ struct RasterPolygon {
   float vector[3], origin_u;
   float vector_du[3], origin_v;
   float vector_dv[3];
-  std::uint32_t face;  ///< of O2
-  float wall_0[3];
+  std::uint32_t face;                        ///< of O2
+  float walls[SiteRegion::kStrictWalls][3];  ///< negative beyond them
   std::uint32_t domain;
-  float wall_1[3], padding_1;
-  float wall_2[3], padding_2;
 };
-inline constexpr int kTexelsPerPolygon = 6;
+inline constexpr int kTexelsPerPolygon = 7;
 static_assert(sizeof(RasterPolygon) == kTexelsPerPolygon * 4 * sizeof(float));
 
 struct RasterCorner {

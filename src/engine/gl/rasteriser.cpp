@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/memory.h"
 #include "engine/gl/gl_objects.h"
@@ -45,6 +46,20 @@ const void* offset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
 }
 
+// All texels of a square texture, in bands of rows: OpenGL counts bytes with 31 bits.
+template <class T>
+void read(GLuint texture, std::uint32_t resolution, GLenum format, GLenum type, std::vector<T>& out) {
+  out.resize(std::size_t{resolution} * resolution);
+  const auto side = static_cast<GLsizei>(resolution);
+  const GLsizei rows = std::max(1, (1 << 28) / side);
+  for (GLsizei row = 0; row < side; row += rows) {
+    const GLsizei count = std::min(rows, side - row);
+    glGetTextureSubImage(texture, 0, 0, row, 0, side, count, 1, format, type,
+                         count * side * static_cast<GLsizei>(sizeof(T)),
+                         out.data() + static_cast<std::size_t>(row) * resolution);
+  }
+}
+
 }  // namespace
 
 struct RasterDevice::Programs {
@@ -57,16 +72,19 @@ RasterDevice::RasterDevice(std::string_view wanted) : context_(wanted) {
   programs_ = std::make_unique<Programs>();
 }
 
-RasterDevice::~RasterDevice() try {
-  const Context::Current current(context_);
-  programs_.reset();
-} catch (const Error&) {
-  (void)programs_.release();  // a lost device took them along
+RasterDevice::~RasterDevice() {
+  try {
+    const Context::Current current(context_);
+    programs_.reset();
+  } catch (const Error&) {
+    (void)programs_.release();  // a lost device took them along
+  }
 }
 
 struct Rasteriser::Impl {
   const RasterDevice& device;
   std::uint32_t resolution;
+  bool by_owner;
   std::optional<StencilValues> stencil;
   std::optional<StencilCache> cache;
   std::size_t piece_limit;
@@ -80,12 +98,15 @@ struct Rasteriser::Impl {
   VertexArray polygon_corners, texel_points;
   std::vector<std::uint32_t> index_data;
   std::vector<std::uint32_t> order;
+  Fence last;  // of the draws before
 
   Impl(const RasterDevice& d, std::uint32_t n, const Ownership& owned);
 
   void make_target();
   void make_inputs(const Ownership& owned);
   void clear();
+  void begin();
+  void end();
   void draw_piece(const RasterBatch& batch, std::size_t begin, std::size_t end);
   void draw_by_domain(const RasterBatch& batch);
   void set_stencil(std::uint32_t domain);
@@ -95,7 +116,7 @@ struct Rasteriser::Impl {
 };
 
 Rasteriser::Impl::Impl(const RasterDevice& d, std::uint32_t n, const Ownership& owned)
-    : device(d), resolution(n) {
+    : device(d), resolution(n), by_owner(std::holds_alternative<OwnerTable>(owned)) {
   if (const StencilValues* values = std::get_if<StencilValues>(&owned)) {
     stencil = *values;
     cache.emplace(values->values);
@@ -109,13 +130,7 @@ Rasteriser::Impl::Impl(const RasterDevice& d, std::uint32_t n, const Ownership& 
 }
 
 void Rasteriser::Impl::make_target() {
-  std::array<GLint, 2> viewport{};
-  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
-  const int largest = std::min({device.context().max_texture_size(), viewport[0], viewport[1]});
-  if (resolution > static_cast<std::uint32_t>(largest))
-    throw Error("a map of " + std::to_string(resolution) + "² texels is too large for " +
-                device.context().device().name + ", whose images have at most " + std::to_string(largest) +
-                "²; use a lower resolution or another engine");
+  check_size(device.context(), resolution);
   const auto side = static_cast<GLsizei>(resolution);
   glTextureStorage2D(faces, 1, GL_R32UI, side, side);
   glTextureStorage2D(depth, 1, GL_DEPTH32F_STENCIL8, side, side);
@@ -151,28 +166,40 @@ void Rasteriser::Impl::make_inputs(const Ownership& owned) {
   glVertexArrayAttribBinding(texel_points, 0, 0);
 
   glNamedBufferStorage(counters, kCounters * sizeof(GLuint), nullptr, 0);
+}
+
+// The state that no draw changes. The context and the programs are shared with other rasterisers.
+void Rasteriser::Impl::begin() {
   const float width = static_cast<float>(resolution);
   const Program& program = device.programs_->polygons;
   glProgramUniform1f(program.id(), program.uniform("resolution"), width);
   glProgramUniform1i(program.id(), program.uniform("polygons"), 0);
   glProgramUniform1i(program.id(), program.uniform("owner"), 1);
-  glProgramUniform1i(program.id(), program.uniform("by_owner"), std::holds_alternative<OwnerTable>(owned));
+  glProgramUniform1i(program.id(), program.uniform("by_owner"), by_owner);
   const Program& points = device.programs_->points;
   glProgramUniform1f(points.id(), points.uniform("resolution"), width);
-}
-
-void Rasteriser::Impl::clear() {
   glBindFramebuffer(GL_FRAMEBUFFER, target);
   glViewport(0, 0, static_cast<GLsizei>(resolution), static_cast<GLsizei>(resolution));
   glDisable(GL_SCISSOR_TEST);
-  glDisable(GL_STENCIL_TEST);
+  stencil ? glEnable(GL_STENCIL_TEST) : glDisable(GL_STENCIL_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+}
+
+// Sends what was drawn on its way. No more than two calls' worth of it is under way at a time.
+void Rasteriser::Impl::end() {
+  const Fence before = std::exchange(last, Fence::after_all_commands());
+  before.wait();
+  device.context().check("drawing the polygons");
+}
+
+void Rasteriser::Impl::clear() {
+  glDisable(GL_SCISSOR_TEST);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
   glStencilMask(0xFF);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
   const std::array<GLuint, 4> nothing{kNone, 0, 0, 0};
   glClearNamedFramebufferuiv(target, GL_COLOR, 0, nothing.data());
   glClearNamedFramebufferfi(target, GL_DEPTH_STENCIL, 0, 1.0f, 0);
@@ -196,9 +223,14 @@ void Rasteriser::Impl::draw_piece(const RasterBatch& batch, std::size_t begin, s
 
   order.resize(end - begin);
   std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(begin));
-  if (stencil)
-    std::ranges::stable_sort(order, {},
-                             [&](std::uint32_t polygon) { return batch.polygons[polygon].domain; });
+  if (stencil) {
+    const auto domain = [&](std::uint32_t polygon) { return batch.polygons[polygon].domain; };
+    // To and fro: what the cache still holds of the last piece comes first.
+    if (batches % 2 == 0)
+      std::ranges::stable_sort(order, std::ranges::less{}, domain);
+    else
+      std::ranges::stable_sort(order, std::ranges::greater{}, domain);
+  }
   index_data.clear();
   for (const std::uint32_t polygon : order) {
     const auto from = static_cast<std::uint32_t>(batch.first_corner[polygon] - first);
@@ -220,7 +252,6 @@ void Rasteriser::Impl::draw_piece(const RasterBatch& batch, std::size_t begin, s
     draw_by_domain(batch);
   else
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(index_data.size()), GL_UNSIGNED_INT, nullptr);
-  device.context().check("drawing the polygons");
   ++batches;
 }
 
@@ -248,7 +279,6 @@ void Rasteriser::Impl::set_stencil(std::uint32_t domain) {
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glDisable(GL_DEPTH_TEST);
     glStencilMask(0xFF);
-    glEnable(GL_STENCIL_TEST);
     glStencilOp(GL_REPLACE, GL_REPLACE, GL_REPLACE);
     if (use.evicted != StencilCache::kNobody) fill_stencil(use.evicted, 0);
     fill_stencil(domain, use.value);
@@ -276,14 +306,23 @@ void Rasteriser::Impl::collect_counters() {
 Rasteriser::Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned) {
   // The image, its owners and its copy; a device that shares the machine's memory takes it from there.
   const std::size_t texels = std::size_t{resolution} * resolution;
-  require_memory((device.context().device().software ? 20 : 4) * texels,
+  require_memory((device.context().device().software ? 24 : 8) * texels,
                  "a map of " + std::to_string(resolution) + "² texels");
   impl_ = std::make_unique<Impl>(device, resolution, owned);
 }
 
 Rasteriser::~Rasteriser() = default;
 
+void Rasteriser::check_size(const Context& context, std::uint32_t resolution) {
+  const int largest = context.max_image_size();
+  if (resolution > static_cast<std::uint32_t>(largest))
+    throw Error("a map of " + std::to_string(resolution) + "² texels is too large for " +
+                context.device().name + ", whose images have at most " + std::to_string(largest) +
+                "²; use a lower resolution or another engine");
+}
+
 void Rasteriser::draw(const RasterBatch& batch) {
+  impl_->begin();
   // A piece's counter must not overflow, nor its draw call run for so long that a driver takes it for a hang.
   constexpr double kMostFragments = 1u << 31;
   for (std::size_t begin = 0; begin < batch.size();) {
@@ -297,14 +336,15 @@ void Rasteriser::draw(const RasterBatch& batch) {
     impl_->draw_piece(batch, begin, end);
     begin = end;
   }
+  impl_->end();
 }
 
-std::vector<std::uint32_t> Rasteriser::read_back() {
-  std::vector<std::uint32_t> faces(std::size_t{impl_->resolution} * impl_->resolution);
-  glGetTextureImage(impl_->faces, 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                    static_cast<GLsizei>(faces.size() * sizeof(std::uint32_t)), faces.data());
+RasterImage Rasteriser::read_back() {
+  RasterImage image;
+  read(impl_->faces, impl_->resolution, GL_RED_INTEGER, GL_UNSIGNED_INT, image.faces);
+  read(impl_->depth, impl_->resolution, GL_DEPTH_COMPONENT, GL_FLOAT, image.depths);
   impl_->device.context().check("reading the map back");
-  return faces;
+  return image;
 }
 
 void Rasteriser::count_into(RasterReport& report) {

@@ -25,6 +25,12 @@ struct StencilValues {
 };
 using Ownership = std::variant<WholeImage, OwnerTable, StencilValues>;
 
+/// Row 0 first.
+struct RasterImage {
+  std::vector<std::uint32_t> faces;  ///< of O2, that the closest site belongs to, or kNone
+  std::vector<float> depths;         ///< the distance drawn, in units of RasterScale; 1 where there is none
+};
+
 /// What a device needs once: the context and the programs.
 class RasterDevice {
  public:
@@ -50,11 +56,15 @@ class Rasteriser {
   Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned);
   ~Rasteriser();
 
-  /// Draws in the order of the batch, on each domain. Returns before the device is done. Throws sdm::Error.
+  /// Throws sdm::Error for a resolution larger than the device's images.
+  static void check_size(const Context& context, std::uint32_t resolution);
+
+  /// Draws in the order of the batch, on each domain. The device goes on with it after the return, but is
+  /// done with what was drawn before. Throws sdm::Error.
   void draw(const RasterBatch& batch);
 
-  /// The face of O2 closest to each texel, or kNone; row 0 first. Waits for the device.
-  [[nodiscard]] std::vector<std::uint32_t> read_back();
+  /// What has been drawn. Waits for the device.
+  [[nodiscard]] RasterImage read_back();
 
   /// Adds fragments, batches and stencil counts so far. Waits for the device.
   void count_into(RasterReport& report);

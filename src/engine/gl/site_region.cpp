@@ -1,5 +1,6 @@
 #include "engine/gl/site_region.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace sdm::gl {
@@ -16,6 +17,24 @@ Vec3 normal_of(const float (&rows)[4][kWidth], int lane) {
 
 void add_wall(SiteRegion& region, const Vec3& normal, double offset) {
   region.walls[region.wall_count++] = {normal, offset};
+}
+
+// Two walls that meet at an angle α, each moved outwards by s, meet s / sin(α/2) farther out. A face with a
+// sharper corner than this is closed off at both ends of its longest side, where its sharp corners are.
+constexpr double kSharp = 0.5;  // sine
+
+void add_end_planes(SiteRegion& region) {
+  const auto side = [&](int k) { return region.corners[(k + 1) % 3] - region.corners[k]; };
+  int longest = 0;
+  for (const int k : {1, 2})
+    if (squared_norm(side(k)) > squared_norm(side(longest))) longest = k;
+  const Vec3 &a = region.corners[longest], &b = region.corners[(longest + 1) % 3];
+  const Vec3 direction = normalized(b - a);
+  const double height = norm(cross(direction, region.corners[(longest + 2) % 3] - a));
+  const double second = std::max(norm(side((longest + 1) % 3)), norm(side((longest + 2) % 3)));
+  if (height >= kSharp * second) return;  // the sharpest corner lies between the two longest sides
+  add_wall(region, direction, dot(direction, a));
+  add_wall(region, -direction, -dot(direction, b));
 }
 
 }  // namespace
@@ -46,7 +65,8 @@ SiteRegion region_of(const Sites::Impl& sites, const FaceBlock& block, int lane)
     region.corners[region.corner_count++] = sites.frame.to_unit(sites.mesh.positions[vertex]);
   region.anchor = region.corners[0];
   for (const auto& wall : block.wall) add_wall(region, normal_of(wall, lane), wall[3][lane]);
-  region.exact = 3;
+  add_end_planes(region);
+  region.strict_walls = region.wall_count;
   return region;
 }
 
@@ -60,7 +80,7 @@ SiteRegion region_of(const Sites::Impl&, const EdgeBlock& block, int lane) {
   region.corner_count = 2;
   add_wall(region, region.axis, dot(region.axis, region.corners[0]));
   add_wall(region, -region.axis, -dot(region.axis, region.corners[1]));
-  region.exact = 2;
+  region.strict_walls = 2;
   Vec3 former{};
   for (const auto& wall : block.wall) {
     const Vec3 inward = normal_of(wall, lane);

@@ -18,16 +18,18 @@ struct HalfSpace {
 
 /// All in the unit frame of O2. The region is the intersection of the walls; see mesh/regions.h.
 struct SiteRegion {
+  static constexpr int kWalls = 5, kStrictWalls = 5;
+
   SiteType type = SiteType::none;
   std::uint32_t face = kNone;  ///< one that the site belongs to
   Vec3 anchor{};               ///< a point of the site's plane or line, or the vertex
   Vec3 axis{};                 ///< face: its normal; edge: its direction; vertex: none
   std::array<Vec3, 3> corners{};
   int corner_count = 0;
-  std::array<HalfSpace, 4> walls{};
+  std::array<HalfSpace, kWalls> walls{};
   int wall_count = 0;
-  int exact =
-      0;  ///< the first walls, beyond which the distance vector is not that to the site: it is too short
+  /// The first walls, beyond which the distance vector is not that to the site: it is too short.
+  int strict_walls = 0;
 
   /// The linear part of x ↦ closest point − x.
   [[nodiscard]] Vec3 change(const Vec3& dx) const {

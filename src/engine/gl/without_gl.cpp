@@ -7,7 +7,8 @@ namespace sdm {
 namespace {
 
 [[noreturn]] void refuse() {
-  throw Error("this sdm was built without OpenGL (SDM_BUILD_GL=OFF): choose another engine");
+  throw Error(
+      "this sdm was built without OpenGL (SDM_BUILD_GL=OFF), which the gl engine needs: use another engine");
 }
 
 }  // namespace
@@ -16,7 +17,11 @@ std::vector<GlDevice> gl_devices() {
   refuse();
 }
 
-std::vector<std::uint32_t> gl_winners(const Surface&, const Sites&, const MapOptions&, RasterReport&) {
+GlDevice gl_device(const RasterOptions&, std::uint32_t) {
+  refuse();
+}
+
+RasterWinners gl_winners(const Surface&, const Sites&, const MapOptions&, RasterReport&) {
   refuse();
 }
 
