@@ -2,7 +2,8 @@
 // DIR the meshes, for each of them the three pictures of its map, and figure1.png, where the figure stands in
 // its box and both carry their distance, Voronoi diagram and direction.
 //
-//   build/dev/bench/figure1 [--engine gl|cpu] [DIR]
+//   build/release/bench/figure1 [--engine gl|cpu] [DIR]
+#include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
@@ -13,7 +14,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <map>
 
 #include "io/write/atomic_file.h"
 #include "io/write/color_scale.h"
@@ -125,15 +125,22 @@ void draw(const std::filesystem::path& path, const Side& figure, const Side& box
 }
 
 int run(int argc, char** argv) {
-  EngineKind engine = EngineKind::gl;
   std::filesystem::path folder = "out/figure1";
   CLI::App app{"The paper's Figure 1: surface distance maps of a figure in a box, both ways"};
-  const std::map<std::string, EngineKind> engines{{"gl", EngineKind::gl}, {"cpu", EngineKind::cpu}};
-  app.add_option("--engine", engine, "The engine that computes the maps")
-      ->transform(CLI::CheckedTransformer(engines))
-      ->option_text("gl|cpu");
+  std::string engine_name = "gl";
+  app.add_option("--engine", engine_name, "The engine that computes the maps")
+      ->check(CLI::IsMember({"gl", "cpu"}))
+      ->option_text("gl|cpu [gl]");
   app.add_option("DIR", folder, "Where the pictures go")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  const EngineKind engine = engine_name == "gl" ? EngineKind::gl : EngineKind::cpu;
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault) throw Error("cannot make the folder " + folder.string() + ": " + fault.message());
 
   const Mesh man = paper_figure();
   Side figure("figure", man), box("box", paper_box(man));
@@ -154,6 +161,8 @@ int run(int argc, char** argv) {
     write_direction_png(folder / side->name / "direction.png", side->surface, side->map);
   }
   draw(folder / "figure1.png", figure, box, scale);
+  std::printf("The picture is %s; the meshes, and the maps of each, lie beside it.\n",
+              (folder / "figure1.png").c_str());
   return 0;
 }
 

@@ -2,6 +2,7 @@
 #include "devices.h"
 #include "info.h"
 #include "map.h"
+#include "progress_line.h"
 
 #include <sdm/error.h>
 #include <sdm/version.h>
@@ -40,6 +41,9 @@ int main(int argc, char** argv) {
     return outcome.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;  // 0: --help and --version
+  } catch (const sdm::Cancelled& error) {
+    std::cerr << "sdm: error: " << error.what() << '\n';
+    ProgressLine::end_by_interrupt();
   } catch (const std::bad_alloc&) {
     std::cerr << "sdm: error: not enough memory; choose a lower --resolution or smaller meshes\n";
   } catch (const std::exception& error) {

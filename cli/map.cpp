@@ -168,6 +168,9 @@ int run(MapCommand command) {
   command.atlas.progress = command.map.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
+  if (command.map.engine == sdm::EngineKind::gl)  // before hours of work, if it cannot be
+    (void)sdm::gl_device(command.map.raster, command.atlas.resolution);
+
   progress.step("import");
   const Stopwatch import;
   Input o1, o2;
@@ -180,6 +183,8 @@ int run(MapCommand command) {
     results.push_back(measure(command, o1, o2, import_ms, out.staging(command.both ? "o1" : ""), progress));
     if (command.both) results.push_back(measure(command, o2, o1, import_ms, out.staging("o2"), progress));
     out.commit();
+  } catch (const sdm::Cancelled&) {
+    throw;
   } catch (const sdm::Error& error) {
     throw sdm::Error(out.publicly(error.what()));
   }
@@ -207,7 +212,8 @@ void add_map_command(CLI::App& app) {
   map->footer(
       "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb (O1 in colours) and "
       "report.json.\n"
-      "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded.\n\n"
+      "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded; an interrupt ends sdm by its "
+      "signal.\n\n"
       "Example, two meshes side by side:\n"
       "  sdm map bunny.obj armadillo.off -o out --transform-o1 fit --transform-o2 fit,translate:0.8:0:0");
   const auto command = std::make_shared<MapCommand>();

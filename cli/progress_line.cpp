@@ -3,29 +3,35 @@
 #include <sdm/error.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <iostream>
 
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+volatile std::sig_atomic_t interrupted_by = 0;
 
 extern "C" void interrupt(int signal) {
-  interrupted = 1;
+  interrupted_by = signal;
   std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
 
 ProgressLine::ProgressLine(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) != 0) {
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  for (const int signal : kSignals)
+    if (std::signal(signal, interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);  // as nohup sets it
 }
 
 ProgressLine::~ProgressLine() {
   if (!shown_.empty()) std::cerr << "\r\033[K" << std::flush;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  for (const int signal : kSignals)
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
+void ProgressLine::end_by_interrupt() {
+  if (interrupted_by != 0) std::raise(interrupted_by);
 }
 
 sdm::Progress ProgressLine::callback() {
@@ -42,5 +48,5 @@ bool ProgressLine::show(std::string_view step, double fraction) {
     line.append(" ").append(std::to_string(static_cast<int>(100 * fraction))).append(" %");
     if (line != shown_) std::cerr << "\r\033[K" << (shown_ = line) << std::flush;
   }
-  return interrupted == 0;
+  return interrupted_by == 0;
 }
