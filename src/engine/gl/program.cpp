@@ -67,7 +67,7 @@ Program::Program(const ShaderSource& vertex, const ShaderSource& fragment) {
 }
 
 Program::~Program() {
-  glDeleteProgram(id_);
+  if (id_ != 0) glDeleteProgram(id_);
 }
 
 GLint Program::uniform(const char* name) const {

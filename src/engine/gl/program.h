@@ -25,6 +25,8 @@ class Program {
   [[nodiscard]] GLuint id() const { return id_; }
   /// The location of a uniform, which must be in use, else sdm::Error.
   [[nodiscard]] GLint uniform(const char* name) const;
+  /// For when the context is gone, and has taken it along.
+  void forget() { id_ = 0; }
 
  private:
   GLuint id_ = 0;

@@ -77,7 +77,8 @@ RasterDevice::~RasterDevice() {
     const Context::Current current(context_);
     programs_.reset();
   } catch (const Error&) {
-    (void)programs_.release();  // a lost device took them along
+    programs_->polygons.forget();
+    programs_->points.forget();
   }
 }
 
