@@ -16,7 +16,7 @@
 namespace sdm {
 
 enum class EngineKind {
-  cpu,        ///< packets of texels, SIMD, all cores
+  cpu,        ///< lists of sites for groups of texels, SIMD, all cores
   reference,  ///< scalar, double, plain: the oracle
   gl,         ///< the paper's: polygons of sites rasterised by OpenGL; maps only
 };
@@ -63,6 +63,10 @@ struct DistanceMap {
 /// sdm::Error for a sign method that O2 does not allow, or for want of memory; Cancelled.
 [[nodiscard]] DistanceMap compute_map(const Surface& surface, const Sites& sites,
                                       const MapOptions& options = {});
+
+/// The same into `map`, in the memory that it has where that suffices: for one frame after another. If it
+/// throws, the map's values are unspecified.
+void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options, DistanceMap& map);
 
 /// Closest points of O2 to any points, in any order, by the same engines. `distance` in the result is
 /// unsigned; options.sign is not used. Throws sdm::Error for a coordinate that is NaN or beyond 1e37;

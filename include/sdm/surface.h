@@ -49,6 +49,8 @@ class Surface {
   [[nodiscard]] std::span<const std::uint32_t> texel_faces() const;
   /// The indices of all owned texels, in an order in which neighbours are near each other on the surface.
   [[nodiscard]] std::span<const std::uint32_t> samples() const;
+  /// texel_point of each of them.
+  [[nodiscard]] std::span<const Vec3> sample_points() const;
   /// The surface point of an owned texel's centre: M⁻¹ of its face.
   [[nodiscard]] Vec3 texel_point(std::uint32_t texel) const;
 

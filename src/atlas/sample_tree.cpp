@@ -45,7 +45,7 @@ std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end,
   std::vector<Run> runs;
   Vec3 start{};
   for (std::size_t i = begin; i < end; ++i) {
-    const Vec3 p = surface_.texel_point(surface_.samples()[i]);
+    const Vec3 p = surface_.sample_points()[i];
     if (runs.empty() || i - runs.back().first == kLongest || norm(p - start) > radius) {
       runs.push_back({i, {}});
       start = p;
@@ -74,7 +74,7 @@ void SampleTree::descend(std::uint32_t index, Nearest& found) const {
   if (node.leaf()) {
     const std::uint32_t run = tree_.items[node.first];
     for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
-      const Vec3 sample = surface_.texel_point(surface_.samples()[i]);
+      const Vec3 sample = surface_.sample_points()[i];
       if (const double d = squared_norm(sample - found.query); d < found.squared_distance)
         found.sample = sample, found.squared_distance = d;
     }

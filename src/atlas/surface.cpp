@@ -1,11 +1,14 @@
 #include <sdm/error.h>
 
 #include <string>
+#include <utility>
 
 #include "atlas/sampling_bound.h"
 #include "atlas/surface_impl.h"
 #include "atlas/texels.h"
 #include "core/memory.h"
+#include "core/parallel.h"
+#include "core/spatial_order.h"
 #include "core/vec.h"
 
 namespace sdm {
@@ -24,8 +27,8 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
   if (options.gutter > n / 4)
     throw Error("a gutter of " + std::to_string(options.gutter) + " texels is too wide for an atlas of " +
                 std::to_string(n) + "² texels; use a quarter of that at most");
-  // The texel table and its order, sorted by 64-bit keys; and what charts and layout keep of each face.
-  constexpr std::size_t kBytesPerTexel = 16, kBytesPerFace = 600;
+  // The texel table, its order and its points; and what charts and layout keep of each face.
+  constexpr std::size_t kBytesPerTexel = 52, kBytesPerFace = 600;
   require_memory(kBytesPerTexel * n * n + kBytesPerFace * mesh.triangles.size(), "the atlas");
 }
 
@@ -33,6 +36,28 @@ Vec3 point_at(const Surface::Impl& surface, std::uint32_t face, const Vec2& uv) 
   const FaceMap& map = surface.maps[face];
   const Vec2 d = uv - map.origin;
   return surface.mesh.positions[surface.mesh.triangles[face][0]] + d[0] * map.edges[0] + d[1] * map.edges[1];
+}
+
+Vec3 point_of(const Surface::Impl& surface, std::uint32_t texel) {
+  const Vec2 centre = {texel % surface.resolution + 0.5, texel / surface.resolution + 0.5};
+  return point_at(surface, surface.texel_faces[texel], centre);
+}
+
+// The points of samples, in their order.
+std::vector<Vec3> points_of_samples(const Surface::Impl& surface) {
+  std::vector<Vec3> points(surface.samples.size());
+  parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points[i] = point_of(surface, surface.samples[i]);
+  });
+  return points;
+}
+
+// Orders the samples in space, and notes their points.
+void order_samples(Surface::Impl& surface) {
+  std::vector<std::uint32_t> order = spatial_order(points_of_samples(surface));
+  for (std::uint32_t& index : order) index = surface.samples[index];
+  surface.samples = std::move(order);
+  surface.sample_points = points_of_samples(surface);
 }
 
 }  // namespace
@@ -44,20 +69,20 @@ Surface::Surface(Mesh mesh, const AtlasOptions& options) {
   for (std::uint32_t c = 0; c < layout.charts.size(); ++c)
     for (const std::uint32_t f : layout.charts[c]) face_charts[f] = c;
   std::vector<std::uint32_t> texel_faces = rasterise(layout, options.kind, options.resolution);
-  std::vector<std::uint32_t> samples =
-      order_samples(mesh, layout, texel_faces, face_charts, options.resolution);
+  std::vector<std::uint32_t> samples = owned_texels(texel_faces);
   if (samples.empty())
     throw Error("no face of the mesh is large enough in the texture to own a texel; use a larger resolution");
-  impl_.reset(new Impl{std::move(mesh),
-                       options.kind,
-                       options.resolution,
-                       layout.charts.size(),
-                       layout.max_stretch,
-                       std::move(layout.maps),
-                       std::move(face_charts),
-                       std::move(texel_faces),
-                       std::move(samples),
-                       {}});
+  impl_ = std::make_unique<Impl>();
+  impl_->mesh = std::move(mesh);
+  impl_->kind = options.kind;
+  impl_->resolution = options.resolution;
+  impl_->chart_count = layout.charts.size();
+  impl_->max_stretch = layout.max_stretch;
+  impl_->maps = std::move(layout.maps);
+  impl_->face_charts = std::move(face_charts);
+  impl_->texel_faces = std::move(texel_faces);
+  impl_->samples = std::move(samples);
+  order_samples(*impl_);
 }
 
 Surface::~Surface() = default;
@@ -79,6 +104,9 @@ std::span<const std::uint32_t> Surface::texel_faces() const {
 std::span<const std::uint32_t> Surface::samples() const {
   return impl_->samples;
 }
+std::span<const Vec3> Surface::sample_points() const {
+  return impl_->sample_points;
+}
 std::size_t Surface::chart_count() const {
   return impl_->chart_count;
 }
@@ -90,8 +118,7 @@ double Surface::max_stretch() const {
 }
 
 Vec3 Surface::texel_point(std::uint32_t texel) const {
-  const Vec2 centre = {texel % impl_->resolution + 0.5, texel / impl_->resolution + 0.5};
-  return point_at(*impl_, impl_->texel_faces[texel], centre);
+  return point_of(*impl_, texel);
 }
 
 Vec3 Surface::to_surface(std::uint32_t face, const Vec2& uv) const {

@@ -5,23 +5,10 @@
 
 #include "atlas/rasterise.h"
 #include "core/parallel.h"
-#include "core/spatial_order.h"
 #include "core/vec.h"
 
 namespace sdm {
 namespace {
-
-// The bits of x (up to 15 of them) with a zero before each.
-constexpr std::uint32_t spread_bits(std::uint32_t x) {
-  x = (x | x << 8) & 0x00FF00FF;
-  x = (x | x << 4) & 0x0F0F0F0F;
-  x = (x | x << 2) & 0x33333333;
-  return (x | x << 1) & 0x55555555;
-}
-
-std::uint32_t z_order(std::uint32_t x, std::uint32_t y) {
-  return spread_bits(x) | spread_bits(y) << 1;
-}
 
 double atlas_area(const std::array<Vec2, 3>& t) {
   return std::abs(cross(t[1] - t[0], t[2] - t[0]));
@@ -71,42 +58,12 @@ std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::
   return owner;
 }
 
-std::vector<std::uint32_t> order_samples(const Mesh& mesh, const Layout& layout,
-                                         const std::vector<std::uint32_t>& texel_faces,
-                                         const std::vector<std::uint32_t>& face_charts,
-                                         std::uint32_t resolution) {
-  std::vector<Vec3> centres(layout.charts.size());
-  for (std::size_t c = 0; c < centres.size(); ++c) {
-    for (const std::uint32_t f : layout.charts[c]) centres[c] += mesh.positions[mesh.triangles[f][0]];
-    centres[c] = (1.0 / static_cast<double>(layout.charts[c].size())) * centres[c];
-  }
-  const std::vector<std::uint32_t> order = spatial_order(centres);
-  std::vector<std::uint32_t> rank(order.size());
-  for (std::uint32_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
-
-  // A counting sort by chart, then each chart by itself.
-  std::vector<std::size_t> offsets(order.size() + 1, 0);
-  for (const std::uint32_t face : texel_faces)
-    if (face != kNone) ++offsets[rank[face_charts[face]] + 1];
-  for (std::size_t r = 1; r < offsets.size(); ++r) offsets[r] += offsets[r - 1];
-  std::vector<std::uint32_t> samples(offsets.back());
-  std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+std::vector<std::uint32_t> owned_texels(const std::vector<std::uint32_t>& texel_faces) {
+  std::vector<std::uint32_t> texels;
+  texels.reserve(texel_faces.size() - static_cast<std::size_t>(std::ranges::count(texel_faces, kNone)));
   for (std::size_t texel = 0; texel < texel_faces.size(); ++texel)
-    if (texel_faces[texel] != kNone)
-      samples[next[rank[face_charts[texel_faces[texel]]]]++] = static_cast<std::uint32_t>(texel);
-  parallel_for(order.size(), 16, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint64_t> keys;
-    for (std::size_t r = begin; r < end; ++r) {
-      keys.clear();
-      for (std::size_t i = offsets[r]; i < offsets[r + 1]; ++i)
-        keys.push_back(std::uint64_t{z_order(samples[i] % resolution, samples[i] / resolution)} << 32 |
-                       samples[i]);
-      std::sort(keys.begin(), keys.end());
-      for (std::size_t i = 0; i < keys.size(); ++i)
-        samples[offsets[r] + i] = static_cast<std::uint32_t>(keys[i]);
-    }
-  });
-  return samples;
+    if (texel_faces[texel] != kNone) texels.push_back(static_cast<std::uint32_t>(texel));
+  return texels;
 }
 
 }  // namespace sdm

@@ -1,4 +1,4 @@
-// The texel table: which face owns each texel, and the order of the owned ones.
+// The texel table: which face owns each texel.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,7 @@ namespace sdm {
 [[nodiscard]] std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind,
                                                    std::uint32_t resolution);
 
-/// Owned texels, charts in spatial order, Z order within a chart.
-[[nodiscard]] std::vector<std::uint32_t> order_samples(const Mesh& mesh, const Layout& layout,
-                                                       const std::vector<std::uint32_t>& texel_faces,
-                                                       const std::vector<std::uint32_t>& face_charts,
-                                                       std::uint32_t resolution);
+/// The texels that a face owns, in their order.
+[[nodiscard]] std::vector<std::uint32_t> owned_texels(const std::vector<std::uint32_t>& texel_faces);
 
 }  // namespace sdm

@@ -1,21 +1,50 @@
 #include "core/spatial_order.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
+#include "core/parallel.h"
 #include "core/vec.h"
 
 namespace sdm {
 namespace {
 
-// Moves bit i of a 21-bit number to bit 3i.
-std::uint64_t spread(std::uint64_t x) {
-  x = (x | x << 32) & 0x001F00000000FFFFull;
-  x = (x | x << 16) & 0x001F0000FF0000FFull;
-  x = (x | x << 8) & 0x100F00F00F00F00Full;
-  x = (x | x << 4) & 0x10C30C30C30C30C3ull;
-  x = (x | x << 2) & 0x1249249249249249ull;
-  return x;
+constexpr std::size_t kPacket = 16;
+constexpr std::size_t kParallelItems = 1 << 15;  // fewer are ordered by one thread
+
+struct Item {
+  Vec3f point;
+  std::uint32_t index;
+};
+
+std::size_t longest_side(std::span<const Item> items) {
+  Vec3f lo = items[0].point, hi = lo;
+  for (const Item& item : items)
+    for (std::size_t k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], item.point[k]);
+      hi[k] = std::max(hi[k], item.point[k]);
+    }
+  const Vec3f size{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]};
+  return static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
+}
+
+// Halves hold 16·2^k items, but for the last, so that all packets are full but the last.
+void order(std::span<Item> items) {
+  if (items.size() <= kPacket) return;
+  const std::size_t half = kPacket * std::bit_floor((items.size() - 1) / kPacket);
+  std::ranges::nth_element(items, items.begin() + static_cast<std::ptrdiff_t>(half), {},
+                           [axis = longest_side(items)](const Item& item) {
+                             return std::pair(item.point[axis], item.index);  // whatever the algorithm does
+                           });
+  const auto first = [=] { order(items.first(half)); };
+  const auto second = [=] { order(items.subspan(half)); };
+  if (items.size() >= kParallelItems) {
+    parallel_invoke(first, second);
+  } else {
+    first();
+    second();
+  }
 }
 
 }  // namespace
@@ -25,18 +54,17 @@ std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points) {
   for (const Vec3& p : points) extend(box, p);
   const Vec3 size = points.empty() ? Vec3{} : box.hi - box.lo;
   const double longest = std::max({size[0], size[1], size[2]});
-  const double scale = longest > 0 ? ((1 << 21) - 1) / longest : 0;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(points.size());
+  const double scale = longest > 0 ? 1 / longest : 0;
+  std::vector<Item> items(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 q = scale * (points[i] - box.lo);
-    keys[i] = {spread(static_cast<std::uint64_t>(q[0])) | spread(static_cast<std::uint64_t>(q[1])) << 1 |
-                   spread(static_cast<std::uint64_t>(q[2])) << 2,
-               static_cast<std::uint32_t>(i)};
+    items[i] = {{static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2])},
+                static_cast<std::uint32_t>(i)};
   }
-  std::sort(keys.begin(), keys.end());
-  std::vector<std::uint32_t> order(points.size());
-  std::transform(keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
-  return order;
+  order(items);
+  std::vector<std::uint32_t> indices(points.size());
+  std::ranges::transform(items, indices.begin(), &Item::index);
+  return indices;
 }
 
 }  // namespace sdm

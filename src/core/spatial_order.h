@@ -8,7 +8,9 @@
 
 namespace sdm {
 
-/// The indices of the points along a Morton curve through their bounds. Cost: O(n log n).
+/// Indices of the points such that every aligned 16·2^k of them lie in a small box: the points are halved
+/// across the longest side of their box, and so are the halves, down to packets of sixteen. Cost: O(n log n),
+/// all cores.
 [[nodiscard]] std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points);
 
 }  // namespace sdm

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "core/memory.h"
@@ -12,6 +13,7 @@
 #include "core/spatial_order.h"
 #include "core/vec.h"
 #include "engine/closest_on_face.h"
+#include "engine/cpu/point_group.h"
 #include "engine/engine.h"
 #include "engine/gl/gl_engine.h"
 #include "engine/sign.h"
@@ -19,22 +21,30 @@
 namespace sdm {
 namespace {
 
-// Points that one thread takes at a time: enough to amortise the start of a search, few enough to share
-// evenly.
-constexpr std::size_t kBatch = 2048;
+// Calls body(begin, end) for aligned runs of points in spatial order, as long as the cpu engine can make use
+// of, but enough of them to share evenly.
+void for_each_run(std::size_t count, const Progress& progress, std::string_view step,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
+  constexpr std::size_t kEnough = 32;
+  std::size_t run = PointGroup::kMostPoints;
+  while (run > PointGroup::kPacket && count < kEnough * run) run /= PointGroup::kFan;
+  parallel_for((count + run - 1) / run, 1, progress, step, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(run * i, std::min(count, run * (i + 1)));
+  });
+}
 
-DistanceMap empty_map(std::uint32_t resolution) {
+void clear(DistanceMap& map, std::uint32_t resolution) {
   const std::size_t texels = std::size_t{resolution} * resolution;
-  require_memory(texels * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
-                 "a map of " + std::to_string(resolution) + "² texels");
+  if (map.distance.capacity() < texels)
+    require_memory(texels * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
+                   "a map of " + std::to_string(resolution) + "² texels");
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  DistanceMap map;
   map.resolution = resolution;
   map.distance.assign(texels, nan);
   map.vector.assign(texels, {nan, nan, nan});
   map.site.assign(texels, kNone);
   map.site_type.assign(texels, SiteType::none);
-  return map;
+  map.raster.reset();
 }
 
 void check(const MapOptions& options) {
@@ -68,6 +78,12 @@ ClosestSearch search_of(EngineKind engine) {
 }
 
 DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOptions& options) {
+  DistanceMap map;
+  compute_map(surface, sites, options, map);
+  return map;
+}
+
+void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options, DistanceMap& map) {
   check(options);
   const SignUsed sign = choose_sign(sites, options.sign);
   const InsideTest is_inside(sites.impl(), sign.method);
@@ -79,36 +95,33 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
   const ClosestSearch search = raster ? nullptr : search_of(options.engine);
   const auto start = std::chrono::steady_clock::now();
 
-  DistanceMap map = empty_map(surface.resolution());
+  clear(map, surface.resolution());
   map.sign = sign;
-  const std::span<const std::uint32_t> samples = surface.samples();
+  const std::size_t count = surface.samples().size();
   std::atomic<std::size_t> beyond{0}, unconfirmed{0};
-  parallel_for(
-      samples.size(), kBatch, options.progress, raster ? "finish" : "map",
-      [&](std::size_t begin, std::size_t end) {
-        const std::span<const std::uint32_t> texels = samples.subspan(begin, end - begin);
-        std::vector<Vec3> points(texels.size());
-        std::vector<ClosestPoint> closest(texels.size());
-        std::transform(texels.begin(), texels.end(), points.begin(),
-                       [&](std::uint32_t texel) { return surface.texel_point(texel); });
-        if (raster)
-          unconfirmed += recompute(sites.impl(), winners, texels, points, options.max_distance, closest);
-        else
-          search(sites.impl(), points, options.max_distance, closest);
-        for (std::size_t i = 0; i < texels.size(); ++i) {
-          const ClosestPoint& c = closest[i];
-          if (c.type == SiteType::none) {
-            ++beyond;
-            continue;
-          }
-          const Vec3 vector = c.point - points[i];
-          const std::uint32_t texel = texels[i];
-          map.distance[texel] = static_cast<float>(is_inside(points[i], c) ? -c.distance : c.distance);
-          for (int k = 0; k < 3; ++k) map.vector[texel][k] = static_cast<float>(vector[k]);
-          map.site[texel] = c.site;
-          map.site_type[texel] = c.type;
-        }
-      });
+  for_each_run(count, options.progress, raster ? "finish" : "map", [&](std::size_t begin, std::size_t end) {
+    const std::span<const std::uint32_t> texels = surface.samples().subspan(begin, end - begin);
+    const std::span<const Vec3> points = surface.sample_points().subspan(begin, end - begin);
+    std::vector<ClosestPoint> closest(texels.size());
+    std::size_t beyond_here = 0;
+    if (raster)
+      unconfirmed += recompute(sites.impl(), winners, texels, points, options.max_distance, closest);
+    else
+      search(sites.impl(), points, options.max_distance, closest);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      const ClosestPoint& c = closest[i];
+      if (c.type == SiteType::none) {
+        ++beyond_here;
+        continue;
+      }
+      const std::uint32_t texel = texels[i];
+      map.distance[texel] = static_cast<float>(is_inside(points[i], c) ? -c.distance : c.distance);
+      for (int k = 0; k < 3; ++k) map.vector[texel][k] = static_cast<float>(c.point[k] - points[i][k]);
+      map.site[texel] = c.site;
+      map.site_type[texel] = c.type;
+    }
+    beyond += beyond_here;
+  });
   map.beyond_max_distance = beyond;
   if (raster) {
     report.unconfirmed = unconfirmed;
@@ -116,7 +129,6 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     map.raster = std::move(report);
   }
-  return map;
 }
 
 std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
@@ -130,14 +142,13 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
   const ClosestSearch search = search_of(options.engine);
   const std::vector<std::uint32_t> order = spatial_order(points);
   std::vector<ClosestPoint> result(points.size());
-  parallel_for(points.size(), kBatch, options.progress, "closest points",
-               [&](std::size_t begin, std::size_t end) {
-                 std::vector<Vec3> batch(end - begin);
-                 std::vector<ClosestPoint> closest(end - begin);
-                 for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];
-                 search(sites.impl(), batch, options.max_distance, closest);
-                 for (std::size_t i = begin; i < end; ++i) result[order[i]] = closest[i - begin];
-               });
+  for_each_run(points.size(), options.progress, "closest points", [&](std::size_t begin, std::size_t end) {
+    std::vector<Vec3> batch(end - begin);
+    std::vector<ClosestPoint> closest(end - begin);
+    for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];
+    search(sites.impl(), batch, options.max_distance, closest);
+    for (std::size_t i = begin; i < end; ++i) result[order[i]] = closest[i - begin];
+  });
   return result;
 }
 

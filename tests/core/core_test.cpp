@@ -121,6 +121,25 @@ TEST(SpatialOrder, IsAPermutationThatKeepsNeighboursTogether) {
   EXPECT_EQ(order, as_is);
 }
 
+// Of a grid, every aligned 16·4^k are a square.
+TEST(SpatialOrder, AlignedPacketsAreCompact) {
+  std::vector<Vec3> points;
+  for (int x = 0; x < 64; ++x)
+    for (int y = 0; y < 64; ++y) points.push_back({1000.0 + x, -1.0 * y, 5});
+  std::shuffle(points.begin(), points.end(), std::mt19937(3));
+  for (const unsigned threads : {1u, 4u}) {
+    const ThreadLimit limit(threads);
+    const std::vector<std::uint32_t> order = spatial_order(points);
+    double side = 4;
+    for (std::size_t size = 16; size <= points.size(); size *= 4, side *= 2)
+      for (std::size_t first = 0; first < order.size(); first += size) {
+        Box box;
+        for (std::size_t i = first; i < first + size; ++i) extend(box, points[order[i]]);
+        EXPECT_EQ(box.hi - box.lo, (Vec3{side - 1, side - 1, 0}));
+      }
+  }
+}
+
 TEST(SpatialOrder, TakesNoPointsAndEqualPoints) {
   EXPECT_TRUE(spatial_order({}).empty());
   EXPECT_EQ(spatial_order(std::vector<Vec3>(5, Vec3{3, 3, 3})).size(), 5u);

@@ -1,0 +1,57 @@
+// Closest sites of the points of a group: one traversal of O2's tree collects a list of sites for many
+// points, and the lists of ever fewer points are filtered from it.
+#pragma once
+
+#include <sdm/sites.h>
+
+#include <vector>
+
+#include "engine/cpu/point_group.h"
+#include "engine/cpu/site_lists.h"
+#include "hierarchy/wide_tree.h"
+
+namespace sdm {
+
+/// A site of O2; `type` is none where nothing is within the limit.
+struct SiteId {
+  std::uint32_t packed = kNone;
+
+  static constexpr SiteId of(SiteType type, std::uint32_t site) {
+    return {static_cast<std::uint32_t>(type) << 30 | site};
+  }
+  [[nodiscard]] SiteType type() const {
+    return packed == kNone ? SiteType::none : static_cast<SiteType>(packed >> 30);
+  }
+  [[nodiscard]] std::uint32_t site() const { return packed & 0x3FFFFFFFu; }
+};
+
+/// The work done, for docs/design/cpu.md.
+struct DescentCounts {
+  std::size_t groups = 0;       ///< traversals
+  std::size_t nodes = 0;        ///< of the tree, tested
+  std::size_t tree_blocks = 0;  ///< of sites, tested at the tree's leaves
+  std::size_t list_blocks = 0;  ///< of sites, tested in lists
+  std::size_t evaluations = 0;  ///< of a site for a packet
+};
+
+/// What a thread keeps between groups.
+struct Descent {
+  PointGroup points;
+  std::uint32_t winners[PointGroup::kMostPoints];  ///< SiteId::packed of each point's closest site
+  DescentCounts counts;
+
+  struct Entry {
+    std::uint32_t child;  ///< of a wide node
+    float squared;        ///< distance of its box
+  };
+  std::vector<Entry> stack;
+  std::vector<std::uint32_t> leaves;
+  SiteLists lists[PointGroup::kLevels];
+};
+
+/// Finds the closest site within `limit` for every point of descent.points. Selected in single precision: a
+/// winner can be another than the closest site only where the two differ by rounding. Chooses the best vector
+/// instructions that the machine has, at run time.
+void find_winners(const WideTree& tree, const Regions& regions, float limit, Descent& descent);
+
+}  // namespace sdm

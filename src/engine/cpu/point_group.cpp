@@ -1,0 +1,98 @@
+#include "engine/cpu/point_group.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/cpu/point_group.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each set of instructions.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hierarchy/aabb_tree.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The ball about the middle of the box of a packet's points.
+void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, FloatBox& box) {
+  const hn::CappedTag<float, PointGroup::kPacket> d;
+  const auto load = [&](int k, size_t i) HWY_ATTR {
+    return hn::Load(d, group.position[k] + PointGroup::kPacket * packet + i);
+  };
+  for (int k = 0; k < 3; ++k) {
+    auto lo = load(k, 0), hi = lo;
+    for (size_t i = hn::Lanes(d); i < PointGroup::kPacket; i += hn::Lanes(d))
+      lo = hn::Min(lo, load(k, i)), hi = hn::Max(hi, load(k, i));
+    box.lo[k] = hn::GetLane(hn::MinOfLanes(d, lo));
+    box.hi[k] = hn::GetLane(hn::MaxOfLanes(d, hi));
+    ball.centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
+  }
+  auto most = hn::Zero(d);
+  for (size_t i = 0; i < PointGroup::kPacket; i += hn::Lanes(d)) {
+    auto squared = hn::Zero(d);
+    for (int k = 0; k < 3; ++k) {
+      const auto x = hn::Sub(load(k, i), hn::Set(d, ball.centre[k]));
+      squared = hn::MulAdd(x, x, squared);
+    }
+    most = hn::Max(most, squared);
+  }
+  ball.radius = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, most)));
+}
+
+void AroundPackets(PointGroup& group, FloatBox* boxes) {
+  for (size_t i = 0; i < group.packets; ++i) AroundPacket(group, i, group.balls[0][i], boxes[i]);
+}
+
+}  // namespace sdm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sdm {
+namespace {
+
+HWY_EXPORT(AroundPackets);
+
+// The ball about the middle of the box of the points of some balls, and that box in the place of the first.
+Ball around(std::span<const Ball> balls, std::span<FloatBox> boxes, FloatBox& box) {
+  box = boxes[0];
+  Ball ball{};
+  for (int k = 0; k < 3; ++k) {
+    for (const FloatBox& b : boxes)
+      box.lo[k] = std::min(box.lo[k], b.lo[k]), box.hi[k] = std::max(box.hi[k], b.hi[k]);
+    ball.centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
+  }
+  for (const Ball& b : balls) {
+    float squared = 0;
+    for (int k = 0; k < 3; ++k) squared += (ball.centre[k] - b.centre[k]) * (ball.centre[k] - b.centre[k]);
+    ball.radius = std::max(ball.radius, std::sqrt(squared) + b.radius);
+  }
+  return ball;
+}
+
+}  // namespace
+
+void PointGroup::place(std::span<const Vec3f> points) {
+  packets = (points.size() + kPacket - 1) / kPacket;
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < points.size(); ++i) position[k][i] = points[i][k];
+    std::fill(position[k] + points.size(), position[k] + kPacket * packets, points.back()[k]);
+  }
+  std::vector<FloatBox> boxes(packets);  // of the points of each ball of a level
+  balls[0].resize(packets);
+  HWY_DYNAMIC_DISPATCH(AroundPackets)(*this, boxes.data());
+  for (top = 0; balls[top].size() > 1; ++top) {
+    const std::vector<Ball>& below = balls[top];
+    std::vector<Ball>& here = balls[top + 1];
+    here.resize((below.size() + kFan - 1) / kFan);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const std::size_t first = kFan * i, count = std::min(kFan, below.size() - first);
+      here[i] =
+          around(std::span(below).subspan(first, count), std::span(boxes).subspan(first, count), boxes[i]);
+    }
+  }
+}
+
+}  // namespace sdm
+#endif

@@ -1,0 +1,36 @@
+// Points that descend through lists of sites together: packets of sixteen, and balls around them and around
+// groups of packets.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+/// In the unit frame of O2, in single precision.
+struct Ball {
+  float centre[3];
+  float radius;
+};
+
+/// Level 0 has a ball for each packet; another level's balls each cover kFan of the level below, up to one
+/// for all.
+struct PointGroup {
+  static constexpr std::size_t kPacket = 16, kFan = 4;
+  static constexpr int kLevels = 7;
+  static constexpr std::size_t points_at(int level) { return kPacket << (2 * level); }
+  static constexpr std::size_t kMostPoints = kPacket << (2 * (kLevels - 1));
+
+  std::size_t packets = 0;
+  int top = 0;                                 ///< the level of the one ball
+  alignas(64) float position[3][kMostPoints];  ///< of the points, the last one repeated to fill its packet
+  std::vector<Ball> balls[kLevels];
+
+  /// The group of 1 to kMostPoints points. Balls are small where the points come in an order like that of
+  /// core/spatial_order.h. They contain their points, and the balls below them, but for rounding.
+  void place(std::span<const Vec3f> points);
+};
+
+}  // namespace sdm

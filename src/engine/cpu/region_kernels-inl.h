@@ -1,0 +1,205 @@
+// Tests of regions of sites, and distances to sites, many at a time. Included once for each set of vector
+// instructions.
+#if defined(SDM_REGION_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SDM_REGION_KERNELS_INL_H
+#undef SDM_REGION_KERNELS_INL_H
+#else
+#define SDM_REGION_KERNELS_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/cpu/point_group.h"
+#include "mesh/regions.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Lanes over the points of a packet, and over the sites or boxes of a block.
+using Points = hn::CappedTag<float, PointGroup::kPacket>;
+using Block = hn::CappedTag<float, RegionBlock::kWidth>;
+using PointVec = hn::Vec<Points>;
+using BlockVec = hn::Vec<Block>;
+using BlockMask = hn::Mask<Block>;
+
+template <class D>
+HWY_INLINE hn::Vec<D> square_norm(D, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) {
+  return hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
+}
+
+// Which pieces of O2 can hold the closest point of any point x of the ball (c, r). Let a be a point of O2, B
+// a convex piece of it, b the point of B closest to c. If some b' of B is closer to x than a is, then
+//   |c − b'|² ≤ |c − a|² + 2 r |b' − a|,  and  |c − b'|² ≥ |c − b|² + |b − b'|²,  for B is convex;
+// with |b' − a| ≤ |b − a| + |b − b'| it follows that
+//   |c − b|² ≤ |c − a|² + 2 r |b − a| + r².
+// Far from O2 this leaves much less than |c − b| ≤ |c − a| + 2r: the nearer b is to a, the less can x tell.
+struct Reach {
+  float centre[3], radius;  // of the ball; enlarged by what rounding does to tests of regions
+  float from_a[3];          // c − a
+  float squared;            // |c − a|² + r², and the rounding of squares
+  float squared_limit;      // nor can what is beyond the limit for all x
+
+  Reach(const Ball& ball, float squared_to_a, const float (&a)[3], float limit) {
+    float magnitude = 1;  // O2 lies in the cube [−1, 1]³
+    for (int k = 0; k < 3; ++k) {
+      centre[k] = ball.centre[k];
+      from_a[k] = ball.centre[k] - a[k];
+      magnitude = std::max(magnitude, std::abs(centre[k]));
+    }
+    // Heights over planes, and points, err by a few units in the last place of the coordinates.
+    const float error = 2e-6f * magnitude;
+    radius = 1.0001f * ball.radius + error;
+    squared = squared_to_a + radius * radius + 4 * error * (std::sqrt(squared_to_a) + radius);
+    squared_limit = (limit + radius) * (limit + radius);
+  }
+
+  // Whether it holds for squared = |c − b|² and c − b = (x, y, z).
+  template <class D>
+  HWY_INLINE hn::Mask<D> holds(D d, hn::Vec<D> squared_to_b, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) const {
+    const auto a_to_b = square_norm(d, hn::Sub(hn::Set(d, from_a[0]), x), hn::Sub(hn::Set(d, from_a[1]), y),
+                                    hn::Sub(hn::Set(d, from_a[2]), z));
+    const auto bound = hn::MulAdd(hn::Set(d, 2 * radius), hn::Sqrt(a_to_b), hn::Set(d, squared));
+    return hn::Le(squared_to_b, hn::Min(bound, hn::Set(d, squared_limit)));
+  }
+};
+
+// plane·(p, −1) for a block of planes and one point.
+HWY_INLINE BlockVec height(Block d, const float (&plane)[4][RegionBlock::kWidth], size_t i, const float* p) {
+  BlockVec h = hn::MulSub(hn::Load(d, plane[0] + i), hn::Set(d, p[0]), hn::Load(d, plane[3] + i));
+  h = hn::MulAdd(hn::Load(d, plane[1] + i), hn::Set(d, p[1]), h);
+  return hn::MulAdd(hn::Load(d, plane[2] + i), hn::Set(d, p[2]), h);
+}
+
+// plane·(p, −1) for one plane and many points.
+HWY_INLINE PointVec height(Points d, const float (&plane)[4][RegionBlock::kWidth], uint32_t lane, PointVec x,
+                           PointVec y, PointVec z) {
+  PointVec h = hn::MulSub(hn::Set(d, plane[0][lane]), x, hn::Set(d, plane[3][lane]));
+  h = hn::MulAdd(hn::Set(d, plane[1][lane]), y, h);
+  return hn::MulAdd(hn::Set(d, plane[2][lane]), z, h);
+}
+
+// For each kind of site:
+//   matters   whether the region meets the ball and the bound of Reach holds;
+//   squared   the squared distances of one point to a block of sites, or of many points to one site: infinite
+//             beyond the prism of a face or the ends of an edge, where its plane or line is too close. No
+//             other part of a region needs to be tested, for a site is never closer than O2 is;
+//   closest   the point of one site that is closest to p.
+
+HWY_INLINE BlockMask matters(Block d, const FaceBlock& block, size_t i, const Reach& reach) {
+  const BlockVec inner = hn::Set(d, -reach.radius);
+  BlockMask pass = hn::Ge(height(d, block.wall[0], i, reach.centre), inner);
+  pass = hn::And(pass, hn::Ge(height(d, block.wall[1], i, reach.centre), inner));
+  pass = hn::And(pass, hn::Ge(height(d, block.wall[2], i, reach.centre), inner));
+  // The convex piece is the face's whole plane.
+  const BlockVec h = height(d, block.plane, i, reach.centre);
+  return hn::And(pass, reach.holds(d, hn::Mul(h, h), hn::Mul(h, hn::Load(d, block.plane[0] + i)),
+                                   hn::Mul(h, hn::Load(d, block.plane[1] + i)),
+                                   hn::Mul(h, hn::Load(d, block.plane[2] + i))));
+}
+
+HWY_INLINE BlockVec squared(Block d, const FaceBlock& block, size_t i, const float* p) {
+  const BlockVec h = height(d, block.plane, i, p);
+  const BlockVec inner = hn::Min(hn::Min(height(d, block.wall[0], i, p), height(d, block.wall[1], i, p)),
+                                 height(d, block.wall[2], i, p));
+  return hn::IfThenElse(hn::Ge(inner, hn::Zero(d)), hn::Mul(h, h), hn::Inf(d));
+}
+
+HWY_INLINE PointVec squared(Points d, const FaceBlock& block, uint32_t lane, PointVec x, PointVec y,
+                            PointVec z) {
+  const PointVec h = height(d, block.plane, lane, x, y, z);
+  const PointVec inner =
+      hn::Min(hn::Min(height(d, block.wall[0], lane, x, y, z), height(d, block.wall[1], lane, x, y, z)),
+              height(d, block.wall[2], lane, x, y, z));
+  return hn::IfThenElse(hn::Ge(inner, hn::Zero(d)), hn::Mul(h, h), hn::Inf(d));
+}
+
+inline void closest(const FaceBlock& block, size_t lane, const float* p, float (&out)[3]) {
+  float h = -block.plane[3][lane];
+  for (int k = 0; k < 3; ++k) h += block.plane[k][lane] * p[k];
+  for (int k = 0; k < 3; ++k) out[k] = p[k] - h * block.plane[k][lane];
+}
+
+HWY_INLINE BlockMask matters(Block d, const EdgeBlock& block, size_t i, const Reach& reach) {
+  BlockVec r[3], t = hn::Zero(d);
+  for (int k = 0; k < 3; ++k) {
+    r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.start[k] + i));
+    t = hn::MulAdd(r[k], hn::Load(d, block.direction[k] + i), t);
+  }
+  const BlockVec radius = hn::Set(d, reach.radius), length = hn::Load(d, block.length + i);
+  BlockMask pass = hn::And(hn::Ge(t, hn::Neg(radius)), hn::Le(t, hn::Add(length, radius)));
+  for (const auto& wall : block.wall) pass = hn::And(pass, hn::Le(height(d, wall, i, reach.centre), radius));
+  const BlockVec s = hn::Min(hn::Max(t, hn::Zero(d)), length);
+  for (int k = 0; k < 3; ++k) r[k] = hn::NegMulAdd(s, hn::Load(d, block.direction[k] + i), r[k]);
+  return hn::And(pass, reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]));
+}
+
+HWY_INLINE BlockVec squared(Block d, const EdgeBlock& block, size_t i, const float* p) {
+  BlockVec r[3], t = hn::Zero(d);
+  for (int k = 0; k < 3; ++k) {
+    r[k] = hn::Sub(hn::Set(d, p[k]), hn::Load(d, block.start[k] + i));
+    t = hn::MulAdd(r[k], hn::Load(d, block.direction[k] + i), t);
+  }
+  const auto between = hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::Load(d, block.length + i)));
+  for (int k = 0; k < 3; ++k) r[k] = hn::NegMulAdd(t, hn::Load(d, block.direction[k] + i), r[k]);
+  return hn::IfThenElse(between, square_norm(d, r[0], r[1], r[2]), hn::Inf(d));
+}
+
+HWY_INLINE PointVec squared(Points d, const EdgeBlock& block, uint32_t lane, PointVec x, PointVec y,
+                            PointVec z) {
+  const PointVec ux = hn::Set(d, block.direction[0][lane]), uy = hn::Set(d, block.direction[1][lane]),
+                 uz = hn::Set(d, block.direction[2][lane]);
+  x = hn::Sub(x, hn::Set(d, block.start[0][lane]));
+  y = hn::Sub(y, hn::Set(d, block.start[1][lane]));
+  z = hn::Sub(z, hn::Set(d, block.start[2][lane]));
+  PointVec t = hn::MulAdd(z, uz, hn::MulAdd(y, uy, hn::Mul(x, ux)));
+  const auto between = hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::Set(d, block.length[lane])));
+  const PointVec s =
+      square_norm(d, hn::NegMulAdd(t, ux, x), hn::NegMulAdd(t, uy, y), hn::NegMulAdd(t, uz, z));
+  return hn::IfThenElse(between, s, hn::Inf(d));
+}
+
+inline void closest(const EdgeBlock& block, size_t lane, const float* p, float (&out)[3]) {
+  float t = 0;
+  for (int k = 0; k < 3; ++k) t += (p[k] - block.start[k][lane]) * block.direction[k][lane];
+  t = std::min(std::max(t, 0.0f), block.length[lane]);
+  for (int k = 0; k < 3; ++k) out[k] = block.start[k][lane] + t * block.direction[k][lane];
+}
+
+HWY_INLINE BlockMask matters(Block d, const VertexBlock& block, size_t i, const Reach& reach) {
+  BlockVec r[3];
+  for (int k = 0; k < 3; ++k) r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.point[k] + i));
+  BlockMask pass = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
+  for (const auto& ray : block.ray) {
+    BlockVec along = hn::Mul(r[0], hn::Load(d, ray[0] + i));
+    along = hn::MulAdd(r[1], hn::Load(d, ray[1] + i), along);
+    along = hn::MulAdd(r[2], hn::Load(d, ray[2] + i), along);
+    pass = hn::And(pass, hn::Le(along, hn::Set(d, reach.radius)));
+  }
+  return pass;
+}
+
+HWY_INLINE BlockVec squared(Block d, const VertexBlock& block, size_t i, const float* p) {
+  return square_norm(d, hn::Sub(hn::Set(d, p[0]), hn::Load(d, block.point[0] + i)),
+                     hn::Sub(hn::Set(d, p[1]), hn::Load(d, block.point[1] + i)),
+                     hn::Sub(hn::Set(d, p[2]), hn::Load(d, block.point[2] + i)));
+}
+
+HWY_INLINE PointVec squared(Points d, const VertexBlock& block, uint32_t lane, PointVec x, PointVec y,
+                            PointVec z) {
+  return square_norm(d, hn::Sub(x, hn::Set(d, block.point[0][lane])),
+                     hn::Sub(y, hn::Set(d, block.point[1][lane])),
+                     hn::Sub(z, hn::Set(d, block.point[2][lane])));
+}
+
+inline void closest(const VertexBlock& block, size_t lane, const float*, float (&out)[3]) {
+  for (int k = 0; k < 3; ++k) out[k] = block.point[k][lane];
+}
+
+}  // namespace sdm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
