@@ -139,7 +139,7 @@ void keep(const SiteList<SiteBlock>& from, const Reach& reach, SiteList<SiteBloc
   for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], reach, to);
 }
 
-// The point of O2 that is closest to another so far, and the square of their distance, or of its bound.
+// The point of O2 that is closest to c so far, with the square of the distance; else a bound, and c itself.
 struct Nearest {
   float squared;
   float point[3];
@@ -202,25 +202,23 @@ class Search {
     if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the group before lies near
       nearest = last_, nearest.squared = squared_distance(ball, last_.point);
     improve_in_tree(nearest, ball.centre);
-    if (nearest.found) {
-      last_ = nearest;
-      const Reach reach(ball, nearest.squared, nearest.point, limit_);
-      const size_t points = PointGroup::points_at(level);
-      const size_t most_leaves =
-          points > kFewPoints ? points / kPointsPerLeaf : std::numeric_limits<size_t>::max();
-      if (!find_leaves(reach, most_leaves)) {
-        for_children(level, index, [&](size_t child) { start(level - 1, child); });
-        return;
-      }
-      collect(reach, lists);
+    if (nearest.found) last_ = nearest;
+    const Reach reach(ball, nearest.squared, nearest.point, limit_);
+    const size_t points = PointGroup::points_at(level);
+    const size_t most_leaves =
+        points > kFewPoints ? points / kPointsPerLeaf : std::numeric_limits<size_t>::max();
+    if (!find_leaves(reach, most_leaves)) {
+      for_children(level, index, [&](size_t child) { start(level - 1, child); });
+      return;
     }
+    collect(reach, lists);
     descend(level, index);
   }
 
  private:
   Nearest within_limit(const Ball& ball) const {
     const float within = limit_ + Reach(ball, 0, ball.centre, 0).radius;
-    return {within * within, {}, false};
+    return {within * within, {ball.centre[0], ball.centre[1], ball.centre[2]}, false};
   }
 
   static float squared_distance(const Ball& ball, const float (&p)[3]) {
@@ -331,7 +329,6 @@ class Search {
     improve(nearest, from.edges, ball.centre);
     improve(nearest, from.vertices, ball.centre);
     s_.counts.list_blocks += from.faces.used + from.edges.used + from.vertices.used;
-    if (!nearest.found) return to.clear();
     const Reach reach(ball, nearest.squared, nearest.point, limit_);
     keep(from.faces, reach, to.faces);
     keep(from.edges, reach, to.edges);
@@ -341,7 +338,7 @@ class Search {
   void evaluate(const SiteLists& lists, size_t packet) {
     const size_t first = PointGroup::kPacket * packet;
     uint32_t* winners = s_.winners + first;
-    std::fill_n(winners, PointGroup::kPacket, kNone);
+    std::fill_n(winners, PointGroup::kPacket, lists.size() == 0 ? kNone : SiteId::kUnsettled);
     alignas(64) float best[PointGroup::kPacket];
     std::fill_n(best, PointGroup::kPacket, std::numeric_limits<float>::infinity());
     s_.counts.evaluations += lists.size();

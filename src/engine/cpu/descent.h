@@ -12,15 +12,17 @@
 
 namespace sdm {
 
-/// A site of O2; `type` is none where nothing is within the limit.
+/// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could tell.
 struct SiteId {
+  static constexpr std::uint32_t kUnsettled = kNone - 1;
+
   std::uint32_t packed = kNone;
 
   static constexpr SiteId of(SiteType type, std::uint32_t site) {
     return {static_cast<std::uint32_t>(type) << 30 | site};
   }
   [[nodiscard]] SiteType type() const {
-    return packed == kNone ? SiteType::none : static_cast<SiteType>(packed >> 30);
+    return packed >= kUnsettled ? SiteType::none : static_cast<SiteType>(packed >> 30);
   }
   [[nodiscard]] std::uint32_t site() const { return packed & 0x3FFFFFFFu; }
 };
@@ -49,7 +51,8 @@ struct Descent {
   SiteLists lists[PointGroup::kLevels];
 };
 
-/// Finds the closest site within `limit` for every point of descent.points. Selected in single precision: a
+/// Finds the closest site within `limit` for every point of descent.points; one that is farther may be named
+/// too. Selected in single precision: a
 /// winner can be another than the closest site only where the two differ by rounding. Chooses the best vector
 /// instructions that the machine has, at run time.
 void find_winners(const WideTree& tree, const Regions& regions, float limit, Descent& descent);

@@ -10,6 +10,7 @@
 
 #include "core/vec.h"
 #include "engine/closest_on_face.h"
+#include "engine/engine.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::HWY_NAMESPACE {
@@ -159,7 +160,12 @@ void finish_packet(const Sites::Impl& sites, const uint32_t* winners, std::span<
       lanes |= static_cast<uint32_t>(winners[i] == site.packed) << i;
     pending &= ~lanes;
     if (site.type() == SiteType::none) {
-      for (; lanes != 0; lanes &= lanes - 1) out[std::countr_zero(lanes)] = {};
+      for (; lanes != 0; lanes &= lanes - 1) {
+        const auto i = static_cast<size_t>(std::countr_zero(lanes));
+        out[i] = {};
+        if (site.packed == SiteId::kUnsettled)
+          reference_search(sites, queries.subspan(i, 1), max_distance, {out + i, 1});
+      }
       continue;
     }
     const uint32_t face = face_of(sites, site), inside = on_site(sites, site, p, lanes);
