@@ -1,13 +1,13 @@
 #include "map.h"
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "map_options.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "report.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -18,16 +18,6 @@
 #include <vector>
 
 namespace {
-
-class Stopwatch {
- public:
-  [[nodiscard]] double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 Input load(std::string role, const std::string& file, const std::string& placement) {
   Input input{std::move(role), file, placement, sdm::read_mesh(file), {}};
@@ -96,7 +86,7 @@ double engine_error(sdm::EngineKind engine, const Input& on, const Input& to) {
 /// Computes the map on `on` of the distances to `to`, and writes all its files into `folder`.
 Result measure(const MapCommand& command, const Input& on, const Input& to, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
-  const Stopwatch total;
+  sdm::Stopwatch total;
   Result result;
   Outcome& outcome = result.outcome;
   outcome.time.import = import_ms;
@@ -105,26 +95,26 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   std::unique_ptr<sdm::Sites> sites;
   sdm::parallel_invoke(
       [&] {
-        const Stopwatch watch;
+        sdm::Stopwatch watch;
         surface = std::make_unique<sdm::Surface>(on.mesh, command.atlas);
-        outcome.time.atlas = watch.ms();
+        outcome.time.atlas = watch.lap();
       },
       [&] {
-        const Stopwatch watch;
+        sdm::Stopwatch watch;
         sites = std::make_unique<sdm::Sites>(to.mesh);
-        outcome.time.sites = watch.ms();
+        outcome.time.sites = watch.lap();
       });
 
-  const Stopwatch map_watch;
+  sdm::Stopwatch map_watch;
   const sdm::DistanceMap map = sdm::compute_map(*surface, *sites, command.map);
   const auto at_vertices = vertex_distances(on.mesh, *sites, map, command.map);
-  outcome.time.map = map_watch.ms();
+  outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
   outcome.raster = map.raster;
 
   progress.step("export");
-  const Stopwatch export_watch;
+  sdm::Stopwatch export_watch;
   const std::vector<std::function<void()>> tasks{
       [&] { sdm::write_exr(folder / "map.exr", *surface, map); },
       [&] { sdm::write_glb(folder / "model.glb", *surface, map, at_vertices, command.picture); },
@@ -140,8 +130,8 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   if (command.picture.tolerance)
     outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices,
                               outcome.error_bound + engine_error(command.map.engine, on, to));
-  outcome.time.output = export_watch.ms();
-  outcome.time.total = import_ms + total.ms();
+  outcome.time.output = export_watch.lap();
+  outcome.time.total = import_ms + total.lap();
 
   const Input& o1 = on.role == "o1" ? on : to;
   const Input& o2 = on.role == "o1" ? to : on;
@@ -161,7 +151,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
 
 /// The exit code.
 int run(MapCommand command) {
-  const Stopwatch total;
+  sdm::Stopwatch total;
   const sdm::ThreadLimit limit(command.threads);
   OutputFolder out(command.out);
   ProgressLine progress(command.quiet);
@@ -172,11 +162,11 @@ int run(MapCommand command) {
     (void)sdm::gl_device(command.map.raster, command.atlas.resolution);
 
   progress.step("import");
-  const Stopwatch import;
+  sdm::Stopwatch import;
   Input o1, o2;
   sdm::parallel_invoke([&] { o1 = load("o1", command.o1, command.transform_o1); },
                        [&] { o2 = load("o2", command.o2, command.transform_o2); });
-  const double import_ms = import.ms();
+  const double import_ms = import.lap();
 
   std::vector<Result> results;
   try {
@@ -197,7 +187,7 @@ int run(MapCommand command) {
     std::cout << summary(o1, o2, results[0].outcome, command.picture.units);
     if (command.both) std::cout << summary(o2, o1, results[1].outcome, command.picture.units);
     const std::string folder = command.out.string() + (command.both ? "/{o1,o2}" : "");
-    std::cout << "  time      " << std::round(total.ms()) / 1000 << " s\n  results   " << folder
+    std::cout << "  time      " << std::round(total.lap()) / 1000 << " s\n  results   " << folder
               << "/: map.exr distance.png voronoi.png direction.png model.glb report.json\n";
   }
   const bool within = std::ranges::all_of(

@@ -28,7 +28,7 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
     throw Error("a gutter of " + std::to_string(options.gutter) + " texels is too wide for an atlas of " +
                 std::to_string(n) + "² texels; use a quarter of that at most");
   // The texel table, its order and its points; and what charts and layout keep of each face.
-  constexpr std::size_t kBytesPerTexel = 52, kBytesPerFace = 600;
+  constexpr std::size_t kBytesPerTexel = 60, kBytesPerFace = 600;
   require_memory(kBytesPerTexel * n * n + kBytesPerFace * mesh.triangles.size(), "the atlas");
 }
 
@@ -54,10 +54,14 @@ std::vector<Vec3> points_of_samples(const Surface::Impl& surface) {
 
 // Orders the samples in space, and notes their points.
 void order_samples(Surface::Impl& surface) {
-  std::vector<std::uint32_t> order = spatial_order(points_of_samples(surface));
-  for (std::uint32_t& index : order) index = surface.samples[index];
+  const std::vector<Vec3> points = points_of_samples(surface);
+  std::vector<std::uint32_t> order = spatial_order(points);
+  surface.sample_points.reserve(points.size());
+  for (std::uint32_t& index : order) {
+    surface.sample_points.push_back(points[index]);
+    index = surface.samples[index];
+  }
   surface.samples = std::move(order);
-  surface.sample_points = points_of_samples(surface);
 }
 
 }  // namespace

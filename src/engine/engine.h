@@ -19,8 +19,8 @@ using ClosestSearch = void (*)(const Sites::Impl& sites, std::span<const Vec3> p
 void reference_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
                       std::span<ClosestPoint> closest);
 
-/// Packets of points against the wide tree and its regions in single precision; the winner recomputed in
-/// double. A winner can be another than the closest site only where the two differ by rounding: some 10⁻⁷ of
+/// Groups of points against the wide tree, and lists of its sites, in single precision; the winner in double.
+/// Groups are formed of neighbours in `points`. A winner can be another than the closest site only where the two differ by rounding: some 10⁻⁷ of
 /// the scene's extent.
 void cpu_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
                 std::span<ClosestPoint> closest);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/spatial_order.h"
+#include "core/stopwatch.h"
 #include "core/vec.h"
 #include "engine/closest_on_face.h"
 #include "engine/cpu/point_group.h"
@@ -93,7 +93,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   RasterWinners winners;
   if (raster) winners = gl_winners(surface, sites, options, report);
   const ClosestSearch search = raster ? nullptr : search_of(options.engine);
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
 
   clear(map, surface.resolution());
   map.sign = sign;
@@ -125,8 +125,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   map.beyond_max_distance = beyond;
   if (raster) {
     report.unconfirmed = unconfirmed;
-    report.time_ms.finish =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    report.time_ms.finish = watch.lap();
     map.raster = std::move(report);
   }
 }

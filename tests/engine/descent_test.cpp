@@ -1,6 +1,9 @@
 // What the exactness tests do not see: the parts of the cpu engine, and how much work it does.
-#include "engine/cpu/descent.h"
+#include <memory>
+
 #include "core/vec.h"
+#include "engine/cpu/finish.h"
+#include "engine/engine.h"
 #include "engine/support.h"
 #include "mesh/sites_impl.h"
 
@@ -51,6 +54,113 @@ DescentCounts work(const Surface& surface, const Sites& sites) {
     find_winners(sites.impl().wide, sites.impl().regions, 1e18f, *descent);
   }
   return descent->counts;
+}
+
+// Whatever single precision says, what is named is a local minimum; and what it leaves open is settled.
+TEST(Finish, TakesNoWinnerOnTrust) {
+  std::mt19937 random(8);
+  const Sites sites(test::soup(40, random));
+  std::vector<Vec3> queries(37);
+  for (Vec3& q : queries) q = test::random_point({{-1, -1, -1}, {2, 2, 2}}, random);
+  std::vector<ClosestPoint> expected(queries.size()), found(queries.size());
+  const double limit = 0.4;
+  reference_search(sites.impl(), queries, limit, expected);
+
+  const std::vector<std::uint32_t> unsettled(queries.size(), SiteId::kUnsettled);
+  finish(sites.impl(), unsettled, queries, limit, found);
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    EXPECT_EQ(found[i].distance, expected[i].distance);
+    EXPECT_EQ(found[i].type, expected[i].type);
+    beyond += expected[i].type == SiteType::none;
+  }
+  EXPECT_GT(beyond, 0u);
+  EXPECT_LT(beyond, queries.size());
+
+  // Sites that are none of theirs: still points of these sites' faces, or of neighbours that are closer.
+  for (const SiteType type : {SiteType::vertex, SiteType::edge, SiteType::face}) {
+    const std::vector<std::uint32_t> wrong(queries.size(), SiteId::of(type, 7).packed);
+    finish(sites.impl(), wrong, queries, 1e300, found);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      ASSERT_NE(found[i].type, SiteType::none);
+      EXPECT_NEAR(norm(found[i].point - queries[i]), found[i].distance, 1e-12);
+      EXPECT_NEAR(test::distance_to_site(sites, found[i].type, found[i].site, queries[i]), found[i].distance,
+                  1e-12);
+    }
+  }
+
+  const std::vector<std::uint32_t> none(queries.size(), kNone);
+  finish(sites.impl(), none, queries, 1e300, found);
+  for (const ClosestPoint& c : found) EXPECT_EQ(c.type, SiteType::none);
+}
+
+// Soups and grids, flat and rough, whole and small slivers, of any size and place; queries on the mesh, on
+// its vertices and lattice points, where regions meet, and away from it.
+TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
+  std::size_t within = 0, beyond = 0, wrong = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    std::normal_distribution<double> normal;
+    const auto offset = [&](double size) {
+      return size * Vec3{normal(random), normal(random), normal(random)};
+    };
+    Mesh mesh;
+    if (seed % 2 == 0) {
+      const std::size_t count = 1 + random() % 300;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Vec3 at = offset(1);
+        const double size = std::pow(10, -static_cast<double>(random() % 4));
+        for (int k = 0; k < 3; ++k) {
+          Vec3 p = offset(size);
+          if (seed % 3 == 0) p[2] *= 1e-7;
+          mesh.positions.push_back(at + p);
+        }
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+      }
+    } else {
+      const auto n = static_cast<std::uint32_t>(2 + random() % 12);
+      for (std::uint32_t i = 0; i <= n; ++i)
+        for (std::uint32_t j = 0; j <= n; ++j)
+          mesh.positions.push_back({1.0 * i / n, 1.0 * j / n, seed % 3 == 0 ? 0 : 0.2 * normal(random) / n});
+      for (std::uint32_t i = 0; i < n; ++i)
+        for (std::uint32_t j = 0; j < n; ++j) {
+          const std::uint32_t a = i * (n + 1) + j, b = a + 1, c = a + n + 1, d = c + 1;
+          mesh.triangles.insert(mesh.triangles.end(), {{a, c, random() % 2 ? b : d}, {a, c, d}, {a, d, b}});
+        }
+    }
+    const double scale = std::pow(10, static_cast<double>(random() % 7) - 3);
+    const Vec3 place = seed % 5 == 0 ? offset(1000 * scale) : Vec3{};
+    for (Vec3& p : mesh.positions) p = scale * p + place;
+
+    const Sites sites(mesh);
+    const double extent = diagonal(bounds(mesh)),
+                 spread = std::pow(10, static_cast<double>(random() % 4) - 2);
+    std::vector<Vec3> queries(400);
+    for (Vec3& q : queries) {
+      const Triangle& t = mesh.triangles[random() % mesh.triangles.size()];
+      const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]];
+      q = random() % 2 ? a : a + unit(random) * (b - a);
+      if (random() % 3 != 0) q += offset(spread * extent);
+      if (random() % 5 == 0)
+        for (double& x : q) x = std::round(x / (scale / 8)) * (scale / 8);
+    }
+    const double limit = seed % 4 == 0 ? 0.1 * extent : std::numeric_limits<double>::infinity();
+    const auto found = closest_points(sites, queries, {.max_distance = limit});
+    const auto expected = closest_points(sites, queries, {.engine = EngineKind::reference});
+    Box scene = bounds(mesh);
+    for (const Vec3& q : queries) extend(scene, q);
+    const double tolerance = 1e-6 * diagonal(scene);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const bool none = found[i].type == SiteType::none;
+      ++(none ? beyond : within);
+      wrong += none ? !(expected[i].distance > limit - tolerance)
+                    : !(std::abs(found[i].distance - expected[i].distance) <= tolerance);
+    }
+  }
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_GT(within, 50000u);
+  EXPECT_GT(beyond, 1000u);
 }
 
 // Lists are short, and what they save is traversal. Counts depend on the meshes alone, and hardly on

@@ -27,6 +27,34 @@ TEST_P(Properties, RigidMotionOfBothLeavesDistances) {
   EXPECT_TRUE(distances.none());
 }
 
+// Whatever the map held before, of another surface, engine or limit.
+TEST_P(Properties, AMapComputedInPlaceIsAsIfNew) {
+  const Sites sites(test::load("elephant.off", "fit"));
+  const Surface large(test::load("bunny.obj", "fit"), {.resolution = 256});
+  const Surface small(test::load("head.off", "fit"), {.resolution = 64});
+  DistanceMap reused;
+  for (const Surface* surface : {&large, &small, &large})
+    for (const double limit : {0.05, std::numeric_limits<double>::infinity()}) {
+      const MapOptions options{.engine = GetParam(), .max_distance = limit};
+      compute_map(*surface, sites, options, reused);
+      const DistanceMap fresh = compute_map(*surface, sites, options);
+      EXPECT_EQ(reused.resolution, fresh.resolution);
+      EXPECT_EQ(reused.site, fresh.site);
+      EXPECT_EQ(reused.site_type, fresh.site_type);
+      EXPECT_EQ(reused.sign.method, fresh.sign.method);
+      EXPECT_EQ(reused.beyond_max_distance, fresh.beyond_max_distance);
+      ASSERT_EQ(reused.distance.size(), fresh.distance.size());
+      for (std::size_t i = 0; i < fresh.distance.size(); ++i) {
+        if (std::isnan(fresh.distance[i])) {
+          ASSERT_TRUE(std::isnan(reused.distance[i]) && std::isnan(reused.vector[i][0]));
+          continue;
+        }
+        ASSERT_EQ(reused.distance[i], fresh.distance[i]);
+        ASSERT_EQ(reused.vector[i], fresh.vector[i]);
+      }
+    }
+}
+
 TEST_P(Properties, OneLipschitzBetweenNeighbouringTexels) {
   const Surface surface(test::load("bunny.obj", "fit"), {.resolution = 256});
   const Sites sites(test::load("elephant.off", "fit"));

@@ -217,7 +217,7 @@ class Search {
 
  private:
   Nearest within_limit(const Ball& ball) const {
-    const float within = limit_ + Reach(ball, 0, ball.centre, 0).radius;
+    const float within = limit_ + enlarged_radius(ball);
     return {within * within, {ball.centre[0], ball.centre[1], ball.centre[2]}, false};
   }
 

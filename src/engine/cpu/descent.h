@@ -27,7 +27,7 @@ struct SiteId {
   [[nodiscard]] std::uint32_t site() const { return packed & 0x3FFFFFFFu; }
 };
 
-/// The work done, for docs/design/cpu.md.
+/// The work done, which tests hold down.
 struct DescentCounts {
   std::size_t groups = 0;       ///< traversals
   std::size_t nodes = 0;        ///< of the tree, tested

@@ -31,6 +31,18 @@ HWY_INLINE hn::Vec<D> square_norm(D, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) {
   return hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
 }
 
+// Heights over planes, and points, err by a few units in the last place of the coordinates. O2 lies in the
+// cube [−1, 1]³.
+inline float coordinate_error(const Ball& ball) {
+  const auto& [x, y, z] = ball.centre;
+  return 2e-6f * std::max({1.0f, std::abs(x), std::abs(y), std::abs(z)});
+}
+
+// Of a ball that still meets all regions that it meets, whatever rounding does to the tests.
+inline float enlarged_radius(const Ball& ball) {
+  return 1.0001f * ball.radius + coordinate_error(ball);
+}
+
 // Which pieces of O2 can hold the closest point of any point x of the ball (c, r). Let a be a point of O2, B
 // a convex piece of it, b the point of B closest to c. If some b' of B is closer to x than a is, then
 //   |c − b'|² ≤ |c − a|² + 2 r |b' − a|,  and  |c − b'|² ≥ |c − b|² + |b − b'|²,  for B is convex;
@@ -44,16 +56,13 @@ struct Reach {
   float squared_limit;      // nor can what is beyond the limit for all x
 
   Reach(const Ball& ball, float squared_to_a, const float (&a)[3], float limit) {
-    float magnitude = 1;  // O2 lies in the cube [−1, 1]³
     for (int k = 0; k < 3; ++k) {
       centre[k] = ball.centre[k];
       from_a[k] = ball.centre[k] - a[k];
-      magnitude = std::max(magnitude, std::abs(centre[k]));
     }
-    // Heights over planes, and points, err by a few units in the last place of the coordinates.
-    const float error = 2e-6f * magnitude;
-    radius = 1.0001f * ball.radius + error;
-    squared = squared_to_a + radius * radius + 4 * error * (std::sqrt(squared_to_a) + radius);
+    radius = enlarged_radius(ball);
+    squared =
+        squared_to_a + radius * radius + 4 * coordinate_error(ball) * (std::sqrt(squared_to_a) + radius);
     squared_limit = (limit + radius) * (limit + radius);
   }
 

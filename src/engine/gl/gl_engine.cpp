@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "engine/gl/domain_tree.h"
 #include "engine/gl/pair_stream.h"
-#include "engine/gl/stopwatch.h"
 
 namespace sdm {
 namespace gl {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "engine/gl/stopwatch.h"
+#include "core/stopwatch.h"
 
 namespace sdm::gl {
 namespace {

@@ -30,7 +30,7 @@ void RasterBatch::append(const RasterBatch& other) {
 
 bool add_polygon(RasterBatch& batch, const SiteRegion& region, const PlanarDomain& domain,
                  const RasterScale& scale) {
-  std::array<HalfPlane, SiteRegion::kWalls> walls;
+  std::array<HalfPlane, SiteRegion::kMostWalls> walls;
   ConvexPolygon polygon = domain.outline;
   for (int k = 0; k < region.wall_count; ++k) {
     walls[k] = restrict(region.walls[k], domain);
@@ -55,7 +55,7 @@ bool add_polygon(RasterBatch& batch, const SiteRegion& region, const PlanarDomai
   store(p.vector_dv, scale.to_depth * region.change(domain.edges[1]));
   p.face = region.face;
   p.domain = domain.id;
-  for (int k = 0; k < SiteRegion::kStrictWalls; ++k) {
+  for (int k = 0; k < SiteRegion::kMostWalls; ++k) {
     if (k >= region.strict_walls) {
       store(p.walls[k], {1, 0, 0});
       continue;

@@ -15,8 +15,8 @@ struct RasterPolygon {
   float vector[3], origin_u;
   float vector_du[3], origin_v;
   float vector_dv[3];
-  std::uint32_t face;                        ///< of O2
-  float walls[SiteRegion::kStrictWalls][3];  ///< negative beyond them
+  std::uint32_t face;                      ///< of O2
+  float walls[SiteRegion::kMostWalls][3];  ///< negative beyond them
   std::uint32_t domain;
 };
 inline constexpr int kTexelsPerPolygon = 7;

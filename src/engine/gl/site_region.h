@@ -18,7 +18,7 @@ struct HalfSpace {
 
 /// All in the unit frame of O2. The region is the intersection of the walls; see mesh/regions.h.
 struct SiteRegion {
-  static constexpr int kWalls = 5, kStrictWalls = 5;
+  static constexpr int kMostWalls = 5;
 
   SiteType type = SiteType::none;
   std::uint32_t face = kNone;  ///< one that the site belongs to
@@ -26,7 +26,7 @@ struct SiteRegion {
   Vec3 axis{};                 ///< face: its normal; edge: its direction; vertex: none
   std::array<Vec3, 3> corners{};
   int corner_count = 0;
-  std::array<HalfSpace, kWalls> walls{};
+  std::array<HalfSpace, kMostWalls> walls{};
   int wall_count = 0;
   /// The first walls, beyond which the distance vector is not that to the site: it is too short.
   int strict_walls = 0;

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-namespace sdm::gl {
+namespace sdm {
 
 class Stopwatch {
  public:
@@ -18,4 +18,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace sdm::gl
+}  // namespace sdm
