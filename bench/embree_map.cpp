@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "embree_mesh.h"
 
 namespace sdm::bench {
 namespace {
@@ -69,17 +68,10 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Mesh& mesh) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-  attach(device_, scene_, mesh);
-  rtcCommitScene(scene_);
+EmbreeScene::EmbreeScene(const Mesh& mesh)
+    : device_(rtcNewDevice(nullptr)), scene_(build_scene(device_.get(), mesh, RTC_BUILD_QUALITY_HIGH)) {
   for (const auto& [a, b, c] : mesh.triangles)
     triangles_.push_back({single(mesh.positions[a]), single(mesh.positions[b]), single(mesh.positions[c])});
-}
-
-EmbreeScene::~EmbreeScene() {
-  rtcReleaseScene(scene_);
-  rtcReleaseDevice(device_);
 }
 
 void EmbreeScene::closest(std::span<EmbreeTexel> texels) const {
@@ -90,7 +82,7 @@ void EmbreeScene::closest(std::span<EmbreeTexel> texels) const {
       const Vec3f& p = texels[i].point;
       RTCPointQuery query{p[0], p[1], p[2], 0, std::numeric_limits<float>::infinity()};
       Query user{&triangles_, &texels[i]};
-      rtcPointQuery(scene_, &query, &context, visit, &user);
+      rtcPointQuery(scene_.get(), &query, &context, visit, &user);
     }
   });
 }

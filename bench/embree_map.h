@@ -1,12 +1,13 @@
 // The peer: one closest-point query of Embree's a texel.
 #pragma once
 
-#include <embree3/rtcore.h>
 #include <sdm/mesh.h>
 
 #include <array>
 #include <span>
 #include <vector>
+
+#include "embree_mesh.h"
 
 namespace sdm::bench {
 
@@ -22,16 +23,13 @@ struct EmbreeTexel {
 class EmbreeScene {
  public:
   explicit EmbreeScene(const Mesh& mesh);
-  ~EmbreeScene();
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   /// Fills in vector, distance and face for every point, on as many threads as the library uses.
   void closest(std::span<EmbreeTexel> texels) const;
 
  private:
-  RTCDevice device_;
-  RTCScene scene_;
+  DeviceHandle device_;
+  SceneHandle scene_;
   std::vector<std::array<Vec3f, 3>> triangles_;
 };
 

@@ -19,4 +19,12 @@ unsigned attach(RTCDevice device, RTCScene scene, const Mesh& mesh) {
   return id;
 }
 
+SceneHandle build_scene(RTCDevice device, const Mesh& mesh, RTCBuildQuality quality) {
+  SceneHandle scene(rtcNewScene(device));
+  rtcSetSceneBuildQuality(scene.get(), quality);
+  attach(device, scene.get(), mesh);
+  rtcCommitScene(scene.get());
+  return scene;
+}
+
 }  // namespace sdm::bench

@@ -2,9 +2,7 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
-#include <type_traits>
 
 #include "core/parallel.h"
 #include "core/vec.h"
@@ -13,16 +11,6 @@
 
 namespace sdm::bench {
 namespace {
-
-template <auto Release>
-struct Releaser {
-  template <class Handle>
-  void operator()(Handle handle) const {
-    Release(handle);
-  }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Releaser<rtcReleaseDevice>>;
-using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Releaser<rtcReleaseScene>>;
 
 Vec3 face_normal(const Mesh& mesh, const Triangle& face) {
   const Vec3& a = mesh.positions[face[0]];
@@ -48,8 +36,8 @@ std::uint32_t texel_at(const Surface& surface, std::uint32_t face, const Vec3& p
 }  // namespace
 
 std::vector<Seen> visible_texels(const View& view, std::span<const Shown> objects) {
-  const Device device(rtcNewDevice(nullptr));
-  const Scene scene(rtcNewScene(device.get()));
+  const DeviceHandle device(rtcNewDevice(nullptr));
+  const SceneHandle scene(rtcNewScene(device.get()));
   for (const auto& [surface, only_inside] : objects)  // geometry ids count up from 0
     attach(device.get(), scene.get(),
            only_inside ? without_near_side(surface->mesh(), view.eye) : surface->mesh());

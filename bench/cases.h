@@ -1,0 +1,42 @@
+// What `compare` measures.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sdm::bench {
+
+/// A number that a case measures, and what is asked of it.
+struct Figure {
+  std::string key{};
+  double value = 0;
+  std::optional<double> at_least{}, at_most{};
+
+  [[nodiscard]] bool met() const {
+    return !(at_least && !(value >= *at_least)) && !(at_most && !(value <= *at_most));
+  }
+};
+
+struct Outcome {
+  bool verified = false;           ///< the results, before anything was timed; else nothing was
+  std::vector<Figure> figures{};   ///< the case's own first
+  std::size_t texels = 0;          ///< of our map or maps
+  unsigned threads = 1;            ///< of ours
+  std::optional<double> spread{};  ///< of the first figure, if that is a ratio: see measure.h
+  std::optional<double> ours_mtexels_s{}, peer_mtexels_s{};
+};
+
+/// `run` takes the case's name and the number of repetitions.
+struct Case {
+  std::string name, what;
+  int repetitions = 9;  ///< unless told otherwise
+  std::function<Outcome(const std::string&, int)> run;
+};
+
+[[nodiscard]] std::span<const Case> cases();
+
+}  // namespace sdm::bench

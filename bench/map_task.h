@@ -1,0 +1,37 @@
+// A map that we compute and that Embree is asked for.
+#pragma once
+
+#include <sdm/map.h>
+
+#include <memory>
+#include <vector>
+
+#include "embree_map.h"
+
+namespace sdm::bench {
+
+/// The unsigned map of O1 to O2. Both fill in the same texels in the same order, each into memory that it has
+/// already.
+class MapTask {
+ public:
+  MapTask(std::shared_ptr<const Surface> o1, const Mesh& o2);
+
+  void compute();
+  void ask_embree();
+
+  /// Does both, and tells whether they agree at every texel to 1e-6 of the diagonal of both meshes' box. Says
+  /// on stderr where they do not.
+  [[nodiscard]] bool agrees();
+
+  [[nodiscard]] std::size_t texels() const { return queries_.size(); }
+  [[nodiscard]] Sites& sites() { return sites_; }
+
+ private:
+  std::shared_ptr<const Surface> surface_;
+  Sites sites_;
+  DistanceMap map_;
+  EmbreeScene embree_;
+  std::vector<EmbreeTexel> queries_;
+};
+
+}  // namespace sdm::bench
