@@ -114,7 +114,7 @@ int run(int argc, char** argv) {
   app.add_option("--json", json_file, "Write the results to this file");
   app.add_flag("--list", list, "List the cases and run none");
   app.add_option("--repetitions", repetitions, "Of every case, in place of its own number")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000));
   try {
     app.parse(argc, argv);
     chosen = choose(names);
