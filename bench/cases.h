@@ -22,19 +22,25 @@ struct Figure {
 };
 
 struct Outcome {
-  bool verified = false;           ///< the results, before anything was timed; else nothing was
-  std::vector<Figure> figures{};   ///< the case's own first
-  std::size_t texels = 0;          ///< of our map or maps
-  unsigned threads = 1;            ///< of ours
-  std::optional<double> spread{};  ///< of the first figure, if that is a ratio: see measure.h
+  bool verified = false;          ///< the results, before anything was timed; else nothing was
+  std::vector<Figure> figures{};  ///< the case's own first
+  std::size_t texels = 0;         ///< of our map or maps
+  unsigned threads = 1;           ///< of ours
+  /// Of the first figure, if that is a ratio of times: (third − first quartile) / median of repetitions'.
+  std::optional<double> spread{};
   std::optional<double> ours_mtexels_s{}, peer_mtexels_s{};
 };
 
-/// `run` takes the case's name and the number of repetitions.
+/// How a case is run.
+struct Trial {
+  std::string name;  ///< of the case, for its progress
+  int repetitions = 0;
+};
+
 struct Case {
   std::string name, what;
   int repetitions = 9;  ///< unless told otherwise
-  std::function<Outcome(const std::string&, int)> run;
+  std::function<Outcome(const Trial&)> run;
 };
 
 [[nodiscard]] std::span<const Case> cases();

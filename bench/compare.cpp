@@ -132,7 +132,7 @@ int run(int argc, char** argv) {
   for (const Case& test : chosen) {
     const int n = repetitions > 0 ? repetitions : test.repetitions;
     std::fprintf(stderr, "%s: %s\n", test.name.c_str(), test.what.c_str());
-    const Outcome outcome = test.run(test.name, n);
+    const Outcome outcome = test.run({test.name, n});
     print_rows(test, outcome);
     json[test.name] = to_json(outcome, n);
     good &= outcome.verified;

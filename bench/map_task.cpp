@@ -8,7 +8,7 @@
 namespace sdm::bench {
 
 MapTask::MapTask(std::shared_ptr<const Surface> o1, const Mesh& o2)
-    : surface_(std::move(o1)), sites_(o2), embree_(o2) {
+    : surface_(std::move(o1)), sites_(o2), embree_(std::make_unique<EmbreeScene>(o2)) {
   for (const Vec3& p : surface_->sample_points())
     queries_.push_back(
         {.point = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}});
@@ -19,7 +19,12 @@ void MapTask::compute() {
 }
 
 void MapTask::ask_embree() {
-  embree_.closest(queries_);
+  embree_->closest(queries_);
+}
+
+void MapTask::refit(std::span<const Vec3> positions) {
+  sites_.refit(positions);
+  embree_ = std::make_unique<EmbreeScene>(sites_.mesh());
 }
 
 bool MapTask::agrees() {

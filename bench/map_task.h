@@ -4,6 +4,7 @@
 #include <sdm/map.h>
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "embree_map.h"
@@ -19,8 +20,11 @@ class MapTask {
   void compute();
   void ask_embree();
 
-  /// Does both, and tells whether they agree at every texel to 1e-6 of the diagonal of both meshes' box. Says
-  /// on stderr where they do not.
+  /// Moves the vertices of O2: ours is refitted, Embree's tree built anew.
+  void refit(std::span<const Vec3> positions);
+
+  /// Does both maps, and tells whether they agree at every texel to 1e-6 of the diagonal of both meshes' box.
+  /// Says on stderr where they do not.
   [[nodiscard]] bool agrees();
 
   [[nodiscard]] std::size_t texels() const { return queries_.size(); }
@@ -30,7 +34,7 @@ class MapTask {
   std::shared_ptr<const Surface> surface_;
   Sites sites_;
   DistanceMap map_;
-  EmbreeScene embree_;
+  std::unique_ptr<EmbreeScene> embree_;
   std::vector<EmbreeTexel> queries_;
 };
 
