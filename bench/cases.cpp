@@ -197,13 +197,13 @@ Outcome frame(const Trial& trial) {
 std::span<const Case> cases() {
   using T = const Trial&;
   static const std::vector<Case> all{
-      {"dense-apart", "bunny to armadillo, 2048²: Embree / ours", 3,
+      {"dense-apart", "bunny to armadillo, apart, 2048²: Embree / ours", 3,
        [](T trial) { return bunny_to_armadillo(trial, 2048, kApart, 80); }},
-      {"dense-penetrating", "the same, penetrating", 3,
+      {"dense-penetrating", "bunny to armadillo, penetrating, 2048²: Embree / ours", 3,
        [](T trial) { return bunny_to_armadillo(trial, 2048, kPenetrating, 70); }},
-      {"sparse-apart", "bunny to armadillo, 512²: Embree / ours", 9,
+      {"sparse-apart", "bunny to armadillo, apart, 512²: Embree / ours", 9,
        [](T trial) { return bunny_to_armadillo(trial, 512, kApart, 25); }},
-      {"sparse-penetrating", "the same, penetrating", 9,
+      {"sparse-penetrating", "bunny to armadillo, penetrating, 512²: Embree / ours", 9,
        [](T trial) { return bunny_to_armadillo(trial, 512, kPenetrating, 20); }},
       {"letters", "letters E and G, 512², both maps: Embree / ours", 9, letters},
       {"million", "a million triangles to a million, 2048²: Embree / ours", 3, million},

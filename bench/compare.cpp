@@ -126,6 +126,9 @@ int run(int argc, char** argv) {
     for (const Case& test : chosen) std::printf("%-20s %s\n", test.name.c_str(), test.what.c_str());
     return 0;
   }
+  std::ofstream file;
+  if (!json_file.empty()) file.open(json_file);
+  if (!file) throw Error("cannot write " + json_file);
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   bool good = true;
   print_heading();
@@ -137,8 +140,7 @@ int run(int argc, char** argv) {
     json[test.name] = to_json(outcome, n);
     good &= outcome.verified;
   }
-  if (!json_file.empty() && !(std::ofstream(json_file) << json.dump(2) << '\n'))
-    throw Error("cannot write " + json_file);
+  if (!json_file.empty() && !(file << json.dump(2) << std::endl)) throw Error("cannot write " + json_file);
   if (!good) std::fputs("compare: results are wrong, see above\n", stderr);
   return good ? 0 : 1;
 }
