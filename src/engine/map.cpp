@@ -33,38 +33,64 @@ void for_each_run(std::size_t count, const Progress& progress, std::string_view 
   });
 }
 
-void clear(DistanceMap& map, std::uint32_t resolution) {
-  const std::size_t texels = std::size_t{resolution} * resolution;
-  if (map.distance.capacity() < texels)
-    require_memory(texels * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
-                   "a map of " + std::to_string(resolution) + "² texels");
+// Texels without a value.
+void set_none(DistanceMap& map, std::size_t first, std::size_t count) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  map.resolution = resolution;
-  map.distance.assign(texels, nan);
-  map.vector.assign(texels, {nan, nan, nan});
-  map.site.assign(texels, kNone);
-  map.site_type.assign(texels, SiteType::none);
+  std::fill_n(&map.distance[first], count, nan);
+  std::fill_n(&map.vector[first], count, Vec3f{nan, nan, nan});
+  std::fill_n(&map.site[first], count, kNone);
+  std::fill_n(&map.site_type[first], count, SiteType::none);
+}
+
+// Makes room for a map of the surface, without values where no face owns a texel.
+void prepare(DistanceMap& map, const Surface& surface) {
+  const std::span<const std::uint32_t> faces = surface.texel_faces();
+  if (map.distance.capacity() < faces.size())
+    require_memory(faces.size() * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
+                   "a map of " + std::to_string(surface.resolution()) + "² texels");
+  map.resolution = surface.resolution();
+  map.distance.resize(faces.size());
+  map.vector.resize(faces.size());
+  map.site.resize(faces.size());
+  map.site_type.resize(faces.size());
   map.raster.reset();
+  parallel_for(faces.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t first = begin; first < end;) {
+      const auto from = faces.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto to = faces.begin() + static_cast<std::ptrdiff_t>(end);
+      const auto run = std::find_if(from, to, [](std::uint32_t face) { return face != kNone; });
+      const auto count = static_cast<std::size_t>(run - from);
+      if (count > 0) set_none(map, first, count);
+      first += count;
+      first += static_cast<std::size_t>(std::find(run, to, kNone) - run);
+    }
+  });
 }
 
 void check(const MapOptions& options) {
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
 }
 
-// The closest points of texels by their winners. Returns for how many these were not confirmed.
+// Delivers the closest points of texels by their winners. Returns for how many these were not confirmed.
 std::size_t recompute(const Sites::Impl& sites, const RasterWinners& winners,
                       std::span<const std::uint32_t> texels, std::span<const Vec3> points,
-                      double max_distance, std::span<ClosestPoint> closest) {
+                      double max_distance, const Deliver& deliver) {
   std::size_t unconfirmed = 0;
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    const std::uint32_t face = winners.faces[texels[i]];
-    if (face == kNone) continue;
-    closest[i] = closest_around_face(sites, face, points[i]);
-    if (!winners.confirms(texels[i], closest[i].distance)) {
+  ClosestPacket packet;
+  for (std::size_t first = 0; first < texels.size(); first += packet.count) {
+    packet.count = std::min(ClosestPacket::kSize, texels.size() - first);
+    for (std::size_t i = 0; i < packet.count; ++i) {
+      const std::uint32_t texel = texels[first + i], face = winners.faces[texel];
+      ClosestPoint closest;
+      if (face != kNone) closest = closest_around_face(sites, face, points[first + i]);
+      const bool confirmed = face == kNone || winners.confirms(texel, closest.distance);
+      packet.set(i, closest.distance <= max_distance ? closest : ClosestPoint{});
+      if (confirmed) continue;
       ++unconfirmed;
-      cpu_search(sites, points.subspan(i, 1), max_distance, closest.subspan(i, 1));
+      cpu_search(sites, points.subspan(first + i, 1), max_distance,
+                 [&](std::size_t, const ClosestPacket& found) { packet.set(i, found.get(0)); });
     }
-    if (closest[i].distance > max_distance) closest[i] = {};
+    deliver(first, packet);
   }
   return unconfirmed;
 }
@@ -87,6 +113,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   check(options);
   const SignUsed sign = choose_sign(sites, options.sign);
   const InsideTest is_inside(sites.impl(), sign.method);
+  const bool is_signed = sign.method != SignMethod::none;
 
   const bool raster = options.engine == EngineKind::gl;
   RasterReport report;
@@ -95,31 +122,34 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   const ClosestSearch search = raster ? nullptr : search_of(options.engine);
   Stopwatch watch;
 
-  clear(map, surface.resolution());
+  prepare(map, surface);
   map.sign = sign;
   const std::size_t count = surface.samples().size();
   std::atomic<std::size_t> beyond{0}, unconfirmed{0};
   for_each_run(count, options.progress, raster ? "finish" : "map", [&](std::size_t begin, std::size_t end) {
     const std::span<const std::uint32_t> texels = surface.samples().subspan(begin, end - begin);
     const std::span<const Vec3> points = surface.sample_points().subspan(begin, end - begin);
-    std::vector<ClosestPoint> closest(texels.size());
     std::size_t beyond_here = 0;
-    if (raster)
-      unconfirmed += recompute(sites.impl(), winners, texels, points, options.max_distance, closest);
-    else
-      search(sites.impl(), points, options.max_distance, closest);
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      const ClosestPoint& c = closest[i];
-      if (c.type == SiteType::none) {
-        ++beyond_here;
-        continue;
+    const auto store = [&](std::size_t first, const ClosestPacket& closest) {
+      for (std::size_t i = 0; i < closest.count; ++i) {
+        const std::uint32_t texel = texels[first + i];
+        if (closest.type[i] == SiteType::none) {
+          set_none(map, texel, 1);
+          ++beyond_here;
+          continue;
+        }
+        const Vec3& p = points[first + i];
+        const bool inside = is_signed && is_inside(p, closest.get(i));
+        map.distance[texel] = static_cast<float>(inside ? -closest.distance[i] : closest.distance[i]);
+        for (int k = 0; k < 3; ++k) map.vector[texel][k] = static_cast<float>(closest.point[k][i] - p[k]);
+        map.site[texel] = closest.site[i];
+        map.site_type[texel] = closest.type[i];
       }
-      const std::uint32_t texel = texels[i];
-      map.distance[texel] = static_cast<float>(is_inside(points[i], c) ? -c.distance : c.distance);
-      for (int k = 0; k < 3; ++k) map.vector[texel][k] = static_cast<float>(c.point[k] - points[i][k]);
-      map.site[texel] = c.site;
-      map.site_type[texel] = c.type;
-    }
+    };
+    if (raster)
+      unconfirmed += recompute(sites.impl(), winners, texels, points, options.max_distance, store);
+    else
+      search(sites.impl(), points, options.max_distance, store);
     beyond += beyond_here;
   });
   map.beyond_max_distance = beyond;
@@ -143,10 +173,13 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
   std::vector<ClosestPoint> result(points.size());
   for_each_run(points.size(), options.progress, "closest points", [&](std::size_t begin, std::size_t end) {
     std::vector<Vec3> batch(end - begin);
-    std::vector<ClosestPoint> closest(end - begin);
     for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];
-    search(sites.impl(), batch, options.max_distance, closest);
-    for (std::size_t i = begin; i < end; ++i) result[order[i]] = closest[i - begin];
+    search(sites.impl(), batch, options.max_distance, [&](std::size_t first, const ClosestPacket& closest) {
+      for (std::size_t i = 0; i < closest.count; ++i) {
+        ClosestPoint& c = result[order[begin + first + i]] = closest.get(i);
+        if (c.type != SiteType::none) c.face = sites.impl().face_of(c.type, c.site);
+      }
+    });
   });
   return result;
 }

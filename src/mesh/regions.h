@@ -1,4 +1,4 @@
-// The regions of influence of sites, laid out for vector instructions.
+// The regions of influence of sites.
 //
 // A site can hold the closest point of x only if x lies in its region, by first-order conditions that any
 // soup satisfies:
@@ -21,58 +21,74 @@
 
 namespace sdm {
 
-/// Sites that are tested together. `face` is a face that the site belongs to. Coordinates in the unit frame;
-/// all normals and directions have length 1, or 0 where geometry gives none (and then never exclude
-/// anything).
-struct RegionBlock {
-  static constexpr int kWidth = 8;
-};
+// A cache line each, for sites are looked up one by one. Coordinates in the unit frame; all normals and
+// directions have length 1, or 0 where geometry gives none (and then never exclude anything).
 
 /// height(x) = plane·(x, −1); inside the prism where every wall·(x, −1) ≥ 0.
-struct FaceBlock : RegionBlock {
-  alignas(32) float plane[4][kWidth];
-  alignas(32) float wall[3][4][kWidth];
-  std::uint32_t face[kWidth];
-  std::uint32_t count = 0;
+struct alignas(64) FaceRegion {
+  float plane[4], wall[3][4];
 };
 
 /// start + t·direction, 0 ≤ t ≤ length; in the wedge where every wall·(x, −1) ≤ 0.
-struct EdgeBlock : RegionBlock {
-  alignas(32) float start[3][kWidth];
-  alignas(32) float direction[3][kWidth];
-  alignas(32) float length[kWidth];
-  alignas(32) float wall[2][4][kWidth];
-  std::uint32_t face[kWidth], edge[kWidth];
-  std::uint32_t count = 0;
+struct alignas(64) EdgeRegion {
+  float start[3], direction[3], length, wall[2][4];
+  std::uint32_t edge;
 };
 
 /// In the cone where every ray·(x − point) ≤ 0.
-struct VertexBlock : RegionBlock {
+struct alignas(64) VertexRegion {
   static constexpr int kRays = 4;
-  alignas(32) float point[3][kWidth];
-  alignas(32) float ray[kRays][3][kWidth];
-  std::uint32_t face[kWidth], vertex[kWidth], neighbour[kRays][kWidth];
-  std::uint32_t count = 0;
+  float point[3], ray[kRays][3];
+  std::uint32_t vertex;
 };
 
-/// The sites of every leaf of a tree over the faces; each edge and vertex belongs to one leaf that holds a
-/// face of it.
+/// Bounds for up to eight faces, tested together: x lies in the region of a face, or of an edge or vertex
+/// that the face owns, only if with r = x − centre and h = normal·r
+///   |r − h normal| ≤ radius + slope |h|.
+/// For all of these sites lie in a disc of the face's plane. And where the faces around them make a closed
+/// sheet whose normals keep within an angle of this normal, so does, up to its sign, the direction from a
+/// site to any x of its region: slope is the angle's tangent. (In polar cones: above any direction u in the
+/// plane the sheet around a vertex v has a point v + u + s normal, |s| ≤ slope; for u the direction of x − v
+/// in the plane, (x − v)·(u + s normal) ≤ 0 says |x − v in the plane| ≤ slope |h|.) Elsewhere slope is large.
+struct FaceBounds {
+  static constexpr int kWidth = 8;
+  alignas(32) float centre[3][kWidth];  ///< a point of the face
+  alignas(32) float normal[3][kWidth];
+  alignas(32) float radius[kWidth];
+  alignas(32) float slope[kWidth];
+};
+
+/// The sites by the leaves of a tree over the faces. Each edge and vertex is owned by the first of its faces.
 struct Regions {
-  struct Leaf {
-    std::uint32_t faces, edges, vertices;  ///< its first block of each kind; the next leaf's ends it
+  /// A face, and the first of the edges and vertices that it owns: the next entry's end them.
+  struct Owner {
+    std::uint32_t face, edges, vertices;
   };
-  std::vector<Leaf> leaves;  ///< one for each leaf in order, and an end
-  std::vector<FaceBlock> faces;
-  std::vector<EdgeBlock> edges;
-  std::vector<VertexBlock> vertices;
+  std::vector<std::uint32_t> leaves;  ///< the first face of each leaf, in the order of owners; and an end
+  std::vector<FaceBounds> bounds;     ///< of each leaf
+  std::vector<Owner> owners;          ///< one for each face in the tree's order, and an end
+  std::vector<FaceRegion> faces;      ///< of each owner
+  std::vector<EdgeRegion> edges;
+  std::vector<VertexRegion> vertices;
+
+  std::vector<std::array<std::uint32_t, VertexRegion::kRays>> neighbours;  ///< of `vertices`: ends of rays
+  std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it make a closed sheet
 };
 
-/// Hands the sites to the leaves of `tree`, whose items are faces, and computes their regions.
-[[nodiscard]] Regions build_regions(std::span<const Vec3> unit_positions, std::span<const Triangle> triangles,
-                                    const Topology& topology, const AabbTree& tree);
+/// What regions are made of: a mesh in the unit frame.
+struct RegionSource {
+  std::span<const Vec3> positions;
+  std::span<const Triangle> triangles;
+  const Topology& topology;
+  const VertexFaces& vertex_faces;
+  const Orientation& orientation;
+};
+
+/// Hands the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth a leaf, and
+/// computes their regions. Cost: linear, all cores.
+[[nodiscard]] Regions build_regions(const RegionSource& source, const AabbTree& tree);
 
 /// Computes the regions anew for moved vertices. Cost: linear, all cores.
-void refit(Regions& regions, std::span<const Vec3> unit_positions, std::span<const Triangle> triangles,
-           const Topology& topology);
+void refit(Regions& regions, const RegionSource& source);
 
 }  // namespace sdm

@@ -14,7 +14,7 @@
 namespace sdm {
 namespace {
 
-constexpr std::uint32_t kLeafFaces = 8;
+constexpr std::uint32_t kLeafFaces = FaceBounds::kWidth;
 constexpr std::size_t kGrain = 4096;
 
 std::vector<std::uint32_t> faces_with_sites(const Topology& topology) {
@@ -79,12 +79,13 @@ Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
   s.orientation = orient(triangles, s.topology);
   s.closed = true;
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) s.closed &= s.topology.edge_faces(e).size() == 2;
+  s.alike = s.closed && s.orientation.orientable && std::ranges::count(s.orientation.turned, 1) == 0;
 
   s.frame = UnitFrame::of(bounds(s.mesh));
   const std::vector<Vec3> unit = to_unit(s.frame, s.mesh.positions);
   s.tree = build_aabb_tree(face_boxes(unit, triangles), faces_with_sites(s.topology), kLeafFaces);
   s.wide = collapse(s.tree);
-  s.regions = build_regions(unit, triangles, s.topology, s.tree);
+  s.regions = build_regions({unit, triangles, s.topology, s.vertex_faces, s.orientation}, s.tree);
   find_outside(s, unit);
 }
 
@@ -104,7 +105,7 @@ void Sites::refit(std::span<const Vec3> positions) {
   const std::vector<Vec3> unit = to_unit(s.frame, s.mesh.positions);
   sdm::refit(s.tree, face_boxes(unit, s.mesh.triangles));
   sdm::refit(s.wide, s.tree);
-  sdm::refit(s.regions, unit, s.mesh.triangles, s.topology);
+  sdm::refit(s.regions, {unit, s.mesh.triangles, s.topology, s.vertex_faces, s.orientation});
   find_outside(s, unit);
 }
 

@@ -18,6 +18,7 @@ struct Sites::Impl {
   Topology topology;
   VertexFaces vertex_faces;
   bool closed = false;
+  bool alike = false;  ///< closed, and all faces run alike
   Orientation orientation;
   std::vector<std::uint8_t>
       inverted;  ///< of each face: turned against the outside; if open, against its neighbours
@@ -28,6 +29,18 @@ struct Sites::Impl {
   Regions regions;  ///< by the leaves of both
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a normal that could be trusted
+
+  /// A face that the site belongs to.
+  [[nodiscard]] std::uint32_t face_of(SiteType type, std::uint32_t site) const {
+    switch (type) {
+      case SiteType::vertex:
+        return vertex_faces.of(site)[0];
+      case SiteType::edge:
+        return topology.edge_faces(site)[0];
+      default:
+        return site;
+    }
+  }
 };
 
 }  // namespace sdm

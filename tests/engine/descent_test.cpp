@@ -10,12 +10,8 @@
 namespace sdm {
 namespace {
 
-Vec3f to_float(const Vec3& p) {
-  return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
-}
-
-double distance(const float (&a)[3], const Vec3f& b) {
-  return norm(Vec3{a[0], a[1], a[2]} - Vec3{b[0], b[1], b[2]});
+double distance(const float (&a)[3], const Vec3& b) {
+  return norm(Vec3{a[0], a[1], a[2]} - b);
 }
 
 TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
@@ -23,9 +19,9 @@ TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
   const auto group = std::make_unique<PointGroup>();
   for (const std::size_t count : {1u, 15u, 16u, 17u, 64u, 65u, 1000u, 4097u, 65536u}) {
     SCOPED_TRACE(count);
-    std::vector<Vec3f> points(count);
-    for (Vec3f& p : points) p = to_float(test::random_point({{-1, -1, -1}, {1, 3, 1}}, random));
-    group->place(points);
+    std::vector<Vec3> points(count);
+    for (Vec3& p : points) p = test::random_point({{-1, -1, -1}, {1, 3, 1}}, random);
+    ASSERT_FALSE(group->place(points, {}));
     ASSERT_EQ(group->balls[group->top].size(), 1u);
     for (int level = 0; level <= group->top; ++level) {
       const std::size_t size = PointGroup::points_at(level);
@@ -36,7 +32,7 @@ TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
       }
       for (std::size_t i = 0; level > 0 && i < group->balls[level - 1].size(); ++i) {
         const Ball &inner = group->balls[level - 1][i], &outer = group->balls[level][i / PointGroup::kFan];
-        const Vec3f centre{inner.centre[0], inner.centre[1], inner.centre[2]};
+        const Vec3 centre{inner.centre[0], inner.centre[1], inner.centre[2]};
         ASSERT_LE(distance(outer.centre, centre) + inner.radius, 1.00001 * outer.radius + 1e-6);
       }
     }
@@ -47,10 +43,8 @@ DescentCounts work(const Surface& surface, const Sites& sites) {
   const auto descent = std::make_unique<Descent>();
   const std::span<const Vec3> points = surface.sample_points();
   for (std::size_t first = 0; first < points.size(); first += PointGroup::kMostPoints) {
-    std::vector<Vec3f> unit;
-    for (const Vec3& p : points.subspan(first, std::min(PointGroup::kMostPoints, points.size() - first)))
-      unit.push_back(to_float(sites.impl().frame.to_unit(p)));
-    descent->points.place(unit);
+    descent->points.place(points.subspan(first, std::min(PointGroup::kMostPoints, points.size() - first)),
+                          sites.impl().frame);
     find_winners(sites.impl().wide, sites.impl().regions, 1e18f, *descent);
   }
   return descent->counts;
@@ -62,25 +56,30 @@ TEST(Finish, TakesNoWinnerOnTrust) {
   const Sites sites(test::soup(40, random));
   std::vector<Vec3> queries(37);
   for (Vec3& q : queries) q = test::random_point({{-1, -1, -1}, {2, 2, 2}}, random);
-  std::vector<ClosestPoint> expected(queries.size()), found(queries.size());
+  constexpr std::size_t kRoom = 48;  // whole packets
+  std::vector<ClosestPoint> found(queries.size());
+  const auto finish_all = [&](std::uint32_t winner, double limit) {
+    const std::vector<std::uint32_t> winners(kRoom, winner);
+    finish(sites.impl(), {winners.data(), queries.size()}, queries, limit,
+           [&](std::size_t first, const ClosestPacket& packet) {
+             for (std::size_t i = 0; i < packet.count; ++i) found[first + i] = packet.get(i);
+           });
+  };
   const double limit = 0.4;
-  reference_search(sites.impl(), queries, limit, expected);
-
-  const std::vector<std::uint32_t> unsettled(queries.size(), SiteId::kUnsettled);
-  finish(sites.impl(), unsettled, queries, limit, found);
+  finish_all(SiteId::kUnsettled, limit);
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    EXPECT_EQ(found[i].distance, expected[i].distance);
-    EXPECT_EQ(found[i].type, expected[i].type);
-    beyond += expected[i].type == SiteType::none;
+    const ClosestPoint expected = reference_closest(sites.impl(), queries[i], limit);
+    EXPECT_EQ(found[i].distance, expected.distance);
+    EXPECT_EQ(found[i].type, expected.type);
+    beyond += expected.type == SiteType::none;
   }
   EXPECT_GT(beyond, 0u);
   EXPECT_LT(beyond, queries.size());
 
   // Sites that are none of theirs: still points of these sites' faces, or of neighbours that are closer.
   for (const SiteType type : {SiteType::vertex, SiteType::edge, SiteType::face}) {
-    const std::vector<std::uint32_t> wrong(queries.size(), SiteId::of(type, 7).packed);
-    finish(sites.impl(), wrong, queries, 1e300, found);
+    finish_all(SiteId::of(type, 7).packed, 1e300);
     for (std::size_t i = 0; i < queries.size(); ++i) {
       ASSERT_NE(found[i].type, SiteType::none);
       EXPECT_NEAR(norm(found[i].point - queries[i]), found[i].distance, 1e-12);
@@ -89,8 +88,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
     }
   }
 
-  const std::vector<std::uint32_t> none(queries.size(), kNone);
-  finish(sites.impl(), none, queries, 1e300, found);
+  finish_all(kNone, 1e300);
   for (const ClosestPoint& c : found) EXPECT_EQ(c.type, SiteType::none);
 }
 
@@ -171,10 +169,10 @@ TEST(Descent, EvaluatesFewSites) {
   const DescentCounts apart = work(bunny, Sites(test::load("armadillo.off", "fit,translate:0.8:0:0")));
   EXPECT_LT(static_cast<double>(apart.evaluations), 3 * packets);
   EXPECT_LT(static_cast<double>(apart.list_blocks), 5 * packets);
-  EXPECT_LT(static_cast<double>(apart.tree_blocks), 10 * packets);
+  EXPECT_LT(static_cast<double>(apart.tree_sites), 20 * packets);
   const DescentCounts through = work(bunny, Sites(test::load("armadillo.off", "fit,translate:0.1:0:0")));
   EXPECT_LT(static_cast<double>(through.evaluations), 15 * packets);
-  EXPECT_LT(static_cast<double>(through.tree_blocks), 50 * packets);
+  EXPECT_LT(static_cast<double>(through.tree_sites), 50 * packets);
   EXPECT_GT(apart.groups, 0u);
   EXPECT_LT(static_cast<double>(through.groups), packets);
 }

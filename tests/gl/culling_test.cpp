@@ -25,13 +25,13 @@ using SiteName = std::pair<SiteType, std::uint32_t>;
 std::map<SiteName, SiteRegion> regions_of(const Sites::Impl& sites) {
   std::map<SiteName, SiteRegion> regions;
   for (std::size_t leaf = 0; leaf + 1 < sites.regions.leaves.size(); ++leaf)
-    for_each_site(sites.regions, leaf, [&](const auto& block, int lane) {
-      if (!has_interior(block, lane)) return;
-      const SiteRegion region = region_of(sites, block, lane);
-      using Block = std::decay_t<decltype(block)>;
+    for_each_site(sites.regions, leaf, [&](const auto& found, std::size_t index) {
+      if (!has_interior(found)) return;
+      const SiteRegion region = region_of(sites, found, index);
+      using Region = std::decay_t<decltype(found)>;
       std::uint32_t site = region.face;
-      if constexpr (std::is_same_v<Block, EdgeBlock>) site = block.edge[lane];
-      if constexpr (std::is_same_v<Block, VertexBlock>) site = block.vertex[lane];
+      if constexpr (std::is_same_v<Region, EdgeRegion>) site = found.edge;
+      if constexpr (std::is_same_v<Region, VertexRegion>) site = found.vertex;
       EXPECT_TRUE(regions.emplace(SiteName{region.type, site}, region).second);
     });
   return regions;
@@ -56,8 +56,7 @@ TEST(Culling, RegionsAndBoxesHoldTheClosestPoints) {
       const double half = i % 2 ? 1.2 : 4;
       const Vec3 unit = test::random_point({{-half, -half, -half}, {half, half, half}}, random);
       const Vec3 q = (1 / frame.scale) * unit + frame.origin;
-      ClosestPoint c;
-      reference_search(sites.impl(), {&q, 1}, 1e30, {&c, 1});
+      const ClosestPoint c = reference_closest(sites.impl(), q, 1e30);
       const auto found = regions.find({c.type, c.site});
       // An edge without a wedge may still be named, for a point over it to rounding: not by random points.
       ASSERT_TRUE(found != regions.end()) << static_cast<int>(c.type) << ' ' << c.site;

@@ -27,9 +27,8 @@ TEST(GridSlice, HoldsTheClosestFaces) {
     const PlanarDomain domain = slice(z);
     RasterBatch batch;
     for (std::size_t leaf = 0; leaf + 1 < impl.regions.leaves.size(); ++leaf)
-      for_each_site(impl.regions, leaf, [&](const auto& block, int lane) {
-        if (has_interior(block, lane))
-          add_polygon(batch, region_of(impl, block, lane), domain, {1e-5, 0.125});
+      for_each_site(impl.regions, leaf, [&](const auto& site, std::size_t index) {
+        if (has_interior(site)) add_polygon(batch, region_of(impl, site, index), domain, {1e-5, 0.125});
       });
     ASSERT_GT(batch.size(), 100u);
     Rasteriser rasteriser(device, kSide, WholeImage{});
@@ -45,8 +44,7 @@ TEST(GridSlice, HoldsTheClosestFaces) {
       ASSERT_NE(faces[texel], kNone);
       const Vec3 unit = domain.point({texel % kSide + 0.5, texel / kSide + 0.5});
       const Vec3 q = (1 / impl.frame.scale) * unit + impl.frame.origin;
-      ClosestPoint expected;
-      reference_search(impl, {&q, 1}, 1e30, {&expected, 1});
+      const ClosestPoint expected = reference_closest(impl, q, 1e30);
       wrong.compare(texel, closest_on_face(impl, faces[texel], q).distance, expected.distance);
     }
     EXPECT_TRUE(wrong.none());

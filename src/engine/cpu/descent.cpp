@@ -4,15 +4,12 @@
 #define HWY_TARGET_INCLUDE "engine/cpu/descent.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include <array>
 #include <bit>
 #include <limits>
-#include <type_traits>
 
-#include "engine/cpu/region_kernels-inl.h"
+#include "engine/cpu/site_lists-inl.h"
 
 #ifndef SDM_DESCENT_ONCE
 #define SDM_DESCENT_ONCE
@@ -26,118 +23,12 @@ constexpr std::size_t kPointsPerLeaf = 12, kFewPoints = 64;
 // Sites that are evaluated at once, rather than filtered any further.
 constexpr std::size_t kFewSites = 3;
 
-// For each mask of eight bits, the positions of the bits that are set, a byte each.
-constexpr std::array<std::uint64_t, 256> kPositions = [] {
-  std::array<std::uint64_t, 256> table{};
-  for (unsigned mask = 0; mask < 256; ++mask)
-    for (unsigned bit = 0, count = 0; bit < 8; ++bit)
-      if (mask >> bit & 1) table[mask] |= std::uint64_t{bit} << (8 * count++);
-  return table;
-}();
-
-// A block's rows, one after the other, its sites' numbers, and the list that it goes into.
-template <class Block>
-struct Rows;
-template <>
-struct Rows<FaceBlock> {
-  static constexpr SiteType kType = SiteType::face;
-  static constexpr int kCount = 16;
-  static auto* first(auto& block) { return block.plane[0]; }
-  static auto* sites(auto& block) { return block.face; }
-  static auto& list(SiteLists& lists) { return lists.faces; }
-};
-template <>
-struct Rows<EdgeBlock> {
-  static constexpr SiteType kType = SiteType::edge;
-  static constexpr int kCount = 15;
-  static auto* first(auto& block) { return block.start[0]; }
-  static auto* sites(auto& block) { return block.edge; }
-  static auto& list(SiteLists& lists) { return lists.edges; }
-};
-template <>
-struct Rows<VertexBlock> {
-  static constexpr SiteType kType = SiteType::vertex;
-  static constexpr int kCount = 3 + 3 * VertexBlock::kRays;
-  static auto* first(auto& block) { return block.point[0]; }
-  static auto* sites(auto& block) { return block.vertex; }
-  static auto& list(SiteLists& lists) { return lists.vertices; }
-};
-
 }  // namespace
 }  // namespace sdm
 #endif
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::HWY_NAMESPACE {
-
-// Runs test(i) → mask over the lanes of a block and returns the first `count` results as bits.
-template <class Test>
-HWY_INLINE uint32_t select(uint32_t count, const Test& test) {
-  const Block d;
-  uint32_t bits = 0;
-  for (size_t i = 0; i < RegionBlock::kWidth; i += hn::Lanes(d)) {
-    uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, test(i), bytes);
-    bits |= static_cast<uint32_t>(bytes[0]) << i;
-  }
-  return bits & ((1u << count) - 1);
-}
-
-// Appends the sites of a block whose bits are set: they fill the list's last block, and then another.
-template <class SiteBlock>
-void append(SiteList<SiteBlock>& list, const SiteBlock& block, uint32_t bits) {
-  using R = Rows<SiteBlock>;
-  constexpr uint32_t kWidth = RegionBlock::kWidth;
-  if (list.used + 1 >= list.blocks.size()) list.blocks.resize(2 * list.blocks.size() + 2);
-  if (list.used == 0 || list.blocks[list.used - 1].count == kWidth) list.blocks[list.used++].count = 0;
-  SiteBlock &last = list.blocks[list.used - 1], &next = list.blocks[list.used];
-  const uint32_t filled = last.count, total = filled + static_cast<uint32_t>(std::popcount(bits));
-  last.count = std::min(total, kWidth);
-  if (total > kWidth) {
-    next.count = total - kWidth;
-    ++list.used;
-  }
-  const float* from = R::first(block);
-  float *to = R::first(last), *overflow = R::first(next);
-  if constexpr (hn::MaxLanes(Block()) < kWidth) {
-    for (uint32_t at = filled; bits != 0; bits &= bits - 1, ++at) {
-      const int lane = std::countr_zero(bits);
-      float* out = at < kWidth ? to + at : overflow + (at - kWidth);
-      for (uint32_t row = 0; row < R::kCount; ++row) out[kWidth * row] = from[kWidth * row + lane];
-      (at < kWidth ? R::sites(last)[at] : R::sites(next)[at - kWidth]) = R::sites(block)[lane];
-    }
-  } else {
-    // One permutation moves the sites to the lanes from `filled` on, and those that are too many to the
-    // front, which is where they belong in the next block.
-    const Block d;
-    const hn::RebindToUnsigned<Block> du;
-    const hn::Rebind<uint8_t, Block> bytes;
-    const uint64_t positions = std::rotl(kPositions[bits], static_cast<int>(8 * filled));
-    const auto indices = hn::PromoteTo(du, hn::LoadU(bytes, reinterpret_cast<const uint8_t*>(&positions)));
-    const auto move = [&](auto tag, const auto* row, auto* out, auto* out_next) HWY_ATTR {
-      const auto moved = hn::TableLookupLanes(hn::LoadU(tag, row), hn::IndicesFromVec(tag, indices));
-      hn::StoreU(hn::IfThenElse(hn::FirstN(tag, filled), hn::LoadU(tag, out), moved), tag, out);
-      if (total > kWidth) hn::StoreU(moved, tag, out_next);
-    };
-    for (uint32_t row = 0; row < R::kCount; ++row)
-      move(d, from + kWidth * row, to + kWidth * row, overflow + kWidth * row);
-    move(du, R::sites(block), R::sites(last), R::sites(next));
-  }
-}
-
-// Appends the sites of a block that matter.
-template <class SiteBlock>
-HWY_INLINE void keep(const SiteBlock& block, const Reach& reach, SiteList<SiteBlock>& list) {
-  const uint32_t bits =
-      select(block.count, [&](size_t i) HWY_ATTR { return matters(Block(), block, i, reach); });
-  if (bits != 0) append(list, block, bits);
-}
-
-template <class SiteBlock>
-void keep(const SiteList<SiteBlock>& from, const Reach& reach, SiteList<SiteBlock>& to) {
-  to.used = 0;
-  for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], reach, to);
-}
 
 // The point of O2 that is closest to c so far, with the square of the distance; else a bound, and c itself.
 struct Nearest {
@@ -146,8 +37,8 @@ struct Nearest {
   bool found;
 };
 
-template <class SiteBlock>
-HWY_INLINE void improve(Nearest& nearest, const SiteBlock& block, const float* p) {
+template <class Some>
+HWY_INLINE void improve(Nearest& nearest, const Some& block, const float* p) {
   const Block d;
   for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     const BlockVec s = hn::IfThenElse(hn::FirstN(d, block.count - i), squared(d, block, i, p), hn::Inf(d));
@@ -159,8 +50,8 @@ HWY_INLINE void improve(Nearest& nearest, const SiteBlock& block, const float* p
   }
 }
 
-template <class SiteBlock>
-HWY_INLINE void improve(Nearest& nearest, const SiteList<SiteBlock>& list, const float* p) {
+template <class Some>
+HWY_INLINE void improve(Nearest& nearest, const SiteList<Some>& list, const float* p) {
   for (size_t i = 0; i < list.used; ++i) improve(nearest, list.blocks[i], p);
 }
 
@@ -177,15 +68,6 @@ struct FromBoxes {
     squared = square_norm(d, x, y, z);
   }
 };
-
-// Calls visit(block) for all blocks of a leaf of the tree.
-template <class Visit>
-HWY_INLINE void for_each_block(const Regions& regions, uint32_t leaf, const Visit& visit) {
-  const Regions::Leaf &first = regions.leaves[leaf], &last = regions.leaves[leaf + 1];
-  for (uint32_t b = first.faces; b < last.faces; ++b) visit(regions.faces[b]);
-  for (uint32_t b = first.edges; b < last.edges; ++b) visit(regions.edges[b]);
-  for (uint32_t b = first.vertices; b < last.vertices; ++b) visit(regions.vertices[b]);
-}
 
 class Search {
  public:
@@ -234,7 +116,7 @@ class Search {
     for (size_t child = first; child < end; ++child) visit(child);
   }
 
-  // Best first: the point of O2 closest to p.
+  // Best first: the centre of a face that is closest to p.
   void improve_in_tree(Nearest& nearest, const float* p) {
     auto& stack = s_.stack;
     stack.assign(1, {0, 0});
@@ -243,8 +125,7 @@ class Search {
       stack.pop_back();
       if (!(entry.squared < nearest.squared)) continue;
       if (entry.child & WideTree::kLeafBit) {
-        for_each_block(regions_, entry.child & ~WideTree::kLeafBit,
-                       [&](const auto& block) HWY_ATTR { improve(nearest, block, p); });
+        improve_by_centres(nearest, entry.child & ~WideTree::kLeafBit, p);
         continue;
       }
       ++s_.counts.nodes;
@@ -267,45 +148,94 @@ class Search {
     }
   }
 
+  void improve_by_centres(Nearest& nearest, uint32_t leaf, const float* p) const {
+    const Block d;
+    const FaceBounds& bounds = regions_.bounds[leaf];
+    const uint32_t count = faces_in(leaf);
+    for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+      const auto from = [&](int k)
+                            HWY_ATTR { return hn::Sub(hn::Set(d, p[k]), hn::Load(d, bounds.centre[k] + i)); };
+      const BlockVec s =
+          hn::IfThenElse(hn::FirstN(d, count - i), square_norm(d, from(0), from(1), from(2)), hn::Inf(d));
+      if (hn::AllFalse(d, hn::Lt(s, hn::Set(d, nearest.squared)))) continue;
+      nearest.squared = hn::GetLane(hn::MinOfLanes(d, s));
+      nearest.found = true;
+      const auto lane =
+          i + static_cast<size_t>(hn::FindKnownFirstTrue(d, hn::Eq(s, hn::Set(d, nearest.squared))));
+      for (int k = 0; k < 3; ++k) nearest.point[k] = bounds.centre[k][lane];
+    }
+  }
+
+  uint32_t faces_in(uint32_t leaf) const { return regions_.leaves[leaf + 1] - regions_.leaves[leaf]; }
+
   // The leaves of the tree that come within reach, in their order. Returns false if there are more than
   // `most`.
   bool find_leaves(const Reach& reach, size_t most) {
-    auto& stack = s_.stack;
-    stack.assign(1, {0, 0});
+    auto& open = s_.open;
+    open.assign(1, 0);
     s_.leaves.clear();
-    while (!stack.empty()) {
-      const uint32_t child = stack.back().child;
-      stack.pop_back();
-      if (child & WideTree::kLeafBit) {
-        s_.leaves.push_back(child & ~WideTree::kLeafBit);
-        if (s_.leaves.size() > most) return false;
-        continue;
-      }
+    while (!open.empty()) {
+      const WideTree::Node& node = tree_.nodes[open.back()];
+      open.pop_back();
       ++s_.counts.nodes;
-      const WideTree::Node& node = tree_.nodes[child];
-      uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
+      uint32_t leaves = 0;
+      const uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
         const Block d;
         const FromBoxes from(d, node, i, reach.centre);
         return reach.holds(d, from.squared, from.x, from.y, from.z);
       });
-      for (; near != 0; near &= ~std::bit_floor(near))  // the first on top
-        stack.push_back({node.child[std::bit_width(near) - 1], 0});
+      for (uint32_t slot = 0; slot < WideTree::kWidth; ++slot) leaves |= (node.child[slot] >> 31) << slot;
+      append(s_.leaves, node.child, near & leaves);
+      append(open, node.child, near & ~leaves);
+      if (s_.leaves.size() > most) return false;
     }
     return true;
   }
 
+  // The sites of the leaves found that matter: first by bounds on all that a face owns, then one by one.
   void collect(const Reach& reach, SiteLists& lists) {
-    for (size_t i = 0; i < s_.leaves.size(); ++i) {
-      if (i + 1 < s_.leaves.size())  // their memory is far away
-        for_each_block(regions_, s_.leaves[i + 1], [](const auto& block) {
-          for (size_t byte = 0; byte < sizeof block; byte += 64)
-            hwy::Prefetch(reinterpret_cast<const char*>(&block) + byte);
-        });
-      for_each_block(regions_, s_.leaves[i], [&](const auto& block) HWY_ATTR {
-        ++s_.counts.tree_blocks;
-        keep(block, reach, Rows<std::remove_cvref_t<decltype(block)>>::list(lists));
-      });
+    s_.counts.leaves += s_.leaves.size();
+    s_.owners.clear();
+    for (const uint32_t child : s_.leaves) {
+      const uint32_t leaf = child & ~WideTree::kLeafBit, first = regions_.leaves[leaf];
+      uint32_t places[SiteBlock::kWidth];
+      for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
+      append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {
+               return matters(Block(), regions_.bounds[leaf], lane, reach);
+             }));
     }
+    // A face owns three edges and three vertices at most: none of these stores needs a branch.
+    s_.edges.resize(3 * s_.owners.size());
+    s_.vertices.resize(3 * s_.owners.size());
+    uint32_t *edge = s_.edges.data(), *vertex = s_.vertices.data();
+    for (const uint32_t owner : s_.owners) {
+      const Regions::Owner &own = regions_.owners[owner], &next = regions_.owners[owner + 1];
+      for (uint32_t k = 0; k < 3; ++k) edge[k] = own.edges + k, vertex[k] = own.vertices + k;
+      edge += next.edges - own.edges;
+      vertex += next.vertices - own.vertices;
+    }
+    s_.edges.resize(static_cast<size_t>(edge - s_.edges.data()));
+    s_.vertices.resize(static_cast<size_t>(vertex - s_.vertices.data()));
+
+    const Regions& r = regions_;
+    SiteLists& all = s_.gathered;
+    gather(
+        s_.owners, r.faces, [&](uint32_t i) { return SiteId::of(SiteType::face, r.owners[i].face); },
+        all.faces);
+    gather(
+        s_.edges, r.edges, [&](uint32_t i) { return SiteId::of(SiteType::edge, r.edges[i].edge); },
+        all.edges);
+    gather(
+        s_.vertices, r.vertices,
+        [&](uint32_t i) { return SiteId::of(SiteType::vertex, r.vertices[i].vertex); }, all.vertices);
+    s_.counts.tree_sites += all.size();
+    keep(all, reach, lists);
+  }
+
+  static void keep(const SiteLists& from, const Reach& reach, SiteLists& to) {
+    HWY_NAMESPACE::keep(from.faces, reach, to.faces);
+    HWY_NAMESPACE::keep(from.edges, reach, to.edges);
+    HWY_NAMESPACE::keep(from.vertices, reach, to.vertices);
   }
 
   // Finds the winners of a ball's points in the lists of its level.
@@ -330,9 +260,7 @@ class Search {
     improve(nearest, from.vertices, ball.centre);
     s_.counts.list_blocks += from.faces.used + from.edges.used + from.vertices.used;
     const Reach reach(ball, nearest.squared, nearest.point, limit_);
-    keep(from.faces, reach, to.faces);
-    keep(from.edges, reach, to.edges);
-    keep(from.vertices, reach, to.vertices);
+    keep(from, reach, to);
   }
 
   void evaluate(const SiteLists& lists, size_t packet) {
@@ -349,8 +277,8 @@ class Search {
   }
 
   // Offers every site of a list to the points of a packet.
-  template <class SiteBlock>
-  void offer(const SiteList<SiteBlock>& list, size_t first, float* best, uint32_t* winners) const {
+  template <class Some>
+  void offer(const SiteList<Some>& list, size_t first, float* best, uint32_t* winners) const {
     const Points d;
     const hn::RebindToUnsigned<Points> du;
     for (size_t i = 0; i < PointGroup::kPacket; i += hn::Lanes(d)) {
@@ -362,10 +290,9 @@ class Search {
         for (uint32_t lane = 0; lane < list.blocks[b].count; ++lane) {
           const PointVec s = squared(d, list.blocks[b], lane, x, y, z);
           const auto closer = hn::Lt(s, least);
-          const SiteId site =
-              SiteId::of(Rows<SiteBlock>::kType, Rows<SiteBlock>::sites(list.blocks[b])[lane]);
+          const uint32_t site = list.blocks[b].id[lane];
           least = hn::IfThenElse(closer, s, least);
-          winner = hn::IfThenElse(hn::RebindMask(du, closer), hn::Set(du, site.packed), winner);
+          winner = hn::IfThenElse(hn::RebindMask(du, closer), hn::Set(du, site), winner);
         }
       hn::Store(least, d, best + i);
       hn::StoreU(winner, du, winners + i);

@@ -12,27 +12,13 @@
 
 namespace sdm {
 
-/// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could tell.
-struct SiteId {
-  static constexpr std::uint32_t kUnsettled = kNone - 1;
-
-  std::uint32_t packed = kNone;
-
-  static constexpr SiteId of(SiteType type, std::uint32_t site) {
-    return {static_cast<std::uint32_t>(type) << 30 | site};
-  }
-  [[nodiscard]] SiteType type() const {
-    return packed >= kUnsettled ? SiteType::none : static_cast<SiteType>(packed >> 30);
-  }
-  [[nodiscard]] std::uint32_t site() const { return packed & 0x3FFFFFFFu; }
-};
-
 /// The work done, which tests hold down.
 struct DescentCounts {
   std::size_t groups = 0;       ///< traversals
   std::size_t nodes = 0;        ///< of the tree, tested
-  std::size_t tree_blocks = 0;  ///< of sites, tested at the tree's leaves
-  std::size_t list_blocks = 0;  ///< of sites, tested in lists
+  std::size_t leaves = 0;       ///< of the tree, whose faces' bounds were tested
+  std::size_t tree_sites = 0;   ///< that passed, and were tested one by one
+  std::size_t list_blocks = 0;  ///< of eight sites, tested in lists
   std::size_t evaluations = 0;  ///< of a site for a packet
 };
 
@@ -47,8 +33,8 @@ struct Descent {
     float squared;        ///< distance of its box
   };
   std::vector<Entry> stack;
-  std::vector<std::uint32_t> leaves;
-  SiteLists lists[PointGroup::kLevels];
+  std::vector<std::uint32_t> open, leaves, owners, edges, vertices;
+  SiteLists gathered, lists[PointGroup::kLevels];
 };
 
 /// Finds the closest site within `limit` for every point of descent.points; one that is farther may be named

@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sdm::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr size_t kPacket = PointGroup::kPacket;
+constexpr size_t kPacket = ClosestPacket::kSize;
 using Doubles = hn::CappedTag<double, 8>;
 using Vec = hn::Vec<Doubles>;
 
@@ -38,30 +38,38 @@ HWY_INLINE Vec3v minus(const Vec3v& a, Vec t, const Vec3& b) {
           hn::NegMulAdd(t, hn::Set(d, b[2]), a.z)};
 }
 
-// A packet of queries, and the points found for them.
+// Queries, and what is found for them.
 struct Packet {
-  alignas(64) double query[3][kPacket], point[3][kPacket], distance[kPacket];
+  alignas(64) double query[3][kPacket];
+  ClosestPacket& found;
 };
 
 // Runs on(query, from) for those vectors of a packet that have one of `lanes`: it sets from = query − closest
-// point and returns the mask of queries that lie in the site's region. Their lanes are returned.
+// point and returns the mask of queries that lie in the site's region. Keeps the points of `lanes`, and
+// returns those of them that are inside.
 template <class On>
 HWY_INLINE uint32_t for_lanes(Packet& p, uint32_t lanes, const On& on) {
   const Doubles d;
   const uint32_t all = (1u << hn::Lanes(d)) - 1;
   uint32_t inside = 0;
   for (size_t i = 0; i < kPacket; i += hn::Lanes(d)) {
-    if ((lanes >> i & all) == 0) continue;
+    const uint8_t here = static_cast<uint8_t>(lanes >> i & all);
+    if (here == 0) continue;
     const Vec3v query{hn::Load(d, p.query[0] + i), hn::Load(d, p.query[1] + i), hn::Load(d, p.query[2] + i)};
     Vec3v from;
     const auto mask = on(query, from);
+    const uint8_t bits[8] = {here};
+    const auto keep = hn::LoadMaskBits(d, bits);
     const Vec3v point{hn::Sub(query.x, from.x), hn::Sub(query.y, from.y), hn::Sub(query.z, from.z)};
-    hn::Store(point.x, d, p.point[0] + i);
-    hn::Store(point.y, d, p.point[1] + i);
-    hn::Store(point.z, d, p.point[2] + i);
     // Of the point as rounded, so that it agrees with it to the last.
     const Vec x = hn::Sub(query.x, point.x), y = hn::Sub(query.y, point.y), z = hn::Sub(query.z, point.z);
-    hn::Store(hn::Sqrt(hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)))), d, p.distance + i);
+    const Vec distance = hn::Sqrt(hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x))));
+    const auto put = [&](Vec v, double* to)
+                         HWY_ATTR { hn::Store(hn::IfThenElse(keep, v, hn::Load(d, to)), d, to); };
+    put(point.x, p.found.point[0] + i);
+    put(point.y, p.found.point[1] + i);
+    put(point.z, p.found.point[2] + i);
+    put(distance, p.found.distance + i);
     uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
     inside |= static_cast<uint32_t>(bytes[0]) << i;
@@ -115,13 +123,18 @@ uint32_t on_edge(const Sites::Impl& sites, uint32_t edge, Packet& p, uint32_t la
 // Where no edge of the vertex comes closer.
 uint32_t on_vertex(const Sites::Impl& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
   const Vec3& point = sites.mesh.positions[vertex];
+  // In a closed mesh whose faces all run alike every neighbour follows the vertex in one face.
+  const int last = sites.alike ? 1 : 2;
   return for_lanes(p, lanes, [&](const Vec3v& query, Vec3v& from) HWY_ATTR {
     const Doubles d;
     from = minus(query, point);
     Vec most = hn::Zero(d);
-    for (const std::uint32_t face : sites.vertex_faces.of(vertex))
-      for (const std::uint32_t corner : sites.mesh.triangles[face])
-        most = hn::Max(most, dot(from, sites.mesh.positions[corner] - point));
+    for (const std::uint32_t face : sites.vertex_faces.of(vertex)) {
+      const Triangle& t = sites.mesh.triangles[face];
+      const int corner = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
+      for (int k = 1; k <= last; ++k)
+        most = hn::Max(most, dot(from, sites.mesh.positions[t[(corner + k) % 3]] - point));
+    }
     return hn::Le(most, hn::Zero(d));
   });
 }
@@ -137,60 +150,57 @@ uint32_t on_site(const Sites::Impl& sites, SiteId site, Packet& p, uint32_t lane
   }
 }
 
-uint32_t face_of(const Sites::Impl& sites, SiteId site) {
-  switch (site.type()) {
-    case SiteType::face:
-      return site.site();
-    case SiteType::edge:
-      return sites.topology.edge_faces(site.site())[0];
-    default:
-      return sites.vertex_faces.of(site.site())[0];
+// The lanes of a packet that have this winner, as bits.
+HWY_INLINE uint32_t lanes_of(const uint32_t* winners, uint32_t winner) {
+  const hn::CappedTag<uint32_t, 8> d;
+  uint32_t bits = 0;
+  for (size_t i = 0; i < kPacket; i += hn::Lanes(d)) {
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, hn::Eq(hn::LoadU(d, winners + i), hn::Set(d, winner)), bytes);
+    bits |= static_cast<uint32_t>(bytes[0]) << i;
   }
+  return bits;
 }
 
 void finish_packet(const Sites::Impl& sites, const uint32_t* winners, std::span<const Vec3> queries,
-                   double max_distance, ClosestPoint* out) {
-  Packet p;
-  for (size_t i = 0; i < kPacket; ++i)
-    for (int k = 0; k < 3; ++k) p.query[k][i] = queries[std::min(i, queries.size() - 1)][k];
+                   double max_distance, ClosestPacket& found) {
+  Packet p{.query = {}, .found = found};
+  for (size_t i = 0; i < queries.size(); ++i)
+    for (int k = 0; k < 3; ++k) p.query[k][i] = queries[i][k];
+  for (size_t i = 0; i < kPacket; ++i) {
+    const SiteId winner{winners[i]};
+    found.site[i] = winner.site();
+    found.type[i] = winner.type();
+  }
+  found.count = queries.size();
   for (uint32_t pending = (1u << queries.size()) - 1; pending != 0;) {
     const SiteId site{winners[std::countr_zero(pending)]};
-    uint32_t lanes = 0;
-    for (size_t i = 0; i < queries.size(); ++i)
-      lanes |= static_cast<uint32_t>(winners[i] == site.packed) << i;
+    const uint32_t lanes = lanes_of(winners, site.packed) & pending;
     pending &= ~lanes;
-    if (site.type() == SiteType::none) {
-      for (; lanes != 0; lanes &= lanes - 1) {
-        const auto i = static_cast<size_t>(std::countr_zero(lanes));
-        out[i] = {};
-        if (site.packed == SiteId::kUnsettled)
-          reference_search(sites, queries.subspan(i, 1), max_distance, {out + i, 1});
-      }
-      continue;
-    }
-    const uint32_t face = face_of(sites, site), inside = on_site(sites, site, p, lanes);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int i = std::countr_zero(lanes);
-      ClosestPoint& c = out[i];
-      if (inside >> i & 1) {
-        for (int k = 0; k < 3; ++k) c.point[k] = p.point[k][i];
-        c.distance = p.distance[i];
-        c.site = site.site();
-        c.type = site.type();
-        c.face = face;
-      } else {
-        c = closest_around_face(sites, face, queries[i]);
-      }
-      if (c.distance > max_distance) c = {};
+    uint32_t open = lanes;
+    if (site.packed == kNone) continue;
+    if (site.packed != SiteId::kUnsettled) open &= ~on_site(sites, site, p, lanes);
+    for (; open != 0; open &= open - 1) {
+      const auto i = static_cast<size_t>(std::countr_zero(open));
+      found.set(i, site.packed == SiteId::kUnsettled
+                       ? reference_closest(sites, queries[i], max_distance)
+                       : closest_around_face(sites, sites.face_of(site.type(), site.site()), queries[i]));
     }
   }
+  if (max_distance < std::numeric_limits<double>::infinity())
+    for (size_t i = 0; i < queries.size(); ++i)
+      if (!(found.distance[i] <= max_distance)) found.type[i] = SiteType::none;
 }
 
+// `winners` has room for whole packets.
 void Finish(const Sites::Impl& sites, std::span<const uint32_t> winners, std::span<const Vec3> queries,
-            double max_distance, std::span<ClosestPoint> out) {
-  for (size_t i = 0; i < queries.size(); i += kPacket)
-    finish_packet(sites, winners.data() + i, queries.subspan(i, std::min(kPacket, queries.size() - i)),
-                  max_distance, out.data() + i);
+            double max_distance, const Deliver& deliver) {
+  ClosestPacket closest;
+  for (size_t i = 0; i < queries.size(); i += kPacket) {
+    const size_t count = std::min(kPacket, queries.size() - i);
+    finish_packet(sites, winners.data() + i, queries.subspan(i, count), max_distance, closest);
+    deliver(i, closest);
+  }
 }
 
 }  // namespace sdm::HWY_NAMESPACE
@@ -202,8 +212,8 @@ namespace sdm {
 HWY_EXPORT(Finish);
 
 void finish(const Sites::Impl& sites, std::span<const std::uint32_t> winners, std::span<const Vec3> queries,
-            double max_distance, std::span<ClosestPoint> out) {
-  HWY_DYNAMIC_DISPATCH(Finish)(sites, winners, queries, max_distance, out);
+            double max_distance, const Deliver& deliver) {
+  HWY_DYNAMIC_DISPATCH(Finish)(sites, winners, queries, max_distance, deliver);
 }
 
 }  // namespace sdm

@@ -4,14 +4,15 @@
 #include <span>
 
 #include "engine/cpu/descent.h"
+#include "engine/engine.h"
 #include "mesh/sites_impl.h"
 
 namespace sdm {
 
-/// For each query the closest point of its winner, if the query lies in that site's region of influence; else
-/// the walk of closest_around_face from there, or the reference engine where it is unsettled. Type none
-/// beyond max_distance, and where there is no winner.
+/// Delivers for each query the closest point of its winner, if the query lies in that site's region of
+/// influence; else the walk of closest_around_face from there, or the reference engine where it is unsettled.
+/// Type none beyond max_distance, and where there is no winner.
 void finish(const Sites::Impl& sites, std::span<const std::uint32_t> winners, std::span<const Vec3> queries,
-            double max_distance, std::span<ClosestPoint> out);
+            double max_distance, const Deliver& deliver);
 
 }  // namespace sdm

@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hierarchy/aabb_tree.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace sdm::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -73,12 +71,16 @@ Ball around(std::span<const Ball> balls, std::span<FloatBox> boxes, FloatBox& bo
 
 }  // namespace
 
-void PointGroup::place(std::span<const Vec3f> points) {
+bool PointGroup::place(std::span<const Vec3> points, const UnitFrame& frame) {
   packets = (points.size() + kPacket - 1) / kPacket;
-  for (int k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < points.size(); ++i) position[k][i] = points[i][k];
-    std::fill(position[k] + points.size(), position[k] + kPacket * packets, points.back()[k]);
+  bool some_far_away = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 unit = frame.to_unit(points[i]);
+    const bool far = far_away(unit);
+    some_far_away |= far;
+    for (int k = 0; k < 3; ++k) position[k][i] = far ? 0.0f : static_cast<float>(unit[k]);
   }
+  for (auto& row : position) std::fill(row + points.size(), row + kPacket * packets, row[points.size() - 1]);
   std::vector<FloatBox> boxes(packets);  // of the points of each ball of a level
   balls[0].resize(packets);
   HWY_DYNAMIC_DISPATCH(AroundPackets)(*this, boxes.data());
@@ -92,6 +94,7 @@ void PointGroup::place(std::span<const Vec3f> points) {
           around(std::span(below).subspan(first, count), std::span(boxes).subspan(first, count), boxes[i]);
     }
   }
+  return some_far_away;
 }
 
 }  // namespace sdm

@@ -4,8 +4,11 @@
 
 #include <sdm/types.h>
 
+#include <cmath>
 #include <span>
 #include <vector>
+
+#include "hierarchy/aabb_tree.h"
 
 namespace sdm {
 
@@ -28,9 +31,17 @@ struct PointGroup {
   alignas(64) float position[3][kMostPoints];  ///< of the points, the last one repeated to fill its packet
   std::vector<Ball> balls[kLevels];
 
-  /// The group of 1 to kMostPoints points. Balls are small where the points come in an order like that of
-  /// core/spatial_order.h. They contain their points, and the balls below them, but for rounding.
-  void place(std::span<const Vec3f> points);
+  /// The group of 1 to kMostPoints points, in the frame. Balls are small where the points come in an order
+  /// like that of core/spatial_order.h. They contain their points, and the balls below them, but for
+  /// rounding. Points that are far away are put at the frame's origin; returns whether there are any.
+  bool place(std::span<const Vec3> points, const UnitFrame& frame);
+
+  /// Beyond this many sizes of O2 squares come near the end of single precision.
+  static bool far_away(const Vec3& unit_point) {
+    return !(std::abs(unit_point[0]) < kFarAway && std::abs(unit_point[1]) < kFarAway &&
+             std::abs(unit_point[2]) < kFarAway);
+  }
+  static constexpr double kFarAway = 1e15;
 };
 
 }  // namespace sdm

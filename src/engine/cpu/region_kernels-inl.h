@@ -13,7 +13,7 @@
 #include <cmath>
 
 #include "engine/cpu/point_group.h"
-#include "mesh/regions.h"
+#include "engine/cpu/site_lists.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::HWY_NAMESPACE {
@@ -21,7 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Lanes over the points of a packet, and over the sites or boxes of a block.
 using Points = hn::CappedTag<float, PointGroup::kPacket>;
-using Block = hn::CappedTag<float, RegionBlock::kWidth>;
+using Block = hn::CappedTag<float, SiteBlock::kWidth>;
 using PointVec = hn::Vec<Points>;
 using BlockVec = hn::Vec<Block>;
 using BlockMask = hn::Mask<Block>;
@@ -77,14 +77,14 @@ struct Reach {
 };
 
 // plane·(p, −1) for a block of planes and one point.
-HWY_INLINE BlockVec height(Block d, const float (&plane)[4][RegionBlock::kWidth], size_t i, const float* p) {
+HWY_INLINE BlockVec height(Block d, const float (&plane)[4][SiteBlock::kWidth], size_t i, const float* p) {
   BlockVec h = hn::MulSub(hn::Load(d, plane[0] + i), hn::Set(d, p[0]), hn::Load(d, plane[3] + i));
   h = hn::MulAdd(hn::Load(d, plane[1] + i), hn::Set(d, p[1]), h);
   return hn::MulAdd(hn::Load(d, plane[2] + i), hn::Set(d, p[2]), h);
 }
 
 // plane·(p, −1) for one plane and many points.
-HWY_INLINE PointVec height(Points d, const float (&plane)[4][RegionBlock::kWidth], uint32_t lane, PointVec x,
+HWY_INLINE PointVec height(Points d, const float (&plane)[4][SiteBlock::kWidth], uint32_t lane, PointVec x,
                            PointVec y, PointVec z) {
   PointVec h = hn::MulSub(hn::Set(d, plane[0][lane]), x, hn::Set(d, plane[3][lane]));
   h = hn::MulAdd(hn::Set(d, plane[1][lane]), y, h);
@@ -97,6 +97,30 @@ HWY_INLINE PointVec height(Points d, const float (&plane)[4][RegionBlock::kWidth
 //             beyond the prism of a face or the ends of an edge, where its plane or line is too close. No
 //             other part of a region needs to be tested, for a site is never closer than O2 is;
 //   closest   the point of one site that is closest to p.
+
+HWY_INLINE BlockMask matters(Block d, const FaceBounds& bounds, size_t i, const Reach& reach) {
+  BlockVec r[3], h = hn::Zero(d);
+  for (int k = 0; k < 3; ++k) {
+    r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, bounds.centre[k] + i));
+    h = hn::MulAdd(r[k], hn::Load(d, bounds.normal[k] + i), h);
+  }
+  const BlockVec squared = square_norm(d, r[0], r[1], r[2]), h2 = hn::Mul(h, h);
+  const BlockVec radius = hn::Load(d, bounds.radius + i), reach_radius = hn::Set(d, reach.radius);
+  // Beside the disc, but for what cancels in the difference of squares.
+  const BlockVec beside =
+      hn::Sqrt(hn::Max(hn::NegMulAdd(squared, hn::Set(d, 1e-6f), hn::Sub(squared, h2)), hn::Zero(d)));
+  const BlockVec most = hn::MulAdd(hn::Load(d, bounds.slope + i), hn::Add(hn::Abs(h), reach_radius),
+                                   hn::Add(radius, reach_radius));
+  // c − b = h normal + s (r − h normal), and the convex piece is the disc.
+  const BlockVec beyond = hn::Max(hn::Sub(beside, radius), hn::Zero(d));
+  const BlockVec s = hn::Div(beyond, hn::Max(beside, hn::Set(d, 1e-30f)));
+  const BlockVec along = hn::NegMulAdd(s, h, h);
+  const auto from = [&](int k) HWY_ATTR {
+    return hn::MulAdd(s, r[k], hn::Mul(along, hn::Load(d, bounds.normal[k] + i)));
+  };
+  return hn::And(hn::Le(beside, most),
+                 reach.holds(d, hn::MulAdd(beyond, beyond, h2), from(0), from(1), from(2)));
+}
 
 HWY_INLINE BlockMask matters(Block d, const FaceBlock& block, size_t i, const Reach& reach) {
   const BlockVec inner = hn::Set(d, -reach.radius);

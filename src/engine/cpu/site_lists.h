@@ -1,5 +1,7 @@
-// Lists of sites in the blocks of mesh/regions.h, so that one kernel serves the tree's leaves and the lists.
+// Lists of sites, transposed so that vector instructions test eight of them at once.
 #pragma once
+
+#include <sdm/sites.h>
 
 #include <vector>
 
@@ -7,7 +9,48 @@
 
 namespace sdm {
 
-/// All blocks are full but the last one. Of a site the rows of its region and its number are kept.
+/// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could tell.
+struct SiteId {
+  static constexpr std::uint32_t kUnsettled = kNone - 1;
+
+  std::uint32_t packed = kNone;
+
+  static constexpr SiteId of(SiteType type, std::uint32_t site) {
+    return {static_cast<std::uint32_t>(type) << 30 | site};
+  }
+  [[nodiscard]] SiteType type() const {
+    return packed >= kUnsettled ? SiteType::none : static_cast<SiteType>(packed >> 30);
+  }
+  [[nodiscard]] std::uint32_t site() const { return packed & 0x3FFFFFFFu; }
+};
+
+/// Eight regions of mesh/regions.h, a lane each: rows in the order of the region's numbers, then the site.
+struct SiteBlock {
+  static constexpr std::uint32_t kWidth = 8;
+  std::uint32_t count = 0;
+};
+struct FaceBlock : SiteBlock {
+  using Region = FaceRegion;
+  alignas(32) float plane[4][kWidth];
+  alignas(32) float wall[3][4][kWidth];
+  alignas(32) std::uint32_t id[kWidth];  ///< SiteId::packed
+};
+struct EdgeBlock : SiteBlock {
+  using Region = EdgeRegion;
+  alignas(32) float start[3][kWidth];
+  alignas(32) float direction[3][kWidth];
+  alignas(32) float length[kWidth];
+  alignas(32) float wall[2][4][kWidth];
+  alignas(32) std::uint32_t id[kWidth];
+};
+struct VertexBlock : SiteBlock {
+  using Region = VertexRegion;
+  alignas(32) float point[3][kWidth];
+  alignas(32) float ray[VertexRegion::kRays][3][kWidth];
+  alignas(32) std::uint32_t id[kWidth];
+};
+
+/// All blocks are full but the last one.
 template <class Block>
 struct SiteList {
   std::vector<Block> blocks;  ///< grown as needed, never shrunk

@@ -61,16 +61,18 @@ void set_bounds(DomainTree& tree, const Sites::Impl& sites, double slack, double
         middle[k] = 0.5 * (double{box.lo[k]} + box.hi[k]) / frame.scale + frame.origin[k];
       middles.push_back(middle);
     }
-    std::vector<ClosestPoint> closest(middles.size());
-    cpu_search(sites, middles, std::numeric_limits<double>::infinity(), closest);
-    for (std::size_t i = begin; i < end; ++i) {
-      const FloatBox& box = tree.tree.nodes[nodes[i]].box;
-      const Vec3 p = frame.to_unit(closest[i - begin].point);
-      Vec3 farthest;
-      for (int k = 0; k < 3; ++k)
-        farthest[k] = std::max(std::abs(box.lo[k] - p[k]), std::abs(box.hi[k] - p[k]));
-      tree.bound[nodes[i]] = std::min(largest, norm(farthest) + slack);
-    }
+    const auto bound = [&](std::size_t first, const ClosestPacket& closest) {
+      for (std::size_t i = 0; i < closest.count; ++i) {
+        const std::uint32_t node = nodes[begin + first + i];
+        const FloatBox& box = tree.tree.nodes[node].box;
+        const Vec3 p = frame.to_unit(closest.point_of(i));
+        Vec3 farthest;
+        for (int k = 0; k < 3; ++k)
+          farthest[k] = std::max(std::abs(box.lo[k] - p[k]), std::abs(box.hi[k] - p[k]));
+        tree.bound[node] = std::min(largest, norm(farthest) + slack);
+      }
+    };
+    cpu_search(sites, middles, std::numeric_limits<double>::infinity(), bound);
   });
   raise_to_root(tree);
 }

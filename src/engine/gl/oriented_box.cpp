@@ -103,7 +103,7 @@ OrientedBox around_vertex(const SiteRegion& region, double reach, double slack) 
   for (int i = 0; i < edges.count; ++i) least = std::min(least, dot(edges.rays[i], middle));
   // A saddle's cone is the vertex alone. A cone that is no cone, or nearly fills a half-space, is not worth a
   // box.
-  if (edges.count == 0 && region.wall_count == VertexBlock::kRays && !edges.degenerate)
+  if (edges.count == 0 && region.wall_count == VertexRegion::kRays && !edges.degenerate)
     return cube(region.anchor, slack);
   if (edges.count < 3 || edges.degenerate || least < 0.01) return cube(region.anchor, reach + slack);
 

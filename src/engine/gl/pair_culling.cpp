@@ -69,11 +69,11 @@ class Descent {
 }  // namespace
 
 SiteIndex::SiteIndex(const Sites::Impl& s) : sites(s), leaves(s.tree), before{0} {
-  const std::size_t leaf_count = s.regions.leaves.empty() ? 0 : s.regions.leaves.size() - 1;
+  const std::size_t leaf_count = s.regions.bounds.size();
   for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
     std::uint64_t kept = 0;
     for_each_site(s.regions, leaf,
-                  [&](const auto& block, int lane) { ++(has_interior(block, lane) ? kept : dropped); });
+                  [&](const auto& site, std::size_t) { ++(has_interior(site) ? kept : dropped); });
     before.push_back(before.back() + kept);
   }
 }
@@ -126,9 +126,9 @@ std::vector<std::uint32_t> leaves_within_bound(const SiteIndex& index, const Dom
 
 void draw_leaf(const SiteIndex& index, std::uint32_t leaf, const DomainTree& tree, const DomainBlock& block,
                double reach, const RasterScale& scale, RasterBatch& batch, PairCounts& counts) {
-  for_each_site(index.sites.regions, leaf, [&](const auto& sites, int lane) {
-    if (!has_interior(sites, lane)) return;
-    const SiteRegion region = region_of(index.sites, sites, lane);
+  for_each_site(index.sites.regions, leaf, [&](const auto& site, std::size_t at) {
+    if (!has_interior(site)) return;
+    const SiteRegion region = region_of(index.sites, site, at);
     Descent(tree, block, region, reach, scale, batch, counts).visit(block.node, block.end);
   });
 }

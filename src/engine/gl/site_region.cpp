@@ -6,13 +6,8 @@
 namespace sdm::gl {
 namespace {
 
-constexpr int kWidth = RegionBlock::kWidth;
-
-Vec3 get3(const float (&rows)[3][kWidth], int lane) {
-  return {rows[0][lane], rows[1][lane], rows[2][lane]};
-}
-Vec3 normal_of(const float (&rows)[4][kWidth], int lane) {
-  return {rows[0][lane], rows[1][lane], rows[2][lane]};
+Vec3 get3(const float* v) {
+  return {v[0], v[1], v[2]};
 }
 
 void add_wall(SiteRegion& region, const Vec3& normal, double offset) {
@@ -39,73 +34,71 @@ void add_end_planes(SiteRegion& region) {
 
 }  // namespace
 
-bool has_interior(const FaceBlock& block, int lane) {
-  return block.wall[0][3][lane] < std::numeric_limits<float>::infinity();
+bool has_interior(const FaceRegion& region) {
+  return region.wall[0][3] < std::numeric_limits<float>::infinity();
 }
 
-bool has_interior(const EdgeBlock& block, int lane) {
+bool has_interior(const EdgeRegion& region) {
   // Opposite to the rounding of single precision: the wedge between is narrower than what walls are loosened
   // by.
   constexpr double kOpposite = 2e-7;
-  const Vec3 a = normal_of(block.wall[0], lane), b = normal_of(block.wall[1], lane);
+  const Vec3 a = get3(region.wall[0]), b = get3(region.wall[1]);
   return a == Vec3{} || b == Vec3{} || norm(a + b) > kOpposite;
 }
 
-bool has_interior(const VertexBlock&, int) {
+bool has_interior(const VertexRegion&) {
   return true;
 }
 
-SiteRegion region_of(const Sites::Impl& sites, const FaceBlock& block, int lane) {
+SiteRegion region_of(const Sites::Impl& sites, const FaceRegion& face, std::size_t index) {
   SiteRegion region;
   region.type = SiteType::face;
-  region.face = block.face[lane];
-  region.axis = normal_of(block.plane, lane);
+  region.face = sites.regions.owners[index].face;
+  region.axis = get3(face.plane);
   const Triangle& t = sites.mesh.triangles[region.face];
   for (const std::uint32_t vertex : t)
     region.corners[region.corner_count++] = sites.frame.to_unit(sites.mesh.positions[vertex]);
   region.anchor = region.corners[0];
-  for (const auto& wall : block.wall) add_wall(region, normal_of(wall, lane), wall[3][lane]);
+  for (const auto& wall : face.wall) add_wall(region, get3(wall), wall[3]);
   add_end_planes(region);
   region.strict_walls = region.wall_count;
   return region;
 }
 
-SiteRegion region_of(const Sites::Impl&, const EdgeBlock& block, int lane) {
+SiteRegion region_of(const Sites::Impl& sites, const EdgeRegion& edge, std::size_t) {
   SiteRegion region;
   region.type = SiteType::edge;
-  region.face = block.face[lane];
-  region.anchor = get3(block.start, lane);
-  region.axis = get3(block.direction, lane);
-  region.corners = {region.anchor, region.anchor + double{block.length[lane]} * region.axis};
+  region.face = sites.face_of(SiteType::edge, edge.edge);
+  region.anchor = get3(edge.start);
+  region.axis = get3(edge.direction);
+  region.corners = {region.anchor, region.anchor + double{edge.length} * region.axis};
   region.corner_count = 2;
   add_wall(region, region.axis, dot(region.axis, region.corners[0]));
   add_wall(region, -region.axis, -dot(region.axis, region.corners[1]));
   region.strict_walls = 2;
   Vec3 former{};
-  for (const auto& wall : block.wall) {
-    const Vec3 inward = normal_of(wall, lane);
+  for (const auto& wall : edge.wall) {
+    const Vec3 inward = get3(wall);
     if (inward == Vec3{} || inward == former) continue;
-    add_wall(region, -inward, -wall[3][lane]);
+    add_wall(region, -inward, -wall[3]);
     former = inward;
   }
   return region;
 }
 
-SiteRegion region_of(const Sites::Impl& sites, const VertexBlock& block, int lane) {
+SiteRegion region_of(const Sites::Impl& sites, const VertexRegion& vertex, std::size_t index) {
   SiteRegion region;
   region.type = SiteType::vertex;
-  region.face = block.face[lane];
-  const auto position = [&](std::uint32_t vertex) {
-    return sites.frame.to_unit(sites.mesh.positions[vertex]);
-  };
-  region.anchor = position(block.vertex[lane]);
+  region.face = sites.face_of(SiteType::vertex, vertex.vertex);
+  const auto position = [&](std::uint32_t v) { return sites.frame.to_unit(sites.mesh.positions[v]); };
+  region.anchor = position(vertex.vertex);
   region.corners = {region.anchor};
   region.corner_count = 1;
-  for (int k = 0; k < VertexBlock::kRays; ++k) {
-    const std::uint32_t neighbour = block.neighbour[k][lane];
-    bool repeated = false;
-    for (int j = 0; j < k; ++j) repeated |= block.neighbour[j][lane] == neighbour;
-    const Vec3 ray = normalized(position(neighbour) - region.anchor);
+  const auto& neighbours = sites.regions.neighbours[index];
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    const bool repeated =
+        std::find(neighbours.begin(), neighbours.begin() + k, neighbours[k]) != neighbours.begin() + k;
+    const Vec3 ray = normalized(position(neighbours[k]) - region.anchor);
     if (!repeated && ray != Vec3{}) add_wall(region, -ray, -dot(ray, region.anchor));
   }
   return region;

@@ -52,25 +52,23 @@ struct SiteRegion {
 
 /// Whether the region has an interior. A face too thin for its walls has none, nor has an edge whose two
 /// faces lie in one plane: the sites around them hold all closest points.
-[[nodiscard]] bool has_interior(const FaceBlock& block, int lane);
-[[nodiscard]] bool has_interior(const EdgeBlock& block, int lane);
-[[nodiscard]] bool has_interior(const VertexBlock& block, int lane);
+[[nodiscard]] bool has_interior(const FaceRegion& region);
+[[nodiscard]] bool has_interior(const EdgeRegion& region);
+[[nodiscard]] bool has_interior(const VertexRegion& region);
 
-[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const FaceBlock& block, int lane);
-[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const EdgeBlock& block, int lane);
-[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const VertexBlock& block, int lane);
+/// Of the face, edge or vertex at an index of regions.faces, edges or vertices.
+[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const FaceRegion& region, std::size_t index);
+[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const EdgeRegion& region, std::size_t index);
+[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const VertexRegion& region, std::size_t index);
 
-/// Calls visit(block, lane) for every site of a leaf of O2's tree.
+/// Calls visit(region, index) for every site of a leaf of O2's tree.
 template <class Visit>
 void for_each_site(const Regions& regions, std::size_t leaf, Visit&& visit) {
-  const auto over = [&](const auto& blocks, std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b)
-      for (std::uint32_t lane = 0; lane < blocks[b].count; ++lane) visit(blocks[b], static_cast<int>(lane));
-  };
-  const Regions::Leaf &first = regions.leaves[leaf], &last = regions.leaves[leaf + 1];
-  over(regions.faces, first.faces, last.faces);
-  over(regions.edges, first.edges, last.edges);
-  over(regions.vertices, first.vertices, last.vertices);
+  const std::uint32_t begin = regions.leaves[leaf], end = regions.leaves[leaf + 1];
+  const Regions::Owner &first = regions.owners[begin], &last = regions.owners[end];
+  for (std::size_t i = begin; i < end; ++i) visit(regions.faces[i], i);
+  for (std::size_t i = first.edges; i < last.edges; ++i) visit(regions.edges[i], i);
+  for (std::size_t i = first.vertices; i < last.vertices; ++i) visit(regions.vertices[i], i);
 }
 
 }  // namespace sdm::gl

@@ -16,7 +16,9 @@ double lower_bound(const FloatBox& box, const Vec3& p) {
   return (1 - 1e-12) * norm(gap);
 }
 
-ClosestPoint closest(const Sites::Impl& sites, const Vec3& q, double max_distance) {
+}  // namespace
+
+ClosestPoint reference_closest(const Sites::Impl& sites, const Vec3& q, double max_distance) {
   struct Open {
     double bound;
     std::uint32_t node;
@@ -47,12 +49,15 @@ ClosestPoint closest(const Sites::Impl& sites, const Vec3& q, double max_distanc
   return best;
 }
 
-}  // namespace
-
 void reference_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
-                      std::span<ClosestPoint> out) {
-  std::transform(points.begin(), points.end(), out.begin(),
-                 [&](const Vec3& q) { return closest(sites, q, max_distance); });
+                      const Deliver& deliver) {
+  ClosestPacket closest;
+  for (std::size_t first = 0; first < points.size(); first += ClosestPacket::kSize) {
+    closest.count = std::min(ClosestPacket::kSize, points.size() - first);
+    for (std::size_t i = 0; i < closest.count; ++i)
+      closest.set(i, reference_closest(sites, points[first + i], max_distance));
+    deliver(first, closest);
+  }
 }
 
 }  // namespace sdm

@@ -1,0 +1,200 @@
+// Lists of sites: gathered from regions, filtered into others. Included once for each set of vector
+// instructions.
+#if defined(SDM_SITE_LISTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SDM_SITE_LISTS_INL_H
+#undef SDM_SITE_LISTS_INL_H
+#else
+#define SDM_SITE_LISTS_INL_H
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <array>
+#include <bit>
+#include <span>
+
+#include "engine/cpu/region_kernels-inl.h"
+#include "engine/cpu/site_lists.h"
+
+#ifndef SDM_SITE_LISTS_ONCE
+#define SDM_SITE_LISTS_ONCE
+namespace sdm {
+namespace {
+
+// For each mask of eight bits, the positions of the bits that are set, a byte each.
+constexpr std::array<std::uint64_t, 256> kPositions = [] {
+  std::array<std::uint64_t, 256> table{};
+  for (unsigned mask = 0; mask < 256; ++mask)
+    for (unsigned bit = 0, count = 0; bit < 8; ++bit)
+      if (mask >> bit & 1) table[mask] |= std::uint64_t{bit} << (8 * count++);
+  return table;
+}();
+
+// A block's rows, one after the other, as its regions have them.
+template <class Block>
+struct Rows;
+template <>
+struct Rows<FaceBlock> {
+  static constexpr std::size_t kCount = 16;
+  static auto* first(auto& block) { return block.plane[0]; }
+  static const float* of(const FaceRegion& region) { return region.plane; }
+};
+template <>
+struct Rows<EdgeBlock> {
+  static constexpr std::size_t kCount = 15;
+  static auto* first(auto& block) { return block.start[0]; }
+  static const float* of(const EdgeRegion& region) { return region.start; }
+};
+template <>
+struct Rows<VertexBlock> {
+  static constexpr std::size_t kCount = 3 + 3 * VertexRegion::kRays;
+  static auto* first(auto& block) { return block.point[0]; }
+  static const float* of(const VertexRegion& region) { return region.point; }
+};
+
+}  // namespace
+}  // namespace sdm
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::HWY_NAMESPACE {
+
+// Runs test(i) → mask over the lanes of a block and returns the first `count` results as bits.
+template <class Test>
+HWY_INLINE uint32_t select(uint32_t count, const Test& test) {
+  const Block d;
+  uint32_t bits = 0;
+  for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d)) {
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, test(i), bytes);
+    bits |= static_cast<uint32_t>(bytes[0]) << i;
+  }
+  return bits & ((1u << count) - 1);
+}
+
+// The lanes whose bits are set, in order; then others.
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<Block>> positions(uint64_t bytes_in_order) {
+  const hn::Rebind<uint8_t, Block> bytes;
+  return hn::PromoteTo(hn::RebindToUnsigned<Block>(),
+                       hn::LoadU(bytes, reinterpret_cast<const uint8_t*>(&bytes_in_order)));
+}
+
+// Appends those of eight numbers whose bits are set.
+HWY_INLINE void append(std::vector<uint32_t>& to, const uint32_t* numbers, uint32_t bits) {
+  const size_t size = to.size();
+  if constexpr (hn::MaxLanes(Block()) < SiteBlock::kWidth) {
+    for (; bits != 0; bits &= bits - 1) to.push_back(numbers[std::countr_zero(bits)]);
+  } else {
+    const hn::RebindToUnsigned<Block> d;
+    to.resize(size + SiteBlock::kWidth);
+    const auto indices = hn::IndicesFromVec(d, positions(kPositions[bits]));
+    hn::StoreU(hn::TableLookupLanes(hn::LoadU(d, numbers), indices), d, to.data() + size);
+    to.resize(size + static_cast<size_t>(std::popcount(bits)));
+  }
+}
+
+// Rows `row` to `row + 3` of a block from the same places of eight regions.
+HWY_INLINE void transpose_four(const float* const (&regions)[SiteBlock::kWidth], size_t row, float* to) {
+  constexpr size_t kWidth = SiteBlock::kWidth;
+#if HWY_TARGET == HWY_SCALAR
+  for (size_t lane = 0; lane < kWidth; ++lane)
+    for (size_t k = row; k < row + 4; ++k) to[kWidth * k + lane] = regions[lane][k];
+#else
+  const hn::Full128<float> d;
+  for (size_t lane = 0; lane < kWidth; lane += 4) {
+    const auto a = hn::LoadU(d, regions[lane] + row), b = hn::LoadU(d, regions[lane + 1] + row),
+               c = hn::LoadU(d, regions[lane + 2] + row), e = hn::LoadU(d, regions[lane + 3] + row);
+    const auto ab_lower = hn::InterleaveLower(d, a, b), ce_lower = hn::InterleaveLower(d, c, e),
+               ab_upper = hn::InterleaveUpper(d, a, b), ce_upper = hn::InterleaveUpper(d, c, e);
+    float* out = to + kWidth * row + lane;
+    hn::StoreU(hn::ConcatLowerLower(d, ce_lower, ab_lower), d, out);
+    hn::StoreU(hn::ConcatUpperUpper(d, ce_lower, ab_lower), d, out + kWidth);
+    hn::StoreU(hn::ConcatLowerLower(d, ce_upper, ab_upper), d, out + 2 * kWidth);
+    hn::StoreU(hn::ConcatUpperUpper(d, ce_upper, ab_upper), d, out + 3 * kWidth);
+  }
+#endif
+}
+
+// Makes a list of the regions at these places; id(place) names them.
+template <class Some, class Id>
+void gather(std::span<const uint32_t> places, const std::vector<typename Some::Region>& regions, const Id& id,
+            SiteList<Some>& list) {
+  constexpr size_t kWidth = SiteBlock::kWidth, kAhead = 4 * kWidth;
+  constexpr size_t kTransposed = 16;  // where a region has fifteen numbers, also what follows them
+  list.used = (places.size() + kWidth - 1) / kWidth;
+  if (list.used > list.blocks.size()) list.blocks.resize(2 * list.used);
+  for (size_t i = 0; i < std::min(kAhead, places.size()); ++i) hwy::Prefetch(&regions[places[i]]);
+  for (size_t b = 0; b < list.used; ++b) {
+    Some& block = list.blocks[b];
+    const float* from[kWidth];
+    block.count = static_cast<uint32_t>(std::min(kWidth, places.size() - kWidth * b));
+    for (size_t lane = 0; lane < kWidth; ++lane) {
+      const size_t i = kWidth * b + lane;
+      if (i + kAhead < places.size()) hwy::Prefetch(&regions[places[i + kAhead]]);
+      const uint32_t place = places[std::min(i, places.size() - 1)];
+      from[lane] = Rows<Some>::of(regions[place]);
+    }
+    for (size_t row = 0; row < kTransposed; row += 4) transpose_four(from, row, Rows<Some>::first(block));
+    for (size_t lane = 0; lane < block.count; ++lane) block.id[lane] = id(places[kWidth * b + lane]).packed;
+  }
+}
+
+// Appends the sites of a block whose bits are set: they fill the list's last block, and then another.
+template <class Some>
+void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
+  using R = Rows<Some>;
+  constexpr uint32_t kWidth = SiteBlock::kWidth;
+  if (list.used + 1 >= list.blocks.size()) list.blocks.resize(2 * list.blocks.size() + 2);
+  if (list.used == 0 || list.blocks[list.used - 1].count == kWidth) list.blocks[list.used++].count = 0;
+  Some &last = list.blocks[list.used - 1], &next = list.blocks[list.used];
+  const uint32_t filled = last.count, total = filled + static_cast<uint32_t>(std::popcount(bits));
+  last.count = std::min(total, kWidth);
+  if (total > kWidth) {
+    next.count = total - kWidth;
+    ++list.used;
+  }
+  const float* from = R::first(block);
+  float *to = R::first(last), *overflow = R::first(next);
+  if constexpr (hn::MaxLanes(Block()) < kWidth) {
+    for (uint32_t at = filled; bits != 0; bits &= bits - 1, ++at) {
+      const int lane = std::countr_zero(bits);
+      float* out = at < kWidth ? to + at : overflow + (at - kWidth);
+      for (uint32_t row = 0; row < R::kCount; ++row) out[kWidth * row] = from[kWidth * row + lane];
+      (at < kWidth ? last.id[at] : next.id[at - kWidth]) = block.id[lane];
+    }
+  } else {
+    // One permutation moves the sites to the lanes from `filled` on, and those that are too many to the
+    // front, which is where they belong in the next block.
+    const Block d;
+    const hn::RebindToUnsigned<Block> du;
+    const auto indices = positions(std::rotl(kPositions[bits], static_cast<int>(8 * filled)));
+    const auto move = [&](auto tag, const auto* row, auto* out, auto* out_next) HWY_ATTR {
+      const auto moved = hn::TableLookupLanes(hn::LoadU(tag, row), hn::IndicesFromVec(tag, indices));
+      hn::StoreU(hn::IfThenElse(hn::FirstN(tag, filled), hn::LoadU(tag, out), moved), tag, out);
+      if (total > kWidth) hn::StoreU(moved, tag, out_next);
+    };
+    for (uint32_t row = 0; row < R::kCount; ++row)
+      move(d, from + kWidth * row, to + kWidth * row, overflow + kWidth * row);
+    move(du, block.id, last.id, next.id);
+  }
+}
+
+// Appends the sites of a block that matter.
+template <class Some>
+HWY_INLINE void keep(const Some& block, const Reach& reach, SiteList<Some>& list) {
+  const uint32_t bits =
+      select(block.count, [&](size_t i) HWY_ATTR { return matters(Block(), block, i, reach); });
+  if (bits != 0) append(list, block, bits);
+}
+
+template <class Some>
+void keep(const SiteList<Some>& from, const Reach& reach, SiteList<Some>& to) {
+  to.used = 0;
+  for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], reach, to);
+}
+
+}  // namespace sdm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
