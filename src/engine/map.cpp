@@ -7,7 +7,6 @@
 #include <functional>
 #include <utility>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/spatial_order.h"
 #include "core/stopwatch.h"
@@ -16,6 +15,7 @@
 #include "engine/cpu/point_group.h"
 #include "engine/engine.h"
 #include "engine/gl/gl_engine.h"
+#include "engine/map_writer.h"
 #include "engine/sign.h"
 
 namespace sdm {
@@ -30,40 +30,6 @@ void for_each_run(std::size_t count, const Progress& progress, std::string_view 
   while (run > PointGroup::kPacket && count < kEnough * run) run /= PointGroup::kFan;
   parallel_for((count + run - 1) / run, 1, progress, step, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) body(run * i, std::min(count, run * (i + 1)));
-  });
-}
-
-// Texels without a value.
-void set_none(DistanceMap& map, std::size_t first, std::size_t count) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  std::fill_n(&map.distance[first], count, nan);
-  std::fill_n(&map.vector[first], count, Vec3f{nan, nan, nan});
-  std::fill_n(&map.site[first], count, kNone);
-  std::fill_n(&map.site_type[first], count, SiteType::none);
-}
-
-// Makes room for a map of the surface, without values where no face owns a texel.
-void prepare(DistanceMap& map, const Surface& surface) {
-  const std::span<const std::uint32_t> faces = surface.texel_faces();
-  if (map.distance.capacity() < faces.size())
-    require_memory(faces.size() * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
-                   "a map of " + std::to_string(surface.resolution()) + "² texels");
-  map.resolution = surface.resolution();
-  map.distance.resize(faces.size());
-  map.vector.resize(faces.size());
-  map.site.resize(faces.size());
-  map.site_type.resize(faces.size());
-  map.raster.reset();
-  parallel_for(faces.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t first = begin; first < end;) {
-      const auto from = faces.begin() + static_cast<std::ptrdiff_t>(first);
-      const auto to = faces.begin() + static_cast<std::ptrdiff_t>(end);
-      const auto run = std::find_if(from, to, [](std::uint32_t face) { return face != kNone; });
-      const auto count = static_cast<std::size_t>(run - from);
-      if (count > 0) set_none(map, first, count);
-      first += count;
-      first += static_cast<std::size_t>(std::find(run, to, kNone) - run);
-    }
   });
 }
 
@@ -84,11 +50,13 @@ std::size_t recompute(const Sites::Impl& sites, const RasterWinners& winners,
       ClosestPoint closest;
       if (face != kNone) closest = closest_around_face(sites, face, points[first + i]);
       const bool confirmed = face == kNone || winners.confirms(texel, closest.distance);
-      packet.set(i, closest.distance <= max_distance ? closest : ClosestPoint{});
+      packet.set(i, points[first + i], closest.distance <= max_distance ? closest : ClosestPoint{});
       if (confirmed) continue;
       ++unconfirmed;
       cpu_search(sites, points.subspan(first + i, 1), max_distance,
-                 [&](std::size_t, const ClosestPacket& found) { packet.set(i, found.get(0)); });
+                 [&](std::size_t, const ClosestPacket& found) {
+                   packet.set(i, points[first + i], found.get(0, points[first + i]));
+                 });
     }
     deliver(first, packet);
   }
@@ -113,7 +81,6 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   check(options);
   const SignUsed sign = choose_sign(sites, options.sign);
   const InsideTest is_inside(sites.impl(), sign.method);
-  const bool is_signed = sign.method != SignMethod::none;
 
   const bool raster = options.engine == EngineKind::gl;
   RasterReport report;
@@ -122,7 +89,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   const ClosestSearch search = raster ? nullptr : search_of(options.engine);
   Stopwatch watch;
 
-  prepare(map, surface);
+  const MapWriter writer(map, surface, sign.method == SignMethod::none ? nullptr : &is_inside);
   map.sign = sign;
   const std::size_t count = surface.samples().size();
   std::atomic<std::size_t> beyond{0}, unconfirmed{0};
@@ -131,20 +98,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
     const std::span<const Vec3> points = surface.sample_points().subspan(begin, end - begin);
     std::size_t beyond_here = 0;
     const auto store = [&](std::size_t first, const ClosestPacket& closest) {
-      for (std::size_t i = 0; i < closest.count; ++i) {
-        const std::uint32_t texel = texels[first + i];
-        if (closest.type[i] == SiteType::none) {
-          set_none(map, texel, 1);
-          ++beyond_here;
-          continue;
-        }
-        const Vec3& p = points[first + i];
-        const bool inside = is_signed && is_inside(p, closest.get(i));
-        map.distance[texel] = static_cast<float>(inside ? -closest.distance[i] : closest.distance[i]);
-        for (int k = 0; k < 3; ++k) map.vector[texel][k] = static_cast<float>(closest.point[k][i] - p[k]);
-        map.site[texel] = closest.site[i];
-        map.site_type[texel] = closest.type[i];
-      }
+      beyond_here += writer.store(begin + first, closest);
     };
     if (raster)
       unconfirmed += recompute(sites.impl(), winners, texels, points, options.max_distance, store);
@@ -176,7 +130,7 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
     for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];
     search(sites.impl(), batch, options.max_distance, [&](std::size_t first, const ClosestPacket& closest) {
       for (std::size_t i = 0; i < closest.count; ++i) {
-        ClosestPoint& c = result[order[begin + first + i]] = closest.get(i);
+        ClosestPoint& c = result[order[begin + first + i]] = closest.get(i, batch[first + i]);
         if (c.type != SiteType::none) c.face = sites.impl().face_of(c.type, c.site);
       }
     });

@@ -62,7 +62,8 @@ TEST(Finish, TakesNoWinnerOnTrust) {
     const std::vector<std::uint32_t> winners(kRoom, winner);
     finish(sites.impl(), {winners.data(), queries.size()}, queries, limit,
            [&](std::size_t first, const ClosestPacket& packet) {
-             for (std::size_t i = 0; i < packet.count; ++i) found[first + i] = packet.get(i);
+             for (std::size_t i = 0; i < packet.count; ++i)
+               found[first + i] = packet.get(i, queries[first + i]);
            });
   };
   const double limit = 0.4;

@@ -40,8 +40,19 @@ HWY_INLINE Vec3v minus(const Vec3v& a, Vec t, const Vec3& b) {
 
 // Queries, and what is found for them.
 struct Packet {
-  alignas(64) double query[3][kPacket];
   ClosestPacket& found;
+  alignas(64) double query[3][kPacket];
+
+  Packet(const Vec3* queries, ClosestPacket& to) : found(to) {
+    const Doubles d;
+    for (size_t i = 0; i < kPacket; i += hn::Lanes(d)) {
+      Vec x, y, z;
+      hn::LoadInterleaved3(d, queries[i].data(), x, y, z);
+      hn::Store(x, d, query[0] + i);
+      hn::Store(y, d, query[1] + i);
+      hn::Store(z, d, query[2] + i);
+    }
+  }
 };
 
 // Runs on(query, from) for those vectors of a packet that have one of `lanes`: it sets from = query − closest
@@ -60,15 +71,15 @@ HWY_INLINE uint32_t for_lanes(Packet& p, uint32_t lanes, const On& on) {
     const auto mask = on(query, from);
     const uint8_t bits[8] = {here};
     const auto keep = hn::LoadMaskBits(d, bits);
-    const Vec3v point{hn::Sub(query.x, from.x), hn::Sub(query.y, from.y), hn::Sub(query.z, from.z)};
-    // Of the point as rounded, so that it agrees with it to the last.
-    const Vec x = hn::Sub(query.x, point.x), y = hn::Sub(query.y, point.y), z = hn::Sub(query.z, point.z);
+    // To the point as rounded, so that a query on the mesh has the distance 0.
+    const auto to_point = [&](Vec q, Vec f) HWY_ATTR { return hn::Sub(hn::Sub(q, f), q); };
+    const Vec x = to_point(query.x, from.x), y = to_point(query.y, from.y), z = to_point(query.z, from.z);
     const Vec distance = hn::Sqrt(hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x))));
     const auto put = [&](Vec v, double* to)
                          HWY_ATTR { hn::Store(hn::IfThenElse(keep, v, hn::Load(d, to)), d, to); };
-    put(point.x, p.found.point[0] + i);
-    put(point.y, p.found.point[1] + i);
-    put(point.z, p.found.point[2] + i);
+    put(x, p.found.vector[0] + i);
+    put(y, p.found.vector[1] + i);
+    put(z, p.found.vector[2] + i);
     put(distance, p.found.distance + i);
     uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
@@ -162,18 +173,29 @@ HWY_INLINE uint32_t lanes_of(const uint32_t* winners, uint32_t winner) {
   return bits;
 }
 
-void finish_packet(const Sites::Impl& sites, const uint32_t* winners, std::span<const Vec3> queries,
-                   double max_distance, ClosestPacket& found) {
-  Packet p{.query = {}, .found = found};
-  for (size_t i = 0; i < queries.size(); ++i)
-    for (int k = 0; k < 3; ++k) p.query[k][i] = queries[i][k];
-  for (size_t i = 0; i < kPacket; ++i) {
-    const SiteId winner{winners[i]};
-    found.site[i] = winner.site();
-    found.type[i] = winner.type();
+// What winners say of sites, for whole packets.
+HWY_INLINE void name_sites(const uint32_t* winners, ClosestPacket& found) {
+  static_assert(static_cast<int>(SiteType::none) == 255);
+  const hn::CappedTag<uint32_t, 8> d;
+  const hn::Rebind<int32_t, decltype(d)> di;
+  const hn::Rebind<uint8_t, decltype(d)> db;
+  for (size_t i = 0; i < kPacket; i += hn::Lanes(d)) {
+    const auto winner = hn::LoadU(d, winners + i);
+    hn::StoreU(hn::And(winner, hn::Set(d, SiteId::kSiteMask)), d, found.site + i);
+    const auto type = hn::BitCast(di, hn::ShiftRight<30>(winner));  // 3: none
+    const auto none = hn::Eq(type, hn::Set(di, 3));
+    hn::StoreU(hn::DemoteTo(db, hn::IfThenElse(none, hn::Set(di, 255), type)), db,
+               reinterpret_cast<uint8_t*>(found.type) + i);
   }
-  found.count = queries.size();
-  for (uint32_t pending = (1u << queries.size()) - 1; pending != 0;) {
+}
+
+// `winners` and `queries` have room for whole packets.
+void finish_packet(const Sites::Impl& sites, const uint32_t* winners, const Vec3* queries, size_t count,
+                   double max_distance, ClosestPacket& found) {
+  Packet p(queries, found);
+  name_sites(winners, found);
+  found.count = count;
+  for (uint32_t pending = (1u << count) - 1; pending != 0;) {
     const SiteId site{winners[std::countr_zero(pending)]};
     const uint32_t lanes = lanes_of(winners, site.packed) & pending;
     pending &= ~lanes;
@@ -182,25 +204,31 @@ void finish_packet(const Sites::Impl& sites, const uint32_t* winners, std::span<
     if (site.packed != SiteId::kUnsettled) open &= ~on_site(sites, site, p, lanes);
     for (; open != 0; open &= open - 1) {
       const auto i = static_cast<size_t>(std::countr_zero(open));
-      found.set(i, site.packed == SiteId::kUnsettled
-                       ? reference_closest(sites, queries[i], max_distance)
-                       : closest_around_face(sites, sites.face_of(site.type(), site.site()), queries[i]));
+      found.set(i, queries[i],
+                site.packed == SiteId::kUnsettled
+                    ? reference_closest(sites, queries[i], max_distance)
+                    : closest_around_face(sites, sites.face_of(site.type(), site.site()), queries[i]));
     }
   }
   if (max_distance < std::numeric_limits<double>::infinity())
-    for (size_t i = 0; i < queries.size(); ++i)
+    for (size_t i = 0; i < count; ++i)
       if (!(found.distance[i] <= max_distance)) found.type[i] = SiteType::none;
 }
 
 // `winners` has room for whole packets.
 void Finish(const Sites::Impl& sites, std::span<const uint32_t> winners, std::span<const Vec3> queries,
             double max_distance, const Deliver& deliver) {
-  ClosestPacket closest;
-  for (size_t i = 0; i < queries.size(); i += kPacket) {
-    const size_t count = std::min(kPacket, queries.size() - i);
-    finish_packet(sites, winners.data() + i, queries.subspan(i, count), max_distance, closest);
+  ClosestPacket closest{};
+  const size_t whole = queries.size() / kPacket * kPacket;
+  for (size_t i = 0; i < whole; i += kPacket) {
+    finish_packet(sites, winners.data() + i, queries.data() + i, kPacket, max_distance, closest);
     deliver(i, closest);
   }
+  if (whole == queries.size()) return;
+  Vec3 last[kPacket] = {};
+  std::copy(queries.begin() + static_cast<std::ptrdiff_t>(whole), queries.end(), last);
+  finish_packet(sites, winners.data() + whole, last, queries.size() - whole, max_distance, closest);
+  deliver(whole, closest);
 }
 
 }  // namespace sdm::HWY_NAMESPACE

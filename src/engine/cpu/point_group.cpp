@@ -39,6 +39,34 @@ void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, FloatBox& 
   ball.radius = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, most)));
 }
 
+// Moves points to the frame. Returns whether one of them is far away; those are put at its origin.
+bool ToUnit(std::span<const Vec3> points, const UnitFrame& frame,
+            float (*position)[PointGroup::kMostPoints]) {
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<float, decltype(d)> df;
+  const size_t lanes = hn::Lanes(d);
+  size_t i = 0;  // as long as all are near, many at a time
+  for (; i + lanes <= points.size(); i += lanes) {
+    hn::Vec<decltype(d)> p[3];
+    hn::LoadInterleaved3(d, points[i].data(), p[0], p[1], p[2]);
+    auto largest = hn::Zero(d);
+    for (int k = 0; k < 3; ++k) {
+      p[k] = hn::Mul(hn::Sub(p[k], hn::Set(d, frame.origin[k])), hn::Set(d, frame.scale));
+      largest = hn::Max(largest, hn::Abs(p[k]));
+    }
+    if (!hn::AllTrue(d, hn::Lt(largest, hn::Set(d, PointGroup::kFarAway)))) break;
+    for (int k = 0; k < 3; ++k) hn::StoreU(hn::DemoteTo(df, p[k]), df, position[k] + i);
+  }
+  bool some_far_away = false;
+  for (; i < points.size(); ++i) {
+    const Vec3 unit = frame.to_unit(points[i]);
+    const bool far = PointGroup::far_away(unit);
+    some_far_away |= far;
+    for (int k = 0; k < 3; ++k) position[k][i] = far ? 0.0f : static_cast<float>(unit[k]);
+  }
+  return some_far_away;
+}
+
 void AroundPackets(PointGroup& group, FloatBox* boxes) {
   for (size_t i = 0; i < group.packets; ++i) AroundPacket(group, i, group.balls[0][i], boxes[i]);
 }
@@ -51,6 +79,7 @@ namespace sdm {
 namespace {
 
 HWY_EXPORT(AroundPackets);
+HWY_EXPORT(ToUnit);
 
 // The ball about the middle of the box of the points of some balls, and that box in the place of the first.
 Ball around(std::span<const Ball> balls, std::span<FloatBox> boxes, FloatBox& box) {
@@ -73,13 +102,7 @@ Ball around(std::span<const Ball> balls, std::span<FloatBox> boxes, FloatBox& bo
 
 bool PointGroup::place(std::span<const Vec3> points, const UnitFrame& frame) {
   packets = (points.size() + kPacket - 1) / kPacket;
-  bool some_far_away = false;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 unit = frame.to_unit(points[i]);
-    const bool far = far_away(unit);
-    some_far_away |= far;
-    for (int k = 0; k < 3; ++k) position[k][i] = far ? 0.0f : static_cast<float>(unit[k]);
-  }
+  const bool some_far_away = HWY_DYNAMIC_DISPATCH(ToUnit)(points, frame, position);
   for (auto& row : position) std::fill(row + points.size(), row + kPacket * packets, row[points.size() - 1]);
   std::vector<FloatBox> boxes(packets);  // of the points of each ball of a level
   balls[0].resize(packets);

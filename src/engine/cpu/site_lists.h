@@ -11,7 +11,7 @@ namespace sdm {
 
 /// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could tell.
 struct SiteId {
-  static constexpr std::uint32_t kUnsettled = kNone - 1;
+  static constexpr std::uint32_t kUnsettled = kNone - 1, kSiteMask = 0x3FFFFFFF;
 
   std::uint32_t packed = kNone;
 
@@ -21,7 +21,7 @@ struct SiteId {
   [[nodiscard]] SiteType type() const {
     return packed >= kUnsettled ? SiteType::none : static_cast<SiteType>(packed >> 30);
   }
-  [[nodiscard]] std::uint32_t site() const { return packed & 0x3FFFFFFFu; }
+  [[nodiscard]] std::uint32_t site() const { return packed & kSiteMask; }
 };
 
 /// Eight regions of mesh/regions.h, a lane each: rows in the order of the region's numbers, then the site.

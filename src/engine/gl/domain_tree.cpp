@@ -65,7 +65,7 @@ void set_bounds(DomainTree& tree, const Sites::Impl& sites, double slack, double
       for (std::size_t i = 0; i < closest.count; ++i) {
         const std::uint32_t node = nodes[begin + first + i];
         const FloatBox& box = tree.tree.nodes[node].box;
-        const Vec3 p = frame.to_unit(closest.point_of(i));
+        const Vec3 p = frame.to_unit(closest.get(i, middles[first + i]).point);
         Vec3 farthest;
         for (int k = 0; k < 3; ++k)
           farthest[k] = std::max(std::abs(box.lo[k] - p[k]), std::abs(box.hi[k] - p[k]));

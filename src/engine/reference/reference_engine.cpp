@@ -55,7 +55,7 @@ void reference_search(const Sites::Impl& sites, std::span<const Vec3> points, do
   for (std::size_t first = 0; first < points.size(); first += ClosestPacket::kSize) {
     closest.count = std::min(ClosestPacket::kSize, points.size() - first);
     for (std::size_t i = 0; i < closest.count; ++i)
-      closest.set(i, reference_closest(sites, points[first + i], max_distance));
+      closest.set(i, points[first + i], reference_closest(sites, points[first + i], max_distance));
     deliver(first, closest);
   }
 }
