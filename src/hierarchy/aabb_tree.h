@@ -3,6 +3,7 @@
 
 #include <sdm/types.h>
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct UnitFrame {
   [[nodiscard]] Vec3 to_unit(const Vec3& p) const {
     return {scale * (p[0] - origin[0]), scale * (p[1] - origin[1]), scale * (p[2] - origin[2])};
   }
+  [[nodiscard]] std::vector<Vec3> to_unit(std::span<const Vec3> points) const;
 };
 
 /// A box in single precision, rounded outwards: it contains the box it was made from.
@@ -26,6 +28,16 @@ struct FloatBox {
 
   static FloatBox around(const Box& box);
 };
+
+/// The smallest box that contains both.
+inline FloatBox unite(const FloatBox& a, const FloatBox& b) {
+  FloatBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(a.lo[k], b.lo[k]);
+    box.hi[k] = std::max(a.hi[k], b.hi[k]);
+  }
+  return box;
+}
 
 /// Nodes in depth-first order: the left child of node i is i + 1, every child comes after its parent.
 struct AabbTree {
@@ -44,10 +56,13 @@ struct AabbTree {
 /// Builds by the surface area heuristic over bins, with at most `leaf_size` items a leaf. Items are those of
 /// `indices`; boxes are in the unit frame. The result does not depend on the number of threads. Cost: O(n log
 /// n), all cores.
+[[nodiscard]] AabbTree build_aabb_tree(std::span<const FloatBox> boxes, std::vector<std::uint32_t> indices,
+                                       std::uint32_t leaf_size);
 [[nodiscard]] AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> indices,
                                        std::uint32_t leaf_size);
 
-/// Brings all boxes up to date, bottom-up, keeping the tree. Cost: linear.
+/// Brings all boxes up to date, bottom-up, keeping the tree. Cost: linear, all cores.
+void refit(AabbTree& tree, std::span<const FloatBox> boxes);
 void refit(AabbTree& tree, std::span<const Box> boxes);
 
 }  // namespace sdm

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
+
 namespace sdm {
 namespace {
 
@@ -19,35 +21,40 @@ class Collapser {
   }
 
   WideTree collapse() {
-    add({0});
+    add({0, 0}, 1);
+    wide_.nodes.shrink_to_fit();
     return std::move(wide_);
   }
 
  private:
-  // Makes a node of these binary nodes' expansion and returns its index.
-  std::uint32_t add(std::vector<std::uint32_t> open) {
-    while (open.size() < WideTree::kWidth) {
-      std::size_t largest = open.size();
-      for (std::size_t i = 0; i < open.size(); ++i)
-        if (!tree_.nodes[open[i]].leaf() &&
-            (largest == open.size() ||
-             half_area(tree_.nodes[open[i]].box) > half_area(tree_.nodes[open[largest]].box)))
-          largest = i;
-      if (largest == open.size()) break;
+  // Makes a node of the expansion of one or two binary nodes and returns its index.
+  std::uint32_t add(std::array<std::uint32_t, 2> nodes, std::uint32_t count) {
+    std::uint32_t open[WideTree::kWidth] = {nodes[0], nodes[1]};
+    float area[WideTree::kWidth];  // of those that can be opened; else -1
+    const auto measure = [&](std::uint32_t i) {
+      const AabbTree::Node& node = tree_.nodes[open[i]];
+      area[i] = node.leaf() ? -1 : half_area(node.box);
+    };
+    for (std::uint32_t i = 0; i < count; ++i) measure(i);
+    while (count < WideTree::kWidth) {
+      const auto largest = static_cast<std::uint32_t>(std::max_element(area, area + count) - area);
+      if (area[largest] < 0) break;
       const std::uint32_t node = open[largest];
       open[largest] = node + 1;
-      open.push_back(tree_.nodes[node].right);
+      open[count] = tree_.nodes[node].right;
+      measure(largest);
+      measure(count++);
     }
     const auto index = static_cast<std::uint32_t>(wide_.nodes.size());
     wide_.nodes.emplace_back();
-    for (std::size_t i = 0; i < open.size(); ++i) {
+    wide_.nodes[index].count = count;
+    for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t node = open[i];
       const std::uint32_t child = tree_.nodes[node].leaf() ? leaf_number_[node] | WideTree::kLeafBit
-                                                           : add({node + 1, tree_.nodes[node].right});
+                                                           : add({node + 1, tree_.nodes[node].right}, 2);
       wide_.nodes[index].child[i] = child;
       wide_.nodes[index].source[i] = node;
     }
-    wide_.nodes[index].count = static_cast<std::uint32_t>(open.size());
     return index;
   }
 
@@ -66,14 +73,15 @@ WideTree collapse(const AabbTree& tree) {
 }
 
 void refit(WideTree& wide, const AabbTree& tree) {
-  for (WideTree::Node& node : wide.nodes)
-    for (std::uint32_t i = 0; i < node.count; ++i) {
-      const FloatBox& box = tree.nodes[node.source[i]].box;
-      for (int k = 0; k < 3; ++k) node.lo[k][i] = box.lo[k], node.hi[k][i] = box.hi[k];
+  parallel_for(wide.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      WideTree::Node& node = wide.nodes[n];
+      for (std::uint32_t i = 0; i < node.count; ++i) {
+        const FloatBox& box = tree.nodes[node.source[i]].box;
+        for (int k = 0; k < 3; ++k) node.lo[k][i] = box.lo[k], node.hi[k][i] = box.hi[k];
+      }
     }
-  for (WideTree::Node& node : wide.nodes)  // unused lanes are read by vector loads: keep them defined
-    for (std::uint32_t i = node.count; i < WideTree::kWidth; ++i)
-      for (int k = 0; k < 3; ++k) node.lo[k][i] = node.hi[k][i] = 0;
+  });
 }
 
 }  // namespace sdm

@@ -15,11 +15,11 @@ struct WideTree {
   static constexpr std::uint32_t kLeafBit = 0x80000000u;
 
   struct Node {
-    alignas(32) float lo[3][kWidth];
-    alignas(32) float hi[3][kWidth];
-    std::uint32_t child[kWidth];
-    std::uint32_t source[kWidth];  ///< the binary node of each child
-    std::uint32_t count = 0;       ///< children in use: the first ones
+    alignas(32) float lo[3][kWidth] = {};  ///< of lanes not in use 0: vector loads read them
+    alignas(32) float hi[3][kWidth] = {};
+    std::uint32_t child[kWidth] = {};
+    std::uint32_t source[kWidth] = {};  ///< the binary node of each child
+    std::uint32_t count = 0;            ///< children in use: the first ones
   };
   std::vector<Node> nodes;  ///< the root is nodes[0]; empty for an empty tree
 };

@@ -73,7 +73,7 @@ TEST(AabbTree, HoldsEveryItemOnceInBoxesThatContainIt) {
 TEST(AabbTree, TakesEqualBoxesAndNone) {
   const std::vector<Box> equal(100, Box{{1, 2, 3}, {1, 2, 3}});
   expect_valid(build_aabb_tree(equal, all(equal.size()), 4), equal, 4);
-  EXPECT_TRUE(build_aabb_tree({}, {}, 4).nodes.empty());
+  EXPECT_TRUE(build_aabb_tree(std::span<const Box>{}, {}, 4).nodes.empty());
 }
 
 TEST(AabbTree, DoesNotDependOnTheNumberOfThreads) {
@@ -82,7 +82,14 @@ TEST(AabbTree, DoesNotDependOnTheNumberOfThreads) {
   const ThreadLimit one(1);
   const AabbTree single = build_aabb_tree(boxes, all(boxes.size()), 8);
   EXPECT_EQ(many.items, single.items);
-  EXPECT_EQ(many.nodes.size(), single.nodes.size());
+  ASSERT_EQ(many.nodes.size(), single.nodes.size());
+  for (std::size_t i = 0; i < many.nodes.size(); ++i) {
+    EXPECT_EQ(many.nodes[i].box.lo, single.nodes[i].box.lo);
+    EXPECT_EQ(many.nodes[i].box.hi, single.nodes[i].box.hi);
+    EXPECT_EQ(many.nodes[i].right, single.nodes[i].right);
+    EXPECT_EQ(many.nodes[i].first, single.nodes[i].first);
+    EXPECT_EQ(many.nodes[i].count, single.nodes[i].count);
+  }
 }
 
 TEST(AabbTree, RefitGivesTheSmallestBoxesOfMovedItems) {
