@@ -80,7 +80,7 @@ bool is_fan(const Topology& topology, std::uint32_t vertex, std::span<const std:
 void count_nonmanifold_vertices(const Mesh& mesh, const Topology& topology, MeshInfo& info) {
   const VertexFaces rows = vertex_faces(mesh.positions.size(), mesh.triangles, topology);
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    const std::span faces(rows.faces.data() + rows.offsets[v], rows.faces.data() + rows.offsets[v + 1]);
+    const std::span<const std::uint32_t> faces = rows.of(v);
     if (!faces.empty() && !is_fan(topology, v, faces)) ++info.nonmanifold_vertices;
   }
 }

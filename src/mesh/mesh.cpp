@@ -1,8 +1,10 @@
 #include <sdm/error.h>
 #include <sdm/mesh.h>
 
+#include <mutex>
 #include <string>
 
+#include "core/parallel.h"
 #include "core/vec.h"
 #include "mesh/validate.h"
 
@@ -72,8 +74,14 @@ void validate(const Mesh& mesh) {
 
 Box bounds(const Mesh& mesh) {
   Box box;
-  for (const Triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) extend(box, mesh.positions[v]);
+  std::mutex mutex;
+  parallel_for(mesh.triangles.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    Box part;
+    for (std::size_t f = begin; f < end; ++f)
+      for (const std::uint32_t v : mesh.triangles[f]) extend(part, mesh.positions[v]);
+    const std::lock_guard lock(mutex);
+    extend(box, part);
+  });
   return box;
 }
 

@@ -1,5 +1,8 @@
 #include "mesh/outward.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "mesh/ray_parity.h"
@@ -7,23 +10,30 @@
 namespace sdm {
 namespace {
 
+constexpr std::size_t kGrain = 4096;
+
 struct Shell {
   std::uint32_t component;
-  std::vector<std::uint32_t> faces;
+  std::span<const std::uint32_t> faces;
   bool inward = false;  ///< as turned by the orientation, the faces enclose a negative volume
 };
 
-// Six times the volume; a corner of the shell as origin keeps the digits of small shells.
+// Six times the volume; a corner of the shell as origin keeps the digits of small shells. Summed in parts
+// that do not depend on the number of threads.
 double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Triangle> triangles,
               std::span<const std::uint8_t> turned) {
   const Vec3& origin = p[triangles[shell.faces.front()][0]];
-  double sum = 0;
-  for (std::uint32_t f : shell.faces) {
-    const Triangle& t = triangles[f];
-    const double v = dot(p[t[0]] - origin, cross(p[t[1]] - origin, p[t[2]] - origin));
-    sum += turned[f] ? -v : v;
-  }
-  return sum;
+  std::vector<double> parts((shell.faces.size() + kGrain - 1) / kGrain);
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const std::uint32_t f :
+           shell.faces.subspan(i * kGrain).first(std::min(kGrain, shell.faces.size() - i * kGrain))) {
+        const Triangle& t = triangles[f];
+        const double v = dot(p[t[0]] - origin, cross(p[t[1]] - origin, p[t[2]] - origin));
+        parts[i] += turned[f] ? -v : v;
+      }
+  });
+  return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
 
 // Whether the shell lies inside an odd number of others. Shells that touch or overlap others lie partly
@@ -45,20 +55,22 @@ bool hollow(const Shell& shell, std::span<const Vec3> p, std::span<const Triangl
 
 }  // namespace
 
-std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                                        const Orientation& orientation, const AabbTree& tree) {
-  std::vector<Shell> shells(orientation.components);
-  for (std::size_t f = 0; f < triangles.size(); ++f)
-    if (const std::uint32_t component = orientation.component[f]; component != kNone)
-      shells[component].faces.push_back(static_cast<std::uint32_t>(f));
+std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions, const UnitFrame& frame,
+                                        std::span<const Triangle> triangles, const Orientation& orientation,
+                                        const AabbTree& tree) {
+  const auto shells = make_rows<std::uint32_t>(orientation.components, [&](const auto& put) {
+    for (std::uint32_t f = 0; f < triangles.size(); ++f)
+      if (orientation.component[f] != kNone) put(orientation.component[f], f);
+  });
+  std::vector<Vec3> unit_positions;  // for rays
+  if (shells.size() > 1) unit_positions = frame.to_unit(positions);
 
   std::vector<std::uint8_t> inverted = orientation.turned;
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      Shell& shell = shells[s];
-      shell.component = static_cast<std::uint32_t>(s);
+      Shell shell{static_cast<std::uint32_t>(s), shells.of(s)};
       shell.inward = volume(shell, positions, triangles, orientation.turned) < 0;
-      const bool is_hollow = shells.size() > 1 && hollow(shell, positions, triangles, orientation, tree);
+      const bool is_hollow = shells.size() > 1 && hollow(shell, unit_positions, triangles, orientation, tree);
       if (shell.inward != is_hollow)
         for (std::uint32_t f : shell.faces) inverted[f] ^= 1;
     }

@@ -58,6 +58,16 @@ struct FaceBounds {
   alignas(32) float slope[kWidth];
 };
 
+/// Of each face of a mesh; 0 for ignored ones.
+struct FaceShapes {
+  std::vector<Vec3> normal;                 ///< unit length, 0 for faces without area
+  std::vector<std::array<float, 3>> angle;  ///< at each corner, to within 1e-7
+  std::vector<std::uint8_t> sliver;         ///< too thin for a normal that could be trusted
+  std::vector<std::uint8_t> thin;  ///< too thin for a prism in single precision: its edges stand for it
+
+  explicit FaceShapes(std::size_t faces) : normal(faces), angle(faces), sliver(faces), thin(faces) {}
+};
+
 /// The sites by the leaves of a tree over the faces. Each edge and vertex is owned by the first of its faces.
 struct Regions {
   /// A face, and the first of the edges and vertices that it owns: the next entry's end them.
@@ -75,20 +85,22 @@ struct Regions {
   std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it make a closed sheet
 };
 
-/// What regions are made of: a mesh in the unit frame.
+/// What regions are made of.
 struct RegionSource {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
   const Topology& topology;
   const VertexFaces& vertex_faces;
   const Orientation& orientation;
+  UnitFrame frame;  ///< that regions are in
 };
 
-/// Hands the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth a leaf, and
-/// computes their regions. Cost: linear, all cores.
-[[nodiscard]] Regions build_regions(const RegionSource& source, const AabbTree& tree);
+/// Hands the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth a leaf. Their
+/// regions are left to refit(). Cost: linear, all cores.
+[[nodiscard]] Regions hand_out_sites(const RegionSource& source, const AabbTree& tree);
 
-/// Computes the regions anew for moved vertices. Cost: linear, all cores.
-void refit(Regions& regions, const RegionSource& source);
+/// Computes the regions, at first and again for moved vertices, and returns what signs need too. Cost:
+/// linear, all cores.
+FaceShapes refit(Regions& regions, const RegionSource& source);
 
 }  // namespace sdm

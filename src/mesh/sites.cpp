@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "mesh/outward.h"
@@ -17,76 +18,76 @@ namespace {
 constexpr std::uint32_t kLeafFaces = FaceBounds::kWidth;
 constexpr std::size_t kGrain = 4096;
 
+// What a triangle soup takes while its sites are built; meshes take half of it.
+void require_memory_for(const Mesh& mesh) {
+  constexpr std::size_t kBytesPerFace = 900, kBytesPerVertex = 60;
+  require_memory(kBytesPerFace * mesh.triangles.size() + kBytesPerVertex * mesh.positions.size(), "O2");
+}
+
+RegionSource region_source(const Sites::Impl& s) {
+  return {s.mesh.positions, s.mesh.triangles, s.topology, s.vertex_faces, s.orientation, s.frame};
+}
+
 std::vector<std::uint32_t> faces_with_sites(const Topology& topology) {
   std::vector<std::uint32_t> faces;
+  faces.reserve(topology.face_edges.size());
   for (std::size_t f = 0; f < topology.face_edges.size(); ++f)
     if (!topology.ignored(f)) faces.push_back(static_cast<std::uint32_t>(f));
   return faces;
 }
 
-std::vector<Vec3> to_unit(const UnitFrame& frame, const std::vector<Vec3>& positions) {
-  std::vector<Vec3> unit(positions.size());
-  parallel_for(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) unit[v] = frame.to_unit(positions[v]);
+// The boxes of faces are those of their vertices, each rounded outwards.
+std::vector<FloatBox> face_boxes(const Sites::Impl& s) {
+  std::vector<FloatBox> corners(s.mesh.positions.size()), boxes(s.mesh.triangles.size());
+  parallel_for(corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const Vec3 p = s.frame.to_unit(s.mesh.positions[v]);
+      corners[v] = FloatBox::around({p, p});
+    }
   });
-  return unit;
-}
-
-std::vector<Box> face_boxes(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
-  std::vector<Box> boxes(triangles.size());
-  parallel_for(triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f)
-      for (std::uint32_t v : triangles[f]) extend(boxes[f], positions[v]);
+  parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto [a, b, c] = s.mesh.triangles[f];
+      boxes[f] = unite(unite(corners[a], corners[b]), corners[c]);
+    }
   });
   return boxes;
 }
 
-// Faces whose smallest height is below this share of their longest side have normals of rounding errors.
-constexpr double kSliver = 1e-9;
-
-std::vector<std::uint8_t> find_slivers(const std::vector<Vec3>& p, const std::vector<Triangle>& triangles) {
-  std::vector<std::uint8_t> sliver(triangles.size());
-  parallel_for(triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto [a, b, c] = triangles[f];
-      const double longest =
-          std::max({squared_norm(p[b] - p[a]), squared_norm(p[c] - p[b]), squared_norm(p[a] - p[c])});
-      sliver[f] = !(norm(cross(p[b] - p[a], p[c] - p[a])) > kSliver * longest);
-    }
-  });
-  return sliver;
-}
-
-// What signs need, brought up to date with the positions and the tree.
-void find_outside(Sites::Impl& s, const std::vector<Vec3>& unit) {
+// Regions and what signs need, brought up to date with the positions and the tree.
+void refit_sites(Sites::Impl& s) {
   const auto& triangles = s.mesh.triangles;
   s.inverted = !s.orientation.orientable ? std::vector<std::uint8_t>(triangles.size(), 0)
-               : s.closed                ? find_inverted(unit, triangles, s.orientation, s.tree)
-                                         : s.orientation.turned;
-  s.normals = build_pseudonormals(s.mesh.positions, triangles, s.vertex_faces, s.inverted);
-  s.sliver = find_slivers(unit, triangles);
+               : s.closed ? find_inverted(s.mesh.positions, s.frame, triangles, s.orientation, s.tree)
+                          : s.orientation.turned;
+  FaceShapes shapes = refit(s.regions, region_source(s));
+  s.sliver = std::move(shapes.sliver);
+  s.normals = build_pseudonormals(std::move(shapes), triangles, s.vertex_faces, s.inverted);
 }
 
 }  // namespace
 
 Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
   validate(mesh);
+  require_memory_for(mesh);
   Impl& s = *impl_;
   s.mesh = std::move(mesh);
   const auto& triangles = s.mesh.triangles;
-  s.topology = build_topology(s.mesh.positions.size(), triangles);
-  s.vertex_faces = vertex_faces(s.mesh.positions.size(), triangles, s.topology);
-  s.orientation = orient(triangles, s.topology);
-  s.closed = true;
-  for (std::size_t e = 0; e < s.topology.edges.size(); ++e) s.closed &= s.topology.edge_faces(e).size() == 2;
-  s.alike = s.closed && s.orientation.orientable && std::ranges::count(s.orientation.turned, 1) == 0;
-
   s.frame = UnitFrame::of(bounds(s.mesh));
-  const std::vector<Vec3> unit = to_unit(s.frame, s.mesh.positions);
-  s.tree = build_aabb_tree(face_boxes(unit, triangles), faces_with_sites(s.topology), kLeafFaces);
-  s.wide = collapse(s.tree);
-  s.regions = build_regions({unit, triangles, s.topology, s.vertex_faces, s.orientation}, s.tree);
-  find_outside(s, unit);
+  s.topology = build_topology(s.mesh.positions.size(), triangles);
+  parallel_invoke(
+      [&] {
+        s.vertex_faces = vertex_faces(s.mesh.positions.size(), triangles, s.topology);
+        s.orientation = orient(triangles, s.topology);
+        s.closed = s.topology.closed();
+        s.alike = s.closed && s.orientation.orientable && std::ranges::count(s.orientation.turned, 1) == 0;
+      },
+      [&] {
+        s.tree = build_aabb_tree(face_boxes(s), faces_with_sites(s.topology), kLeafFaces);
+        s.wide = collapse(s.tree);
+      });
+  s.regions = hand_out_sites(region_source(s), s.tree);
+  refit_sites(s);
 }
 
 Sites::~Sites() = default;
@@ -102,11 +103,9 @@ void Sites::refit(std::span<const Vec3> positions) {
   std::copy(positions.begin(), positions.end(), s.mesh.positions.begin());
 
   s.frame = UnitFrame::of(bounds(s.mesh));
-  const std::vector<Vec3> unit = to_unit(s.frame, s.mesh.positions);
-  sdm::refit(s.tree, face_boxes(unit, s.mesh.triangles));
+  sdm::refit(s.tree, face_boxes(s));
   sdm::refit(s.wide, s.tree);
-  sdm::refit(s.regions, {unit, s.mesh.triangles, s.topology, s.vertex_faces, s.orientation});
-  find_outside(s, unit);
+  refit_sites(s);
 }
 
 const Mesh& Sites::mesh() const {

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "mesh/rows.h"
+
 namespace sdm {
 
 /// Edges and their incident faces. Faces with repeated corners, and duplicates of an earlier face (same three
@@ -22,10 +24,12 @@ struct Topology {
   [[nodiscard]] std::span<const std::uint32_t> edge_faces(std::size_t edge) const {
     return {incident.data() + edge_offsets[edge], incident.data() + edge_offsets[edge + 1]};
   }
+  /// Whether every edge has exactly two faces.
+  [[nodiscard]] bool closed() const;
   [[nodiscard]] bool ignored(std::size_t face) const { return face_edges[face][0] == kNone; }
 };
 
-/// Cost: O(n log d), d the largest valence.
+/// Cost: O(n log d), d the largest valence, all cores.
 [[nodiscard]] Topology build_topology(std::size_t vertex_count, std::span<const Triangle> triangles);
 
 /// For each face, whether to turn it so that neighbours over two-face edges agree, turning the fewer faces of
@@ -39,21 +43,18 @@ struct Orientation {
 };
 [[nodiscard]] Orientation orient(std::span<const Triangle> triangles, const Topology& topology);
 
-/// Faces of each vertex, ignored ones excluded, in compressed rows: faces[offsets[v]] ... faces[offsets[v +
-/// 1]].
-struct VertexFaces {
-  std::vector<std::uint32_t> offsets, faces;
-
-  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {
-    return {faces.data() + offsets[vertex], faces.data() + offsets[vertex + 1]};
-  }
-};
+/// Faces of each vertex, in increasing order, ignored ones excluded.
+using VertexFaces = CompressedRows<std::uint32_t>;
 [[nodiscard]] VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> triangles,
                                        const Topology& topology);
 
+/// The other ends of each vertex' edges, in increasing order.
+using VertexNeighbours = CompressedRows<std::uint32_t>;
+[[nodiscard]] VertexNeighbours vertex_neighbours(std::size_t vertex_count, const Topology& topology);
+
 /// Whether the face runs along its k-th edge from the smaller to the larger vertex.
 inline bool runs_forward(const Triangle& triangle, int k) {
-  return triangle[k] < triangle[(k + 1) % 3];
+  return triangle[k] < triangle[k < 2 ? k + 1 : 0];
 }
 
 }  // namespace sdm

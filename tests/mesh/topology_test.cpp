@@ -70,8 +70,24 @@ TEST(Topology, VertexFacesAgreeWithBruteForce) {
       std::vector<std::uint32_t> expected;
       for (std::uint32_t f = 0; f < soup.size(); ++f)
         if (!topology.ignored(f) && std::count(soup[f].begin(), soup[f].end(), v)) expected.push_back(f);
-      ASSERT_EQ(std::vector(rows.faces.begin() + rows.offsets[v], rows.faces.begin() + rows.offsets[v + 1]),
-                expected);
+      ASSERT_EQ(std::vector(rows.of(v).begin(), rows.of(v).end()), expected);
+    }
+  }
+}
+
+TEST(Topology, VertexNeighboursAgreeWithBruteForce) {
+  std::mt19937 random(5);
+  for (int round = 0; round < 100; ++round) {
+    const Topology topology = build_topology(9, random_soup(random, 9, 25));
+    const VertexNeighbours rows = vertex_neighbours(9, topology);
+    for (std::uint32_t v = 0; v < 9; ++v) {
+      std::set<std::uint32_t> expected;
+      for (const auto& [a, b] : topology.edges) {
+        if (a == v) expected.insert(b);
+        if (b == v) expected.insert(a);
+      }
+      ASSERT_EQ(std::vector(rows.of(v).begin(), rows.of(v).end()),
+                std::vector(expected.begin(), expected.end()));
     }
   }
 }

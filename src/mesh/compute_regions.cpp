@@ -1,0 +1,265 @@
+#include "mesh/compute_regions.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mesh/compute_regions.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each set of instructions.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numbers>
+
+#include "mesh/vec_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::HWY_NAMESPACE {
+
+// In single precision the walls of a face thinner than this, in the unit frame, would close in nothing. Its
+// edges stand for it: no point of it is farther from them than half of this.
+constexpr double kThin = 1e-6;
+// Faces whose smallest height is below this share of their longest side have normals of rounding errors.
+constexpr double kSliver = 1e-9;
+
+// Four numbers of each lane, one lane after the other, in single precision.
+struct FourLanes {
+  alignas(64) float at[kLanes][4];
+
+  HWY_INLINE void store(const Vec3v& v, Vec w, size_t i) {
+    const hn::Rebind<float, Doubles> d;
+    hn::StoreInterleaved4(hn::DemoteTo(d, v.x), hn::DemoteTo(d, v.y), hn::DemoteTo(d, v.z),
+                          hn::DemoteTo(d, w), d, at[i]);
+  }
+  // The first of the numbers, as many as `to` has room for.
+  template <size_t count>
+  HWY_INLINE void get(size_t lane, float (&to)[count]) const {
+    static_assert(count <= 4);
+    std::memcpy(to, at[lane], sizeof to);
+  }
+};
+
+HWY_INLINE void store(Vec v, float* to) {
+  const hn::Rebind<float, Doubles> d;
+  hn::Store(hn::DemoteTo(d, v), d, to);
+}
+HWY_INLINE void store(const Vec3v& v, float (&to)[3][kLanes], size_t i) {
+  store(v.x, to[0] + i);
+  store(v.y, to[1] + i);
+  store(v.z, to[2] + i);
+}
+
+// Into the unit frame.
+class ToUnit {
+ public:
+  explicit ToUnit(const UnitFrame& frame) : frame_(frame) {}
+
+  HWY_INLINE Vec3v point(const Vec3v& p) const {
+    const Doubles d;
+    const Vec3& origin = frame_.origin;
+    return between({hn::Set(d, origin[0]), hn::Set(d, origin[1]), hn::Set(d, origin[2])}, p);
+  }
+  // From a to b. The scale is a power of two: the difference is as exact as the mesh.
+  HWY_INLINE Vec3v between(const Vec3v& a, const Vec3v& b) const {
+    return mul(hn::Set(Doubles(), frame_.scale), sub(b, a));
+  }
+
+ private:
+  const UnitFrame& frame_;
+};
+
+// From the cosine, whose rounding error of 1e-16 can be 2e-8 of an angle near 0 or π.
+HWY_INLINE Vec angle_of(Vec cosine) {
+  const Doubles d;
+  return hn::Acos(d, hn::Min(hn::Max(cosine, hn::Set(d, -1.0)), hn::Set(d, 1.0)));
+}
+
+// The centre of the smallest circle about a triangle, from its corner 0, given its sides and their squared
+// lengths: with q the squared length of the side across from a corner, and q′ and q″ the others, corners have
+// weights q (q′ + q″ − q), or 0, 1, 1 where the angle at the first is obtuse.
+HWY_INLINE Vec3v enclosing_centre(const Vec3v (&side)[3], const Vec (&squared)[3], Vec longest_squared) {
+  const Doubles d;
+  const Vec inverse = inverse_or_zero(longest_squared);
+  Vec weight[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  for (int k = 0; k < 3; ++k) {
+    const Vec across = hn::Mul(squared[(k + 1) % 3], inverse);
+    const Vec others = hn::Mul(hn::Add(squared[k], squared[(k + 2) % 3]), inverse);
+    weight[k] = hn::Mul(across, hn::Sub(others, across));
+  }
+  for (int k = 0; k < 3; ++k) {
+    const auto obtuse = hn::Le(weight[k], hn::Zero(d));
+    for (int j = 0; j < 3; ++j) weight[j] = hn::IfThenElse(obtuse, hn::Set(d, j == k ? 0.0 : 1.0), weight[j]);
+  }
+  const Vec total = hn::Add(hn::Add(weight[0], weight[1]), weight[2]);
+  return mul(hn::Div(hn::Set(d, 1.0), total), sub_mul(mul(weight[1], side[0]), weight[2], side[2]));
+}
+
+void ComputeLeaf(Regions& regions, const RegionSource& source, FaceShapes& shapes, size_t leaf) {
+  const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
+  Vec3Lanes corners[3], normals;
+  for (uint32_t lane = 0; lane < count; ++lane) {
+    const Triangle& t = source.triangles[regions.owners[first + lane].face];
+    for (int k = 0; k < 3; ++k) corners[k].set(lane, source.positions[t[k]]);
+  }
+  FaceBounds& bounds = regions.bounds[leaf];
+  FourLanes plane, wall[3], angle;
+  alignas(64) double height[kLanes], proportion[kLanes];
+  const Doubles d;
+  const ToUnit unit(source.frame);
+  for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const Vec3v corner[3] = {corners[0].load(i), corners[1].load(i), corners[2].load(i)};
+    const Vec3v side[3] = {unit.between(corner[0], corner[1]), unit.between(corner[1], corner[2]),
+                           unit.between(corner[2], corner[0])};
+    const Vec squared[3] = {dot(side[0], side[0]), dot(side[1], side[1]), dot(side[2], side[2])};
+    const Vec longest_squared = hn::Max(hn::Max(squared[0], squared[1]), squared[2]);
+    const Vec3v area = cross(side[0], side[1]);
+    const Vec size = hn::Sqrt(dot(area, area));
+    const Vec3v normal = mul(inverse_or_zero(size), area), start = unit.point(corner[0]);
+    normals.store(normal, i);
+    plane.store(normal, dot(normal, start), i);
+
+    const Vec least_height = hn::Mul(size, inverse_or_zero(hn::Sqrt(longest_squared)));
+    hn::Store(least_height, d, height + i);
+    hn::Store(hn::Mul(size, inverse_or_zero(longest_squared)), d, proportion + i);
+    const auto has_prism = hn::Gt(least_height, hn::Set(d, kThin));
+    Vec inverse[3];
+    for (int k = 0; k < 3; ++k) {
+      inverse[k] = inverse_or_zero(hn::Sqrt(squared[k]));
+      const Vec3v inward = mul(inverse[k], cross(normal, side[k]));
+      // Without a prism, a wall that nothing is on the inner side of.
+      wall[k].store(inward, hn::IfThenElse(has_prism, dot(inward, unit.point(corner[k])), hn::Inf(d)), i);
+    }
+
+    // Two angles tell the third.
+    const Vec a = angle_of(hn::Neg(hn::Mul(hn::Mul(inverse[0], inverse[2]), dot(side[0], side[2]))));
+    const Vec b = angle_of(hn::Neg(hn::Mul(hn::Mul(inverse[1], inverse[0]), dot(side[1], side[0]))));
+    angle.store({a, b, hn::Sub(hn::Sub(hn::Set(d, std::numbers::pi), a), b)}, a, i);
+
+    const Vec3v centre = enclosing_centre(side, squared, longest_squared);
+    const Vec3v from[3] = {centre, sub(centre, side[0]), add(centre, side[2])};
+    const Vec radius_squared =
+        hn::Max(hn::Max(dot(from[0], from[0]), dot(from[1], from[1])), dot(from[2], from[2]));
+    constexpr double kRounding = 1e-6;  // of single precision
+    store(add(start, centre), bounds.centre, i);
+    store(normal, bounds.normal, i);
+    store(hn::Mul(hn::Set(d, 1 + kRounding), hn::Sqrt(radius_squared)), bounds.radius + i);
+  }
+  for (uint32_t lane = 0; lane < count; ++lane) {
+    FaceRegion& region = regions.faces[first + lane];
+    plane.get(lane, region.plane);
+    for (int k = 0; k < 3; ++k) wall[k].get(lane, region.wall[k]);
+    const uint32_t face = regions.owners[first + lane].face;
+    shapes.normal[face] = normals.get(lane);
+    std::copy_n(angle.at[lane], 3, shapes.angle[face].begin());
+    shapes.thin[face] = !(height[lane] > kThin);
+    shapes.sliver[face] = !(proportion[lane] > kSliver);
+  }
+}
+
+void ComputeFaces(Regions& regions, const RegionSource& source, FaceShapes& shapes, size_t begin,
+                  size_t end) {
+  for (size_t leaf = begin; leaf < end; ++leaf) ComputeLeaf(regions, source, shapes, leaf);
+}
+
+void ComputeEdges(Regions& regions, const RegionSource& source, const FaceShapes& shapes, size_t begin,
+                  size_t end) {
+  const Doubles d;
+  const ToUnit unit(source.frame);
+  for (size_t first = begin; first < end; first += kLanes) {
+    const size_t count = std::min(kLanes, end - first);
+    // Step by step for all lanes, so that they wait for memory together: ends, faces, their third corners.
+    uint32_t corner[4][kLanes], faces[2][kLanes];
+    for (size_t lane = 0; lane < count; ++lane) {
+      const uint32_t edge = regions.edges[first + lane].edge;
+      const auto incident = source.topology.edge_faces(edge);
+      corner[0][lane] = source.topology.edges[edge][0];
+      corner[1][lane] = source.topology.edges[edge][1];
+      faces[0][lane] = incident[0];
+      faces[1][lane] = incident[incident.size() > 1 ? 1 : 0];
+    }
+    alignas(64) double has_wall[2][kLanes] = {};  // no wall towards a face that its edges stand for
+    for (size_t lane = 0; lane < count; ++lane)
+      for (int j = 0; j < 2; ++j) {
+        const Triangle& t = source.triangles[faces[j][lane]];
+        corner[2 + j][lane] = t[0] ^ t[1] ^ t[2] ^ corner[0][lane] ^ corner[1][lane];
+        has_wall[j][lane] = shapes.thin[faces[j][lane]] ? 0 : 1;
+      }
+    Vec3Lanes points[4];
+    for (size_t lane = 0; lane < count; ++lane)
+      for (int j = 0; j < 4; ++j) points[j].set(lane, source.positions[corner[j][lane]]);
+
+    FourLanes starts, directions, wall[2];
+    for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+      const Vec3v a = points[0].load(i), start = unit.point(a), along = unit.between(a, points[1].load(i));
+      const Vec length = hn::Sqrt(dot(along, along));
+      const Vec3v direction = mul(inverse_or_zero(length), along);
+      starts.store(start, length, i);
+      directions.store(direction, length, i);
+      for (int j = 0; j < 2; ++j) {
+        const Vec3v opposite = unit.between(a, points[2 + j].load(i));
+        const Vec3v height = sub_mul(opposite, dot(opposite, direction), direction);
+        const Vec3v inward = mul(hn::Load(d, has_wall[j] + i), normalized(height));
+        wall[j].store(inward, dot(inward, start), i);
+      }
+    }
+    for (size_t lane = 0; lane < count; ++lane) {
+      EdgeRegion& region = regions.edges[first + lane];
+      starts.get(lane, region.start);
+      directions.get(lane, region.direction);
+      region.length = directions.at[lane][3];
+      for (int j = 0; j < 2; ++j) wall[j].get(lane, region.wall[j]);
+    }
+  }
+}
+
+void ComputeVertices(Regions& regions, const RegionSource& source, size_t begin, size_t end) {
+  constexpr int kRays = VertexRegion::kRays;
+  const Doubles d;
+  const ToUnit unit(source.frame);
+  for (size_t first = begin; first < end; first += kLanes) {
+    const size_t count = std::min(kLanes, end - first);
+    Vec3Lanes points, ends[kRays];
+    for (size_t lane = 0; lane < count; ++lane) {
+      points.set(lane, source.positions[regions.vertices[first + lane].vertex]);
+      for (int k = 0; k < kRays; ++k)
+        ends[k].set(lane, source.positions[regions.neighbours[first + lane][k]]);
+    }
+    FourLanes point, ray[kRays];
+    for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+      const Vec3v p = points.load(i);
+      point.store(unit.point(p), hn::Zero(d), i);
+      for (int k = 0; k < kRays; ++k)
+        ray[k].store(normalized(unit.between(p, ends[k].load(i))), hn::Zero(d), i);
+    }
+    for (size_t lane = 0; lane < count; ++lane) {
+      VertexRegion& region = regions.vertices[first + lane];
+      point.get(lane, region.point);
+      for (int k = 0; k < kRays; ++k) ray[k].get(lane, region.ray[k]);
+    }
+  }
+}
+
+}  // namespace sdm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sdm {
+
+HWY_EXPORT(ComputeFaces);
+HWY_EXPORT(ComputeEdges);
+HWY_EXPORT(ComputeVertices);
+
+void compute_faces(Regions& regions, const RegionSource& source, FaceShapes& shapes, std::size_t begin,
+                   std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(ComputeFaces)(regions, source, shapes, begin, end);
+}
+void compute_edges(Regions& regions, const RegionSource& source, const FaceShapes& shapes, std::size_t begin,
+                   std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(ComputeEdges)(regions, source, shapes, begin, end);
+}
+void compute_vertices(Regions& regions, const RegionSource& source, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(ComputeVertices)(regions, source, begin, end);
+}
+
+}  // namespace sdm
+#endif

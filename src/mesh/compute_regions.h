@@ -1,0 +1,23 @@
+// The numbers of regions of influence, many sites at a time.
+#pragma once
+
+#include <cstddef>
+
+#include "mesh/regions.h"
+
+namespace sdm {
+
+// Each chooses the best vector instructions that the machine has, at run time.
+
+/// The faces of the leaves from `begin` to `end`: their regions and shapes, and the discs of their bounds.
+void compute_faces(Regions& regions, const RegionSource& source, FaceShapes& shapes, std::size_t begin,
+                   std::size_t end);
+
+/// The regions of the edges from `begin` to `end`; shapes tell the thin faces.
+void compute_edges(Regions& regions, const RegionSource& source, const FaceShapes& shapes, std::size_t begin,
+                   std::size_t end);
+
+/// The regions of the vertices from `begin` to `end`.
+void compute_vertices(Regions& regions, const RegionSource& source, std::size_t begin, std::size_t end);
+
+}  // namespace sdm
