@@ -8,9 +8,11 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <atomic>
 #include <mutex>
+#include <utility>
 
 namespace sdm {
 
@@ -69,6 +71,29 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
   tbb::task_group_context context(tbb::task_group_context::isolated);
   tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(first, second, context); });
+}
+
+namespace {
+
+class TaskGroup final : public Tasks {
+ public:
+  explicit TaskGroup(tbb::task_group_context& context) : group_(context) {}
+  void add(std::function<void()> task) override { group_.run(std::move(task)); }
+  void wait() { group_.wait(); }
+
+ private:
+  tbb::task_group group_;
+};
+
+}  // namespace
+
+void parallel_tasks(const std::function<void(Tasks& tasks)>& first) {
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  tbb::this_task_arena::isolate([&] {
+    TaskGroup tasks(context);
+    tasks.add([&] { first(tasks); });
+    tasks.wait();
+  });
 }
 
 }  // namespace sdm

@@ -21,6 +21,20 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
 /// was not begun; it never cuts loops within the other short.
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
 
+/// Work that adds to itself.
+class Tasks {
+ public:
+  virtual void add(std::function<void()> task) = 0;
+
+ protected:
+  ~Tasks() = default;
+};
+
+/// Runs first(tasks) and all that is added to the tasks, at the same time where cores are free; unlike nested
+/// calls of parallel_invoke, without threads that wait for one branch while there is work in another. An
+/// exception comes out after those that were begun are done.
+void parallel_tasks(const std::function<void(Tasks& tasks)>& first);
+
 /// Threads that parallel_for uses now.
 [[nodiscard]] unsigned thread_count();
 

@@ -1,6 +1,7 @@
 #include "hierarchy/aabb_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -17,6 +18,13 @@ std::vector<FloatBox> to_float(std::span<const Box> boxes) {
     for (std::size_t i = begin; i < end; ++i) rounded[i] = FloatBox::around(boxes[i]);
   });
   return rounded;
+}
+
+// The next number above or below x: std::nextafter for finite x, inline. Of one sign they follow each other
+// as integers do, by their magnitudes.
+float next(float x, bool above) {
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  return std::bit_cast<float>(bits + ((bits < 0) == above ? -1 : 1));
 }
 
 }  // namespace
@@ -43,13 +51,12 @@ std::vector<Vec3> UnitFrame::to_unit(std::span<const Vec3> points) const {
 }
 
 FloatBox FloatBox::around(const Box& box) {
-  constexpr float inf = std::numeric_limits<float>::infinity();
   FloatBox out;
   for (int k = 0; k < 3; ++k) {
     out.lo[k] = static_cast<float>(box.lo[k]);
     out.hi[k] = static_cast<float>(box.hi[k]);
-    if (out.lo[k] > box.lo[k]) out.lo[k] = std::nextafter(out.lo[k], -inf);
-    if (out.hi[k] < box.hi[k]) out.hi[k] = std::nextafter(out.hi[k], inf);
+    if (out.lo[k] > box.lo[k]) out.lo[k] = next(out.lo[k], false);
+    if (out.hi[k] < box.hi[k]) out.hi[k] = next(out.hi[k], true);
   }
   return out;
 }

@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sdm::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr uint32_t kParallelItems = 2048;  // below it a subtree is built by one thread
+constexpr uint32_t kParallelItems = 2048;  // a subtree of fewer is built by one thread
 
 // A box by how far it reaches against and along each axis, −lo and hi: a union reaches as far as the farther.
 // The fourth lanes are spare.
@@ -82,11 +82,13 @@ class Builder {
   Builder(std::span<const FloatBox> boxes, std::vector<uint32_t>& indices, uint32_t leaf_size)
       : indices_(indices), leaf_size_(leaf_size), nodes_(2 * indices.size()) {
     for (auto& items : items_) items = std::make_unique_for_overwrite<Bounds[]>(indices.size());
-    for (size_t i = 0; i < indices.size(); ++i) items_[0][i] = item_of(boxes[indices[i]], indices[i]);
+    parallel_for(indices.size(), kParallelItems, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) items_[0][i] = item_of(boxes[indices[i]], indices[i]);
+    });
   }
 
   std::vector<AabbTree::Node> build() {
-    build(0, 0, static_cast<uint32_t>(indices_.size()), 0);
+    parallel_tasks([&](Tasks& tasks) { build(tasks, 0, 0, static_cast<uint32_t>(indices_.size()), 0); });
     std::vector<AabbTree::Node> compact;
     compact.reserve(count_nodes(0));
     copy(0, compact);
@@ -97,7 +99,7 @@ class Builder {
   // Builds over the items from `begin` to `end` of items_[level % 2]. A subtree of n items has at most 2n − 1
   // nodes: giving each that many slots lets threads work without talking, and copy() closes the gaps
   // afterwards.
-  void build(uint32_t slot, uint32_t begin, uint32_t end, int level) {
+  void build(Tasks& tasks, uint32_t slot, uint32_t begin, uint32_t end, int level) {
     const Bounds* items = items_[level % 2].get();
     Bounds box, centres;
     bound(items + begin, items + end, box, centres);
@@ -112,13 +114,10 @@ class Builder {
     const uint32_t middle = split(begin, end, level, Binning(centres));
     const uint32_t left = slot + 1, right = slot + 2 * (middle - begin);
     node.right = right;
-    if (end - begin >= kParallelItems) {
-      parallel_invoke([=, this] { build(left, begin, middle, level + 1); },
-                      [=, this] { build(right, middle, end, level + 1); });
-    } else {
-      build(left, begin, middle, level + 1);
-      build(right, middle, end, level + 1);
-    }
+    const auto build_right = [=, this, &tasks] { build(tasks, right, middle, end, level + 1); };
+    if (end - begin >= kParallelItems) tasks.add(build_right);
+    build(tasks, left, begin, middle, level + 1);
+    if (end - begin < kParallelItems) build_right();
   }
 
   static HWY_INLINE void bound(const Bounds* begin, const Bounds* end, Bounds& box, Bounds& centres) {

@@ -3,6 +3,7 @@
 #include <sdm/threads.h>
 
 #include <atomic>
+#include <functional>
 #include <chrono>
 #include <mutex>
 #include <numeric>
@@ -81,6 +82,21 @@ TEST(ParallelInvoke, AnExceptionLeavesTheLoopsOfTheOtherBranchWhole) {
 }
 
 // Once, a thread that waited in a nested loop took up another turn of the outer one, and the lock it held.
+TEST(ParallelTasks, RunsAllThatIsAddedAndPassesExceptionsOn) {
+  std::atomic<int> leaves{0};
+  const std::function<void(Tasks&, int)> split = [&](Tasks& tasks, int depth) {
+    if (depth == 0) {
+      ++leaves;
+      return;
+    }
+    tasks.add([&, depth] { split(tasks, depth - 1); });
+    split(tasks, depth - 1);
+  };
+  parallel_tasks([&](Tasks& tasks) { split(tasks, 10); });
+  EXPECT_EQ(leaves, 1024);
+  EXPECT_THROW(parallel_tasks([](Tasks& tasks) { tasks.add([] { throw Error("stop"); }); }), Error);
+}
+
 TEST(ParallelFor, AWaitingThreadTakesUpNoOtherWork) {
   const ThreadLimit limit(4);
   std::mutex mutex;
