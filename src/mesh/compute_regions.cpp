@@ -149,7 +149,8 @@ void ComputeLeaf(Regions& regions, const RegionSource& source, FaceShapes& shape
     plane.get(lane, region.plane);
     for (int k = 0; k < 3; ++k) wall[k].get(lane, region.wall[k]);
     const uint32_t face = regions.owners[first + lane].face;
-    shapes.normal[face] = normals.get(lane);
+    const double sign = source.inverted[face] ? -1 : 1;
+    for (int k = 0; k < 3; ++k) shapes.normal[face][k] = sign * normals.at[k][lane];
     std::copy_n(angle.at[lane], 3, shapes.angle[face].begin());
     shapes.thin[face] = !(height[lane] > kThin);
     shapes.sliver[face] = !(proportion[lane] > kSliver);

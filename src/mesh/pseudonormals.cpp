@@ -19,12 +19,8 @@ Vec3 edge_pseudonormal(const Pseudonormals& normals, const Topology& topology, s
 }
 
 Pseudonormals build_pseudonormals(FaceShapes faces, std::span<const Triangle> triangles,
-                                  const VertexFaces& vertex_faces, std::span<const std::uint8_t> inverted) {
+                                  const VertexFaces& vertex_faces) {
   Pseudonormals n{std::move(faces.normal), std::vector<Vec3>(vertex_faces.size())};
-  parallel_for(triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f)
-      if (inverted[f]) n.face[f] = -n.face[f];
-  });
   parallel_for(n.vertex.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       for (const std::uint32_t f : vertex_faces.of(v)) {

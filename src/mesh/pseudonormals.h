@@ -22,11 +22,9 @@ struct Pseudonormals {
 [[nodiscard]] Vec3 edge_pseudonormal(const Pseudonormals& normals, const Topology& topology,
                                      std::uint32_t edge);
 
-/// `inverted[f]` tells that face f's vertices run clockwise seen from outside. The angles' errors of 1e-7 can
-/// turn a sign only where q − c is as near to a right angle with n: no farther from it than single precision
-/// tells q − c. Cost: linear, all cores.
+/// From outward normals of faces. The angles' errors of 1e-7 can turn a sign only where q − c is as near to a
+/// right angle with n: no farther from it than single precision tells q − c. Cost: linear, all cores.
 [[nodiscard]] Pseudonormals build_pseudonormals(FaceShapes faces, std::span<const Triangle> triangles,
-                                                const VertexFaces& vertex_faces,
-                                                std::span<const std::uint8_t> inverted);
+                                                const VertexFaces& vertex_faces);
 
 }  // namespace sdm

@@ -56,19 +56,22 @@ float slope(const RegionSource& s, const Regions& regions, const FaceShapes& sha
   const Regions::Owner &own = regions.owners[owner], &next = regions.owners[owner + 1];
   if (shapes.thin[own.face] || !regions.enclosed[owner]) return kOpen;
   const Vec3& normal = shapes.normal[own.face];
-  double least_cosine = 1;
+  double cosine = 1;
+  std::uint8_t thin = 0;
   const auto include = [&](std::uint32_t face) {
-    const double cosine = dot(normal, shapes.normal[face]);
-    const bool turned = s.orientation.turned[face] != s.orientation.turned[own.face];
-    least_cosine = std::min(least_cosine, shapes.thin[face] ? -1 : turned ? -cosine : cosine);
+    cosine = std::min(cosine, dot(normal, shapes.normal[face]));
+    thin |= shapes.thin[face];
   };
-  for (std::uint32_t e = own.edges; e < next.edges; ++e)
-    for (const std::uint32_t face : s.topology.edge_faces(regions.edges[e].edge)) include(face);
+  for (std::uint32_t e = own.edges; e < next.edges; ++e) {
+    const auto faces = s.topology.edge_faces(regions.edges[e].edge);  // two, for they enclose the edge
+    include(faces[0]);
+    include(faces[1]);
+  }
   for (std::uint32_t v = own.vertices; v < next.vertices; ++v)
     for (const std::uint32_t face : s.vertex_faces.of(regions.vertices[v].vertex)) include(face);
-  const double sine = std::sqrt(1 - least_cosine * least_cosine);
-  if (!(sine < kSteepest * least_cosine)) return kOpen;
-  return static_cast<float>((1 + kRounding) * (sine / least_cosine) + kRounding);
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  if (thin || !(sine < kSteepest * cosine)) return kOpen;
+  return static_cast<float>((1 + kRounding) * (sine / cosine) + kRounding);
 }
 
 }  // namespace
@@ -106,7 +109,7 @@ Regions hand_out_sites(const RegionSource& s, const AabbTree& tree) {
       regions.neighbours[v] = spread_neighbours(s, vertex, neighbours.of(vertex));
     }
     for (std::size_t i = begin; i < end; ++i)
-      regions.enclosed[i] = s.orientation.orientable && (closed || encloses(s, regions, i));
+      regions.enclosed[i] = s.orientable && (closed || encloses(s, regions, i));
   });
   return regions;
 }

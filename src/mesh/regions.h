@@ -60,7 +60,7 @@ struct FaceBounds {
 
 /// Of each face of a mesh; 0 for ignored ones.
 struct FaceShapes {
-  std::vector<Vec3> normal;                 ///< unit length, 0 for faces without area
+  std::vector<Vec3> normal;                 ///< unit length, turned if inverted; 0 for faces without area
   std::vector<std::array<float, 3>> angle;  ///< at each corner, to within 1e-7
   std::vector<std::uint8_t> sliver;         ///< too thin for a normal that could be trusted
   std::vector<std::uint8_t> thin;  ///< too thin for a prism in single precision: its edges stand for it
@@ -91,8 +91,9 @@ struct RegionSource {
   std::span<const Triangle> triangles;
   const Topology& topology;
   const VertexFaces& vertex_faces;
-  const Orientation& orientation;
-  UnitFrame frame;  ///< that regions are in
+  bool orientable;
+  std::span<const std::uint8_t> inverted;  ///< if orientable: which faces to turn so that neighbours agree
+  UnitFrame frame;                         ///< that regions are in
 };
 
 /// Hands the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth a leaf. Their

@@ -25,7 +25,8 @@ void require_memory_for(const Mesh& mesh) {
 }
 
 RegionSource region_source(const Sites::Impl& s) {
-  return {s.mesh.positions, s.mesh.triangles, s.topology, s.vertex_faces, s.orientation, s.frame};
+  return {s.mesh.positions,         s.mesh.triangles, s.topology, s.vertex_faces,
+          s.orientation.orientable, s.inverted,       s.frame};
 }
 
 std::vector<std::uint32_t> faces_with_sites(const Topology& topology) {
@@ -54,15 +55,20 @@ std::vector<FloatBox> face_boxes(const Sites::Impl& s) {
   return boxes;
 }
 
-// Regions and what signs need, brought up to date with the positions and the tree.
-void refit_sites(Sites::Impl& s) {
-  const auto& triangles = s.mesh.triangles;
-  s.inverted = !s.orientation.orientable ? std::vector<std::uint8_t>(triangles.size(), 0)
-               : s.closed ? find_inverted(s.mesh.positions, s.frame, triangles, s.orientation, s.tree)
-                          : s.orientation.turned;
+void find_inverted(Sites::Impl& s) {
+  if (!s.orientation.orientable)
+    s.inverted.assign(s.mesh.triangles.size(), 0);
+  else if (s.closed)
+    s.inverted = find_inverted(s.mesh.positions, s.frame, s.mesh.triangles, s.orientation, s.tree);
+  else
+    s.inverted = s.orientation.turned;
+}
+
+// Regions and pseudonormals, brought up to date with the positions and with what is inverted.
+void refit_regions(Sites::Impl& s) {
   FaceShapes shapes = refit(s.regions, region_source(s));
   s.sliver = std::move(shapes.sliver);
-  s.normals = build_pseudonormals(std::move(shapes), triangles, s.vertex_faces, s.inverted);
+  s.normals = build_pseudonormals(std::move(shapes), s.mesh.triangles, s.vertex_faces);
 }
 
 }  // namespace
@@ -86,8 +92,9 @@ Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
         s.tree = build_aabb_tree(face_boxes(s), faces_with_sites(s.topology), kLeafFaces);
         s.wide = collapse(s.tree);
       });
+  find_inverted(s);
   s.regions = hand_out_sites(region_source(s), s.tree);
-  refit_sites(s);
+  refit_regions(s);
 }
 
 Sites::~Sites() = default;
@@ -105,7 +112,8 @@ void Sites::refit(std::span<const Vec3> positions) {
   s.frame = UnitFrame::of(bounds(s.mesh));
   sdm::refit(s.tree, face_boxes(s));
   sdm::refit(s.wide, s.tree);
-  refit_sites(s);
+  find_inverted(s);
+  refit_regions(s);
 }
 
 const Mesh& Sites::mesh() const {

@@ -62,7 +62,6 @@ struct Vec3Lanes {
   HWY_INLINE void set(size_t lane, const Vec3& v) {
     for (int k = 0; k < 3; ++k) at[k][lane] = v[k];
   }
-  [[nodiscard]] HWY_INLINE Vec3 get(size_t lane) const { return {at[0][lane], at[1][lane], at[2][lane]}; }
   HWY_INLINE Vec3v load(size_t i) const {
     const Doubles d;
     return {hn::Load(d, at[0] + i), hn::Load(d, at[1] + i), hn::Load(d, at[2] + i)};
