@@ -66,23 +66,28 @@ AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> 
   return build_aabb_tree(to_float(boxes), std::move(indices), leaf_size);
 }
 
-void refit(AabbTree& tree, std::span<const FloatBox> boxes) {
-  parallel_for(tree.nodes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      AabbTree::Node& node = tree.nodes[i];
-      if (!node.leaf()) continue;
-      node.box = boxes[tree.items[node.first]];
-      for (std::uint32_t k = 1; k < node.count; ++k)
-        node.box = unite(node.box, boxes[tree.items[node.first + k]]);
-    }
-  });
-  for (std::size_t i = tree.nodes.size(); i-- > 0;)
-    if (AabbTree::Node& node = tree.nodes[i]; !node.leaf())
-      node.box = unite(tree.nodes[i + 1].box, tree.nodes[node.right].box);
+void refit_leaves(AabbTree& tree, std::span<const FloatBox> leaf_boxes) {
+  std::size_t leaf = leaf_boxes.size();
+  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+    AabbTree::Node& node = tree.nodes[i];
+    node.box = node.leaf() ? leaf_boxes[--leaf] : unite(tree.nodes[i + 1].box, tree.nodes[node.right].box);
+  }
 }
 
 void refit(AabbTree& tree, std::span<const Box> boxes) {
-  refit(tree, to_float(boxes));
+  std::vector<std::uint32_t> leaves;
+  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i)
+    if (tree.nodes[i].leaf()) leaves.push_back(i);
+  std::vector<FloatBox> leaf_boxes(leaves.size());
+  parallel_for(leaves.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      const AabbTree::Node& node = tree.nodes[leaves[leaf]];
+      Box box;
+      for (std::uint32_t k = node.first; k < node.first + node.count; ++k) extend(box, boxes[tree.items[k]]);
+      leaf_boxes[leaf] = FloatBox::around(box);
+    }
+  });
+  refit_leaves(tree, leaf_boxes);
 }
 
 }  // namespace sdm

@@ -62,7 +62,8 @@ struct AabbTree {
                                        std::uint32_t leaf_size);
 
 /// Brings all boxes up to date, bottom-up, keeping the tree. Cost: linear, all cores.
-void refit(AabbTree& tree, std::span<const FloatBox> boxes);
 void refit(AabbTree& tree, std::span<const Box> boxes);
+/// The same from the boxes of the leaves, in their order.
+void refit_leaves(AabbTree& tree, std::span<const FloatBox> leaf_boxes);
 
 }  // namespace sdm

@@ -68,7 +68,8 @@ class ToUnit {
   const UnitFrame& frame_;
 };
 
-// From the cosine, whose rounding error of 1e-16 can be 2e-8 of an angle near 0 or π.
+// From the cosine. Near 0 and π its rounding is 2e-8 of the angle, which as a weight of a pseudonormal could
+// turn a sign only where the other faces leave it undecided to as many digits.
 HWY_INLINE Vec angle_of(Vec cosine) {
   const Doubles d;
   return hn::Acos(d, hn::Min(hn::Max(cosine, hn::Set(d, -1.0)), hn::Set(d, 1.0)));
@@ -94,18 +95,17 @@ HWY_INLINE Vec3v enclosing_centre(const Vec3v (&side)[3], const Vec (&squared)[3
   return mul(hn::Div(hn::Set(d, 1.0), total), sub_mul(mul(weight[1], side[0]), weight[2], side[2]));
 }
 
-void ComputeLeaf(Regions& regions, const RegionSource& source, FaceShapes& shapes, size_t leaf) {
+void ComputeLeaf(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                 std::span<const uint8_t> inverted, std::span<FaceShape> shapes, size_t leaf) {
   const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
-  Vec3Lanes corners[3], normals;
-  for (uint32_t lane = 0; lane < count; ++lane) {
-    const Triangle& t = source.triangles[regions.owners[first + lane].face];
-    for (int k = 0; k < 3; ++k) corners[k].set(lane, source.positions[t[k]]);
-  }
+  Vec3Lanes corners[3], normals, angles;
+  for (uint32_t lane = 0; lane < count; ++lane)
+    for (int k = 0; k < 3; ++k) corners[k].set(lane, placed[regions.places.corners[first + lane][k]]);
   FaceBounds& bounds = regions.bounds[leaf];
-  FourLanes plane, wall[3], angle;
+  FourLanes plane, wall[3];
   alignas(64) double height[kLanes], proportion[kLanes];
   const Doubles d;
-  const ToUnit unit(source.frame);
+  const ToUnit unit(frame);
   for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
     const Vec3v corner[3] = {corners[0].load(i), corners[1].load(i), corners[2].load(i)};
     const Vec3v side[3] = {unit.between(corner[0], corner[1]), unit.between(corner[1], corner[2]),
@@ -133,7 +133,7 @@ void ComputeLeaf(Regions& regions, const RegionSource& source, FaceShapes& shape
     // Two angles tell the third.
     const Vec a = angle_of(hn::Neg(hn::Mul(hn::Mul(inverse[0], inverse[2]), dot(side[0], side[2]))));
     const Vec b = angle_of(hn::Neg(hn::Mul(hn::Mul(inverse[1], inverse[0]), dot(side[1], side[0]))));
-    angle.store({a, b, hn::Sub(hn::Sub(hn::Set(d, std::numbers::pi), a), b)}, a, i);
+    angles.store({a, b, hn::Sub(hn::Sub(hn::Set(d, std::numbers::pi), a), b)}, i);
 
     const Vec3v centre = enclosing_centre(side, squared, longest_squared);
     const Vec3v from[3] = {centre, sub(centre, side[0]), add(centre, side[2])};
@@ -148,46 +148,33 @@ void ComputeLeaf(Regions& regions, const RegionSource& source, FaceShapes& shape
     FaceRegion& region = regions.faces[first + lane];
     plane.get(lane, region.plane);
     for (int k = 0; k < 3; ++k) wall[k].get(lane, region.wall[k]);
-    const uint32_t face = regions.owners[first + lane].face;
-    const double sign = source.inverted[face] ? -1 : 1;
-    for (int k = 0; k < 3; ++k) shapes.normal[face][k] = sign * normals.at[k][lane];
-    std::copy_n(angle.at[lane], 3, shapes.angle[face].begin());
-    shapes.thin[face] = !(height[lane] > kThin);
-    shapes.sliver[face] = !(proportion[lane] > kSliver);
+    FaceShape& shape = shapes[first + lane];
+    const double sign = inverted[regions.owners[first + lane].face] ? -1 : 1;
+    for (int k = 0; k < 3; ++k) {
+      shape.normal[k] = sign * normals.at[k][lane];
+      shape.angle[k] = angles.at[k][lane];
+    }
+    shape.thin = !(height[lane] > kThin);
+    shape.sliver = !(proportion[lane] > kSliver);
   }
 }
 
-void ComputeFaces(Regions& regions, const RegionSource& source, FaceShapes& shapes, size_t begin,
-                  size_t end) {
-  for (size_t leaf = begin; leaf < end; ++leaf) ComputeLeaf(regions, source, shapes, leaf);
+void ComputeFaces(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                  std::span<const uint8_t> inverted, std::span<FaceShape> shapes, size_t begin, size_t end) {
+  for (size_t leaf = begin; leaf < end; ++leaf) ComputeLeaf(regions, frame, placed, inverted, shapes, leaf);
 }
 
-void ComputeEdges(Regions& regions, const RegionSource& source, const FaceShapes& shapes, size_t begin,
+void ComputeEdges(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, size_t begin,
                   size_t end) {
+  // So much thicker that faces which are thin by their own measure are thin by this one, too.
+  constexpr double kHardlyThicker = 1.000001 * kThin;
   const Doubles d;
-  const ToUnit unit(source.frame);
+  const ToUnit unit(frame);
   for (size_t first = begin; first < end; first += kLanes) {
     const size_t count = std::min(kLanes, end - first);
-    // Step by step for all lanes, so that they wait for memory together: ends, faces, their third corners.
-    uint32_t corner[4][kLanes], faces[2][kLanes];
-    for (size_t lane = 0; lane < count; ++lane) {
-      const uint32_t edge = regions.edges[first + lane].edge;
-      const auto incident = source.topology.edge_faces(edge);
-      corner[0][lane] = source.topology.edges[edge][0];
-      corner[1][lane] = source.topology.edges[edge][1];
-      faces[0][lane] = incident[0];
-      faces[1][lane] = incident[incident.size() > 1 ? 1 : 0];
-    }
-    alignas(64) double has_wall[2][kLanes] = {};  // no wall towards a face that its edges stand for
-    for (size_t lane = 0; lane < count; ++lane)
-      for (int j = 0; j < 2; ++j) {
-        const Triangle& t = source.triangles[faces[j][lane]];
-        corner[2 + j][lane] = t[0] ^ t[1] ^ t[2] ^ corner[0][lane] ^ corner[1][lane];
-        has_wall[j][lane] = shapes.thin[faces[j][lane]] ? 0 : 1;
-      }
     Vec3Lanes points[4];
     for (size_t lane = 0; lane < count; ++lane)
-      for (int j = 0; j < 4; ++j) points[j].set(lane, source.positions[corner[j][lane]]);
+      for (int j = 0; j < 4; ++j) points[j].set(lane, placed[regions.places.edges[first + lane].corners[j]]);
 
     FourLanes starts, directions, wall[2];
     for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
@@ -199,7 +186,13 @@ void ComputeEdges(Regions& regions, const RegionSource& source, const FaceShapes
       for (int j = 0; j < 2; ++j) {
         const Vec3v opposite = unit.between(a, points[2 + j].load(i));
         const Vec3v height = sub_mul(opposite, dot(opposite, direction), direction);
-        const Vec3v inward = mul(hn::Load(d, has_wall[j] + i), normalized(height));
+        const Vec size = hn::Sqrt(dot(height, height));
+        const Vec3v third = sub(opposite, along);
+        const Vec longest =
+            hn::Sqrt(hn::Max(hn::Max(dot(along, along), dot(opposite, opposite)), dot(third, third)));
+        // No wall towards a face that its edges stand for.
+        const auto thick = hn::Gt(hn::Mul(size, length), hn::Mul(hn::Set(d, kHardlyThicker), longest));
+        const Vec3v inward = mul(hn::IfThenElseZero(thick, inverse_or_zero(size)), height);
         wall[j].store(inward, dot(inward, start), i);
       }
     }
@@ -213,17 +206,17 @@ void ComputeEdges(Regions& regions, const RegionSource& source, const FaceShapes
   }
 }
 
-void ComputeVertices(Regions& regions, const RegionSource& source, size_t begin, size_t end) {
+void ComputeVertices(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, size_t begin,
+                     size_t end) {
   constexpr int kRays = VertexRegion::kRays;
   const Doubles d;
-  const ToUnit unit(source.frame);
+  const ToUnit unit(frame);
   for (size_t first = begin; first < end; first += kLanes) {
     const size_t count = std::min(kLanes, end - first);
     Vec3Lanes points, ends[kRays];
     for (size_t lane = 0; lane < count; ++lane) {
-      points.set(lane, source.positions[regions.vertices[first + lane].vertex]);
-      for (int k = 0; k < kRays; ++k)
-        ends[k].set(lane, source.positions[regions.neighbours[first + lane][k]]);
+      points.set(lane, placed[first + lane]);
+      for (int k = 0; k < kRays; ++k) ends[k].set(lane, placed[regions.places.neighbours[first + lane][k]]);
     }
     FourLanes point, ray[kRays];
     for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
@@ -250,16 +243,18 @@ HWY_EXPORT(ComputeFaces);
 HWY_EXPORT(ComputeEdges);
 HWY_EXPORT(ComputeVertices);
 
-void compute_faces(Regions& regions, const RegionSource& source, FaceShapes& shapes, std::size_t begin,
+void compute_faces(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                   std::span<const std::uint8_t> inverted, std::span<FaceShape> shapes, std::size_t begin,
                    std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(ComputeFaces)(regions, source, shapes, begin, end);
+  HWY_DYNAMIC_DISPATCH(ComputeFaces)(regions, frame, placed, inverted, shapes, begin, end);
 }
-void compute_edges(Regions& regions, const RegionSource& source, const FaceShapes& shapes, std::size_t begin,
+void compute_edges(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, std::size_t begin,
                    std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(ComputeEdges)(regions, source, shapes, begin, end);
+  HWY_DYNAMIC_DISPATCH(ComputeEdges)(regions, frame, placed, begin, end);
 }
-void compute_vertices(Regions& regions, const RegionSource& source, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(ComputeVertices)(regions, source, begin, end);
+void compute_vertices(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                      std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(ComputeVertices)(regions, frame, placed, begin, end);
 }
 
 }  // namespace sdm

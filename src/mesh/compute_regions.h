@@ -7,17 +7,26 @@
 
 namespace sdm {
 
+struct FaceShape {
+  Vec3 normal;  ///< unit length, outward, 0 without area
+  Vec3 angle;   ///< at each corner
+  bool thin;    ///< too thin for a prism in single precision: its edges stand for it
+  bool sliver;  ///< too thin for a normal that could be trusted
+};
+
 // Each chooses the best vector instructions that the machine has, at run time.
 
 /// The faces of the leaves from `begin` to `end`: their regions and shapes, and the discs of their bounds.
-void compute_faces(Regions& regions, const RegionSource& source, FaceShapes& shapes, std::size_t begin,
+void compute_faces(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                   std::span<const std::uint8_t> inverted, std::span<FaceShape> shapes, std::size_t begin,
                    std::size_t end);
 
-/// The regions of the edges from `begin` to `end`; shapes tell the thin faces.
-void compute_edges(Regions& regions, const RegionSource& source, const FaceShapes& shapes, std::size_t begin,
+/// The regions of the edges from `begin` to `end`.
+void compute_edges(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, std::size_t begin,
                    std::size_t end);
 
 /// The regions of the vertices from `begin` to `end`.
-void compute_vertices(Regions& regions, const RegionSource& source, std::size_t begin, std::size_t end);
+void compute_vertices(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                      std::size_t begin, std::size_t end);
 
 }  // namespace sdm

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "hierarchy/aabb_tree.h"
+#include "mesh/pseudonormals.h"
 #include "mesh/topology.h"
 
 namespace sdm {
@@ -58,14 +59,17 @@ struct FaceBounds {
   alignas(32) float slope[kWidth];
 };
 
-/// Of each face of a mesh; 0 for ignored ones.
-struct FaceShapes {
-  std::vector<Vec3> normal;                 ///< unit length, turned if inverted; 0 for faces without area
-  std::vector<std::array<float, 3>> angle;  ///< at each corner, to within 1e-7
-  std::vector<std::uint8_t> sliver;         ///< too thin for a normal that could be trusted
-  std::vector<std::uint8_t> thin;  ///< too thin for a prism in single precision: its edges stand for it
-
-  explicit FaceShapes(std::size_t faces) : normal(faces), angle(faces), sliver(faces), thin(faces) {}
+/// The topology once more, by places: faces, edges and vertices are named by the indices of their regions.
+/// Refits read it in order, and what it refers to is near.
+struct SitePlaces {
+  struct Edge {
+    std::array<std::uint32_t, 4> corners;  ///< its ends, and the third corners of its first two faces
+    std::array<std::uint32_t, 2> faces;    ///< these faces, or one twice
+  };
+  std::vector<Triangle> corners;  ///< of each face
+  std::vector<Edge> edges;
+  std::vector<std::array<std::uint32_t, VertexRegion::kRays>> neighbours;  ///< of each vertex: ends of rays
+  CompressedRows<std::uint32_t> fans;  ///< of each vertex: 4f + k for each face f, of which it is corner k
 };
 
 /// The sites by the leaves of a tree over the faces. Each edge and vertex is owned by the first of its faces.
@@ -83,6 +87,7 @@ struct Regions {
 
   std::vector<std::array<std::uint32_t, VertexRegion::kRays>> neighbours;  ///< of `vertices`: ends of rays
   std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it make a closed sheet
+  SitePlaces places;
 };
 
 /// What regions are made of.
@@ -92,16 +97,25 @@ struct RegionSource {
   const Topology& topology;
   const VertexFaces& vertex_faces;
   bool orientable;
-  std::span<const std::uint8_t> inverted;  ///< if orientable: which faces to turn so that neighbours agree
-  UnitFrame frame;                         ///< that regions are in
+  double scale;  ///< of the frame that regions are in
 };
 
 /// Hands the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth a leaf. Their
 /// regions are left to refit(). Cost: linear, all cores.
 [[nodiscard]] Regions hand_out_sites(const RegionSource& source, const AabbTree& tree);
 
-/// Computes the regions, at first and again for moved vertices, and returns what signs need too. Cost:
-/// linear, all cores.
-FaceShapes refit(Regions& regions, const RegionSource& source);
+/// Positions in the order of the regions' vertices. Refits read them again and again, and this order is that
+/// of the tree, while a mesh may have any. Cost: linear, all cores.
+[[nodiscard]] std::vector<Vec3> place(const Regions& regions, std::span<const Vec3> positions);
+
+/// The boxes of the leaves. Cost: linear, all cores.
+[[nodiscard]] std::vector<FloatBox> leaf_boxes(const Regions& regions, const UnitFrame& frame,
+                                               std::span<const Vec3> placed);
+
+/// Computes the regions in this frame, and what signs need: pseudonormals, outward if `inverted` tells which
+/// faces run clockwise seen from outside, and which faces are slivers, too thin for normals that could be
+/// trusted. Cost: linear, all cores.
+void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+           std::span<const std::uint8_t> inverted, Pseudonormals& normals, std::vector<std::uint8_t>& sliver);
 
 }  // namespace sdm

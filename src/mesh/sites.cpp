@@ -24,11 +24,6 @@ void require_memory_for(const Mesh& mesh) {
   require_memory(kBytesPerFace * mesh.triangles.size() + kBytesPerVertex * mesh.positions.size(), "O2");
 }
 
-RegionSource region_source(const Sites::Impl& s) {
-  return {s.mesh.positions,         s.mesh.triangles, s.topology, s.vertex_faces,
-          s.orientation.orientable, s.inverted,       s.frame};
-}
-
 std::vector<std::uint32_t> faces_with_sites(const Topology& topology) {
   std::vector<std::uint32_t> faces;
   faces.reserve(topology.face_edges.size());
@@ -64,13 +59,6 @@ void find_inverted(Sites::Impl& s) {
     s.inverted = s.orientation.turned;
 }
 
-// Regions and pseudonormals, brought up to date with the positions and with what is inverted.
-void refit_regions(Sites::Impl& s) {
-  FaceShapes shapes = refit(s.regions, region_source(s));
-  s.sliver = std::move(shapes.sliver);
-  s.normals = build_pseudonormals(std::move(shapes), s.mesh.triangles, s.vertex_faces);
-}
-
 }  // namespace
 
 Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
@@ -92,9 +80,13 @@ Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
         s.tree = build_aabb_tree(face_boxes(s), faces_with_sites(s.topology), kLeafFaces);
         s.wide = collapse(s.tree);
       });
+  s.regions = hand_out_sites(
+      {s.mesh.positions, triangles, s.topology, s.vertex_faces, s.orientation.orientable, s.frame.scale},
+      s.tree);
+  s.normals = {std::vector<Vec3>(triangles.size()), std::vector<Vec3>(s.mesh.positions.size())};
+  s.sliver.resize(triangles.size());
   find_inverted(s);
-  s.regions = hand_out_sites(region_source(s), s.tree);
-  refit_regions(s);
+  sdm::refit(s.regions, s.frame, place(s.regions, s.mesh.positions), s.inverted, s.normals, s.sliver);
 }
 
 Sites::~Sites() = default;
@@ -110,10 +102,11 @@ void Sites::refit(std::span<const Vec3> positions) {
   std::copy(positions.begin(), positions.end(), s.mesh.positions.begin());
 
   s.frame = UnitFrame::of(bounds(s.mesh));
-  sdm::refit(s.tree, face_boxes(s));
+  const std::vector<Vec3> placed = place(s.regions, s.mesh.positions);
+  refit_leaves(s.tree, leaf_boxes(s.regions, s.frame, placed));
   sdm::refit(s.wide, s.tree);
   find_inverted(s);
-  refit_regions(s);
+  sdm::refit(s.regions, s.frame, placed, s.inverted, s.normals, s.sliver);
 }
 
 const Mesh& Sites::mesh() const {

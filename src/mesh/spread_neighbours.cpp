@@ -24,11 +24,12 @@ struct Directions {
   size_t size;
 };
 
-void place(const RegionSource& mesh, uint32_t vertex, std::span<const uint32_t> neighbours, Directions& to) {
-  const Vec3& v = mesh.positions[vertex];
+void place(std::span<const Vec3> positions, double scale, uint32_t vertex,
+           std::span<const uint32_t> neighbours, Directions& to) {
+  const Vec3& v = positions[vertex];
   for (size_t i = 0; i < to.size; ++i) {
     const bool filler = i >= neighbours.size();
-    const Vec3 away = mesh.frame.scale * (mesh.positions[neighbours[filler ? 0 : i]] - v);
+    const Vec3 away = scale * (positions[neighbours[filler ? 0 : i]] - v);
     to.x[i] = static_cast<float>(away[0]);
     to.y[i] = static_cast<float>(away[1]);
     to.z[i] = static_cast<float>(away[2]);
@@ -63,7 +64,8 @@ size_t most_opposed(const Directions& to, float x, float y, float z) {
   return best;
 }
 
-std::array<uint32_t, VertexRegion::kRays> SpreadNeighbours(const RegionSource& mesh, uint32_t vertex,
+std::array<uint32_t, VertexRegion::kRays> SpreadNeighbours(std::span<const Vec3> positions, double scale,
+                                                           uint32_t vertex,
                                                            std::span<const uint32_t> neighbours) {
   constexpr size_t kUsual = 16;  // neighbours for which no memory is taken
   const size_t lanes = hn::Lanes(Floats());
@@ -73,7 +75,7 @@ std::array<uint32_t, VertexRegion::kRays> SpreadNeighbours(const RegionSource& m
   if (size > kUsual) many.resize(4 * size);
   float* memory = size > kUsual ? many.data() : usual;
   Directions to{memory, memory + size, memory + 2 * size, memory + 3 * size, size};
-  place(mesh, vertex, neighbours, to);
+  place(positions, scale, vertex, neighbours, to);
 
   std::array<uint32_t, VertexRegion::kRays> chosen;
   chosen.fill(neighbours[0]);
@@ -96,10 +98,10 @@ namespace sdm {
 
 HWY_EXPORT(SpreadNeighbours);
 
-std::array<std::uint32_t, VertexRegion::kRays> spread_neighbours(const RegionSource& mesh,
-                                                                 std::uint32_t vertex,
+std::array<std::uint32_t, VertexRegion::kRays> spread_neighbours(std::span<const Vec3> positions,
+                                                                 double scale, std::uint32_t vertex,
                                                                  std::span<const std::uint32_t> neighbours) {
-  return HWY_DYNAMIC_DISPATCH(SpreadNeighbours)(mesh, vertex, neighbours);
+  return HWY_DYNAMIC_DISPATCH(SpreadNeighbours)(positions, scale, vertex, neighbours);
 }
 
 }  // namespace sdm

@@ -11,8 +11,10 @@ namespace sdm {
 
 /// Chooses neighbours of a vertex on all its sides: each the most opposed to the sum of the directions to
 /// those chosen before, so that no half of the directions around the vertex is left open, in which its cone
-/// would reach far out. Where there are fewer than kRays, the first stands for the rest.
+/// would reach far out. Where there are fewer than kRays, the first stands for the rest. `scale` brings the
+/// positions to the unit frame.
 [[nodiscard]] std::array<std::uint32_t, VertexRegion::kRays> spread_neighbours(
-    const RegionSource& mesh, std::uint32_t vertex, std::span<const std::uint32_t> neighbours);
+    std::span<const Vec3> positions, double scale, std::uint32_t vertex,
+    std::span<const std::uint32_t> neighbours);
 
 }  // namespace sdm

@@ -169,13 +169,4 @@ VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> tri
   });
 }
 
-VertexNeighbours vertex_neighbours(std::size_t vertex_count, const Topology& topology) {
-  return make_rows<std::uint32_t>(vertex_count, [&](const auto& put) {
-    for (const auto& [a, b] : topology.edges) {
-      put(a, b);
-      put(b, a);
-    }
-  });
-}
-
 }  // namespace sdm

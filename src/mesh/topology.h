@@ -48,10 +48,6 @@ using VertexFaces = CompressedRows<std::uint32_t>;
 [[nodiscard]] VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> triangles,
                                        const Topology& topology);
 
-/// The other ends of each vertex' edges, in increasing order.
-using VertexNeighbours = CompressedRows<std::uint32_t>;
-[[nodiscard]] VertexNeighbours vertex_neighbours(std::size_t vertex_count, const Topology& topology);
-
 /// Whether the face runs along its k-th edge from the smaller to the larger vertex.
 inline bool runs_forward(const Triangle& triangle, int k) {
   return triangle[k] < triangle[k < 2 ? k + 1 : 0];

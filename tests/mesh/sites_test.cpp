@@ -55,6 +55,9 @@ void expect_same(const Sites::Impl& a, const Sites::Impl& b) {
   EXPECT_TRUE(same_bits(a.regions.vertices, b.regions.vertices));
   EXPECT_TRUE(same_bits(a.regions.neighbours, b.regions.neighbours));
   EXPECT_TRUE(same_bits(a.regions.enclosed, b.regions.enclosed));
+  EXPECT_TRUE(same_bits(a.regions.places.corners, b.regions.places.corners));
+  EXPECT_TRUE(same_bits(a.regions.places.edges, b.regions.places.edges));
+  EXPECT_TRUE(same_bits(a.regions.places.fans.items, b.regions.places.fans.items));
   EXPECT_TRUE(same_bits(a.normals.face, b.normals.face));
   EXPECT_TRUE(same_bits(a.normals.vertex, b.normals.vertex));
   EXPECT_TRUE(same_bits(a.sliver, b.sliver));

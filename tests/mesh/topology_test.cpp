@@ -75,23 +75,6 @@ TEST(Topology, VertexFacesAgreeWithBruteForce) {
   }
 }
 
-TEST(Topology, VertexNeighboursAgreeWithBruteForce) {
-  std::mt19937 random(5);
-  for (int round = 0; round < 100; ++round) {
-    const Topology topology = build_topology(9, random_soup(random, 9, 25));
-    const VertexNeighbours rows = vertex_neighbours(9, topology);
-    for (std::uint32_t v = 0; v < 9; ++v) {
-      std::set<std::uint32_t> expected;
-      for (const auto& [a, b] : topology.edges) {
-        if (a == v) expected.insert(b);
-        if (b == v) expected.insert(a);
-      }
-      ASSERT_EQ(std::vector(rows.of(v).begin(), rows.of(v).end()),
-                std::vector(expected.begin(), expected.end()));
-    }
-  }
-}
-
 // Whether faces f and g, turned or not, run along their common edge in opposite directions.
 bool agree(const Triangle& f, bool f_turned, const Triangle& g, bool g_turned, const Edge& edge) {
   const auto forward = [&](const Triangle& t) {
