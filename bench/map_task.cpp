@@ -7,8 +7,13 @@
 
 namespace sdm::bench {
 
-MapTask::MapTask(std::shared_ptr<const Surface> o1, const Mesh& o2)
+MapTask::MapTask(std::shared_ptr<Surface> o1, const Mesh& o2)
     : surface_(std::move(o1)), sites_(o2), embree_(std::make_unique<EmbreeScene>(o2)) {
+  place_queries();
+}
+
+void MapTask::place_queries() {
+  queries_.clear();
   for (const Vec3& p : surface_->sample_points())
     queries_.push_back(
         {.point = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}});
@@ -22,8 +27,10 @@ void MapTask::ask_embree() {
   embree_->closest(queries_);
 }
 
-void MapTask::refit(std::span<const Vec3> positions) {
-  sites_.refit(positions);
+void MapTask::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
+  surface_->refit(o1);
+  place_queries();
+  sites_.refit(o2);
   embree_ = std::make_unique<EmbreeScene>(sites_.mesh());
 }
 

@@ -15,23 +15,26 @@ namespace sdm::bench {
 /// already.
 class MapTask {
  public:
-  MapTask(std::shared_ptr<const Surface> o1, const Mesh& o2);
+  MapTask(std::shared_ptr<Surface> o1, const Mesh& o2);
 
   void compute();
   void ask_embree();
 
-  /// Moves the vertices of O2: ours is refitted, Embree's tree built anew.
-  void refit(std::span<const Vec3> positions);
+  /// Moves the vertices: ours are refitted; Embree is given the new texels, and its tree is built anew.
+  void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
   /// Does both maps, and tells whether they agree at every texel to 1e-6 of the diagonal of both meshes' box.
   /// Says on stderr where they do not.
   [[nodiscard]] bool agrees();
 
   [[nodiscard]] std::size_t texels() const { return queries_.size(); }
+  [[nodiscard]] Surface& surface() { return *surface_; }
   [[nodiscard]] Sites& sites() { return sites_; }
 
  private:
-  std::shared_ptr<const Surface> surface_;
+  void place_queries();
+
+  std::shared_ptr<Surface> surface_;
   Sites sites_;
   DistanceMap map_;
   std::unique_ptr<EmbreeScene> embree_;

@@ -41,6 +41,11 @@ class Surface {
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
 
+  /// Moves the vertices, keeping the triangles and the atlas: every face's texels move with it, affinely; a
+  /// face whose vertices stay keeps its map to the bit. Throws sdm::Error, and changes nothing, when the count
+  /// differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces and texels, all cores.
+  void refit(std::span<const Vec3> positions);
+
   [[nodiscard]] const Mesh& mesh() const;
   [[nodiscard]] AtlasKind atlas_kind() const;
   [[nodiscard]] std::uint32_t resolution() const;
@@ -68,9 +73,9 @@ class Surface {
   [[nodiscard]] double utilisation() const;
   /// The largest factor by which a length grows from atlas to surface, relative to the atlas's own scale (for
   /// `uv`: the scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for
-  /// `charts`.
+  /// `charts`. Of the mesh that the atlas was laid out for, whatever refit has made of it.
   [[nodiscard]] double max_stretch() const;
-  /// An upper bound, computed once at the first call, on the distance of any point of the surface to the
+  /// An upper bound, computed at the first call (after a refit again), on the distance of any point of the surface to the
   /// nearest sample: since distances are 1-Lipschitz, also on the error of taking the nearest sample's
   /// distance. Bounded, not exact.
   [[nodiscard]] double sampling_bound() const;

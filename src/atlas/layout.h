@@ -21,6 +21,11 @@ struct Layout {
   double max_stretch = 1;
 };
 
+/// ∂p/∂u and ∂p/∂v of the affine map that takes the corners of a triangle in the atlas to its vertices: they
+/// solve p1 − p0 = (u1 − u0) ∂p/∂u + (v1 − v0) ∂p/∂v, and the same for p2.
+[[nodiscard]] std::array<Vec3, 2> affine_edges(const std::array<Vec2, 3>& corners,
+                                               std::span<const Vec3> positions, const Triangle& triangle);
+
 /// AtlasKind::charts and AtlasKind::triangles.
 [[nodiscard]] Layout chart_layout(const Mesh& mesh, const AtlasOptions& options);
 /// AtlasKind::uv. A chart is a set of faces that join at edges where their coordinates agree.

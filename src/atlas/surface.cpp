@@ -1,5 +1,6 @@
 #include <sdm/error.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/spatial_order.h"
 #include "core/vec.h"
+#include "mesh/validate.h"
 
 namespace sdm {
 namespace {
@@ -43,18 +45,18 @@ Vec3 point_of(const Surface::Impl& surface, std::uint32_t texel) {
   return point_at(surface, surface.texel_faces[texel], centre);
 }
 
-// The points of samples, in their order.
-std::vector<Vec3> points_of_samples(const Surface::Impl& surface) {
-  std::vector<Vec3> points(surface.samples.size());
+// Sets `points` to those of the samples, in their order.
+void find_points(const Surface::Impl& surface, std::vector<Vec3>& points) {
+  points.resize(surface.samples.size());
   parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = point_of(surface, surface.samples[i]);
   });
-  return points;
 }
 
 // Orders the samples in space, and notes their points.
 void order_samples(Surface::Impl& surface) {
-  const std::vector<Vec3> points = points_of_samples(surface);
+  std::vector<Vec3> points;
+  find_points(surface, points);
   std::vector<std::uint32_t> order = spatial_order(points);
   surface.sample_points.reserve(points.size());
   for (std::uint32_t& index : order) {
@@ -83,10 +85,27 @@ Surface::Surface(Mesh mesh, const AtlasOptions& options) {
   impl_->chart_count = layout.charts.size();
   impl_->max_stretch = layout.max_stretch;
   impl_->maps = std::move(layout.maps);
+  impl_->corners = std::move(layout.corners);
   impl_->face_charts = std::move(face_charts);
   impl_->texel_faces = std::move(texel_faces);
   impl_->samples = std::move(samples);
   order_samples(*impl_);
+}
+
+void Surface::refit(std::span<const Vec3> positions) {
+  Impl& s = *impl_;
+  std::vector<Vec3>& current = s.mesh.positions;
+  validate_positions(positions, current.size());
+  parallel_for(s.mesh.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const Triangle& t = s.mesh.triangles[f];
+      const bool moved = std::ranges::any_of(t, [&](std::uint32_t v) { return positions[v] != current[v]; });
+      if (moved && s.face_charts[f] != kNone) s.maps[f].edges = affine_edges(s.corners[f], positions, t);
+    }
+  });
+  std::ranges::copy(positions, current.begin());
+  find_points(s, s.sample_points);
+  s.lazy = std::make_unique<Impl::Lazy>();
 }
 
 Surface::~Surface() = default;
@@ -148,8 +167,9 @@ double Surface::utilisation() const {
 }
 
 double Surface::sampling_bound() const {
-  std::call_once(impl_->bounded, [&] { impl_->sampling_bound = sdm::sampling_bound(*this); });
-  return impl_->sampling_bound;
+  Impl::Lazy& lazy = *impl_->lazy;
+  std::call_once(lazy.bounded, [&] { lazy.sampling_bound = sdm::sampling_bound(*this); });
+  return lazy.sampling_bound;
 }
 
 }  // namespace sdm

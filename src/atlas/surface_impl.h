@@ -17,12 +17,17 @@ struct Surface::Impl {
   std::size_t chart_count = 0;
   double max_stretch = 1;
   std::vector<FaceMap> maps;
+  std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
   std::vector<Vec3> sample_points;
-  std::once_flag bounded;
-  double sampling_bound = 0;  ///< once `bounded`
-  mutable std::once_flag tiled{};
-  mutable Tiles tiles{};  ///< once `tiled`: see tiles_of
+
+  /// Made when they are asked for, and again when vertices have moved.
+  struct Lazy {
+    std::once_flag bounded, tiled;
+    double sampling_bound = 0;  ///< once `bounded`
+    Tiles tiles;                ///< once `tiled`: see tiles_of
+  };
+  std::unique_ptr<Lazy> lazy = std::make_unique<Lazy>();
 };
 
 }  // namespace sdm

@@ -80,8 +80,8 @@ AabbTree build_tree(const Surface& surface, const Tiles& tiles) {
 }  // namespace
 
 const Tiles& tiles_of(const Surface& surface) {
-  const Surface::Impl& impl = surface.impl();
-  std::call_once(impl.tiled, [&] {
+  Surface::Impl::Lazy& lazy = *surface.impl().lazy;
+  std::call_once(lazy.tiled, [&] {
     // Texels and the tile of each; tiles with boxes and nodes while the tree is built, a few a face and more
     // where faces are large.
     constexpr std::size_t kBytesPerTexel = 8, kBytesPerTile = 300;
@@ -93,9 +93,9 @@ const Tiles& tiles_of(const Surface& surface) {
     sort_by_face(surface, tiles);
     cut(surface, tiles);
     tiles.tree = build_tree(surface, tiles);
-    impl.tiles = std::move(tiles);
+    lazy.tiles = std::move(tiles);
   });
-  return impl.tiles;
+  return lazy.tiles;
 }
 
 }  // namespace sdm

@@ -57,15 +57,6 @@ void check_overlaps(const FaceGeometry& faces, std::uint32_t resolution, const L
          " overlap");
 }
 
-// p is affine in (u, v): the edges solve p1 − p0 = (u1 − u0) ∂p/∂u + (v1 − v0) ∂p/∂v, and the same for p2.
-std::array<Vec3, 2> affine_edges(const Mesh& mesh, const std::array<Vec2, 3>& uv, const Triangle& t) {
-  const Vec3& origin = mesh.positions[t[0]];
-  const Vec3 first = mesh.positions[t[1]] - origin, second = mesh.positions[t[2]] - origin;
-  const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
-  const double det = cross(a, b);
-  return {(1 / det) * (b[1] * first - a[1] * second), (1 / det) * (a[0] * second - b[0] * first)};
-}
-
 // The larger singular value of the matrix with these columns.
 double largest_stretch(const std::array<Vec3, 2>& edges) {
   const double e = squared_norm(edges[0]), f = dot(edges[0], edges[1]), g = squared_norm(edges[1]);
@@ -115,7 +106,7 @@ Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     if (faces.area[f] == 0) continue;
     const auto& uv = layout.corners[f];
-    layout.maps[f] = {uv[0], affine_edges(mesh, uv, mesh.triangles[f])};
+    layout.maps[f] = {uv[0], affine_edges(uv, mesh.positions, mesh.triangles[f])};
     surface_area += faces.area[f];
     atlas_area += 0.5 * std::abs(cross(uv[1] - uv[0], uv[2] - uv[0]));
     largest = std::max(largest, largest_stretch(layout.maps[f].edges));

@@ -58,6 +58,13 @@ void validate_positions(std::span<const Vec3> positions) {
   }
 }
 
+void validate_positions(std::span<const Vec3> positions, std::size_t count) {
+  if (positions.size() != count)
+    throw Error("the mesh has " + std::to_string(count) + " vertices, but " +
+                std::to_string(positions.size()) + " new positions were given");
+  validate_positions(positions);
+}
+
 void validate(const Mesh& mesh) {
   if (mesh.triangles.empty()) throw Error("there are no triangles");
   if (mesh.triangles.size() > kMaxTriangles)

@@ -1,8 +1,6 @@
-#include <sdm/error.h>
 #include <sdm/sites.h>
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "core/memory.h"
@@ -95,10 +93,7 @@ Sites& Sites::operator=(Sites&&) noexcept = default;
 
 void Sites::refit(std::span<const Vec3> positions) {
   Impl& s = *impl_;
-  if (positions.size() != s.mesh.positions.size())
-    throw Error("the mesh has " + std::to_string(s.mesh.positions.size()) + " vertices, but " +
-                std::to_string(positions.size()) + " new positions were given");
-  validate_positions(positions);
+  validate_positions(positions, s.mesh.positions.size());
   std::copy(positions.begin(), positions.end(), s.mesh.positions.begin());
 
   s.frame = UnitFrame::of(bounds(s.mesh));

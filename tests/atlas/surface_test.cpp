@@ -157,5 +157,52 @@ TEST(Progress, CanCancel) {
   EXPECT_THROW(Surface(test::load("cube.off"), options), Cancelled);
 }
 
+// With its vertices every face takes its texels along.
+TEST(Refit, MovesTexelsWithTheirFaces) {
+  for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
+    Mesh mesh = test::load("bunny.obj");
+    Surface surface(mesh, {.kind = kind, .resolution = 1024});
+    const std::vector<Vec3> before(surface.sample_points().begin(), surface.sample_points().end());
+    const std::vector<std::uint32_t> owners(surface.texel_faces().begin(), surface.texel_faces().end());
+    const double bound = surface.sampling_bound(), size = diagonal(bounds(mesh));
+
+    // An affine motion moves every point of the surface by the same rule as the vertices.
+    const auto moved = [](const Vec3& p) {
+      return Vec3{2 * p[0] + 0.5 * p[1] + 3, 2 * p[1] - 0.3 * p[2], 2 * p[2] + 0.1 * p[0] - 1};
+    };
+    std::vector<Vec3> positions = mesh.positions;
+    for (Vec3& p : positions) p = moved(p);
+    surface.refit(positions);
+    EXPECT_TRUE(std::ranges::equal(surface.mesh().positions, positions));
+    EXPECT_TRUE(std::ranges::equal(surface.texel_faces(), owners));
+    double worst = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      worst = std::max(worst, norm(surface.sample_points()[i] - moved(before[i])));
+      ASSERT_EQ(surface.sample_points()[i], surface.texel_point(surface.samples()[i]));
+    }
+    EXPECT_LE(worst, 1e-9 * size);
+    EXPECT_GT(surface.sampling_bound(), 1.5 * bound);
+
+    // Back again, to rounding; and where nothing moves, to the bit.
+    surface.refit(mesh.positions);
+    const std::vector<Vec3> back(surface.sample_points().begin(), surface.sample_points().end());
+    for (std::size_t i = 0; i < before.size(); ++i) ASSERT_LE(norm(back[i] - before[i]), 1e-9 * size);
+    EXPECT_NEAR(surface.sampling_bound(), bound, 1e-6 * size);
+    surface.refit(mesh.positions);
+    EXPECT_TRUE(std::ranges::equal(surface.sample_points(), back));
+  }
+}
+
+TEST(Refit, LeavesASurfaceAsItWasIfPositionsAreUnusable) {
+  Surface surface(test::load("cube.off"), {.resolution = 64});
+  const std::vector<Vec3> before(surface.sample_points().begin(), surface.sample_points().end());
+  std::vector<Vec3> positions = surface.mesh().positions;
+  positions[3][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(surface.refit(positions), Error);
+  positions.pop_back();
+  EXPECT_THROW(surface.refit(positions), Error);
+  EXPECT_TRUE(std::ranges::equal(surface.sample_points(), before));
+}
+
 }  // namespace
 }  // namespace sdm
