@@ -4,6 +4,7 @@
 #include "core/vec.h"
 #include "engine/cpu/finish.h"
 #include "engine/engine.h"
+#include "engine/simd_targets.h"
 #include "engine/support.h"
 #include "mesh/sites_impl.h"
 
@@ -97,6 +98,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
 // its vertices and lattice points, where regions meet, and away from it.
 TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
   std::size_t within = 0, beyond = 0, wrong = 0;
+  const std::vector<test::SimdTarget> targets = test::simd_targets();
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -144,6 +146,7 @@ TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
       if (random() % 5 == 0)
         for (double& x : q) x = std::round(x / (scale / 8)) * (scale / 8);
     }
+    const test::UseSimdTarget target(targets[seed % targets.size()]);
     const double limit = seed % 4 == 0 ? 0.1 * extent : std::numeric_limits<double>::infinity();
     const auto found = closest_points(sites, queries, {.max_distance = limit});
     const auto expected = closest_points(sites, queries, {.engine = EngineKind::reference});

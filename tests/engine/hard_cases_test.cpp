@@ -1,13 +1,16 @@
 // Inputs that break careless engines: ties everywhere, contact, extreme scales, slivers, soup.
 #include "core/vec.h"
 #include "engine/oracle.h"
+#include "engine/simd_targets.h"
 #include "engine/support.h"
 
 namespace sdm {
 namespace {
 
-class HardCases : public testing::TestWithParam<EngineKind> {
+class HardCases : public testing::TestWithParam<test::EngineOnTarget> {
  protected:
+  HardCases() : target_(GetParam().target) {}
+
   /// Maps and closest points against brute force; the tolerance is relative to the scene's diagonal.
   void expect_exact(const Mesh& o1, const Mesh& o2, std::uint32_t resolution = 64) const {
     const Surface surface(o1, {.resolution = resolution});
@@ -15,13 +18,17 @@ class HardCases : public testing::TestWithParam<EngineKind> {
     const double tolerance = 1e-6 * test::scene_diagonal(o1, o2);
     const std::vector<Vec3> points = test::sample_points(surface);
     const auto expected = test::evaluate([&](const Vec3& p) { return oracle::brute_force(o2, p); }, points);
-    test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam()}), expected,
+    test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam().engine}), expected,
                      tolerance);
-    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = GetParam()}),
+    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = GetParam().engine}),
                                 expected, tolerance);
   }
+
+ private:
+  test::UseSimdTarget target_;
 };
-INSTANTIATE_TEST_SUITE_P(Engines, HardCases, testing::ValuesIn(test::kEngines), test::engine_name);
+INSTANTIATE_TEST_SUITE_P(Engines, HardCases, testing::ValuesIn(test::engines_on_targets()),
+                         test::engine_on_target_name);
 
 TEST_P(HardCases, ConcentricSpheres) {
   expect_exact(test::sphere(2), test::placed(test::sphere(3), "scale:2"));
@@ -32,7 +39,7 @@ TEST_P(HardCases, EverySiteEquallyNear) {
   const Sites sites(test::sphere(5));
   const std::vector<Vec3> centre(1000, Vec3{});
   const double expected = oracle::brute_force(sites.mesh(), {});
-  test::expect_closest_points(sites, centre, closest_points(sites, centre, {.engine = GetParam()}),
+  test::expect_closest_points(sites, centre, closest_points(sites, centre, {.engine = GetParam().engine}),
                               std::vector<double>(centre.size(), expected), 1e-6);
 }
 
@@ -45,7 +52,7 @@ TEST_P(HardCases, IdenticalMeshes) {
   const Mesh mesh = test::load("head.off", "fit");
   const Surface surface(mesh, {.resolution = 256});
   const Sites sites(mesh);
-  test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam()}),
+  test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam().engine}),
                    std::vector<double>(surface.samples().size(), 0.0),
                    1e-6 * test::scene_diagonal(mesh, mesh));
 }
@@ -73,7 +80,7 @@ TEST_P(HardCases, SliversWhoseNormalIsNoise) {
     const auto expected =
         test::evaluate([&](const Vec3& p) { return oracle::brute_force(mesh, p); }, queries);
     ASSERT_NEAR(expected[0], 0, 1e-12);
-    const auto closest = closest_points(sites, queries, {.engine = GetParam()});
+    const auto closest = closest_points(sites, queries, {.engine = GetParam().engine});
     for (std::size_t k = 0; k < queries.size(); ++k) {
       EXPECT_NEAR(closest[k].distance, expected[k], 1e-9);
       EXPECT_NEAR(norm(closest[k].point - queries[k]), closest[k].distance, 1e-12);
@@ -166,9 +173,9 @@ TEST_P(HardCases, RandomQueries) {
   std::vector<Vec3> queries;  // scattered: nothing that neighbours could share
   for (int i = 0; i < 5000; ++i) queries.push_back(test::random_point({{-2, -2, -2}, {3, 3, 3}}, random));
   const auto expected = test::evaluate([&](const Vec3& p) { return oracle::brute_force(mesh, p); }, queries);
-  test::expect_closest_points(sites, queries, closest_points(sites, queries, {.engine = GetParam()}),
+  test::expect_closest_points(sites, queries, closest_points(sites, queries, {.engine = GetParam().engine}),
                               expected, 1e-6 * 8);
-  EXPECT_TRUE(closest_points(sites, {}, {.engine = GetParam()}).empty());
+  EXPECT_TRUE(closest_points(sites, {}, {.engine = GetParam().engine}).empty());
 }
 
 }  // namespace
