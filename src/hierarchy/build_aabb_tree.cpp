@@ -161,8 +161,8 @@ class Builder {
     int axis, bin;  ///< the first bin of the right side; axis −1 if the centres of all items agree
   };
 
-  // The cut of least cost, area × count summed over both sides, by the surface area heuristic. Of many items
-  // a sample tells as much as all.
+  // The cut of least cost, area × leaves summed over both sides, by the surface area heuristic: a leaf is
+  // visited as a whole, full or not. Of many items a sample tells as much as all.
   Cut best_cut(const Bounds* items, uint32_t item_count, const Binning& binning) const {
     constexpr int kBins = Binning::kBins;
     constexpr uint32_t kSample = 512;
@@ -178,8 +178,9 @@ class Builder {
         ++count[axis][bin[axis]];
       }
     }
-    const auto cost = [](const Bounds& side, uint32_t side_count) {
-      return side.half_area() * static_cast<float>(side_count);
+    const auto cost = [&](const Bounds& side, uint32_t side_count) {
+      const uint32_t leaves = (stride * side_count + leaf_size_ - 1) / leaf_size_;
+      return side.half_area() * static_cast<float>(leaves);
     };
 
     Cut best{-1, 0};

@@ -19,7 +19,7 @@ namespace {
 // A list for a group is worth its traversal where the group has so many points for each leaf of O2's tree
 // within reach, or is as small as kFewPoints; else its parts fare better with traversals of their own.
 // (Measured.)
-constexpr std::size_t kPointsPerLeaf = 12, kFewPoints = 64;
+constexpr std::size_t kPointsPerLeaf = 14, kFewPoints = 64;
 // So many sites are evaluated for all packets of a ball, rather than filtered any further: more where there
 // are only four packets. (Measured.)
 constexpr std::size_t few_sites(int level) {
@@ -171,7 +171,7 @@ class Search {
 
   uint32_t faces_in(uint32_t leaf) const { return regions_.leaves[leaf + 1] - regions_.leaves[leaf]; }
 
-  // The leaves of the tree that come within reach, in their order. Returns false if there are more than
+  // The leaves of the tree that come within reach, as children of nodes. Returns false if there are more than
   // `most`.
   bool find_leaves(const Reach& reach, size_t most) {
     auto& open = s_.open;
