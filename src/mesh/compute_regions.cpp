@@ -54,11 +54,7 @@ class ToUnit {
  public:
   explicit ToUnit(const UnitFrame& frame) : frame_(frame) {}
 
-  HWY_INLINE Vec3v point(const Vec3v& p) const {
-    const Doubles d;
-    const Vec3& origin = frame_.origin;
-    return between({hn::Set(d, origin[0]), hn::Set(d, origin[1]), hn::Set(d, origin[2])}, p);
-  }
+  HWY_INLINE Vec3v point(const Vec3v& p) const { return between(splat(frame_.origin), p); }
   // From a to b. The scale is a power of two: the difference is as exact as the mesh.
   HWY_INLINE Vec3v between(const Vec3v& a, const Vec3v& b) const {
     return mul(hn::Set(Doubles(), frame_.scale), sub(b, a));

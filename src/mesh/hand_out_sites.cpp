@@ -127,7 +127,6 @@ Regions hand_out_sites(const RegionSource& s, const AabbTree& tree) {
         });
         regions.vertices.resize(vertices);
         regions.bounds.resize(regions.leaves.size() - 1);
-        regions.neighbours.resize(vertices);
         places.neighbours.resize(vertices);
         for (std::size_t v = 0; v < vertices; ++v) regions.vertices[v].vertex = sites.vertices()[v];
       });
@@ -136,11 +135,8 @@ Regions hand_out_sites(const RegionSource& s, const AabbTree& tree) {
   parallel_for(faces, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::uint32_t e = regions.owners[begin].edges; e < regions.owners[end].edges; ++e)
       regions.edges[e].edge = sites.edges()[e];
-    for (std::uint32_t v = regions.owners[begin].vertices; v < regions.owners[end].vertices; ++v) {
+    for (std::uint32_t v = regions.owners[begin].vertices; v < regions.owners[end].vertices; ++v)
       places.neighbours[v] = spread_neighbours(placed, s.scale, v, neighbours.of(v));
-      for (int k = 0; k < VertexRegion::kRays; ++k)
-        regions.neighbours[v][k] = sites.vertices()[places.neighbours[v][k]];
-    }
     for (std::size_t i = begin; i < end; ++i)
       regions.enclosed[i] = s.orientable && (closed || encloses(s, regions, i));
   });

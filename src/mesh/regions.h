@@ -85,7 +85,6 @@ struct Regions {
   std::vector<EdgeRegion> edges;
   std::vector<VertexRegion> vertices;
 
-  std::vector<std::array<std::uint32_t, VertexRegion::kRays>> neighbours;  ///< of `vertices`: ends of rays
   std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it make a closed sheet
   SitePlaces places;
 };

@@ -22,6 +22,12 @@ struct Vec3v {
   Vec x, y, z;
 };
 
+// The same vector in every lane.
+HWY_INLINE Vec3v splat(const Vec3& v) {
+  const Doubles d;
+  return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
+}
+
 HWY_INLINE Vec3v add(const Vec3v& a, const Vec3v& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }

@@ -53,7 +53,7 @@ void expect_same(const Sites::Impl& a, const Sites::Impl& b) {
   EXPECT_TRUE(same_bits(a.regions.faces, b.regions.faces));
   EXPECT_TRUE(same_bits(a.regions.edges, b.regions.edges));
   EXPECT_TRUE(same_bits(a.regions.vertices, b.regions.vertices));
-  EXPECT_TRUE(same_bits(a.regions.neighbours, b.regions.neighbours));
+  EXPECT_TRUE(same_bits(a.regions.places.neighbours, b.regions.places.neighbours));
   EXPECT_TRUE(same_bits(a.regions.enclosed, b.regions.enclosed));
   EXPECT_TRUE(same_bits(a.regions.places.corners, b.regions.places.corners));
   EXPECT_TRUE(same_bits(a.regions.places.edges, b.regions.places.edges));

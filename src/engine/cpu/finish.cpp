@@ -11,32 +11,13 @@
 #include "core/vec.h"
 #include "engine/closest_on_face.h"
 #include "engine/engine.h"
+#include "mesh/vec_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr size_t kPacket = ClosestPacket::kSize;
-using Doubles = hn::CappedTag<double, 8>;
-using Vec = hn::Vec<Doubles>;
-
-struct Vec3v {
-  Vec x, y, z;
-};
-HWY_INLINE Vec dot(const Vec3v& a, const Vec3& b) {
-  const Doubles d;
-  return hn::MulAdd(a.z, hn::Set(d, b[2]), hn::MulAdd(a.y, hn::Set(d, b[1]), hn::Mul(a.x, hn::Set(d, b[0]))));
-}
-HWY_INLINE Vec3v minus(const Vec3v& a, const Vec3& b) {
-  const Doubles d;
-  return {hn::Sub(a.x, hn::Set(d, b[0])), hn::Sub(a.y, hn::Set(d, b[1])), hn::Sub(a.z, hn::Set(d, b[2]))};
-}
-// a − t b
-HWY_INLINE Vec3v minus(const Vec3v& a, Vec t, const Vec3& b) {
-  const Doubles d;
-  return {hn::NegMulAdd(t, hn::Set(d, b[0]), a.x), hn::NegMulAdd(t, hn::Set(d, b[1]), a.y),
-          hn::NegMulAdd(t, hn::Set(d, b[2]), a.z)};
-}
+static_assert(kPacket == PointGroup::kPacket);  // winners come in whole packets
 
 // Queries, and what is found for them.
 struct Packet {
@@ -94,17 +75,16 @@ uint32_t on_face(const Sites::Impl& sites, uint32_t face, Packet& p, uint32_t la
   const Triangle& t = sites.mesh.triangles[face];
   const Vec3 &a = sites.mesh.positions[t[0]], &b = sites.mesh.positions[t[1]],
              &c = sites.mesh.positions[t[2]];
-  const Vec3 normal = cross(b - a, c - b);
-  const Vec3 wall[3] = {cross(normal, b - a), cross(normal, c - b), cross(normal, a - c)};
+  const Vec3 normal = sdm::cross(b - a, c - b);
+  const Vec3 wall[3] = {sdm::cross(normal, b - a), sdm::cross(normal, c - b), sdm::cross(normal, a - c)};
   const double offset = sdm::dot(b - a, wall[1]), inverse = 1 / squared_norm(normal);
   return for_lanes(p, lanes, [&](const Vec3v& query, Vec3v& from) HWY_ATTR {
     const Doubles d;
-    const Vec3v r = minus(query, a);
-    const Vec least =
-        hn::Min(hn::Min(dot(r, wall[0]), dot(r, wall[2])), hn::Sub(dot(r, wall[1]), hn::Set(d, offset)));
-    const Vec h = hn::Mul(dot(r, normal), hn::Set(d, inverse));
-    from = {hn::Mul(h, hn::Set(d, normal[0])), hn::Mul(h, hn::Set(d, normal[1])),
-            hn::Mul(h, hn::Set(d, normal[2]))};
+    const Vec3v r = sub(query, splat(a));
+    const Vec least = hn::Min(hn::Min(dot(r, splat(wall[0])), dot(r, splat(wall[2]))),
+                              hn::Sub(dot(r, splat(wall[1])), hn::Set(d, offset)));
+    const Vec h = hn::Mul(dot(r, splat(normal)), hn::Set(d, inverse));
+    from = mul(h, splat(normal));
     return hn::Gt(least, hn::Zero(d));
   });
 }
@@ -117,15 +97,15 @@ uint32_t on_edge(const Sites::Impl& sites, uint32_t edge, Packet& p, uint32_t la
   const auto faces = sites.topology.edge_faces(edge);
   return for_lanes(p, lanes, [&](const Vec3v& query, Vec3v& from) HWY_ATTR {
     const Doubles d;
-    const Vec3v r = minus(query, start);
-    const Vec t = hn::Mul(dot(r, along), hn::Set(d, inverse));
-    from = minus(r, t, along);
+    const Vec3v r = sub(query, splat(start));
+    const Vec t = hn::Mul(dot(r, splat(along)), hn::Set(d, inverse));
+    from = sub_mul(r, t, splat(along));
     auto inside = hn::And(hn::Gt(t, hn::Zero(d)), hn::Lt(t, hn::Set(d, 1.0)));
     for (const std::uint32_t face : faces) {
       const Triangle& corners = sites.mesh.triangles[face];
       const Vec3 opposite = sites.mesh.positions[corners[0] ^ corners[1] ^ corners[2] ^ a ^ b] - start;
       const Vec3 inward = opposite - sdm::dot(opposite, along) * inverse * along;
-      inside = hn::And(inside, hn::Le(dot(from, inward), hn::Zero(d)));
+      inside = hn::And(inside, hn::Le(dot(from, splat(inward)), hn::Zero(d)));
     }
     return inside;
   });
@@ -138,13 +118,13 @@ uint32_t on_vertex(const Sites::Impl& sites, uint32_t vertex, Packet& p, uint32_
   const int last = sites.alike ? 1 : 2;
   return for_lanes(p, lanes, [&](const Vec3v& query, Vec3v& from) HWY_ATTR {
     const Doubles d;
-    from = minus(query, point);
+    from = sub(query, splat(point));
     Vec most = hn::Zero(d);
     for (const std::uint32_t face : sites.vertex_faces.of(vertex)) {
       const Triangle& t = sites.mesh.triangles[face];
       const int corner = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
       for (int k = 1; k <= last; ++k)
-        most = hn::Max(most, dot(from, sites.mesh.positions[t[(corner + k) % 3]] - point));
+        most = hn::Max(most, dot(from, splat(sites.mesh.positions[t[(corner + k) % 3]] - point)));
     }
     return hn::Le(most, hn::Zero(d));
   });

@@ -40,8 +40,8 @@ void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, FloatBox& 
 }
 
 // Moves points to the frame. Returns whether one of them is far away; those are put at its origin.
-bool ToUnit(std::span<const Vec3> points, const UnitFrame& frame,
-            float (*position)[PointGroup::kMostPoints]) {
+bool MoveToFrame(std::span<const Vec3> points, const UnitFrame& frame,
+                 float (*position)[PointGroup::kMostPoints]) {
   const hn::CappedTag<double, 8> d;
   const hn::Rebind<float, decltype(d)> df;
   const size_t lanes = hn::Lanes(d);
@@ -79,7 +79,7 @@ namespace sdm {
 namespace {
 
 HWY_EXPORT(AroundPackets);
-HWY_EXPORT(ToUnit);
+HWY_EXPORT(MoveToFrame);
 
 // The ball about the middle of the box of the points of some balls, and that box in the place of the first.
 Ball around(std::span<const Ball> balls, std::span<FloatBox> boxes, FloatBox& box) {
@@ -102,7 +102,7 @@ Ball around(std::span<const Ball> balls, std::span<FloatBox> boxes, FloatBox& bo
 
 bool PointGroup::place(std::span<const Vec3> points, const UnitFrame& frame) {
   packets = (points.size() + kPacket - 1) / kPacket;
-  const bool some_far_away = HWY_DYNAMIC_DISPATCH(ToUnit)(points, frame, position);
+  const bool some_far_away = HWY_DYNAMIC_DISPATCH(MoveToFrame)(points, frame, position);
   for (auto& row : position) std::fill(row + points.size(), row + kPacket * packets, row[points.size() - 1]);
   std::vector<FloatBox> boxes(packets);  // of the points of each ball of a level
   balls[0].resize(packets);

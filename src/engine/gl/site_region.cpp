@@ -94,11 +94,11 @@ SiteRegion region_of(const Sites::Impl& sites, const VertexRegion& vertex, std::
   region.anchor = position(vertex.vertex);
   region.corners = {region.anchor};
   region.corner_count = 1;
-  const auto& neighbours = sites.regions.neighbours[index];
+  const auto& neighbours = sites.regions.places.neighbours[index];
   for (std::size_t k = 0; k < neighbours.size(); ++k) {
     const bool repeated =
         std::find(neighbours.begin(), neighbours.begin() + k, neighbours[k]) != neighbours.begin() + k;
-    const Vec3 ray = normalized(position(neighbours[k]) - region.anchor);
+    const Vec3 ray = normalized(position(sites.regions.vertices[neighbours[k]].vertex) - region.anchor);
     if (!repeated && ray != Vec3{}) add_wall(region, -ray, -dot(ray, region.anchor));
   }
   return region;
