@@ -36,7 +36,9 @@ Mesh armadillo(const char* placement) {
 
 Outcome against_embree(const Trial& trial, const Tasks& tasks, double at_least) {
   if (!all_agree(tasks)) return {};
-  return race(trial, ours(tasks), embree(tasks), {.at_least = at_least});
+  Outcome outcome = race(trial, ours(tasks), embree(tasks), {.at_least = at_least});
+  outcome.work = work_of(tasks);
+  return outcome;
 }
 
 Outcome bunny_to_armadillo(const Trial& trial, std::uint32_t resolution, const char* placement,

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -67,6 +68,15 @@ void print_rows(const Case& test, const Outcome& outcome) {
   std::fflush(stdout);
 }
 
+/// Counts of the search for each sixteen texels: they do not depend on the machine.
+nlohmann::ordered_json per_packet(const DescentCounts& work, std::size_t texels) {
+  const double packets = static_cast<double>(texels) / PointGroup::kPacket;
+  const auto of = [&](std::size_t count) { return static_cast<double>(count) / packets; };
+  return {{"groups", of(work.groups)},         {"nodes", of(work.nodes)},
+          {"leaves", of(work.leaves)},         {"tree_sites", of(work.tree_sites)},
+          {"list_blocks", of(work.list_blocks)}, {"evaluations", of(work.evaluations)}};
+}
+
 nlohmann::ordered_json to_json(const Outcome& outcome, int repetitions) {
   nlohmann::ordered_json json;
   json["verified"] = outcome.verified;
@@ -81,6 +91,7 @@ nlohmann::ordered_json to_json(const Outcome& outcome, int repetitions) {
   if (outcome.ours_mtexels_s) json["ours_mtexels_s"] = *outcome.ours_mtexels_s;
   if (outcome.peer_mtexels_s) json["peer_mtexels_s"] = *outcome.peer_mtexels_s;
   json["texels"] = outcome.texels;
+  if (outcome.work) json["work_a_packet"] = per_packet(*outcome.work, outcome.texels);
   json["threads"] = outcome.threads;
   json["repetitions"] = repetitions;
   return json;
@@ -126,8 +137,9 @@ int run(int argc, char** argv) {
     for (const Case& test : chosen) std::printf("%-20s %s\n", test.name.c_str(), test.what.c_str());
     return 0;
   }
+  const std::string unfinished = json_file + ".tmp";  // in its place when all is measured
   std::ofstream file;
-  if (!json_file.empty()) file.open(json_file);
+  if (!json_file.empty()) file.open(unfinished);
   if (!file) throw Error("cannot write " + json_file);
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   bool good = true;
@@ -140,7 +152,10 @@ int run(int argc, char** argv) {
     json[test.name] = to_json(outcome, n);
     good &= outcome.verified;
   }
-  if (!json_file.empty() && !(file << json.dump(2) << std::endl)) throw Error("cannot write " + json_file);
+  if (!json_file.empty()) {
+    if (!(file << json.dump(2) << std::endl)) throw Error("cannot write " + unfinished);
+    std::filesystem::rename(unfinished, json_file);
+  }
   if (!good) std::fputs("compare: results are wrong, see above\n", stderr);
   return good ? 0 : 1;
 }

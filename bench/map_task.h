@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "embree_map.h"
+#include "engine/cpu/descent.h"
 
 namespace sdm::bench {
 
@@ -28,6 +29,7 @@ class MapTask {
   [[nodiscard]] bool agrees();
 
   [[nodiscard]] std::size_t texels() const { return queries_.size(); }
+  [[nodiscard]] DescentCounts work() const { return count_work(sites_.impl(), surface_->sample_points()); }
   [[nodiscard]] Surface& surface() { return *surface_; }
   [[nodiscard]] Sites& sites() { return sites_; }
 

@@ -33,6 +33,12 @@ bool all_agree(const Tasks& tasks) {
   return good;
 }
 
+DescentCounts work_of(const Tasks& tasks) {
+  DescentCounts sum;
+  for (const MapTask* task : tasks) sum += task->work();
+  return sum;
+}
+
 Side ours(const Tasks& tasks, unsigned threads) {
   return side(tasks, threads, &MapTask::compute);
 }

@@ -40,17 +40,6 @@ TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
   }
 }
 
-DescentCounts work(const Surface& surface, const Sites& sites) {
-  const auto descent = std::make_unique<Descent>();
-  const std::span<const Vec3> points = surface.sample_points();
-  for (std::size_t first = 0; first < points.size(); first += PointGroup::kMostPoints) {
-    descent->points.place(points.subspan(first, std::min(PointGroup::kMostPoints, points.size() - first)),
-                          sites.impl().frame);
-    find_winners(sites.impl().wide, sites.impl().regions, 1e18f, *descent);
-  }
-  return descent->counts;
-}
-
 // Whatever single precision says, what is named is a local minimum; and what it leaves open is settled.
 TEST(Finish, TakesNoWinnerOnTrust) {
   std::mt19937 random(8);
@@ -170,11 +159,14 @@ TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
 TEST(Descent, EvaluatesFewSites) {
   const Surface bunny(test::load("bunny.obj", "fit"), {.resolution = 1024});
   const double packets = static_cast<double>(bunny.samples().size()) / PointGroup::kPacket;
-  const DescentCounts apart = work(bunny, Sites(test::load("armadillo.off", "fit,translate:0.8:0:0")));
+  const auto work = [&](const char* placement) {
+    return count_work(Sites(test::load("armadillo.off", placement)).impl(), bunny.sample_points());
+  };
+  const DescentCounts apart = work("fit,translate:0.8:0:0");
   EXPECT_LT(static_cast<double>(apart.evaluations), 3 * packets);
   EXPECT_LT(static_cast<double>(apart.list_blocks), 5 * packets);
   EXPECT_LT(static_cast<double>(apart.tree_sites), 20 * packets);
-  const DescentCounts through = work(bunny, Sites(test::load("armadillo.off", "fit,translate:0.1:0:0")));
+  const DescentCounts through = work("fit,translate:0.1:0:0");
   EXPECT_LT(static_cast<double>(through.evaluations), 15 * packets);
   EXPECT_LT(static_cast<double>(through.tree_sites), 50 * packets);
   EXPECT_GT(apart.groups, 0u);

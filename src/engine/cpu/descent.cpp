@@ -6,8 +6,10 @@
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <limits>
+#include <memory>
 
 #include "engine/cpu/site_lists-inl.h"
 
@@ -323,6 +325,16 @@ HWY_EXPORT(FindWinners);
 
 void find_winners(const WideTree& tree, const Regions& regions, float limit, Descent& descent) {
   HWY_DYNAMIC_DISPATCH(FindWinners)(tree, regions, limit, descent);
+}
+
+DescentCounts count_work(const Sites::Impl& sites, std::span<const Vec3> points) {
+  const auto descent = std::make_unique<Descent>();
+  for (std::size_t first = 0; first < points.size(); first += PointGroup::kMostPoints) {
+    descent->points.place(points.subspan(first, std::min(PointGroup::kMostPoints, points.size() - first)),
+                          sites.frame);
+    find_winners(sites.wide, sites.regions, 1e18f, *descent);
+  }
+  return descent->counts;
 }
 
 }  // namespace sdm

@@ -4,11 +4,12 @@
 
 #include <sdm/sites.h>
 
+#include <span>
 #include <vector>
 
 #include "engine/cpu/point_group.h"
 #include "engine/cpu/site_lists.h"
-#include "hierarchy/wide_tree.h"
+#include "mesh/sites_impl.h"
 
 namespace sdm {
 
@@ -20,6 +21,12 @@ struct DescentCounts {
   std::size_t tree_sites = 0;   ///< that passed, and were tested one by one
   std::size_t list_blocks = 0;  ///< of eight sites, tested in lists
   std::size_t evaluations = 0;  ///< of a site for a packet
+
+  DescentCounts& operator+=(const DescentCounts& other) {
+    groups += other.groups, nodes += other.nodes, leaves += other.leaves;
+    tree_sites += other.tree_sites, list_blocks += other.list_blocks, evaluations += other.evaluations;
+    return *this;
+  }
 };
 
 /// What a thread keeps between groups.
@@ -38,9 +45,11 @@ struct Descent {
 };
 
 /// Finds the closest site within `limit` for every point of descent.points; one that is farther may be named
-/// too. Selected in single precision: a
-/// winner can be another than the closest site only where the two differ by rounding. Chooses the best vector
-/// instructions that the machine has, at run time.
+/// too. Selected in single precision: a winner can be another than the closest site only where the two differ
+/// by rounding. Chooses the best vector instructions that the machine has, at run time.
 void find_winners(const WideTree& tree, const Regions& regions, float limit, Descent& descent);
+
+/// The work that it takes to find the winners of these points, at any distance: for tests and measurements.
+[[nodiscard]] DescentCounts count_work(const Sites::Impl& sites, std::span<const Vec3> points);
 
 }  // namespace sdm
