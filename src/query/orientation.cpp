@@ -20,8 +20,12 @@ int sign(double x) {
   return (x > 0) - (x < 0);
 }
 
-// Differences of coordinates as integers, in a unit that divides them all.
-using Integer = boost::multiprecision::cpp_int;
+// Differences of coordinates as integers, in a unit that divides them all: of any two doubles they have at
+// most 2100 bits, and a product of three three times as many. No memory is taken.
+using boost::multiprecision::cpp_int_backend;
+using Integer =
+    boost::multiprecision::number<cpp_int_backend<6400, 6400, boost::multiprecision::signed_magnitude,
+                                                  boost::multiprecision::unchecked, void>>;
 
 int exponent_of(double x) {  // x is a multiple of 2 to this power
   constexpr int kDigits = std::numeric_limits<double>::digits;
