@@ -70,6 +70,16 @@ PointPair closest(const Sides& a, const Sides& b) {
 
 }  // namespace
 
+double squared_box_distance(const Corners& a, const Corners& b) {
+  Vec3 gap;
+  for (int k = 0; k < 3; ++k) {
+    const auto [lo1, hi1] = std::minmax({a[0][k], a[1][k], a[2][k]});
+    const auto [lo2, hi2] = std::minmax({b[0][k], b[1][k], b[2][k]});
+    gap[k] = std::max({lo1 - hi2, lo2 - hi1, 0.0});
+  }
+  return squared_norm(gap);
+}
+
 PointPair closest_points(const Corners& a, const Corners& b) {
   return closest(Sides(a), Sides(b));
 }

@@ -7,6 +7,9 @@ namespace sdm {
 
 using Corners = std::array<Vec3, 3>;
 
+/// The squared distance of the boxes around two triangles: of the triangles at least as much.
+[[nodiscard]] double squared_box_distance(const Corners& a, const Corners& b);
+
 /// Whether the closed triangles have a point in common; touching counts. Exact for all finite coordinates.
 [[nodiscard]] bool triangles_intersect(const Corners& a, const Corners& b);
 

@@ -6,15 +6,6 @@
 namespace sdm {
 namespace {
 
-bool boxes_apart(const Corners& a, const Corners& b) {
-  for (int k = 0; k < 3; ++k) {
-    const auto [lo1, hi1] = std::minmax({a[0][k], a[1][k], a[2][k]});
-    const auto [lo2, hi2] = std::minmax({b[0][k], b[1][k], b[2][k]});
-    if (hi1 < lo2 || hi2 < lo1) return true;
-  }
-  return false;
-}
-
 using Signs = std::array<int, 3>;
 
 // The sides of t's plane that three points are on; none where t has no plane.
@@ -93,7 +84,7 @@ bool flat_intersect(const Corners& a, const Corners& b) {
 }  // namespace
 
 bool triangles_intersect(const Corners& a, const Corners& b) {
-  if (boxes_apart(a, b)) return false;
+  if (squared_box_distance(a, b) > 0) return false;
   const Signs b_sides = sides(a, b);
   if (one_sided(b_sides)) return false;
   const Signs a_sides = sides(b, a);

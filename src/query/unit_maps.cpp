@@ -72,4 +72,16 @@ float UnitMaps::round_up(double length) const {
   return static_cast<float>(std::min(kAbove * scale_ * length, 1e30));
 }
 
+Direction UnitMaps::direction(const Vec3& vector) const {
+  const Vec3 unit_vector = normalized(vector);
+  Direction result{.known = unit_vector != Vec3{}};
+  for (int i = 0; i < 3; ++i) {
+    const auto x = static_cast<float>(unit_vector[i]);
+    result.along[0][i] = -x;
+    for (int j = 0; j < 3; ++j) result.along[1][j] += x * to[0].row[i][j];
+    result.offset += x * to[0].offset[i];
+  }
+  return result;
+}
+
 }  // namespace sdm

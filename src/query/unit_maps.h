@@ -12,6 +12,13 @@ struct FrameMap {
                 ///< the map tells nothing
 };
 
+/// A direction of space, seen from both frames: along[0]·x1 + along[1]·x2 + offset is how far a point x2 in
+/// the frame of O2 lies from x1 in the frame of O1 in this direction, in the unit of O1's frame.
+struct Direction {
+  bool known = false;
+  float along[2][3] = {}, offset = 0;
+};
+
 /// Lengths are compared in one unit: the larger mesh is about 1 long.
 struct UnitMaps {
   FrameMap to[2];  ///< into the frame of O1, and of O2
@@ -22,6 +29,9 @@ struct UnitMaps {
 
   /// A length of O1, rounded up by more than rounding takes from a norm.
   [[nodiscard]] float round_up(double length) const;
+
+  /// The direction of a vector; not known if that is zero.
+  [[nodiscard]] Direction direction(const Vec3& vector) const;
 
  private:
   double scale_;
