@@ -118,6 +118,51 @@ HWY_INLINE Vec face_distances(const LeafFaces& a, size_t i, const LeafFaces& b, 
   return least;
 }
 
+// A box, as its centre and its half sides as vectors, in O1's frame.
+struct PlacedBox {
+  float centre[3], side[3][3] = {};
+
+  explicit PlacedBox(const CentredBox& box) {
+    for (int k = 0; k < 3; ++k) centre[k] = box.centre[k], side[k][k] = box.half[k];
+  }
+  // From O2's frame.
+  PlacedBox(const CentredBox& box, const FrameMap& map) {
+    for (int i = 0; i < 3; ++i) {
+      centre[i] = map.offset[i];
+      for (int k = 0; k < 3; ++k) {
+        centre[i] += map.row[i][k] * box.centre[k];
+        side[k][i] = map.row[i][k] * box.half[k];
+      }
+    }
+  }
+  HWY_INLINE Extent along(const Vec (&axis)[3]) const {
+    const Lanes d;
+    const Vec middle = dot(d, axis, centre);
+    Vec reach = hn::Abs(dot(d, axis, side[0]));
+    for (int k = 1; k < 3; ++k) reach = hn::Add(reach, hn::Abs(dot(d, axis, side[k])));
+    return {hn::Sub(middle, reach), hn::Add(middle, reach)};
+  }
+};
+
+// A lower bound for the faces of a leaf and a box, from the boxes of the faces and along their normals.
+inline float least_distance(const LeafFaces& faces, const PlacedBox& box) {
+  const Lanes d;
+  Vec least = hn::Inf(d);
+  for (size_t i = 0; i < faces.count(); i += hn::Lanes(d)) {
+    Vec corner[3][3], apart[3], axis[3];
+    faces.corners(i, corner);
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) axis[j] = hn::Set(d, j == k ? 1.0f : 0.0f);
+      apart[k] = gap(Extent::of(corner[0][k], corner[1][k], corner[2][k]), box.along(axis));
+    }
+    faces.normals(i, axis);
+    const Vec distance = hn::Max(distance_of_gaps(d, apart), gap(Extent::of(corner, axis), box.along(axis)));
+    // Lanes beyond the last face repeat it.
+    least = hn::Min(least, distance);
+  }
+  return hn::GetLane(hn::MinOfLanes(d, least));
+}
+
 // The least that the faces of a leaf reach along u, by the discs around them; in the leaf's frame.
 inline float least_along(const Regions& regions, uint32_t leaf, const float (&u)[3]) {
   const FaceBounds& bounds = regions.bounds[leaf];

@@ -61,8 +61,9 @@ class Search {
   void open(const Entry& entry) {
     ++w_.counts.nodes;
     const CentredBox box[2] = {box_of(entry, 0), box_of(entry, 1)};
-    const bool second_larger = box[0].size() * maps_.unit[0] < box[1].size() * maps_.unit[1];
-    const int side = entry.place[0].leaf() || (second_larger && !entry.place[1].leaf()) ? 1 : 0;
+    const int larger = box[0].size() * maps_.unit[0] < box[1].size() * maps_.unit[1];
+    const int side = entry.place[larger].leaf() ? 1 - larger : larger;
+    if (side != larger && put_off(entry, box[side])) return;
     const WideTree::Node& node = sites_[side]->wide.nodes[entry.place[side].child];
     const BoxDistances distances(maps_, direction_, side, box[1 - side]);
     alignas(64) float least[kWidth];
@@ -86,6 +87,20 @@ class Search {
     }
   }
 
+  // The box of a leaf says little of its faces if they are large: against a smaller box they are bounded one
+  // by one. Returns whether this pair is done with, or to be opened when it is its turn.
+  bool put_off(Entry entry, const CentredBox& small) {
+    const int large = entry.place[0].leaf() ? 0 : 1;
+    load_faces(large, entry.place[large].leaf_number());
+    const PlacedBox box = large == 1 ? PlacedBox(small) : PlacedBox(small, maps_.to[0]);
+    const float least = maps_.unit[0] * (least_distance(faces_[large], box) - maps_.to[0].error);
+    if (least > limit_) return true;
+    if (!(least > std::max(entry.least, 0.0f))) return false;
+    entry.least = least;
+    w_.apart.push(entry);
+    return true;
+  }
+
   // Whether all faces of the leaves are too far apart along the direction between the closest points so far.
   bool discs_apart(const Entry& entry) const {
     if (!direction_.known) return false;
@@ -95,18 +110,18 @@ class Search {
     return maps_.unit[0] * apart > limit_;
   }
 
+  void load_faces(int side, uint32_t leaf) {
+    if (loaded_[side] == leaf) return;
+    loaded_[side] = leaf;
+    faces_[side].load(*sites_[side], leaf);
+    if (side == 1) faces_[side].move(maps_.to[0]);
+    faces_[side].find_normals();
+  }
+
   void compare_leaves(const Entry& entry) {
     if (discs_apart(entry)) return;  // along a better direction than when the leaves were met
     ++w_.counts.leaf_pairs;
-    for (int side = 0; side < 2; ++side) {
-      const std::uint32_t leaf = entry.place[side].leaf_number();
-      if (loaded_[side] == leaf) continue;
-      loaded_[side] = leaf;
-      faces_[side].load(*sites_[side], leaf);
-      if (side == 1) faces_[side].move(maps_.to[0]);
-      faces_[side].find_normals();
-    }
-
+    for (int side = 0; side < 2; ++side) load_faces(side, entry.place[side].leaf_number());
     const LeafFaces &a = faces_[0], &b = faces_[1];
     Candidate candidates[kWidth * kWidth];
     size_t count = 0;
