@@ -1,7 +1,7 @@
 // What holds for the closest points of any two surfaces.
 #include "query/pair_search.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "engine/support.h"
 #include "poses.h"
@@ -212,6 +212,26 @@ TEST(PairSearch, FacesThatTouchAreFoundAmongMany) {
   const Separation found = closest(sheet, spiked);
   EXPECT_TRUE(found.intersecting);
   EXPECT_NEAR(norm(found.point1 - tip), 0, 1e-12);
+}
+
+// The work is logarithmic in the faces that do not compete, whatever the size of those that they meet.
+TEST(PairSearch, LooksAtFewFaces) {
+  const Sites ball(test::sphere(5)), box(test::cube(1.1)), pig(test::load("pig.off", "fit"));
+  const auto work = [](const Sites& o1, const Sites& o2, const Affine& pose) {
+    PairWorkspace workspace;
+    (void)find_intersection({o1.impl(), o2.impl(), pose}, workspace);
+    const std::size_t nodes = workspace.counts.nodes;
+    (void)find_closest({o1.impl(), o2.impl(), pose}, kAny, workspace);
+    return std::array{nodes, workspace.counts.nodes, workspace.counts.leaf_pairs,
+                      workspace.counts.triangle_pairs};
+  };
+  using testing::ElementsAre;
+  using testing::Le;
+  Affine turned = shift(0.01, 0.02, 0);
+  turned.rows = {{{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}};
+  EXPECT_THAT(work(ball, box, turned), ElementsAre(Le(200u), Le(600u), Le(350u), Le(60u)));
+  turned.offset = {2, 0, 0};
+  EXPECT_THAT(work(ball, pig, turned), ElementsAre(Le(2u), Le(450u), Le(150u), Le(100u)));
 }
 
 TEST(PairSearch, TakesNoMemoryOnceItHasSome) {
