@@ -1,7 +1,6 @@
 #include "query/solid.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "query/orientation.h"
 #include "query/triangle_pair.h"
@@ -30,13 +29,18 @@ Box posed(const FloatBox& box, const UnitFrame& frame, const Affine& pose) {
   return {middle - reach, middle + reach};
 }
 
-// All coordinates of `along` are positive.
 bool segment_meets(const Box& box, const Vec3& start, const Vec3& along) {
   constexpr double kRounding = 1e-12;
   double first = 0, last = 1;
   for (int k = 0; k < 3; ++k) {
-    first = std::max(first, (box.lo[k] - start[k]) / along[k]);
-    last = std::min(last, (box.hi[k] - start[k]) / along[k]);
+    if (along[k] == 0) {
+      if (start[k] < box.lo[k] || start[k] > box.hi[k]) return false;
+      continue;
+    }
+    const auto [enter, leave] =
+        std::minmax({(box.lo[k] - start[k]) / along[k], (box.hi[k] - start[k]) / along[k]});
+    first = std::max(first, enter);
+    last = std::min(last, leave);
   }
   return first <= last + kRounding;
 }
@@ -54,43 +58,6 @@ std::optional<int> crossing(const Vec3& p, const Vec3& q, const Corners& t) {
   return above_p ? 1 : -1;
 }
 
-class Winding {
- public:
-  Winding(const Sites::Impl& sites, const Affine& pose, std::vector<std::uint32_t>& stack)
-      : sites_(sites), pose_(pose), stack_(stack) {}
-
-  // How often the faces wind around p, told from the crossings of a segment that ends at q outside; nothing
-  // where it meets an edge.
-  std::optional<int> operator()(const Vec3& p, const Vec3& q) const {
-    int crossings = 0;
-    stack_.assign(1, 0);
-    while (!stack_.empty()) {
-      const std::uint32_t index = stack_.back();
-      const AabbTree::Node& node = sites_.tree.nodes[index];
-      stack_.pop_back();
-      if (!segment_meets(posed(node.box, sites_.frame, pose_), p, q - p)) continue;
-      if (!node.leaf()) {
-        stack_.push_back(index + 1);
-        stack_.push_back(node.right);
-      }
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const std::uint32_t face = sites_.tree.items[i];
-        const auto [a, b, c] = sites_.mesh.triangles[face];
-        const auto& at = sites_.mesh.positions;
-        const std::optional<int> sign = crossing(p, q, {pose_(at[a]), pose_(at[b]), pose_(at[c])});
-        if (!sign) return std::nullopt;
-        crossings += sites_.inverted[face] ? -*sign : *sign;
-      }
-    }
-    return crossings;
-  }
-
- private:
-  const Sites::Impl& sites_;
-  const Affine& pose_;
-  std::vector<std::uint32_t>& stack_;
-};
-
 bool contains_part(const Sites::Impl& solid, const Affine& pose, const Sites::Impl& other,
                    const Affine& other_pose, std::vector<std::uint32_t>& stack) {
   if (!is_solid(solid)) return false;
@@ -101,16 +68,41 @@ bool contains_part(const Sites::Impl& solid, const Affine& pose, const Sites::Im
 
 }  // namespace
 
+std::optional<int> winding(const Sites::Impl& sites, const Affine& pose, const Vec3& p, const Vec3& q,
+                           std::vector<std::uint32_t>& stack) {
+  int turns = 0;
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const std::uint32_t index = stack.back();
+    const AabbTree::Node& node = sites.tree.nodes[index];
+    stack.pop_back();
+    if (!segment_meets(posed(node.box, sites.frame, pose), p, q - p)) continue;
+    if (!node.leaf()) {
+      stack.push_back(index + 1);
+      stack.push_back(node.right);
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const std::uint32_t face = sites.tree.items[i];
+      const auto [a, b, c] = sites.mesh.triangles[face];
+      const auto& at = sites.mesh.positions;
+      const std::optional<int> sign = crossing(p, q, {pose(at[a]), pose(at[b]), pose(at[c])});
+      if (!sign) return std::nullopt;
+      turns += sites.inverted[face] ? -*sign : *sign;
+    }
+  }
+  return turns;
+}
+
 bool contains(const Sites::Impl& solid, const Affine& pose, const Vec3& point,
               std::vector<std::uint32_t>& stack) {
   const Box box = posed(solid.tree.nodes[0].box, solid.frame, pose);
   if (!sdm::contains(box, point)) return false;
-  const Winding winding(solid, pose, stack);
   const double length = 2 * diagonal(box);
   // Segments along (1, t, t²) that meet an edge are passed over. Those that meet the same edge lie in one
   // plane, and no plane through the point holds more than two of them: this ends.
   for (double t = 0.0137035999;; t += 0.0072973525)
-    if (const auto turns = winding(point, point + length * Vec3{1, t, t * t})) return *turns != 0;
+    if (const auto turns = winding(solid, pose, point, point + length * Vec3{1, t, t * t}, stack))
+      return *turns != 0;
 }
 
 bool one_contains_part_of_other(const MeshPair& pair, PairWorkspace& workspace) {

@@ -1,6 +1,8 @@
 // Meshes as the solids that they bound.
 #pragma once
 
+#include <optional>
+
 #include "query/pair_search.h"
 
 namespace sdm {
@@ -10,8 +12,14 @@ namespace sdm {
   return sites.closed && sites.orientation.orientable;
 }
 
-/// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its faces,
-/// turned outwards, wind around the point. Exact. Cost: O(log n) and the faces that a ray meets.
+/// How often the faces of a closed mesh moved by `pose`, turned outwards, wind around p: told by the segment
+/// to a point q outside the mesh. Nothing where that meets an edge. Exact, if p does not lie on the surface.
+/// Cost: O(log n) and the faces that the segment meets.
+[[nodiscard]] std::optional<int> winding(const Sites::Impl& sites, const Affine& pose, const Vec3& p,
+                                         const Vec3& q, std::vector<std::uint32_t>& stack);
+
+/// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its faces
+/// wind around the point. Exact. Cost: that of `winding`, most often once.
 [[nodiscard]] bool contains(const Sites::Impl& solid, const Affine& pose, const Vec3& point,
                             std::vector<std::uint32_t>& stack);
 

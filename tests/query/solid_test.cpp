@@ -40,7 +40,7 @@ TEST(Solid, Nested) {
 
 TEST(Solid, OpenMeshesHaveNoInside) {
   Mesh open = test::sphere(2);
-  open.triangles.pop_back();
+  open.triangles.erase(open.triangles.begin());
   EXPECT_FALSE(collide(open, scaled(test::sphere(2), 0.3)));
   EXPECT_FALSE(collide(open, scaled(open, 0.3)));
   EXPECT_TRUE(collide(test::sphere(2), scaled(open, 0.3)));
@@ -69,7 +69,21 @@ TEST(Solid, TouchingIsColliding) {
   EXPECT_FALSE(collide(test::cube(), test::cube(), {.offset = {std::nextafter(2.0, 3.0), 0.5, 0.5}}));
 }
 
-// A ray from the middle of a cube to its corners and edges is asked again.
+TEST(Solid, WindingIsNotToldByEdges) {
+  const Sites cube(test::cube()), mirrored(test::turned(test::cube()));
+  std::vector<std::uint32_t> stack;
+  const Vec3 middle{0, 0, 0};
+  for (const Vec3& q : {Vec3{3, 3, 3}, Vec3{3, 0, 3}, Vec3{3, 3, 1}, Vec3{0, 0, 4}})
+    EXPECT_FALSE(winding(cube.impl(), {}, middle, q, stack)) << "corner, edge, edge, diagonal of a side";
+  for (const Vec3& q : {Vec3{3, 1, 2}, Vec3{-1, 0.5, -4}, Vec3{0.5, -4, 0}}) {
+    const std::optional<int> turns = winding(cube.impl(), {}, middle, q, stack);
+    ASSERT_TRUE(turns);
+    EXPECT_EQ(std::abs(*turns), 1);
+    EXPECT_EQ(winding(mirrored.impl(), {}, middle, q, stack), turns);
+    EXPECT_EQ(winding(cube.impl(), {}, Vec3{-1.5, 0.9, -3}, q, stack), 0) << "outside";
+  }
+}
+
 TEST(Solid, ContainsOnTheGrid) {
   Mesh mesh = test::cube();
   for (int axis = 0; axis < 3; ++axis)  // shear: slanted sides

@@ -148,5 +148,25 @@ TEST(Orientation, IsExactWhereRoundingIsNot) {
   EXPECT_EQ(orientation(Vec2{0, 0}, Vec2{1e30, 1e30}, Vec2{third, std::nextafter(third, 1)}), 1);
 }
 
+// Whatever corner comes first, and at any power of two: rounding and underflow would have their say.
+TEST(Orientation, AgreesWithItself) {
+  const auto near = [](double x, int ulps) { return x + ulps * 1.1102230246251565e-16; };
+  const double small = std::ldexp(1, -350);
+  for (int i = 0; i < 24; ++i)
+    for (int j = 0; j < 24; ++j) {
+      const Vec2 a{near(0.5, i), near(0.5, j)}, b{12, 12}, c{24, 24};
+      ASSERT_EQ(orientation(a, b, c), orientation(b, c, a));
+      ASSERT_EQ(orientation(a, b, c), orientation(c, a, b));
+      ASSERT_EQ(orientation(a, b, c), -orientation(b, a, c));
+      ASSERT_EQ(orientation(a, b, c), (i < j) - (i > j));
+      const Vec3 p{near(0.5, i), near(0.5, j), near(0.5, i + j)}, q{1, 0.25, 0.75}, r{0.25, 0.75, 1},
+          s{0.1, 0.1, 0.1};
+      const int sign = orientation(p, q, r, s);
+      ASSERT_EQ(sign, -orientation(s, q, r, p));
+      ASSERT_EQ(sign, orientation(q, r, p, s));
+      ASSERT_EQ(sign, orientation(small * p, small * q, small * r, small * s));
+    }
+}
+
 }  // namespace
 }  // namespace sdm
