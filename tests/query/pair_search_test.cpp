@@ -165,7 +165,7 @@ TEST(PairSearch, FineDetailsFarOut) {
 
 TEST(PairSearch, GrainsAndWorlds) {
   const Mesh sphere = test::sphere(2);
-  for (const double scale : {1e-4, 1e-9, 1e-18, 1e-28}) {
+  for (const double scale : {1e-4, 1e-9, 1e-18, 1e-21, 1e-28}) {
     SCOPED_TRACE(scale);
     Mesh grain = sphere;
     for (Vec3& p : grain.positions) p = scale * p;
