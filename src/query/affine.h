@@ -16,16 +16,7 @@ struct Affine {
   [[nodiscard]] Vec3 operator()(const Vec3& p) const { return linear(p) + offset; }
 };
 
-/// First `inner`, then `outer`.
-inline Affine compose(const Affine& outer, const Affine& inner) {
-  Affine both{{}, outer(inner.offset)};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) both.rows[i][j] += outer.rows[i][k] * inner.rows[k][j];
-  return both;
-}
-
-/// Not finite where the map flattens space.
+/// The map back; not finite where the map flattens space.
 inline Affine inverse(const Affine& map) {
   const auto& [x, y, z] = map.rows;
   const Vec3 columns[3] = {cross(y, z), cross(z, x), cross(x, y)};

@@ -54,8 +54,8 @@ struct PairWorkspace {
 
   std::vector<Entry> overlapping;  ///< a stack
   Heap apart;
-  std::vector<std::uint32_t> nodes;
-  PairCounts counts;  ///< summed over searches
+  std::vector<std::uint32_t> nodes;  ///< for `contains`
+  PairCounts counts;                 ///< summed over searches
 };
 
 /// The closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic where few
