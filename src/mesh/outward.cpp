@@ -58,7 +58,7 @@ bool hollow(const Shell& shell, std::span<const Vec3> p, std::span<const Triangl
 std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions, const UnitFrame& frame,
                                         std::span<const Triangle> triangles, const Orientation& orientation,
                                         const AabbTree& tree) {
-  const auto shells = make_rows<std::uint32_t>(orientation.components, [&](const auto& put) {
+  const auto shells = make_rows<std::uint32_t>(orientation.first_face.size(), [&](const auto& put) {
     for (std::uint32_t f = 0; f < triangles.size(); ++f)
       if (orientation.component[f] != kNone) put(orientation.component[f], f);
   });

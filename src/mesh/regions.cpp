@@ -15,11 +15,10 @@ constexpr std::size_t kVertices = 4096, kLeaves = 128;  // grains
 // The slope of the bounds of a face and what it owns, from the least cosine of the angles between its normal
 // and those of the faces around.
 float slope_of(double cosine) {
-  constexpr float kOpen = 1e18f;
   constexpr double kSteepest = 20;    // more counts as open
   constexpr double kRounding = 1e-6;  // of single precision
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  if (!(sine < kSteepest * cosine)) return kOpen;
+  if (!(sine < kSteepest * cosine)) return FaceBounds::kOpen;
   return static_cast<float>((1 + kRounding) * (sine / cosine) + kRounding);
 }
 

@@ -50,9 +50,10 @@ struct alignas(64) VertexRegion {
 /// sheet whose normals keep within an angle of this normal, so does, up to its sign, the direction from a
 /// site to any x of its region: slope is the angle's tangent. (In polar cones: above any direction u in the
 /// plane the sheet around a vertex v has a point v + u + s normal, |s| ≤ slope; for u the direction of x − v
-/// in the plane, (x − v)·(u + s normal) ≤ 0 says |x − v in the plane| ≤ slope |h|.) Elsewhere slope is large.
+/// in the plane, (x − v)·(u + s normal) ≤ 0 says |x − v in the plane| ≤ slope |h|.) Elsewhere slope is kOpen.
 struct FaceBounds {
   static constexpr int kWidth = 8;
+  static constexpr float kOpen = 1e18f;  ///< slope elsewhere, and where a face is too thin for its normal
   alignas(32) float centre[3][kWidth];  ///< a point of the face
   alignas(32) float normal[3][kWidth];
   alignas(32) float radius[kWidth];

@@ -132,7 +132,8 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
   std::vector<std::uint32_t> members;  // of a component, in the order of their discovery
   for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
     if (topology.ignored(seed) || result.component[seed] != kNone) continue;
-    const auto component = static_cast<std::uint32_t>(result.components++);
+    const auto component = static_cast<std::uint32_t>(result.first_face.size());
+    result.first_face.push_back(static_cast<std::uint32_t>(seed));
     result.component[seed] = component;
     members.assign(1, static_cast<std::uint32_t>(seed));
     std::size_t turned_members = 0;

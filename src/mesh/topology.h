@@ -38,7 +38,7 @@ struct Topology {
 struct Orientation {
   std::vector<std::uint8_t> turned;
   std::vector<std::uint32_t> component;  ///< of each face, over two-face edges; kNone if ignored
-  std::size_t components = 0;
+  std::vector<std::uint32_t> first_face;  ///< of each component
   bool orientable = true;
 };
 [[nodiscard]] Orientation orient(std::span<const Triangle> triangles, const Topology& topology);

@@ -1,0 +1,11 @@
+// How often memory was taken.
+#pragma once
+
+#include <cstddef>
+
+namespace sdm::test {
+
+/// Calls of operator new in this program so far.
+[[nodiscard]] std::size_t allocations();
+
+}  // namespace sdm::test
