@@ -134,7 +134,7 @@ NumberedFiles::NumberedFiles(std::vector<File> files) : files_(std::move(files))
   for (std::size_t i = 1; i < files_.size(); ++i) {
     if (files_[i].number == files_[i - 1].number) {
       const auto names =
-          std::minmax(files_[i - 1].path.filename().string(), files_[i].path.filename().string());
+          std::minmax({files_[i - 1].path.filename().string(), files_[i].path.filename().string()});
       throw Error(names.first + " and " + names.second + " have the same number; remove one of them");
     }
     step = std::gcd(step, files_[i].number - files_[i - 1].number);
