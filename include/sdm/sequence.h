@@ -21,7 +21,8 @@ struct SequenceOptions {
 ///   walk_%04d.ply, walk_*.ply    the same by a pattern; * stands for digits only
 ///   walk.obj+motion.npy          positions of shape (T, V, 3), float32 or float64, of the V vertices that
 ///   the
-///                                mesh file lists, used or not
+///                                mesh file lists, used or not; where there is no such NPY file, the one of
+///                                that name beside the mesh
 ///   walk.glb                     glTF with morph targets: the first animation that has weights
 ///   part.stl                     any other mesh file: one frame, a body at rest
 /// Files are taken in the order of their numbers; numbers may start anywhere and go up in equal steps (the

@@ -23,10 +23,7 @@ struct SceneCommand : ::testing::Test {
     return nlohmann::json::parse(contents(out + "/scene.json"));
   }
   [[nodiscard]] MeshSequence sequence(std::size_t body) const {
-    std::string input = out + "/" + description()["bodies"][body]["sequence"].get<std::string>();
-    if (const std::size_t plus = input.find('+'); plus != std::string::npos)
-      input.insert(plus + 1, out + "/");
-    return MeshSequence(input);
+    return MeshSequence(out + "/" + description()["bodies"][body]["sequence"].get<std::string>());
   }
 };
 

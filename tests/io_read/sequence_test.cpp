@@ -215,6 +215,15 @@ TEST(SequenceNpy, EveryLayout) {
       }
 }
 
+TEST(SequenceNpy, AreFoundBesideTheMesh) {
+  const Mesh mesh = tetrahedron();
+  fresh("beside");
+  const std::string file = write("beside/four.off", off(mesh));
+  write("beside/motion.npy", npy(frames_of(mesh, 3)));
+  EXPECT_EQ(MeshSequence(file + "+motion.npy").frame_count(), 3u);
+  expect_refused(file + "+other.npy", {"beside/other.npy: cannot be opened: No such file"});
+}
+
 // The array is that of the vertices in the file, which may repeat some and not use others.
 TEST(SequenceNpy, VerticesAreThoseOfTheFile) {
   const std::string file =

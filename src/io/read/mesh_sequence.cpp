@@ -20,6 +20,12 @@ std::size_t place_of_plus(const std::string& input) {
   return input.ends_with(".npy") || input.ends_with(".NPY") ? input.rfind('+') : std::string::npos;
 }
 
+// Found from where sdm runs, else from the mesh's folder.
+fs::path npy_file(const fs::path& mesh, const fs::path& npy) {
+  std::error_code ignored;
+  return fs::exists(npy, ignored) ? npy : mesh.parent_path() / npy;
+}
+
 std::unique_ptr<FrameSource> open_file(const fs::path& file, double rate) {
   const FileBytes contents = read_bytes(file);
   if (contents.view().starts_with("\x93NUMPY"))
@@ -36,7 +42,7 @@ std::unique_ptr<FrameSource> open_source(const std::string& input, double rate) 
   if (fs::is_directory(input, ignored)) return numbered_files_in(input);
   if (fs::exists(input, ignored)) return open_file(input, rate);
   if (const std::size_t plus = place_of_plus(input); plus != std::string::npos)
-    return npy_frames(input.substr(0, plus), input.substr(plus + 1));
+    return npy_frames(input.substr(0, plus), npy_file(input.substr(0, plus), input.substr(plus + 1)));
   if (fs::path(input).filename().string().find_first_of("%*") != std::string::npos)
     return numbered_files_like(input);
   return open_file(input, rate);
