@@ -10,9 +10,9 @@
 
 #include "core/parallel.h"
 #include "heap.h"
-#include "letters.h"
+#include "scene/letters.h"
 #include "race.h"
-#include "reduce_mesh.h"
+#include "scene/reduce_mesh.h"
 #include "refine_mesh.h"
 #include "scenes.h"
 

@@ -21,7 +21,7 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "raster_laws.h"
-#include "reduce_mesh.h"
+#include "scene/reduce_mesh.h"
 #include "scenes.h"
 
 namespace sdm::bench {

@@ -5,7 +5,8 @@
 
 #include <string>
 
-#include "reduce_mesh.h"
+#include "scene/box_mesh.h"
+#include "scene/reduce_mesh.h"
 
 namespace sdm::bench {
 
@@ -21,16 +22,9 @@ Mesh paper_figure() {
 
 Mesh paper_box(const Mesh& figure) {
   constexpr double margin = 0.12;
-  const Box box = bounds(figure);
-  Mesh result;
-  // Corner 4z + 2y + x lies at the high end of the axes whose bit is set.
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3& p = result.positions.emplace_back();
-    for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.hi[k] + margin : box.lo[k] - margin;
-  }
-  result.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return result;
+  Box box = bounds(figure);
+  for (int k = 0; k < 3; ++k) box.lo[k] -= margin, box.hi[k] += margin;
+  return box_mesh(box);
 }
 
 }  // namespace sdm::bench

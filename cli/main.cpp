@@ -3,6 +3,7 @@
 #include "info.h"
 #include "map.h"
 #include "progress_line.h"
+#include "scene.h"
 
 #include <sdm/error.h>
 #include <sdm/version.h>
@@ -33,6 +34,7 @@ int main(int argc, char** argv) {
     add_map_command(app);
     add_info_command(app);
     add_devices_command(app);
+    add_scene_command(app);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) std::cout << app.help();
     flush_output();

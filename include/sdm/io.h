@@ -19,6 +19,9 @@ namespace sdm {
 /// in the sense of validate().
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& file);
 
+/// Binary PLY of the positions, in double precision, and triangles; read_mesh returns them to the bit.
+void write_ply(const std::filesystem::path& file, const Mesh& mesh);
+
 /// Colours for looking at maps.
 enum class Colormap {
   automatic,  ///< diverging where the map has both signs; else viridis, which then uses its whole scale

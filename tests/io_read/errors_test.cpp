@@ -222,7 +222,7 @@ TEST(Errors, Gltf) {
       {"\"count\":3", "\"count\":4", "reaches beyond its buffer view"},
       {"\"count\":3", "\"count\":18446744073709551615", "more than 2^32"},
       {"\"bufferView\":0", "\"bufferView\":0,\"byteOffset\":40", "reaches beyond its buffer view"},
-      {"\"bufferView\":0", "\"bufferView\":0,\"sparse\":{}", "sparse"},
+      {"\"bufferView\":0", "\"bufferView\":0,\"sparse\":{}", "key 'count' not found"},
       {"\"bufferView\":0,", "", "not valid glTF"},
       {"5126", "9", "component type 9"},
       {"VEC3", "MAT4", "type MAT4"},

@@ -1,10 +1,11 @@
-// Whatever the bytes are: a valid mesh or sdm::Error.
+// Whatever the bytes are: a valid mesh, or sequence of positions, or sdm::Error.
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/sequence.h>
 
 #include <random>
 
+#include "io_read/sequences.h"
 #include "io_read/writers.h"
 #include "mesh/shapes.h"
 
@@ -34,15 +35,22 @@ std::vector<Seed> seeds() {
           {"c.ply", ply_binary(mesh, std::endian::big)},
           {"a.glb", glb(gltf_json(mesh, nodes, ""), gltf_buffer(mesh))},
           {"a.gltf", gltf_json(mesh, nodes, R"(,"uri":"data:;base64,)" + base64(gltf_buffer(mesh)) + '"')},
-          {"a.3ds", tds(mesh)}};
+          {"a.3ds", tds(mesh)},
+          {"a.npy", npy(frames_of(mesh, 3))},
+          {"b.npy", npy(frames_of(mesh, 3), {8, true, std::endian::big})},
+          {"morph.glb", morph_gltf(mesh, {{{}, {0, 1, 0}, {}, {}}, {{1, 0, 0}, {}, {}, {}}},
+                                   {"CUBICSPLINE", {0, 1}, std::vector<float>(12, 0.5f)}, "", true)}};
 }
 
 // Whether it is read; fails the test where the outcome is neither of the two that are allowed.
 bool try_read(const Seed& seed) {
+  static const std::filesystem::path rest = write_file("rest.off", off(tetrahedron()));
   const std::filesystem::path file = write_file(seed.name, seed.contents);
   try {
-    const Mesh mesh = read_mesh(file);
-    EXPECT_NO_THROW(validate(mesh));
+    MeshSequence sequence(file.extension() == ".npy" ? rest.string() + "+" + file.string() : file.string());
+    EXPECT_NO_THROW(validate(sequence.mesh()));
+    for (std::size_t frame = 0; frame < sequence.frame_count(); ++frame)
+      EXPECT_EQ(sequence.positions(frame).size(), sequence.mesh().positions.size());
     return true;
   } catch (const Error& fault) {
     EXPECT_EQ(std::string(fault.what()).find('\n'), std::string::npos) << fault.what();

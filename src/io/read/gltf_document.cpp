@@ -1,11 +1,13 @@
 #include "io/read/gltf_document.h"
 
 #include <sdm/error.h>
+#include <sdm/types.h>
 
 #include <algorithm>
 #include <charconv>
 #include <limits>
 
+#include "core/memory.h"
 #include "io/read/byte_scanner.h"
 
 namespace sdm {
@@ -180,10 +182,9 @@ const json& GltfDocument::item(const char* list, std::size_t index) const {
   return (*items)[index];
 }
 
-GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
-  const json& accessor = item("accessors", accessor_index);
-  if (accessor.contains("sparse")) throw Error("sparse accessors are not read");
-  const json& view = item("bufferViews", whole_number(accessor, "bufferView"));
+std::vector<double> GltfDocument::rows_of(const json& place, std::size_t component_type, bool normalized,
+                                          std::size_t rows, std::size_t columns) const {
+  const json& view = item("bufferViews", whole_number(place, "bufferView"));
   const std::size_t buffer = whole_number(view, "buffer");
   if (buffer >= buffers_.size())
     throw Error("refers to buffer " + std::to_string(buffer) + ", which is not there");
@@ -193,30 +194,66 @@ GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
     throw Error("a buffer view reaches beyond its buffer");
   const std::string_view bytes = buffers_[buffer].substr(view_begin, view_length);
 
-  GltfNumbers numbers;
-  numbers.columns = column_count(accessor.at("type"));
-  const std::size_t rows = whole_number(accessor, "count"), begin = whole_number(accessor, "byteOffset", 0);
-  const bool normalized = accessor.value("normalized", false);
-  with_component_type(whole_number(accessor, "componentType"), [&](auto zero) {
+  std::vector<double> values;
+  const std::size_t begin = whole_number(place, "byteOffset", 0);
+  with_component_type(component_type, [&](auto zero) {
     using Component = decltype(zero);
-    const std::size_t row_bytes = numbers.columns * sizeof(Component),
+    const std::size_t row_bytes = columns * sizeof(Component),
                       stride = whole_number(view, "byteStride", row_bytes);
     // The first row must fit, and each further one takes `stride` more bytes.
     if (rows > 0 && (begin > bytes.size() || row_bytes > bytes.size() - begin || stride == 0 ||
                      rows - 1 > (bytes.size() - begin - row_bytes) / stride))
-      throw Error("accessor " + std::to_string(accessor_index) + " reaches beyond its buffer view");
+      throw Error("an accessor reaches beyond its buffer view");
     const bool divide = normalized && std::numeric_limits<Component>::is_integer;
-    numbers.values.reserve(rows * numbers.columns);
+    values.reserve(rows * columns);
     for (std::size_t r = 0; r < rows; ++r)
-      for (std::size_t c = 0; c < numbers.columns; ++c) {
+      for (std::size_t c = 0; c < columns; ++c) {
         const double value = load<Component>(bytes.data() + begin + r * stride + c * sizeof(Component));
         // The lowest signed integer stands for −1 too.
-        numbers.values.push_back(
+        values.push_back(
             divide ? std::max(value / static_cast<double>(std::numeric_limits<Component>::max()), -1.0)
                    : value);
       }
   });
+  return values;
+}
+
+GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
+  const json& accessor = item("accessors", accessor_index);
+  GltfNumbers numbers{column_count(accessor.at("type")), {}};
+  const std::size_t rows = whole_number(accessor, "count"),
+                    component_type = whole_number(accessor, "componentType");
+  const bool normalized = accessor.value("normalized", false);
+  if (accessor.contains("bufferView") || !accessor.contains("sparse")) {
+    numbers.values = rows_of(accessor, component_type, normalized, rows, numbers.columns);
+  } else {  // zeros, which take no bytes of the file
+    if (rows >= kNone) throw Error("an accessor promises more than 2^32 rows");
+    require_memory(rows * numbers.columns * sizeof(double), "an accessor");
+    numbers.values.resize(rows * numbers.columns);
+  }
+  if (accessor.contains("sparse")) {
+    const json& sparse = accessor["sparse"];
+    const std::size_t count = whole_number(sparse, "count");
+    const json& places = sparse.at("indices");
+    const std::vector<double> indices =
+        rows_of(places, whole_number(places, "componentType"), false, count, 1);
+    const std::vector<double> values =
+        rows_of(sparse.at("values"), component_type, normalized, count, numbers.columns);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(indices[i] >= 0 && indices[i] < static_cast<double>(rows)))
+        throw Error("a sparse accessor replaces a row that it does not have");
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * numbers.columns), numbers.columns,
+                  numbers.values.begin() +
+                      static_cast<std::ptrdiff_t>(static_cast<std::size_t>(indices[i]) * numbers.columns));
+    }
+  }
   return numbers;
+}
+
+void throw_gltf_fault(const json::exception& fault) {
+  // The library's messages begin with a code in brackets.
+  const std::string text = fault.what();
+  throw Error("this is not valid glTF: " + text.substr(std::min(text.size(), text.find("] ") + 2)));
 }
 
 }  // namespace sdm

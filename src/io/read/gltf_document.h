@@ -28,6 +28,9 @@ struct GltfNumbers {
   [[nodiscard]] const double* row(std::size_t r) const { return values.data() + r * columns; }
 };
 
+/// Throws sdm::Error for a member that is missing or of the wrong type.
+[[noreturn]] void throw_gltf_fault(const nlohmann::json::exception& fault);
+
 /// Everything is checked against the bytes that are there. Faults throw sdm::Error, or
 /// nlohmann::json::exception where a member is missing or of the wrong type.
 class GltfDocument {
@@ -42,10 +45,14 @@ class GltfDocument {
   [[nodiscard]] std::size_t count(std::size_t accessor) const {
     return whole_number(item("accessors", accessor), "count");
   }
-  /// The numbers of an accessor; integers are divided by their largest value where it says `normalized`.
+  /// The numbers of an accessor, sparse or not; integers are divided by their largest value where it says
+  /// `normalized`.
   [[nodiscard]] GltfNumbers numbers(std::size_t accessor) const;
 
  private:
+  /// Rows that stand in a buffer view, which `place` tells with an offset.
+  [[nodiscard]] std::vector<double> rows_of(const nlohmann::json& place, std::size_t component_type,
+                                            bool normalized, std::size_t rows, std::size_t columns) const;
   void load_buffers(std::optional<std::string_view> binary_chunk, const std::filesystem::path& folder);
 
   nlohmann::json root_;

@@ -120,9 +120,14 @@ void PolygonMesh::end_polygon() {
 }
 
 Mesh to_mesh(const PolygonMesh& polygons) {
+  std::vector<std::uint32_t> renumbered;
+  return to_mesh(polygons, renumbered);
+}
+
+Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered) {
   check_indices(polygons);
   Mesh mesh;
-  const std::vector<std::uint32_t> renumbered = weld(polygons, mesh);
+  renumbered = weld(polygons, mesh);
   const bool with_uvs = all_corners_have_uvs(polygons);
   const std::size_t triangle_count = polygons.corners.size() - 2 * polygons.ends.size();
   mesh.triangles.reserve(triangle_count);

@@ -25,4 +25,8 @@ struct PolygonMesh {
 /// range and where there is no face.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons);
 
+/// The same; tells what became of each vertex: its number in the mesh, where vertices keep the order in which
+/// they are met first, or kNone for one that was dropped.
+[[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered);
+
 }  // namespace sdm

@@ -1,4 +1,4 @@
-#include "letter_outline.h"
+#include "scene/letter_outline.h"
 
 #include <ft2build.h>
 #include <sdm/error.h>
@@ -14,7 +14,7 @@
 
 #include "core/vec.h"
 
-namespace sdm::bench {
+namespace sdm {
 namespace {
 
 double length(const Vec2& a) {
@@ -61,7 +61,8 @@ std::vector<Contour> font_outline(char character) {
   const Library library(library_handle);
   FT_Face face_handle = nullptr;
   if (FT_New_Face(library.get(), SDM_LETTER_FONT, 0, &face_handle) != 0)
-    throw Error("cannot read the font " SDM_LETTER_FONT);
+    throw Error("cannot read the font " SDM_LETTER_FONT
+                "; install the DejaVu fonts (Debian: fonts-dejavu-core)");
   const Face face(face_handle);
 
   std::vector<Contour> contours;
@@ -131,4 +132,4 @@ std::vector<Contour> letter_outline(char character, double spacing) {
   return contours;
 }
 
-}  // namespace sdm::bench
+}  // namespace sdm

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace sdm::bench {
+namespace sdm {
 
 /// A letter's depth, along z; it is 1 high, along y.
 inline constexpr double kLetterDepth = 0.3;
@@ -18,4 +18,4 @@ inline constexpr double kLetterDepth = 0.3;
 /// The same at the spacing that comes nearest to a number of triangles.
 [[nodiscard]] Mesh letter_of(char character, std::size_t triangles);
 
-}  // namespace sdm::bench
+}  // namespace sdm

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace sdm::bench {
+namespace sdm {
 
 /// A closed polygon; its last corner is joined to the first. The letter is on its left.
 using Contour = std::vector<Vec2>;
@@ -14,4 +14,4 @@ using Contour = std::vector<Vec2>;
 /// `spacing` long, and their corners those of the letter. Throws sdm::Error for a character without a shape.
 [[nodiscard]] std::vector<Contour> letter_outline(char character, double spacing);
 
-}  // namespace sdm::bench
+}  // namespace sdm

@@ -1,5 +1,5 @@
-// The letters that benchmarks measure are the solids they are said to be.
-#include "letters.h"
+// The letters of the scenes and benchmarks are the solids they are said to be.
+#include "scene/letters.h"
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>
@@ -8,9 +8,9 @@
 #include <string>
 
 #include "core/vec.h"
-#include "letter_outline.h"
+#include "scene/letter_outline.h"
 
-namespace sdm::bench {
+namespace sdm {
 namespace {
 
 double area(const std::vector<Contour>& contours) {
@@ -74,4 +74,4 @@ TEST(Letters, RefuseWhatHasNoShape) {
 }
 
 }  // namespace
-}  // namespace sdm::bench
+}  // namespace sdm

@@ -1,4 +1,4 @@
-#include "letters.h"
+#include "scene/letters.h"
 
 #include <libqhull_r/qhull_ra.h>
 #include <sdm/error.h>
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "letter_outline.h"
+#include "scene/letter_outline.h"
 
-namespace sdm::bench {
+namespace sdm {
 namespace {
 
 using Side = std::array<std::uint32_t, 2>;
@@ -164,4 +164,4 @@ Mesh letter_of(char character, std::size_t triangles) {
   return best;
 }
 
-}  // namespace sdm::bench
+}  // namespace sdm

@@ -1,0 +1,182 @@
+#include "scene.h"
+
+#include "output_folder.h"
+#include "progress_line.h"
+
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/scene.h>
+#include <sdm/sequence.h>
+#include <sdm/threads.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, sdm::SceneKind> kKinds{{"letters", sdm::SceneKind::letters},
+                                                   {"bunnies", sdm::SceneKind::bunnies},
+                                                   {"figure", sdm::SceneKind::figure},
+                                                   {"cloth", sdm::SceneKind::cloth}};
+
+struct SceneCommand {
+  std::string kind, format = "npy";
+  fs::path out, mesh;
+  int frames = 150;
+  unsigned threads = 0;
+  bool quiet = false;
+};
+
+/// A body's frames, written as they come.
+class Recorder {
+ public:
+  Recorder(const sdm::Scene::Body& body, const fs::path& folder, bool numbered)
+      : folder_(folder / body.name) {
+    if (!body.moves) {
+      sequence_ = body.name + ".ply";
+      sdm::write_ply(folder / sequence_, body.mesh);
+    } else if (numbered) {
+      sequence_ = body.name;
+      fs::create_directories(folder_);
+      numbered_ = true;
+    } else {
+      sequence_ = body.name + ".ply+" + body.name + ".npy";
+      sdm::write_ply(folder / (body.name + ".ply"), body.mesh);
+      writer_ =
+          std::make_unique<sdm::SequenceWriter>(folder / (body.name + ".npy"), body.mesh.positions.size());
+    }
+  }
+
+  void add(const sdm::Mesh& mesh, int frame) {
+    if (writer_) writer_->add(mesh.positions);
+    if (!numbered_) return;
+    char name[32];
+    std::snprintf(name, sizeof name, "%05d.ply", frame);
+    sdm::write_ply(folder_ / name, mesh);
+  }
+  void commit() {
+    if (writer_) writer_->commit();
+  }
+  /// As MeshSequence takes it, relative to the folder of the scene.
+  [[nodiscard]] const std::string& sequence() const { return sequence_; }
+
+ private:
+  fs::path folder_;
+  std::string sequence_;
+  std::unique_ptr<sdm::SequenceWriter> writer_;
+  bool numbered_ = false;
+};
+
+nlohmann::ordered_json describe(const SceneCommand& command, const sdm::Scene& scene,
+                                const std::vector<Recorder>& recorders) {
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < recorders.size(); ++i) {
+    const sdm::Scene::Body& body = scene.bodies()[i];
+    bodies.push_back({{"name", body.name},
+                      {"sequence", recorders[i].sequence()},
+                      {"moves", body.moves},
+                      {"vertices", body.mesh.positions.size()},
+                      {"triangles", body.mesh.triangles.size()}});
+  }
+  return {{"scene", command.kind},
+          {"frames", command.frames},
+          {"time_step", scene.time_step()},
+          {"bodies", bodies}};
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out)
+    throw sdm::Error("cannot write " + file.filename().string() + ": the disk may be full; free space on it");
+}
+
+void run(const SceneCommand& command) {
+  const sdm::ThreadLimit limit(command.threads);
+  OutputFolder out(command.out);
+  ProgressLine progress(command.quiet);
+  const sdm::Progress report = progress.callback();
+  nlohmann::ordered_json description;
+  try {
+    progress.step("meshes");
+    sdm::Scene scene(kKinds.at(command.kind), {.mesh = command.mesh});
+    std::vector<Recorder> recorders;
+    for (const sdm::Scene::Body& body : scene.bodies())
+      recorders.emplace_back(body, out.staging(), command.format == "ply");
+    for (int frame = 0; frame < command.frames; ++frame) {
+      if (frame > 0) scene.advance();
+      for (std::size_t i = 0; i < recorders.size(); ++i) recorders[i].add(scene.bodies()[i].mesh, frame);
+      if (!report("frames", (frame + 1.0) / command.frames)) throw sdm::Cancelled();
+    }
+    for (Recorder& recorder : recorders) recorder.commit();
+    description = describe(command, scene, recorders);
+    write_text(out.staging() / "scene.json", description.dump(2) + '\n');
+    out.commit();
+  } catch (const sdm::Cancelled&) {
+    throw;
+  } catch (const sdm::Error& error) {
+    throw sdm::Error(out.publicly(error.what()));
+  }
+  if (command.quiet) return;
+  std::cout << command.frames << " frames of " << description["time_step"].get<double>() << " s in "
+            << command.out.string() << "/, described by scene.json:\n";
+  for (const auto& body : description["bodies"])
+    std::cout << "  " << body["sequence"].get<std::string>() << "  " << body["triangles"] << " triangles"
+              << (body["moves"].get<bool>() ? "\n" : ", at rest\n");
+}
+
+}  // namespace
+
+void add_scene_command(CLI::App& app) {
+  CLI::App* scene = app.add_subcommand("scene", "Make one of the paper's deforming scenes");
+  const auto command = std::make_shared<SceneCommand>();
+  scene
+      ->add_option(
+          "SCENE", command->kind,
+          "letters that collide, bunnies that do, a figure that walks in a box, or a cloth that falls")
+      ->required()
+      ->check(CLI::IsMember(kKinds))
+      ->type_name("letters|bunnies|figure|cloth");
+  scene->add_option("-o,--output", command->out, "The folder of the results, made if it is not there")
+      ->required()
+      ->check(CLI::Validator(
+          [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
+      ->type_name("DIR");
+  scene->add_option("--frames", command->frames, "How many, 60 a second")
+      ->check(CLI::Range(1, 100000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  scene
+      ->add_option("--format", command->format,
+                   "Bodies that move: NAME.ply and NAME.npy, or NAME/00000.ply and so on")
+      ->check(CLI::IsMember({"npy", "ply"}).description(""))
+      ->type_name("npy|ply")
+      ->capture_default_str();
+  scene
+      ->add_option("--mesh", command->mesh,
+                   "bunnies: the mesh to reduce, instead of that of Debian's glmark2-data")
+      ->type_name("FILE");
+  scene->add_option("--threads", command->threads, "Threads to use, 0 for all cores")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  scene->add_flag("--quiet", command->quiet, "Print nothing but errors");
+  scene->footer(
+      "The files are what the forms of sequences read, and the same to the bit every time.\n\n"
+      "Example:\n  sdm scene letters -o letters");
+  scene->callback([scene, command] {
+    if (scene->count("--mesh") > 0 && command->kind != "bunnies")
+      throw CLI::ValidationError("--mesh", "needs the scene of the bunnies");
+    run(*command);
+  });
+}

@@ -1,0 +1,47 @@
+// What of a glTF file is shown, and where.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <vector>
+
+#include "core/vec.h"
+#include "io/read/gltf_document.h"
+#include "io/read/polygon_mesh.h"
+
+namespace sdm {
+
+/// x → linear · x + offset, the columns of the linear part one after the other.
+struct Affine {
+  std::array<Vec3, 3> linear{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3 offset{};
+
+  [[nodiscard]] Vec3 turn(const Vec3& x) const {
+    return x[0] * linear[0] + x[1] * linear[1] + x[2] * linear[2];
+  }
+  [[nodiscard]] Vec3 operator()(const Vec3& x) const { return turn(x) + offset; }
+  [[nodiscard]] Affine operator*(const Affine& inner) const {
+    return {{turn(inner.linear[0]), turn(inner.linear[1]), turn(inner.linear[2])}, (*this)(inner.offset)};
+  }
+  [[nodiscard]] bool mirrors() const { return dot(cross(linear[0], linear[1]), linear[2]) < 0; }
+};
+
+/// A node's mesh in its place.
+struct GltfInstance {
+  std::size_t node, mesh;
+  Affine to_scene;
+};
+
+/// All meshes of the default scene, in the order of the node tree.
+[[nodiscard]] std::vector<GltfInstance> gltf_instances(const GltfDocument& document);
+
+/// Whether a primitive has a surface: points and lines have none.
+[[nodiscard]] bool has_triangles(const nlohmann::json& primitive);
+
+enum GltfMode : std::size_t { kTriangles = 4, kStrip = 5, kFan = 6 };
+[[nodiscard]] std::size_t gltf_mode(const nlohmann::json& primitive);
+
+/// All triangles of the scene: the vertices of each primitive that has them, in the order of gltf_instances.
+[[nodiscard]] PolygonMesh read_gltf_scene(const GltfDocument& document);
+
+}  // namespace sdm

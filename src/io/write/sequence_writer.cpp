@@ -1,0 +1,70 @@
+#include <sdm/error.h>
+#include <sdm/sequence.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "io/write/atomic_file.h"
+#include "io/write/little_endian.h"
+
+namespace sdm {
+namespace {
+
+// NPY version 1.0 (NumPy's NEP 1), padded so that the numbers begin at 128 however many frames there are.
+std::string npy_header(std::uint64_t frames, std::uint64_t vertices) {
+  constexpr std::size_t kHeaderSize = 128;
+  std::string dictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(frames) +
+                           ", " + std::to_string(vertices) + ", 3), }";
+  std::string header = "\x93NUMPY";
+  header += {'\1', '\0'};
+  append_little_endian(header, static_cast<std::uint16_t>(kHeaderSize - header.size() - 2));
+  dictionary.resize(kHeaderSize - header.size() - 1, ' ');
+  return header + dictionary + '\n';
+}
+
+}  // namespace
+
+struct SequenceWriter::Impl {
+  AtomicFile out;
+  std::size_t vertices;
+  std::uint64_t frames = 0;
+  std::string bytes{};
+
+  void write_header() {
+    out.stream().seekp(0);
+    out.stream() << npy_header(frames, vertices);
+  }
+};
+
+SequenceWriter::SequenceWriter(const std::filesystem::path& file, std::size_t vertices)
+    : impl_(new Impl{.out = AtomicFile(file), .vertices = vertices}) {
+  impl_->write_header();  // once more when the number of frames is known
+}
+SequenceWriter::~SequenceWriter() = default;
+SequenceWriter::SequenceWriter(SequenceWriter&&) noexcept = default;
+SequenceWriter& SequenceWriter::operator=(SequenceWriter&&) noexcept = default;
+
+void SequenceWriter::add(std::span<const Vec3> positions) {
+  if (positions.size() != impl_->vertices)
+    throw Error("frame " + std::to_string(impl_->frames) + " has " + std::to_string(positions.size()) +
+                " positions for " + std::to_string(impl_->vertices) + " vertices");
+  impl_->bytes.clear();
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    for (const double x : positions[v]) {
+      if (!(std::abs(x) <= std::numeric_limits<float>::max()))
+        throw Error("frame " + std::to_string(impl_->frames) + ": vertex " + std::to_string(v) +
+                    " has a coordinate that a float does not hold");
+      append_little_endian(impl_->bytes, static_cast<float>(x));
+    }
+  impl_->out.stream().write(impl_->bytes.data(), static_cast<std::streamsize>(impl_->bytes.size()));
+  impl_->out.check();
+  ++impl_->frames;
+}
+
+void SequenceWriter::commit() {
+  impl_->write_header();
+  impl_->out.commit();
+}
+
+}  // namespace sdm
