@@ -19,8 +19,8 @@ enum class AtlasKind {
 struct AtlasOptions {
   AtlasKind kind = AtlasKind::charts;
   std::uint32_t resolution = 1024;  ///< texels a side, in [16, 32768]
-  double max_stretch = 1.3;         ///< charts: lengths grow by no more from atlas to surface; > 1, 100 at most
-  std::uint32_t gutter = 1;         ///< free texels around each chart, its own (charts, triangles)
+  double max_stretch = 1.3;  ///< charts: lengths grow by no more from atlas to surface; > 1, 100 at most
+  std::uint32_t gutter = 1;  ///< free texels around each chart, its own (charts, triangles)
   Progress progress{};
 };
 
@@ -42,8 +42,8 @@ class Surface {
   Surface& operator=(Surface&&) noexcept;
 
   /// Moves the vertices, keeping the triangles and the atlas: every face's texels move with it, affinely; a
-  /// face whose vertices stay keeps its map to the bit. Throws sdm::Error, and changes nothing, when the count
-  /// differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces and texels, all cores.
+  /// face whose vertices stay keeps its map to the bit. Throws sdm::Error, and changes nothing, when the
+  /// count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces and texels, all cores.
   void refit(std::span<const Vec3> positions);
 
   [[nodiscard]] const Mesh& mesh() const;
@@ -75,10 +75,22 @@ class Surface {
   /// `uv`: the scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for
   /// `charts`. Of the mesh that the atlas was laid out for, whatever refit has made of it.
   [[nodiscard]] double max_stretch() const;
-  /// An upper bound, computed at the first call (after a refit again), on the distance of any point of the surface to the
-  /// nearest sample: since distances are 1-Lipschitz, also on the error of taking the nearest sample's
-  /// distance. Bounded, not exact.
+  /// How far the surface strays from its samples. Every point p of it, on faces without texel or area too,
+  /// has a sample s_i with |p − s_i| ≤ sample_radii()[i]: no point is farther from its nearest sample than
+  /// the largest of them, the sampling bound. As distances are 1-Lipschitz,
+  ///
+  ///     min over i of d_i − r_i  ≤  d(p)  ≤  max over i of d_i + r_i
+  ///
+  /// for the distances d_i at the samples; p may be any point where d has a value, and d may have signs.
+  /// Bounded: rounded upwards, never too small. Computed at the first call, and after a refit again, which
+  /// costs far less: linear in faces, samples and texels along edges, all cores. Throws sdm::Error when there
+  /// is no memory for it.
   [[nodiscard]] double sampling_bound() const;
+  /// r_i of each of samples(), 0 where no other sample is in need of it. Valid until the next refit.
+  [[nodiscard]] std::span<const float> sample_radii() const;
+  /// For each face a radius within which every one of its points has a sample, which may lie on another face.
+  /// Valid until the next refit.
+  [[nodiscard]] std::span<const float> face_radii() const;
 
   struct Impl;
   [[nodiscard]] const Impl& impl() const { return *impl_; }

@@ -15,7 +15,7 @@ struct SampleTree::Run {
 
 struct SampleTree::Nearest {
   Vec3 query, unit_query;
-  Vec3 sample{};
+  std::uint32_t sample = 0;
   double squared_distance = std::numeric_limits<double>::infinity();
 };
 
@@ -55,7 +55,7 @@ std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end,
   return runs;
 }
 
-Vec3 SampleTree::nearest(const Vec3& query) const {
+std::uint32_t SampleTree::nearest(const Vec3& query) const {
   Nearest found{query, frame_.to_unit(query)};
   descend(0, found);
   return found.sample;
@@ -74,9 +74,9 @@ void SampleTree::descend(std::uint32_t index, Nearest& found) const {
   if (node.leaf()) {
     const std::uint32_t run = tree_.items[node.first];
     for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
-      const Vec3 sample = surface_.sample_points()[i];
-      if (const double d = squared_norm(sample - found.query); d < found.squared_distance)
-        found.sample = sample, found.squared_distance = d;
+      const double d = squared_norm(surface_.sample_points()[i] - found.query);
+      if (d < found.squared_distance)
+        found.sample = static_cast<std::uint32_t>(i), found.squared_distance = d;
     }
     return;
   }

@@ -17,8 +17,8 @@ class SampleTree {
   /// is cut. Cost: linear in samples, all cores.
   SampleTree(const Surface& surface, double radius);
 
-  /// The point of the nearest sample. Cost: O(log n) for queries near the surface.
-  [[nodiscard]] Vec3 nearest(const Vec3& query) const;
+  /// The nearest sample, by its place in samples(). Cost: O(log n) for queries near the surface.
+  [[nodiscard]] std::uint32_t nearest(const Vec3& query) const;
 
  private:
   struct Run;

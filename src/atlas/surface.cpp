@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "atlas/sampling_bound.h"
 #include "atlas/surface_impl.h"
 #include "atlas/texels.h"
 #include "core/memory.h"
@@ -166,10 +165,22 @@ double Surface::utilisation() const {
   return static_cast<double>(impl_->samples.size()) / static_cast<double>(impl_->texel_faces.size());
 }
 
+const Coverage::Radii& Surface::Impl::measured_radii(const Surface& surface) {
+  std::call_once(lazy->measured, [&] {
+    if (!coverage) coverage.emplace(surface);
+    coverage->measure(surface, radii);
+  });
+  return radii;
+}
+
+std::span<const float> Surface::sample_radii() const {
+  return impl_->measured_radii(*this).samples;
+}
+std::span<const float> Surface::face_radii() const {
+  return impl_->measured_radii(*this).faces;
+}
 double Surface::sampling_bound() const {
-  Impl::Lazy& lazy = *impl_->lazy;
-  std::call_once(lazy.bounded, [&] { lazy.sampling_bound = sdm::sampling_bound(*this); });
-  return lazy.sampling_bound;
+  return impl_->measured_radii(*this).largest;
 }
 
 }  // namespace sdm

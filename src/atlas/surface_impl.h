@@ -4,7 +4,9 @@
 #include <sdm/surface.h>
 
 #include <mutex>
+#include <optional>
 
+#include "atlas/coverage.h"
 #include "atlas/layout.h"
 #include "atlas/tiles.h"
 
@@ -23,11 +25,15 @@ struct Surface::Impl {
 
   /// Made when they are asked for, and again when vertices have moved.
   struct Lazy {
-    std::once_flag bounded, tiled;
-    double sampling_bound = 0;  ///< once `bounded`
-    Tiles tiles;                ///< once `tiled`: see tiles_of
+    std::once_flag measured, tiled;
+    Tiles tiles;  ///< once `tiled`: see tiles_of
   };
   std::unique_ptr<Lazy> lazy = std::make_unique<Lazy>();
+
+  /// Made when they are first asked for.
+  std::optional<Coverage> coverage;
+  Coverage::Radii radii;  ///< of the present positions once `measured`
+  [[nodiscard]] const Coverage::Radii& measured_radii(const Surface& surface);
 };
 
 }  // namespace sdm

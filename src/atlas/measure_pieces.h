@@ -1,0 +1,23 @@
+// How far convex pieces of faces reach from a point: all corners of a piece at once.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <span>
+
+namespace sdm {
+
+/// Four points of a face: the corners of a convex polygon, the last one repeated where there are fewer; of a
+/// polygon with more, some of its corners, and a piece after it, of the same sample, has the others.
+struct Piece {
+  std::uint32_t sample;                         ///< that it is assigned to
+  std::array<std::array<float, 4>, 2> weights;  ///< of the face's edges to its vertices 1 and 2
+};
+
+/// Sets squared[i] to the square of the largest distance of a corner of pieces[i] from its sample, in double.
+/// The points of the face are origin + weights[0] edges[0] + weights[1] edges[1]; `points` are those of the
+/// samples. As |p − s| is convex in p, no point of the piece is farther.
+void measure_pieces(std::span<const Piece> pieces, const Vec3& origin, const std::array<Vec3, 2>& edges,
+                    std::span<const Vec3> points, std::span<double> squared);
+
+}  // namespace sdm

@@ -1,0 +1,203 @@
+// The radii of samples and faces against random points of surfaces that bend, twist, shear, stretch and
+// crumple.
+#include <gtest/gtest.h>
+#include <sdm/surface.h>
+#include <sdm/threads.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+
+#include "atlas/meshes.h"
+#include "atlas/sample_tree.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+/// Moves a point of a mesh whose bounds have this centre and diagonal.
+using Motion = std::function<Vec3(const Vec3& p, double size, std::mt19937& random)>;
+
+Vec3 stay(const Vec3& p, double, std::mt19937&) {
+  return p;
+}
+Vec3 bend(const Vec3& p, double size, std::mt19937&) {
+  const double angle = 2 * p[0] / size, radius = size / 2 - p[1];
+  return {radius * std::sin(angle), size / 2 - radius * std::cos(angle), p[2]};
+}
+Vec3 twist(const Vec3& p, double size, std::mt19937&) {
+  const double angle = 3 * p[0] / size, c = std::cos(angle), s = std::sin(angle);
+  return {p[0], c * p[1] - s * p[2], s * p[1] + c * p[2]};
+}
+Vec3 shear(const Vec3& p, double, std::mt19937&) {
+  return {p[0] + 0.6 * p[1] - 0.3 * p[2], p[1], p[2]};
+}
+Vec3 stretch(const Vec3& p, double, std::mt19937&) {
+  return {3 * p[0], p[1], p[2]};
+}
+Vec3 crumple(const Vec3& p, double size, std::mt19937& random) {
+  std::uniform_real_distribution<double> noise(-0.002 * size, 0.002 * size);
+  return p + Vec3{noise(random), noise(random), noise(random)};
+}
+const std::vector<Motion> kMotions{stay, bend, twist, shear, stretch, crumple};
+
+std::vector<Vec3> moved(const Mesh& mesh, const Motion& motion) {
+  std::mt19937 random(3);
+  const Box box = bounds(mesh);
+  std::vector<Vec3> positions;
+  for (const Vec3& p : mesh.positions) positions.push_back(motion(p - centre(box), diagonal(box), random));
+  return positions;
+}
+
+struct FacePoint {
+  Vec3 point;
+  std::uint32_t face;
+};
+
+/// As many points in every face, so that small faces count; corners and points of edges among them.
+std::vector<FacePoint> points_of_faces(const Mesh& mesh, std::size_t count) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<FacePoint> points;
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    const auto& [a, b, c] = mesh.triangles[f];
+    const std::array<Vec3, 3> v{mesh.positions[a], mesh.positions[b], mesh.positions[c]};
+    for (const Vec3& p : v) points.push_back({p, f});
+    for (std::size_t i = 0; i < std::max<std::size_t>(3, count / mesh.triangles.size()); ++i) {
+      const double s = i % 4 == 0 ? 1 : std::sqrt(unit(random)), t = unit(random);
+      points.push_back({(1 - s) * v[0] + (s * (1 - t)) * v[1] + (s * t) * v[2], f});
+    }
+  }
+  return points;
+}
+
+double to_nearest(const Surface& surface, const Vec3& p) {
+  double squared = std::numeric_limits<double>::infinity();
+  for (const Vec3& s : surface.sample_points()) squared = std::min(squared, squared_norm(s - p));
+  return std::sqrt(squared);
+}
+
+bool in_some_ball(const Surface& surface, const Vec3& p) {
+  for (std::size_t i = 0; i < surface.samples().size(); ++i)
+    if (norm(p - surface.sample_points()[i]) <= surface.sample_radii()[i]) return true;
+  return false;
+}
+
+/// Fails unless all points have a sample within its radius, and within the radius of their face. The largest
+/// distance of a point from its nearest sample.
+double expect_covered(const Surface& surface) {
+  const std::vector<FacePoint> points = points_of_faces(surface.mesh(), 60000);
+  const SampleTree tree(surface, surface.sampling_bound());
+  std::vector<double> distances(points.size());
+  std::vector<std::uint8_t> covered(points.size());
+  parallel_for(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& p = points[i].point;
+      const std::uint32_t nearest = tree.nearest(p);
+      distances[i] = norm(p - surface.sample_points()[nearest]);
+      covered[i] = distances[i] <= surface.face_radii()[points[i].face] &&
+                   (distances[i] <= surface.sample_radii()[nearest] || in_some_ball(surface, p));
+    }
+  });
+  EXPECT_TRUE(std::ranges::all_of(surface.sample_points(), finite));
+  EXPECT_EQ(std::ranges::count(covered, 0), 0) << "of " << covered.size();
+  EXPECT_DOUBLE_EQ(distances[points.size() / 2], to_nearest(surface, points[points.size() / 2].point));
+  EXPECT_EQ(surface.sampling_bound(), *std::ranges::max_element(surface.face_radii()));
+  EXPECT_EQ(surface.sampling_bound(), *std::ranges::max_element(surface.sample_radii()));
+  return *std::ranges::max_element(distances);
+}
+
+/// The bounds over what is seen, for all motions.
+std::vector<double> expect_covered_in_motion(const Mesh& mesh, const AtlasOptions& options) {
+  Surface surface(mesh, options);
+  (void)surface.sampling_bound();  // pieces are assigned now
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < kMotions.size(); ++i) {
+    SCOPED_TRACE(i);
+    surface.refit(moved(mesh, kMotions[i]));
+    ratios.push_back(surface.sampling_bound() / expect_covered(surface));
+  }
+  return ratios;
+}
+
+double median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+TEST(Coverage, HoldsAndIsTightInMotion) {
+  std::vector<double> ratios;
+  for (const char* name : {"head.off", "bunny.obj", "knot2.off", "elephant-with-holes.off"})
+    for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
+      if (kind == AtlasKind::triangles && std::string(name) == "bunny.obj") continue;  // smaller than texels
+      SCOPED_TRACE(name);
+      for (const double ratio : expect_covered_in_motion(test::load(name), {.kind = kind, .resolution = 512}))
+        ratios.push_back(ratio);
+    }
+  for (const double ratio :
+       expect_covered_in_motion(test::height_field(40), {.kind = AtlasKind::uv, .resolution = 256}))
+    ratios.push_back(ratio);
+  EXPECT_LE(median(ratios), 1.5);
+}
+
+// Every chart is smaller than a texel: a sample's square is far larger than what its face has of it.
+TEST(Coverage, ChartsSmallerThanTexels) {
+  const std::vector<double> ratios =
+      expect_covered_in_motion(test::load("pig.off"), {.kind = AtlasKind::triangles, .resolution = 256});
+  EXPECT_LE(median(ratios), 1.5);
+}
+
+// Hardly a face owns a texel: what it has of others' squares moves on its own.
+TEST(Coverage, FacesSmallerThanTexels) {
+  EXPECT_LE(median(expect_covered_in_motion(test::load("armadillo.off"), {.resolution = 256})), 1.7);
+}
+
+TEST(Coverage, SliversFacesWithoutAreaAndSoups) {
+  for (const char* name : {"cylinder_locally_refined.off", "degtri_sliding.off", "boeing.off"}) {
+    SCOPED_TRACE(name);
+    (void)expect_covered_in_motion(test::load(name), {.resolution = 256});
+  }
+  (void)expect_covered_in_motion(test::soup(400, 1), {.resolution = 700});
+  (void)expect_covered_in_motion(test::fan(3000), {.resolution = 256});
+}
+
+// A face without area opens: all of it is covered still.
+TEST(Coverage, FacesThatGainAnArea) {
+  Mesh mesh{.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 0, 0}},
+            .triangles = {{0, 1, 2}, {0, 3, 1}},
+            .corner_uvs = {}};
+  Surface surface(mesh, {.resolution = 64});
+  ASSERT_EQ(surface.face_charts()[1], kNone);
+  expect_covered(surface);
+  const double before = surface.face_radii()[1];
+  mesh.positions[3] = {1, -1, 2};
+  surface.refit(mesh.positions);
+  expect_covered(surface);
+  EXPECT_GT(surface.face_radii()[1], 1.5);
+  EXPECT_LT(before, 0.1);
+}
+
+TEST(Coverage, IsTheSameForAllThreadsAndAfterAWayBack) {
+  const Mesh mesh = test::load("bunny.obj");
+  const std::vector<Vec3> bent = moved(mesh, bend), crumpled = moved(mesh, crumple);
+  const auto radii = [&](unsigned threads) {
+    const ThreadLimit limit(threads);
+    Surface surface(mesh, {.resolution = 512});
+    (void)surface.sampling_bound();
+    std::vector<std::vector<float>> result;
+    for (const auto& positions : {bent, crumpled, bent}) {
+      surface.refit(positions);
+      result.emplace_back(surface.sample_radii().begin(), surface.sample_radii().end());
+      result.back().insert(result.back().end(), surface.face_radii().begin(), surface.face_radii().end());
+    }
+    return result;
+  };
+  const auto one = radii(1), two = radii(2);
+  EXPECT_EQ(one, two);
+  EXPECT_EQ(one[0], one[2]);
+  EXPECT_NE(one[0], one[1]);
+}
+
+}  // namespace
+}  // namespace sdm
