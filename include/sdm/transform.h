@@ -3,6 +3,7 @@
 
 #include <sdm/mesh.h>
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -26,5 +27,11 @@ struct TransformStep {
 
 /// Applies the steps in order. Throws sdm::Error where a coordinate stops being finite. Cost: linear.
 void transform(Mesh& mesh, const std::vector<TransformStep>& steps);
+/// The same for points alone. Throws sdm::Error for `fit` too, which needs a mesh.
+void transform(std::span<Vec3> points, const std::vector<TransformStep>& steps);
+
+/// The steps with each `fit` replaced by the translation and the scale that it means for this mesh: to place
+/// all frames of a sequence as the first. Throws as transform does.
+[[nodiscard]] std::vector<TransformStep> without_fit(Mesh mesh, const std::vector<TransformStep>& steps);
 
 }  // namespace sdm

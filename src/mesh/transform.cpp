@@ -58,39 +58,54 @@ TransformStep parse_step(std::string_view step) {
 }
 
 // Turns by `degrees` about an axis, counter-clockwise seen from its tip. Multiples of 90° are exact.
-void rotate(Mesh& mesh, int axis, double degrees) {
+void rotate(std::span<Vec3> points, int axis, double degrees) {
   const double turn = std::remainder(degrees, 360);
   const double radians = turn * (std::numbers::pi / 180);
   const double s = std::abs(turn) == 180 ? 0 : std::sin(radians);
   const double c = std::abs(turn) == 90 ? 0 : std::cos(radians);
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-  for (Vec3& p : mesh.positions) {
+  for (Vec3& p : points) {
     const double x = p[i], y = p[j];
     p[i] = c * x - s * y;
     p[j] = s * x + c * y;
   }
 }
 
-void scale(Mesh& mesh, double factor) {
-  for (Vec3& p : mesh.positions) p = factor * p;
-  // A mirror image: turn the faces, so that their outside stays outside.
-  if (factor < 0) {
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-    for (auto& uv : mesh.corner_uvs) std::swap(uv[1], uv[2]);
-  }
+// A mirror image: turn the faces, so that their outside stays outside.
+void turn_faces(Mesh& mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  for (auto& uv : mesh.corner_uvs) std::swap(uv[1], uv[2]);
 }
 
-void translate(Mesh& mesh, const Vec3& by) {
-  for (Vec3& p : mesh.positions) p += by;
-}
+struct Fit {
+  Vec3 centre;
+  double longest;
+};
 
-void fit(Mesh& mesh) {
+Fit fit_of(const Mesh& mesh) {
   const Box box = bounds(mesh);
   const Vec3 size = box.hi - box.lo;
   const double longest = std::max({size[0], size[1], size[2]});
   if (!(longest > 0)) throw Error("transform step 'fit' needs a mesh that has an extent");
-  translate(mesh, -centre(box));
-  for (Vec3& p : mesh.positions) p = {p[0] / longest, p[1] / longest, p[2] / longest};
+  return {centre(box), longest};
+}
+
+void apply(std::span<Vec3> points, const TransformStep& step) {
+  switch (step.kind) {
+    case TransformStep::Kind::fit:
+      throw Error("transform step 'fit' needs a mesh");
+    case TransformStep::Kind::scale:
+      for (Vec3& p : points) p = step.value[0] * p;
+      break;
+    case TransformStep::Kind::rotate:
+      for (int axis = 0; axis < 3; ++axis) rotate(points, axis, step.value[axis]);
+      break;
+    case TransformStep::Kind::translate:
+      for (Vec3& p : points) p += step.value;
+      break;
+  }
+  for (const Vec3& p : points)
+    if (!finite(p)) throw Error("the transform makes a coordinate infinite; use smaller numbers");
 }
 
 }  // namespace
@@ -109,23 +124,37 @@ std::vector<TransformStep> parse_transform(std::string_view text) {
 
 void transform(Mesh& mesh, const std::vector<TransformStep>& steps) {
   for (const TransformStep& step : steps) {
-    switch (step.kind) {
-      case TransformStep::Kind::fit:
-        fit(mesh);
-        break;
-      case TransformStep::Kind::scale:
-        scale(mesh, step.value[0]);
-        break;
-      case TransformStep::Kind::rotate:
-        for (int axis = 0; axis < 3; ++axis) rotate(mesh, axis, step.value[axis]);
-        break;
-      case TransformStep::Kind::translate:
-        translate(mesh, step.value);
-        break;
+    if (step.kind == TransformStep::Kind::fit) {
+      const Fit fit = fit_of(mesh);
+      for (Vec3& p : mesh.positions) {
+        const Vec3 q = p - fit.centre;
+        p = {q[0] / fit.longest, q[1] / fit.longest, q[2] / fit.longest};
+      }
+      continue;
     }
-    for (const Vec3& p : mesh.positions)
-      if (!finite(p)) throw Error("the transform makes a coordinate infinite; use smaller numbers");
+    apply(mesh.positions, step);
+    if (step.kind == TransformStep::Kind::scale && step.value[0] < 0) turn_faces(mesh);
   }
+}
+
+void transform(std::span<Vec3> points, const std::vector<TransformStep>& steps) {
+  for (const TransformStep& step : steps) apply(points, step);
+}
+
+std::vector<TransformStep> without_fit(Mesh mesh, const std::vector<TransformStep>& steps) {
+  std::vector<TransformStep> result;
+  for (const TransformStep& step : steps) {
+    const std::size_t first = result.size();
+    if (step.kind == TransformStep::Kind::fit) {
+      const Fit fit = fit_of(mesh);
+      result.push_back({TransformStep::Kind::translate, -fit.centre});
+      result.push_back({TransformStep::Kind::scale, {1 / fit.longest, 0, 0}});
+    } else {
+      result.push_back(step);
+    }
+    for (std::size_t i = first; i < result.size(); ++i) apply(mesh.positions, result[i]);
+  }
+  return result;
 }
 
 }  // namespace sdm

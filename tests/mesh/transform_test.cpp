@@ -94,6 +94,27 @@ TEST(ParseTransform, ReadsAllSteps) {
   EXPECT_EQ(steps[3].kind, TransformStep::Kind::translate);
 }
 
+// Frames of a sequence are placed as the first, wherever they are.
+TEST(Transform, WithoutFitPlacesOtherPointsAlike) {
+  Mesh mesh = test::tetrahedron();
+  transform(mesh, parse_transform("scale:3,translate:7:8:9"));
+  const auto steps = parse_transform("rotate:10:20:30,fit,scale:-2,fit,translate:1:2:3");
+  const auto resolved = without_fit(mesh, steps);
+  for (const TransformStep& step : resolved) EXPECT_NE(step.kind, TransformStep::Kind::fit);
+  Mesh expected = mesh;
+  transform(expected, steps);
+  std::vector<Vec3> points = mesh.positions;
+  points.push_back(0.5 * (points[1] + points[2]));
+  transform(points, resolved);
+  for (std::size_t i = 0; i < 4; ++i) expect_near(points[i], expected.positions[i]);
+  expect_near(points[4], 0.5 * (expected.positions[1] + expected.positions[2]));
+  // A mesh's faces turn with a mirror image all the same.
+  Mesh again = mesh;
+  transform(again, resolved);
+  EXPECT_EQ(again.triangles, expected.triangles);
+  EXPECT_THROW(transform(points, parse_transform("fit")), Error);
+}
+
 TEST(ParseTransform, NamesTheStepAtFault) {
   const auto expect_refused = [](const char* text, const char* step) {
     EXPECT_THAT([&] { static_cast<void>(parse_transform(text)); }, ThrowsMessage<Error>(HasSubstr(step)))
