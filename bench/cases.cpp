@@ -10,10 +10,10 @@
 
 #include "core/parallel.h"
 #include "heap.h"
-#include "scene/letters.h"
 #include "race.h"
-#include "scene/reduce_mesh.h"
 #include "refine_mesh.h"
+#include "scene/letters.h"
+#include "scene/reduce_mesh.h"
 #include "scenes.h"
 
 namespace sdm::bench {

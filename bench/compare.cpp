@@ -72,8 +72,8 @@ void print_rows(const Case& test, const Outcome& outcome) {
 nlohmann::ordered_json per_packet(const DescentCounts& work, std::size_t texels) {
   const double packets = static_cast<double>(texels) / PointGroup::kPacket;
   const auto of = [&](std::size_t count) { return static_cast<double>(count) / packets; };
-  return {{"groups", of(work.groups)},         {"nodes", of(work.nodes)},
-          {"leaves", of(work.leaves)},         {"tree_sites", of(work.tree_sites)},
+  return {{"groups", of(work.groups)},           {"nodes", of(work.nodes)},
+          {"leaves", of(work.leaves)},           {"tree_sites", of(work.tree_sites)},
           {"list_blocks", of(work.list_blocks)}, {"evaluations", of(work.evaluations)}};
 }
 

@@ -22,11 +22,11 @@
 #include "core/stopwatch.h"
 #include "core/vec.h"
 #include "fcl_pair.h"
-#include "letters.h"
 #include "measure.h"
 #include "poses.h"
 #include "query/pair_search.h"
-#include "reduce_mesh.h"
+#include "scene/letters.h"
+#include "scene/reduce_mesh.h"
 #include "scenes.h"
 
 namespace sdm::bench {

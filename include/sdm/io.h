@@ -4,6 +4,7 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
+#include <sdm/temporal.h>
 
 #include <filesystem>
 #include <optional>
@@ -41,6 +42,8 @@ struct PictureOptions {
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A.
 /// Gutters are dilated; coverage.A is the true coverage. Invalid: NaN and 0xFFFFFFFF.
 void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
+/// The same for maps over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
+void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
 
 /// distance.png: the distance in colours, with a legend of range and units.
 void write_distance_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
@@ -49,6 +52,21 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
 void write_voronoi_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
 /// direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
 void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
+
+/// A curve of a plot: one value for each place along the axis; NaN leaves a gap.
+struct Curve {
+  std::string name;
+  std::vector<double> values;
+};
+/// Curves over the same axis, with a title, and a line for each name if there are several.
+struct PlotPanel {
+  std::string title;
+  std::vector<Curve> curves;
+};
+/// plot.png: panels below each other over one axis, `places`, which has a name. Throws sdm::Error, too, where
+/// a curve has not one value a place.
+void write_plot_png(const std::filesystem::path& file, const std::string& axis,
+                    std::span<const double> places, std::span<const PlotPanel> panels);
 
 /// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex, opens
 /// coloured in any viewer. `vertex_distances`: one for each vertex of surface.mesh(), NaN where there is

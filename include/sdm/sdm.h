@@ -5,10 +5,12 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/progress.h>
+#include <sdm/proximity.h>
 #include <sdm/raster.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
+#include <sdm/temporal.h>
 #include <sdm/threads.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>

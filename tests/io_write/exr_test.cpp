@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/error.h>
 
 #include <bit>
 #include <map>
@@ -48,6 +49,26 @@ std::vector<std::uint32_t> expected(const Surface& surface, const DistanceMap& m
           map.site[source],
           type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
           surface.texel_faces()[source]};
+}
+
+TEST(Exr, HoldsMapsOverTime) {
+  const Surface surface(torus(12), {.resolution = 64});
+  TemporalMaps maps;
+  for (int t = 0; t < 3; ++t) maps.add(map_of(surface, [t](const Vec3& p) { return p[t]; }));
+  const TemporaryFolder folder;
+  write_exr(folder / "temporal.exr", surface, maps);
+  const Channels channels = read_exr(folder / "temporal.exr", 64);
+  ASSERT_EQ(channels.size(), 4u);
+  for (const std::uint32_t t : surface.samples()) {
+    const Vec3 p = surface.texel_point(t);
+    const auto value = [&](const char* name) { return std::bit_cast<float>(channels.at(name)[t]); };
+    ASSERT_FLOAT_EQ(value("min.D"), static_cast<float>(std::min({p[0], p[1], p[2]})));
+    ASSERT_FLOAT_EQ(value("max.D"), static_cast<float>(std::max({p[0], p[1], p[2]})));
+    ASSERT_NEAR(value("mean.D"), (p[0] + p[1] + p[2]) / 3, 1e-6);
+    ASSERT_EQ(value("coverage.A"), 1);
+  }
+  EXPECT_THROW(write_exr(folder / "other.exr", Surface(torus(12), {.resolution = 32}), maps), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "other.exr"));
 }
 
 std::vector<std::uint32_t> found(const Channels& channels, std::size_t texel) {

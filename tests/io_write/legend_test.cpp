@@ -1,5 +1,7 @@
 #include "io/write/legend.h"
 
+#include "io/write/ticks.h"
+
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 

@@ -14,7 +14,10 @@
 #include <sdm/version.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <exception>
+#include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,79 +39,57 @@ class ExrStream : public Imf::OStream {
   AtomicFile& file_;
 };
 
-// One texel of the file. Every member has four bytes, so that the channels interleave without padding.
-struct Pixel {
-  float distance;
-  Vec3f vector;
-  std::uint32_t site, site_type, face;
-  float coverage;
+// A channel of a texel, which is a structure whose members all have four bytes and so interleave without
+// padding.
+struct Channel {
+  const char* name;
+  Imf::PixelType type;
+  std::size_t offset;
 };
-static_assert(sizeof(Pixel) == 32);
 
-Imf::Header header(std::uint32_t n) {
+Imf::Header header(std::uint32_t n, std::span<const Channel> channels) {
   Imf::Header result(static_cast<int>(n), static_cast<int>(n));
   // Level 1: three times as fast as the default for a few percent of size.
   result.compression() = Imf::ZIP_COMPRESSION;
   result.zipCompressionLevel() = 1;
-  for (const char* name : {"distance.D", "vector.X", "vector.Y", "vector.Z", "coverage.A"})
-    result.channels().insert(name, Imf::Channel(Imf::FLOAT));
-  for (const char* name : {"site.id", "site.type", "face.id"})
-    result.channels().insert(name, Imf::Channel(Imf::UINT));
+  for (const Channel& channel : channels) result.channels().insert(channel.name, Imf::Channel(channel.type));
   Imf::addComments(result, std::string("surface distance map, sdm ") + kVersion);
   return result;
 }
 
-// The channels of rows y and up, stored at `pixels`.
-Imf::FrameBuffer frame_buffer(Pixel* pixels, std::uint32_t n, std::uint32_t y, std::uint32_t rows) {
-  Imf::FrameBuffer result;
-  const auto insert = [&](const char* name, Imf::PixelType type, void* first) {
-    result.insert(name, Imf::Slice::Make(type, first, Imath::V2i(0, static_cast<int>(y)), n, rows,
-                                         sizeof(Pixel), n * sizeof(Pixel)));
-  };
-  insert("distance.D", Imf::FLOAT, &pixels->distance);
-  insert("vector.X", Imf::FLOAT, &pixels->vector[0]);
-  insert("vector.Y", Imf::FLOAT, &pixels->vector[1]);
-  insert("vector.Z", Imf::FLOAT, &pixels->vector[2]);
-  insert("site.id", Imf::UINT, &pixels->site);
-  insert("site.type", Imf::UINT, &pixels->site_type);
-  insert("face.id", Imf::UINT, &pixels->face);
-  insert("coverage.A", Imf::FLOAT, &pixels->coverage);
-  return result;
-}
-
-Pixel pixel(const Surface& surface, const DistanceMap& map, std::uint32_t x, std::uint32_t y) {
-  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+// Writes the texels that texel(source, covered) gives: `source` is the owned texel whose values are taken,
+// for gutters a neighbour; kNone where there is none.
+template <class Texel, class Get>
+void write_texels(const std::filesystem::path& file, const Surface& surface,
+                  std::span<const Channel> channels, const Get& texel) {
+  const std::uint32_t n = surface.resolution();
   const auto owners = surface.texel_faces();
-  const std::uint32_t source = gutter_source(map.resolution, owners, x, y);
-  if (source == kNone) return {kNaN, {kNaN, kNaN, kNaN}, kNone, kNone, kNone, 0};
-  const SiteType type = map.site_type[source];
-  const bool covered = source == std::size_t{y} * map.resolution + x;
-  return {map.distance[source], map.vector[source],
-          map.site[source],     type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
-          owners[source],       covered ? 1.f : 0.f};
-}
-
-}  // namespace
-
-void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
-  const std::uint32_t n = map.resolution;
   // Blocks of rows bound the memory; they are multiples of the 16 rows that are compressed together.
   constexpr std::uint32_t kRows = 256;
-  std::vector<Pixel> pixels(std::size_t{n} * std::min(kRows, n));
+  std::vector<Texel> texels(std::size_t{n} * std::min(kRows, n));
   // OpenEXR has no threads of its own until someone asks for them.
   if (Imf::globalThreadCount() == 0) Imf::setGlobalThreadCount(static_cast<int>(thread_count()));
   AtomicFile out(file);
   ExrStream stream(out, file.string());
   try {
-    Imf::OutputFile exr(stream, header(n), static_cast<int>(thread_count()));
+    Imf::OutputFile exr(stream, header(n, channels), static_cast<int>(thread_count()));
     for (std::uint32_t y = 0; y < n; y += kRows) {
       const std::uint32_t rows = std::min(kRows, n - y);
       parallel_for(rows, 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row)
-          for (std::uint32_t x = 0; x < n; ++x)
-            pixels[row * n + x] = pixel(surface, map, x, y + static_cast<std::uint32_t>(row));
+          for (std::uint32_t x = 0; x < n; ++x) {
+            const auto here = y + static_cast<std::uint32_t>(row);
+            const std::uint32_t source = gutter_source(n, owners, x, here);
+            texels[row * n + x] = texel(source, source == here * n + x);
+          }
       });
-      exr.setFrameBuffer(frame_buffer(pixels.data(), n, y, rows));
+      Imf::FrameBuffer buffer;
+      for (const Channel& channel : channels)
+        buffer.insert(
+            channel.name,
+            Imf::Slice::Make(channel.type, reinterpret_cast<char*>(texels.data()) + channel.offset,
+                             Imath::V2i(0, static_cast<int>(y)), n, rows, sizeof(Texel), n * sizeof(Texel)));
+      exr.setFrameBuffer(buffer);
       exr.writePixels(static_cast<int>(rows));
     }
   } catch (const std::exception&) {
@@ -116,6 +97,56 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
     throw;
   }
   out.commit();
+}
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+struct MapTexel {
+  float distance = kNaN;
+  Vec3f vector{kNaN, kNaN, kNaN};
+  std::uint32_t site = kNone, site_type = kNone, face = kNone;
+  float coverage = 0;
+};
+
+struct TemporalTexel {
+  float least = kNaN, mean = kNaN, largest = kNaN, coverage = 0;
+};
+
+}  // namespace
+
+void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
+  constexpr std::size_t kVector = offsetof(MapTexel, vector);
+  const Channel channels[] = {{"distance.D", Imf::FLOAT, offsetof(MapTexel, distance)},
+                              {"vector.X", Imf::FLOAT, kVector},
+                              {"vector.Y", Imf::FLOAT, kVector + sizeof(float)},
+                              {"vector.Z", Imf::FLOAT, kVector + 2 * sizeof(float)},
+                              {"site.id", Imf::UINT, offsetof(MapTexel, site)},
+                              {"site.type", Imf::UINT, offsetof(MapTexel, site_type)},
+                              {"face.id", Imf::UINT, offsetof(MapTexel, face)},
+                              {"coverage.A", Imf::FLOAT, offsetof(MapTexel, coverage)}};
+  const auto owners = surface.texel_faces();
+  write_texels<MapTexel>(file, surface, channels, [&](std::uint32_t source, bool covered) -> MapTexel {
+    if (source == kNone) return {};
+    const SiteType type = map.site_type[source];
+    return {map.distance[source], map.vector[source],
+            map.site[source],     type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
+            owners[source],       covered ? 1.f : 0.f};
+  });
+}
+
+void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps) {
+  if (maps.resolution() != surface.resolution())
+    throw Error("cannot write " + file.string() + ": the maps are not of this surface");
+  const Channel channels[] = {{"min.D", Imf::FLOAT, offsetof(TemporalTexel, least)},
+                              {"mean.D", Imf::FLOAT, offsetof(TemporalTexel, mean)},
+                              {"max.D", Imf::FLOAT, offsetof(TemporalTexel, largest)},
+                              {"coverage.A", Imf::FLOAT, offsetof(TemporalTexel, coverage)}};
+  const std::vector<float> mean = maps.mean();
+  write_texels<TemporalTexel>(
+      file, surface, channels, [&](std::uint32_t source, bool covered) -> TemporalTexel {
+        if (source == kNone) return {};
+        return {maps.least()[source], mean[source], maps.largest()[source], covered ? 1.f : 0.f};
+      });
 }
 
 }  // namespace sdm

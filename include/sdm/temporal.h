@@ -1,0 +1,35 @@
+/// Maps of one surface at many moments.
+#pragma once
+
+#include <sdm/map.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+/// At every texel of an atlas that stays the same: the least, the largest and the mean of its distances over
+/// the maps that were added. NaN where a texel has no owner, or was beyond the maximum distance in one of the
+/// maps.
+class TemporalMaps {
+ public:
+  /// Throws sdm::Error when the map has another resolution than those before. Cost: O(n) in texels, all
+  /// cores.
+  void add(const DistanceMap& map);
+
+  [[nodiscard]] std::size_t maps() const { return maps_; }
+  [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
+  [[nodiscard]] std::span<const float> least() const { return least_; }
+  [[nodiscard]] std::span<const float> largest() const { return largest_; }
+  /// Cost: O(n) in texels.
+  [[nodiscard]] std::vector<float> mean() const;
+
+ private:
+  std::size_t maps_ = 0;
+  std::uint32_t resolution_ = 0;
+  std::vector<float> least_, largest_;
+  std::vector<double> sum_;
+};
+
+}  // namespace sdm

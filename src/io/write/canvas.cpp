@@ -1,0 +1,61 @@
+#include "io/write/canvas.h"
+
+#include <sdm/error.h>
+
+#include <cmath>
+
+namespace sdm {
+namespace {
+
+Picture to_picture(cairo_surface_t* surface) {
+  cairo_surface_flush(surface);
+  Picture picture{static_cast<std::uint32_t>(cairo_image_surface_get_width(surface)),
+                  static_cast<std::uint32_t>(cairo_image_surface_get_height(surface)),
+                  {}};
+  picture.pixels.reserve(std::size_t{picture.width} * picture.height);
+  const unsigned char* row = cairo_image_surface_get_data(surface);
+  for (std::uint32_t y = 0; y < picture.height; ++y, row += cairo_image_surface_get_stride(surface)) {
+    const auto* argb = reinterpret_cast<const std::uint32_t*>(row);
+    for (std::uint32_t x = 0; x < picture.width; ++x)
+      picture.pixels.push_back({static_cast<std::uint8_t>(argb[x] >> 16),
+                                static_cast<std::uint8_t>(argb[x] >> 8), static_cast<std::uint8_t>(argb[x])});
+  }
+  return picture;
+}
+
+}  // namespace
+
+Canvas::Canvas(double width, double height, double zoom)
+    : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(width * zoom)),
+                                          static_cast<int>(std::lround(height * zoom))),
+               cairo_surface_destroy),
+      context_(cairo_create(surface_.get()), cairo_destroy) {
+  set_color({255, 255, 255});
+  cairo_paint(cairo());
+  cairo_scale(cairo(), zoom, zoom);
+}
+
+void Canvas::set_color(Rgb color) {
+  cairo_set_source_rgb(cairo(), color.r / 255.0, color.g / 255.0, color.b / 255.0);
+}
+
+void Canvas::text(double x, double baseline, const std::string& text, double size, double room, bool bold,
+                  double align) {
+  cairo_select_font_face(cairo(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo(), size);
+  cairo_text_extents_t extents;
+  cairo_text_extents(cairo(), text.c_str(), &extents);
+  const double shrink = extents.x_advance > room ? room / extents.x_advance : 1;
+  cairo_set_font_size(cairo(), size * shrink);
+  cairo_move_to(cairo(), x - align * shrink * extents.x_advance, baseline);
+  cairo_show_text(cairo(), text.c_str());
+}
+
+Picture Canvas::picture(const std::string& what) {
+  if (const cairo_status_t status = cairo_status(cairo()); status != CAIRO_STATUS_SUCCESS)
+    throw Error("cannot draw " + what + ": " + cairo_status_to_string(status) + "; check the units' text");
+  return to_picture(surface_.get());
+}
+
+}  // namespace sdm

@@ -1,0 +1,34 @@
+// Drawing with cairo into an RGB picture.
+#pragma once
+
+#include <cairo.h>
+
+#include <memory>
+#include <string>
+
+#include "io/write/picture.h"
+
+namespace sdm {
+
+/// White paper. Lengths are in the units of its size; `zoom` pixels make one.
+class Canvas {
+ public:
+  Canvas(double width, double height, double zoom);
+
+  [[nodiscard]] cairo_t* cairo() { return context_.get(); }
+  void set_color(Rgb color);
+  /// Text from (x, baseline), narrowed to `room`; `align` 0: from there to the right, 1: to the left, 0.5:
+  /// centred.
+  void text(double x, double baseline, const std::string& text, double size, double room, bool bold = false,
+            double align = 0);
+  /// Throws sdm::Error when something could not be drawn; `what` is its name.
+  [[nodiscard]] Picture picture(const std::string& what);
+
+ private:
+  std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
+  std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
+};
+
+inline constexpr Rgb kInk{28, 30, 34}, kLineColor{60, 62, 66};
+
+}  // namespace sdm

@@ -1,0 +1,132 @@
+#include "query/contacts.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "core/vec.h"
+#include "engine/engine.h"
+#include "mesh/sites_impl.h"
+
+namespace sdm {
+namespace {
+
+// The contact of a sample of body `body`, as Contact defines it.
+Contact contact_of(int body, const Vec3& sample, const Vec3& vector, double depth, const Vec3& other_normal,
+                   double length) {
+  Contact c{.point1 = sample, .point2 = sample + vector, .depth = depth};
+  Vec3 outwards = other_normal;  // of the other body, which pushes this one
+  if (std::abs(depth) > length) outwards = (1 / depth) * vector;
+  if (body == 1) std::swap(c.point1, c.point2);
+  c.normal = body == 0 ? outwards : -outwards;
+  return c;
+}
+
+bool meet(const Box& a, const Box& b) {
+  for (int k = 0; k < 3; ++k)
+    if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
+  return true;
+}
+
+}  // namespace
+
+std::span<const Contact> ContactFinder::find(const std::array<MeasuredBody, 2>& bodies, double margin,
+                                             double length) {
+  contacts_.clear();
+  boxes_.clear();
+  for (int body = 0; body < 2; ++body) {
+    find_parts(bodies[body], margin);
+    add_contacts(bodies, body, length);
+  }
+  find_patches();
+  sort_by_patch();
+  return sorted_;
+}
+
+void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
+  const Surface& surface = body.surface;
+  const std::span<const float> distances = body.distances.distances(), radii = surface.sample_radii();
+  parts_.clear();
+  for (const LocalDistances::Run& run : body.distances.measured()) {
+    const auto first_of_run = static_cast<std::ptrdiff_t>(parts_.size());
+    for (std::size_t i = run.first; i < run.end; ++i) {
+      if (!(distances[i] <= margin)) continue;
+      const std::uint32_t chart = surface.face_charts()[surface.texel_faces()[surface.samples()[i]]];
+      auto part = std::find_if(parts_.begin() + first_of_run, parts_.end(),
+                               [&](const Part& p) { return p.chart == chart; });
+      if (part == parts_.end()) part = parts_.insert(part, {chart, i, {}});
+      if (distances[i] < distances[part->deepest]) part->deepest = i;
+      const Vec3& p = surface.sample_points()[i];
+      const Vec3 r{radii[i], radii[i], radii[i]};
+      extend(part->box, p - r);
+      extend(part->box, p + r);
+    }
+  }
+}
+
+void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length) {
+  const MeasuredBody &on = bodies[body], &to = bodies[1 - body];
+  const Sites::Impl& sites = to.sites.impl();
+  points_.clear();
+  for (const Part& part : parts_) {
+    points_.push_back(on.surface.sample_points()[part.deepest]);
+    boxes_.push_back(part.box);
+  }
+  const auto add = [&](std::size_t first, const ClosestPacket& closest) {
+    for (std::size_t i = 0; i < closest.count; ++i) {
+      const Vec3 vector{closest.vector[0][i], closest.vector[1][i], closest.vector[2][i]};
+      const bool inside = on.distances.distances()[parts_[first + i].deepest] < 0;
+      const std::uint32_t face = sites.face_of(closest.type[i], closest.site[i]);
+      if (!inside) extend(boxes_[contacts_.size()], points_[first + i] + vector);  // across the gap
+      contacts_.push_back(contact_of(body, points_[first + i], vector,
+                                     inside ? closest.distance[i] : -closest.distance[i],
+                                     sites.normals.face[face], length));
+    }
+  };
+  cpu_search(sites, points_, std::numeric_limits<double>::infinity(), std::ref(add));
+}
+
+// Joins contacts whose boxes meet, by a sweep along x.
+void ContactFinder::find_patches() {
+  parent_.resize(contacts_.size());
+  order_.resize(contacts_.size());
+  std::iota(parent_.begin(), parent_.end(), 0u);
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::ranges::sort(order_, {}, [&](std::uint32_t c) { return std::pair(boxes_[c].lo[0], c); });
+  open_.clear();
+  for (const std::uint32_t c : order_) {
+    std::erase_if(open_, [&](std::uint32_t o) { return boxes_[o].hi[0] < boxes_[c].lo[0]; });
+    for (const std::uint32_t o : open_)
+      if (meet(boxes_[o], boxes_[c])) join(c, o);
+    open_.push_back(c);
+  }
+}
+
+// Patches by their deepest contact; in each, contacts by depth.
+void ContactFinder::sort_by_patch() {
+  order_.resize(contacts_.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::ranges::stable_sort(order_, std::ranges::greater(),
+                           [&](std::uint32_t c) { return contacts_[c].depth; });
+  constexpr std::uint32_t kUnnumbered = kNone;
+  std::uint32_t patches = 0;
+  for (Contact& c : contacts_) c.patch = kUnnumbered;
+  for (const std::uint32_t c : order_)
+    if (std::uint32_t& patch = contacts_[root(c)].patch; patch == kUnnumbered) patch = patches++;
+  for (const std::uint32_t c : order_) contacts_[c].patch = contacts_[root(c)].patch;
+  std::ranges::stable_sort(order_, {}, [&](std::uint32_t c) { return contacts_[c].patch; });
+  sorted_.clear();
+  for (const std::uint32_t c : order_) sorted_.push_back(contacts_[c]);
+}
+
+std::uint32_t ContactFinder::root(std::uint32_t contact) {
+  while (parent_[contact] != contact) contact = parent_[contact] = parent_[parent_[contact]];
+  return contact;
+}
+
+void ContactFinder::join(std::uint32_t a, std::uint32_t b) {
+  a = root(a), b = root(b);
+  parent_[std::max(a, b)] = std::min(a, b);
+}
+
+}  // namespace sdm
