@@ -3,7 +3,9 @@
 #include "info.h"
 #include "map.h"
 #include "progress_line.h"
+#include "proximity.h"
 #include "scene.h"
+#include "sequence.h"
 
 #include <sdm/error.h>
 #include <sdm/version.h>
@@ -32,6 +34,8 @@ int main(int argc, char** argv) {
       "  sdm map --help");
   try {
     add_map_command(app);
+    add_proximity_command(app);
+    add_sequence_command(app);
     add_info_command(app);
     add_devices_command(app);
     add_scene_command(app);

@@ -19,13 +19,6 @@
 
 namespace {
 
-Input load(std::string role, const std::string& file, const std::string& placement) {
-  Input input{std::move(role), file, placement, sdm::read_mesh(file), {}};
-  sdm::transform(input.mesh, sdm::parse_transform(placement));
-  input.info = sdm::inspect(input.mesh);
-  return input;
-}
-
 /// The distance at each vertex, signed as the map is; NaN beyond the maximum distance.
 std::vector<float> vertex_distances(const sdm::Mesh& mesh, const sdm::Sites& sites,
                                     const sdm::DistanceMap& map, sdm::MapOptions options) {
@@ -164,8 +157,8 @@ int run(MapCommand command) {
   progress.step("import");
   sdm::Stopwatch import;
   Input o1, o2;
-  sdm::parallel_invoke([&] { o1 = load("o1", command.o1, command.transform_o1); },
-                       [&] { o2 = load("o2", command.o2, command.transform_o2); });
+  sdm::parallel_invoke([&] { o1 = load_input("o1", command.o1, command.transform_o1); },
+                       [&] { o2 = load_input("o2", command.o2, command.transform_o2); });
   const double import_ms = import.lap();
 
   std::vector<Result> results;

@@ -1,63 +1,6 @@
 #include "map_options.h"
 
-#include <cmath>
-#include <optional>
-#include <utility>
-
-namespace {
-
-// Checks of the command line: each returns what is wrong, or nothing.
-std::string check_transform(const std::string& text) try {
-  (void)sdm::parse_transform(text);
-  return {};
-} catch (const sdm::Error& error) {
-  return error.what();
-}
-
-CLI::Validator number(const std::string& description, bool (*accepts)(double)) {
-  return CLI::Validator(
-      [=](const std::string& text) {
-        double value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && accepts(value);
-        return good ? std::string() : text + " is not " + description;
-      },
-      "");
-}
-
-CLI::Validator whole_number(int lowest, int highest) {
-  return CLI::Validator(
-      [=](const std::string& text) {
-        int value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && lowest <= value && value <= highest;
-        return good ? std::string()
-                    : text + " is not a whole number from " + std::to_string(lowest) + " to " +
-                          std::to_string(highest);
-      },
-      "");
-}
-
-template <class Enum>
-void add_choice(CLI::App& app, const std::string& name, Enum& target, const std::string& description,
-                const std::vector<std::pair<std::string, Enum>>& choices) {
-  std::string names;
-  for (const auto& choice : choices) names += (names.empty() ? "" : "|") + choice.first;
-  const auto find = [choices](const std::string& text) -> std::optional<Enum> {
-    for (const auto& [word, value] : choices)
-      if (word == text) return value;
-    return std::nullopt;
-  };
-  app.add_option_function<std::string>(
-         name, [=, &target](const std::string& text) { target = *find(text); }, description)
-      ->check(CLI::Validator(
-          [=](const std::string& text) {
-            return find(text) ? std::string() : text + " is not one of " + names;
-          },
-          ""))
-      ->type_name(names)
-      ->default_str(choices[0].first);
-}
-
-}  // namespace
+#include "option_checks.h"
 
 void add_options(CLI::App& app, MapCommand& c) {
   const auto positive = number("a positive number", [](double x) { return x > 0; });

@@ -78,6 +78,13 @@ std::string number(double value) {
 
 }  // namespace
 
+Input load_input(const std::string& role, const std::string& file, const std::string& transform) {
+  Input input{role, file, transform, sdm::read_mesh(file), {}};
+  sdm::transform(input.mesh, sdm::parse_transform(transform));
+  input.info = sdm::inspect(input.mesh);
+  return input;
+}
+
 const char* name(sdm::EngineKind engine) {
   switch (engine) {
     case sdm::EngineKind::reference:

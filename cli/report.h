@@ -17,6 +17,10 @@ struct Input {
   sdm::MeshInfo info;
 };
 
+/// Reads a mesh, and places it.
+[[nodiscard]] Input load_input(const std::string& role, const std::string& file,
+                               const std::string& transform);
+
 struct Tolerance {
   double value = 0;
   double exceeded_area_fraction = 0;

@@ -1,0 +1,37 @@
+// What options of several commands accept.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Steps of sdm::parse_transform: what is wrong with them, or nothing.
+[[nodiscard]] std::string check_transform(const std::string& text);
+
+/// A finite number that is accepted.
+[[nodiscard]] CLI::Validator number(const std::string& description, bool (*accepts)(double));
+[[nodiscard]] CLI::Validator whole_number(int lowest, int highest);
+
+/// An option that takes one of some words; the first is the default.
+template <class Enum>
+void add_choice(CLI::App& app, const std::string& name, Enum& target, const std::string& description,
+                const std::vector<std::pair<std::string, Enum>>& choices) {
+  std::string names;
+  for (const auto& choice : choices) names += (names.empty() ? "" : "|") + choice.first;
+  const auto find = [choices](const std::string& text) -> std::optional<Enum> {
+    for (const auto& [word, value] : choices)
+      if (word == text) return value;
+    return std::nullopt;
+  };
+  app.add_option_function<std::string>(
+         name, [=, &target](const std::string& text) { target = *find(text); }, description)
+      ->check(CLI::Validator(
+          [=](const std::string& text) {
+            return find(text) ? std::string() : text + " is not one of " + names;
+          },
+          ""))
+      ->type_name(names)
+      ->default_str(choices[0].first);
+}

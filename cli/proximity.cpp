@@ -1,0 +1,62 @@
+#include "proximity.h"
+
+#include <sdm/io.h>
+#include <sdm/sdm.h>
+
+#include <iostream>
+#include <memory>
+
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "pair_options.h"
+#include "progress_line.h"
+#include "proximity_report.h"
+#include "report.h"
+
+namespace {
+
+void run(PairCommand command) {
+  const sdm::ThreadLimit limit(command.threads);
+  ProgressLine progress(command.quiet);
+  command.options.atlas.progress = progress.callback();
+
+  progress.step("import");
+  sdm::Stopwatch watch;
+  Input o1, o2;
+  sdm::parallel_invoke([&] { o1 = load_input("o1", command.o1, command.transform_o1); },
+                       [&] { o2 = load_input("o2", command.o2, command.transform_o2); });
+  const double import_ms = watch.lap();
+  sdm::Query query(o1.mesh, o2.mesh, command.options);
+  const double build_ms = watch.lap();
+  progress.step("queries");
+  nlohmann::ordered_json answers = to_json(query);
+  const double query_ms = watch.lap();
+
+  if (command.json) {
+    nlohmann::ordered_json json;
+    json["version"] = sdm::kVersion;
+    json["o1"] = to_json(o1);
+    json["o2"] = to_json(o2);
+    json["units"] = command.units;
+    json["resolution"] = command.options.atlas.resolution;
+    json.update(answers);
+    json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
+    std::cout << to_text(json);
+  } else if (!command.quiet) {
+    std::cout << o1.file << ", " << o2.file << "\n" << summary(query, command.units);
+  }
+}
+
+}  // namespace
+
+void add_proximity_command(CLI::App& app) {
+  CLI::App* proximity =
+      app.add_subcommand("proximity", "Tell how two meshes meet: separation, collision, depth, contacts");
+  proximity->footer(
+      "Every number says what it is worth: exact, bounded (with its bounds) or an estimate.\n\n"
+      "Example, two meshes that meet:\n"
+      "  sdm proximity bunny.obj armadillo.off --transform-o1 fit --transform-o2 fit,translate:0.1:0:0");
+  const auto command = std::make_shared<PairCommand>();
+  add_options(*proximity, *command, {"A mesh (OBJ, PLY, STL, OFF, glTF, 3DS)", "The other mesh"});
+  proximity->callback([command] { run(*command); });
+}

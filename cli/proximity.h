@@ -1,0 +1,6 @@
+// `sdm proximity`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+void add_proximity_command(CLI::App& app);

@@ -1,0 +1,18 @@
+// What queries found, as JSON and in words. The keys are documented in docs/proximity.md.
+#pragma once
+
+#include <sdm/proximity.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+[[nodiscard]] const char* name(sdm::Certainty kind);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::Length& length);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::Decision& decision);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::Contact& contact);
+
+/// All answers of the query, which are computed if need be.
+[[nodiscard]] nlohmann::ordered_json to_json(sdm::Query& query);
+
+/// Some lines for a reader in a hurry.
+[[nodiscard]] std::string summary(sdm::Query& query, const std::string& units);

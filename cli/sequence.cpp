@@ -1,0 +1,266 @@
+#include "sequence.h"
+
+#include <sdm/io.h>
+#include <sdm/sdm.h>
+#include <sdm/sequence.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "core/stopwatch.h"
+#include "option_checks.h"
+#include "output_folder.h"
+#include "pair_options.h"
+#include "progress_line.h"
+#include "sequence_report.h"
+
+namespace {
+
+struct SequenceCommand {
+  PairCommand pair;
+  std::filesystem::path out;
+  int maps_every = 0;
+  double rate = 0;
+  bool keep_going = false, no_temporal = false;
+};
+
+/// A body of the sequence: its file or files, and where it stands.
+class Body {
+ public:
+  Body(const std::string& input, const std::string& steps, double rate)
+      : input_(input),
+        sequence_(input, {.rate = rate}),
+        steps_(sdm::without_fit(sequence_.mesh(), sdm::parse_transform(steps))) {}
+
+  [[nodiscard]] const std::string& input() const { return input_; }
+  [[nodiscard]] std::size_t frames() const { return sequence_.frame_count(); }
+  [[nodiscard]] bool still() const { return frames() == 1; }
+  [[nodiscard]] sdm::Mesh first() const {
+    sdm::Mesh mesh = sequence_.mesh();
+    sdm::transform(mesh, steps_);
+    return mesh;
+  }
+  /// Of a body that moves.
+  [[nodiscard]] std::span<const sdm::Vec3> positions(std::size_t frame) {
+    const std::span<const sdm::Vec3> read = sequence_.positions(frame);
+    placed_.assign(read.begin(), read.end());
+    sdm::transform(placed_, steps_);
+    return placed_;
+  }
+
+ private:
+  std::string input_;
+  sdm::MeshSequence sequence_;
+  std::vector<sdm::TransformStep> steps_;
+  std::vector<sdm::Vec3> placed_;
+};
+
+std::size_t common_frames(const Body& a, const Body& b) {
+  if (a.still()) return b.frames();
+  if (b.still() || a.frames() == b.frames()) return a.frames();
+  throw sdm::Error(a.input() + " has " + std::to_string(a.frames()) + " frames and " + b.input() + " has " +
+                   std::to_string(b.frames()) +
+                   "; give two sequences of the same length, or one mesh that stays");
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out)
+    throw sdm::Error("cannot write " + file.filename().string() + ": the disk may be full; free space on it");
+}
+
+std::string four_digits(std::size_t frame) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%04zu", frame);
+  return text;
+}
+
+/// A run over the frames.
+class Run {
+ public:
+  explicit Run(const SequenceCommand& command)
+      : command_(command),
+        out_(command.out),
+        progress_(command.pair.quiet),
+        o1_(command.pair.o1, command.pair.transform_o1, command.rate),
+        o2_(command.pair.o2, command.pair.transform_o2, command.rate),
+        count_(common_frames(o1_, o2_)),
+        lines_(out_.staging() / "frames.jsonl", std::ios::binary) {
+    command_.pair.options.atlas.progress = progress_.callback();
+    query_.emplace(o1_.first(), o2_.first(), command_.pair.options);
+    for (int b = 0; b < 2; ++b) first_bound_[b] = query_->surface(b).sampling_bound();
+  }
+
+  /// The exit code.
+  int operator()() {
+    sdm::Stopwatch watch;
+    double seconds = 0;
+    for (std::size_t i = 0; i < count_ && !stopped_; ++i) {
+      progress_.step(status(i, seconds));
+      use(i);
+      seconds += watch.lap() / 1000;
+    }
+    finish();
+    if (stopped_)
+      throw sdm::Error(bad_.back().fault + "; " + std::to_string(frames_.size()) +
+                       " frames before it are in " + command_.out.string() +
+                       " (--keep-going leaves bad frames out)");
+    return 0;
+  }
+
+ private:
+  [[nodiscard]] std::string status(std::size_t frame, double seconds) const {
+    std::string text = "frame " + std::to_string(frame + 1) + " of " + std::to_string(count_);
+    if (frame == 0) return text;
+    char rate[32];
+    std::snprintf(rate, sizeof rate, ", %.1f a second", static_cast<double>(frame) / seconds);
+    return text + rate;
+  }
+
+  void use(std::size_t index) {
+    Frame frame;
+    frame.index = index;
+    try {
+      move(frame);
+    } catch (const sdm::Cancelled&) {
+      throw;
+    } catch (const sdm::Error& error) {
+      bad_.push_back({index, error.what()});
+      add_line(to_json(bad_.back()));
+      stopped_ = !command_.keep_going;
+      return;
+    }
+    sdm::Stopwatch watch;
+    frame.separation = query_->separation();
+    frame.colliding = query_->colliding();
+    frame.depth = query_->penetration_depth();
+    const std::span<const sdm::Contact> contacts = query_->contacts();
+    frame.contacts = contacts.size();
+    frame.patches = contacts.empty() ? 0 : contacts.back().patch + 1;
+    frame.time.query = watch.lap();
+    for (int b = 0; b < 2; ++b) {
+      frame.error_bound[b] = query_->surface(b).sampling_bound();
+      frame.relative_error[b] = frame.error_bound[b] / first_bound_[b];
+    }
+    frame.time.error = watch.lap();
+    const bool write = command_.maps_every > 0 && index % static_cast<std::size_t>(command_.maps_every) == 0;
+    if (write || !command_.no_temporal) sdm::compute_map(query_->surface(0), query_->sites(1), {}, map_);
+    if (!command_.no_temporal) temporal_.add(map_);
+    frame.time.map = watch.lap();
+    if (write) write_map(index);
+    frame.time.write = watch.lap();
+    add_line(to_json(frame, contacts));
+    frames_.push_back(frame);
+  }
+
+  // Both bodies are read before one of them is moved.
+  void move(Frame& frame) {
+    sdm::Stopwatch watch;
+    std::span<const sdm::Vec3> p1, p2;
+    if (!o1_.still()) p1 = o1_.positions(frame.index);
+    if (!o2_.still()) p2 = o2_.positions(frame.index);
+    frame.time.read = watch.lap();
+    try {
+      query_->update(p1, p2);
+    } catch (const sdm::Error& error) {
+      throw sdm::Error("frame " + std::to_string(frame.index) + ": " + error.what());
+    }
+    frame.time.update = watch.lap();
+  }
+
+  void write_map(std::size_t index) {
+    const std::filesystem::path folder = out_.staging("maps");
+    sdm::write_exr(folder / (four_digits(index) + ".exr"), query_->surface(0), map_);
+    sdm::write_distance_png(folder / (four_digits(index) + ".png"), query_->surface(0), map_,
+                            {.units = command_.pair.units});
+  }
+
+  void add_line(const nlohmann::ordered_json& json) {
+    const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    lines_ << text;
+    if (command_.pair.json) std::cout << text << std::flush;
+  }
+
+  void finish() {
+    progress_.step("export");
+    const std::filesystem::path folder = out_.staging();
+    lines_.close();
+    if (!lines_) throw sdm::Error("cannot write frames.jsonl: the disk may be full; free space on it");
+    write_text(folder / "frames.csv", to_csv(frames_));
+    if (!frames_.empty()) write_plot(folder / "plot.png", frames_, command_.pair.units);
+    if (temporal_.maps() > 0) write_temporal(folder);
+    out_.commit();
+    if (!command_.pair.json && !command_.pair.quiet)
+      std::cout << o1_.input() << ", " << o2_.input() << "\n"
+                << summary(frames_, bad_, command_.pair.units) << "  results    " << command_.out.string()
+                << "/: frames.jsonl frames.csv" << (frames_.empty() ? "" : " plot.png")
+                << (temporal_.maps() > 0 ? " temporal.exr min.png mean.png max.png" : "")
+                << (command_.maps_every > 0 ? " maps/" : "") << "\n";
+  }
+
+  void write_temporal(const std::filesystem::path& folder) {
+    const sdm::Surface& surface = query_->surface(0);
+    sdm::write_exr(folder / "temporal.exr", surface, temporal_);
+    const auto draw = [&](const char* file, std::span<const float> values) {
+      std::ranges::copy(values, map_.distance.begin());
+      sdm::write_distance_png(folder / file, surface, map_, {.units = command_.pair.units});
+    };
+    draw("min.png", temporal_.least());
+    draw("mean.png", temporal_.mean());
+    draw("max.png", temporal_.largest());
+  }
+
+  SequenceCommand command_;
+  OutputFolder out_;
+  ProgressLine progress_;
+  Body o1_, o2_;
+  std::size_t count_;
+  std::ofstream lines_;
+  std::optional<sdm::Query> query_;
+  std::array<double, 2> first_bound_{};
+  std::vector<Frame> frames_;
+  std::vector<BadFrame> bad_;
+  bool stopped_ = false;
+  sdm::DistanceMap map_;
+  sdm::TemporalMaps temporal_;
+};
+
+}  // namespace
+
+void add_sequence_command(CLI::App& app) {
+  CLI::App* sequence = app.add_subcommand(
+      "sequence", "Follow two bodies that deform: proximity, errors and maps, frame by frame");
+  sequence->footer(
+      "A sequence is a folder of numbered mesh files, a pattern such as walk_%04d.ply, mesh.obj+motion.npy "
+      "with\n"
+      "positions (T, V, 3), or a glTF file with morph targets; any other mesh file is a body at rest.\n"
+      "Writes frames.jsonl, frames.csv, plot.png, and of O1 the least, mean and largest distance over time:\n"
+      "temporal.exr, min.png, mean.png, max.png.\n\n"
+      "Example:\n"
+      "  sdm scene letters -o letters\n"
+      "  sdm sequence letters/E.ply+letters/E.npy letters/G.ply+letters/G.npy -o out");
+  const auto command = std::make_shared<SequenceCommand>();
+  add_options(*sequence, command->pair, {"A sequence, or a mesh that stays", "The other one"});
+  sequence->add_option("-o,--output", command->out, "The folder of the results, made if it is not there")
+      ->required()
+      ->type_name("DIR");
+  sequence
+      ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
+      ->check(whole_number(1, 1000000))
+      ->type_name("K");
+  sequence->add_option("--rate", command->rate, "Of glTF animations: frames a second; 0: one a key")
+      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
+      ->type_name("FPS");
+  sequence->add_flag("--keep-going", command->keep_going, "Leave out frames that cannot be read, and go on");
+  sequence->add_flag("--no-temporal", command->no_temporal,
+                     "No maps over time: frames then need no whole map");
+  sequence->callback([command] {
+    const sdm::ThreadLimit limit(command->pair.threads);
+    if (const int code = Run(*command)(); code != 0) throw CLI::RuntimeError(code);
+  });
+}

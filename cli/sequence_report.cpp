@@ -1,0 +1,145 @@
+#include "sequence_report.h"
+
+#include <sdm/io.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "proximity_report.h"
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::string number(double value) {
+  std::ostringstream text;
+  text.precision(9);
+  text << value;
+  return text.str();
+}
+
+// Of the frames used, and gaps between them.
+template <class Value>
+std::vector<double> curve(const std::vector<Frame>& frames, std::size_t count, const Value& value) {
+  std::vector<double> values(count, kNaN);
+  for (const Frame& frame : frames) values[frame.index - frames.front().index] = value(frame);
+  return values;
+}
+
+template <class Value>
+double median(const std::vector<Frame>& frames, const Value& value) {
+  std::vector<double> values;
+  for (const Frame& frame : frames) values.push_back(value(frame));
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace
+
+Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
+  Json json;
+  json["frame"] = frame.index;
+  json["separation"] = to_json(frame.separation);
+  json["colliding"] = to_json(frame.colliding);
+  json["penetration_depth"] = frame.depth ? to_json(*frame.depth) : Json(nullptr);
+  json["contacts"] = frame.contacts;
+  json["patches"] = Json::array();  // each by its deepest contact, which comes first
+  for (const sdm::Contact& contact : contacts)
+    if (contact.patch == json["patches"].size()) json["patches"].push_back(to_json(contact));
+  json["error_bound"] = {{"kind", "bounded"}, {"o1", frame.error_bound[0]}, {"o2", frame.error_bound[1]}};
+  json["relative_error"] = {{"o1", frame.relative_error[0]}, {"o2", frame.relative_error[1]}};
+  const FrameTimes& t = frame.time;
+  json["time_ms"] = {{"read", t.read}, {"update", t.update}, {"query", t.query},  {"error", t.error},
+                     {"map", t.map},   {"write", t.write},   {"total", t.total()}};
+  return json;
+}
+
+Json to_json(const BadFrame& frame) {
+  return {{"frame", frame.index}, {"error", frame.fault}};
+}
+
+std::string to_csv(const std::vector<Frame>& frames) {
+  std::string text =
+      "frame,separation,separation_lower,separation_upper,colliding,colliding_kind,penetration_depth,depth_"
+      "lower,"
+      "depth_upper,contacts,patches,error_bound_o1,error_bound_o2,relative_error_o1,relative_error_o2,read_"
+      "ms,"
+      "update_ms,query_ms,error_ms,map_ms,write_ms,total_ms\n";
+  for (const Frame& f : frames) {
+    std::vector<std::string> cells{std::to_string(f.index)};
+    for (const double v : {f.separation.value, f.separation.lower, f.separation.upper})
+      cells.push_back(number(v));
+    cells.push_back(f.colliding.value ? "1" : "0");
+    cells.push_back(name(f.colliding.kind));
+    for (const double v :
+         f.depth ? std::array{f.depth->value, f.depth->lower, f.depth->upper} : std::array{kNaN, kNaN, kNaN})
+      cells.push_back(std::isnan(v) ? "" : number(v));
+    cells.push_back(std::to_string(f.contacts));
+    cells.push_back(std::to_string(f.patches));
+    for (const double v :
+         {f.error_bound[0], f.error_bound[1], f.relative_error[0], f.relative_error[1], f.time.read,
+          f.time.update, f.time.query, f.time.error, f.time.map, f.time.write, f.time.total()})
+      cells.push_back(number(v));
+    for (std::size_t i = 0; i < cells.size(); ++i) text += (i > 0 ? "," : "") + cells[i];
+    text += '\n';
+  }
+  return text;
+}
+
+void write_plot(const std::filesystem::path& file, const std::vector<Frame>& frames,
+                const std::string& units) {
+  const std::size_t count = frames.empty() ? 0 : frames.back().index - frames.front().index + 1;
+  std::vector<double> places(count);
+  for (std::size_t i = 0; i < count; ++i) places[i] = static_cast<double>(frames.front().index + i);
+  const auto over = [&](auto value) { return curve(frames, count, value); };
+  const std::string in = units.empty() ? "" : " (" + units + ")";
+  const std::vector<sdm::PlotPanel> panels{
+      {"Separation" + in,
+       {{"value", over([](const Frame& f) { return f.separation.value; })},
+        {"lower bound", over([](const Frame& f) { return f.separation.lower; })}}},
+      {"Penetration depth" + in,
+       {{"value", over([](const Frame& f) { return f.depth ? f.depth->value : kNaN; })},
+        {"upper bound", over([](const Frame& f) { return f.depth ? f.depth->upper : kNaN; })}}},
+      {"Relative error: covering radius over the first frame's",
+       {{"O1", over([](const Frame& f) { return f.relative_error[0]; })},
+        {"O2", over([](const Frame& f) { return f.relative_error[1]; })}}},
+      {"Time (ms)",
+       {{"all but files", over([](const Frame& f) { return f.time.total() - f.time.read - f.time.write; })},
+        {"queries", over([](const Frame& f) { return f.time.query; })}}}};
+  sdm::write_plot_png(file, "frame", places, panels);
+}
+
+std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame>& bad,
+                    const std::string& units) {
+  const std::string unit = units.empty() ? "" : " " + units;
+  std::string text = "  frames     " + std::to_string(frames.size());
+  if (!bad.empty()) text += ", and " + std::to_string(bad.size()) + " that could not be used";
+  text += '\n';
+  if (frames.empty()) return text;
+  const auto least = std::ranges::min_element(frames, {}, [](const Frame& f) { return f.separation.value; });
+  text += "  separation " + number(least->separation.value) + unit + " at the least, in frame " +
+          std::to_string(least->index) + " (" + name(least->separation.kind) + ")\n";
+  const auto colliding = std::ranges::count_if(frames, [](const Frame& f) { return f.colliding.value; });
+  text += "  colliding  in " + std::to_string(colliding) + " frames\n";
+  const auto deepest =
+      std::ranges::max_element(frames, {}, [](const Frame& f) { return f.depth ? f.depth->value : -1; });
+  if (deepest->depth && deepest->depth->value > 0)
+    text += "  depth      " + number(deepest->depth->value) + unit + " at the most, in frame " +
+            std::to_string(deepest->index) + " (" + name(deepest->depth->kind) + ")\n";
+  const auto relative = [](const Frame& f) { return std::max(f.relative_error[0], f.relative_error[1]); };
+  text += "  error      at most " + number(relative(*std::ranges::max_element(frames, {}, relative))) +
+          " times that of the first frame\n";
+  const auto ms = [&](auto value) { return number(std::round(100 * median(frames, value)) / 100); };
+  text += "  a frame    " + ms([](const Frame& f) { return f.time.total(); }) + " ms (median): read " +
+          ms([](const Frame& f) { return f.time.read; }) + ", update " +
+          ms([](const Frame& f) { return f.time.update; }) + ", queries " +
+          ms([](const Frame& f) { return f.time.query; }) + ", error " +
+          ms([](const Frame& f) { return f.time.error; }) + ", map " +
+          ms([](const Frame& f) { return f.time.map; }) + "\n";
+  return text;
+}

@@ -1,0 +1,47 @@
+// What the frames of a sequence showed: as lines of JSON, as a table, as a plot. The keys and columns are
+// documented in docs/sequences.md.
+#pragma once
+
+#include <sdm/sdm.h>
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+/// Milliseconds of the steps of a frame.
+struct FrameTimes {
+  double read = 0, update = 0, query = 0, error = 0, map = 0, write = 0;
+  [[nodiscard]] double total() const { return read + update + query + error + map + write; }
+};
+
+struct Frame {
+  std::size_t index = 0;
+  sdm::Length separation;
+  sdm::Decision colliding;
+  std::optional<sdm::Length> depth;
+  std::size_t contacts = 0, patches = 0;
+  std::array<double, 2> error_bound{};     ///< of each body: covering radius
+  std::array<double, 2> relative_error{};  ///< the same over that of the first frame
+  FrameTimes time;
+};
+
+/// A frame that could not be used.
+struct BadFrame {
+  std::size_t index = 0;
+  std::string fault;
+};
+
+/// One line. `contacts` are those of the frame: the deepest of each patch is told.
+[[nodiscard]] nlohmann::ordered_json to_json(const Frame& frame, std::span<const sdm::Contact> contacts);
+[[nodiscard]] nlohmann::ordered_json to_json(const BadFrame& frame);
+
+/// frames.csv: a row for each frame that was used.
+[[nodiscard]] std::string to_csv(const std::vector<Frame>& frames);
+/// plot.png: separation, depth, relative error and time over frames; gaps for bad ones.
+void write_plot(const std::filesystem::path& file, const std::vector<Frame>& frames,
+                const std::string& units);
+/// Some lines for a reader in a hurry.
+[[nodiscard]] std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame>& bad,
+                                  const std::string& units);
