@@ -88,7 +88,9 @@ std::vector<Triangle> delaunay(std::vector<Vec2> points) {
         t[k] = static_cast<std::uint32_t>(qh_pointid(&qhull, SETelemt_(facet->vertices, k, vertexT)->point));
       if (cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]) < 0) std::swap(t[1], t[2]);
     }
-  qh_freeqhull(&qhull, qh_ALL);
+  qh_freeqhull(&qhull, !qh_ALL);
+  int left = 0, left_bytes = 0;
+  qh_memfreeshort(&qhull, &left, &left_bytes);
   if (failed != 0) throw Error("Qhull failed to triangulate a letter");
   return triangles;
 }
