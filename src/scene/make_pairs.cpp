@@ -35,7 +35,7 @@ Mesh bunny(const std::filesystem::path& file) {
   constexpr std::size_t kTriangles = 2000;
   if (file.empty() && !std::filesystem::exists(kDefault))
     throw Error(std::string("there is no bunny at ") + kDefault +
-                "; install Debian's glmark2-data or give a mesh with --mesh");
+                "; install Debian's glmark2-data, or give another mesh file");
   return placed(reduce_mesh(read_mesh(file.empty() ? kDefault : file), kTriangles), "fit,rotate:90:0:0");
 }
 
