@@ -89,7 +89,9 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   sdm::parallel_invoke(
       [&] {
         sdm::Stopwatch watch;
-        surface = std::make_unique<sdm::Surface>(on.mesh, command.atlas);
+        sdm::AtlasOptions options = command.atlas;
+        if (command.precision) options.resolution = sdm::resolution_for(on.mesh, options, *command.precision);
+        surface = std::make_unique<sdm::Surface>(on.mesh, options);
         outcome.time.atlas = watch.lap();
       },
       [&] {
@@ -135,6 +137,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   report["measured_on"] = on.role;
   report["units"] = command.picture.units;
   report["atlas"] = to_json(*surface);
+  report["precision"] = command.precision ? nlohmann::ordered_json(*command.precision) : nullptr;
   report["engine"] = name(command.map.engine);
   report["max_distance"] = command.map.max_distance;  // null: no limit
   report.update(to_json(outcome));

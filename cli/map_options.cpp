@@ -17,10 +17,18 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_option("--transform-o1", c.transform_o1, "O1" + steps)->check(check_transform)->type_name("STEPS");
   app.add_option("--transform-o2", c.transform_o2, "O2" + steps)->check(check_transform)->type_name("STEPS");
 
-  app.add_option("--resolution", c.atlas.resolution, "Texels along each side of the map")
-      ->check(whole_number(16, 32768))
-      ->type_name("N")
-      ->capture_default_str();
+  CLI::Option* resolution =
+      app.add_option("--resolution", c.atlas.resolution, "Texels along each side of the map")
+          ->check(whole_number(16, 32768))
+          ->type_name("N")
+          ->capture_default_str();
+  app.add_option(
+         "--precision", c.precision,
+         "Instead: as many texels as it takes for no point to be farther than EPS from a texel's sample, so "
+         "that distances between samples are known to EPS (error_bound)")
+      ->check(positive)
+      ->type_name("EPS")
+      ->excludes(resolution);
   add_choice<sdm::AtlasKind>(app, "--atlas", c.atlas.kind,
                              "How O1 is laid out in the map: few charts, a chart a triangle, or O1's own UVs",
                              {{"charts", sdm::AtlasKind::charts},

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct MapCommand {
   sdm::MapOptions map;
   sdm::PictureOptions picture;
   std::vector<double> range;
+  std::optional<double> precision;
   unsigned threads = 0;
   bool both = false, json = false, quiet = false;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/error.h>
+#include <sdm/error_bound.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/progress.h>

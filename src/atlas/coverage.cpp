@@ -4,30 +4,13 @@
 #include <atomic>
 #include <cmath>
 
+#include "atlas/face_frame.h"
 #include "atlas/surface_impl.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
 namespace sdm {
 namespace {
-
-/// A face as an affine frame: its points are origin + a edges[0] + b edges[1].
-struct Frame {
-  Vec3 origin;
-  std::array<Vec3, 2> edges;
-  double rounding;  ///< how far a point that is computed from float weights can be off
-
-  Frame(const Mesh& mesh, std::size_t face) {
-    const Triangle& t = mesh.triangles[face];
-    origin = mesh.positions[t[0]];
-    edges = {mesh.positions[t[1]] - origin, mesh.positions[t[2]] - origin};
-    double largest = 0;
-    for (const std::uint32_t v : t)
-      for (const double x : mesh.positions[v]) largest = std::max(largest, std::abs(x));
-    // Weights in [0, 1] are off by 2⁻²⁵ at most; the rest is a few roundings in double.
-    rounding = 1e-14 * largest + 0x1.01p-25 * (norm(edges[0]) + norm(edges[1]));
-  }
-};
 
 /// A float that is not less.
 float rounded_up(double x) {
@@ -60,7 +43,7 @@ struct Coverage::Measuring {
   void squares_of_face(std::size_t face) const {
     radii.faces[face] = 0;
     if (!coverage.has_squares_[face]) return;
-    const Frame frame(surface.mesh(), face);
+    const FaceFrame frame(surface.mesh(), face);
     const FaceMap& map = surface.impl().maps[face];
     const auto& [du, dv] = map.edges;
     double mismatch = 0;
@@ -68,7 +51,7 @@ struct Coverage::Measuring {
       const Vec2 d = surface.impl().corners[face][k + 1] - map.origin;
       mismatch = std::max(mismatch, norm(d[0] * du + d[1] * dv - frame.edges[k]));
     }
-    radii.faces[face] = rounded_up(half_diagonal(map.edges) + mismatch + frame.rounding);
+    radii.faces[face] = rounded_up(half_diagonal(map.edges) + mismatch + frame.rounding());
   }
 
   void square_of_sample(std::size_t sample) const {
@@ -80,14 +63,15 @@ struct Coverage::Measuring {
     std::array<double, 256> squared;
     std::size_t first = 0;
     for (const auto& [face, end] : block.faces) {
-      const Frame frame(surface.mesh(), face);
+      const FaceFrame frame(surface.mesh(), face);
+      const double rounding = frame.rounding();
       float largest = radii.faces[face];
       while (first < end) {
         const std::size_t count = std::min(squared.size(), end - first);
         const std::span<const Piece> pieces(block.pieces.data() + first, count);
         measure_pieces(pieces, frame.origin, frame.edges, surface.sample_points(), squared);
         for (std::size_t i = 0; i < count; ++i) {
-          const float radius = rounded_up(std::sqrt(squared[i]) + frame.rounding);
+          const float radius = rounded_up(std::sqrt(squared[i]) + rounding);
           raise(radii.samples[pieces[i].sample], radius);
           largest = std::max(largest, radius);
         }

@@ -35,6 +35,10 @@ class Coverage {
   /// threads. Cost: linear in faces, samples and pieces, all cores.
   void measure(const Surface& surface, Radii& radii) const;
 
+  /// For each face the largest distance to the nearest sample of some of its points, at the surface's
+  /// positions, rounded downwards: a lower bound on its radius. Cost: some nearest samples a face, all cores.
+  [[nodiscard]] std::vector<double> witnessed_radii(const Surface& surface) const;
+
  private:
   friend class CoverageBuilder;
 
@@ -55,5 +59,10 @@ class Coverage {
   std::vector<std::uint8_t> has_squares_;  ///< whether the face is among them
   std::vector<Block> blocks_;
 };
+
+/// The coverage of a surface, made at the first call, and its radii at the surface's present positions,
+/// measured at the first call after a refit.
+[[nodiscard]] const Coverage& coverage_of(const Surface& surface);
+[[nodiscard]] const Coverage::Radii& radii_of(const Surface& surface);
 
 }  // namespace sdm

@@ -1,7 +1,5 @@
 #include "atlas/pack.h"
 
-#include <sdm/error.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "atlas/bitmap_bin.h"
 #include "atlas/footprint.h"
+#include "atlas/too_small.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/vec.h"
@@ -132,9 +131,10 @@ class Packer {
   const double side = (2.0 * gutter + 1) * std::sqrt(1.25 * static_cast<double>(charts));
   const auto enough =
       static_cast<std::uint64_t>(std::exp2(std::ceil(std::log2(std::max(side, resolution + 1.0)))));
-  throw Error("an atlas of " + std::to_string(resolution) + "² texels is too small for " +
-              std::to_string(charts) + " charts with gutters of " + std::to_string(gutter) +
-              "; use a resolution of about " + std::to_string(enough));
+  throw TooSmall("an atlas of " + std::to_string(resolution) + "² texels is too small for " +
+                     std::to_string(charts) + " charts with gutters of " + std::to_string(gutter) +
+                     "; use a resolution of about " + std::to_string(enough),
+                 enough);
 }
 
 }  // namespace

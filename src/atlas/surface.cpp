@@ -6,6 +6,7 @@
 
 #include "atlas/surface_impl.h"
 #include "atlas/texels.h"
+#include "atlas/too_small.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/spatial_order.h"
@@ -76,7 +77,9 @@ Surface::Surface(Mesh mesh, const AtlasOptions& options) {
   std::vector<std::uint32_t> texel_faces = rasterise(layout, options.kind, options.resolution);
   std::vector<std::uint32_t> samples = owned_texels(texel_faces);
   if (samples.empty())
-    throw Error("no face of the mesh is large enough in the texture to own a texel; use a larger resolution");
+    throw TooSmall(
+        "no face of the mesh is large enough in the texture to own a texel; use a larger resolution",
+        2 * options.resolution);
   impl_ = std::make_unique<Impl>();
   impl_->mesh = std::move(mesh);
   impl_->kind = options.kind;
@@ -165,22 +168,26 @@ double Surface::utilisation() const {
   return static_cast<double>(impl_->samples.size()) / static_cast<double>(impl_->texel_faces.size());
 }
 
-const Coverage::Radii& Surface::Impl::measured_radii(const Surface& surface) {
-  std::call_once(lazy->measured, [&] {
-    if (!coverage) coverage.emplace(surface);
-    coverage->measure(surface, radii);
-  });
+const Coverage& coverage_of(const Surface& surface) {
+  Surface::Impl::Covered& covered = *surface.impl().covered;
+  std::call_once(covered.cut, [&] { covered.coverage.emplace(surface); });
+  return *covered.coverage;
+}
+
+const Coverage::Radii& radii_of(const Surface& surface) {
+  Coverage::Radii& radii = surface.impl().covered->radii;
+  std::call_once(surface.impl().lazy->measured, [&] { coverage_of(surface).measure(surface, radii); });
   return radii;
 }
 
 std::span<const float> Surface::sample_radii() const {
-  return impl_->measured_radii(*this).samples;
+  return radii_of(*this).samples;
 }
 std::span<const float> Surface::face_radii() const {
-  return impl_->measured_radii(*this).faces;
+  return radii_of(*this).faces;
 }
 double Surface::sampling_bound() const {
-  return impl_->measured_radii(*this).largest;
+  return radii_of(*this).largest;
 }
 
 }  // namespace sdm

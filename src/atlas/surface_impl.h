@@ -30,10 +30,13 @@ struct Surface::Impl {
   };
   std::unique_ptr<Lazy> lazy = std::make_unique<Lazy>();
 
-  /// Made when they are first asked for.
-  std::optional<Coverage> coverage;
-  Coverage::Radii radii;  ///< of the present positions once `measured`
-  [[nodiscard]] const Coverage::Radii& measured_radii(const Surface& surface);
+  /// Made when it is first asked for, and kept when vertices move.
+  struct Covered {
+    std::once_flag cut;
+    std::optional<Coverage> coverage;  ///< once `cut`: see coverage_of
+    Coverage::Radii radii;             ///< of the present positions once `Lazy::measured`
+  };
+  std::unique_ptr<Covered> covered = std::make_unique<Covered>();
 };
 
 }  // namespace sdm

@@ -73,6 +73,28 @@ TEST_F(MapCommand, ReportHasTheNumbersOfTheLibrary) {
   EXPECT_FALSE(report.contains("tolerance"));
 }
 
+TEST_F(MapCommand, PrecisionPicksTheResolutionOfEachMap) {
+  EXPECT_TRUE(Json::parse(run_sdm(map({"--json"})).out)["precision"].is_null());
+  const Outcome run = run_sdm(map({"--precision", "0.05", "--both", "--json"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json reports = Json::parse(run.out);
+  for (const char* mesh : {"o1", "o2"}) {
+    const Json& report = reports[mesh];
+    EXPECT_EQ(report["precision"], 0.05);
+    EXPECT_LE(report["error_bound"], 0.05);
+    EXPECT_EQ(report["atlas"]["resolution"].get<int>() % 16, 0);
+  }
+  const Json fine = Json::parse(run_sdm(map({"--precision", "0.01", "--json"})).out);
+  EXPECT_LE(fine["error_bound"], 0.01);
+  EXPECT_GT(fine["atlas"]["resolution"], reports["o1"]["atlas"]["resolution"]);
+}
+
+TEST_F(MapCommand, PrecisionOutOfReachFailsAndTellsWhatIsNot) {
+  const Outcome run = run_sdm(map({"--precision", "1e-9"}));
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("ask for 2"));
+}
+
 TEST_F(MapCommand, BothMeasuresEitherWay) {
   const Outcome run = run_sdm(map({"--both", "--json"}));
   ASSERT_EQ(run.code, 0) << run.err;

@@ -44,7 +44,10 @@ struct TwoTori {
   /// The arguments of a run, `more` appended.
   [[nodiscard]] std::vector<std::string> map(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments{"map", o1, o2, "-o", out};
-    if (std::ranges::find(more, "--resolution") == more.end()) more.insert(more.end(), {"--resolution", "128"});
+    const auto sets_resolution = [](const std::string& a) {
+      return a == "--resolution" || a == "--precision";
+    };
+    if (std::ranges::none_of(more, sets_resolution)) more.insert(more.end(), {"--resolution", "128"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }

@@ -1,0 +1,71 @@
+// The radii from below: points of the surface with their true distance to the nearest sample.
+#include "atlas/coverage.h"
+#include "atlas/face_frame.h"
+#include "atlas/sample_tree.h"
+#include "atlas/surface_impl.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+/// The largest distance to the nearest sample of the points of one face that were looked at.
+class Farthest {
+ public:
+  Farthest(const Surface& surface, const SampleTree& tree) : surface_(surface), tree_(tree) {}
+
+  /// `most` is the distance to some sample.
+  void look_at(const Vec3& p, double most = std::numeric_limits<double>::infinity()) {
+    if (most > distance_)
+      distance_ = std::max(distance_, norm(p - surface_.sample_points()[tree_.nearest(p)]));
+  }
+  [[nodiscard]] double distance() const { return distance_; }
+
+ private:
+  const Surface& surface_;
+  const SampleTree& tree_;
+  double distance_ = 0;
+};
+
+/// The weights of the corner of a texel's square that is nearest to the middle of a face: in a large one
+/// four samples are equally far from it, and the nearest.
+std::array<double, 2> middle_corner(const std::array<Vec2, 3>& triangle) {
+  const Vec2 a = triangle[1] - triangle[0], b = triangle[2] - triangle[0];
+  const Vec2 middle = triangle[0] + (1.0 / 3) * (a + b);
+  const Vec2 p = Vec2{std::round(middle[0]), std::round(middle[1])} - triangle[0];
+  return {cross(p, b) / cross(a, b), cross(a, p) / cross(a, b)};
+}
+
+}  // namespace
+
+std::vector<double> Coverage::witnessed_radii(const Surface& surface) const {
+  const SampleTree tree(surface, 16 * surface.sampling_bound());
+  std::vector<double> radii(has_squares_.size());
+  const auto witness = [&](const Block::Face& block_face, std::span<const Piece> pieces) {
+    const FaceFrame frame(surface.mesh(), block_face.face);
+    Farthest farthest(surface, tree);
+    if (has_squares_[block_face.face]) {
+      const auto [a, b] = middle_corner(surface.impl().corners[block_face.face]);
+      if (a >= 0 && b >= 0 && a + b <= 1) farthest.look_at(frame.at(a, b));
+    }
+    for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {0, 1}}) farthest.look_at(frame.at(a, b));
+    for (const auto& [sample, weights] : pieces)
+      for (int k = 0; k < 4; ++k) {
+        const Vec3 corner = frame.at(weights[0][k], weights[1][k]);
+        farthest.look_at(corner, norm(corner - surface.sample_points()[sample]));
+      }
+    radii[block_face.face] = std::max(0.0, farthest.distance() - frame.rounding());
+  };
+  parallel_for(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      std::uint32_t first = 0;
+      for (const Block::Face& face : blocks_[b].faces) {
+        witness(face, std::span(blocks_[b].pieces).subspan(first, face.end - first));
+        first = face.end;
+      }
+    }
+  });
+  return radii;
+}
+
+}  // namespace sdm
