@@ -43,7 +43,8 @@ class Surface {
 
   /// Moves the vertices, keeping the triangles and the atlas: every face's texels move with it, affinely; a
   /// face whose vertices stay keeps its map to the bit. Throws sdm::Error, and changes nothing, when the
-  /// count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces and texels, all cores.
+  /// count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces, all cores; what is
+  /// asked for then is computed again.
   void refit(std::span<const Vec3> positions);
 
   [[nodiscard]] const Mesh& mesh() const;
@@ -54,7 +55,8 @@ class Surface {
   [[nodiscard]] std::span<const std::uint32_t> texel_faces() const;
   /// The indices of all owned texels, in an order in which neighbours are near each other on the surface.
   [[nodiscard]] std::span<const std::uint32_t> samples() const;
-  /// texel_point of each of them.
+  /// texel_point of each of them; valid until the next refit. Computed at the first call, and after a refit
+  /// again. Cost: linear in samples, all cores.
   [[nodiscard]] std::span<const Vec3> sample_points() const;
   /// The surface point of an owned texel's centre: M⁻¹ of its face.
   [[nodiscard]] Vec3 texel_point(std::uint32_t texel) const;

@@ -1,199 +1,133 @@
-// Which pieces there are, and which sample each is assigned to. Any choice gives valid radii; a good one
-// gives small ones, now and when the surface has moved. A face is cut along the squares of the texels. Where
-// it owns a square, the sample is the square's centre.
+// The pieces of a surface in the order in which a Coverage uses them: run after run, in each face after face.
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+#include <ranges>
 
 #include "atlas/coverage.h"
-#include "atlas/near_samples.h"
-#include "atlas/polygon.h"
-#include "atlas/surface_impl.h"
-#include "core/memory.h"
+#include "atlas/cut_faces.h"
+#include "atlas/sample_runs.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 
 namespace sdm {
 namespace {
 
-/// A sample this many half diagonals away is near enough: points across an edge may be as far as its square.
-constexpr double kNearEnough = 1.1;
+struct SortedPieces {
+  std::vector<FacePiece> pieces;
+  std::vector<std::size_t> run_begins;  ///< and the end of the last
 
-std::array<Vec3, 3> vertices_of(const Mesh& mesh, std::size_t face) {
-  const auto& [a, b, c] = mesh.triangles[face];
-  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
-}
-
-/// Half the diagonal of a square texel, if all the area were shared among the samples.
-double typical_radius(const Surface& surface) {
-  double doubled_area = 0;
-  for (std::size_t f = 0; f < surface.mesh().triangles.size(); ++f) {
-    const auto [a, b, c] = vertices_of(surface.mesh(), f);
-    doubled_area += norm(cross(b - a, c - a));
+  [[nodiscard]] std::span<FacePiece> of_run(std::size_t run) {
+    return std::span(pieces).subspan(run_begins[run], run_begins[run + 1] - run_begins[run]);
   }
-  return 0.5 * std::sqrt(doubled_area / static_cast<double>(surface.samples().size()));
-}
+};
 
-/// A face without area is its longest edge, up to its height. A triangle stands for it in the plane whose
-/// base is as many squares long as it should have pieces.
-std::array<Vec2, 3> unfolded(const std::array<Vec3, 3>& vertices, double piece_length) {
-  constexpr double kMostPieces = 1024;
-  const auto edge = [&](int k) { return vertices[(k + 1) % 3] - vertices[k]; };
-  int base = 0;  // the longest edge runs from this vertex to the next
-  for (int k = 1; k < 3; ++k)
-    if (squared_norm(edge(k)) > squared_norm(edge(base))) base = k;
-  const double length = norm(edge(base));
-  const double pieces = std::clamp(std::ceil(length / piece_length), 1.0, kMostPieces);
-  const double foot = length > 0 ? -dot(edge((base + 2) % 3), edge(base)) / (length * length) : 0;
-  std::array<Vec2, 3> triangle{};
-  triangle[(base + 1) % 3] = {pieces, 0};
-  triangle[(base + 2) % 3] = {std::clamp(foot, 0.0, 1.0) * pieces, 0.5};
-  return triangle;
-}
-
-/// About the most that the pieces take, and a table of the texels: an edge crosses |Δu| + |Δv| squares.
-std::size_t bytes_needed(const Surface& surface, double typical) {
-  double pieces = 0;
-  for (std::size_t f = 0; f < surface.mesh().triangles.size(); ++f) {
-    const std::array<Vec2, 3> t = surface.face_charts()[f] == kNone
-                                      ? unfolded(vertices_of(surface.mesh(), f), typical)
-                                      : surface.impl().corners[f];
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 edge = t[(k + 1) % 3] - t[k];
-      pieces += 1 + std::abs(edge[0]) + std::abs(edge[1]);
-    }
+SortedPieces sort_by_run(std::vector<std::vector<FacePiece>> blocks, std::size_t runs) {
+  const auto run_of = [](const FacePiece& p) { return p.piece.sample / kRunLength; };
+  SortedPieces sorted;
+  std::vector<std::size_t>& begins = sorted.run_begins;
+  begins.assign(runs + 1, 0);
+  for (const auto& block : blocks)
+    for (const FacePiece& p : block) ++begins[run_of(p)];
+  std::inclusive_scan(begins.begin(), begins.end(), begins.begin());
+  sorted.pieces.resize(begins.back());
+  for (auto& block : blocks) {
+    for (const FacePiece& p : block) sorted.pieces[--begins[run_of(p)]] = p;
+    block = {};
   }
-  return static_cast<std::size_t>(pieces) * sizeof(Piece) +
-         surface.texel_faces().size() * sizeof(std::uint32_t);
+  parallel_for(runs, 64, [&](std::size_t first, std::size_t end) {
+    for (std::size_t r = first; r < end; ++r)
+      std::ranges::stable_sort(sorted.of_run(r), {}, &FacePiece::face);
+  });
+  return sorted;
 }
 
 }  // namespace
 
 class CoverageBuilder {
  public:
-  CoverageBuilder(const Surface& surface, Coverage& coverage)
-      : surface_(surface),
-        coverage_(coverage),
-        typical_(typical_radius(surface)),
-        near_samples_(surface, typical_) {
-    require_memory(bytes_needed(surface, typical_), "the error bound of the atlas");
-    const std::span<const std::uint32_t> samples = surface.samples(), owners = surface.texel_faces();
-    owns_texel_.assign(surface.mesh().triangles.size(), 0);
-    sample_of_.resize(owners.size());
-    coverage_.square_faces_.resize(samples.size());
-    for (std::uint32_t i = 0; i < samples.size(); ++i) {
-      sample_of_[samples[i]] = i;
-      coverage_.square_faces_[i] = owners[samples[i]];
-      owns_texel_[owners[samples[i]]] = 1;
-    }
-    coverage_.has_squares_.assign(owns_texel_.size(), 0);
-  }
+  CoverageBuilder(const Surface& surface, Coverage& coverage) : surface_(surface), coverage_(coverage) {}
 
   void build() {
-    constexpr std::size_t kFacesPerBlock = 64;
-    // Chart after chart: what they look up then is near each other.
-    const std::span<const std::uint32_t> charts = surface_.face_charts();
-    std::vector<std::uint32_t> order(charts.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t face) { return charts[face]; });
-    coverage_.blocks_.resize((order.size() + kFacesPerBlock - 1) / kFacesPerBlock);
-    parallel_for(coverage_.blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) {
-        const std::size_t first = b * kFacesPerBlock;
-        fill(coverage_.blocks_[b],
-             std::span(order).subspan(first, std::min(kFacesPerBlock, order.size() - first)));
-      }
+    FacePieces cut = cut_faces(surface_);
+    whole_square_ = std::move(cut.whole_square);
+    const std::size_t samples = whole_square_.size();
+    std::vector<RunPatches> runs(run_count(samples));
+    SortedPieces sorted = sort_by_run(std::move(cut.blocks), runs.size());
+    parallel_for(runs.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t r = begin; r < end; ++r) runs[r] = find_patches({r, samples}, sorted.of_run(r));
     });
+    for (std::size_t r = 0; r < runs.size(); ++r) append(runs[r], sorted.of_run(r));
+    coverage_.patches_.shrink_to_fit();
   }
 
  private:
-  using Block = Coverage::Block;
+  using Patch = Coverage::Patch;
 
-  struct Face {
-    std::uint32_t index;
-    std::array<Vec3, 3> vertices;
-    double enough;  ///< a distance of pieces to their samples that need not be improved
+  /// Those of one run; their ends count from its first.
+  struct RunPatches {
+    std::vector<Patch> patches;
+    std::vector<std::uint8_t> squares;
   };
 
-  void fill(Block& block, std::span<const std::uint32_t> faces) {
-    for (const std::uint32_t index : faces) {
-      const std::array<Vec3, 3> vertices = vertices_of(surface_.mesh(), index);
-      if (surface_.face_charts()[index] == kNone) {
-        add_face_without_area(block, vertices);
-      } else {
-        const double radius = owns_texel_[index] ? half_diagonal(surface_.texel_edges(index)) : typical_;
-        add_face(block, {index, vertices, kNearEnough * radius});
+  [[nodiscard]] RunPatches find_patches(const SampleRun& run, std::span<const FacePiece> pieces) const {
+    std::array<std::pair<std::uint32_t, std::uint8_t>, kRunLength> by_face;
+    const std::span samples(by_face.data(), run.size());
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      samples[i] = {surface_.texel_faces()[surface_.samples()[run.first + i]], static_cast<std::uint8_t>(i)};
+    std::ranges::sort(samples);
+    RunPatches found;
+    for (std::size_t s = 0, p = 0; s < samples.size() || p < pieces.size();) {
+      Patch patch;
+      patch.face =
+          std::min(s < samples.size() ? samples[s].first : kNone, p < pieces.size() ? pieces[p].face : kNone);
+      for (; s < samples.size() && samples[s].first == patch.face; ++s) {
+        const std::size_t sample = run.first + samples[s].second;
+        extend(patch, surface_.samples()[sample]);
+        if (whole_square_[sample]) found.squares.push_back(samples[s].second);
       }
-      block.faces.push_back({index, static_cast<std::uint32_t>(block.pieces.size())});
+      for (; p < pieces.size() && pieces[p].face == patch.face; ++p) extend(patch, pieces[p].piece);
+      patch.square_end = static_cast<std::uint32_t>(found.squares.size());
+      patch.piece_end = static_cast<std::uint32_t>(p);
+      found.patches.push_back(patch);
     }
-    block.faces.shrink_to_fit();
-    block.pieces.shrink_to_fit();
+    return found;
   }
 
-  void add_face_without_area(Block& block, const std::array<Vec3, 3>& vertices) {
-    for_each_square(unfolded(vertices, typical_), [&](double, double, SquareCorners, const auto& part) {
-      if (const Polygon polygon = part(); !polygon.empty())
-        store(block, polygon, near_samples_.nearest_texel(Outline(vertices, polygon)));
-    });
+  void extend(Patch& patch, std::uint32_t texel) const {
+    const std::uint32_t n = surface_.resolution();
+    const std::array at{static_cast<std::uint16_t>(texel % n), static_cast<std::uint16_t>(texel / n)};
+    for (int i = 0; i < 2; ++i) {
+      patch.low_texel[i] = std::min(patch.low_texel[i], at[i]);
+      patch.high_texel[i] = std::max(patch.high_texel[i], at[i]);
+    }
   }
 
-  void add_face(Block& block, const Face& face) {
-    const auto visit = [&](double x, double y, SquareCorners corners, const auto& part) {
-      const std::uint32_t texel = near_samples_.texel_at(x, y);
-      const bool owned = texel != kNone && surface_.texel_faces()[texel] == face.index;
-      if (owned && corners.both_diagonals()) {
-        coverage_.has_squares_[face.index] = 1;
-        return;
-      }
-      const Polygon polygon = part();
-      if (polygon.empty()) return;
-      if (owned) {
-        coverage_.square_faces_[sample_of_[texel]] = kNone;
-        store(block, polygon, texel);
-      } else {
-        add_piece(block, face, x, y, polygon, 0);
-      }
-    };
-    for_each_square(surface_.impl().corners[face.index], visit);
+  static void extend(Patch& patch, const Piece& piece) {
+    for (int i = 0; i < 2; ++i) {
+      patch.low_weights[i] = std::min(patch.low_weights[i], std::ranges::min(piece.weights[i]));
+      patch.high_weights[i] = std::max(patch.high_weights[i], std::ranges::max(piece.weights[i]));
+    }
   }
 
-  /// A piece in the square at (x, y), which its face does not own. If it is far from every sample because it
-  /// is large, it is halved.
-  void add_piece(Block& block, const Face& face, double x, double y, const Polygon& polygon, int cuts) {
-    constexpr int kMostCuts = 4;
-    constexpr std::size_t kMostCorners = 8;  // of which a cut makes 12 at most
-    const Outline outline(face.vertices, polygon);
-    const auto [texel, distance] = near_samples_.choose(face.index, x, y, outline, face.enough);
-    const bool large = 4 * outline.farthest_from(outline.middle()) > distance;
-    if (distance <= face.enough || !large || cuts == kMostCuts || polygon.corners().size() > kMostCorners)
-      return store(block, polygon, texel);
-    const auto [left, right] = polygon.range(0);
-    const auto [top, bottom] = polygon.range(1);
-    const bool wide = right - left > bottom - top;
-    const double middle = wide ? 0.5 * (left + right) : 0.5 * (top + bottom);
-    for (const double side : {1.0, -1.0})
-      if (const Polygon half = polygon.clipped(wide ? 0 : 1, middle, side); !half.empty())
-        add_piece(block, face, x, y, half, cuts + 1);
-  }
-
-  void store(Block& block, const Polygon& polygon, std::uint32_t texel) const {
-    const auto corners = polygon.corners();
-    for (std::size_t first = 0; first < corners.size(); first += 4) {
-      Piece& piece = block.pieces.emplace_back();
-      piece.sample = sample_of_[texel];
-      for (std::size_t k = 0; k < 4; ++k)
-        for (int i = 0; i < 2; ++i)
-          piece.weights[i][k] =
-              static_cast<float>(corners[std::min(first + k, corners.size() - 1)].weights[i]);
+  void append(const RunPatches& run, std::span<const FacePiece> pieces) {
+    auto& [run_ends, patches, squares, all_pieces] = coverage_;
+    const auto first_square = static_cast<std::uint32_t>(squares.size());
+    const auto first_piece = static_cast<std::uint32_t>(all_pieces.size());
+    for (Patch patch : run.patches) {
+      patch.square_end += first_square;
+      patch.piece_end += first_piece;
+      patches.push_back(patch);
+    }
+    run_ends.push_back(static_cast<std::uint32_t>(patches.size()));
+    squares.insert(squares.end(), run.squares.begin(), run.squares.end());
+    for (Piece piece : pieces | std::views::transform(&FacePiece::piece)) {
+      piece.sample %= kRunLength;
+      all_pieces.push_back(piece);
     }
   }
 
   const Surface& surface_;
   Coverage& coverage_;
-  const double typical_;
-  const NearSamples near_samples_;
-  std::vector<std::uint32_t> sample_of_;  ///< of each texel that a face owns
-  std::vector<std::uint8_t> owns_texel_;  ///< whether each face does
+  std::vector<std::uint8_t> whole_square_;  ///< as of FacePieces
 };
 
 Coverage::Coverage(const Surface& surface) {

@@ -1,11 +1,12 @@
 #include "atlas/coverage.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "atlas/face_frame.h"
+#include "atlas/sample_runs.h"
 #include "atlas/surface_impl.h"
+#include "core/atomic_max.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
@@ -17,14 +18,6 @@ float rounded_up(double x) {
   return static_cast<float>(x * (1 + 0x1p-23));
 }
 
-/// A maximum over all faces: whichever comes first, the result is the same.
-void raise(float& radius, float value) {
-  const std::atomic_ref<float> shared(radius);
-  float current = shared.load(std::memory_order_relaxed);
-  while (value > current && !shared.compare_exchange_weak(current, value, std::memory_order_relaxed)) {
-  }
-}
-
 }  // namespace
 
 double half_diagonal(const std::array<Vec3, 2>& texel_edges) {
@@ -32,70 +25,93 @@ double half_diagonal(const std::array<Vec3, 2>& texel_edges) {
   return 0.5 * std::sqrt(std::max(squared_norm(du + dv), squared_norm(du - dv)));
 }
 
-// The passes of `measure`; each goes over all faces or samples.
-struct Coverage::Measuring {
-  const Coverage& coverage;
-  const Surface& surface;
-  Radii& radii;
+namespace {
 
-  // A texel's square on the face, plus what M⁻¹, which places the samples, moves the face's own corners by
-  // rounding.
-  void squares_of_face(std::size_t face) const {
-    radii.faces[face] = 0;
-    if (!coverage.has_squares_[face]) return;
-    const FaceFrame frame(surface.mesh(), face);
-    const FaceMap& map = surface.impl().maps[face];
-    const auto& [du, dv] = map.edges;
-    double mismatch = 0;
-    for (int k = 0; k < 2; ++k) {
-      const Vec2 d = surface.impl().corners[face][k + 1] - map.origin;
-      mismatch = std::max(mismatch, norm(d[0] * du + d[1] * dv - frame.edges[k]));
+// How far whole squares of texels reach on the face, plus what M⁻¹, which places the samples, moves the
+// face's own corners by rounding.
+double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame& frame) {
+  const FaceMap& map = surface.impl().maps[face];
+  const auto& [du, dv] = map.edges;
+  double mismatch = 0;
+  for (int k = 0; k < 2; ++k) {
+    const Vec2 d = surface.impl().corners[face][k + 1] - map.origin;
+    mismatch = std::max(mismatch, norm(d[0] * du + d[1] * dv - frame.edges[k]));
+  }
+  return half_diagonal(map.edges) + mismatch + frame.rounding();
+}
+
+}  // namespace
+
+// Calls take_face(face, how far any of its points here is from its sample).
+template <class Take>
+void Coverage::measure_run(const Surface& surface, std::size_t run, std::span<const Vec3> points,
+                           std::span<float> radii, const Take& take_face) const {
+  std::ranges::fill(radii, 0.0f);
+  for_each_patch(run, [&](const Patch& patch, auto squares, std::span<const Piece> pieces) {
+    const FaceFrame frame(surface.mesh(), patch.face);
+    float largest = 0;
+    if (!squares.empty()) {
+      largest = rounded_up(square_radius(surface, patch.face, frame));
+      for (const std::uint8_t sample : squares) radii[sample] = std::max(radii[sample], largest);
     }
-    radii.faces[face] = rounded_up(half_diagonal(map.edges) + mismatch + frame.rounding());
-  }
-
-  void square_of_sample(std::size_t sample) const {
-    const std::uint32_t face = coverage.square_faces_[sample];
-    radii.samples[sample] = face == kNone ? 0 : radii.faces[face];
-  }
-
-  void pieces_of_block(const Block& block) const {
-    std::array<double, 256> squared;
-    std::size_t first = 0;
-    for (const auto& [face, end] : block.faces) {
-      const FaceFrame frame(surface.mesh(), face);
-      const double rounding = frame.rounding();
-      float largest = radii.faces[face];
-      while (first < end) {
-        const std::size_t count = std::min(squared.size(), end - first);
-        const std::span<const Piece> pieces(block.pieces.data() + first, count);
-        measure_pieces(pieces, frame.origin, frame.edges, surface.sample_points(), squared);
-        for (std::size_t i = 0; i < count; ++i) {
-          const float radius = rounded_up(std::sqrt(squared[i]) + rounding);
-          raise(radii.samples[pieces[i].sample], radius);
-          largest = std::max(largest, radius);
-        }
-        first += count;
+    const double rounding = frame.rounding();
+    for (std::array<double, 64> squared; !pieces.empty();) {
+      const auto some = pieces.first(std::min(squared.size(), pieces.size()));
+      measure_pieces(some, frame.origin, frame.edges, points, squared);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const float radius = rounded_up(std::sqrt(squared[i]) + rounding);
+        radii[some[i].sample] = std::max(radii[some[i].sample], radius);
+        largest = std::max(largest, radius);
       }
-      radii.faces[face] = largest;
+      pieces = pieces.subspan(some.size());
     }
-  }
-};
+    take_face(patch.face, largest);
+  });
+}
+
+void Coverage::measure_run(const Surface& surface, std::size_t run, std::span<const Vec3> points,
+                           std::span<float> radii) const {
+  measure_run(surface, run, points, radii, [](std::uint32_t, float) {});
+}
 
 void Coverage::measure(const Surface& surface, Radii& radii) const {
-  radii.faces.resize(has_squares_.size());
-  radii.samples.resize(square_faces_.size());
-  const Measuring measuring{*this, surface, radii};
-  parallel_for(radii.faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t face = begin; face < end; ++face) measuring.squares_of_face(face);
-  });
-  parallel_for(radii.samples.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t sample = begin; sample < end; ++sample) measuring.square_of_sample(sample);
-  });
-  parallel_for(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) measuring.pieces_of_block(blocks_[block]);
+  const std::span<const Vec3> points = surface.sample_points();
+  radii.faces.assign(surface.mesh().triangles.size(), 0);
+  radii.samples.resize(points.size());
+  const auto take_face = [&](std::uint32_t face, float largest) { atomic_max(radii.faces[face], largest); };
+  parallel_for(run_count(points.size()), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      const SampleRun run(r, points.size());
+      measure_run(surface, r, points.subspan(run.first, run.size()),
+                  std::span(radii.samples).subspan(run.first, run.size()), take_face);
+    }
   });
   radii.largest = *std::ranges::max_element(radii.faces);
+}
+
+// A face maps the rectangle around its texels, and the one around its weights, to parallelograms, which are
+// farthest from p at a corner.
+double Coverage::spread(const Surface& surface, std::size_t run, const Vec3& p) const {
+  double farthest = 0;
+  for_each_patch(run, [&](const Patch& patch, auto squares, std::span<const Piece> pieces) {
+    const FaceFrame frame(surface.mesh(), patch.face);
+    const auto reach = [&](const auto& low, const auto& high, const auto& point_at) {
+      double squared = 0;
+      for (const auto a : {low[0], high[0]})
+        for (const auto b : {low[1], high[1]}) squared = std::max(squared, squared_norm(point_at(a, b) - p));
+      return std::sqrt(squared);
+    };
+    if (patch.low_texel[0] <= patch.high_texel[0]) {
+      const double square = squares.empty() ? 0 : square_radius(surface, patch.face, frame);
+      farthest = std::max(farthest, square + reach(patch.low_texel, patch.high_texel, [&](auto x, auto y) {
+                                      return surface.to_surface(patch.face, {x + 0.5, y + 0.5});
+                                    }));
+    }
+    if (!pieces.empty())
+      farthest = std::max(farthest, frame.rounding() + reach(patch.low_weights, patch.high_weights,
+                                                             [&](auto a, auto b) { return frame.at(a, b); }));
+  });
+  return farthest;
 }
 
 }  // namespace sdm

@@ -15,10 +15,12 @@ namespace sdm {
 
 /// A cover of the surface by convex pieces, each assigned to a sample. Samples and pieces move affinely with
 /// their faces, so it holds for any positions of the vertices: what depends on these is how far the pieces
-/// reach, computed by `measure`. See docs/theory.md, "The error bound".
+/// reach, computed by `measure` for all samples, or run by run. See docs/theory.md, "The error bound".
 ///
-/// Memory: 4 bytes a sample, 10 a face, and 36 a piece: one for about every second square that an edge of a
-/// face crosses, and for every one along the borders of charts.
+/// In all functions the surface is the one that this was made for, at whatever positions.
+///
+/// Memory: a byte a sample, 36 a face and run that it has samples or pieces in, and 36 a piece: one for about
+/// every second square that an edge of a face crosses, and for every one along the borders of charts.
 class Coverage {
  public:
   /// Assigns each piece to a sample that is near now. Throws sdm::Error when there is no memory for it. Cost:
@@ -30,35 +32,60 @@ class Coverage {
     std::vector<float> faces;    ///< the largest distance to its sample of a point of each face
     double largest = 0;
   };
-  /// Upper bounds, rounded upwards, on the radii at the surface's positions; it is the surface that this was
-  /// made for. Allocates nothing where `radii` was used before. The result does not depend on the number of
-  /// threads. Cost: linear in faces, samples and pieces, all cores.
+  /// Upper bounds, rounded upwards, on the radii. Allocates nothing where `radii` was used before. The result
+  /// does not depend on the number of threads. Cost: linear in faces, samples and pieces, all cores.
   void measure(const Surface& surface, Radii& radii) const;
 
-  /// For each face the largest distance to the nearest sample of some of its points, at the surface's
-  /// positions, rounded downwards: a lower bound on its radius. Cost: some nearest samples a face, all cores.
+  /// The same for the samples of one run, whose points are given.
+  void measure_run(const Surface& surface, std::size_t run, std::span<const Vec3> points,
+                   std::span<float> radii) const;
+  /// No sample of the run, and no point of their pieces, is farther from p. Cost: linear in the faces that
+  /// these lie on.
+  [[nodiscard]] double spread(const Surface& surface, std::size_t run, const Vec3& p) const;
+
+  /// For each face the largest distance to the nearest sample of some of its points, rounded downwards: a
+  /// lower bound on its radius. Cost: some nearest samples a face, all cores.
   [[nodiscard]] std::vector<double> witnessed_radii(const Surface& surface) const;
 
  private:
   friend class CoverageBuilder;
 
-  /// The pieces of a few faces that are near each other, and so are the samples.
-  struct Block {
-    struct Face {
-      std::uint32_t face, end;  ///< its pieces: from the end of the one before to its own
-    };
-    std::vector<Face> faces;
-    std::vector<Piece> pieces;
+  /// What a face has of the samples of a run, and of their pieces.
+  struct Patch {
+    std::uint32_t face = kNone;
+    std::uint32_t square_end = 0,
+                  piece_end = 0;  ///< its squares and pieces: from the end of the patch before
+    /// Its samples are the centres of texels among these; none where the lower ones are above the upper ones.
+    std::array<std::uint16_t, 2> low_texel{0xFFFF, 0xFFFF}, high_texel{};
+    std::array<float, 2> low_weights{1, 1}, high_weights{};  ///< of the corners of its pieces
   };
+  /// Calls take(patch, its squares, its pieces).
+  template <class Take>
+  void for_each_patch(std::size_t run, const Take& take) const;
+  template <class Take>
+  void measure_run(const Surface& surface, std::size_t run, std::span<const Vec3> points,
+                   std::span<float> radii, const Take& take_face) const;
 
-  struct Measuring;
-
-  /// Of each sample: the face in which its square has an end of either diagonal, so that half the longer one
-  /// is how far it reaches; kNone where all that the face has of the square is among the pieces.
-  std::vector<std::uint32_t> square_faces_;
-  std::vector<std::uint8_t> has_squares_;  ///< whether the face is among them
-  std::vector<Block> blocks_;
+  std::vector<std::uint32_t> run_ends_;  ///< of each run's patches
+  std::vector<Patch> patches_;
+  /// Samples, counted from the first of their run, in whose square the face has an end of either diagonal, so
+  /// that half the longer one is how far it reaches. Of other squares all parts are among the pieces.
+  std::vector<std::uint8_t> squares_;
+  std::vector<Piece> pieces_;
 };
+
+template <class Take>
+void Coverage::for_each_patch(std::size_t run, const Take& take) const {
+  const std::size_t first = run == 0 ? 0 : run_ends_[run - 1];
+  std::size_t square = first == 0 ? 0 : patches_[first - 1].square_end;
+  std::size_t piece = first == 0 ? 0 : patches_[first - 1].piece_end;
+  for (std::size_t p = first; p < run_ends_[run]; ++p) {
+    const Patch& patch = patches_[p];
+    take(patch, std::span(squares_).subspan(square, patch.square_end - square),
+         std::span(pieces_).subspan(piece, patch.piece_end - piece));
+    square = patch.square_end, piece = patch.piece_end;
+  }
+}
 
 /// The coverage of a surface, made at the first call, and its radii at the surface's present positions,
 /// measured at the first call after a refit.

@@ -45,28 +45,28 @@ Vec3 point_of(const Surface::Impl& surface, std::uint32_t texel) {
   return point_at(surface, surface.texel_faces[texel], centre);
 }
 
-// Sets `points` to those of the samples, in their order.
-void find_points(const Surface::Impl& surface, std::vector<Vec3>& points) {
+// Sets `points` to those of all samples.
+void place_all(const Surface::Impl& surface, std::vector<Vec3>& points) {
   points.resize(surface.samples.size());
   parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = point_of(surface, surface.samples[i]);
+    place_samples(surface, begin, std::span(points).subspan(begin, end - begin));
   });
 }
 
-// Orders the samples in space, and notes their points.
+// Puts the samples into an order in space.
 void order_samples(Surface::Impl& surface) {
   std::vector<Vec3> points;
-  find_points(surface, points);
+  place_all(surface, points);
   std::vector<std::uint32_t> order = spatial_order(points);
-  surface.sample_points.reserve(points.size());
-  for (std::uint32_t& index : order) {
-    surface.sample_points.push_back(points[index]);
-    index = surface.samples[index];
-  }
+  for (std::uint32_t& index : order) index = surface.samples[index];
   surface.samples = std::move(order);
 }
 
 }  // namespace
+
+void place_samples(const Surface::Impl& surface, std::size_t first, std::span<Vec3> points) {
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = point_of(surface, surface.samples[first + i]);
+}
 
 Surface::Surface(Mesh mesh, const AtlasOptions& options) {
   check(mesh, options);
@@ -106,8 +106,7 @@ void Surface::refit(std::span<const Vec3> positions) {
     }
   });
   std::ranges::copy(positions, current.begin());
-  find_points(s, s.sample_points);
-  s.lazy = std::make_unique<Impl::Lazy>();
+  s.lazy.present.emplace();
 }
 
 Surface::~Surface() = default;
@@ -130,7 +129,9 @@ std::span<const std::uint32_t> Surface::samples() const {
   return impl_->samples;
 }
 std::span<const Vec3> Surface::sample_points() const {
-  return impl_->sample_points;
+  Impl::Lazy& lazy = impl_->lazy;
+  std::call_once(lazy.present->placed, [&] { place_all(*impl_, lazy.sample_points); });
+  return lazy.sample_points;
 }
 std::size_t Surface::chart_count() const {
   return impl_->chart_count;
@@ -169,15 +170,15 @@ double Surface::utilisation() const {
 }
 
 const Coverage& coverage_of(const Surface& surface) {
-  Surface::Impl::Covered& covered = *surface.impl().covered;
-  std::call_once(covered.cut, [&] { covered.coverage.emplace(surface); });
-  return *covered.coverage;
+  Surface::Impl::Lazy& lazy = surface.impl().lazy;
+  std::call_once(lazy.cut, [&] { lazy.coverage.emplace(surface); });
+  return *lazy.coverage;
 }
 
 const Coverage::Radii& radii_of(const Surface& surface) {
-  Coverage::Radii& radii = surface.impl().covered->radii;
-  std::call_once(surface.impl().lazy->measured, [&] { coverage_of(surface).measure(surface, radii); });
-  return radii;
+  Surface::Impl::Lazy& lazy = surface.impl().lazy;
+  std::call_once(lazy.present->measured, [&] { coverage_of(surface).measure(surface, lazy.radii); });
+  return lazy.radii;
 }
 
 std::span<const float> Surface::sample_radii() const {

@@ -21,22 +21,25 @@ struct Surface::Impl {
   std::vector<FaceMap> maps;
   std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
-  std::vector<Vec3> sample_points;
 
-  /// Made when they are asked for, and again when vertices have moved.
+  /// Made when it is first asked for, by whichever thread that is.
   struct Lazy {
-    std::once_flag measured, tiled;
-    Tiles tiles;  ///< once `tiled`: see tiles_of
-  };
-  std::unique_ptr<Lazy> lazy = std::make_unique<Lazy>();
-
-  /// Made when it is first asked for, and kept when vertices move.
-  struct Covered {
-    std::once_flag cut;
+    std::once_flag tiled, cut;
+    Tiles tiles;                       ///< once `tiled`: see tiles_of
     std::optional<Coverage> coverage;  ///< once `cut`: see coverage_of
-    Coverage::Radii radii;             ///< of the present positions once `Lazy::measured`
+
+    /// Of the present positions; made anew when vertices move.
+    struct Present {
+      std::once_flag placed, measured;
+    };
+    std::optional<Present> present{std::in_place};
+    std::vector<Vec3> sample_points;  ///< once `placed`
+    Coverage::Radii radii;            ///< once `measured`: see radii_of
   };
-  std::unique_ptr<Covered> covered = std::make_unique<Covered>();
+  mutable Lazy lazy;
 };
+
+/// Sets `points` to those of the samples from `first` on.
+void place_samples(const Surface::Impl& surface, std::size_t first, std::span<Vec3> points);
 
 }  // namespace sdm

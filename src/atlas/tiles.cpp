@@ -80,7 +80,7 @@ AabbTree build_tree(const Surface& surface, const Tiles& tiles) {
 }  // namespace
 
 const Tiles& tiles_of(const Surface& surface) {
-  Surface::Impl::Lazy& lazy = *surface.impl().lazy;
+  Surface::Impl::Lazy& lazy = surface.impl().lazy;
   std::call_once(lazy.tiled, [&] {
     // Texels and the tile of each; tiles with boxes and nodes while the tree is built, a few a face and more
     // where faces are large.

@@ -1,8 +1,10 @@
 // The radii from below: points of the surface with their true distance to the nearest sample.
 #include "atlas/coverage.h"
 #include "atlas/face_frame.h"
+#include "atlas/sample_runs.h"
 #include "atlas/sample_tree.h"
 #include "atlas/surface_impl.h"
+#include "core/atomic_max.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
@@ -12,7 +14,8 @@ namespace {
 /// The largest distance to the nearest sample of the points of one face that were looked at.
 class Farthest {
  public:
-  Farthest(const Surface& surface, const SampleTree& tree) : surface_(surface), tree_(tree) {}
+  Farthest(const Surface& surface, const SampleTree& tree, double distance = 0)
+      : surface_(surface), tree_(tree), distance_(distance) {}
 
   /// `most` is the distance to some sample.
   void look_at(const Vec3& p, double most = std::numeric_limits<double>::infinity()) {
@@ -24,7 +27,7 @@ class Farthest {
  private:
   const Surface& surface_;
   const SampleTree& tree_;
-  double distance_ = 0;
+  double distance_;
 };
 
 /// The weights of the corner of a texel's square that is nearest to the middle of a face: in a large one
@@ -39,31 +42,34 @@ std::array<double, 2> middle_corner(const std::array<Vec2, 3>& triangle) {
 }  // namespace
 
 std::vector<double> Coverage::witnessed_radii(const Surface& surface) const {
+  const std::span<const Vec3> points = surface.sample_points();
   const SampleTree tree(surface, 16 * surface.sampling_bound());
-  std::vector<double> radii(has_squares_.size());
-  const auto witness = [&](const Block::Face& block_face, std::span<const Piece> pieces) {
-    const FaceFrame frame(surface.mesh(), block_face.face);
-    Farthest farthest(surface, tree);
-    if (has_squares_[block_face.face]) {
-      const auto [a, b] = middle_corner(surface.impl().corners[block_face.face]);
-      if (a >= 0 && b >= 0 && a + b <= 1) farthest.look_at(frame.at(a, b));
-    }
-    for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {0, 1}}) farthest.look_at(frame.at(a, b));
-    for (const auto& [sample, weights] : pieces)
-      for (int k = 0; k < 4; ++k) {
-        const Vec3 corner = frame.at(weights[0][k], weights[1][k]);
-        farthest.look_at(corner, norm(corner - surface.sample_points()[sample]));
+  std::vector<double> radii(surface.mesh().triangles.size());
+  parallel_for(radii.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const FaceFrame frame(surface.mesh(), f);
+      Farthest farthest(surface, tree);
+      if (surface.face_charts()[f] != kNone) {
+        const auto [a, b] = middle_corner(surface.impl().corners[f]);
+        if (a >= 0 && b >= 0 && a + b <= 1) farthest.look_at(frame.at(a, b));
       }
-    radii[block_face.face] = std::max(0.0, farthest.distance() - frame.rounding());
-  };
-  parallel_for(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      std::uint32_t first = 0;
-      for (const Block::Face& face : blocks_[b].faces) {
-        witness(face, std::span(blocks_[b].pieces).subspan(first, face.end - first));
-        first = face.end;
-      }
+      for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {0, 1}}) farthest.look_at(frame.at(a, b));
+      radii[f] = std::max(0.0, farthest.distance() - frame.rounding());
     }
+  });
+  parallel_for(run_ends_.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r)
+      for_each_patch(r, [&](const Patch& patch, auto, std::span<const Piece> pieces) {
+        const FaceFrame frame(surface.mesh(), patch.face);
+        const std::atomic_ref<double> known(radii[patch.face]);
+        Farthest farthest(surface, tree, known.load(std::memory_order_relaxed));
+        for (const auto& [sample, weights] : pieces)
+          for (int k = 0; k < 4; ++k) {
+            const Vec3 corner = frame.at(weights[0][k], weights[1][k]);
+            farthest.look_at(corner, norm(corner - points[r * kRunLength + sample]));
+          }
+        atomic_max(radii[patch.face], farthest.distance() - frame.rounding());
+      });
   });
   return radii;
 }

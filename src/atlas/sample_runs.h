@@ -1,0 +1,23 @@
+// Samples in runs of neighbours: the last run may be shorter.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace sdm {
+
+inline constexpr std::size_t kRunLength = 256;  // a compact piece of the surface: see core/spatial_order.h
+
+/// The samples of a run: [first, end).
+struct SampleRun {
+  std::size_t first, end;
+  SampleRun(std::size_t run, std::size_t samples)
+      : first(run * kRunLength), end(std::min(samples, first + kRunLength)) {}
+  [[nodiscard]] std::size_t size() const { return end - first; }
+};
+
+[[nodiscard]] inline std::size_t run_count(std::size_t samples) {
+  return (samples + kRunLength - 1) / kRunLength;
+}
+
+}  // namespace sdm

@@ -1,0 +1,16 @@
+// A maximum that several threads raise: whichever comes first, the result is the same.
+#pragma once
+
+#include <atomic>
+
+namespace sdm {
+
+template <class T>
+void atomic_max(T& largest, T value) {
+  const std::atomic_ref<T> shared(largest);
+  T current = shared.load(std::memory_order_relaxed);
+  while (value > current && !shared.compare_exchange_weak(current, value, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace sdm
