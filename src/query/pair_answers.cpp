@@ -87,7 +87,9 @@ std::pair<double, PairAnswers::Sample> PairAnswers::least(const Value& value) co
 std::optional<std::array<Vec3, 2>> PairAnswers::witness(const Sample& sample) const {
   if (sample.index == kNone) return {};
   const Vec3& p = bodies_[sample.body]->surface().sample_points()[sample.index];
-  const Vec3 q = reference_closest(bodies_[1 - sample.body]->sites().impl(), p, kNoLimit).point;
+  Vec3 q = p;
+  cpu_search(bodies_[1 - sample.body]->sites().impl(), {&p, 1}, kNoLimit,
+             [&](std::size_t, const ClosestPacket& closest) { q = closest.get(0, p).point; });
   return sample.body == 0 ? std::array{p, q} : std::array{q, p};
 }
 
