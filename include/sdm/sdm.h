@@ -1,6 +1,7 @@
 /// All of sdm but the reading and writing of files, which is <sdm/io.h>.
 #pragma once
 
+#include <sdm/bodies.h>
 #include <sdm/error.h>
 #include <sdm/error_bound.h>
 #include <sdm/map.h>

@@ -1,10 +1,10 @@
 // Distances of a surface's samples to another body, where they matter.
 #pragma once
 
-#include <sdm/map.h>
-
 #include <span>
 #include <vector>
+
+#include "query/body.h"
 
 namespace sdm {
 
@@ -23,8 +23,8 @@ class LocalDistances {
     [[nodiscard]] double least() const { return distance - spread; }
   };
 
-  /// Probes the runs, on all cores. `sign` as chosen by choose_sign. The arguments must outlive this.
-  void probe(const Surface& surface, const Sites& sites, SignMethod sign);
+  /// Probes the runs of a body's samples, on all cores. The bodies must stay until these are measured.
+  void probe(const Body& on, const Body& to);
   /// The least of the |distances| probed.
   [[nodiscard]] double least_probed() const;
   /// Measures the runs that can be nearer than `reach`, or are inside, on all cores.
@@ -36,9 +36,7 @@ class LocalDistances {
   [[nodiscard]] std::span<const float> distances() const { return distances_; }
 
  private:
-  const Surface* surface_ = nullptr;
-  const Sites* sites_ = nullptr;
-  SignMethod sign_ = SignMethod::none;
+  const Body *on_ = nullptr, *to_ = nullptr;
   std::vector<Run> runs_, measured_;
   std::vector<Vec3> probes_;
   std::vector<float> distances_;

@@ -104,7 +104,7 @@ bool PointGroup::place(std::span<const Vec3> points, const UnitFrame& frame) {
   packets = (points.size() + kPacket - 1) / kPacket;
   const bool some_far_away = HWY_DYNAMIC_DISPATCH(MoveToFrame)(points, frame, position);
   for (auto& row : position) std::fill(row + points.size(), row + kPacket * packets, row[points.size() - 1]);
-  std::vector<FloatBox> boxes(packets);  // of the points of each ball of a level
+  boxes.resize(packets);
   balls[0].resize(packets);
   HWY_DYNAMIC_DISPATCH(AroundPackets)(*this, boxes.data());
   for (top = 0; balls[top].size() > 1; ++top) {

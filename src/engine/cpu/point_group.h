@@ -30,6 +30,7 @@ struct PointGroup {
   int top = 0;                                 ///< the level of the one ball
   alignas(64) float position[3][kMostPoints];  ///< of the points, the last one repeated to fill its packet
   std::vector<Ball> balls[kLevels];
+  std::vector<FloatBox> boxes;  ///< of the points of each ball of a level, while they are placed
 
   /// The group of 1 to kMostPoints points, in the frame. Balls are small where the points come in an order
   /// like that of core/spatial_order.h. They contain their points, and the balls below them, but for

@@ -1,0 +1,125 @@
+#include "query/nearest_body.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <string>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/vec.h"
+#include "engine/engine.h"
+#include "engine/map_writer.h"
+#include "query/sweep.h"
+
+namespace sdm {
+namespace {
+
+constexpr std::size_t kRun = 256;  // a compact piece of the surface: see core/spatial_order.h
+
+// Finds the nearest bodies for samples that are neighbours, at most kRun of them, again and again.
+class RunSearch {
+ public:
+  RunSearch(std::span<const Body> bodies, std::size_t on, double max_distance)
+      : bodies_(bodies), on_(on), max_distance_(max_distance) {}
+
+  void find(std::span<const Vec3> points) {
+    std::fill_n(closest_.begin(), points.size(), ClosestPoint{});
+    std::fill_n(body_.begin(), points.size(), kNone);
+    sort_bodies(points);
+    for (const auto& [distance, body] : order_) {
+      double farthest = 0;
+      for (std::size_t i = 0; i < points.size(); ++i) farthest = std::max(farthest, limit(i));
+      if (distance > farthest) break;
+      search(points, body);
+    }
+  }
+  [[nodiscard]] const ClosestPoint& closest(std::size_t i) const { return closest_[i]; }
+  [[nodiscard]] std::uint32_t body(std::size_t i) const { return body_[i]; }
+
+ private:
+  // Only what is as near as this can be the answer.
+  [[nodiscard]] double limit(std::size_t i) const { return std::min(max_distance_, closest_[i].distance); }
+
+  // The nearest box first: it most likely leaves nothing for the others.
+  void sort_bodies(std::span<const Vec3> points) {
+    Box box;
+    for (const Vec3& p : points) extend(box, p);
+    order_.clear();
+    for (std::uint32_t b = 0; b < bodies_.size(); ++b)
+      if (b != on_) order_.emplace_back(box_distance(box, bodies_[b].box()), b);
+    std::ranges::sort(order_);
+  }
+
+  void search(std::span<const Vec3> points, std::uint32_t body) {
+    std::size_t count = 0;
+    double reach = 0;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      if (box_distance({points[i], points[i]}, bodies_[body].box()) > limit(i)) continue;
+      reach = std::max(reach, limit(i));
+      asked_[count] = i;
+      at_[count++] = points[i];
+    }
+    const auto keep_nearer = [&](std::size_t first, const ClosestPacket& found) {
+      for (std::size_t k = 0; k < found.count; ++k) {
+        const std::uint32_t i = asked_[first + k];
+        const ClosestPoint c = found.get(k, points[i]);
+        if (c.type == SiteType::none) continue;
+        if (std::pair(c.distance, body) < std::pair(closest_[i].distance, body_[i]))
+          closest_[i] = c, body_[i] = body;
+      }
+    };
+    cpu_search(bodies_[body].sites().impl(), std::span(at_).first(count), reach, std::ref(keep_nearer));
+  }
+
+  std::span<const Body> bodies_;
+  std::size_t on_;
+  double max_distance_;
+  std::vector<std::pair<double, std::uint32_t>> order_;  // boxes' distances from the samples, and bodies
+  std::array<ClosestPoint, kRun> closest_;
+  std::array<std::uint32_t, kRun> body_, asked_;
+  std::array<Vec3, kRun> at_;  // of those asked for
+};
+
+SignUsed signs_of_others(std::span<const Body> bodies, std::size_t on) {
+  const auto solids =
+      static_cast<std::size_t>(std::ranges::count_if(bodies, &Body::solid)) - (bodies[on].solid() ? 1 : 0);
+  return {solids > 0 ? SignMethod::pseudonormal : SignMethod::none,
+          std::to_string(solids) + " of " + std::to_string(bodies.size() - 1) +
+              " other bodies are closed and orientable"};
+}
+
+}  // namespace
+
+void map_nearest(std::span<const Body> bodies, std::size_t on, double max_distance, NearestMap& nearest) {
+  const Surface& surface = bodies[on].surface();
+  const std::span<const Vec3> points = surface.sample_points();
+  const std::span<const std::uint32_t> texels = surface.samples();
+  const MapWriter writer(nearest.map, surface, nullptr);  // distances come signed
+  nearest.map.sign = signs_of_others(bodies, on);
+  nearest.body.assign(surface.texel_faces().size(), kNone);
+  std::atomic<std::size_t> beyond{0};
+  constexpr std::size_t kGrain = 4;
+  parallel_for((points.size() + kRun - 1) / kRun, kGrain, [&](std::size_t begin, std::size_t end) {
+    RunSearch search(bodies, on, max_distance);
+    ClosestPacket packet;
+    for (std::size_t first = kRun * begin; first < std::min(points.size(), kRun * end); first += kRun) {
+      const std::span<const Vec3> run = points.subspan(first, std::min(kRun, points.size() - first));
+      search.find(run);
+      for (std::size_t i = 0; i < run.size(); i += packet.count) {
+        packet.count = std::min(ClosestPacket::kSize, run.size() - i);
+        for (std::size_t k = 0; k < packet.count; ++k) {
+          const ClosestPoint& c = search.closest(i + k);
+          const std::uint32_t body = search.body(i + k);
+          packet.set(k, run[i + k], c);
+          if (body != kNone && bodies[body].inside()(run[i + k], c)) packet.distance[k] = -c.distance;
+          nearest.body[texels[first + i + k]] = body;
+        }
+        beyond += writer.store(first + i, packet);
+      }
+    }
+  });
+  nearest.map.beyond_max_distance = beyond;
+}
+
+}  // namespace sdm
