@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "atlas/sample_runs.h"
 #include "core/vec.h"
 #include "engine/engine.h"
 #include "mesh/sites_impl.h"
@@ -45,21 +46,23 @@ std::span<const Contact> ContactFinder::find(const std::array<MeasuredBody, 2>& 
 
 void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
   const Surface& surface = body.surface;
-  const std::span<const float> distances = body.distances.distances(), radii = surface.sample_radii();
+  const std::span<const float> distances = body.distances.distances(), radii = body.distances.radii();
   parts_.clear();
-  for (const LocalDistances::Run& run : body.distances.measured()) {
+  for (std::size_t r = 0; r < run_count(distances.size()); ++r) {
+    const SampleRun run(r, distances.size());
     const auto first_of_run = static_cast<std::ptrdiff_t>(parts_.size());
     for (std::size_t i = run.first; i < run.end; ++i) {
       if (!(distances[i] <= margin)) continue;
-      const std::uint32_t chart = surface.face_charts()[surface.texel_faces()[surface.samples()[i]]];
+      const std::uint32_t texel = surface.samples()[body.distances.sample(i)];
+      const std::uint32_t chart = surface.face_charts()[surface.texel_faces()[texel]];
       auto part = std::find_if(parts_.begin() + first_of_run, parts_.end(),
                                [&](const Part& p) { return p.chart == chart; });
       if (part == parts_.end()) part = parts_.insert(part, {chart, i, {}});
       if (distances[i] < distances[part->deepest]) part->deepest = i;
-      const Vec3& p = surface.sample_points()[i];
-      const Vec3 r{radii[i], radii[i], radii[i]};
-      extend(part->box, p - r);
-      extend(part->box, p + r);
+      const Vec3& p = body.distances.points()[i];
+      const Vec3 reach{radii[i], radii[i], radii[i]};
+      extend(part->box, p - reach);
+      extend(part->box, p + reach);
     }
   }
 }
@@ -69,7 +72,7 @@ void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int 
   const Sites::Impl& sites = to.sites.impl();
   points_.clear();
   for (const Part& part : parts_) {
-    points_.push_back(on.surface.sample_points()[part.deepest]);
+    points_.push_back(on.distances.points()[part.deepest]);
     boxes_.push_back(part.box);
   }
   const auto add = [&](std::size_t first, const ClosestPacket& closest) {

@@ -28,7 +28,7 @@ class ContactFinder {
   /// A small part of the surface: what one chart has in a run of samples.
   struct Part {
     std::uint32_t chart;
-    std::size_t deepest;  ///< sample of the part
+    std::size_t deepest;  ///< sample of the part, among those measured
     Box box;              ///< around all that its samples within the margin cover
   };
   void find_parts(const MeasuredBody& body, double margin);

@@ -8,21 +8,11 @@
 
 namespace sdm {
 
-/// Samples come in runs of neighbours. Each run is probed at one of its samples, which bounds the distances
-/// of the others, for these are 1-Lipschitz; then those runs are measured whose points can be within reach. A
-/// distance to the inside of a solid is negative.
+/// Each run of samples is probed at one of them, which bounds the distances of the others, for these are
+/// 1-Lipschitz; then those runs are measured whose points can be within reach. A distance to the inside of a
+/// solid is negative. What is not measured costs next to nothing: its samples are not even placed.
 class LocalDistances {
  public:
-  /// Consecutive samples.
-  struct Run {
-    std::size_t first = 0, end = 0;
-    double distance = 0;  ///< of the sample that is probed
-    double spread = 0;    ///< no sample of the run, and no point that one covers, is farther from that sample
-    [[nodiscard]] std::size_t probe() const { return first + (end - first) / 2; }
-    /// No sample of the run, and no point that it covers, is nearer.
-    [[nodiscard]] double least() const { return distance - spread; }
-  };
-
   /// Probes the runs of a body's samples, on all cores. The bodies must stay until these are measured.
   void probe(const Body& on, const Body& to);
   /// The least of the |distances| probed.
@@ -30,16 +20,30 @@ class LocalDistances {
   /// Measures the runs that can be nearer than `reach`, or are inside, on all cores.
   void measure(double reach);
 
-  /// Those that have been measured, in increasing order.
-  [[nodiscard]] std::span<const Run> measured() const { return measured_; }
-  /// Of each sample of the runs measured.
+  // The samples measured, run by run, in increasing order: their points, covering radii (see
+  // Surface::sample_radii) and distances.
+  [[nodiscard]] std::span<const Vec3> points() const { return points_; }
+  [[nodiscard]] std::span<const float> radii() const { return radii_; }
   [[nodiscard]] std::span<const float> distances() const { return distances_; }
+  /// Which of the surface's samples the i-th one is.
+  [[nodiscard]] std::size_t sample(std::size_t i) const;
 
  private:
+  struct Probe {
+    double distance = 0;
+    double spread =
+        0;  ///< no sample of the run, and no point that one covers, is farther from the one probed
+    /// No sample of the run, and no point that it covers, is nearer.
+    [[nodiscard]] double least() const { return distance - spread; }
+  };
+  void measure_runs(std::size_t begin, std::size_t end);
+
   const Body *on_ = nullptr, *to_ = nullptr;
-  std::vector<Run> runs_, measured_;
-  std::vector<Vec3> probes_;
-  std::vector<float> distances_;
+  std::vector<Vec3> probe_points_;  ///< of all runs
+  std::vector<Probe> probes_;
+  std::vector<std::size_t> measured_;  ///< runs
+  std::vector<Vec3> points_;
+  std::vector<float> radii_, distances_;
 };
 
 }  // namespace sdm

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "atlas/sample_runs.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "engine/engine.h"
@@ -15,9 +16,7 @@
 namespace sdm {
 namespace {
 
-constexpr std::size_t kRun = 256;  // a compact piece of the surface: see core/spatial_order.h
-
-// Finds the nearest bodies for samples that are neighbours, at most kRun of them, again and again.
+// Finds the nearest bodies for the samples of a run, again and again.
 class RunSearch {
  public:
   RunSearch(std::span<const Body> bodies, std::size_t on, double max_distance)
@@ -76,9 +75,9 @@ class RunSearch {
   std::size_t on_;
   double max_distance_;
   std::vector<std::pair<double, std::uint32_t>> order_;  // boxes' distances from the samples, and bodies
-  std::array<ClosestPoint, kRun> closest_;
-  std::array<std::uint32_t, kRun> body_, asked_;
-  std::array<Vec3, kRun> at_;  // of those asked for
+  std::array<ClosestPoint, kRunLength> closest_;
+  std::array<std::uint32_t, kRunLength> body_, asked_;
+  std::array<Vec3, kRunLength> at_;  // of those asked for
 };
 
 SignUsed signs_of_others(std::span<const Body> bodies, std::size_t on) {
@@ -100,11 +99,12 @@ void map_nearest(std::span<const Body> bodies, std::size_t on, double max_distan
   nearest.body.assign(surface.texel_faces().size(), kNone);
   std::atomic<std::size_t> beyond{0};
   constexpr std::size_t kGrain = 4;
-  parallel_for((points.size() + kRun - 1) / kRun, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(run_count(points.size()), kGrain, [&](std::size_t begin, std::size_t end) {
     RunSearch search(bodies, on, max_distance);
     ClosestPacket packet;
-    for (std::size_t first = kRun * begin; first < std::min(points.size(), kRun * end); first += kRun) {
-      const std::span<const Vec3> run = points.subspan(first, std::min(kRun, points.size() - first));
+    for (std::size_t first = kRunLength * begin; first < std::min(points.size(), kRunLength * end);
+         first += kRunLength) {
+      const std::span<const Vec3> run = points.subspan(first, std::min(kRunLength, points.size() - first));
       search.find(run);
       for (std::size_t i = 0; i < run.size(); i += packet.count) {
         packet.count = std::min(ClosestPacket::kSize, run.size() - i);

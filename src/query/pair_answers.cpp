@@ -53,8 +53,7 @@ std::span<const Contact> PairAnswers::contacts() {
 
 std::size_t PairAnswers::samples_used() const {
   std::size_t sum = 0;
-  for (const LocalDistances& distances : distances_)
-    for (const LocalDistances::Run& run : distances.measured()) sum += run.end - run.first;
+  for (const LocalDistances& measured : distances_) sum += measured.distances().size();
   return sum;
 }
 
@@ -74,11 +73,9 @@ template <class Value>
 std::pair<double, PairAnswers::Sample> PairAnswers::least(const Value& value) const {
   std::pair<double, Sample> least{kNoLimit, {}};
   for (int b = 0; b < 2; ++b) {
-    const std::span<const float> distances = distances_[b].distances();
-    const std::span<const float> radii = bodies_[b]->surface().sample_radii();
-    for (const LocalDistances::Run& run : distances_[b].measured())
-      for (std::size_t i = run.first; i < run.end; ++i)
-        if (const double v = value(distances[i], radii[i]); v < least.first) least = {v, {b, i}};
+    const std::span<const float> distances = distances_[b].distances(), radii = distances_[b].radii();
+    for (std::size_t i = 0; i < distances.size(); ++i)
+      if (const double v = value(distances[i], radii[i]); v < least.first) least = {v, {b, i}};
   }
   return least;
 }
@@ -86,7 +83,7 @@ std::pair<double, PairAnswers::Sample> PairAnswers::least(const Value& value) co
 // The sample, and the closest point of the other body.
 std::optional<std::array<Vec3, 2>> PairAnswers::witness(const Sample& sample) const {
   if (sample.index == kNone) return {};
-  const Vec3& p = bodies_[sample.body]->surface().sample_points()[sample.index];
+  const Vec3& p = distances_[sample.body].points()[sample.index];
   Vec3 q = p;
   cpu_search(bodies_[1 - sample.body]->sites().impl(), {&p, 1}, kNoLimit,
              [&](std::size_t, const ClosestPacket& closest) { q = closest.get(0, p).point; });

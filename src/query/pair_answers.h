@@ -36,7 +36,7 @@ class PairAnswers {
   [[nodiscard]] std::size_t samples_used() const;
 
  private:
-  /// A sample of one of the bodies.
+  /// A sample of one of the bodies, among those measured.
   struct Sample {
     int body = 0;
     std::size_t index = kNone;
