@@ -93,7 +93,7 @@ class Run {
         lines_(out_.staging() / "frames.jsonl", std::ios::binary) {
     command_.pair.options.atlas.progress = progress_.callback();
     query_.emplace(o1_.first(), o2_.first(), command_.pair.options);
-    for (int b = 0; b < 2; ++b) first_bound_[b] = query_->surface(b).sampling_bound();
+    for (int b = 0; b < 2; ++b) errors_.emplace_back(query_->surface(b));
   }
 
   /// The exit code.
@@ -145,7 +145,7 @@ class Run {
     frame.time.query = watch.lap();
     for (int b = 0; b < 2; ++b) {
       frame.error_bound[b] = query_->surface(b).sampling_bound();
-      frame.relative_error[b] = frame.error_bound[b] / first_bound_[b];
+      frame.relative_error[b] = errors_[b].of(query_->surface(b));
     }
     frame.time.error = watch.lap();
     const bool write = command_.maps_every > 0 && index % static_cast<std::size_t>(command_.maps_every) == 0;
@@ -222,7 +222,7 @@ class Run {
   std::size_t count_;
   std::ofstream lines_;
   std::optional<sdm::Query> query_;
-  std::array<double, 2> first_bound_{};
+  std::vector<sdm::RelativeError> errors_;  // of each body
   std::vector<Frame> frames_;
   std::vector<BadFrame> bad_;
   bool stopped_ = false;

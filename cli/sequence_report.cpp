@@ -52,7 +52,8 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   for (const sdm::Contact& contact : contacts)
     if (contact.patch == json["patches"].size()) json["patches"].push_back(to_json(contact));
   json["error_bound"] = {{"kind", "bounded"}, {"o1", frame.error_bound[0]}, {"o2", frame.error_bound[1]}};
-  json["relative_error"] = {{"o1", frame.relative_error[0]}, {"o2", frame.relative_error[1]}};
+  json["relative_error"] = {
+      {"kind", "bounded"}, {"o1", frame.relative_error[0]}, {"o2", frame.relative_error[1]}};
   const FrameTimes& t = frame.time;
   json["time_ms"] = {{"read", t.read}, {"update", t.update}, {"query", t.query},  {"error", t.error},
                      {"map", t.map},   {"write", t.write},   {"total", t.total()}};
@@ -105,7 +106,7 @@ void write_plot(const std::filesystem::path& file, const std::vector<Frame>& fra
       {"Penetration depth" + in,
        {{"value", over([](const Frame& f) { return f.depth ? f.depth->value : kNaN; })},
         {"upper bound", over([](const Frame& f) { return f.depth ? f.depth->upper : kNaN; })}}},
-      {"Relative error: covering radius over the first frame's",
+      {"Relative error: covering radius against the first frame's, at most",
        {{"O1", over([](const Frame& f) { return f.relative_error[0]; })},
         {"O2", over([](const Frame& f) { return f.relative_error[1]; })}}},
       {"Time (ms)",

@@ -23,7 +23,7 @@ struct Frame {
   std::optional<sdm::Length> depth;
   std::size_t contacts = 0, patches = 0;
   std::array<double, 2> error_bound{};     ///< of each body: covering radius
-  std::array<double, 2> relative_error{};  ///< the same over that of the first frame
+  std::array<double, 2> relative_error{};  ///< of each body: see sdm::RelativeError
   FrameTimes time;
 };
 
