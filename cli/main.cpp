@@ -1,4 +1,5 @@
 // The command sdm. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded.
+#include "bodies.h"
 #include "devices.h"
 #include "info.h"
 #include "map.h"
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
   try {
     add_map_command(app);
     add_proximity_command(app);
+    add_bodies_command(app);
     add_sequence_command(app);
     add_info_command(app);
     add_devices_command(app);

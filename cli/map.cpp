@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "map_files.h"
 #include "map_options.h"
 #include "output_folder.h"
 #include "progress_line.h"
@@ -10,31 +11,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <vector>
 
 namespace {
-
-/// The distance at each vertex, signed as the map is; NaN beyond the maximum distance.
-std::vector<float> vertex_distances(const sdm::Mesh& mesh, const sdm::Sites& sites,
-                                    const sdm::DistanceMap& map, sdm::MapOptions options) {
-  if (options.engine == sdm::EngineKind::gl) options.engine = sdm::EngineKind::cpu;  // gl draws maps only
-  const auto closest = sdm::closest_points(sites, mesh.positions, options);
-  std::vector<std::uint8_t> is_inside(closest.size(), 0);
-  if (map.sign.method != sdm::SignMethod::none)
-    is_inside = sdm::inside(sites, mesh.positions, closest, map.sign.method);
-  std::vector<float> result;
-  result.reserve(closest.size());
-  for (std::size_t i = 0; i < closest.size(); ++i) {
-    const double d = closest[i].type == sdm::SiteType::none ? std::nan("") : closest[i].distance;
-    result.push_back(static_cast<float>(is_inside[i] ? -d : d));
-  }
-  return result;
-}
 
 Tolerance judge(double tolerance, const sdm::Surface& surface, const sdm::DistanceMap& map,
                 const std::vector<float>& at_vertices, double error_bound) {
@@ -49,14 +31,6 @@ Tolerance judge(double tolerance, const sdm::Surface& surface, const sdm::Distan
   // Distances are 1-Lipschitz: within the bound of a sample they change by no more than the bound.
   if (result.within) result.certified = largest + error_bound <= tolerance;
   return result;
-}
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out)
-    throw sdm::Error("cannot write " + file.filename().string() + ": the disk may be full; free space on it");
 }
 
 struct Result {
@@ -102,7 +76,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
 
   sdm::Stopwatch map_watch;
   const sdm::DistanceMap map = sdm::compute_map(*surface, *sites, command.map);
-  const auto at_vertices = vertex_distances(on.mesh, *sites, map, command.map);
+  const auto at_vertices = vertex_distances(on.mesh, *sites, map.sign.method, command.map);
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
@@ -110,18 +84,11 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
 
   progress.step("export");
   sdm::Stopwatch export_watch;
-  const std::vector<std::function<void()>> tasks{
-      [&] { sdm::write_exr(folder / "map.exr", *surface, map); },
-      [&] { sdm::write_glb(folder / "model.glb", *surface, map, at_vertices, command.picture); },
-      [&] { sdm::write_distance_png(folder / "distance.png", *surface, map, command.picture); },
-      [&] { sdm::write_direction_png(folder / "direction.png", *surface, map); },
-      [&] { sdm::write_voronoi_png(folder / "voronoi.png", *surface, map); },
-      [&] { outcome.distance = sdm::statistics(*surface, map); },
-      [&] { outcome.error_bound = surface->sampling_bound(); },
-  };
-  sdm::parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) tasks[i]();
-  });
+  sdm::parallel_invoke([&] { write_map_files(folder, *surface, map, at_vertices, command.picture); },
+                       [&] {
+                         outcome.distance = sdm::statistics(*surface, map);
+                         outcome.error_bound = surface->sampling_bound();
+                       });
   if (command.picture.tolerance)
     outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices,
                               outcome.error_bound + engine_error(command.map.engine, on, to));

@@ -11,7 +11,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -91,14 +90,6 @@ nlohmann::ordered_json describe(const SceneCommand& command, const sdm::Scene& s
           {"frames", command.frames},
           {"time_step", scene.time_step()},
           {"bodies", bodies}};
-}
-
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out)
-    throw sdm::Error("cannot write " + file.filename().string() + ": the disk may be full; free space on it");
 }
 
 void run(const SceneCommand& command) {

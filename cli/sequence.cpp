@@ -66,14 +66,6 @@ std::size_t common_frames(const Body& a, const Body& b) {
                    "; give two sequences of the same length, or one mesh that stays");
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out)
-    throw sdm::Error("cannot write " + file.filename().string() + ": the disk may be full; free space on it");
-}
-
 std::string four_digits(std::size_t frame) {
   char text[32];
   std::snprintf(text, sizeof text, "%04zu", frame);

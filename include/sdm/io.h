@@ -45,6 +45,11 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
 /// The same for maps over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
 void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
 
+/// A number a texel, such as NearestMap::body, as NPY of shape (resolution, resolution), uint32, row 0 at the
+/// top. Throws sdm::Error, too, where there are not resolution² numbers.
+void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
+               std::span<const std::uint32_t> values);
+
 /// distance.png: the distance in colours, with a legend of range and units.
 void write_distance_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                         const PictureOptions& options = {});

@@ -1,4 +1,4 @@
-// What is written of meshes and their motion is read again.
+// What is written of meshes, their motion and their texels is read again.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
@@ -22,6 +22,19 @@ TEST(WritePly, MeshesAreReadAgainToTheBit) {
   EXPECT_EQ(read.triangles, mesh.triangles);
   EXPECT_EQ(read.positions, mesh.positions);
   EXPECT_THROW(write_ply(folder / "no" / "torus.ply", mesh), Error);
+}
+
+TEST(WriteNpy, HoldsANumberATexel) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint32_t> values{0, 1, 0xFFFFFFFF, 258};
+  write_npy(folder / "body.npy", 2, values);
+  std::ifstream in(folder / "body.npy", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(bytes, HasSubstr("{'descr': '<u4', 'fortran_order': False, 'shape': (2, 2), } "));
+  ASSERT_EQ(bytes.size(), 128u + 16);
+  EXPECT_EQ(bytes.substr(128), std::string("\0\0\0\0\1\0\0\0\xff\xff\xff\xff\2\1\0\0", 16));
+  EXPECT_THROW(write_npy(folder / "body.npy", 3, values), Error);
+  EXPECT_THROW(write_npy(folder / "no" / "body.npy", 2, values), Error);
 }
 
 struct Motion : ::testing::Test {

@@ -1,29 +1,16 @@
 #include <sdm/error.h>
 #include <sdm/sequence.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
+#include "io/write/npy.h"
 
 namespace sdm {
-namespace {
-
-// NPY version 1.0 (NumPy's NEP 1), padded so that the numbers begin at 128 however many frames there are.
-std::string npy_header(std::uint64_t frames, std::uint64_t vertices) {
-  constexpr std::size_t kHeaderSize = 128;
-  std::string dictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(frames) +
-                           ", " + std::to_string(vertices) + ", 3), }";
-  std::string header = "\x93NUMPY";
-  header += {'\1', '\0'};
-  append_little_endian(header, static_cast<std::uint16_t>(kHeaderSize - header.size() - 2));
-  dictionary.resize(kHeaderSize - header.size() - 1, ' ');
-  return header + dictionary + '\n';
-}
-
-}  // namespace
 
 struct SequenceWriter::Impl {
   AtomicFile out;
@@ -33,7 +20,7 @@ struct SequenceWriter::Impl {
 
   void write_header() {
     out.stream().seekp(0);
-    out.stream() << npy_header(frames, vertices);
+    out.stream() << npy_header("<f4", std::array<std::uint64_t, 3>{frames, vertices, 3});
   }
 };
 

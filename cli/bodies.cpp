@@ -1,0 +1,167 @@
+#include "bodies.h"
+
+#include <sdm/io.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "bodies_report.h"
+#include "core/stopwatch.h"
+#include "map_files.h"
+#include "option_checks.h"
+#include "output_folder.h"
+#include "progress_line.h"
+#include "report.h"
+
+namespace {
+
+struct BodiesCommand {
+  std::vector<std::string> files;
+  std::string units;
+  std::filesystem::path out;
+  sdm::BodiesOptions options;
+  unsigned threads = 0;
+  bool json = false, quiet = false;
+};
+
+/// The distance of each vertex of a body to the nearest of the others, signed as its map is.
+std::vector<float> nearest_vertex_distances(const sdm::Bodies& bodies, std::size_t on, double max_distance) {
+  const sdm::Mesh& mesh = bodies.surface(on).mesh();
+  std::vector<float> nearest(mesh.positions.size(), std::nanf(""));
+  for (std::size_t to = 0; to < bodies.size(); ++to) {
+    if (to == on) continue;
+    const sdm::SignMethod sign = sdm::choose_sign(bodies.sites(to), sdm::SignMethod::automatic).method;
+    const std::vector<float> distances =
+        vertex_distances(mesh, bodies.sites(to), sign, {.max_distance = max_distance});
+    for (std::size_t v = 0; v < nearest.size(); ++v)
+      if (std::isnan(nearest[v]) || std::abs(distances[v]) < std::abs(nearest[v])) nearest[v] = distances[v];
+  }
+  return nearest;
+}
+
+/// All maps, each in the folder of its body's number.
+void write_maps(const BodiesCommand& command, const sdm::Bodies& bodies, OutputFolder& out) {
+  sdm::NearestMap nearest;
+  for (std::size_t body = 0; body < bodies.size(); ++body) {
+    bodies.nearest_map(body, nearest);
+    const std::filesystem::path folder = out.staging(std::to_string(body));
+    write_map_files(folder, bodies.surface(body), nearest.map,
+                    nearest_vertex_distances(bodies, body, command.options.max_distance),
+                    {.units = command.units});
+    sdm::write_npy(folder / "body.npy", nearest.map.resolution, nearest.body);
+  }
+}
+
+nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector<Input>& inputs,
+                                 sdm::Bodies& bodies) {
+  nlohmann::ordered_json report;
+  report["version"] = sdm::kVersion;
+  report["bodies"] = nlohmann::ordered_json::array();
+  for (const Input& input : inputs) report["bodies"].push_back(to_json(input));
+  report["units"] = command.units;
+  report["resolution"] = command.options.atlas.resolution;
+  report["max_distance"] = command.options.max_distance;  // null: no limit
+  report["pairs"] = nlohmann::ordered_json::array();
+  for (const sdm::PairProximity& pair : bodies.pairs()) report["pairs"].push_back(to_json(pair));
+  report["candidate_pairs"] = bodies.candidate_pairs();
+  return report;
+}
+
+std::string summary(const BodiesCommand& command, sdm::Bodies& bodies) {
+  std::string text;
+  for (std::size_t body = 0; body < bodies.size(); ++body)
+    text += "  " + std::to_string(body) + "  " + command.files[body] + "\n";
+  text += "\n" + table(bodies.pairs());
+  if (!command.units.empty()) text += "\n  lengths in " + command.units + "\n";
+  if (!command.out.empty())
+    text += "\n  results   " + command.out.string() + "/: report.json and, of each body, N/: map.exr " +
+            "distance.png voronoi.png direction.png model.glb body.npy\n";
+  return text;
+}
+
+void run(BodiesCommand command) {
+  const sdm::ThreadLimit limit(command.threads);
+  std::optional<OutputFolder> out;
+  if (!command.out.empty()) out.emplace(command.out);
+  ProgressLine progress(command.quiet);
+  command.options.atlas.progress = progress.callback();
+
+  progress.step("import");
+  sdm::Stopwatch watch;
+  std::vector<Input> inputs;
+  std::vector<sdm::Mesh> meshes;
+  for (const std::string& file : command.files) {
+    inputs.push_back(load_input("body " + std::to_string(inputs.size()), file, ""));
+    meshes.push_back(inputs.back().mesh);
+  }
+  const double import_ms = watch.lap();
+  sdm::Bodies bodies(std::move(meshes), command.options);
+  const double build_ms = watch.lap();
+  progress.step("queries");
+  nlohmann::ordered_json report = report_of(command, inputs, bodies);
+  report["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", watch.lap()}};
+
+  if (out) try {
+      progress.step("maps");
+      write_maps(command, bodies, *out);
+      report["time_ms"]["maps"] = watch.lap();
+      write_text(out->staging() / "report.json", to_text(report));
+      out->commit();
+    } catch (const sdm::Cancelled&) {
+      throw;
+    } catch (const sdm::Error& error) {
+      throw sdm::Error(out->publicly(error.what()));
+    }
+  if (command.json) {
+    std::cout << to_text(report);
+  } else if (!command.quiet) {
+    std::cout << summary(command, bodies);
+  }
+}
+
+void add_options(CLI::App& app, BodiesCommand& c) {
+  app.add_option("FILE", c.files, "A mesh for each body (OBJ, PLY, STL, OFF, glTF, 3DS), two at least")
+      ->required()
+      ->expected(2, CLI::detail::expected_max_vector_size);
+  app.add_option("-o,--output", c.out,
+                 "The folder of the maps of each body to all others, made if it is not there")
+      ->check(CLI::Validator(
+          [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
+      ->type_name("DIR");
+  app.add_option("--max-distance", c.options.max_distance,
+                 "Leave out pairs, and texels, that are farther apart than D")
+      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->type_name("D");
+  app.add_flag("--exact", c.options.exact,
+               "Separation and collision from the triangles themselves, not from samples with bounds");
+  app.add_option("--resolution", c.options.atlas.resolution, "Texels along each side of all bodies' maps")
+      ->check(whole_number(16, 32768))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--units", c.units, "Of the meshes, for what is printed and drawn")->type_name("NAME");
+  app.add_option("--threads", c.threads, "Threads to use, 0 for all cores")
+      ->check(whole_number(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_flag("--json", c.json, "Print JSON instead of a table");
+  app.add_flag("--quiet", c.quiet, "Print nothing but errors, and what --json asks for");
+}
+
+}  // namespace
+
+void add_bodies_command(CLI::App& app) {
+  CLI::App* bodies =
+      app.add_subcommand("bodies", "Tell how many meshes meet: separation, collision and depth of all pairs");
+  bodies->footer(
+      "Bodies are numbered from 0 as they are given. With -o, each has a folder of that number: its map as "
+      "`sdm map` writes it, to the nearest of the other bodies, and body.npy, which body that is.\n\n"
+      "Example, all pairs that are nearer than 5:\n"
+      "  sdm bodies part1.stl part2.stl housing.stl --max-distance 5");
+  const auto command = std::make_shared<BodiesCommand>();
+  add_options(*bodies, *command);
+  bodies->callback([command] { run(*command); });
+}

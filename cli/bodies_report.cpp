@@ -1,0 +1,57 @@
+#include "bodies_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <vector>
+
+#include "proximity_report.h"
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+using Row = std::array<std::string, 5>;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string words(const sdm::Length& length) {
+  if (length.kind == sdm::Certainty::bounded)
+    return number(length.value) + " (" + number(length.lower) + " to " + number(length.upper) + ")";
+  return number(length.value) + " (" + name(length.kind) + ")";
+}
+
+Row row(const sdm::PairProximity& pair) {
+  return {std::to_string(pair.first), std::to_string(pair.second),
+          (pair.colliding.value ? "yes (" : "no (") + std::string(name(pair.colliding.kind)) + ")",
+          words(pair.separation), pair.penetration_depth ? words(*pair.penetration_depth) : "none: no solid"};
+}
+
+}  // namespace
+
+Json to_json(const sdm::PairProximity& pair) {
+  return {{"first", pair.first},
+          {"second", pair.second},
+          {"separation", to_json(pair.separation)},
+          {"colliding", to_json(pair.colliding)},
+          {"penetration_depth", pair.penetration_depth ? to_json(*pair.penetration_depth) : Json(nullptr)}};
+}
+
+std::string table(std::span<const sdm::PairProximity> pairs) {
+  std::vector<Row> rows{{"first", "second", "colliding", "separation", "depth"}};
+  for (const sdm::PairProximity& pair : pairs) rows.push_back(row(pair));
+  std::array<std::size_t, std::tuple_size_v<Row>> widths{};
+  for (const Row& cells : rows)
+    for (std::size_t c = 0; c < cells.size(); ++c) widths[c] = std::max(widths[c], cells[c].size());
+  std::string text;
+  for (const Row& cells : rows) {
+    for (std::size_t c = 0; c + 1 < cells.size(); ++c)
+      text += "  " + cells[c] + std::string(widths[c] - cells[c].size(), ' ');
+    text += "  " + cells.back() + "\n";
+  }
+  return text;
+}

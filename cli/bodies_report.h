@@ -1,0 +1,13 @@
+// What was found of many bodies, as JSON and as a table. The keys are documented in docs/proximity.md.
+#pragma once
+
+#include <sdm/bodies.h>
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::PairProximity& pair);
+
+/// A line for each pair, below a heading.
+[[nodiscard]] std::string table(std::span<const sdm::PairProximity> pairs);

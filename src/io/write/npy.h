@@ -1,0 +1,15 @@
+// The header of NumPy's array files.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace sdm {
+
+/// NPY version 1.0 (NumPy's NEP 1) for numbers of `type`, such as "<f4", the last index running fastest.
+/// Padded to 128 bytes whatever the shape, which has three indices at most.
+[[nodiscard]] std::string npy_header(std::string_view type, std::span<const std::uint64_t> shape);
+
+}  // namespace sdm

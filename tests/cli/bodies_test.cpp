@@ -1,0 +1,129 @@
+// `sdm bodies`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/bodies.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "run.h"
+#include "samples.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+/// Two tori that cross, and one 10 away.
+struct BodiesCommand : ::testing::Test, TwoTori {
+  std::string o3 = write_obj(folder / "third.obj", torus(8, 1, {10, 0, 0}));
+
+  [[nodiscard]] std::vector<std::string> bodies(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"bodies", o1, o2, o3};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  [[nodiscard]] Bodies in_library(const BodiesOptions& options = {}) const {
+    return Bodies({read_mesh(o1), read_mesh(o2), read_mesh(o3)}, options);
+  }
+};
+
+TEST_F(BodiesCommand, PrintsThePairsOfTheLibrary) {
+  for (const bool exact : {false, true}) {
+    std::vector<std::string> more{"--json", "--units", "mm", "--resolution", "64"};
+    if (exact) more.emplace_back("--exact");
+    const Outcome run = run_sdm(bodies(more));
+    ASSERT_EQ(run.code, 0) << run.err;
+    const Json json = Json::parse(run.out);
+    Bodies expected = in_library({.atlas = {.resolution = 64}, .exact = exact});
+    ASSERT_EQ(json["pairs"].size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const PairProximity& pair = expected.pairs()[i];
+      EXPECT_EQ(json["pairs"][i]["first"], pair.first);
+      EXPECT_EQ(json["pairs"][i]["second"], pair.second);
+      EXPECT_EQ(json["pairs"][i]["separation"]["value"], pair.separation.value);
+      EXPECT_EQ(json["pairs"][i]["separation"]["lower"], pair.separation.lower);
+      EXPECT_EQ(json["pairs"][i]["separation"]["kind"], exact ? "exact" : "bounded");
+      EXPECT_EQ(json["pairs"][i]["colliding"]["value"], pair.colliding.value);
+      EXPECT_EQ(json["pairs"][i]["penetration_depth"]["upper"], pair.penetration_depth->upper);
+    }
+    EXPECT_EQ(json["pairs"][0]["colliding"]["value"], true);
+    EXPECT_EQ(json["pairs"][1]["colliding"]["value"], false);
+    EXPECT_EQ(json["candidate_pairs"], 3);
+    EXPECT_EQ(json["bodies"][2]["file"], o3);
+    EXPECT_EQ(json["units"], "mm");
+    EXPECT_EQ(json["resolution"], 64);
+    EXPECT_TRUE(json["max_distance"].is_null());
+    for (const char* step : {"import", "build", "query"}) EXPECT_GT(json["time_ms"][step], 0) << step;
+    EXPECT_EQ(run.err, "") << "progress is for terminals";
+  }
+}
+
+TEST_F(BodiesCommand, LeavesOutWhatIsFar) {
+  Outcome run = run_sdm(bodies({"--json", "--max-distance", "2"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  ASSERT_EQ(json["pairs"].size(), 1u);
+  EXPECT_EQ(json["pairs"][0]["second"], 1);
+  EXPECT_EQ(json["max_distance"], 2);
+  run = run_sdm(bodies({"--max-distance", "2"}));
+  EXPECT_THAT(run.out, HasSubstr("  0      1       yes (exact)"));
+  EXPECT_THAT(run.out, Not(HasSubstr("  0      2")));
+  run = run_sdm(bodies({"--exact"}));
+  EXPECT_THAT(run.out, HasSubstr("  0      2       no (exact)   "));
+  EXPECT_EQ(run_sdm(bodies({"--quiet"})).out, "");
+}
+
+TEST_F(BodiesCommand, TellsOfPairsWithoutASolid) {
+  const std::string open =
+      write_obj(folder / "open.obj", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}});
+  EXPECT_THAT(run_sdm({"bodies", open, open}).out, HasSubstr("none: no solid"));
+  const Json json = Json::parse(run_sdm({"bodies", open, open, "--json"}).out);
+  EXPECT_TRUE(json["pairs"][0]["penetration_depth"].is_null());
+}
+
+TEST_F(BodiesCommand, WritesAMapForEachBody) {
+  const Outcome run = run_sdm(bodies({"-o", out, "--resolution", "64", "--max-distance", "9", "--json"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"0", "1", "2", "report.json"}));
+  EXPECT_EQ(contents(out + "/report.json"), run.out);
+  const Bodies expected = in_library({.atlas = {.resolution = 64}, .max_distance = 9});
+  for (std::size_t body = 0; body < 3; ++body) {
+    const std::string mine = out + "/" + std::to_string(body);
+    EXPECT_EQ(names_in(mine), (std::vector<std::string>{"body.npy", "direction.png", "distance.png",
+                                                        "map.exr", "model.glb", "voronoi.png"}));
+    const NearestMap nearest = expected.nearest_map(body);
+    const std::string bytes = contents(mine + "/body.npy");
+    ASSERT_EQ(bytes.size(), 128 + 4 * nearest.body.size());
+    std::vector<std::uint32_t> written(nearest.body.size());
+    std::memcpy(written.data(), bytes.data() + 128, 4 * written.size());
+    EXPECT_EQ(written, nearest.body);
+    write_exr(folder / "expected.exr", expected.surface(body), nearest.map);
+    EXPECT_EQ(contents(mine + "/map.exr"), contents(folder / "expected.exr"));
+  }
+  EXPECT_THAT(run_sdm(bodies({"-o", out})).out, HasSubstr(out));
+}
+
+TEST_F(BodiesCommand, RefusesWhatItCannotUse) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--max-distance", "0"},
+                                               {"--max-distance", "inf"},
+                                               {"--resolution", "8"},
+                                               {"--unknown"},
+                                               {"-o", ""}})
+    EXPECT_EQ(run_sdm(bodies(more)).code, 2) << more[0];
+  EXPECT_EQ(run_sdm({"bodies"}).code, 2);
+  EXPECT_EQ(run_sdm({"bodies", o1}).code, 2);
+  Outcome run = run_sdm({"bodies", o1, folder / "none.obj", "-o", out});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("none.obj"));
+  EXPECT_EQ(run.out, "");
+  EXPECT_FALSE(std::filesystem::exists(out));
+  run = run_sdm(bodies({"-o", o1}));
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("it is not a folder"));
+}
+
+}  // namespace
+}  // namespace sdm::test
