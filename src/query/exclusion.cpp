@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/vec.h"
 #include "mesh/rows.h"
 #include "query/triangle_pair.h"
 
@@ -30,22 +31,36 @@ class Neighbours {
             for (const std::uint32_t v : mesh.triangles[f]) put(v, f);
         })) {}
 
-  // In increasing order. `met` marks no face, before and after.
-  [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t face, std::vector<bool>& met) const {
+  // Marks of one thread; none is set before and after a call of `of`.
+  struct Met {
+    std::vector<bool> vertices, faces;
+  };
+  [[nodiscard]] Met none_met() const {
+    return {std::vector<bool>(mesh_.positions.size()), std::vector<bool>(mesh_.triangles.size())};
+  }
+
+  // In increasing order.
+  [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t face, Met& met) const {
     std::vector<std::uint32_t> reached{face}, rejected;
-    met[face] = true;
+    met.faces[face] = true;
     std::size_t begin = 0;
     for (std::uint32_t ring = 1; begin < reached.size() && (rule_.geodesic || ring <= rule_.rings); ++ring)
       for (const std::size_t end = reached.size(); begin < end; ++begin)
-        for (const std::uint32_t v : mesh_.triangles[reached[begin]])
+        for (const std::uint32_t v : mesh_.triangles[reached[begin]]) {
+          if (met.vertices[v]) continue;
+          met.vertices[v] = true;
           for (const std::uint32_t other : around_.of(v)) {
-            if (met[other]) continue;
-            met[other] = true;
+            if (met.faces[other]) continue;
+            met.faces[other] = true;
             const bool admitted = ring == 1 || !rule_.geodesic || within(*rule_.geodesic, face, other);
             (admitted ? reached : rejected).push_back(other);
           }
-    for (const std::uint32_t f : reached) met[f] = false;
-    for (const std::uint32_t f : rejected) met[f] = false;
+        }
+    for (const std::uint32_t f : rejected) met.faces[f] = false;
+    for (const std::uint32_t f : reached) {
+      met.faces[f] = false;
+      for (const std::uint32_t v : mesh_.triangles[f]) met.vertices[v] = false;
+    }
     std::ranges::sort(reached);
     return reached;
   }
@@ -57,7 +72,12 @@ class Neighbours {
   }
   [[nodiscard]] bool within(double length, std::uint32_t f, std::uint32_t g) const {
     const Corners a = corners(f), b = corners(g);
-    return squared_box_distance(a, b) < length * length && closest_or_common(a, b).squared < length * length;
+    const double most = length * length;
+    // Nearly always corners or boxes tell.
+    for (const Vec3& p : a)
+      for (const Vec3& q : b)
+        if (squared_norm(q - p) < most) return true;
+    return squared_box_distance(a, b) < most && closest_or_common(a, b).squared < most;
   }
 
   const Mesh& mesh_;
@@ -82,7 +102,7 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress
   for (std::size_t first = 0; first < count; first += block) {
     const std::size_t end = std::min(count, first + block);
     parallel_for(end - first, kGrain, [&](std::size_t begin, std::size_t last) {
-      std::vector<bool> met(count);
+      Neighbours::Met met = neighbours.none_met();
       for (std::size_t i = begin; i < last; ++i)
         rows[i] = neighbours.of(static_cast<std::uint32_t>(first + i), met);
     });
