@@ -5,6 +5,7 @@
 #include "progress_line.h"
 #include "proximity.h"
 #include "scene.h"
+#include "self.h"
 #include "sequence.h"
 
 #include <sdm/error.h>
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
     add_map_command(app);
     add_proximity_command(app);
     add_sequence_command(app);
+    add_self_command(app);
     add_info_command(app);
     add_devices_command(app);
     add_scene_command(app);

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "map_files.h"
 #include "map_options.h"
 #include "output_folder.h"
 #include "progress_line.h"
@@ -10,8 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -49,14 +48,6 @@ Tolerance judge(double tolerance, const sdm::Surface& surface, const sdm::Distan
   // Distances are 1-Lipschitz: within the bound of a sample they change by no more than the bound.
   if (result.within) result.certified = largest + error_bound <= tolerance;
   return result;
-}
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out)
-    throw sdm::Error("cannot write " + file.filename().string() + ": the disk may be full; free space on it");
 }
 
 struct Result {
@@ -110,18 +101,9 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
 
   progress.step("export");
   sdm::Stopwatch export_watch;
-  const std::vector<std::function<void()>> tasks{
-      [&] { sdm::write_exr(folder / "map.exr", *surface, map); },
-      [&] { sdm::write_glb(folder / "model.glb", *surface, map, at_vertices, command.picture); },
-      [&] { sdm::write_distance_png(folder / "distance.png", *surface, map, command.picture); },
-      [&] { sdm::write_direction_png(folder / "direction.png", *surface, map); },
-      [&] { sdm::write_voronoi_png(folder / "voronoi.png", *surface, map); },
-      [&] { outcome.distance = sdm::statistics(*surface, map); },
-      [&] { outcome.error_bound = surface->sampling_bound(); },
-  };
-  sdm::parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) tasks[i]();
-  });
+  write_map_files(folder, *surface, map, at_vertices, command.picture,
+                  {[&] { outcome.distance = sdm::statistics(*surface, map); },
+                   [&] { outcome.error_bound = surface->sampling_bound(); }});
   if (command.picture.tolerance)
     outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices,
                               outcome.error_bound + engine_error(command.map.engine, on, to));

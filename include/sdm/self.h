@@ -73,6 +73,7 @@ struct SelfMapOptions {
 struct SelfOptions {
   ExclusionRule exclusion{};
   double max_distance = std::numeric_limits<double>::infinity();  ///< > 0, of separations
+  Progress progress{};                                            ///< of the construction
 };
 
 /// The proximity of a deforming mesh to itself: for simulation loops. Answers come from the triangles, not

@@ -38,7 +38,7 @@ struct SelfQuery::Impl {
 
   Impl(Mesh rest, const SelfOptions& options)
       : sites(std::move(rest)),
-        exclusion(sites.mesh(), options.exclusion),
+        exclusion(sites.mesh(), options.exclusion, options.progress),
         max_distance(options.max_distance) {}
 
   // Calls body(search, place) for the place of each face in the tree, neighbours one after the other.
