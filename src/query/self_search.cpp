@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "core/vec.h"
 #include "engine/closest_on_face.h"
@@ -16,7 +17,8 @@ struct SelfSearch::Scratch {
     double squared;       ///< distance of its box in the unit frame
   };
   std::vector<Entry> stack;
-  std::vector<std::uint8_t> excluded;  ///< of each face; all 0 between searches
+  std::vector<std::pair<double, std::uint32_t>> candidates;  ///< by their distance from the ball's centre
+  std::vector<std::uint8_t> excluded;                        ///< of each face; all 0 between searches
 
   static Scratch& of_this_thread() {
     thread_local Scratch scratch;
@@ -104,16 +106,32 @@ void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) c
   }
 }
 
-ClosestPoint SelfSearch::closest_to(const Vec3& q, double max_distance, std::uint32_t guess) const {
+// A face g that is closest to a point q of the ball is so near its centre c: with d_c = min d(c, ·),
+// d(c, g) ≤ d(q, g) + r ≤ d_c + 2r.
+void SelfSearch::gather(const Vec3& centre, double radius, double max_distance) {
+  centre_ = centre, max_distance_ = max_distance;
+  auto& candidates = scratch_.candidates;
+  candidates.clear();
+  double limit = max_distance + radius;
+  visit_near({centre, centre}, limit, [&](std::uint32_t face) {
+    const double distance = closest_on_face(sites_, face, centre).distance;
+    if (distance > limit) return;
+    candidates.push_back({distance, face});
+    limit = std::min(limit, distance + 2 * radius);
+  });
+  std::ranges::sort(candidates);
+}
+
+ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
   ClosestPoint best;
-  double limit = max_distance;
-  const auto visit = [&](std::uint32_t face) {
-    if (squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit) return;
+  double limit = max_distance_;
+  const double from_centre = norm(q - centre_);
+  for (const auto& [at_centre, face] : scratch_.candidates) {
+    if (at_centre - from_centre > limit) break;  // d(q, g) ≥ d(c, g) − |q − c|
+    if (squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit) continue;
     const ClosestPoint c = closest_on_face(sites_, face, q);
     if (c.distance < best.distance && c.distance <= limit) best = c, limit = c.distance;
-  };
-  if (guess != kNone && scratch_.excluded[guess] == 0) visit(guess);
-  visit_near({q, q}, limit, visit);
+  }
   return best;
 }
 

@@ -32,9 +32,10 @@ class SelfSearch {
   /// From now on it is this face whose neighbourhood is passed over.
   void start_from(std::uint32_t face);
 
-  /// The closest point to q within max_distance. `guess` is a face whose distance makes the search shorter,
-  /// or kNone, or excluded: if it is one of several closest faces, it is found.
-  [[nodiscard]] ClosestPoint closest_to(const Vec3& q, double max_distance, std::uint32_t guess) const;
+  /// Gathers the faces that can be the closest one of any point in a ball.
+  void gather(const Vec3& centre, double radius, double max_distance);
+  /// The closest point to a point of that ball, within the same distance.
+  [[nodiscard]] ClosestPoint closest_to(const Vec3& q) const;
 
   /// The nearest face to the one it started from, within max_distance.
   [[nodiscard]] FacePair nearest(double max_distance) const;
@@ -48,6 +49,8 @@ class SelfSearch {
   const Exclusion& exclusion_;
   Scratch& scratch_;
   std::uint32_t face_ = kNone;
+  Vec3 centre_{};
+  double max_distance_ = 0;
 };
 
 }  // namespace sdm
