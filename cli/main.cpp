@@ -6,6 +6,7 @@
 #include "progress_line.h"
 #include "proximity.h"
 #include "scene.h"
+#include "self.h"
 #include "sequence.h"
 
 #include <sdm/error.h>
@@ -38,6 +39,7 @@ int main(int argc, char** argv) {
     add_proximity_command(app);
     add_bodies_command(app);
     add_sequence_command(app);
+    add_self_command(app);
     add_info_command(app);
     add_devices_command(app);
     add_scene_command(app);

@@ -1,27 +1,19 @@
 #include "map_options.h"
 
+#include "common_options.h"
 #include "option_checks.h"
 
 void add_options(CLI::App& app, MapCommand& c) {
   const auto positive = number("a positive number", [](double x) { return x > 0; });
   app.add_option("O1", c.o1, "The mesh that is measured on (OBJ, PLY, STL, OFF, glTF, 3DS)")->required();
   app.add_option("O2", c.o2, "The mesh that distances are measured to")->required();
-  app.add_option("-o,--output", c.out, "The folder of the results, made if it is not there")
-      ->required()
-      ->check(CLI::Validator(
-          [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
-      ->type_name("DIR");
+  add_output_option(app, c.out);
   app.add_flag("--both", c.both, "Measure O2 as well: results in DIR/o1 and DIR/o2");
 
-  const std::string steps = ", placed by steps such as fit,rotate:0:90:0,scale:2,translate:0.8:0:0";
-  app.add_option("--transform-o1", c.transform_o1, "O1" + steps)->check(check_transform)->type_name("STEPS");
-  app.add_option("--transform-o2", c.transform_o2, "O2" + steps)->check(check_transform)->type_name("STEPS");
+  add_transform_option(app, "--transform-o1", "O1", c.transform_o1);
+  add_transform_option(app, "--transform-o2", "O2", c.transform_o2);
 
-  CLI::Option* resolution =
-      app.add_option("--resolution", c.atlas.resolution, "Texels along each side of the map")
-          ->check(whole_number(16, 32768))
-          ->type_name("N")
-          ->capture_default_str();
+  CLI::Option* resolution = add_resolution_option(app, c.atlas);
   app.add_option(
          "--precision", c.precision,
          "Instead: as many texels as it takes for no point to be farther than EPS from a texel's sample, so "
@@ -29,16 +21,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->check(positive)
       ->type_name("EPS")
       ->excludes(resolution);
-  add_choice<sdm::AtlasKind>(app, "--atlas", c.atlas.kind,
-                             "How O1 is laid out in the map: few charts, a chart a triangle, or O1's own UVs",
-                             {{"charts", sdm::AtlasKind::charts},
-                              {"triangles", sdm::AtlasKind::triangles},
-                              {"uv", sdm::AtlasKind::uv}});
-  app.add_option("--max-stretch", c.atlas.max_stretch,
-                 "Charts: the largest growth of a length from map to surface")
-      ->check(number("a number above 1", [](double x) { return x > 1; }))
-      ->type_name("S")
-      ->capture_default_str();
+  add_layout_options(app, c.atlas, "O1");
 
   app.add_option("--max-distance", c.map.max_distance, "Texels farther than this hold no value")
       ->check(positive)
@@ -75,31 +58,12 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
       ->type_name("D");
 
-  add_choice<sdm::Colormap>(app, "--colormap", c.picture.colormap,
-                            "Colours; auto: diverging where distances have both signs, else viridis",
-                            {{"auto", sdm::Colormap::automatic},
-                             {"viridis", sdm::Colormap::viridis},
-                             {"diverging", sdm::Colormap::diverging},
-                             {"paper2006", sdm::Colormap::paper2006}});
-  app.add_option("--range", c.range, "The distances at the ends of the colours")
-      ->expected(2)
-      ->check(number("a number", [](double) { return true; }))
-      ->type_name("LO HI");
-  app.add_option("--units", c.picture.units,
-                 "Of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
-      ->type_name("NAME");
-
-  app.add_option("--threads", c.threads, "Threads to use, 0 for all cores")
-      ->check(whole_number(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
-  app.add_flag("--json", c.json, "Print the report (report.json) instead of a summary");
-  app.add_flag("--quiet", c.quiet, "Print nothing but errors, and what --json asks for");
+  add_picture_options(app, c.picture, c.range);
+  add_run_options(app, c.threads, c.json, c.quiet);
 }
 
 void check_combination(const CLI::App& app, const MapCommand& c) {
-  if (!c.range.empty() && !(c.range[0] < c.range[1]))
-    throw CLI::ValidationError("--range", "LO must be below HI");
+  check_range(c.range);
   if (c.picture.tolerance && *c.picture.tolerance > c.map.max_distance)
     throw CLI::ValidationError("--tolerance",
                                "must not be above --max-distance, which hides what exceeds it");

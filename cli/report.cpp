@@ -70,13 +70,13 @@ Json to_json(const sdm::RasterReport& r) {
             {"finish", rounded(t.finish)}}}};
 }
 
+}  // namespace
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.5g", value);
   return text;
 }
-
-}  // namespace
 
 Input load_input(const std::string& role, const std::string& file, const std::string& transform) {
   Input input{role, file, transform, sdm::read_mesh(file), {}};
@@ -112,13 +112,17 @@ Json to_json(const sdm::Surface& surface) {
           {"utilisation", surface.utilisation()}, {"max_stretch", surface.max_stretch()}};
 }
 
+Json to_json(const sdm::DistanceStatistics& d) {
+  // NaN, where no texel has a value, becomes null.
+  return {{"kind", "estimate"}, {"min", d.min}, {"max", d.max}, {"mean", d.mean},
+          {"rms", d.rms},       {"p50", d.p50}, {"p95", d.p95}, {"p99", d.p99}};
+}
+
 Json to_json(const Outcome& outcome) {
   const sdm::DistanceStatistics& d = outcome.distance;
   Json json;
   json["sign"] = {{"method", name(outcome.sign.method)}, {"reason", outcome.sign.reason}};
-  // NaN, where no texel has a value, becomes null.
-  json["distance"] = {{"kind", "estimate"}, {"min", d.min}, {"max", d.max}, {"mean", d.mean},
-                      {"rms", d.rms},       {"p50", d.p50}, {"p95", d.p95}, {"p99", d.p99}};
+  json["distance"] = to_json(d);
   json["texels_with_value"] = d.texels;
   json["negative_texels"] = d.negative_texels;
   json["beyond_max_distance"] = outcome.beyond_max_distance;

@@ -11,7 +11,7 @@
 
 /// A mesh of the command line, placed.
 struct Input {
-  std::string role;  ///< "o1" or "o2"
+  std::string role;  ///< "o1", "o2", or "mesh" if it is the only one
   std::string file, transform;
   sdm::Mesh mesh;
   sdm::MeshInfo info;
@@ -49,7 +49,11 @@ struct Outcome {
 /// Throughout, `on` is the mesh that carries the map and `to` the other one.
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Surface& surface);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::DistanceStatistics& distance);
 [[nodiscard]] nlohmann::ordered_json to_json(const Outcome& outcome);
+
+/// With five digits.
+[[nodiscard]] std::string number(double value);
 
 /// JSON text; file names that are not UTF-8 lose the bytes at fault.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);

@@ -40,7 +40,8 @@ struct PictureOptions {
 };
 
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A.
-/// Gutters are dilated; coverage.A is the true coverage. Invalid: NaN and 0xFFFFFFFF.
+/// Gutters are dilated; coverage.A is the true coverage. Invalid: NaN and 0xFFFFFFFF; of self maps with
+/// nothing in range +∞, 0 and 0xFFFFFFFF.
 void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
 /// The same for maps over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
 void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
@@ -74,9 +75,9 @@ void write_plot_png(const std::filesystem::path& file, const std::string& axis,
                     std::span<const double> places, std::span<const PlotPanel> panels);
 
 /// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex, opens
-/// coloured in any viewer. `vertex_distances`: one for each vertex of surface.mesh(), NaN where there is
-/// none: as glTF knows no NaN, the faces of such vertices form a primitive without `_DISTANCE`. Units m, cm,
-/// mm, um, in, ft scale the node to metres; none or others leave it.
+/// coloured in any viewer. `vertex_distances`: one for each vertex of surface.mesh(), not finite where there
+/// is none: as glTF knows no such number, the faces of such vertices form a primitive without `_DISTANCE`.
+/// Units m, cm, mm, um, in, ft scale the node to metres; none or others leave it.
 void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                std::span<const float> vertex_distances, const PictureOptions& options = {});
 

@@ -9,6 +9,7 @@
 #include <sdm/progress.h>
 #include <sdm/proximity.h>
 #include <sdm/raster.h>
+#include <sdm/self.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>

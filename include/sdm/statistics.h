@@ -9,7 +9,7 @@
 
 namespace sdm {
 
-/// Of the texels that hold a value, each weighted by the area of surface that its centre stands for. All are
+/// Of the texels that hold a finite value, each weighted by the area of surface that its centre stands for. All are
 /// NaN when there are none.
 struct DistanceStatistics {
   std::size_t texels = 0;  ///< with a value

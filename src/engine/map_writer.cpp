@@ -9,8 +9,19 @@
 
 namespace sdm {
 
-MapWriter::MapWriter(DistanceMap& map, const Surface& surface, const InsideTest* is_inside)
-    : texels_(surface.samples()), points_(surface.sample_points()), is_inside_(is_inside) {
+namespace {
+
+void store_none(DistanceMap& map, std::size_t texel, std::size_t count) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  std::fill_n(map.distance.data() + texel, count, nan);
+  std::fill_n(map.vector.data() + texel, count, Vec3f{nan, nan, nan});
+  std::fill_n(map.site.data() + texel, count, kNone);
+  std::fill_n(map.site_type.data() + texel, count, SiteType::none);
+}
+
+}  // namespace
+
+void clear(DistanceMap& map, const Surface& surface) {
   const std::span<const std::uint32_t> faces = surface.texel_faces();
   if (map.distance.capacity() < faces.size())
     require_memory(faces.size() * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
@@ -21,10 +32,6 @@ MapWriter::MapWriter(DistanceMap& map, const Surface& surface, const InsideTest*
   map.site.resize(faces.size());
   map.site_type.resize(faces.size());
   map.raster.reset();
-  distance_ = map.distance.data();
-  vector_ = map.vector.data();
-  site_ = map.site.data();
-  site_type_ = map.site_type.data();
 
   constexpr std::size_t kGrain = 1 << 16;
   parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -32,17 +39,18 @@ MapWriter::MapWriter(DistanceMap& map, const Surface& surface, const InsideTest*
     for (auto owned = faces.begin() + static_cast<std::ptrdiff_t>(begin); owned != last;) {
       const auto free = std::find(owned, last, kNone);
       owned = std::find_if(free, last, [](std::uint32_t face) { return face != kNone; });
-      store_none(static_cast<std::size_t>(free - faces.begin()), static_cast<std::size_t>(owned - free));
+      store_none(map, static_cast<std::size_t>(free - faces.begin()), static_cast<std::size_t>(owned - free));
     }
   });
 }
 
-void MapWriter::store_none(std::size_t texel, std::size_t count) const {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  std::fill_n(distance_ + texel, count, nan);
-  std::fill_n(vector_ + texel, count, Vec3f{nan, nan, nan});
-  std::fill_n(site_ + texel, count, kNone);
-  std::fill_n(site_type_ + texel, count, SiteType::none);
+MapWriter::MapWriter(DistanceMap& map, const Surface& surface, const InsideTest* is_inside)
+    : texels_(surface.samples()), points_(surface.sample_points()), is_inside_(is_inside), map_(map) {
+  clear(map, surface);
+  distance_ = map.distance.data();
+  vector_ = map.vector.data();
+  site_ = map.site.data();
+  site_type_ = map.site_type.data();
 }
 
 std::size_t MapWriter::store(std::size_t first, const ClosestPacket& closest) const {
@@ -74,7 +82,7 @@ std::size_t MapWriter::store(std::size_t first, const ClosestPacket& closest) co
     without += closest.type[i] == SiteType::none;
   }
   for (std::size_t i = 0; without > 0 && i < closest.count; ++i)
-    if (closest.type[i] == SiteType::none) store_none(texel[i], 1);
+    if (closest.type[i] == SiteType::none) store_none(map_, texel[i], 1);
   return without;
 }
 

@@ -102,4 +102,10 @@ Vec3 common_point(const Corners& a, const Corners& b) {
   return best.point1;
 }
 
+PointPair closest_or_common(const Corners& a, const Corners& b) {
+  if (squared_box_distance(a, b) > 0 || !triangles_intersect(a, b)) return closest_points(a, b);
+  const Vec3 point = common_point(a, b);
+  return {0, point, point};
+}
+
 }  // namespace sdm

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "atlas/sample_runs.h"
 #include "core/vec.h"
@@ -23,12 +22,6 @@ Contact contact_of(int body, const Vec3& sample, const Vec3& vector, double dept
   return c;
 }
 
-bool meet(const Box& a, const Box& b) {
-  for (int k = 0; k < 3; ++k)
-    if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
-  return true;
-}
-
 }  // namespace
 
 std::span<const Contact> ContactFinder::find(const std::array<MeasuredBody, 2>& bodies, double margin,
@@ -39,9 +32,7 @@ std::span<const Contact> ContactFinder::find(const std::array<MeasuredBody, 2>& 
     find_parts(bodies[body], margin);
     add_contacts(bodies, body, length);
   }
-  find_patches();
-  sort_by_patch();
-  return sorted_;
+  return patches_.sort(contacts_, boxes_);
 }
 
 void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
@@ -87,49 +78,6 @@ void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int 
     }
   };
   cpu_search(sites, points_, std::numeric_limits<double>::infinity(), std::ref(add));
-}
-
-// Joins contacts whose boxes meet, by a sweep along x.
-void ContactFinder::find_patches() {
-  parent_.resize(contacts_.size());
-  order_.resize(contacts_.size());
-  std::iota(parent_.begin(), parent_.end(), 0u);
-  std::iota(order_.begin(), order_.end(), 0u);
-  std::ranges::sort(order_, {}, [&](std::uint32_t c) { return std::pair(boxes_[c].lo[0], c); });
-  open_.clear();
-  for (const std::uint32_t c : order_) {
-    std::erase_if(open_, [&](std::uint32_t o) { return boxes_[o].hi[0] < boxes_[c].lo[0]; });
-    for (const std::uint32_t o : open_)
-      if (meet(boxes_[o], boxes_[c])) join(c, o);
-    open_.push_back(c);
-  }
-}
-
-// Patches by their deepest contact; in each, contacts by depth.
-void ContactFinder::sort_by_patch() {
-  order_.resize(contacts_.size());
-  std::iota(order_.begin(), order_.end(), 0u);
-  std::ranges::stable_sort(order_, std::ranges::greater(),
-                           [&](std::uint32_t c) { return contacts_[c].depth; });
-  constexpr std::uint32_t kUnnumbered = kNone;
-  std::uint32_t patches = 0;
-  for (Contact& c : contacts_) c.patch = kUnnumbered;
-  for (const std::uint32_t c : order_)
-    if (std::uint32_t& patch = contacts_[root(c)].patch; patch == kUnnumbered) patch = patches++;
-  for (const std::uint32_t c : order_) contacts_[c].patch = contacts_[root(c)].patch;
-  std::ranges::stable_sort(order_, {}, [&](std::uint32_t c) { return contacts_[c].patch; });
-  sorted_.clear();
-  for (const std::uint32_t c : order_) sorted_.push_back(contacts_[c]);
-}
-
-std::uint32_t ContactFinder::root(std::uint32_t contact) {
-  while (parent_[contact] != contact) contact = parent_[contact] = parent_[parent_[contact]];
-  return contact;
-}
-
-void ContactFinder::join(std::uint32_t a, std::uint32_t b) {
-  a = root(a), b = root(b);
-  parent_[std::max(a, b)] = std::min(a, b);
 }
 
 }  // namespace sdm

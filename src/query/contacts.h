@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "query/contact_patches.h"
 #include "query/local_distances.h"
 
 namespace sdm {
@@ -33,16 +34,12 @@ class ContactFinder {
   };
   void find_parts(const MeasuredBody& body, double margin);
   void add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length);
-  void find_patches();
-  void sort_by_patch();
-  std::uint32_t root(std::uint32_t contact);
-  void join(std::uint32_t a, std::uint32_t b);
 
   std::vector<Part> parts_;   ///< of one body
   std::vector<Vec3> points_;  ///< their deepest
-  std::vector<Contact> contacts_, sorted_;
+  std::vector<Contact> contacts_;
   std::vector<Box> boxes_;  ///< of each contact: its part, and the way across a gap
-  std::vector<std::uint32_t> parent_, order_, open_;
+  ContactPatches patches_;
 };
 
 }  // namespace sdm

@@ -50,7 +50,7 @@ DistanceStatistics statistics(const Surface& surface, const DistanceMap& map) {
   double area = 0, sum = 0, squares = 0;
   for (std::size_t texel = 0; texel < owners.size(); ++texel) {
     const float d = map.distance[texel];
-    if (owners[texel] == kNone || std::isnan(d)) continue;
+    if (owners[texel] == kNone || !std::isfinite(d)) continue;
     const float weight = areas[owners[texel]];
     values.push_back({d, weight});
     result.negative_texels += d < 0;
@@ -90,7 +90,7 @@ double area_fraction_beyond(const Surface& surface, const DistanceMap& map, doub
     if (owners[texel] == kNone) continue;
     const double weight = areas[owners[texel]];
     area += weight;
-    if (!(std::abs(map.distance[texel]) <= limit)) beyond += weight;  // NaN: farther than was looked for
+    if (!(std::abs(map.distance[texel]) <= limit)) beyond += weight;  // or none
   }
   return area > 0 ? beyond / area : 0;
 }

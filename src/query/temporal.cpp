@@ -1,6 +1,7 @@
 #include <sdm/error.h>
 #include <sdm/temporal.h>
 
+#include <cmath>
 #include <string>
 
 #include "core/memory.h"
@@ -22,9 +23,9 @@ void TemporalMaps::add(const DistanceMap& map) {
       for (std::size_t i = begin; i < end; ++i) {
         const float d = map.distance[i];
         sum_[i] += d;  // NaN stays
-        // In this order NaN stays in the least and the largest, whichever has it.
-        least_[i] = d >= least_[i] ? least_[i] : d + 0 * least_[i];
-        largest_[i] = d <= largest_[i] ? largest_[i] : d + 0 * largest_[i];
+        // So NaN stays in the least and the largest, whichever has it.
+        if (d < least_[i] || std::isnan(d)) least_[i] = d;
+        if (d > largest_[i] || std::isnan(d)) largest_[i] = d;
       }
     });
   }

@@ -27,4 +27,7 @@ struct PointPair {
 /// A point on both of two triangles that intersect, to rounding.
 [[nodiscard]] Vec3 common_point(const Corners& a, const Corners& b);
 
+/// Either: of any two triangles; 0 apart if and only if they intersect, or so near that squares vanish.
+[[nodiscard]] PointPair closest_or_common(const Corners& a, const Corners& b);
+
 }  // namespace sdm

@@ -134,6 +134,14 @@ TEST(Exr, HoldsMissingValuesAsNaNAndNone) {
   expect_holds(surface, map);
 }
 
+TEST(Exr, HoldsTheLackOfAnythingInRangeAsInfinity) {
+  const Surface surface(torus(6), {.kind = AtlasKind::triangles, .resolution = 300});
+  const DistanceMap map = map_of(
+      surface, [](const Vec3& p) { return p[0] < 0 ? p[1] : std::numeric_limits<double>::infinity(); });
+  ASSERT_GT(map.beyond_max_distance, 0u);
+  expect_holds(surface, map);
+}
+
 TEST(Exr, HoldsTheSmallestMap) {
   const Surface surface(torus(3), {.kind = AtlasKind::charts, .resolution = 64});
   expect_holds(surface, map_of(surface, [](const Vec3&) { return -0.0; }));

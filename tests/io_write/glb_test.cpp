@@ -121,18 +121,20 @@ TEST(Glb, IsPlacedInMetresAndKeepsItsPrecisionFarFromTheOrigin) {
 }
 
 TEST(Glb, FacesWithoutAValueArePartOfItWithoutDistances) {
-  const Field field = [](const Vec3& p) { return p[0] < 0 ? p[1] : std::nan(""); };
-  const Surface surface(torus(9), {.resolution = 256});
-  const TemporaryFolder folder;
-  write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(surface.mesh(), field));
-  const tinygltf::Model model = read_glb(folder / "model.glb");
-  ASSERT_EQ(model.meshes[0].primitives.size(), 2u);
-  const auto &with = model.meshes[0].primitives[0], &without = model.meshes[0].primitives[1];
-  EXPECT_EQ(without.attributes.count("_DISTANCE"), 0u);
-  EXPECT_THAT(values<float>(model, with.attributes.at("_DISTANCE")),
-              ::testing::Each(::testing::Not(::testing::IsNan())));
-  EXPECT_EQ(values<Triangle>(model, with.indices).size() + values<Triangle>(model, without.indices).size(),
-            surface.mesh().triangles.size());
+  for (const double none : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const Field field = [none](const Vec3& p) { return p[0] < 0 ? p[1] : none; };
+    const Surface surface(torus(9), {.resolution = 256});
+    const TemporaryFolder folder;
+    write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(surface.mesh(), field));
+    const tinygltf::Model model = read_glb(folder / "model.glb");
+    ASSERT_EQ(model.meshes[0].primitives.size(), 2u);
+    const auto &with = model.meshes[0].primitives[0], &without = model.meshes[0].primitives[1];
+    EXPECT_EQ(without.attributes.count("_DISTANCE"), 0u);
+    EXPECT_THAT(values<float>(model, with.attributes.at("_DISTANCE")),
+                ::testing::Each(::testing::Truly([](float d) { return std::isfinite(d); })));
+    EXPECT_EQ(values<Triangle>(model, with.indices).size() + values<Triangle>(model, without.indices).size(),
+              surface.mesh().triangles.size());
+  }
 }
 
 TEST(Glb, RefusesWhatItCannotHold) {

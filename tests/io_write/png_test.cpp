@@ -66,6 +66,22 @@ TEST_F(Pictures, VoronoiHasOneColourASite) {
   });
 }
 
+TEST_F(Pictures, NothingInRangeHasItsOwnColourAndNoPartInTheScale) {
+  const auto field = [](double none) { return [none](const Vec3& p) { return p[2] > 0.2 ? none : p[0]; }; };
+  const DistanceMap endless = map_of(surface, field(std::numeric_limits<double>::infinity())),
+                    nan = map_of(surface, field(std::nan("")));
+  ASSERT_GT(endless.beyond_max_distance, 0u);
+  EXPECT_EQ(color_scale(endless, {}).lo, color_scale(nan, {}).lo);
+  EXPECT_EQ(color_scale(endless, {}).hi, color_scale(nan, {}).hi);
+  write_distance_png(folder / "distance.png", surface, endless);
+  write_direction_png(folder / "direction.png", surface, endless);
+  write_voronoi_png(folder / "voronoi.png", surface, endless);
+  for (const char* name : {"distance.png", "direction.png", "voronoi.png"})
+    for_each_texel(read_png(folder / name), [&](std::size_t texel, Rgb color) {
+      ASSERT_TRUE(std::isfinite(endless.distance[texel]) || color == kNoValue) << name;
+    });
+}
+
 TEST_F(Pictures, DirectionDecodesToTheUnitVector) {
   DistanceMap directed = map;
   for (const std::uint32_t texel : surface.samples()) {

@@ -34,7 +34,7 @@ inline Mesh torus(std::uint32_t n, double size = 1, const Vec3& origin = {}) {
 using Field = std::function<double(const Vec3&)>;
 
 /// A map whose distances are those of `field` where it is not NaN, and whose other values are made up but
-/// never repeat by chance.
+/// never repeat by chance. Where it is infinite there is nothing in range, as self maps say it.
 inline DistanceMap map_of(const Surface& surface, const Field& field) {
   DistanceMap map;
   map.resolution = surface.resolution();
@@ -52,6 +52,11 @@ inline DistanceMap map_of(const Surface& surface, const Field& field) {
       continue;
     }
     map.distance[texel] = static_cast<float>(d);
+    if (std::isinf(d)) {
+      ++map.beyond_max_distance;
+      map.vector[texel] = {0, 0, 0};
+      continue;
+    }
     map.vector[texel] = {static_cast<float>(d), static_cast<float>(texel),
                          -1.f / static_cast<float>(texel + 1)};
     map.site[texel] = texel;

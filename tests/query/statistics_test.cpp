@@ -28,7 +28,7 @@ Naive naive(const Surface& surface, const DistanceMap& map) {
   double area = 0;
   for (std::size_t texel = 0; texel < map.distance.size(); ++texel) {
     const double d = map.distance[texel];
-    if (std::isnan(d)) continue;
+    if (!std::isfinite(d)) continue;
     const double weight = texel_area(surface, surface.texel_faces()[texel]);
     values.emplace_back(d, weight);
     area += weight, result.mean += weight * d, result.rms += weight * d * d;
@@ -66,7 +66,8 @@ void expect_as_naive(const Surface& surface, const DistanceMap& map) {
 TEST(Statistics, AgreeWithASumOverAllTexels) {
   const Surface surface(torus(20), {.resolution = 300});
   expect_as_naive(surface, map_of(surface, [](const Vec3& p) { return p[0] * std::abs(p[0]) + p[2]; }));
-  expect_as_naive(surface, map_of(surface, [](const Vec3& p) { return p[0] < 0 ? p[1] : std::nan(""); }));
+  for (const double none : {std::nan(""), std::numeric_limits<double>::infinity()})
+    expect_as_naive(surface, map_of(surface, [none](const Vec3& p) { return p[0] < 0 ? p[1] : none; }));
 }
 
 TEST(Statistics, WeighTexelsByTheirAreaOfSurface) {
@@ -113,12 +114,14 @@ TEST(Statistics, RefuseAMapOfAnotherSurface) {
 
 TEST(Statistics, AreNaNWithoutAnyValue) {
   const Surface surface(torus(6), {.resolution = 128});
-  const DistanceMap map = map_of(surface, [](const Vec3&) { return std::nan(""); });
-  const DistanceStatistics found = statistics(surface, map);
-  EXPECT_EQ(found.texels, 0u);
-  for (const double value : {found.min, found.max, found.mean, found.rms, found.p50, found.p95, found.p99})
-    EXPECT_TRUE(std::isnan(value));
-  EXPECT_EQ(area_fraction_beyond(surface, map, 1e30), 1);
+  for (const double none : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const DistanceMap map = map_of(surface, [none](const Vec3&) { return none; });
+    const DistanceStatistics found = statistics(surface, map);
+    EXPECT_EQ(found.texels, 0u);
+    for (const double value : {found.min, found.max, found.mean, found.rms, found.p50, found.p95, found.p99})
+      EXPECT_TRUE(std::isnan(value));
+    EXPECT_EQ(area_fraction_beyond(surface, map, 1e30), 1);
+  }
 }
 
 }  // namespace

@@ -57,6 +57,21 @@ TEST(Temporal, TexelsWithoutAValueOnceHaveNone) {
   }
 }
 
+TEST(Temporal, NothingInRangeIsInfinitelyFar) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  const Surface surface(torus(12), {.resolution = 32});
+  for (const int missing : {0, 1, 2}) {
+    TemporalMaps maps;
+    for (int t = 0; t < 3; ++t)
+      maps.add(map_of(surface, [&](const Vec3&) { return t == missing ? kInf : 1.0 + t; }));
+    for (const std::uint32_t texel : surface.samples()) {
+      ASSERT_EQ(maps.least()[texel], missing == 0 ? 2 : 1);
+      ASSERT_EQ(maps.largest()[texel], kInf);
+      ASSERT_EQ(maps.mean()[texel], kInf);
+    }
+  }
+}
+
 TEST(Temporal, RefusesMapsOfOtherSizes) {
   TemporalMaps maps;
   maps.add(map_of(Surface(torus(12), {.resolution = 64}), [](const Vec3&) { return 1; }));

@@ -82,7 +82,7 @@ Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32
     cairo_rectangle(cairo, kMargin, baseline - kTextSize + 2, kTextSize, kTextSize);
     cairo_fill(cairo);
     canvas.set_color(kInk);
-    write_text(canvas, kMargin + kTextSize + 8, baseline, "no value (too far)", kTextSize);
+    write_text(canvas, kMargin + kTextSize + 8, baseline, "nothing in range", kTextSize);
   }
   return canvas.picture("the legend");
 }

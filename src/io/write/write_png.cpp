@@ -76,7 +76,9 @@ void write_voronoi_png(const std::filesystem::path& file, const Surface& surface
 }
 
 void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
-  write_map_png(file, surface, [&](std::size_t texel) { return direction_color(map.vector[texel]); });
+  write_map_png(file, surface, [&](std::size_t texel) {
+    return map.site_type[texel] == SiteType::none ? kNoValue : direction_color(map.vector[texel]);
+  });
 }
 
 }  // namespace sdm

@@ -1,0 +1,68 @@
+#include "common_options.h"
+
+#include "option_checks.h"
+
+void add_output_option(CLI::App& app, std::filesystem::path& folder) {
+  app.add_option("-o,--output", folder, "The folder of the results, made if it is not there")
+      ->required()
+      ->check(CLI::Validator(
+          [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
+      ->type_name("DIR");
+}
+
+void add_transform_option(CLI::App& app, const std::string& name, const std::string& mesh,
+                          std::string& steps) {
+  app.add_option(name, steps, mesh + ", placed by steps such as fit,rotate:0:90:0,scale:2,translate:0.8:0:0")
+      ->check(check_transform)
+      ->type_name("STEPS");
+}
+
+CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas) {
+  return app.add_option("--resolution", atlas.resolution, "Texels along each side of the map")
+      ->check(whole_number(16, 32768))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh) {
+  add_choice<sdm::AtlasKind>(
+      app, "--atlas", atlas.kind,
+      "How " + mesh + " is laid out in the map: few charts, a chart a triangle, or its own UVs",
+      {{"charts", sdm::AtlasKind::charts},
+       {"triangles", sdm::AtlasKind::triangles},
+       {"uv", sdm::AtlasKind::uv}});
+  app.add_option("--max-stretch", atlas.max_stretch,
+                 "Charts: the largest growth of a length from map to surface")
+      ->check(number("a number above 1", [](double x) { return x > 1; }))
+      ->type_name("S")
+      ->capture_default_str();
+}
+
+void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range) {
+  add_choice<sdm::Colormap>(app, "--colormap", picture.colormap,
+                            "Colours; auto: diverging where distances have both signs, else viridis",
+                            {{"auto", sdm::Colormap::automatic},
+                             {"viridis", sdm::Colormap::viridis},
+                             {"diverging", sdm::Colormap::diverging},
+                             {"paper2006", sdm::Colormap::paper2006}});
+  app.add_option("--range", range, "The distances at the ends of the colours")
+      ->expected(2)
+      ->check(number("a number", [](double) { return true; }))
+      ->type_name("LO HI");
+  app.add_option("--units", picture.units,
+                 "Of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
+      ->type_name("NAME");
+}
+
+void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet) {
+  app.add_option("--threads", threads, "Threads to use, 0 for all cores")
+      ->check(whole_number(0, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_flag("--json", json, "Print the report (report.json) instead of a summary");
+  app.add_flag("--quiet", quiet, "Print nothing but errors, and what --json asks for");
+}
+
+void check_range(const std::vector<double>& range) {
+  if (!range.empty() && !(range[0] < range[1])) throw CLI::ValidationError("--range", "LO must be below HI");
+}

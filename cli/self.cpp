@@ -1,0 +1,161 @@
+#include "self.h"
+
+#include "common_options.h"
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "map_files.h"
+#include "option_checks.h"
+#include "output_folder.h"
+#include "progress_line.h"
+#include "proximity_report.h"
+#include "report.h"
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SelfCommand {
+  std::string file, transform;
+  std::filesystem::path out;
+  sdm::AtlasOptions atlas;
+  sdm::SelfOptions self;
+  sdm::PictureOptions picture;
+  std::vector<double> range;
+  unsigned threads = 0;
+  bool json = false, quiet = false;
+};
+
+/// Writes all files into `folder`, and returns the report.
+Json measure(const SelfCommand& command, const Input& input, double import_ms,
+             const std::filesystem::path& folder, ProgressLine& progress) {
+  sdm::Stopwatch total, watch;
+  const sdm::Surface surface(input.mesh, command.atlas);
+  const double atlas_ms = watch.lap();
+  progress.step("sites");
+  sdm::SelfQuery query(input.mesh, command.self);
+  const double sites_ms = watch.lap();
+
+  const sdm::SelfMapOptions options{command.self.max_distance, command.atlas.progress};
+  const sdm::DistanceMap map = sdm::compute_self_map(surface, query.sites(), query.exclusion(), options);
+  const auto at_vertices = sdm::self_distances_at_vertices(query.sites(), query.exclusion(), options);
+  const std::optional<sdm::Length> separation = query.separation();
+  const double map_ms = watch.lap();
+
+  progress.step("export");
+  sdm::DistanceStatistics distance;
+  sdm::parallel_invoke([&] { write_map_files(folder, surface, map, at_vertices, command.picture); },
+                       [&] { distance = sdm::statistics(surface, map); });
+  const double export_ms = watch.lap();
+
+  Json report;
+  report["version"] = sdm::kVersion;
+  report["mesh"] = to_json(input);
+  report["units"] = command.picture.units;
+  report["atlas"] = to_json(surface);
+  const sdm::ExclusionRule& rule = command.self.exclusion;
+  report["exclusion"] = {{"rings", rule.geodesic ? Json(nullptr) : Json(rule.rings)},
+                         {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
+  report["max_distance"] = command.self.max_distance;  // null: no limit
+  report["separation"] = separation ? to_json(*separation) : Json(nullptr);
+  report["distance"] = to_json(distance);
+  report["texels_with_value"] = distance.texels;
+  report["texels_without_value"] = map.beyond_max_distance;
+  report["time_ms"] = {{"import", import_ms}, {"atlas", atlas_ms},   {"sites", sites_ms},
+                       {"map", map_ms},       {"export", export_ms}, {"total", import_ms + total.lap()}};
+  write_text(folder / "report.json", to_text(report));
+  return report;
+}
+
+std::string summary(const SelfCommand& command, const Json& report) {
+  const std::string unit = command.picture.units.empty() ? "" : " " + command.picture.units;
+  std::string text = command.file + " -> itself\n";
+  const Json &d = report["distance"], &separation = report["separation"];
+  const auto number_of = [](const Json& value) { return number(value.get<double>()); };
+  if (separation.is_null())
+    text += "  separation  none: all faces in range are excluded\n";
+  else
+    text += "  separation  " + number_of(separation["value"]) + unit + " (exact)\n";
+  if (report["texels_with_value"] == 0)
+    text += "  distance    no texel has anything in range\n";
+  else
+    text += "  distance    min " + number_of(d["min"]) + "   mean " + number_of(d["mean"]) + "   max " +
+            number_of(d["max"]) + unit + " (of the texels)\n";
+  if (report["texels_without_value"] != 0)
+    text += "              " + report["texels_without_value"].dump() + " texels have nothing in range\n";
+  return text;
+}
+
+void run(SelfCommand command) {
+  sdm::Stopwatch total;
+  const sdm::ThreadLimit limit(command.threads);
+  OutputFolder out(command.out);
+  ProgressLine progress(command.quiet);
+  command.atlas.progress = command.self.progress = progress.callback();
+  if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
+
+  progress.step("import");
+  sdm::Stopwatch import;
+  const Input input = load_input("mesh", command.file, command.transform);
+  const double import_ms = import.lap();
+  Json report;
+  try {
+    report = measure(command, input, import_ms, out.staging(), progress);
+    out.commit();
+  } catch (const sdm::Cancelled&) {
+    throw;
+  } catch (const sdm::Error& error) {
+    throw sdm::Error(out.publicly(error.what()));
+  }
+
+  if (command.json)
+    std::cout << to_text(report);
+  else if (!command.quiet)
+    std::cout << summary(command, report) << "  time        " << std::round(total.lap()) / 1000
+              << " s\n  results     " << command.out.string()
+              << "/: map.exr distance.png voronoi.png direction.png model.glb report.json\n";
+}
+
+}  // namespace
+
+void add_self_command(CLI::App& app) {
+  CLI::App* self =
+      app.add_subcommand("self", "Measure the distance from everywhere on a mesh to the rest of it");
+  self->footer(
+      "Every face passes over its own neighbourhood, and measures to all other faces.\n"
+      "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb and report.json.\n\n"
+      "Example, walls nearer than the way around them:\n"
+      "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
+  const auto command = std::make_shared<SelfCommand>();
+  SelfCommand& c = *command;
+  const auto positive = number("a positive number", [](double x) { return x > 0; });
+  self->add_option("MESH", c.file, "The mesh (OBJ, PLY, STL, OFF, glTF, 3DS)")->required();
+  add_output_option(*self, c.out);
+  add_transform_option(*self, "--transform", "The mesh", c.transform);
+  CLI::Option* rings =
+      self->add_option(
+              "--rings", c.self.exclusion.rings,
+              "What each face passes over: itself, the faces that share a vertex with it, and so on, K times")
+          ->check(whole_number(1, 1 << 20))
+          ->type_name("K")
+          ->capture_default_str();
+  self->add_option("--geodesic", c.self.exclusion.geodesic,
+                   "Instead: what is nearer than L along the surface, and a little more")
+      ->check(positive)
+      ->type_name("L")
+      ->excludes(rings);
+  self->add_option("--max-distance", c.self.max_distance, "Texels with nothing as near as D hold no value")
+      ->check(positive)
+      ->type_name("D");
+  add_resolution_option(*self, c.atlas);
+  add_layout_options(*self, c.atlas, "the mesh");
+  add_picture_options(*self, c.picture, c.range);
+  add_run_options(*self, c.threads, c.json, c.quiet);
+  self->callback([command] {
+    check_range(command->range);
+    run(*command);
+  });
+}
