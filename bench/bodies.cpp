@@ -106,9 +106,13 @@ class Crowd {
 };
 
 struct Outcome {
-  std::size_t wrong = 0;                            ///< frames
-  double candidates = 0, pairs = 0, colliding = 0;  ///< means
-  std::vector<double> sampled, exact, fcl;          ///< milliseconds of each frame
+  std::size_t wrong = 0;                                 ///< frames
+  std::size_t candidates = 0, pairs = 0, colliding = 0;  ///< of all frames
+  std::vector<double> sampled, exact, fcl;               ///< milliseconds of each frame
+
+  [[nodiscard]] double per_frame(std::size_t count) const {
+    return static_cast<double>(count) / static_cast<double>(exact.size());
+  }
 };
 
 // FCL moves through other roundings, and says -1 of surfaces that intersect.
@@ -152,11 +156,9 @@ Outcome measure(std::size_t size, double max_distance, int frames) {
     outcome.exact.push_back(exact_ms);
     outcome.fcl.push_back(fcl_ms);
     outcome.wrong += !agree(exact.pairs(), theirs, max_distance);
-    outcome.candidates += static_cast<double>(exact.candidate_pairs()) / frames;
-    outcome.pairs += static_cast<double>(exact.pairs().size()) / frames;
-    outcome.colliding += static_cast<double>(std::ranges::count_if(
-                             exact.pairs(), [](const PairProximity& p) { return p.colliding.value; })) /
-                         frames;
+    outcome.candidates += exact.candidate_pairs();
+    outcome.pairs += exact.pairs().size();
+    for (const PairProximity& pair : exact.pairs()) outcome.colliding += pair.colliding.value;
   }
   return outcome;
 }
@@ -166,7 +168,8 @@ double mean(const std::vector<double>& values) {
 }
 
 void print_row(std::size_t size, double max_distance, const Outcome& o) {
-  std::printf("| %zu | %g | %.1f | %.1f | %.1f |", size, max_distance, o.candidates, o.pairs, o.colliding);
+  std::printf("| %zu | %g | %.1f | %.1f | %.1f |", size, max_distance, o.per_frame(o.candidates),
+              o.per_frame(o.pairs), o.per_frame(o.colliding));
   for (const std::vector<double>* times : {&o.sampled, &o.exact, &o.fcl})
     std::printf(" %.2f | %.2f |", mean(*times), quantile(*times, 0.99));
   std::printf(" %.1f |\n", mean(o.fcl) / mean(o.exact));
@@ -183,9 +186,9 @@ nlohmann::ordered_json to_json(std::size_t size, double max_distance, int frames
           {"frames", frames},
           {"threads", thread_count()},
           {"verified", o.wrong == 0},
-          {"candidate_pairs", o.candidates},
-          {"pairs", o.pairs},
-          {"colliding", o.colliding},
+          {"candidate_pairs", o.per_frame(o.candidates)},
+          {"pairs", o.per_frame(o.pairs)},
+          {"colliding", o.per_frame(o.colliding)},
           {"sampled", to_json(o.sampled)},
           {"exact", to_json(o.exact)},
           {"fcl", to_json(o.fcl)}};
