@@ -18,23 +18,6 @@
 
 namespace {
 
-/// The distance at each vertex, signed as the map is; NaN beyond the maximum distance.
-std::vector<float> vertex_distances(const sdm::Mesh& mesh, const sdm::Sites& sites,
-                                    const sdm::DistanceMap& map, sdm::MapOptions options) {
-  if (options.engine == sdm::EngineKind::gl) options.engine = sdm::EngineKind::cpu;  // gl draws maps only
-  const auto closest = sdm::closest_points(sites, mesh.positions, options);
-  std::vector<std::uint8_t> is_inside(closest.size(), 0);
-  if (map.sign.method != sdm::SignMethod::none)
-    is_inside = sdm::inside(sites, mesh.positions, closest, map.sign.method);
-  std::vector<float> result;
-  result.reserve(closest.size());
-  for (std::size_t i = 0; i < closest.size(); ++i) {
-    const double d = closest[i].type == sdm::SiteType::none ? std::nan("") : closest[i].distance;
-    result.push_back(static_cast<float>(is_inside[i] ? -d : d));
-  }
-  return result;
-}
-
 Tolerance judge(double tolerance, const sdm::Surface& surface, const sdm::DistanceMap& map,
                 const std::vector<float>& at_vertices, double error_bound) {
   double largest = map.beyond_max_distance > 0 ? std::numeric_limits<double>::infinity() : 0;
@@ -93,7 +76,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
 
   sdm::Stopwatch map_watch;
   const sdm::DistanceMap map = sdm::compute_map(*surface, *sites, command.map);
-  const auto at_vertices = vertex_distances(on.mesh, *sites, map, command.map);
+  const auto at_vertices = vertex_distances(on.mesh, *sites, map.sign.method, command.map);
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
@@ -101,9 +84,11 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
 
   progress.step("export");
   sdm::Stopwatch export_watch;
-  write_map_files(folder, *surface, map, at_vertices, command.picture,
-                  {[&] { outcome.distance = sdm::statistics(*surface, map); },
-                   [&] { outcome.error_bound = surface->sampling_bound(); }});
+  sdm::parallel_invoke([&] { write_map_files(folder, *surface, map, at_vertices, command.picture); },
+                       [&] {
+                         outcome.distance = sdm::statistics(*surface, map);
+                         outcome.error_bound = surface->sampling_bound();
+                       });
   if (command.picture.tolerance)
     outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices,
                               outcome.error_bound + engine_error(command.map.engine, on, to));

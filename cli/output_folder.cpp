@@ -3,6 +3,7 @@
 #include <sdm/error.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -83,4 +84,12 @@ void OutputFolder::commit() {
     fs::rename(from, to, error);
     if (error) fail(to, error.message());
   }
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out)
+    throw sdm::Error("cannot write " + file.filename().string() + ": the disk may be full; free space on it");
 }

@@ -27,3 +27,6 @@ class OutputFolder {
   std::filesystem::path folder_, staging_;
   std::filesystem::path existing_;  ///< the closest ancestor of folder_, or itself, that was there before
 };
+
+/// Throws sdm::Error where not all of the text could be written.
+void write_text(const std::filesystem::path& file, const std::string& text);

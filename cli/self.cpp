@@ -47,8 +47,8 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
 
   progress.step("export");
   sdm::DistanceStatistics distance;
-  write_map_files(folder, surface, map, at_vertices, command.picture,
-                  {[&] { distance = sdm::statistics(surface, map); }});
+  sdm::parallel_invoke([&] { write_map_files(folder, surface, map, at_vertices, command.picture); },
+                       [&] { distance = sdm::statistics(surface, map); });
   const double export_ms = watch.lap();
 
   Json report;
