@@ -66,7 +66,7 @@ struct SelfMapOptions {
                                            const Exclusion& exclusion, const SelfMapOptions& options = {});
 
 /// The same at the vertices: of each, the least over its faces; +∞ with nothing in range, NaN at a vertex
-/// without faces.
+/// without faces. Faces that Sites ignores do not count.
 [[nodiscard]] std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusion& exclusion,
                                                             const SelfMapOptions& options = {});
 

@@ -76,11 +76,13 @@ std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusio
                                               const SelfMapOptions& options) {
   check(sites, exclusion, options);
   const Mesh& mesh = sites.mesh();
+  const Topology& topology = sites.impl().topology;
   std::vector<std::array<float, 3>> at_corners(mesh.triangles.size());
   parallel_for(mesh.triangles.size(), kGrain, options.progress, "vertices",
                [&](std::size_t begin, std::size_t end) {
                  SelfSearch search(sites.impl(), exclusion);
                  for (std::size_t f = begin; f < end; ++f) {
+                   if (topology.ignored(f)) continue;
                    search.start_from(static_cast<std::uint32_t>(f));
                    for (int k = 0; k < 3; ++k) {
                      const Vec3& p = mesh.positions[mesh.triangles[f][k]];
@@ -91,7 +93,7 @@ std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusio
                });
   std::vector<float> least(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3 && !topology.ignored(f); ++k) {
       float& at_vertex = least[mesh.triangles[f][k]];
       at_vertex = std::fmin(at_vertex, at_corners[f][k]);  // of NaN and a number the number
     }

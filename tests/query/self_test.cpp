@@ -269,6 +269,23 @@ TEST(Self, VerticesHaveTheLeastOfTheirFaces) {
   for (std::size_t v = 0; v + 1 < found.size(); ++v) ASSERT_NEAR(found[v], expected[v], 1e-6) << v;
 }
 
+TEST(Self, FlawedFacesAreNotMeasuredToNorFrom) {
+  const Mesh clean = flat();
+  Mesh flawed = clean;
+  flawed.triangles.push_back(clean.triangles[5]);
+  flawed.triangles.push_back({40, 41, 41});
+  flawed.triangles.push_back({100, 0, 0});  // 100 is a corner of one face only
+  const Sites sites(flawed);
+  const Exclusion exclusion(flawed);
+  const std::vector<float> found = self_distances_at_vertices(sites, exclusion);
+  EXPECT_EQ(found, self_distances_at_vertices(Sites(clean), Exclusion(clean)));
+  SelfQuery query(clean), other(flawed);
+  EXPECT_EQ(query.separation()->value, other.separation()->value);
+  const Surface with_flaws(flawed, {.resolution = 64});
+  const DistanceMap map = compute_self_map(with_flaws, sites, exclusion);
+  for (const std::uint32_t texel : with_flaws.samples()) ASSERT_TRUE(std::isfinite(map.distance[texel]));
+}
+
 // The pairs that count, by CGAL.
 struct Pairs {
   std::vector<double> nearest;  // of each face

@@ -1,6 +1,7 @@
 #include "scene/cloth.h"
 
 #include <gtest/gtest.h>
+#include <sdm/self.h>
 
 #include "core/vec.h"
 #include "scene/box_mesh.h"
@@ -90,6 +91,13 @@ TEST_F(FoldedCloth, KeepsItsEdgesItsDistanceAndItsEnergyAndComesToRest) {
     }
   EXPECT_GT(layers, 100u);
   EXPECT_GT(closest, 0.5 * cloth.thickness());
+
+  // And nowhere, between particles too, do they pass through each other.
+  SelfQuery query(cloth.mesh(), {.exclusion = {.geodesic = 2 * cloth.thickness()}});
+  query.update(now);
+  ASSERT_TRUE(query.separation());
+  EXPECT_GT(query.separation()->value, 0);
+  EXPECT_FALSE(query.contacts(1.3 * cloth.thickness()).empty());
 }
 
 }  // namespace
