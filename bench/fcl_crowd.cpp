@@ -75,7 +75,7 @@ void FclCrowd::update(std::span<const std::vector<Vec3>> positions) {
     body.model->beginReplaceModel();
     body.model->replaceSubModel(impl_->vertices);
     constexpr bool kRefit = true,
-                   kBottomUp = false;  // from below boxes grow: a hundred times slower to search
+                   kBottomUp = false;  // from below boxes grow: tens of times slower to search
     body.model->endReplaceModel(kRefit, kBottomUp);
     body.model->computeLocalAABB();
     body.object->computeAABB();
