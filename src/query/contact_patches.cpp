@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace sdm {
 namespace {
@@ -18,15 +20,16 @@ bool meet(const Box& a, const Box& b) {
 std::span<const Contact> ContactPatches::sort(std::span<Contact> contacts, std::span<const Box> boxes) {
   find_patches(boxes);
   std::iota(order_.begin(), order_.end(), 0u);
-  std::ranges::stable_sort(order_, std::ranges::greater(),
-                           [&](std::uint32_t c) { return contacts[c].depth; });
+  // By distinct keys: a stable sort would take memory.
+  std::ranges::sort(order_, {}, [&](std::uint32_t c) { return std::pair(-contacts[c].depth, c); });
   constexpr std::uint32_t kUnnumbered = kNone;
   std::uint32_t patches = 0;
   for (Contact& c : contacts) c.patch = kUnnumbered;
   for (const std::uint32_t c : order_)
     if (std::uint32_t& patch = contacts[root(c)].patch; patch == kUnnumbered) patch = patches++;
   for (const std::uint32_t c : order_) contacts[c].patch = contacts[root(c)].patch;
-  std::ranges::stable_sort(order_, {}, [&](std::uint32_t c) { return contacts[c].patch; });
+  std::ranges::sort(order_, {},
+                    [&](std::uint32_t c) { return std::tuple(contacts[c].patch, -contacts[c].depth, c); });
   sorted_.clear();
   for (const std::uint32_t c : order_) sorted_.push_back(contacts[c]);
   return sorted_;
