@@ -164,6 +164,34 @@ TEST(Proximity, BoundsHoldTheExactAnswers) {
   EXPECT_LT(undecided, 12u);
 }
 
+// More samples: the bounds close in on what the triangles say.
+TEST(Proximity, BoundsNarrowWithTheResolution) {
+  const Mesh a = load("cow.off", "fit");
+  for (const char* placement : {"fit,translate:0.9:0.1:0", "fit,translate:0.4:0.1:0"}) {
+    SCOPED_TRACE(placement);
+    const Mesh b = load("head.off", placement);
+    Query exact(a, b, {.atlas = {.resolution = 64}, .exact = true});
+    const double truth = exact.separation().value, tolerance = 1e-6 * scene_diagonal(a, b);
+    double separation = 1e300, depth = 1e300, deepest = 0;
+    for (const std::uint32_t resolution : {64u, 128u, 256u, 512u}) {
+      Query query(a, b, at_resolution(resolution));
+      const auto narrows = [](const Length& length, double& width) {
+        EXPECT_LT(length.upper - length.lower, 0.75 * width);
+        width = length.upper - length.lower;
+      };
+      expect_holds(query.separation(), truth, tolerance);
+      if (truth > 0) narrows(query.separation(), separation);
+      if (exact.colliding().value) {
+        // The truth is not known, but between the largest lower bound and each upper one.
+        narrows(*query.penetration_depth(), depth);
+        deepest = std::max(deepest, query.penetration_depth()->lower);
+        EXPECT_GE(query.penetration_depth()->upper, deepest);
+      }
+    }
+    EXPECT_LT(truth > 0 ? separation : depth, 0.02);
+  }
+}
+
 TEST(Proximity, LooksWhereItMatters) {
   Query query(sphere(5), moved(sphere(5), {2.2, 0, 0}), at_resolution(512));
   (void)query.separation();
@@ -228,6 +256,38 @@ TEST(Contacts, WithinTheMarginAreAlongTheLineOfCentres) {
   // The deepest sample is within the covering radius R of the line: the normal turns by less than 2 R /
   // distance of centres, and by the bend of a face.
   EXPECT_GT(dot(query.contacts()[0].normal, along), std::cos(0.1));
+}
+
+// From a cube inside a ball whose faces are flat, up to h from the round one: a point at the radius ρ has its
+// closest point q within 1 − ρ, and |q| ≥ 1 − h. For the angle θ between q − p and the radius, as |q|² = ρ² +
+// d² + 2 ρ d cos θ, that says cos θ ≥ 1 − (2h − h²) / (2 ρ (1 − ρ)).
+TEST(Contacts, OfARoundBallAreAlongItsRadius) {
+  double steepest = 1;
+  for (const int level : {2, 3, 4, 5}) {
+    const Mesh ball = sphere(level);
+    double h = 0;
+    for (const auto& [i, j, k] : ball.triangles) {
+      const Vec3 &a = ball.positions[i], &b = ball.positions[j], &c = ball.positions[k];
+      h = std::max(h, 1 - dot(normalized(cross(b - a, c - a)), a));
+    }
+    Query query(ball, moved(cube(0.3), {0.3, 0.1, 0.2}), at_resolution(128));
+    std::size_t sampled = 0;
+    double least = 1;
+    for (const Contact& c : query.contacts()) {
+      const double radius = norm(c.point2);
+      EXPECT_NEAR(norm(c.normal), 1, 1e-9);
+      if (!(c.depth > 0 && radius < 1 - 2 * h)) continue;
+      ++sampled;
+      // The ball is pushed so that its wall passes the cube where it is nearest.
+      const double cosine = dot(c.normal, (-1 / radius) * c.point2);
+      EXPECT_GE(cosine, 1 - (2 * h - h * h) / (2 * radius * (1 - radius)) - 1e-6) << level;
+      least = std::min(least, cosine);
+    }
+    EXPECT_GT(sampled, 10u);
+    EXPECT_LT(1 - least, 1.01 * steepest);
+    steepest = 1 - least;
+  }
+  EXPECT_LT(steepest, 0.01);
 }
 
 // Three balls on a plate.
