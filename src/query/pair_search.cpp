@@ -18,9 +18,9 @@ using Entry = PairWorkspace::Entry;
 
 // `separate`: the closest faces are sought, else any that intersect.
 template <bool separate>
-class Search {
+class PairSearch {
  public:
-  Search(const MeshPair& pair, double bound, PairWorkspace& workspace)
+  PairSearch(const MeshPair& pair, double bound, PairWorkspace& workspace)
       : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), w_(workspace) {
     best_.distance = bound;
     limit_ = maps_.round_up(bound);
@@ -196,10 +196,10 @@ class Search {
 };
 
 Separation FindClosest(const MeshPair& pair, double bound, PairWorkspace& workspace) {
-  return Search<true>(pair, bound, workspace).run();
+  return PairSearch<true>(pair, bound, workspace).run();
 }
 Separation FindIntersection(const MeshPair& pair, PairWorkspace& workspace) {
-  return Search<false>(pair, 0, workspace).run();
+  return PairSearch<false>(pair, 0, workspace).run();
 }
 
 }  // namespace sdm::HWY_NAMESPACE

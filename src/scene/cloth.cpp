@@ -98,7 +98,7 @@ void Cloth::keep_apart() {
 }
 
 void Cloth::stay_outside(const Sites& solid) {
-  for (const Contact& c : find_contacts(positions_, solid, thickness_)) {
+  for (const VertexContact& c : find_contacts(positions_, solid, thickness_)) {
     Vec3 slip = positions_[c.point] - previous_[c.point];
     slip = slip - dot(slip, c.normal) * c.normal;
     const double held = std::min(1.0, kSolidFriction * c.depth / std::max(norm(slip), 1e-30));

@@ -19,7 +19,7 @@ Vec3 barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-std::vector<Contact> find_contacts(std::span<const Vec3> points, const Sites& solid, double margin) {
+std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sites& solid, double margin) {
   Box reach = bounds(solid.mesh());
   for (int k = 0; k < 3; ++k) reach.lo[k] -= margin, reach.hi[k] += margin;
   std::vector<std::uint32_t> indices;
@@ -31,7 +31,7 @@ std::vector<Contact> find_contacts(std::span<const Vec3> points, const Sites& so
       solid.closed() && solid.orientable() ? SignMethod::pseudonormal : SignMethod::winding;
   const std::vector<ClosestPoint> closest = closest_points(solid, near);
   const std::vector<std::uint8_t> is_inside = inside(solid, near, closest, method);
-  std::vector<Contact> contacts;
+  std::vector<VertexContact> contacts;
   for (std::size_t i = 0; i < near.size(); ++i) {
     const double distance = is_inside[i] ? -closest[i].distance : closest[i].distance;
     if (distance >= margin || distance == 0) continue;  // 0: no direction, until it has moved on

@@ -9,7 +9,7 @@
 namespace sdm {
 
 /// A point in a solid, or close above its surface.
-struct Contact {
+struct VertexContact {
   std::uint32_t point = 0;
   Triangle face{};   ///< that the closest point of the surface is on
   Vec3 weights{};    ///< of its corners there
@@ -18,7 +18,7 @@ struct Contact {
 };
 
 /// Those of the points whose signed distance is below `margin`: closest_points and inside.
-[[nodiscard]] std::vector<Contact> find_contacts(std::span<const Vec3> points, const Sites& solid,
-                                                 double margin);
+[[nodiscard]] std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sites& solid,
+                                                       double margin);
 
 }  // namespace sdm

@@ -31,7 +31,7 @@ void SoftPair::push_apart(std::size_t points, std::size_t solid, double dt) {
   constexpr double kFriction = 0.2, kFastest = 3;  // m/s: what is deep inside comes out without a bang
   SoftBody &one = bodies_[points], &other = bodies_[solid];
   sites_[solid].refit(other.positions());
-  for (const Contact& c : find_contacts(one.positions(), sites_[solid], gap_)) {
+  for (const VertexContact& c : find_contacts(one.positions(), sites_[solid], gap_)) {
     Vec3 point = one.positions()[c.point], slip = one.moved(c.point);
     double mass = 1;
     for (int k = 0; k < 3; ++k) {

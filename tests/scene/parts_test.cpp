@@ -91,7 +91,7 @@ TEST(Contacts, AreThoseWithinTheMarginOfASolid) {
   const Sites box(box_mesh({{-1, -1, -1}, {1, 1, 1}}));
   const std::vector<Vec3> points{{0.2, 0.3, 0.9}, {0.2, 0.3, 1.05},  {0.2, 0.3, 1.15},
                                  {5, 0, 0},       {1.03, 1.04, 0.5}, {0, 0, 1}};
-  const std::vector<Contact> contacts = find_contacts(points, box, 0.1);
+  const std::vector<VertexContact> contacts = find_contacts(points, box, 0.1);
   ASSERT_EQ(contacts.size(), 3u);
   EXPECT_EQ(contacts[0].point, 0u);
   EXPECT_EQ(contacts[0].normal, (Vec3{0, 0, 1}));
@@ -100,7 +100,7 @@ TEST(Contacts, AreThoseWithinTheMarginOfASolid) {
   EXPECT_NEAR(contacts[1].depth, 0.05, 1e-12);
   EXPECT_LE(norm(contacts[2].normal - Vec3{0.6, 0.8, 0}), 1e-12);
   EXPECT_NEAR(contacts[2].depth, 0.05, 1e-12);
-  for (const Contact& c : contacts) {
+  for (const VertexContact& c : contacts) {
     Vec3 closest = points[c.point] - (0.1 - c.depth) * c.normal, on_face{};
     for (int k = 0; k < 3; ++k) on_face += c.weights[k] * box.mesh().positions[c.face[k]];
     EXPECT_LE(norm(closest - on_face), 1e-12);

@@ -56,7 +56,7 @@ std::map<std::size_t, const json*> weight_samplers(const json& animations) {
 }
 
 std::vector<std::vector<Vec3>> displacements_of(const GltfDocument& document, const json& primitive,
-                                                const Affine& to_scene) {
+                                                const GltfTransform& to_scene) {
   const std::size_t vertices = document.count(whole_number(primitive.at("attributes"), "POSITION"));
   std::vector<std::vector<Vec3>> result;
   for (const json& target : primitive.value("targets", json::array())) {

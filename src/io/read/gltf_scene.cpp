@@ -10,8 +10,8 @@ namespace {
 using nlohmann::json;
 
 // translation · rotation · scale, or a matrix of columns.
-Affine node_transform(const json& node) {
-  Affine t;
+GltfTransform node_transform(const json& node) {
+  GltfTransform t;
   if (node.contains("matrix")) {
     const auto m = node["matrix"].get<std::array<double, 16>>();
     for (int c = 0; c < 3; ++c) t.linear[c] = {m[4 * c], m[4 * c + 1], m[4 * c + 2]};
@@ -49,8 +49,8 @@ std::vector<std::size_t> roots(const GltfDocument& document) {
 // A node that is met twice would make a cycle or a tree that grows without bound: glTF forbids it.
 std::vector<GltfInstance> gltf_instances(const GltfDocument& document) {
   std::vector<GltfInstance> result;
-  std::vector<std::pair<std::size_t, Affine>> stack;
-  const auto push = [&](const std::vector<std::size_t>& nodes, const Affine& to_scene) {
+  std::vector<std::pair<std::size_t, GltfTransform>> stack;
+  const auto push = [&](const std::vector<std::size_t>& nodes, const GltfTransform& to_scene) {
     for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) stack.emplace_back(*node, to_scene);
   };
   std::vector<bool> met(document.root().value("nodes", json::array()).size(), false);
@@ -61,7 +61,7 @@ std::vector<GltfInstance> gltf_instances(const GltfDocument& document) {
     const json& node = document.item("nodes", index);
     if (met[index]) throw Error("node " + std::to_string(index) + " has two parents, which glTF forbids");
     met[index] = true;
-    const Affine to_scene = to_parent * node_transform(node);
+    const GltfTransform to_scene = to_parent * node_transform(node);
     if (node.contains("mesh")) result.push_back({index, whole_number(node, "mesh"), to_scene});
     push(whole_numbers(node, "children"), to_scene);
   }

@@ -12,7 +12,7 @@
 namespace sdm {
 
 /// x → linear · x + offset, the columns of the linear part one after the other.
-struct Affine {
+struct GltfTransform {
   std::array<Vec3, 3> linear{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 offset{};
 
@@ -20,7 +20,7 @@ struct Affine {
     return x[0] * linear[0] + x[1] * linear[1] + x[2] * linear[2];
   }
   [[nodiscard]] Vec3 operator()(const Vec3& x) const { return turn(x) + offset; }
-  [[nodiscard]] Affine operator*(const Affine& inner) const {
+  [[nodiscard]] GltfTransform operator*(const GltfTransform& inner) const {
     return {{turn(inner.linear[0]), turn(inner.linear[1]), turn(inner.linear[2])}, (*this)(inner.offset)};
   }
   [[nodiscard]] bool mirrors() const { return dot(cross(linear[0], linear[1]), linear[2]) < 0; }
@@ -29,7 +29,7 @@ struct Affine {
 /// A node's mesh in its place.
 struct GltfInstance {
   std::size_t node, mesh;
-  Affine to_scene;
+  GltfTransform to_scene;
 };
 
 /// All meshes of the default scene, in the order of the node tree.

@@ -18,7 +18,7 @@ std::array<std::size_t, 3> corner_places(std::size_t mode, std::size_t i) {
   return {3 * i, 3 * i + 1, 3 * i + 2};
 }
 
-void add_primitive(const GltfDocument& document, const json& primitive, const Affine& to_scene,
+void add_primitive(const GltfDocument& document, const json& primitive, const GltfTransform& to_scene,
                    PolygonMesh& mesh) {
   const json& attributes = primitive.at("attributes");
   const GltfNumbers positions = document.numbers(whole_number(attributes, "POSITION"));
