@@ -1,5 +1,6 @@
 // The time of a frame of two bodies that deform, as a simulation has it: new positions, the maps of both
-// directions, and all proximity queries. The scenes are those of `sdm scene`.
+// directions, and all proximity queries. The scenes are those of `sdm scene`. Exits with 1 if in some frame
+// the queries and the whole maps disagree.
 //
 //   build/dev/bench/frames [SCENE...] [--frames N] [--resolution N] [--exact] [--json FILE]
 #include <sdm/error.h>
@@ -8,16 +9,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
 #include <vector>
 
 #include "core/stopwatch.h"
+#include "core/vec.h"
 
 namespace sdm::bench {
 namespace {
@@ -49,7 +53,26 @@ struct Times {
   std::vector<double> update, queries, maps;
   std::size_t colliding = 0;     ///< frames
   std::size_t samples_used = 0;  ///< of queries, over all frames
+  std::size_t wrong = 0;         ///< frames
 };
+
+/// Whether what was told from some samples is what all of them say.
+bool agree(Query& query, const std::array<DistanceMap, 2>& maps) {
+  double least = std::numeric_limits<double>::infinity(), deepest = 0;
+  for (const DistanceMap& map : maps)
+    for (const float d : map.distance) {
+      if (std::isnan(d)) continue;
+      least = std::min(least, std::abs(static_cast<double>(d)));
+      deepest = std::max(deepest, -static_cast<double>(d));
+    }
+  Box box = bounds(query.surface(0).mesh());
+  extend(box, bounds(query.surface(1).mesh()));
+  const double tolerance = 2e-6 * diagonal(box);
+  const Length &separation = query.separation(), depth = query.penetration_depth().value_or(Length{});
+  const bool exact = separation.kind == Certainty::exact;
+  return (exact ? separation.value <= least + tolerance : std::abs(separation.value - least) <= tolerance) &&
+         std::abs(depth.value - deepest) <= tolerance;
+}
 
 Times measure(const Motion& motion, const ProximityOptions& options) {
   Query query(motion.first[0], motion.first[1], options);
@@ -65,6 +88,7 @@ Times measure(const Motion& motion, const ProximityOptions& options) {
     for (int b = 0; b < 2; ++b) compute_map(query.surface(b), query.sites(1 - b), {}, maps[b]);
     times.maps.push_back(watch.lap());
     times.samples_used += query.samples_used();
+    times.wrong += !agree(query, maps);
   };
   frame(motion.frames.front());  // what is made once is made here
   times = {};
@@ -90,6 +114,7 @@ nlohmann::ordered_json to_json(std::vector<double> times) {
 nlohmann::ordered_json to_json(const Times& times) {
   const std::vector<double> loop = sum(times.update, times.queries);
   return {{"frames", times.update.size()},
+          {"verified", times.wrong == 0},
           {"colliding", times.colliding},
           {"samples_used", times.samples_used / times.update.size()},
           {"ms",
@@ -129,14 +154,18 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   nlohmann::ordered_json json;
+  std::size_t wrong = 0;
   for (const std::string& scene : options.scenes) {
-    json[scene] = to_json(measure(Motion(kinds.at(scene), options.frames), options.query));
+    const Times times = measure(Motion(kinds.at(scene), options.frames), options.query);
+    json[scene] = to_json(times);
     print(scene, json[scene]);
+    if (times.wrong > 0) std::fprintf(stderr, "%s: wrong in %zu frames\n", scene.c_str(), times.wrong);
+    wrong += times.wrong;
   }
-  if (options.json_file.empty()) return 0;
+  if (options.json_file.empty()) return wrong == 0 ? 0 : 1;
   std::ofstream file(options.json_file);
   if (!(file << json.dump(2) << std::endl)) throw Error("cannot write " + options.json_file);
-  return 0;
+  return wrong == 0 ? 0 : 1;
 }
 
 }  // namespace

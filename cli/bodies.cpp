@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "bodies_report.h"
+#include "common_options.h"
 #include "core/stopwatch.h"
 #include "map_files.h"
 #include "option_checks.h"
@@ -127,28 +128,16 @@ void add_options(CLI::App& app, BodiesCommand& c) {
   app.add_option("FILE", c.files, "A mesh for each body (OBJ, PLY, STL, OFF, glTF, 3DS), two at least")
       ->required()
       ->expected(2, CLI::detail::expected_max_vector_size);
-  app.add_option("-o,--output", c.out,
-                 "The folder of the maps of each body to all others, made if it is not there")
-      ->check(CLI::Validator(
-          [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
-      ->type_name("DIR");
+  add_output_option(app, c.out)
+      ->required(false)
+      ->description("The folder of the maps of each body to all others, made if it is not there");
   app.add_option("--max-distance", c.options.max_distance,
                  "Leave out pairs, and texels, that are farther apart than D")
       ->check(number("a positive number", [](double x) { return x > 0; }))
       ->type_name("D");
-  app.add_flag("--exact", c.options.exact,
-               "Separation and collision from the triangles themselves, not from samples with bounds");
-  app.add_option("--resolution", c.options.atlas.resolution, "Texels along each side of all bodies' maps")
-      ->check(whole_number(16, 32768))
-      ->type_name("N")
-      ->capture_default_str();
-  app.add_option("--units", c.units, "Of the meshes, for what is printed and drawn")->type_name("NAME");
-  app.add_option("--threads", c.threads, "Threads to use, 0 for all cores")
-      ->check(whole_number(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
-  app.add_flag("--json", c.json, "Print JSON instead of a table");
-  app.add_flag("--quiet", c.quiet, "Print nothing but errors, and what --json asks for");
+  add_proximity_options(app, c.options.exact, c.units);
+  add_resolution_option(app, c.options.atlas, "all bodies' maps");
+  add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a table");
 }
 
 }  // namespace

@@ -2,22 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <vector>
 
 #include "proximity_report.h"
+#include "report.h"
 
 using Json = nlohmann::ordered_json;
 
 namespace {
 
 using Row = std::array<std::string, 5>;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 std::string words(const sdm::Length& length) {
   if (length.kind == sdm::Certainty::bounded)

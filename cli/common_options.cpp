@@ -2,8 +2,8 @@
 
 #include "option_checks.h"
 
-void add_output_option(CLI::App& app, std::filesystem::path& folder) {
-  app.add_option("-o,--output", folder, "The folder of the results, made if it is not there")
+CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder) {
+  return app.add_option("-o,--output", folder, "The folder of the results, made if it is not there")
       ->required()
       ->check(CLI::Validator(
           [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
@@ -17,8 +17,8 @@ void add_transform_option(CLI::App& app, const std::string& name, const std::str
       ->type_name("STEPS");
 }
 
-CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas) {
-  return app.add_option("--resolution", atlas.resolution, "Texels along each side of the map")
+CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
+  return app.add_option("--resolution", atlas.resolution, "Texels along each side of " + maps)
       ->check(whole_number(16, 32768))
       ->type_name("N")
       ->capture_default_str();
@@ -54,12 +54,19 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
       ->type_name("NAME");
 }
 
-void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet) {
+void add_proximity_options(CLI::App& app, bool& exact, std::string& units) {
+  app.add_flag("--exact", exact,
+               "Separation and collision from the triangles themselves, not from samples with bounds");
+  app.add_option("--units", units, "Of the meshes, for what is printed and drawn")->type_name("NAME");
+}
+
+void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
+                     const std::string& json_prints) {
   app.add_option("--threads", threads, "Threads to use, 0 for all cores")
       ->check(whole_number(0, 1024))
       ->type_name("N")
       ->capture_default_str();
-  app.add_flag("--json", json, "Print the report (report.json) instead of a summary");
+  app.add_flag("--json", json, "Print " + json_prints);
   app.add_flag("--quiet", quiet, "Print nothing but errors, and what --json asks for");
 }
 

@@ -1,4 +1,4 @@
-// Options of commands that write maps.
+// Options that commands share.
 #pragma once
 
 #include <sdm/io.h>
@@ -11,14 +11,21 @@
 
 // Each sets its targets, which must outlive the parsing.
 
-void add_output_option(CLI::App& app, std::filesystem::path& folder);
+/// Returns -o, which is required.
+CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder);
 void add_transform_option(CLI::App& app, const std::string& name, const std::string& mesh,
                           std::string& steps);
-/// Returns --resolution. `mesh` is what is laid out.
-CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas);
+/// Returns --resolution; `maps` are those that it is of.
+CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
+                                   const std::string& maps = "the map");
+/// `mesh` is what is laid out.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
-void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet);
+/// --exact and --units of commands that print proximity.
+void add_proximity_options(CLI::App& app, bool& exact, std::string& units);
+/// --threads, --json and --quiet; `json_prints` what.
+void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
+                     const std::string& json_prints);
 
 /// Throws CLI::ValidationError for a range that is none.
 void check_range(const std::vector<double>& range);

@@ -59,7 +59,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->type_name("D");
 
   add_picture_options(app, c.picture, c.range);
-  add_run_options(app, c.threads, c.json, c.quiet);
+  add_run_options(app, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
 }
 
 void check_combination(const CLI::App& app, const MapCommand& c) {

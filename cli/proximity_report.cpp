@@ -1,6 +1,6 @@
 #include "proximity_report.h"
 
-#include <cstdio>
+#include "report.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -44,16 +44,10 @@ std::size_t patch_count(std::span<const sdm::Contact> contacts) {
   return contacts.empty() ? 0 : contacts.back().patch + 1;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string point(const sdm::Vec3& p) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.6g %.6g %.6g)", p[0], p[1], p[2]);
-  return text;
+  std::string text = number(p[0]);
+  for (const double x : {p[1], p[2]}) text.append(" ").append(number(x));
+  return text.insert(0, 1, '(').append(")");
 }
 
 std::string words(const sdm::Length& length, const std::string& unit) {

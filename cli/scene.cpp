@@ -1,5 +1,6 @@
 #include "scene.h"
 
+#include "common_options.h"
 #include "output_folder.h"
 #include "progress_line.h"
 
@@ -138,11 +139,7 @@ void add_scene_command(CLI::App& app) {
       ->required()
       ->check(CLI::IsMember(kKinds))
       ->type_name("letters|bunnies|figure|cloth");
-  scene->add_option("-o,--output", command->out, "The folder of the results, made if it is not there")
-      ->required()
-      ->check(CLI::Validator(
-          [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
-      ->type_name("DIR");
+  add_output_option(*scene, command->out);
   scene->add_option("--frames", command->frames, "How many, 60 a second")
       ->check(CLI::Range(1, 100000).description(""))
       ->type_name("N")

@@ -153,7 +153,7 @@ void add_self_command(CLI::App& app) {
   add_resolution_option(*self, c.atlas);
   add_layout_options(*self, c.atlas, "the mesh");
   add_picture_options(*self, c.picture, c.range);
-  add_run_options(*self, c.threads, c.json, c.quiet);
+  add_run_options(*self, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   self->callback([command] {
     check_range(command->range);
     run(*command);

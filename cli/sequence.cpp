@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "common_options.h"
 #include "core/stopwatch.h"
 #include "option_checks.h"
 #include "output_folder.h"
@@ -238,9 +239,7 @@ void add_sequence_command(CLI::App& app) {
       "  sdm sequence letters/E.ply+letters/E.npy letters/G.ply+letters/G.npy -o out");
   const auto command = std::make_shared<SequenceCommand>();
   add_options(*sequence, command->pair, {"A sequence, or a mesh that stays", "The other one"});
-  sequence->add_option("-o,--output", command->out, "The folder of the results, made if it is not there")
-      ->required()
-      ->type_name("DIR");
+  add_output_option(*sequence, command->out);
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
       ->check(whole_number(1, 1000000))

@@ -36,12 +36,12 @@ class RelativeError {
   double largest_;             ///< w
 };
 
-/// A resolution at which Surface(mesh, options).sampling_bound() ≤ precision, whatever options.resolution is;
-/// a multiple of 16, since a power of two may take four times the texels needed. About the smallest: the
-/// bound is more than nine tenths of the precision, or a resolution smaller by 16 or an eighth does not
-/// suffice. Throws sdm::Error when the precision is not a positive number, when 32768 texels a side are not
-/// enough for it, and as Surface does. Cost: two to six layouts, as the bound is about proportional to 1 /
-/// resolution.
+/// A resolution at which Surface(mesh, options).sampling_bound() ≤ precision, a length in units of the mesh,
+/// whatever options.resolution is; a multiple of 16, since a power of two may take four times the texels
+/// needed. About the smallest: the bound is more than nine tenths of the precision, or a resolution smaller
+/// by 16 or an eighth does not suffice. Throws sdm::Error when the precision is not a positive number, when
+/// 32768 texels a side are not enough for it, and as Surface does. Cost: two to six layouts, as the bound is
+/// about proportional to 1 / resolution.
 [[nodiscard]] std::uint32_t resolution_for(const Mesh& mesh, AtlasOptions options, double precision);
 
 }  // namespace sdm

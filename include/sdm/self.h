@@ -17,7 +17,7 @@ namespace sdm {
 struct ExclusionRule {
   /// The face, all faces that share a vertex with it, and so on, this many times; ≥ 1.
   std::uint32_t rings = 1;
-  /// Instead: what is nearer than this along the surface at rest; > 0.
+  /// Instead: what is nearer than this along the surface at rest; > 0, in units of the mesh.
   std::optional<double> geodesic{};
 };
 
@@ -49,7 +49,8 @@ class Exclusion {
 };
 
 struct SelfMapOptions {
-  double max_distance = std::numeric_limits<double>::infinity();  ///< > 0; what is farther does not count
+  double max_distance =
+      std::numeric_limits<double>::infinity();  ///< > 0, in units of the mesh: what is farther does not count
   Progress progress{};
 };
 
@@ -72,8 +73,9 @@ struct SelfMapOptions {
 
 struct SelfOptions {
   ExclusionRule exclusion{};
-  double max_distance = std::numeric_limits<double>::infinity();  ///< > 0, of separations
-  Progress progress{};                                            ///< of the construction
+  double max_distance =
+      std::numeric_limits<double>::infinity();  ///< > 0, of separations, in units of the mesh
+  Progress progress{};                          ///< of the construction
 };
 
 /// The proximity of a deforming mesh to itself: for simulation loops. Answers come from the triangles, not
@@ -95,12 +97,13 @@ class SelfQuery {
   /// index first. Cost: a search a face, with the least distance found so far as its bound; all cores.
   [[nodiscard]] std::optional<Length> separation();
 
-  /// Each face that comes as near as `margin` to a face it does not exclude has a contact with the nearest of
-  /// those, at their closest points; one for two faces that are each other's. point1 lies on the face of the
-  /// lower index; depth = −|point2 − point1|, for a surface has no inside; where that is 0, the normal is the
-  /// second face's. Contacts whose boxes, each around its two faces, meet are of one patch: the nearest patch
-  /// comes first, and in each the nearest contact. Valid until the next call. Throws sdm::Error for a
-  /// margin that is negative or not finite. Cost: a search a face, all cores, and sorting.
+  /// Each face that comes as near as `margin`, in units of the mesh, to a face it does not exclude has a
+  /// contact with the nearest of those, at their closest points; one for two faces that are each other's.
+  /// point1 lies on the face of the lower index; depth = −|point2 − point1|, for a surface has no inside;
+  /// where that is 0, the normal is the second face's. Contacts whose boxes, each around its two faces, meet
+  /// are of one patch: the nearest patch comes first, and in each the nearest contact. Valid until the next
+  /// call. Throws sdm::Error for a margin that is negative or not finite. Cost: a search a face, all cores,
+  /// and sorting.
   [[nodiscard]] std::span<const Contact> contacts(double margin);
 
   [[nodiscard]] const Sites& sites() const;

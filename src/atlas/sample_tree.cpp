@@ -20,9 +20,9 @@ struct SampleTree::Nearest {
 };
 
 SampleTree::SampleTree(const Surface& surface, double radius)
-    : surface_(surface), frame_(UnitFrame::of(bounds(surface.mesh()))) {
+    : points_(surface.sample_points()), frame_(UnitFrame::of(bounds(surface.mesh()))) {
   constexpr std::size_t kStride = 4096;
-  const std::size_t count = surface.samples().size();
+  const std::size_t count = points_.size();
   std::vector<std::vector<Run>> parts((count + kStride - 1) / kStride);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -45,7 +45,7 @@ std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end,
   std::vector<Run> runs;
   Vec3 start{};
   for (std::size_t i = begin; i < end; ++i) {
-    const Vec3 p = surface_.sample_points()[i];
+    const Vec3 p = points_[i];
     if (runs.empty() || i - runs.back().first == kLongest || norm(p - start) > radius) {
       runs.push_back({i, {}});
       start = p;
@@ -74,7 +74,7 @@ void SampleTree::descend(std::uint32_t index, Nearest& found) const {
   if (node.leaf()) {
     const std::uint32_t run = tree_.items[node.first];
     for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
-      const double d = squared_norm(surface_.sample_points()[i] - found.query);
+      const double d = squared_norm(points_[i] - found.query);
       if (d < found.squared_distance)
         found.sample = static_cast<std::uint32_t>(i), found.squared_distance = d;
     }

@@ -10,7 +10,8 @@
 namespace sdm {
 
 /// A tree over runs of samples, whose order keeps neighbours together: so it is built in a fraction of the
-/// time of a tree over the samples themselves. The surface, which must have a sample, must outlive it.
+/// time of a tree over the samples themselves. The surface, which must have a sample, must outlive it and
+/// stay as it is.
 class SampleTree {
  public:
   /// Runs stay within `radius` of their first sample: a few texels, so that a run that leaps to another place
@@ -27,7 +28,7 @@ class SampleTree {
   [[nodiscard]] double squared_distance(std::uint32_t node, const Nearest& found) const;
   void descend(std::uint32_t index, Nearest& found) const;
 
-  const Surface& surface_;
+  std::span<const Vec3> points_;
   UnitFrame frame_;
   std::vector<std::size_t> first_;  ///< sample of each run, and the end of the last run
   AabbTree tree_;                   ///< over runs, one a leaf

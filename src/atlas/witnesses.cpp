@@ -14,18 +14,17 @@ namespace {
 /// The largest distance to the nearest sample of the points of one face that were looked at.
 class Farthest {
  public:
-  Farthest(const Surface& surface, const SampleTree& tree, double distance = 0)
-      : surface_(surface), tree_(tree), distance_(distance) {}
+  Farthest(std::span<const Vec3> samples, const SampleTree& tree, double distance = 0)
+      : samples_(samples), tree_(tree), distance_(distance) {}
 
   /// `most` is the distance to some sample.
   void look_at(const Vec3& p, double most = std::numeric_limits<double>::infinity()) {
-    if (most > distance_)
-      distance_ = std::max(distance_, norm(p - surface_.sample_points()[tree_.nearest(p)]));
+    if (most > distance_) distance_ = std::max(distance_, norm(p - samples_[tree_.nearest(p)]));
   }
   [[nodiscard]] double distance() const { return distance_; }
 
  private:
-  const Surface& surface_;
+  const std::span<const Vec3> samples_;
   const SampleTree& tree_;
   double distance_;
 };
@@ -48,7 +47,7 @@ std::vector<double> Coverage::witnessed_radii(const Surface& surface) const {
   parallel_for(radii.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const FaceFrame frame(surface.mesh(), f);
-      Farthest farthest(surface, tree);
+      Farthest farthest(points, tree);
       if (surface.face_charts()[f] != kNone) {
         const auto [a, b] = middle_corner(surface.impl().corners[f]);
         if (a >= 0 && b >= 0 && a + b <= 1) farthest.look_at(frame.at(a, b));
@@ -62,7 +61,7 @@ std::vector<double> Coverage::witnessed_radii(const Surface& surface) const {
       for_each_patch(r, [&](const Patch& patch, auto, std::span<const Piece> pieces) {
         const FaceFrame frame(surface.mesh(), patch.face);
         const std::atomic_ref<double> known(radii[patch.face]);
-        Farthest farthest(surface, tree, known.load(std::memory_order_relaxed));
+        Farthest farthest(points, tree, known.load(std::memory_order_relaxed));
         for (const auto& [sample, weights] : pieces)
           for (int k = 0; k < 4; ++k) {
             const Vec3 corner = frame.at(weights[0][k], weights[1][k]);

@@ -10,7 +10,7 @@
 namespace sdm {
 
 /// The work done, which tests hold down.
-struct PairCounts {
+struct PairSearchCounts {
   std::size_t nodes = 0;           ///< opened: eight boxes tested against one
   std::size_t leaf_pairs = 0;      ///< of up to eight faces each, tested in single precision
   std::size_t triangle_pairs = 0;  ///< in double precision
@@ -55,7 +55,7 @@ struct PairWorkspace {
   std::vector<Entry> overlapping;  ///< a stack
   Heap apart;
   std::vector<std::uint32_t> nodes;  ///< for `contains`
-  PairCounts counts;                 ///< summed over searches
+  PairSearchCounts counts;           ///< summed over searches
 };
 
 /// The closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic where few

@@ -204,6 +204,7 @@ TEST_F(SequenceCommand, RefusesSequencesThatDoNotFit) {
   EXPECT_THAT(run.err, HasSubstr("12 frames and"));
   EXPECT_FALSE(std::filesystem::exists(out));
   EXPECT_EQ(run_sdm({"sequence", moving, o2}).code, 2);
+  EXPECT_THAT(run_sdm({"sequence", moving, o2, "-o", ""}).err, HasSubstr("the name of the folder is empty"));
   EXPECT_EQ(run_sdm(sequence({"--maps", "0"})).code, 2);
 }
 
