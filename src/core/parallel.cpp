@@ -34,8 +34,7 @@ unsigned thread_count() {
 // and that sibling would go on with ranges its loops silently left out. Isolated tasks: a thread that waits
 // for a loop must not take up other work, which might want a lock that the thread holds.
 
-void parallel_for(std::size_t count, std::size_t grain,
-                  const std::function<void(std::size_t, std::size_t)>& body) {
+void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& body) {
   tbb::task_group_context context(tbb::task_group_context::isolated);
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(

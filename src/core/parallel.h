@@ -12,8 +12,8 @@ namespace sdm {
 /// Calls body(begin, end) for disjoint ranges that cover [0, count), of about `grain` or less, on all cores
 /// allowed. With a progress callback, reports the fraction done, 1 at the end, and throws Cancelled when it
 /// says so.
-void parallel_for(std::size_t count, std::size_t grain,
-                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+template <class Body>
+void parallel_for(std::size_t count, std::size_t grain, const Body& body);
 void parallel_for(std::size_t count, std::size_t grain, const Progress& progress, std::string_view step,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
@@ -37,5 +37,13 @@ void parallel_tasks(const std::function<void(Tasks& tasks)>& first);
 
 /// Threads that parallel_for uses now.
 [[nodiscard]] unsigned thread_count();
+
+using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
+void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& body);
+
+template <class Body>
+void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
+  run_parallel_for(count, grain, std::cref(body));  // a reference takes no memory, as a copy would
+}
 
 }  // namespace sdm

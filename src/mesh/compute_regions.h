@@ -7,13 +7,6 @@
 
 namespace sdm {
 
-struct FaceShape {
-  Vec3 normal;  ///< unit length, outward, 0 without area
-  Vec3 angle;   ///< at each corner
-  bool thin;    ///< too thin for a prism in single precision: its edges stand for it
-  bool sliver;  ///< too thin for a normal that could be trusted
-};
-
 // Each chooses the best vector instructions that the machine has, at run time.
 
 /// The faces of the leaves from `begin` to `end`: their regions and shapes, and the discs of their bounds.

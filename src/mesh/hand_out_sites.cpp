@@ -130,7 +130,8 @@ Regions hand_out_sites(const RegionSource& s, const AabbTree& tree) {
         places.neighbours.resize(vertices);
         for (std::size_t v = 0; v < vertices; ++v) regions.vertices[v].vertex = sites.vertices()[v];
       });
-  const std::vector<Vec3> placed = place(regions, s.positions);
+  std::vector<Vec3> placed;
+  place(regions, s.positions, placed);
   const bool closed = s.topology.closed();
   parallel_for(faces, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::uint32_t e = regions.owners[begin].edges; e < regions.owners[end].edges; ++e)

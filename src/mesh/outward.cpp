@@ -23,7 +23,9 @@ struct Shell {
 double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Triangle> triangles,
               std::span<const std::uint8_t> turned) {
   const Vec3& origin = p[triangles[shell.faces.front()][0]];
-  std::vector<double> parts((shell.faces.size() + kGrain - 1) / kGrain);
+  thread_local std::vector<double> parts_of_this_thread;  // one that waits for a loop takes up no other shell
+  std::vector<double>& parts = parts_of_this_thread;
+  parts.assign((shell.faces.size() + kGrain - 1) / kGrain, 0);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (const std::uint32_t f :
@@ -55,17 +57,20 @@ bool hollow(const Shell& shell, std::span<const Vec3> p, std::span<const Triangl
 
 }  // namespace
 
-std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions, const UnitFrame& frame,
-                                        std::span<const Triangle> triangles, const Orientation& orientation,
-                                        const AabbTree& tree) {
-  const auto shells = make_rows<std::uint32_t>(orientation.first_face.size(), [&](const auto& put) {
-    for (std::uint32_t f = 0; f < triangles.size(); ++f)
+Shells find_shells(const Orientation& orientation) {
+  return make_rows<std::uint32_t>(orientation.first_face.size(), [&](const auto& put) {
+    for (std::uint32_t f = 0; f < orientation.component.size(); ++f)
       if (orientation.component[f] != kNone) put(orientation.component[f], f);
   });
+}
+
+void find_inverted(std::span<const Vec3> positions, const UnitFrame& frame,
+                   std::span<const Triangle> triangles, const Orientation& orientation, const Shells& shells,
+                   const AabbTree& tree, std::vector<std::uint8_t>& inverted) {
   std::vector<Vec3> unit_positions;  // for rays
   if (shells.size() > 1) unit_positions = frame.to_unit(positions);
 
-  std::vector<std::uint8_t> inverted = orientation.turned;
+  inverted = orientation.turned;
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       Shell shell{static_cast<std::uint32_t>(s), shells.of(s)};
@@ -75,7 +80,6 @@ std::vector<std::uint8_t> find_inverted(std::span<const Vec3> positions, const U
         for (std::uint32_t f : shell.faces) inverted[f] ^= 1;
     }
   });
-  return inverted;
 }
 
 }  // namespace sdm

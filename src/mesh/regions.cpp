@@ -52,17 +52,16 @@ void look_around(Regions& regions, std::size_t leaf, std::span<const FaceShape> 
 
 }  // namespace
 
-std::vector<Vec3> place(const Regions& regions, std::span<const Vec3> positions) {
-  std::vector<Vec3> placed(regions.vertices.size());
+void place(const Regions& regions, std::span<const Vec3> positions, std::vector<Vec3>& placed) {
+  placed.resize(regions.vertices.size());
   parallel_for(placed.size(), kVertices, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) placed[v] = positions[regions.vertices[v].vertex];
   });
-  return placed;
 }
 
-std::vector<FloatBox> leaf_boxes(const Regions& regions, const UnitFrame& frame,
-                                 std::span<const Vec3> placed) {
-  std::vector<FloatBox> boxes(regions.leaves.size() - 1);
+void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                     std::vector<FloatBox>& boxes) {
+  boxes.resize(regions.leaves.size() - 1);
   parallel_for(boxes.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
       Box box;
@@ -71,13 +70,12 @@ std::vector<FloatBox> leaf_boxes(const Regions& regions, const UnitFrame& frame,
       boxes[leaf] = FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
     }
   });
-  return boxes;
 }
 
 void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-           std::span<const std::uint8_t> inverted, Pseudonormals& normals,
-           std::vector<std::uint8_t>& sliver) {
-  std::vector<FaceShape> shapes(regions.faces.size());
+           std::span<const std::uint8_t> inverted, Pseudonormals& normals, std::vector<std::uint8_t>& sliver,
+           std::vector<FaceShape>& shapes) {
+  shapes.resize(regions.faces.size());
   parallel_for(regions.bounds.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
     compute_faces(regions, frame, placed, inverted, shapes, begin, end);
     for (std::uint32_t i = regions.leaves[begin]; i < regions.leaves[end]; ++i) {

@@ -54,7 +54,7 @@ struct alignas(64) VertexRegion {
 struct FaceBounds {
   static constexpr int kWidth = 8;
   static constexpr float kOpen = 1e18f;  ///< slope elsewhere, and where a face is too thin for its normal
-  alignas(32) float centre[3][kWidth];  ///< a point of the face
+  alignas(32) float centre[3][kWidth];   ///< a point of the face
   alignas(32) float normal[3][kWidth];
   alignas(32) float radius[kWidth];
   alignas(32) float slope[kWidth];
@@ -104,18 +104,26 @@ struct RegionSource {
 /// regions are left to refit(). Cost: linear, all cores.
 [[nodiscard]] Regions hand_out_sites(const RegionSource& source, const AabbTree& tree);
 
-/// Positions in the order of the regions' vertices. Refits read them again and again, and this order is that
-/// of the tree, while a mesh may have any. Cost: linear, all cores.
-[[nodiscard]] std::vector<Vec3> place(const Regions& regions, std::span<const Vec3> positions);
+/// Sets `placed` to the positions in the order of the regions' vertices. Refits read them again and again,
+/// and this order is that of the tree, while a mesh may have any. Cost: linear, all cores.
+void place(const Regions& regions, std::span<const Vec3> positions, std::vector<Vec3>& placed);
 
-/// The boxes of the leaves. Cost: linear, all cores.
-[[nodiscard]] std::vector<FloatBox> leaf_boxes(const Regions& regions, const UnitFrame& frame,
-                                               std::span<const Vec3> placed);
+/// Sets `boxes` to those of the leaves. Cost: linear, all cores.
+void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                     std::vector<FloatBox>& boxes);
+
+struct FaceShape {
+  Vec3 normal;  ///< unit length, outward, 0 without area
+  Vec3 angle;   ///< at each corner
+  bool thin;    ///< too thin for a prism in single precision: its edges stand for it
+  bool sliver;  ///< too thin for a normal that could be trusted
+};
 
 /// Computes the regions in this frame, and what signs need: pseudonormals, outward if `inverted` tells which
 /// faces run clockwise seen from outside, and which faces are slivers, too thin for normals that could be
-/// trusted. Cost: linear, all cores.
+/// trusted. `shapes` are computed on the way, of each owner. Cost: linear, all cores.
 void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-           std::span<const std::uint8_t> inverted, Pseudonormals& normals, std::vector<std::uint8_t>& sliver);
+           std::span<const std::uint8_t> inverted, Pseudonormals& normals, std::vector<std::uint8_t>& sliver,
+           std::vector<FaceShape>& shapes);
 
 }  // namespace sdm

@@ -52,7 +52,7 @@ void find_inverted(Sites::Impl& s) {
   if (!s.orientation.orientable)
     s.inverted.assign(s.mesh.triangles.size(), 0);
   else if (s.closed)
-    s.inverted = find_inverted(s.mesh.positions, s.frame, s.mesh.triangles, s.orientation, s.tree);
+    find_inverted(s.mesh.positions, s.frame, s.mesh.triangles, s.orientation, s.shells, s.tree, s.inverted);
   else
     s.inverted = s.orientation.turned;
 }
@@ -72,6 +72,7 @@ Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
         s.vertex_faces = vertex_faces(s.mesh.positions.size(), triangles, s.topology);
         s.orientation = orient(triangles, s.topology);
         s.closed = s.topology.closed();
+        if (s.closed && s.orientation.orientable) s.shells = find_shells(s.orientation);
         s.alike = s.closed && s.orientation.orientable && std::ranges::count(s.orientation.turned, 1) == 0;
       },
       [&] {
@@ -84,7 +85,9 @@ Sites::Sites(Mesh mesh) : impl_(std::make_unique<Impl>()) {
   s.normals = {std::vector<Vec3>(triangles.size()), std::vector<Vec3>(s.mesh.positions.size())};
   s.sliver.resize(triangles.size());
   find_inverted(s);
-  sdm::refit(s.regions, s.frame, place(s.regions, s.mesh.positions), s.inverted, s.normals, s.sliver);
+  Impl::Refit refit;  // of a mesh that stays nothing is kept
+  place(s.regions, s.mesh.positions, refit.placed);
+  sdm::refit(s.regions, s.frame, refit.placed, s.inverted, s.normals, s.sliver, refit.shapes);
 }
 
 Sites::~Sites() = default;
@@ -97,11 +100,13 @@ void Sites::refit(std::span<const Vec3> positions) {
   std::copy(positions.begin(), positions.end(), s.mesh.positions.begin());
 
   s.frame = UnitFrame::of(bounds(s.mesh));
-  const std::vector<Vec3> placed = place(s.regions, s.mesh.positions);
-  refit_leaves(s.tree, leaf_boxes(s.regions, s.frame, placed));
+  Impl::Refit& refit = s.last_refit;
+  place(s.regions, s.mesh.positions, refit.placed);
+  find_leaf_boxes(s.regions, s.frame, refit.placed, refit.boxes);
+  refit_leaves(s.tree, refit.boxes);
   sdm::refit(s.wide, s.tree);
   find_inverted(s);
-  sdm::refit(s.regions, s.frame, placed, s.inverted, s.normals, s.sliver);
+  sdm::refit(s.regions, s.frame, refit.placed, s.inverted, s.normals, s.sliver, refit.shapes);
 }
 
 const Mesh& Sites::mesh() const {

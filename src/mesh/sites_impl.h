@@ -7,6 +7,7 @@
 
 #include "hierarchy/aabb_tree.h"
 #include "hierarchy/wide_tree.h"
+#include "mesh/outward.h"
 #include "mesh/pseudonormals.h"
 #include "mesh/regions.h"
 #include "mesh/topology.h"
@@ -20,6 +21,7 @@ struct Sites::Impl {
   bool closed = false;
   bool alike = false;  ///< closed, and all faces run alike
   Orientation orientation;
+  Shells shells;  ///< if closed and orientable
   std::vector<std::uint8_t>
       inverted;  ///< of each face: turned against the outside; if open, against its neighbours
 
@@ -29,6 +31,14 @@ struct Sites::Impl {
   Regions regions;  ///< by the leaves of both
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a normal that could be trusted
+
+  /// What a refit computes on the way: its memory is kept for the next one.
+  struct Refit {
+    std::vector<Vec3> placed;
+    std::vector<FloatBox> boxes;
+    std::vector<FaceShape> shapes;
+  };
+  Refit last_refit;
 
   /// A face that the site belongs to.
   [[nodiscard]] std::uint32_t face_of(SiteType type, std::uint32_t site) const {

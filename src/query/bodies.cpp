@@ -107,7 +107,7 @@ struct Bodies::Impl {
       }
       pool.give_back(std::move(answers));
     };
-    parallel_for(near.size(), 1, std::ref(measure));
+    parallel_for(near.size(), 1, measure);
     std::erase_if(pairs, [&](const PairProximity& pair) {
       return pair.separation.lower > options.max_distance && !pair.colliding.value;
     });
@@ -141,7 +141,7 @@ void Bodies::update(std::span<const std::span<const Vec3>> positions) {
     for (std::size_t b = begin; b < end; ++b)
       if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
   };
-  parallel_for(size(), 1, std::ref(refit));
+  parallel_for(size(), 1, refit);
 }
 
 std::span<const PairProximity> Bodies::pairs() {

@@ -46,7 +46,7 @@ void LocalDistances::probe(const Body& on, const Body& to) {
     find_distances(to, points,
                    [&](std::size_t i, double distance) { probes_[begin + i].distance = distance; });
   };
-  parallel_for(probes_.size(), kGrain, std::ref(probe));
+  parallel_for(probes_.size(), kGrain, probe);
 }
 
 double LocalDistances::least_probed() const {
@@ -72,7 +72,7 @@ void LocalDistances::measure(double reach) {
       begin = next;
     }
   };
-  parallel_for(measured_.size(), kGrain, std::ref(measure));
+  parallel_for(measured_.size(), kGrain, measure);
 }
 
 void LocalDistances::measure_runs(std::size_t begin, std::size_t end) {
