@@ -6,6 +6,7 @@
 #include "atlas/coverage.h"
 #include "atlas/cut_faces.h"
 #include "atlas/sample_runs.h"
+#include "atlas/surface_impl.h"
 #include "core/parallel.h"
 
 namespace sdm {
@@ -72,7 +73,7 @@ class CoverageBuilder {
     std::array<std::pair<std::uint32_t, std::uint8_t>, kRunLength> by_face;
     const std::span samples(by_face.data(), run.size());
     for (std::size_t i = 0; i < samples.size(); ++i)
-      samples[i] = {surface_.texel_faces()[surface_.samples()[run.first + i]], static_cast<std::uint8_t>(i)};
+      samples[i] = {surface_.impl().sample_faces[run.first + i], static_cast<std::uint8_t>(i)};
     std::ranges::sort(samples);
     RunPatches found;
     for (std::size_t s = 0, p = 0; s < samples.size() || p < pieces.size();) {

@@ -30,7 +30,7 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
     throw Error("a gutter of " + std::to_string(options.gutter) + " texels is too wide for an atlas of " +
                 std::to_string(n) + "² texels; use a quarter of that at most");
   // The texel table, its order and its points; and what charts and layout keep of each face.
-  constexpr std::size_t kBytesPerTexel = 60, kBytesPerFace = 600;
+  constexpr std::size_t kBytesPerTexel = 64, kBytesPerFace = 600;
   require_memory(kBytesPerTexel * n * n + kBytesPerFace * mesh.triangles.size(), "the atlas");
 }
 
@@ -40,9 +40,15 @@ Vec3 point_at(const Surface::Impl& surface, std::uint32_t face, const Vec2& uv) 
   return surface.mesh.positions[surface.mesh.triangles[face][0]] + d[0] * map.edges[0] + d[1] * map.edges[1];
 }
 
-Vec3 point_of(const Surface::Impl& surface, std::uint32_t texel) {
+Vec3 point_of(const Surface::Impl& surface, std::uint32_t face, std::uint32_t texel) {
   const Vec2 centre = {texel % surface.resolution + 0.5, texel / surface.resolution + 0.5};
-  return point_at(surface, surface.texel_faces[texel], centre);
+  return point_at(surface, face, centre);
+}
+
+void find_sample_faces(Surface::Impl& surface) {
+  surface.sample_faces.resize(surface.samples.size());
+  std::ranges::transform(surface.samples, surface.sample_faces.begin(),
+                         [&](std::uint32_t texel) { return surface.texel_faces[texel]; });
 }
 
 // Sets `points` to those of all samples.
@@ -55,17 +61,20 @@ void place_all(const Surface::Impl& surface, std::vector<Vec3>& points) {
 
 // Puts the samples into an order in space.
 void order_samples(Surface::Impl& surface) {
+  find_sample_faces(surface);
   std::vector<Vec3> points;
   place_all(surface, points);
   std::vector<std::uint32_t> order = spatial_order(points);
   for (std::uint32_t& index : order) index = surface.samples[index];
   surface.samples = std::move(order);
+  find_sample_faces(surface);
 }
 
 }  // namespace
 
 void place_samples(const Surface::Impl& surface, std::size_t first, std::span<Vec3> points) {
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = point_of(surface, surface.samples[first + i]);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = point_of(surface, surface.sample_faces[first + i], surface.samples[first + i]);
 }
 
 Surface::Surface(Mesh mesh, const AtlasOptions& options) {
@@ -144,7 +153,7 @@ double Surface::max_stretch() const {
 }
 
 Vec3 Surface::texel_point(std::uint32_t texel) const {
-  return point_of(*impl_, texel);
+  return point_of(*impl_, impl_->texel_faces[texel], texel);
 }
 
 Vec3 Surface::to_surface(std::uint32_t face, const Vec2& uv) const {

@@ -21,6 +21,7 @@ struct Surface::Impl {
   std::vector<FaceMap> maps;
   std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
+  std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order lie here and there in texel_faces
 
   /// Made when it is first asked for, by whichever thread that is.
   struct Lazy {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "atlas/sample_runs.h"
+#include "atlas/surface_impl.h"
 #include "core/vec.h"
 #include "engine/engine.h"
 #include "mesh/sites_impl.h"
@@ -44,8 +45,8 @@ void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
     const auto first_of_run = static_cast<std::ptrdiff_t>(parts_.size());
     for (std::size_t i = run.first; i < run.end; ++i) {
       if (!(distances[i] <= margin)) continue;
-      const std::uint32_t texel = surface.samples()[body.distances.sample(i)];
-      const std::uint32_t chart = surface.face_charts()[surface.texel_faces()[texel]];
+      const std::uint32_t face = surface.impl().sample_faces[body.distances.sample(i)];
+      const std::uint32_t chart = surface.face_charts()[face];
       auto part = std::find_if(parts_.begin() + first_of_run, parts_.end(),
                                [&](const Part& p) { return p.chart == chart; });
       if (part == parts_.end()) part = parts_.insert(part, {chart, i, {}});
