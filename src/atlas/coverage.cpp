@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "atlas/face_frame.h"
 #include "atlas/sample_runs.h"
@@ -112,6 +113,30 @@ double Coverage::spread(const Surface& surface, std::size_t run, const Vec3& p) 
                                                              [&](auto a, auto b) { return frame.at(a, b); }));
   });
   return farthest;
+}
+
+// Pieces lie within their face, and samples within the triangle that M⁻¹ makes of the face's corners in the
+// atlas: a little off the face, by rounding.
+double Coverage::face_spread(const Surface& surface, RunRange runs, const Vec3& p) const {
+  const Surface::Impl& s = surface.impl();
+  double squared = 0;
+  std::uint32_t last = kNone;
+  const std::size_t first = runs.first == 0 ? 0 : run_ends_[runs.first - 1];
+  for (std::size_t i = first; i < run_ends_[runs.end - 1]; ++i) {
+    const std::uint32_t face = patches_[i].face;
+    if (std::exchange(last, face) == face) continue;
+    const Triangle& corners = s.mesh.triangles[face];
+    for (const std::uint32_t v : corners) squared = std::max(squared, squared_norm(s.mesh.positions[v] - p));
+    const auto& [origin, edges] = s.maps[face];
+    const Vec3 from = s.mesh.positions[corners[0]] - p;
+    for (int k = 1; k < 3; ++k) {
+      const Vec2 d = s.corners[face][k] - origin;
+      squared = std::max(squared, squared_norm(from + d[0] * edges[0] + d[1] * edges[1]));
+    }
+  }
+  // Edges are at most twice as long as `farthest`: see FaceFrame::rounding.
+  const double farthest = std::sqrt(squared), largest = std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
+  return farthest + 0x1p-22 * farthest + 1e-13 * (farthest + largest);
 }
 
 }  // namespace sdm

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "atlas/measure_pieces.h"
+#include "atlas/sample_runs.h"
 
 namespace sdm {
 
@@ -42,6 +43,9 @@ class Coverage {
   /// No sample of the run, and no point of their pieces, is farther from p. Cost: linear in the faces that
   /// these lie on.
   [[nodiscard]] double spread(const Surface& surface, std::size_t run, const Vec3& p) const;
+  /// The same of many runs, larger and sooner found: those faces may lie partly elsewhere, but no corner of
+  /// them is farther from p.
+  [[nodiscard]] double face_spread(const Surface& surface, RunRange runs, const Vec3& p) const;
 
   /// For each face the largest distance to the nearest sample of some of its points, rounded downwards: a
   /// lower bound on its radius. Cost: some nearest samples a face, all cores.

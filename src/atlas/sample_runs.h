@@ -16,6 +16,15 @@ struct SampleRun {
   [[nodiscard]] std::size_t size() const { return end - first; }
 };
 
+/// Runs that follow each other: [first, end).
+struct RunRange {
+  std::size_t first, end;
+  /// The sample in their middle.
+  [[nodiscard]] std::size_t middle(std::size_t samples) const {
+    return (SampleRun(first, samples).first + SampleRun(end - 1, samples).end) / 2;
+  }
+};
+
 [[nodiscard]] inline std::size_t run_count(std::size_t samples) {
   return (samples + kRunLength - 1) / kRunLength;
 }

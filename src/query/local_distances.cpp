@@ -28,51 +28,57 @@ void find_distances(const Body& body, std::span<const Vec3> points, const Take& 
 
 }  // namespace
 
-void LocalDistances::probe(const Body& on, const Body& to) {
+void LocalDistances::start(const Body& on, const Body& to) {
   on_ = &on, to_ = &to;
-  const Surface& surface = on.surface();
+  probes_.assign(1, {.runs = {0, run_count(on.surface().samples().size())}});
+  least_probed_ = std::numeric_limits<double>::infinity();
+}
+
+void LocalDistances::probe(std::size_t runs_per_probe) {
+  denser_.clear();
+  for (const auto& [runs, distance, spread] : probes_)
+    for (std::size_t first = runs.first; first < runs.end; first += runs_per_probe)
+      denser_.push_back({.runs = {first, std::min(first + runs_per_probe, runs.end)}});
+  std::swap(probes_, denser_);
+
+  const Surface& surface = on_->surface();
   const Coverage& coverage = coverage_of(surface);
-  const std::size_t samples = surface.samples().size();
-  probe_points_.resize(run_count(samples));
-  probes_.resize(probe_points_.size());
-  constexpr std::size_t kGrain = 64;
-  const auto probe = [&](std::size_t begin, std::size_t end) {
-    const std::span points = std::span(probe_points_).subspan(begin, end - begin);
-    for (std::size_t r = begin; r < end; ++r) {
-      const SampleRun run(r, samples);
-      place_samples(surface.impl(), run.first + run.size() / 2, {&probe_points_[r], 1});
-      probes_[r].spread = coverage.spread(surface, r, probe_points_[r]);
+  probe_points_.resize(probes_.size());
+  constexpr std::size_t kGrain = 32;
+  const auto probe_some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Probe& probe = probes_[i];
+      Vec3& point = probe_points_[i];
+      place_samples(surface.impl(), probe.runs.middle(surface.samples().size()), {&point, 1});
+      probe.spread = runs_per_probe == 1 ? coverage.spread(surface, probe.runs.first, point)
+                                         : coverage.face_spread(surface, probe.runs, point);
     }
-    find_distances(to, points,
+    find_distances(*to_, std::span(probe_points_).subspan(begin, end - begin),
                    [&](std::size_t i, double distance) { probes_[begin + i].distance = distance; });
   };
-  parallel_for(probes_.size(), kGrain, probe);
+  parallel_for(probes_.size(), kGrain, probe_some);
+  for (const Probe& probe : probes_) least_probed_ = std::min(least_probed_, std::abs(probe.distance));
 }
 
-double LocalDistances::least_probed() const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Probe& probe : probes_) least = std::min(least, std::abs(probe.distance));
-  return least;
+void LocalDistances::keep(double reach) {
+  std::erase_if(probes_, [&](const Probe& probe) { return probe.least() > reach; });
 }
 
-void LocalDistances::measure(double reach) {
-  measured_.clear();
-  for (std::size_t r = 0; r < probes_.size(); ++r)
-    if (probes_[r].least() <= reach) measured_.push_back(r);
+void LocalDistances::measure() {
   const std::size_t samples = on_->surface().samples().size();
   std::size_t count = 0;
-  for (const std::size_t r : measured_) count += SampleRun(r, samples).size();
+  for (const Probe& probe : probes_) count += SampleRun(probe.runs.first, samples).size();
   points_.resize(count), radii_.resize(count), distances_.resize(count);
   constexpr std::size_t kGrain = 16;
   const auto measure = [&](std::size_t begin, std::size_t end) {
     while (begin < end) {  // runs that follow each other share a search
       std::size_t next = begin + 1;
-      while (next < end && measured_[next] == measured_[next - 1] + 1) ++next;
+      while (next < end && probes_[next].runs.first == probes_[next - 1].runs.end) ++next;
       measure_runs(begin, next);
       begin = next;
     }
   };
-  parallel_for(measured_.size(), kGrain, measure);
+  parallel_for(probes_.size(), kGrain, measure);
 }
 
 void LocalDistances::measure_runs(std::size_t begin, std::size_t end) {
@@ -80,10 +86,10 @@ void LocalDistances::measure_runs(std::size_t begin, std::size_t end) {
   const Coverage& coverage = coverage_of(surface);
   const std::size_t first = begin * kRunLength, last = std::min(end * kRunLength, points_.size());
   const std::span points = std::span(points_).subspan(first, last - first);
-  place_samples(surface.impl(), measured_[begin] * kRunLength, points);
+  place_samples(surface.impl(), probes_[begin].runs.first * kRunLength, points);
   for (std::size_t i = begin; i < end; ++i) {
     const SampleRun run(i, points_.size());
-    coverage.measure_run(surface, measured_[i], std::span(points_).subspan(run.first, run.size()),
+    coverage.measure_run(surface, probes_[i].runs.first, std::span(points_).subspan(run.first, run.size()),
                          std::span(radii_).subspan(run.first, run.size()));
   }
   find_distances(*to_, points, [&](std::size_t i, double distance) {
@@ -92,7 +98,7 @@ void LocalDistances::measure_runs(std::size_t begin, std::size_t end) {
 }
 
 std::size_t LocalDistances::sample(std::size_t i) const {
-  return measured_[i / kRunLength] * kRunLength + i % kRunLength;
+  return probes_[i / kRunLength].runs.first * kRunLength + i % kRunLength;
 }
 
 }  // namespace sdm

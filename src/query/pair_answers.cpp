@@ -59,13 +59,16 @@ std::size_t PairAnswers::samples_used() const {
 
 void PairAnswers::measure() {
   if (std::exchange(measured_, true)) return;
-  for (int b = 0; b < 2; ++b) distances_[b].probe(*bodies_[b], *bodies_[1 - b]);
-  // What is nearer matters for contacts, for depth, and unless the triangles tell it, for the separation.
-  double reach = options_.contact_margin;
-  if (!options_.exact)
-    reach = std::max(reach, std::min(distances_[0].least_probed(), distances_[1].least_probed()));
-  reach += precision_;
-  for (LocalDistances& distances : distances_) distances.measure(reach);
+  for (int b = 0; b < 2; ++b) distances_[b].start(*bodies_[b], *bodies_[1 - b]);
+  for (const std::size_t runs_per_probe : LocalDistances::kRunsPerProbe) {
+    for (LocalDistances& distances : distances_) distances.probe(runs_per_probe);
+    // What is nearer matters for contacts, for depth, and unless the triangles tell it, for the separation.
+    double reach = options_.contact_margin;
+    if (!options_.exact)
+      reach = std::max(reach, std::min(distances_[0].least_probed(), distances_[1].least_probed()));
+    for (LocalDistances& distances : distances_) distances.keep(reach + precision_);
+  }
+  for (LocalDistances& distances : distances_) distances.measure();
 }
 
 // The least of value(distance, covering radius) of all samples measured, and where.

@@ -8,7 +8,9 @@
 #include <functional>
 #include <random>
 
+#include "atlas/coverage.h"
 #include "atlas/meshes.h"
+#include "atlas/sample_runs.h"
 #include "atlas/sample_tree.h"
 #include "core/parallel.h"
 #include "core/vec.h"
@@ -78,10 +80,55 @@ double to_nearest(const Surface& surface, const Vec3& p) {
   return std::sqrt(squared);
 }
 
-bool in_some_ball(const Surface& surface, const Vec3& p) {
-  for (std::size_t i = 0; i < surface.samples().size(); ++i)
-    if (norm(p - surface.sample_points()[i]) <= surface.sample_radii()[i]) return true;
-  return false;
+struct Ball {
+  Vec3 centre;
+  double radius;
+  [[nodiscard]] bool contains(const Vec3& p) const { return norm(p - centre) <= radius; }
+};
+
+/// The balls of samples, and around those of each run of samples.
+class SampleBalls {
+ public:
+  explicit SampleBalls(const Surface& surface) : surface_(surface) {
+    for (std::size_t r = 0; r < run_count(surface.samples().size()); ++r) {
+      const SampleRun run(r, surface.samples().size());
+      Ball& around = runs_.emplace_back(surface.sample_points()[run.first], 0);
+      for (std::size_t i = run.first; i < run.end; ++i)
+        around.radius = std::max(around.radius, norm(ball(i).centre - around.centre) + ball(i).radius);
+      around.radius *= 1 + 1e-9;
+    }
+  }
+
+  [[nodiscard]] bool some_contains(const Vec3& p) const {
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      if (!runs_[r].contains(p)) continue;
+      const SampleRun run(r, surface_.samples().size());
+      for (std::size_t i = run.first; i < run.end; ++i)
+        if (ball(i).contains(p)) return true;
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] Ball ball(std::size_t i) const {
+    return {surface_.sample_points()[i], surface_.sample_radii()[i]};
+  }
+
+  const Surface& surface_;
+  std::vector<Ball> runs_;
+};
+
+/// The balls that Coverage tells of all ranges of so many runs, around the sample in their middle.
+std::vector<Ball> spreads(const Surface& surface, std::size_t runs) {
+  const std::size_t samples = surface.samples().size(), count = run_count(samples);
+  std::vector<Ball> balls;
+  for (std::size_t first = 0; first < count; first += runs) {
+    const RunRange range{first, std::min(count, first + runs)};
+    const Vec3& p = surface.sample_points()[range.middle(samples)];
+    balls.push_back({p, runs == 1 ? coverage_of(surface).spread(surface, first, p)
+                                  : coverage_of(surface).face_spread(surface, range, p)});
+  }
+  return balls;
 }
 
 /// Fails unless all points have a sample within its radius, and within the radius of their face. The largest
@@ -89,6 +136,7 @@ bool in_some_ball(const Surface& surface, const Vec3& p) {
 double expect_covered(const Surface& surface) {
   const std::vector<FacePoint> points = points_of_faces(surface.mesh(), 60000);
   const SampleTree tree(surface, surface.sampling_bound());
+  const SampleBalls balls(surface);
   std::vector<double> distances(points.size());
   std::vector<std::uint8_t> covered(points.size());
   parallel_for(points.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -97,7 +145,7 @@ double expect_covered(const Surface& surface) {
       const std::uint32_t nearest = tree.nearest(p);
       distances[i] = norm(p - surface.sample_points()[nearest]);
       covered[i] = distances[i] <= surface.face_radii()[points[i].face] &&
-                   (distances[i] <= surface.sample_radii()[nearest] || in_some_ball(surface, p));
+                   (distances[i] <= surface.sample_radii()[nearest] || balls.some_contains(p));
     }
   });
   EXPECT_TRUE(std::ranges::all_of(surface.sample_points(), finite));
@@ -139,6 +187,35 @@ TEST(Coverage, HoldsAndIsTightInMotion) {
        expect_covered_in_motion(test::height_field(40), {.kind = AtlasKind::uv, .resolution = 256}))
     ratios.push_back(ratio);
   EXPECT_LE(median(ratios), 1.5);
+}
+
+// The ball of each range of runs has its samples, all balls together have all points, and none is needlessly
+// large.
+TEST(Coverage, SpreadsHoldInMotion) {
+  for (const char* name : {"head.off", "elephant-with-holes.off", "pig.off", "degtri_sliding.off"}) {
+    SCOPED_TRACE(name);
+    const Mesh mesh = test::load(name);
+    Surface surface(mesh, {.resolution = 256});
+    for (const Motion& motion : kMotions) {
+      surface.refit(moved(mesh, motion));
+      const std::span<const Vec3> samples = surface.sample_points();
+      for (const std::size_t runs : {1, 8}) {
+        const std::vector<Ball> balls = spreads(surface, runs);
+        std::vector<double> slack;
+        for (std::size_t b = 0; b < balls.size(); ++b) {
+          double farthest = 0;
+          for (std::size_t i = b * runs * kRunLength;
+               i < std::min(samples.size(), (b + 1) * runs * kRunLength); ++i)
+            farthest = std::max(farthest, norm(samples[i] - balls[b].centre));
+          ASSERT_LE(farthest, balls[b].radius);
+          slack.push_back(balls[b].radius / farthest);
+        }
+        EXPECT_LE(median(slack), runs == 1 ? 2 : 5);  // faces may be larger than eight runs
+        for (const FacePoint& p : points_of_faces(surface.mesh(), 1))
+          ASSERT_TRUE(std::ranges::any_of(balls, [&](const Ball& ball) { return ball.contains(p.point); }));
+      }
+    }
+  }
 }
 
 // Every chart is smaller than a texel: a sample's square is far larger than what its face has of it.
