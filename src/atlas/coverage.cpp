@@ -76,15 +76,17 @@ void Coverage::measure_run(const Surface& surface, std::size_t run, std::span<co
 }
 
 void Coverage::measure(const Surface& surface, Radii& radii) const {
-  const std::span<const Vec3> points = surface.sample_points();
+  const std::size_t samples = surface.samples().size();
   radii.faces.assign(surface.mesh().triangles.size(), 0);
-  radii.samples.resize(points.size());
+  radii.samples.resize(samples);
   const auto take_face = [&](std::uint32_t face, float largest) { atomic_max(radii.faces[face], largest); };
-  parallel_for(run_count(points.size()), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(run_count(samples), 16, [&](std::size_t begin, std::size_t end) {
+    std::array<Vec3, kRunLength> places;
     for (std::size_t r = begin; r < end; ++r) {
-      const SampleRun run(r, points.size());
-      measure_run(surface, r, points.subspan(run.first, run.size()),
-                  std::span(radii.samples).subspan(run.first, run.size()), take_face);
+      const SampleRun run(r, samples);
+      const std::span points = std::span(places).first(run.size());
+      place_samples(surface.impl(), run.first, points);
+      measure_run(surface, r, points, std::span(radii.samples).subspan(run.first, run.size()), take_face);
     }
   });
   radii.largest = *std::ranges::max_element(radii.faces);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "atlas/surface_impl.h"
 #include "core/parallel.h"
 #include "core/spatial_order.h"
 #include "core/stopwatch.h"
@@ -89,16 +90,19 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   const ClosestSearch search = raster ? nullptr : search_of(options.engine);
   Stopwatch watch;
 
-  const MapWriter writer(map, surface, sign.method == SignMethod::none ? nullptr : &is_inside);
+  const MapWriter writer(map, surface);
   map.sign = sign;
   const std::size_t count = surface.samples().size();
   std::atomic<std::size_t> beyond{0}, unconfirmed{0};
   for_each_run(count, options.progress, raster ? "finish" : "map", [&](std::size_t begin, std::size_t end) {
     const std::span<const std::uint32_t> texels = surface.samples().subspan(begin, end - begin);
-    const std::span<const Vec3> points = surface.sample_points().subspan(begin, end - begin);
+    thread_local std::vector<Vec3> points;  // near at hand, while those of all samples fill much memory
+    points.resize(end - begin);
+    place_samples(surface.impl(), begin, points);
     std::size_t beyond_here = 0;
     const auto store = [&](std::size_t first, const ClosestPacket& closest) {
-      beyond_here += writer.store(begin + first, closest);
+      const std::span packet = std::span(points).subspan(first, closest.count);
+      beyond_here += writer.store(begin + first, closest, is_inside(packet, closest));
     };
     if (raster)
       unconfirmed += recompute(sites.impl(), winners, texels, points, options.max_distance, store);

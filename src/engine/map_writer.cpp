@@ -1,6 +1,7 @@
 #include "engine/map_writer.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <string>
 
@@ -44,8 +45,7 @@ void clear(DistanceMap& map, const Surface& surface) {
   });
 }
 
-MapWriter::MapWriter(DistanceMap& map, const Surface& surface, const InsideTest* is_inside)
-    : texels_(surface.samples()), points_(surface.sample_points()), is_inside_(is_inside), map_(map) {
+MapWriter::MapWriter(DistanceMap& map, const Surface& surface) : texels_(surface.samples()), map_(map) {
   clear(map, surface);
   distance_ = map.distance.data();
   vector_ = map.vector.data();
@@ -53,7 +53,7 @@ MapWriter::MapWriter(DistanceMap& map, const Surface& surface, const InsideTest*
   site_type_ = map.site_type.data();
 }
 
-std::size_t MapWriter::store(std::size_t first, const ClosestPacket& closest) const {
+std::size_t MapWriter::store(std::size_t first, const ClosestPacket& closest, std::uint32_t inside) const {
   constexpr std::size_t kSize = ClosestPacket::kSize;
   // Neighbours in space lie here and there in the map: what is to be written soon is asked for now.
   constexpr std::size_t kAhead = 4 * kSize;
@@ -68,9 +68,10 @@ std::size_t MapWriter::store(std::size_t first, const ClosestPacket& closest) co
   for (std::size_t i = 0; i < kSize; ++i) distance[i] = static_cast<float>(closest.distance[i]);
   for (int k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < kSize; ++i) vector[k][i] = static_cast<float>(closest.vector[k][i]);
-  if (is_inside_ != nullptr)
-    for (std::size_t i = 0; i < closest.count; ++i)
-      if (const Vec3& p = points_[first + i]; (*is_inside_)(p, closest.get(i, p))) distance[i] = -distance[i];
+  for (; inside != 0; inside &= inside - 1) {
+    float& d = distance[std::countr_zero(inside)];
+    d = -d;
+  }
 
   const std::uint32_t* texel = texels_.data() + first;
   std::size_t without = 0;

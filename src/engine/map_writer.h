@@ -6,7 +6,6 @@
 #include <span>
 
 #include "engine/engine.h"
-#include "engine/sign.h"
 
 namespace sdm {
 
@@ -16,17 +15,15 @@ void clear(DistanceMap& map, const Surface& surface);
 
 class MapWriter {
  public:
-  /// Clears the map. `is_inside` tells which distances are negative; none: null. All must outlive it.
-  MapWriter(DistanceMap& map, const Surface& surface, const InsideTest* is_inside);
+  /// Clears the map. Both must outlive it.
+  MapWriter(DistanceMap& map, const Surface& surface);
 
-  /// Stores the closest points of the samples from `first` on. Returns how many have none. Threads may store
-  /// different samples at the same time.
-  std::size_t store(std::size_t first, const ClosestPacket& closest) const;
+  /// Stores the closest points of the samples from `first` on; `inside` has a bit for each whose distance is
+  /// negative. Returns how many have none. Threads may store different samples at the same time.
+  std::size_t store(std::size_t first, const ClosestPacket& closest, std::uint32_t inside) const;
 
  private:
   std::span<const std::uint32_t> texels_;
-  std::span<const Vec3> points_;
-  const InsideTest* is_inside_;
   DistanceMap& map_;
   // Its arrays.
   float* distance_;

@@ -90,6 +90,16 @@ bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) cons
   }
 }
 
+std::uint32_t InsideTest::operator()(std::span<const Vec3> queries, const ClosestPacket& closest) const {
+  std::uint32_t inside = 0;
+  if (method_ == SignMethod::none) return inside;
+  const bool in_box = method_ == SignMethod::pseudonormal;  // most queries are told by it alone
+  for (std::size_t i = 0; i < closest.count; ++i)
+    if (!in_box || contains(box_, queries[i]))
+      inside |= static_cast<std::uint32_t>((*this)(queries[i], closest.get(i, queries[i]))) << i;
+  return inside;
+}
+
 std::vector<std::uint8_t> inside(const Sites& sites, std::span<const Vec3> queries,
                                  std::span<const ClosestPoint> closest, SignMethod method) {
   if (queries.size() != closest.size()) throw Error("inside() needs one closest point for each query");

@@ -4,8 +4,10 @@
 #include <sdm/map.h>
 
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "engine/engine.h"
 #include "engine/winding.h"
 #include "mesh/sites_impl.h"
 
@@ -19,6 +21,8 @@ class InsideTest {
 
   /// `closest` is the closest point of the query (not used by the winding number). On the surface: outside.
   [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
+  /// A bit for each query of a packet that is inside.
+  [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries, const ClosestPacket& closest) const;
 
  private:
   /// Whether a face around the site is too thin for its normal to be trusted: there, a ray decides.

@@ -17,11 +17,9 @@ namespace {
 template <class Take>
 void find_distances(const Body& body, std::span<const Vec3> points, const Take& take) {
   const auto deliver = [&](std::size_t first, const ClosestPacket& closest) {
-    for (std::size_t i = 0; i < closest.count; ++i) {
-      const Vec3& query = points[first + i];
-      const bool negative = body.inside()(query, closest.get(i, query));
-      take(first + i, negative ? -closest.distance[i] : closest.distance[i]);
-    }
+    const std::uint32_t inside = body.inside()(points.subspan(first, closest.count), closest);
+    for (std::size_t i = 0; i < closest.count; ++i)
+      take(first + i, inside >> i & 1 ? -closest.distance[i] : closest.distance[i]);
   };
   cpu_search(body.sites().impl(), points, std::numeric_limits<double>::infinity(), std::ref(deliver));
 }

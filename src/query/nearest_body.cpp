@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "atlas/sample_runs.h"
+#include "atlas/surface_impl.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "engine/engine.h"
@@ -92,30 +93,32 @@ SignUsed signs_of_others(std::span<const Body> bodies, std::size_t on) {
 
 void map_nearest(std::span<const Body> bodies, std::size_t on, double max_distance, NearestMap& nearest) {
   const Surface& surface = bodies[on].surface();
-  const std::span<const Vec3> points = surface.sample_points();
   const std::span<const std::uint32_t> texels = surface.samples();
-  const MapWriter writer(nearest.map, surface, nullptr);  // distances come signed
+  const MapWriter writer(nearest.map, surface);
   nearest.map.sign = signs_of_others(bodies, on);
   nearest.body.assign(surface.texel_faces().size(), kNone);
   std::atomic<std::size_t> beyond{0};
   constexpr std::size_t kGrain = 4;
-  parallel_for(run_count(points.size()), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(run_count(texels.size()), kGrain, [&](std::size_t begin, std::size_t end) {
     RunSearch search(bodies, on, max_distance);
+    std::array<Vec3, kRunLength> places;
     ClosestPacket packet;
-    for (std::size_t first = kRunLength * begin; first < std::min(points.size(), kRunLength * end);
-         first += kRunLength) {
-      const std::span<const Vec3> run = points.subspan(first, std::min(kRunLength, points.size() - first));
-      search.find(run);
-      for (std::size_t i = 0; i < run.size(); i += packet.count) {
-        packet.count = std::min(ClosestPacket::kSize, run.size() - i);
+    for (std::size_t r = begin; r < end; ++r) {
+      const SampleRun run(r, texels.size());
+      const std::span points = std::span(places).first(run.size());
+      place_samples(surface.impl(), run.first, points);
+      search.find(points);
+      for (std::size_t i = 0; i < points.size(); i += packet.count) {
+        packet.count = std::min(ClosestPacket::kSize, points.size() - i);
+        std::uint32_t inside = 0;
         for (std::size_t k = 0; k < packet.count; ++k) {
           const ClosestPoint& c = search.closest(i + k);
           const std::uint32_t body = search.body(i + k);
-          packet.set(k, run[i + k], c);
-          if (body != kNone && bodies[body].inside()(run[i + k], c)) packet.distance[k] = -c.distance;
-          nearest.body[texels[first + i + k]] = body;
+          packet.set(k, points[i + k], c);
+          if (body != kNone && bodies[body].inside()(points[i + k], c)) inside |= 1u << k;
+          nearest.body[texels[run.first + i + k]] = body;
         }
-        beyond += writer.store(first + i, packet);
+        beyond += writer.store(run.first + i, packet, inside);
       }
     }
   });
