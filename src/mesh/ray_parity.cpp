@@ -31,11 +31,18 @@ bool meets(const FloatBox& box, const Vec3& origin) {
          origin[2] + kSlopeZ * begin <= box.hi[2] && origin[2] + kSlopeZ * end >= box.lo[2];
 }
 
+// On which side of the ray an edge passes, by the sign: of twice the area that its ends make with the ray; or
+// where that is 0, of what it becomes as the ray moves aside by ε in y and by far less, ε², in z. No vertex
+// lies on a ray so moved.
+double side_of_ray(const Vec2& from, const Vec2& to) {
+  if (const double area = cross(from, to); area != 0) return area;
+  return from[1] != to[1] ? from[1] - to[1] : to[0] - from[0];
+}
+
 bool meets(const Triangle& t, std::span<const Vec3> positions, const Vec3& origin) {
   std::array<Seen, 3> corner;
   for (int k = 0; k < 3; ++k) corner[k] = seen(positions[t[k]], origin);
-  // An edge is evaluated from its smaller vertex to its larger, a ray through it counted to its left: its two
-  // faces always agree on the side.
+  // An edge is evaluated from its smaller vertex to its larger: its two faces always agree on the side.
   std::array<double, 3> area;  // opposite to corner k + 2
   int on_left = 0;
   for (int k = 0; k < 3; ++k) {
@@ -44,7 +51,7 @@ bool meets(const Triangle& t, std::span<const Vec3> positions, const Vec3& origi
                &to = corner[forward ? (k + 1) % 3 : k].beside;
     const double signed_area = cross(from, to);
     area[k] = forward ? signed_area : -signed_area;
-    on_left += (signed_area >= 0) == forward;
+    on_left += (side_of_ray(from, to) > 0) == forward;
   }
   if (on_left != 0 && on_left != 3) return false;
   const double sum = area[0] + area[1] + area[2];
