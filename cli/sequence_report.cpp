@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "proximity_report.h"
+#include "report.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -15,7 +16,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::string number(double value) {
+// As precise as a float.
+std::string cell(double value) {
   std::ostringstream text;
   text.precision(9);
   text << value;
@@ -74,18 +76,18 @@ std::string to_csv(const std::vector<Frame>& frames) {
   for (const Frame& f : frames) {
     std::vector<std::string> cells{std::to_string(f.index)};
     for (const double v : {f.separation.value, f.separation.lower, f.separation.upper})
-      cells.push_back(number(v));
+      cells.push_back(cell(v));
     cells.push_back(f.colliding.value ? "1" : "0");
     cells.push_back(name(f.colliding.kind));
     for (const double v :
          f.depth ? std::array{f.depth->value, f.depth->lower, f.depth->upper} : std::array{kNaN, kNaN, kNaN})
-      cells.push_back(std::isnan(v) ? "" : number(v));
+      cells.push_back(std::isnan(v) ? "" : cell(v));
     cells.push_back(std::to_string(f.contacts));
     cells.push_back(std::to_string(f.patches));
     for (const double v :
          {f.error_bound[0], f.error_bound[1], f.relative_error[0], f.relative_error[1], f.time.read,
           f.time.update, f.time.query, f.time.error, f.time.map, f.time.write, f.time.total()})
-      cells.push_back(number(v));
+      cells.push_back(cell(v));
     for (std::size_t i = 0; i < cells.size(); ++i) text += (i > 0 ? "," : "") + cells[i];
     text += '\n';
   }
@@ -133,7 +135,7 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
     text += "  depth      " + number(deepest->depth->value) + unit + " at the most, in frame " +
             std::to_string(deepest->index) + " (" + name(deepest->depth->kind) + ")\n";
   const auto relative = [](const Frame& f) { return std::max(f.relative_error[0], f.relative_error[1]); };
-  text += "  error      at most " + number(relative(*std::ranges::max_element(frames, {}, relative))) +
+  text += "  error      up to " + number(relative(*std::ranges::max_element(frames, {}, relative))) +
           " times that of the first frame\n";
   const auto ms = [&](auto value) { return number(std::round(100 * median(frames, value)) / 100); };
   text += "  a frame    " + ms([](const Frame& f) { return f.time.total(); }) + " ms (median): read " +
