@@ -59,8 +59,9 @@ class Bodies {
   /// All pairs that collide or whose separation is at most max_distance, and of the others those only that
   /// the samples cannot tell from them: none with separation.lower > max_distance, unless they collide. By
   /// first, then by second body. Each has the answers that Query has for its bodies. Computed at the first
-  /// call after an update, and valid until the next one; in steady state without allocation. Cost: a sweep
-  /// over the bodies' boxes; then each candidate pair as by Query, all cores sharing the pairs.
+  /// call after an update, and valid until the next one. Neither this nor update takes memory once the bodies
+  /// have been through such poses. Cost: a sweep over the bodies' boxes; then each candidate pair as by
+  /// Query, all cores sharing the pairs.
   [[nodiscard]] std::span<const PairProximity> pairs();
   /// Pairs whose boxes were within max_distance of each other when pairs() was computed last.
   [[nodiscard]] std::size_t candidate_pairs() const;

@@ -67,9 +67,9 @@ class Query {
   Query& operator=(Query&&) noexcept;
 
   /// Moves the vertices of the bodies, keeping their triangles: for others, make a new Query. No positions: a
-  /// body stays. Throws sdm::Error, and changes nothing, for a wrong count or a coordinate that is not finite.
-  /// Cost: linear. Neither this nor the answers take memory once the bodies have been through such poses, but
-  /// for closed meshes of several shells or with faces too thin for a normal.
+  /// body stays. Throws sdm::Error, and changes nothing, for a wrong count or a coordinate that is not
+  /// finite. Cost: linear. Neither this nor the answers take memory once the bodies have been through such
+  /// poses.
   void update(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
   // Answers are computed when they are first asked for after an update.

@@ -62,13 +62,11 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
 InsideTest::InsideTest(const Sites::Impl& sites, SignMethod method)
     : sites_(sites), method_(method), box_(bounds(sites.mesh)) {
   if (method == SignMethod::winding) winding_.emplace(sites);
-  if (method == SignMethod::pseudonormal &&
-      std::find(sites.sliver.begin(), sites.sliver.end(), 1) != sites.sliver.end())
-    for (const Vec3& p : sites.mesh.positions) unit_positions_.push_back(sites.frame.to_unit(p));
+  has_slivers_ = std::ranges::find(sites.sliver, 1) != sites.sliver.end();
 }
 
 bool InsideTest::beside_sliver(const ClosestPoint& c) const {
-  if (unit_positions_.empty()) return false;
+  if (!has_slivers_) return false;
   const auto is_sliver = [&](std::uint32_t face) { return sites_.sliver[face] != 0; };
   if (c.type == SiteType::edge) return std::ranges::any_of(sites_.topology.edge_faces(c.site), is_sliver);
   if (c.type == SiteType::vertex) return std::ranges::any_of(sites_.vertex_faces.of(c.site), is_sliver);
@@ -80,8 +78,9 @@ bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) cons
     case SignMethod::pseudonormal:
       if (closest.type == SiteType::none || !contains(box_, query)) return false;
       if (beside_sliver(closest))
-        return closest.distance > 0 && odd_crossings(unit_positions_, sites_.mesh.triangles, sites_.tree,
-                                                     sites_.frame.to_unit(query));
+        return closest.distance > 0 &&
+               odd_crossings(sites_.mesh.positions, sites_.frame, sites_.mesh.triangles, sites_.tree,
+                             sites_.frame.to_unit(query));
       return dot(query - closest.point, pseudonormal(sites_, closest)) < 0;
     case SignMethod::winding:
       return (*winding_)(query) > 0.5;

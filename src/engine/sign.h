@@ -5,7 +5,6 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "engine/engine.h"
 #include "engine/winding.h"
@@ -30,8 +29,8 @@ class InsideTest {
 
   const Sites::Impl& sites_;
   SignMethod method_;
-  Box box_;                           ///< of O2: nothing outside of it is inside O2, however near the tie
-  std::vector<Vec3> unit_positions_;  ///< of O2, where it has slivers
+  Box box_;  ///< of O2: nothing outside of it is inside O2, however near the tie
+  bool has_slivers_ = false;
   std::optional<WindingNumber> winding_;
 };
 

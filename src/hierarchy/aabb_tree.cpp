@@ -42,14 +42,6 @@ UnitFrame UnitFrame::of(const Box& box) {
   return frame;
 }
 
-std::vector<Vec3> UnitFrame::to_unit(std::span<const Vec3> points) const {
-  std::vector<Vec3> unit(points.size());
-  parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) unit[i] = to_unit(points[i]);
-  });
-  return unit;
-}
-
 FloatBox FloatBox::around(const Box& box) {
   FloatBox out;
   for (int k = 0; k < 3; ++k) {

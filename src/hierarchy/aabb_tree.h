@@ -19,7 +19,6 @@ struct UnitFrame {
   [[nodiscard]] Vec3 to_unit(const Vec3& p) const {
     return {scale * (p[0] - origin[0]), scale * (p[1] - origin[1]), scale * (p[2] - origin[2])};
   }
-  [[nodiscard]] std::vector<Vec3> to_unit(std::span<const Vec3> points) const;
 };
 
 /// A box in single precision, rounded outwards: it contains the box it was made from.

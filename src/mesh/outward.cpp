@@ -40,17 +40,19 @@ double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Trian
 
 // Whether the shell lies inside an odd number of others. Shells that touch or overlap others lie partly
 // inside at most: a few points just outside faces far apart must all agree.
-bool hollow(const Shell& shell, std::span<const Vec3> p, std::span<const Triangle> triangles,
-            const Orientation& orientation, const AabbTree& tree) {
+bool hollow(const Shell& shell, std::span<const Vec3> positions, const UnitFrame& frame,
+            std::span<const Triangle> triangles, const Orientation& orientation, const AabbTree& tree) {
   constexpr std::size_t kPoints = 5;
   constexpr double kOff = 1e-7;  // in the unit frame
   for (std::size_t i = 0; i < kPoints; ++i) {
     const std::uint32_t f = shell.faces[i * shell.faces.size() / kPoints];
-    const Triangle& t = triangles[f];
-    const Vec3 normal = normalized(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
+    const auto corner = [&](int k) { return frame.to_unit(positions[triangles[f][k]]); };
+    const Vec3 a = corner(0), b = corner(1), c = corner(2);
+    const Vec3 normal = normalized(cross(b - a, c - a));
     const bool inward = shell.inward != static_cast<bool>(orientation.turned[f]);
-    const Vec3 point = (1.0 / 3) * (p[t[0]] + p[t[1]] + p[t[2]]) + (inward ? -kOff : kOff) * normal;
-    if (!odd_crossings(p, triangles, tree, point, orientation.component, shell.component)) return false;
+    const Vec3 point = (1.0 / 3) * (a + b + c) + (inward ? -kOff : kOff) * normal;
+    if (!odd_crossings(positions, frame, triangles, tree, point, orientation.component, shell.component))
+      return false;
   }
   return true;
 }
@@ -67,15 +69,13 @@ Shells find_shells(const Orientation& orientation) {
 void find_inverted(std::span<const Vec3> positions, const UnitFrame& frame,
                    std::span<const Triangle> triangles, const Orientation& orientation, const Shells& shells,
                    const AabbTree& tree, std::vector<std::uint8_t>& inverted) {
-  std::vector<Vec3> unit_positions;  // for rays
-  if (shells.size() > 1) unit_positions = frame.to_unit(positions);
-
   inverted = orientation.turned;
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       Shell shell{static_cast<std::uint32_t>(s), shells.of(s)};
       shell.inward = volume(shell, positions, triangles, orientation.turned) < 0;
-      const bool is_hollow = shells.size() > 1 && hollow(shell, unit_positions, triangles, orientation, tree);
+      const bool is_hollow =
+          shells.size() > 1 && hollow(shell, positions, frame, triangles, orientation, tree);
       if (shell.inward != is_hollow)
         for (std::uint32_t f : shell.faces) inverted[f] ^= 1;
     }

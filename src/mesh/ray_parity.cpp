@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 #include "core/vec.h"
 
@@ -34,14 +33,14 @@ bool meets(const FloatBox& box, const Vec3& origin) {
 // On which side of the ray an edge passes, by the sign: of twice the area that its ends make with the ray; or
 // where that is 0, of what it becomes as the ray moves aside by ε in y and by far less, ε², in z. No vertex
 // lies on a ray so moved.
-double side_of_ray(const Vec2& from, const Vec2& to) {
-  if (const double area = cross(from, to); area != 0) return area;
+double side_of_ray(const Vec2& from, const Vec2& to, double area) {
+  if (area != 0) return area;
   return from[1] != to[1] ? from[1] - to[1] : to[0] - from[0];
 }
 
-bool meets(const Triangle& t, std::span<const Vec3> positions, const Vec3& origin) {
+bool meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& frame, const Vec3& origin) {
   std::array<Seen, 3> corner;
-  for (int k = 0; k < 3; ++k) corner[k] = seen(positions[t[k]], origin);
+  for (int k = 0; k < 3; ++k) corner[k] = seen(frame.to_unit(positions[t[k]]), origin);
   // An edge is evaluated from its smaller vertex to its larger: its two faces always agree on the side.
   std::array<double, 3> area;  // opposite to corner k + 2
   int on_left = 0;
@@ -51,7 +50,7 @@ bool meets(const Triangle& t, std::span<const Vec3> positions, const Vec3& origi
                &to = corner[forward ? (k + 1) % 3 : k].beside;
     const double signed_area = cross(from, to);
     area[k] = forward ? signed_area : -signed_area;
-    on_left += (side_of_ray(from, to) > 0) == forward;
+    on_left += (side_of_ray(from, to, signed_area) > 0) == forward;
   }
   if (on_left != 0 && on_left != 3) return false;
   const double sum = area[0] + area[1] + area[2];
@@ -60,27 +59,27 @@ bool meets(const Triangle& t, std::span<const Vec3> positions, const Vec3& origi
   return along / sum > 0;
 }
 
+// Whether the ray meets an odd number of those faces below a node that are counted.
+template <class Counts>
+bool odd_below(std::uint32_t index, const AabbTree& tree, const Vec3& origin, const Counts& counts) {
+  const AabbTree::Node& node = tree.nodes[index];
+  if (!meets(node.box, origin)) return false;
+  if (!node.leaf())
+    return odd_below(index + 1, tree, origin, counts) != odd_below(node.right, tree, origin, counts);
+  bool odd = false;
+  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) odd ^= counts(tree.items[i]);
+  return odd;
+}
+
 }  // namespace
 
-bool odd_crossings(std::span<const Vec3> positions, std::span<const Triangle> triangles, const AabbTree& tree,
-                   const Vec3& origin, std::span<const std::uint32_t> component, std::uint32_t left_out) {
-  bool odd = false;
-  std::vector<std::uint32_t> stack{0};
-  while (!stack.empty()) {
-    const std::uint32_t index = stack.back();
-    const AabbTree::Node& node = tree.nodes[index];
-    stack.pop_back();
-    if (!meets(node.box, origin)) continue;
-    if (!node.leaf()) {
-      stack.insert(stack.end(), {index + 1, node.right});
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const std::uint32_t face = tree.items[i];
-      if (left_out == kNone || component[face] != left_out) odd ^= meets(triangles[face], positions, origin);
-    }
-  }
-  return odd;
+bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
+                   std::span<const Triangle> triangles, const AabbTree& tree, const Vec3& origin,
+                   std::span<const std::uint32_t> component, std::uint32_t left_out) {
+  return odd_below(0, tree, origin, [&](std::uint32_t face) {
+    return (left_out == kNone || component[face] != left_out) &&
+           meets(triangles[face], positions, frame, origin);
+  });
 }
 
 }  // namespace sdm

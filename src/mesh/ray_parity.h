@@ -10,12 +10,12 @@
 
 namespace sdm {
 
-/// Whether a ray from `origin` meets the faces of the tree an odd number of times, leaving out the faces of
-/// one component (kNone: none). All coordinates in the unit frame of the tree. Not defined on the mesh
-/// itself. Cost: O(log n) and the faces met.
-[[nodiscard]] bool odd_crossings(std::span<const Vec3> unit_positions, std::span<const Triangle> triangles,
-                                 const AabbTree& tree, const Vec3& origin,
-                                 std::span<const std::uint32_t> component = {},
+/// Whether a ray from `origin`, a point in the unit frame, meets the faces of the tree an odd number of
+/// times, leaving out the faces of one component (kNone: none). Not defined on the mesh itself. Allocates
+/// nothing. Cost: O(log n) and the faces met.
+[[nodiscard]] bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
+                                 std::span<const Triangle> triangles, const AabbTree& tree,
+                                 const Vec3& origin, std::span<const std::uint32_t> component = {},
                                  std::uint32_t left_out = kNone);
 
 }  // namespace sdm

@@ -4,6 +4,7 @@
 #include "core/vec.h"
 #include "engine/oracle.h"
 #include "engine/support.h"
+#include "mesh/shapes.h"
 
 namespace sdm {
 namespace {
@@ -106,8 +107,7 @@ std::size_t count_inside(const Sites& sites, const std::vector<Vec3>& points) {
   return count;
 }
 
-// A wedge whose sharp edge has a vertex on one side only, closed by a sliver: the sliver's normal is zero or
-// made of rounding errors, and its neighbours' pseudonormals were wrong.
+// A sliver's normal is zero or made of rounding errors, and its neighbours' pseudonormals were wrong.
 TEST(Sign, SliversAtSharpEdges) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(0, 1);
@@ -115,19 +115,7 @@ TEST(Sign, SliversAtSharpEdges) {
     for (const char* steps : {"", "rotate:31:127:201,translate:0.1:0.2:0.3", "rotate:-70:15:8"}) {
       SCOPED_TRACE(degrees);
       const double a = degrees * std::numbers::pi / 360, c = std::cos(a), s = std::sin(a);
-      const Mesh wedge{
-          .positions = {{0, 0, 0}, {1, 0, 0}, {0, c, s}, {1, c, s}, {0, c, -s}, {1, c, -s}, {0.37, 0, 0}},
-          .triangles = {{0, 2, 3},
-                        {0, 3, 1},
-                        {0, 6, 4},
-                        {6, 5, 4},
-                        {6, 1, 5},
-                        {2, 4, 5},
-                        {2, 5, 3},
-                        {0, 4, 2},
-                        {1, 3, 5},
-                        {0, 1, 6}},
-          .corner_uvs = {}};
+      const Mesh wedge = test::wedge(a);
       std::vector<Vec3> outside, within;
       for (int i = 0; i < 500; ++i) {
         const double x = 0.05 + 0.9 * u(random), m = u(random), n = u(random);

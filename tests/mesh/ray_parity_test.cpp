@@ -57,10 +57,11 @@ bool odd_from_origin(const Cone& cone) {
     for (const std::uint32_t v : {a, b, c}) extend(box, cone.positions[v]);
   }
   const AabbTree tree = build_aabb_tree(boxes, faces, 4);
-  return odd_crossings(cone.positions, cone.triangles, tree, {0, 0, 0});
+  return odd_crossings(cone.positions, UnitFrame{}, cone.triangles, tree, {0, 0, 0});
 }
 
-// The ray passes through a vertex exactly: from outside into the cone and out of its base, or from inside out.
+// The ray passes through a vertex exactly: from outside into the cone and out of its base, or from inside
+// out.
 TEST(RayParity, CountsAVertexOnceAtMost) {
   std::mt19937 random(1);
   for (int i = 0; i < 500; ++i) {

@@ -13,6 +13,24 @@ inline Mesh tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, {}};
 }
 
+/// A closed wedge of twice this angle about the plane z = 0. Its sharp edge, along x, has a vertex on one
+/// side only, and between them a sliver.
+inline Mesh wedge(double half_angle) {
+  const double c = std::cos(half_angle), s = std::sin(half_angle);
+  return {{{0, 0, 0}, {1, 0, 0}, {0, c, s}, {1, c, s}, {0, c, -s}, {1, c, -s}, {0.37, 0, 0}},
+          {{0, 2, 3},
+           {0, 3, 1},
+           {0, 6, 4},
+           {6, 5, 4},
+           {6, 1, 5},
+           {2, 4, 5},
+           {2, 5, 3},
+           {0, 4, 2},
+           {1, 3, 5},
+           {0, 1, 6}},
+          {}};
+}
+
 /// A band of n quads whose ends are joined, `crossed` (Möbius) or not; 2n triangles, open.
 inline Mesh band(std::uint32_t n, bool crossed) {
   Mesh mesh;
