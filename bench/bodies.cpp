@@ -6,7 +6,7 @@
 // A frame of ours is an update of all bodies and pairs(): separation with bounds, collision and penetration
 // depth, from samples or exactly. A frame of FCL's is a refit of all and the separations, on one thread.
 // Exits with 1 if a result is wrong.
-#include <sdm/bodies.h>
+#include <sdm/multi_body_query.h>
 #include <sdm/error.h>
 #include <sdm/threads.h>
 
@@ -132,8 +132,8 @@ bool agree(std::span<const PairProximity> ours, std::span<const FclCrowd::Pair> 
 Outcome measure(std::size_t size, double max_distance, int frames) {
   Crowd crowd(size);
   const std::vector<Mesh> meshes = crowd.meshes();
-  Bodies sampled(meshes, {.max_distance = max_distance});
-  Bodies exact(meshes, {.exact = true, .max_distance = max_distance});
+  MultiBodyQuery sampled(meshes, {.max_distance = max_distance});
+  MultiBodyQuery exact(meshes, {.exact = true, .max_distance = max_distance});
   FclCrowd fcl(meshes);
   Outcome outcome;
   std::vector<std::span<const Vec3>> positions(size);

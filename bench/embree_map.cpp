@@ -47,13 +47,13 @@ Vec3f closest_to_origin(const std::array<Vec3f, 3>& triangle) {
   return a + (weight_b * scale) * ab + (weight_c * scale) * ac;
 }
 
-struct Query {
+struct ProximityQuery {
   const std::vector<std::array<Vec3f, 3>>* triangles;
   EmbreeTexel* texel;
 };
 
 bool visit(RTCPointQueryFunctionArguments* arguments) {
-  const auto& query = *static_cast<const Query*>(arguments->userPtr);
+  const auto& query = *static_cast<const ProximityQuery*>(arguments->userPtr);
   EmbreeTexel& texel = *query.texel;
   const auto& [a, b, c] = (*query.triangles)[arguments->primID];
   const Vec3f vector = closest_to_origin({a - texel.point, b - texel.point, c - texel.point});
@@ -81,7 +81,7 @@ void EmbreeScene::closest(std::span<EmbreeTexel> texels) const {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f& p = texels[i].point;
       RTCPointQuery query{p[0], p[1], p[2], 0, std::numeric_limits<float>::infinity()};
-      Query user{&triangles_, &texels[i]};
+      ProximityQuery user{&triangles_, &texels[i]};
       rtcPointQuery(scene_.get(), &query, &context, visit, &user);
     }
   });

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "query/affine.h"
+#include "core/affine.h"
 
 namespace sdm::bench {
 

@@ -147,7 +147,7 @@ int run(int argc, char** argv) {
   for (const auto& [on, to] : {std::pair(&figure, &box), std::pair(&box, &figure)}) {
     const double ms = on->measure(to->sites, engine);
     std::printf("%zu triangles to %zu: %zu texels in %.1f ms on %s\n", on->surface.mesh().triangles.size(),
-                to->surface.mesh().triangles.size(), on->surface.samples().size(), ms,
+                to->surface.mesh().triangles.size(), on->surface.sample_texels().size(), ms,
                 on->map.raster ? on->map.raster->device.name.c_str() : "the processor");
   }
 

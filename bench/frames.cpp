@@ -57,7 +57,7 @@ struct Times {
 };
 
 /// Whether what was told from some samples is what all of them say.
-bool agree(Query& query, const std::array<DistanceMap, 2>& maps) {
+bool agree(ProximityQuery& query, const std::array<DistanceMap, 2>& maps) {
   double least = std::numeric_limits<double>::infinity(), deepest = 0;
   for (const DistanceMap& map : maps)
     for (const float d : map.distance) {
@@ -68,14 +68,14 @@ bool agree(Query& query, const std::array<DistanceMap, 2>& maps) {
   Box box = bounds(query.surface(0).mesh());
   extend(box, bounds(query.surface(1).mesh()));
   const double tolerance = 2e-6 * diagonal(box);
-  const Length &separation = query.separation(), depth = query.penetration_depth().value_or(Length{});
+  const BoundedLength &separation = query.separation(), depth = query.penetration_depth().value_or(BoundedLength{});
   const bool exact = separation.kind == Certainty::exact;
   return (exact ? separation.value <= least + tolerance : std::abs(separation.value - least) <= tolerance) &&
          std::abs(depth.value - deepest) <= tolerance;
 }
 
 Times measure(const Motion& motion, const ProximityOptions& options) {
-  Query query(motion.first[0], motion.first[1], options);
+  ProximityQuery query(motion.first[0], motion.first[1], options);
   std::array<DistanceMap, 2> maps;
   Times times;
   const auto frame = [&](const std::array<std::vector<Vec3>, 2>& positions) {

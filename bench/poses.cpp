@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "query/pair_search.h"
+#include "proximity/exact/pair_search.h"
 
 namespace sdm::bench {
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "query/mesh_pair.h"
+#include "proximity/exact/mesh_pair.h"
 
 namespace sdm::bench {
 

@@ -24,7 +24,7 @@
 #include "fcl_pair.h"
 #include "measure.h"
 #include "poses.h"
-#include "query/pair_search.h"
+#include "proximity/exact/pair_search.h"
 #include "scene/letters.h"
 #include "scene/reduce_mesh.h"
 #include "scenes.h"

@@ -1,7 +1,7 @@
 // How culling pays in the gl engine (the paper's 4.2): prints a Markdown table of what is tested, clipped and
 // drawn a texel, and of the time, with and without the bounds on distance, for both ways of clipping. Fails
 // unless bounds change no bit of a map, all maps agree with the cpu engine, and their counters obey the laws
-// of <sdm/raster.h>.
+// of <sdm/gl.h>.
 //
 //   build/dev/bench/raster_culling [--resolution N] [--device NAME]
 #include <sdm/sdm.h>
@@ -87,11 +87,11 @@ void print_heading() {
       "| --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
 }
 
-void print_row(const Scene& scene, const RasterOptions& options, const Measured& measured,
+void print_row(const Scene& scene, const GlOptions& options, const Measured& measured,
                double ms_with_bounds) {
-  const RasterReport& r = *measured.map.raster;
+  const GlReport& r = *measured.map.raster;
   std::printf("| %s | %s | %s |", scene.name.c_str(),
-              options.clip == RasterClip::planes ? "planes" : "stencil",
+              options.clip == GlClip::planes ? "planes" : "stencil",
               options.bound_culling ? "yes" : "no");
   for (const std::uint64_t count :
        {r.pairs, r.bound_tests, r.obb_tests, r.clipped_away + r.polygons, r.polygons, r.fragments})
@@ -108,11 +108,11 @@ bool tabulate(const Scene& scene, const std::string& device) {
     std::fprintf(stderr, "%s: %s\n", scene.name.c_str(), what.c_str());
     good = false;
   };
-  for (const RasterClip clip : {RasterClip::planes, RasterClip::stencil}) {
+  for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
     double ms_with_bounds = 0;
     std::vector<float> distances;  // with bounds
     for (const bool bounds : {true, false}) {
-      const RasterOptions raster{.device = device, .clip = clip, .bound_culling = bounds};
+      const GlOptions raster{.device = device, .clip = clip, .bound_culling = bounds};
       const Measured measured =
           measure(scene, {.engine = EngineKind::gl, .sign = SignMethod::none, .raster = raster});
       if (bounds) ms_with_bounds = measured.ms;

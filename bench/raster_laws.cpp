@@ -3,9 +3,9 @@
 namespace sdm::bench {
 
 std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& map,
-                                     const RasterOptions& options) {
-  const RasterReport& r = map.raster.value();
-  const bool stencil = options.clip == RasterClip::stencil;
+                                     const GlOptions& options) {
+  const GlReport& r = map.raster.value();
+  const bool stencil = options.clip == GlClip::stencil;
   const std::uint64_t values_in_use = r.stencil_misses - r.stencil_evictions;
   std::vector<std::string> broken;
   const auto law = [&broken](bool holds, const char* words) {
@@ -16,7 +16,7 @@ std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& 
   law(r.pairs == r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons,
       "pairs = culled_by_bound + culled_by_obb + clipped_away + polygons");
   law(options.bound_culling || r.culled_by_bound == 0, "without bounds culled_by_bound = 0");
-  law(r.texels == surface.samples().size(), "texels = those that a face owns");
+  law(r.texels == surface.sample_texels().size(), "texels = those that a face owns");
   law(r.fragments >= r.texels - map.beyond_max_distance, "fragments >= texels with a value");
   law(r.stencil_lookups == r.stencil_hits + r.stencil_misses, "lookups = hits + misses");
   law(r.stencil_evictions <= r.stencil_misses &&

@@ -8,8 +8,8 @@
 
 namespace sdm::bench {
 
-/// The laws of <sdm/raster.h> that the map's report breaks, in words; none if all is well.
+/// The laws of <sdm/gl.h> that the map's report breaks, in words; none if all is well.
 [[nodiscard]] std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& map,
-                                                   const RasterOptions& options);
+                                                   const GlOptions& options);
 
 }  // namespace sdm::bench

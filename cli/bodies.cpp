@@ -24,13 +24,13 @@ struct BodiesCommand {
   std::vector<std::string> files;
   std::string units;
   std::filesystem::path out;
-  sdm::BodiesOptions options;
+  sdm::MultiBodyOptions options;
   unsigned threads = 0;
   bool json = false, quiet = false;
 };
 
 /// The distance of each vertex of a body to the nearest of the others, signed as its map is.
-std::vector<float> nearest_vertex_distances(const sdm::Bodies& bodies, std::size_t on, double max_distance) {
+std::vector<float> nearest_vertex_distances(const sdm::MultiBodyQuery& bodies, std::size_t on, double max_distance) {
   const sdm::Mesh& mesh = bodies.surface(on).mesh();
   std::vector<float> nearest(mesh.positions.size(), std::nanf(""));
   for (std::size_t to = 0; to < bodies.size(); ++to) {
@@ -45,7 +45,7 @@ std::vector<float> nearest_vertex_distances(const sdm::Bodies& bodies, std::size
 }
 
 /// All maps, each in the folder of its body's number.
-void write_maps(const BodiesCommand& command, const sdm::Bodies& bodies, OutputFolder& out) {
+void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies, OutputFolder& out) {
   sdm::NearestMap nearest;
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     bodies.nearest_map(body, nearest);
@@ -58,7 +58,7 @@ void write_maps(const BodiesCommand& command, const sdm::Bodies& bodies, OutputF
 }
 
 nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector<Input>& inputs,
-                                 sdm::Bodies& bodies) {
+                                 sdm::MultiBodyQuery& bodies) {
   nlohmann::ordered_json report;
   report["version"] = sdm::kVersion;
   report["bodies"] = nlohmann::ordered_json::array();
@@ -72,7 +72,7 @@ nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector
   return report;
 }
 
-std::string summary(const BodiesCommand& command, sdm::Bodies& bodies) {
+std::string summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
   std::string text;
   for (std::size_t body = 0; body < bodies.size(); ++body)
     text += "  " + std::to_string(body) + "  " + command.files[body] + "\n";
@@ -100,7 +100,7 @@ void run(BodiesCommand command) {
     meshes.push_back(inputs.back().mesh);
   }
   const double import_ms = watch.lap();
-  sdm::Bodies bodies(std::move(meshes), command.options);
+  sdm::MultiBodyQuery bodies(std::move(meshes), command.options);
   const double build_ms = watch.lap();
   progress.step("queries");
   nlohmann::ordered_json report = report_of(command, inputs, bodies);
@@ -146,7 +146,7 @@ void add_bodies_command(CLI::App& app) {
   CLI::App* bodies =
       app.add_subcommand("bodies", "Tell how many meshes meet: separation, collision and depth of all pairs");
   bodies->footer(
-      "Bodies are numbered from 0 as they are given. With -o, each has a folder of that number: its map as "
+      "MultiBodyQuery are numbered from 0 as they are given. With -o, each has a folder of that number: its map as "
       "`sdm map` writes it, to the nearest of the other bodies, and body.npy, which body that is.\n\n"
       "Example, all pairs that are nearer than 5:\n"
       "  sdm bodies part1.stl part2.stl housing.stl --max-distance 5");

@@ -13,7 +13,7 @@ namespace {
 
 using Row = std::array<std::string, 5>;
 
-std::string words(const sdm::Length& length) {
+std::string words(const sdm::BoundedLength& length) {
   if (length.kind == sdm::Certainty::bounded)
     return number(length.value) + " (" + number(length.lower) + " to " + number(length.upper) + ")";
   return number(length.value) + " (" + name(length.kind) + ")";

@@ -1,7 +1,7 @@
 // What was found of many bodies, as JSON and as a table. The keys are documented in docs/proximity.md.
 #pragma once
 
-#include <sdm/bodies.h>
+#include <sdm/multi_body_query.h>
 
 #include <nlohmann/json.hpp>
 #include <span>

@@ -1,6 +1,6 @@
 #include "devices.h"
 
-#include <sdm/raster.h>
+#include <sdm/gl.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -21,7 +21,7 @@ namespace {
 Tolerance judge(double tolerance, const sdm::Surface& surface, const sdm::DistanceMap& map,
                 const std::vector<float>& at_vertices, double error_bound) {
   double largest = map.beyond_max_distance > 0 ? std::numeric_limits<double>::infinity() : 0;
-  for (const auto texel : surface.samples()) largest = std::fmax(largest, std::abs(map.distance[texel]));
+  for (const auto texel : surface.sample_texels()) largest = std::fmax(largest, std::abs(map.distance[texel]));
   for (const auto& triangle : surface.mesh().triangles)
     for (const auto vertex : triangle) {
       const double d = std::abs(at_vertices[vertex]);

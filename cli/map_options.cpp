@@ -41,10 +41,10 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_option("--gl-device", c.map.raster.device,
                  "gl: the device, by its number in `sdm devices` or a part of its name")
       ->type_name("NAME");
-  add_choice<sdm::RasterClip>(
+  add_choice<sdm::GlClip>(
       app, "--clip", c.map.raster.clip,
       "gl: what keeps polygons within faces of O1, planes or, as in the paper, a cache of stencil values",
-      {{"planes", sdm::RasterClip::planes}, {"stencil", sdm::RasterClip::stencil}});
+      {{"planes", sdm::GlClip::planes}, {"stencil", sdm::GlClip::stencil}});
   app.add_option("--stencil-values", c.map.raster.stencil_values,
                  "gl, --clip stencil: how many values the faces share")
       ->check(whole_number(1, 255))
@@ -70,6 +70,6 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
   for (const char* option : {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling"})
     if (app.count(option) > 0 && c.map.engine != sdm::EngineKind::gl)
       throw CLI::ValidationError(option, "needs --engine gl");
-  if (app.count("--stencil-values") > 0 && c.map.raster.clip != sdm::RasterClip::stencil)
+  if (app.count("--stencil-values") > 0 && c.map.raster.clip != sdm::GlClip::stencil)
     throw CLI::ValidationError("--stencil-values", "needs --clip stencil");
 }

@@ -1,7 +1,7 @@
 // The command line of commands about the proximity of two bodies.
 #pragma once
 
-#include <sdm/proximity.h>
+#include <sdm/proximity_query.h>
 
 #include <CLI/CLI.hpp>
 #include <array>

@@ -8,7 +8,7 @@ const char* name(sdm::Certainty kind) {
   return kind == sdm::Certainty::exact ? "exact" : kind == sdm::Certainty::bounded ? "bounded" : "estimate";
 }
 
-Json to_json(const sdm::Length& length) {
+Json to_json(const sdm::BoundedLength& length) {
   return {{"value", length.value},
           {"kind", name(length.kind)},
           {"lower", length.lower},
@@ -24,7 +24,7 @@ Json to_json(const sdm::Contact& contact) {
           {"patch", contact.patch}};
 }
 
-Json to_json(const sdm::Decision& decision) {
+Json to_json(const sdm::BoundedBool& decision) {
   return {{"value", decision.value}, {"kind", name(decision.kind)}};
 }
 
@@ -50,14 +50,14 @@ std::string point(const sdm::Vec3& p) {
   return text.insert(0, 1, '(').append(")");
 }
 
-std::string words(const sdm::Length& length, const std::string& unit) {
+std::string words(const sdm::BoundedLength& length, const std::string& unit) {
   std::string text = number(length.value) + unit;
   if (length.kind == sdm::Certainty::bounded)
     text += "   between " + number(length.lower) + " and " + number(length.upper);
   return text + " (" + name(length.kind) + ")\n";
 }
 
-std::string between(const sdm::Length& length) {
+std::string between(const sdm::BoundedLength& length) {
   if (!length.witness) return {};
   return "            from " + point((*length.witness)[0]) + " to " + point((*length.witness)[1]) + "\n";
 }
@@ -82,7 +82,7 @@ Json to_json(sdm::Query& query) {
 
 std::string summary(sdm::Query& query, const std::string& units) {
   const std::string unit = units.empty() ? "" : " " + units;
-  const sdm::Decision colliding = query.colliding();
+  const sdm::BoundedBool colliding = query.colliding();
   std::string text =
       std::string("  colliding  ") + (colliding.value ? "yes (" : "no (") + name(colliding.kind) + ")\n";
   text += "  separation " + words(query.separation(), unit);

@@ -1,14 +1,14 @@
 // What queries found, as JSON and in words. The keys are documented in docs/proximity.md.
 #pragma once
 
-#include <sdm/proximity.h>
+#include <sdm/proximity_query.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
 
 [[nodiscard]] const char* name(sdm::Certainty kind);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::Length& length);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::Decision& decision);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedLength& length);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedBool& decision);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Contact& contact);
 
 /// All answers of the query, which are computed if need be.

@@ -22,11 +22,11 @@ const char* name(sdm::SignMethod method) {
   }
 }
 
-const char* name(sdm::RasterClip clip) {
-  return clip == sdm::RasterClip::planes ? "planes" : "stencil";
+const char* name(sdm::GlClip clip) {
+  return clip == sdm::GlClip::planes ? "planes" : "stencil";
 }
 
-double overdraw(const sdm::RasterReport& r) {
+double overdraw(const sdm::GlReport& r) {
   return r.texels == 0 ? 0 : static_cast<double>(r.fragments) / static_cast<double>(r.texels);
 }
 
@@ -35,8 +35,8 @@ double rounded(double ms) {
   return std::round(1000 * ms) / 1000;
 }
 
-Json to_json(const sdm::RasterReport& r) {
-  const sdm::RasterReport::Times& t = r.time_ms;
+Json to_json(const sdm::GlReport& r) {
+  const sdm::GlReport::Times& t = r.time_ms;
   return {{"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
           {"clip", name(r.clip)},
           {"sites", r.sites},
@@ -108,7 +108,7 @@ Json to_json(const Input& input) {
 
 Json to_json(const sdm::Surface& surface) {
   return {{"kind", name(surface.atlas_kind())},   {"resolution", surface.resolution()},
-          {"charts", surface.chart_count()},      {"texels", surface.samples().size()},
+          {"charts", surface.chart_count()},      {"texels", surface.sample_texels().size()},
           {"utilisation", surface.utilisation()}, {"max_stretch", surface.max_stretch()}};
 }
 

@@ -40,7 +40,7 @@ struct Outcome {
   std::size_t beyond_max_distance = 0;
   double error_bound = 0;
   std::optional<Tolerance> tolerance;
-  std::optional<sdm::RasterReport> raster;
+  std::optional<sdm::GlReport> raster;
   Times time;
 };
 

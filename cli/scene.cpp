@@ -146,7 +146,7 @@ void add_scene_command(CLI::App& app) {
       ->capture_default_str();
   scene
       ->add_option("--format", command->format,
-                   "Bodies that move: NAME.ply and NAME.npy, or NAME/00000.ply and so on")
+                   "MultiBodyQuery that move: NAME.ply and NAME.npy, or NAME/00000.ply and so on")
       ->check(CLI::IsMember({"npy", "ply"}).description(""))
       ->type_name("npy|ply")
       ->capture_default_str();

@@ -22,7 +22,7 @@ struct SelfCommand {
   std::string file, transform;
   std::filesystem::path out;
   sdm::AtlasOptions atlas;
-  sdm::SelfOptions self;
+  sdm::SelfProximityOptions self;
   sdm::PictureOptions picture;
   std::vector<double> range;
   unsigned threads = 0;
@@ -36,13 +36,13 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   const sdm::Surface surface(input.mesh, command.atlas);
   const double atlas_ms = watch.lap();
   progress.step("sites");
-  sdm::SelfQuery query(input.mesh, command.self);
+  sdm::SelfProximityQuery query(input.mesh, command.self);
   const double sites_ms = watch.lap();
 
   const sdm::SelfMapOptions options{command.self.max_distance, command.atlas.progress};
   const sdm::DistanceMap map = sdm::compute_self_map(surface, query.sites(), query.exclusion(), options);
   const auto at_vertices = sdm::self_distances_at_vertices(query.sites(), query.exclusion(), options);
-  const std::optional<sdm::Length> separation = query.separation();
+  const std::optional<sdm::BoundedLength> separation = query.separation();
   const double map_ms = watch.lap();
 
   progress.step("export");

@@ -18,9 +18,9 @@ struct FrameTimes {
 
 struct Frame {
   std::size_t index = 0;
-  sdm::Length separation;
-  sdm::Decision colliding;
-  std::optional<sdm::Length> depth;
+  sdm::BoundedLength separation;
+  sdm::BoundedBool colliding;
+  std::optional<sdm::BoundedLength> depth;
   std::size_t contacts = 0, patches = 0;
   std::array<double, 2> error_bound{};     ///< of each body: covering radius
   std::array<double, 2> relative_error{};  ///< of each body: see sdm::RelativeError

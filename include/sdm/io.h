@@ -4,7 +4,7 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
-#include <sdm/temporal.h>
+#include <sdm/temporal_maps.h>
 
 #include <filesystem>
 #include <optional>

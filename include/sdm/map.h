@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/progress.h>
-#include <sdm/raster.h>
+#include <sdm/gl.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 
@@ -41,7 +41,7 @@ struct MapOptions {
   SignMethod sign = SignMethod::automatic;
   /// Greater than 0, in units of the meshes. Texels farther than this hold no value (NaN).
   double max_distance = std::numeric_limits<double>::infinity();
-  RasterOptions raster{};  ///< for EngineKind::gl
+  GlOptions raster{};  ///< for EngineKind::gl
   Progress progress{};
 };
 
@@ -55,7 +55,7 @@ struct DistanceMap {
   std::vector<SiteType> site_type;
   SignUsed sign;
   std::size_t beyond_max_distance = 0;  ///< owned texels without a value
-  std::optional<RasterReport> raster;   ///< of EngineKind::gl
+  std::optional<GlReport> raster;   ///< of EngineKind::gl
 };
 
 /// Computes the map. Distance and vector are those of a site found exactly (cpu: to 1e-6 of the diagonal of

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "atlas/cluster.h"
+#include "atlas/charts/cluster.h"
 #include "atlas/layout.h"
-#include "atlas/pack.h"
-#include "atlas/shape.h"
-#include "atlas/split.h"
+#include "atlas/packing/pack.h"
+#include "atlas/charts/shape.h"
+#include "atlas/charts/split.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <string>
 
-#include "atlas/face_geometry.h"
+#include "atlas/charts/face_geometry.h"
 #include "atlas/layout.h"
-#include "atlas/overlap.h"
+#include "atlas/charts/overlap.h"
 #include "core/vec.h"
 
 namespace sdm {

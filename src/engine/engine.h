@@ -7,7 +7,7 @@
 #include <functional>
 #include <span>
 
-#include "mesh/sites_impl.h"
+#include "sites/sites_data.h"
 
 namespace sdm {
 
@@ -39,24 +39,24 @@ struct ClosestPacket {
 };
 
 /// Takes closest points as they are found: those of the points from `first` on.
-using Deliver = std::function<void(std::size_t first, const ClosestPacket& closest)>;
+using ClosestSink = std::function<void(std::size_t first, const ClosestPacket& closest)>;
 
 /// Finds, for each point, the closest point of O2 within max_distance; type `none` where there is none. One
 /// thread; called for batches of points from several threads at once.
-using ClosestSearch = void (*)(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
-                               const Deliver& deliver);
+using ClosestSearch = void (*)(const SitesData& sites, std::span<const Vec3> points, double max_distance,
+                               const ClosestSink& deliver);
 
 /// Scalar, double precision, best-first over the binary tree: every number to rounding.
-void reference_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
-                      const Deliver& deliver);
-[[nodiscard]] ClosestPoint reference_closest(const Sites::Impl& sites, const Vec3& point,
+void reference_search(const SitesData& sites, std::span<const Vec3> points, double max_distance,
+                      const ClosestSink& deliver);
+[[nodiscard]] ClosestPoint reference_closest(const SitesData& sites, const Vec3& point,
                                              double max_distance);
 
 /// Groups of points against the wide tree, and lists of its sites, in single precision; the winner in double.
 /// Groups are formed of neighbours in `points`. A winner can be another than the closest site only where the
 /// two differ by rounding: some 10⁻⁷ of the scene's extent.
-void cpu_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
-                const Deliver& deliver);
+void cpu_search(const SitesData& sites, std::span<const Vec3> points, double max_distance,
+                const ClosestSink& deliver);
 
 /// The search of an engine.
 ClosestSearch search_of(EngineKind engine);

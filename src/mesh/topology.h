@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/rows.h"
+#include "core/rows.h"
 
 namespace sdm {
 

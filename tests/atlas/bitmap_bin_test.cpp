@@ -1,4 +1,4 @@
-#include "atlas/bitmap_bin.h"
+#include "atlas/packing/bitmap_bin.h"
 
 #include <gtest/gtest.h>
 

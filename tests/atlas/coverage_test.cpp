@@ -8,10 +8,10 @@
 #include <functional>
 #include <random>
 
-#include "atlas/coverage.h"
+#include "surface/sampling_bound/coverage.h"
 #include "atlas/meshes.h"
-#include "atlas/sample_runs.h"
-#include "atlas/sample_tree.h"
+#include "surface/sample_blocks.h"
+#include "surface/sampling_bound/sample_tree.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
@@ -90,8 +90,8 @@ struct Ball {
 class SampleBalls {
  public:
   explicit SampleBalls(const Surface& surface) : surface_(surface) {
-    for (std::size_t r = 0; r < run_count(surface.samples().size()); ++r) {
-      const SampleRun run(r, surface.samples().size());
+    for (std::size_t r = 0; r < run_count(surface.sample_texels().size()); ++r) {
+      const SampleBlock run(r, surface.sample_texels().size());
       Ball& around = runs_.emplace_back(surface.sample_points()[run.first], 0);
       for (std::size_t i = run.first; i < run.end; ++i)
         around.radius = std::max(around.radius, norm(ball(i).centre - around.centre) + ball(i).radius);
@@ -102,7 +102,7 @@ class SampleBalls {
   [[nodiscard]] bool some_contains(const Vec3& p) const {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       if (!runs_[r].contains(p)) continue;
-      const SampleRun run(r, surface_.samples().size());
+      const SampleBlock run(r, surface_.sample_texels().size());
       for (std::size_t i = run.first; i < run.end; ++i)
         if (ball(i).contains(p)) return true;
     }
@@ -120,7 +120,7 @@ class SampleBalls {
 
 /// The balls that Coverage tells of all ranges of so many runs, around the sample in their middle.
 std::vector<Ball> spreads(const Surface& surface, std::size_t runs) {
-  const std::size_t samples = surface.samples().size(), count = run_count(samples);
+  const std::size_t samples = surface.sample_texels().size(), count = run_count(samples);
   std::vector<Ball> balls;
   for (std::size_t first = 0; first < count; first += runs) {
     const RunRange range{first, std::min(count, first + runs)};

@@ -1,12 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/error_bound.h>
+#include <sdm/sampling_bound.h>
 
 #include <random>
 
 #include "atlas/meshes.h"
-#include "atlas/sample_tree.h"
+#include "surface/sampling_bound/sample_tree.h"
 #include "core/vec.h"
 
 namespace sdm {

@@ -44,7 +44,7 @@ TEST(AtlasErrors, LongThinMeshesAreLaidOutAcross) {
                        .triangles = {{0, 1, 2}, {0, 2, 3}},
                        .corner_uvs = {}};
       const Surface surface(strip, {.resolution = resolution});
-      EXPECT_GE(surface.samples().size(), resolution / 2);
+      EXPECT_GE(surface.sample_texels().size(), resolution / 2);
     }
 }
 

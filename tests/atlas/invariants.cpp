@@ -113,7 +113,7 @@ void expect_owners(const Surface& surface) {
           ++cracks;
       }
   }
-  for (const std::uint32_t texel : surface.samples()) {
+  for (const std::uint32_t texel : surface.sample_texels()) {
     const std::uint32_t f = surface.texel_faces()[texel];
     const Vec2 centre = {static_cast<double>(texel % n) + 0.5, static_cast<double>(texel / n) + 0.5};
     strays += depth(mapped(surface, f), centre) < -kTexels;
@@ -127,7 +127,7 @@ void expect_owners(const Surface& surface) {
 void expect_gutters(const Surface& surface, std::uint32_t gutter) {
   const auto n = surface.resolution();
   std::size_t close = 0;
-  for (const std::uint32_t texel : surface.samples())
+  for (const std::uint32_t texel : surface.sample_texels())
     close += strangers_near(surface, texel % n, texel / n, 2 * gutter,
                             surface.face_charts()[surface.texel_faces()[texel]]);
   EXPECT_EQ(close, 0u);
@@ -188,7 +188,7 @@ void expect_stretch(const Surface& surface) {
 }
 
 void expect_samples(const Surface& surface) {
-  std::vector<std::uint32_t> sorted(surface.samples().begin(), surface.samples().end()), owned;
+  std::vector<std::uint32_t> sorted(surface.sample_texels().begin(), surface.sample_texels().end()), owned;
   std::sort(sorted.begin(), sorted.end());
   for (std::uint32_t i = 0; i < surface.texel_faces().size(); ++i)
     if (surface.texel_faces()[i] != kNone) owned.push_back(i);

@@ -1,4 +1,4 @@
-#include "atlas/normal_cone.h"
+#include "atlas/charts/normal_cone.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "atlas/overlap.h"
+#include "atlas/charts/overlap.h"
 
 #include <gtest/gtest.h>
 

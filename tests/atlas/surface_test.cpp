@@ -98,7 +98,7 @@ TEST(Charts, DoNotDependOnThreads) {
   const ThreadLimit limit(1);
   const Surface serial(mesh, {.resolution = 256});
   EXPECT_TRUE(std::ranges::equal(parallel.texel_faces(), serial.texel_faces()));
-  EXPECT_TRUE(std::ranges::equal(parallel.samples(), serial.samples()));
+  EXPECT_TRUE(std::ranges::equal(parallel.sample_texels(), serial.sample_texels()));
 }
 
 TEST(Charts, DoNotDependOnTheUnit) {
@@ -126,7 +126,7 @@ TEST(Triangles, SmallOnesOwnATexelEach) {
 
 TEST(Samples, AreTheOwnedTexelsWithTheirPoints) {
   const Surface surface(test::load("pig.off"), {.resolution = 256});
-  const auto samples = surface.samples();
+  const auto samples = surface.sample_texels();
   ASSERT_EQ(surface.sample_points().size(), samples.size());
   std::set<std::uint32_t> owned;
   for (std::uint32_t texel = 0; texel < surface.texel_faces().size(); ++texel)
@@ -139,7 +139,7 @@ TEST(Samples, AreTheOwnedTexelsWithTheirPoints) {
 
 TEST(Samples, SixteenInARowAreNearEachOther) {
   const Surface surface(test::load("bunny.obj"), {.resolution = 512});
-  const auto samples = surface.samples();
+  const auto samples = surface.sample_texels();
   double sum = 0;
   std::size_t groups = 0;
   for (std::size_t i = 0; i + 16 <= samples.size(); i += 16, ++groups) {
@@ -178,7 +178,7 @@ TEST(Refit, MovesTexelsWithTheirFaces) {
     double worst = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
       worst = std::max(worst, norm(surface.sample_points()[i] - moved(before[i])));
-      ASSERT_EQ(surface.sample_points()[i], surface.texel_point(surface.samples()[i]));
+      ASSERT_EQ(surface.sample_points()[i], surface.texel_point(surface.sample_texels()[i]));
     }
     EXPECT_LE(worst, 1e-9 * size);
     EXPECT_GT(surface.sampling_bound(), 1.5 * bound);

@@ -1,7 +1,7 @@
 // `sdm bodies`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/bodies.h>
+#include <sdm/multi_body_query.h>
 
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -25,8 +25,8 @@ struct BodiesCommand : ::testing::Test, TwoTori {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-  [[nodiscard]] Bodies in_library(const BodiesOptions& options = {}) const {
-    return Bodies({read_mesh(o1), read_mesh(o2), read_mesh(o3)}, options);
+  [[nodiscard]] MultiBodyQuery in_library(const MultiBodyOptions& options = {}) const {
+    return MultiBodyQuery({read_mesh(o1), read_mesh(o2), read_mesh(o3)}, options);
   }
 };
 
@@ -37,7 +37,7 @@ TEST_F(BodiesCommand, PrintsThePairsOfTheLibrary) {
     const Outcome run = run_sdm(bodies(more));
     ASSERT_EQ(run.code, 0) << run.err;
     const Json json = Json::parse(run.out);
-    Bodies expected = in_library({.atlas = {.resolution = 64}, .exact = exact});
+    MultiBodyQuery expected = in_library({.atlas = {.resolution = 64}, .exact = exact});
     ASSERT_EQ(json["pairs"].size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
       const PairProximity& pair = expected.pairs()[i];
@@ -89,7 +89,7 @@ TEST_F(BodiesCommand, WritesAMapForEachBody) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"0", "1", "2", "report.json"}));
   EXPECT_EQ(contents(out + "/report.json"), run.out);
-  const Bodies expected = in_library({.atlas = {.resolution = 64}, .max_distance = 9});
+  const MultiBodyQuery expected = in_library({.atlas = {.resolution = 64}, .max_distance = 9});
   for (std::size_t body = 0; body < 3; ++body) {
     const std::string mine = out + "/" + std::to_string(body);
     EXPECT_EQ(names_in(mine), (std::vector<std::string>{"body.npy", "direction.png", "distance.png",

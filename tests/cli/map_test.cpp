@@ -51,7 +51,7 @@ TEST_F(MapCommand, ReportHasTheNumbersOfTheLibrary) {
   EXPECT_EQ(report["atlas"]["kind"], "charts");
   EXPECT_EQ(report["atlas"]["resolution"], 128);
   EXPECT_EQ(report["atlas"]["charts"], surface.chart_count());
-  EXPECT_EQ(report["atlas"]["texels"], surface.samples().size());
+  EXPECT_EQ(report["atlas"]["texels"], surface.sample_texels().size());
   EXPECT_EQ(report["atlas"]["utilisation"], surface.utilisation());
   EXPECT_EQ(report["atlas"]["max_stretch"], surface.max_stretch());
   EXPECT_EQ(report["sign"]["method"], "pseudonormal");

@@ -1,8 +1,8 @@
 // `sdm proximity` and `sdm sequence`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/error_bound.h>
-#include <sdm/proximity.h>
+#include <sdm/sampling_bound.h>
+#include <sdm/proximity_query.h>
 #include <sdm/transform.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ TEST_F(ProximityCommand, PrintsTheAnswersOfTheLibrary) {
   const Outcome run = run_sdm({"proximity", o1, o2, "--json", "--resolution", "128", "--units", "mm"});
   ASSERT_EQ(run.code, 0) << run.err;
   const Json json = Json::parse(run.out);
-  Query query(read_mesh(o1), read_mesh(o2), {.atlas = {.resolution = 128}});
+  ProximityQuery query(read_mesh(o1), read_mesh(o2), {.atlas = {.resolution = 128}});
   EXPECT_EQ(json["separation"]["value"], query.separation().value);
   EXPECT_EQ(json["separation"]["lower"], query.separation().lower);
   EXPECT_EQ(json["separation"]["upper"], query.separation().upper);
@@ -67,7 +67,7 @@ TEST_F(ProximityCommand, AsksTheTrianglesThemselves) {
     const Json json = Json::parse(run.out);
     Mesh second = read_mesh(o2);
     transform(second, parse_transform(placement));
-    Query query(read_mesh(o1), second, {.atlas = {.resolution = 64}, .exact = true});
+    ProximityQuery query(read_mesh(o1), second, {.atlas = {.resolution = 64}, .exact = true});
     EXPECT_EQ(json["separation"]["kind"], "exact");
     EXPECT_EQ(json["separation"]["value"], query.separation().value);
     EXPECT_EQ(json["separation"]["lower"], json["separation"]["upper"]);
@@ -135,7 +135,7 @@ TEST_F(SequenceCommand, FollowsTheBodies) {
   const std::vector<Json> all = lines();
   ASSERT_EQ(all.size(), 12u);
   EXPECT_EQ(csv_rows(), 12u);
-  Query query(torus(12, 1, {-3.2, 0, 0}), read_mesh(o2), {.atlas = {.resolution = 64}});
+  ProximityQuery query(torus(12, 1, {-3.2, 0, 0}), read_mesh(o2), {.atlas = {.resolution = 64}});
   const RelativeError error(query.surface(0));
   for (std::size_t i = 0; i < all.size(); ++i) {
     SCOPED_TRACE(i);

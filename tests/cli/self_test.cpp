@@ -38,14 +38,14 @@ TEST_F(SelfCommand, WritesAllResultsWithTheNumbersOfTheLibrary) {
 
     const Mesh mesh = read_mesh(o1);
     const Surface surface(mesh, {.resolution = 128});
-    SelfQuery query(mesh, {.exclusion = rule});
+    SelfProximityQuery query(mesh, {.exclusion = rule});
     const DistanceMap map = compute_self_map(surface, query.sites(), query.exclusion());
     const DistanceStatistics expected = statistics(surface, map);
     EXPECT_EQ(report["version"], kVersion);
     EXPECT_EQ(report["mesh"]["file"], o1);
     EXPECT_EQ(report["mesh"]["triangles"], 288);
     EXPECT_EQ(report["units"], "mm");
-    EXPECT_EQ(report["atlas"]["texels"], surface.samples().size());
+    EXPECT_EQ(report["atlas"]["texels"], surface.sample_texels().size());
     EXPECT_EQ(report["exclusion"]["rings"], geodesic ? Json(nullptr) : Json(rule.rings));
     EXPECT_EQ(report["exclusion"]["geodesic"], geodesic ? Json(0.7) : Json(nullptr));
     EXPECT_TRUE(report["max_distance"].is_null());

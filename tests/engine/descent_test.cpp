@@ -6,7 +6,7 @@
 #include "engine/engine.h"
 #include "engine/simd_targets.h"
 #include "engine/support.h"
-#include "mesh/sites_impl.h"
+#include "sites/sites_data.h"
 
 namespace sdm {
 namespace {
@@ -158,7 +158,7 @@ TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
 // rounding.
 TEST(Descent, EvaluatesFewSites) {
   const Surface bunny(test::load("bunny.obj", "fit"), {.resolution = 1024});
-  const double packets = static_cast<double>(bunny.samples().size()) / PointGroup::kPacket;
+  const double packets = static_cast<double>(bunny.sample_texels().size()) / PointGroup::kPacket;
   const auto work = [&](const char* placement) {
     return count_work(Sites(test::load("armadillo.off", placement)).impl(), bunny.sample_points());
   };

@@ -49,7 +49,7 @@ void expect_agreement(const Mesh& o1, const Mesh& o2, std::uint32_t resolution) 
   const Surface surface(o1, {.resolution = resolution});
   const Sites sites(o2);
   const double tolerance = 1e-6 * test::scene_diagonal(o1, o2);
-  ASSERT_GT(surface.samples().size(), 100u);
+  ASSERT_GT(surface.sample_texels().size(), 100u);
 
   const std::vector<Vec3> points = test::sample_points(surface);
   const std::vector<double> expected = test::evaluate(oracle::CgalDistance(o2), points);
@@ -61,7 +61,7 @@ void expect_agreement(const Mesh& o1, const Mesh& o2, std::uint32_t resolution) 
     test::expect_map(surface, sites, map, expected, tolerance);
     if (!reference) reference = map;
     test::Disagreements from_reference(tolerance);
-    for (const std::uint32_t t : surface.samples())
+    for (const std::uint32_t t : surface.sample_texels())
       from_reference.compare(t, map.distance[t], reference->distance[t]);
     EXPECT_TRUE(from_reference.none());
   }

@@ -53,7 +53,7 @@ TEST_P(HardCases, IdenticalMeshes) {
   const Surface surface(mesh, {.resolution = 256});
   const Sites sites(mesh);
   test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam().engine}),
-                   std::vector<double>(surface.samples().size(), 0.0),
+                   std::vector<double>(surface.sample_texels().size(), 0.0),
                    1e-6 * test::scene_diagonal(mesh, mesh));
 }
 

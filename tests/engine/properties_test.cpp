@@ -93,7 +93,7 @@ TEST_P(Properties, RefitEqualsRebuild) {
   const DistanceMap a = map(surface, refitted), b = map(surface, rebuilt);
   EXPECT_EQ(a.sign.method, b.sign.method);
   test::Disagreements distances(1e-6 * test::scene_diagonal(surface.mesh(), twisted));
-  for (const std::uint32_t t : surface.samples()) distances.compare(t, a.distance[t], b.distance[t]);
+  for (const std::uint32_t t : surface.sample_texels()) distances.compare(t, a.distance[t], b.distance[t]);
   EXPECT_TRUE(distances.none());
 }
 
@@ -124,13 +124,13 @@ TEST_P(Properties, UnionIsTheMinimum) {
                     to_both = compute_map(surface, Sites(test::joined(a, b)), options);
   test::Disagreements distances(1e-6 * test::scene_diagonal(surface.mesh(), test::joined(a, b)));
   std::size_t nearer_a = 0;
-  for (const std::uint32_t t : surface.samples()) {
+  for (const std::uint32_t t : surface.sample_texels()) {
     distances.compare(t, to_both.distance[t], std::min(to_a.distance[t], to_b.distance[t]));
     nearer_a += to_a.distance[t] < to_b.distance[t];
   }
   EXPECT_TRUE(distances.none());
   EXPECT_GT(nearer_a, 0u);
-  EXPECT_LT(nearer_a, surface.samples().size());
+  EXPECT_LT(nearer_a, surface.sample_texels().size());
 }
 
 TEST_P(Properties, MaxDistanceCutsAndCounts) {
@@ -141,7 +141,7 @@ TEST_P(Properties, MaxDistanceCutsAndCounts) {
   const DistanceMap near = compute_map(surface, sites, {.engine = GetParam(), .max_distance = limit});
   std::size_t beyond = 0, wrong = 0;
   test::Disagreements distances(tolerance);
-  for (const std::uint32_t t : surface.samples()) {
+  for (const std::uint32_t t : surface.sample_texels()) {
     const double unlimited = std::abs(all.distance[t]);
     if (std::isnan(near.distance[t])) {
       ++beyond;
@@ -155,11 +155,11 @@ TEST_P(Properties, MaxDistanceCutsAndCounts) {
   EXPECT_TRUE(distances.none());
   EXPECT_EQ(wrong, 0u);
   EXPECT_EQ(near.beyond_max_distance, beyond);
-  EXPECT_GT(beyond, surface.samples().size() / 10);
-  EXPECT_LT(beyond, surface.samples().size());
+  EXPECT_GT(beyond, surface.sample_texels().size() / 10);
+  EXPECT_LT(beyond, surface.sample_texels().size());
 
   const DistanceMap nothing = compute_map(surface, sites, {.engine = GetParam(), .max_distance = 1e-9});
-  EXPECT_EQ(nothing.beyond_max_distance, surface.samples().size());
+  EXPECT_EQ(nothing.beyond_max_distance, surface.sample_texels().size());
   const std::vector<Vec3> far{{100, 0, 0}};
   const ClosestPoint none = closest_points(sites, far, {.engine = GetParam(), .max_distance = 1.0})[0];
   EXPECT_EQ(none.type, SiteType::none);
@@ -173,7 +173,7 @@ TEST_P(Properties, MapEqualsClosestPoints) {
   const auto closest = closest_points(sites, test::sample_points(surface), {.engine = GetParam()});
   test::Disagreements distances(1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh()));
   for (std::size_t i = 0; i < closest.size(); ++i)
-    distances.compare(i, texels.distance[surface.samples()[i]], closest[i].distance);
+    distances.compare(i, texels.distance[surface.sample_texels()[i]], closest[i].distance);
   EXPECT_TRUE(distances.none());
 }
 
@@ -184,7 +184,7 @@ TEST_P(Properties, ThreadsDoNotMatter) {
   const ThreadLimit one(1);
   const DistanceMap single = map(surface, sites);
   std::size_t different = 0;
-  for (const std::uint32_t t : surface.samples())
+  for (const std::uint32_t t : surface.sample_texels())
     different += many.distance[t] != single.distance[t] || many.vector[t] != single.vector[t] ||
                  many.site[t] != single.site[t] || many.site_type[t] != single.site_type[t];
   EXPECT_EQ(different, 0u);

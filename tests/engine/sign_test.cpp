@@ -24,7 +24,7 @@ void expect_signs(const Mesh& o1, const Mesh& o2, SignMethod method = SignMethod
     EXPECT_EQ(map.sign.method, method == SignMethod::automatic ? SignMethod::pseudonormal : method);
     std::size_t counts[2] = {0, 0}, wrong = 0;
     for (std::size_t i = 0; i < inside.size(); ++i) {
-      const double distance = map.distance[surface.samples()[i]];
+      const double distance = map.distance[surface.sample_texels()[i]];
       ASSERT_FALSE(std::isnan(distance));
       if (std::abs(distance) <= least) continue;
       ++counts[inside[i] != 0];
@@ -174,7 +174,7 @@ TEST(Sign, OpenMeshIsUnsignedAndSaysWhy) {
   const DistanceMap map = compute_map(surface, open);
   EXPECT_EQ(map.sign.method, SignMethod::none);
   EXPECT_FALSE(map.sign.reason.empty());
-  for (const std::uint32_t t : surface.samples()) ASSERT_GE(map.distance[t], 0);
+  for (const std::uint32_t t : surface.sample_texels()) ASSERT_GE(map.distance[t], 0);
   EXPECT_THROW((void)compute_map(surface, open, {.sign = SignMethod::pseudonormal}), Error);
 }
 
@@ -182,7 +182,7 @@ TEST(Sign, NoneIsNone) {
   const Surface surface(test::cube(0.5), {.resolution = 32});
   const DistanceMap map = compute_map(surface, Sites(test::sphere(2)), {.sign = SignMethod::none});
   EXPECT_EQ(map.sign.method, SignMethod::none);
-  for (const std::uint32_t t : surface.samples()) ASSERT_GT(map.distance[t], 0);
+  for (const std::uint32_t t : surface.sample_texels()) ASSERT_GT(map.distance[t], 0);
 }
 
 }  // namespace

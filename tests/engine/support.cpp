@@ -112,7 +112,7 @@ std::vector<Vec3> random_surface_points(const Mesh& mesh, std::size_t count, std
 
 std::vector<Vec3> sample_points(const Surface& surface) {
   std::vector<Vec3> points;
-  for (const std::uint32_t texel : surface.samples()) points.push_back(surface.texel_point(texel));
+  for (const std::uint32_t texel : surface.sample_texels()) points.push_back(surface.texel_point(texel));
   return points;
 }
 
@@ -169,13 +169,13 @@ void expect_map(const Surface& surface, const Sites& sites, const DistanceMap& m
   ASSERT_EQ(map.vector.size(), texels);
   ASSERT_EQ(map.site.size(), texels);
   ASSERT_EQ(map.site_type.size(), texels);
-  ASSERT_EQ(expected.size(), surface.samples().size());
+  ASSERT_EQ(expected.size(), surface.sample_texels().size());
   EXPECT_EQ(map.beyond_max_distance, 0u);
 
   Disagreements distances(tolerance), sites_named(tolerance);
   Disagreements lengths(4 * std::numeric_limits<float>::epsilon());  // relative: both are rounded to float
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    const std::uint32_t t = surface.samples()[i];
+    const std::uint32_t t = surface.sample_texels()[i];
     const Vec3 vector{map.vector[t][0], map.vector[t][1], map.vector[t][2]};
     const double distance = std::abs(map.distance[t]), length = norm(vector);
     distances.compare(i, distance, expected[i]);

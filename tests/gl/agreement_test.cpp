@@ -39,7 +39,7 @@ void expect_closest_sites(const Surface& surface, const Sites& sites, const Dist
                           const std::vector<double>& expected, double tolerance) {
   Disagreements nearest(tolerance), feet(tolerance);
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    const std::uint32_t t = surface.samples()[i];
+    const std::uint32_t t = surface.sample_texels()[i];
     const Vec3 q = surface.texel_point(t);
     const double distance = test::distance_to_site(sites, map.site_type[t], map.site[t], q);
     nearest.compare(i, distance, expected[i]);
@@ -56,7 +56,7 @@ void expect_signs(const Surface& surface, const DistanceMap& map, const Distance
   EXPECT_EQ(map.sign.method, reference.sign.method);
   EXPECT_EQ(map.sign.reason, reference.sign.reason);
   std::size_t negative = 0, positive = 0, wrong = 0;
-  for (const std::uint32_t t : surface.samples()) {
+  for (const std::uint32_t t : surface.sample_texels()) {
     if (std::abs(reference.distance[t]) <= tolerance) continue;
     ++(reference.distance[t] < 0 ? negative : positive);
     wrong += (map.distance[t] < 0) != (reference.distance[t] < 0);
@@ -76,14 +76,14 @@ TEST_P(Agreement, EveryTexelWithTheReference) {
   const Surface surface(scene.o1(), scene.atlas);
   const Sites sites(scene.o2());
   const double tolerance = 1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh());
-  ASSERT_GT(surface.samples().size(), 40u);
+  ASSERT_GT(surface.sample_texels().size(), 40u);
 
   const DistanceMap reference = compute_map(surface, sites, {.engine = EngineKind::reference});
   std::vector<double> expected;
-  for (const std::uint32_t t : surface.samples()) expected.push_back(std::abs(reference.distance[t]));
-  for (const RasterClip clip : {RasterClip::planes, RasterClip::stencil}) {
-    SCOPED_TRACE(clip == RasterClip::planes ? "planes" : "stencil");
-    const RasterOptions options{.clip = clip};
+  for (const std::uint32_t t : surface.sample_texels()) expected.push_back(std::abs(reference.distance[t]));
+  for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
+    SCOPED_TRACE(clip == GlClip::planes ? "planes" : "stencil");
+    const GlOptions options{.clip = clip};
     const DistanceMap map = test::gl_map(surface, sites, options);
     test::expect_map(surface, sites, map, expected, tolerance);
     expect_closest_sites(surface, sites, map, expected, tolerance);
@@ -112,14 +112,14 @@ TEST(Agreement, WithinAMaximumDistance) {
   const Sites sites(scene.o2());
   const double tolerance = 1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh());
   const DistanceMap all = compute_map(surface, sites, {.engine = EngineKind::reference});
-  for (const RasterClip clip : {RasterClip::planes, RasterClip::stencil})
+  for (const GlClip clip : {GlClip::planes, GlClip::stencil})
     for (const double limit : {0.02, 0.2, 1e-9}) {
       SCOPED_TRACE(limit);
       const DistanceMap near = compute_map(
           surface, sites, {.engine = EngineKind::gl, .max_distance = limit, .raster = {.clip = clip}});
       Disagreements distances(tolerance);
       std::size_t beyond = 0, wrong = 0;
-      for (const std::uint32_t t : surface.samples()) {
+      for (const std::uint32_t t : surface.sample_texels()) {
         if (!std::isnan(near.distance[t])) {
           distances.compare(t, near.distance[t], all.distance[t]);
           wrong += all.distance[t] > limit + tolerance;
@@ -134,9 +134,9 @@ TEST(Agreement, WithinAMaximumDistance) {
       EXPECT_EQ(near.beyond_max_distance, beyond);
       EXPECT_GT(beyond, 0u);
       if (limit > 1e-3) {
-        EXPECT_LT(beyond, surface.samples().size());
+        EXPECT_LT(beyond, surface.sample_texels().size());
       }
-      const RasterReport& r = near.raster.value();
+      const GlReport& r = near.raster.value();
       EXPECT_EQ(r.pairs, r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons);
       EXPECT_GE(r.fragments, r.texels - beyond);
     }

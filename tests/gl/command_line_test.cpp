@@ -1,7 +1,7 @@
 // `sdm devices`, the options of the gl engine, and machines without a device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/raster.h>
+#include <sdm/gl.h>
 
 #include <nlohmann/json.hpp>
 

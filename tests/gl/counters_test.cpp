@@ -1,4 +1,4 @@
-// What the options of <sdm/raster.h> change: counters, and never a bit of the map.
+// What the options of <sdm/gl.h> change: counters, and never a bit of the map.
 #include "gl/support.h"
 
 namespace sdm {
@@ -21,8 +21,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Counters,
 
 TEST_P(Counters, BoundsSaveWorkAndChangeNoBit) {
   const Pair pair(GetParam());
-  for (const RasterClip clip : {RasterClip::planes, RasterClip::stencil}) {
-    const RasterOptions with{.clip = clip}, without{.clip = clip, .bound_culling = false};
+  for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
+    const GlOptions with{.clip = clip}, without{.clip = clip, .bound_culling = false};
     const DistanceMap culled = gl_map(pair.surface, pair.sites, with);
     const DistanceMap all = gl_map(pair.surface, pair.sites, without);
     EXPECT_TRUE(test::identical(culled, all));
@@ -38,10 +38,10 @@ TEST_P(Counters, BoundsSaveWorkAndChangeNoBit) {
 // Both draw the same distances; of sites that tie to rounding, either may win.
 TEST_P(Counters, StencilAndPlanesFindTheSameDistances) {
   const Pair pair(GetParam());
-  const DistanceMap planes = gl_map(pair.surface, pair.sites, {.clip = RasterClip::planes});
-  const DistanceMap stencil = gl_map(pair.surface, pair.sites, {.clip = RasterClip::stencil});
+  const DistanceMap planes = gl_map(pair.surface, pair.sites, {.clip = GlClip::planes});
+  const DistanceMap stencil = gl_map(pair.surface, pair.sites, {.clip = GlClip::stencil});
   test::Disagreements distances(2e-6 * test::scene_diagonal(pair.surface.mesh(), pair.sites.mesh()));
-  for (const std::uint32_t t : pair.surface.samples())
+  for (const std::uint32_t t : pair.surface.sample_texels())
     distances.compare(t, stencil.distance[t], planes.distance[t]);
   EXPECT_TRUE(distances.none());
 }
@@ -54,7 +54,7 @@ TEST(Stencil, FewerValuesMissMoreAndChangeNoBit) {
     std::optional<DistanceMap> fewer;
     for (const int values : {1, 2, 7, 255}) {
       SCOPED_TRACE(values);
-      const RasterOptions options{.clip = RasterClip::stencil, .stencil_values = values};
+      const GlOptions options{.clip = GlClip::stencil, .stencil_values = values};
       DistanceMap map = gl_map(pair.surface, pair.sites, options);
       test::expect_laws(*map.raster, pair.surface, pair.sites, options);
       if (fewer) {
@@ -73,7 +73,7 @@ TEST(Stencil, FewerValuesMissMoreAndChangeNoBit) {
 TEST(Stencil, EvictsOnlyWhenFull) {
   const Pair many("BoxAroundFigure");  // 12 faces
   const auto report = [](const Pair& pair, int values) {
-    return *gl_map(pair.surface, pair.sites, {.clip = RasterClip::stencil, .stencil_values = values}).raster;
+    return *gl_map(pair.surface, pair.sites, {.clip = GlClip::stencil, .stencil_values = values}).raster;
   };
   EXPECT_EQ(report(many, 12).stencil_evictions, 0u);
   EXPECT_EQ(report(many, 12).stencil_misses, 12u);
@@ -83,7 +83,7 @@ TEST(Stencil, EvictsOnlyWhenFull) {
 
 TEST_P(Counters, DoNotDependOnThreadsOrRepetition) {
   const Pair pair(GetParam());
-  for (const RasterClip clip : {RasterClip::planes, RasterClip::stencil}) {
+  for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
     const DistanceMap first = gl_map(pair.surface, pair.sites, {.clip = clip});
     const DistanceMap second = gl_map(pair.surface, pair.sites, {.clip = clip});
     EXPECT_TRUE(test::identical(first, second));
@@ -100,7 +100,7 @@ TEST_P(Counters, DoNotDependOnThreadsOrRepetition) {
 TEST(Fragments, OfOneTriangleCoverEachTexelOnce) {
   const Pair pair("OneTriangle");
   for (const bool bounds : {true, false}) {
-    const RasterReport r = *gl_map(pair.surface, pair.sites, {.bound_culling = bounds}).raster;
+    const GlReport r = *gl_map(pair.surface, pair.sites, {.bound_culling = bounds}).raster;
     EXPECT_EQ(r.sites, 7u);
     EXPECT_EQ(r.sites_dropped, 0u);
     EXPECT_LT(static_cast<double>(r.fragments), 1.02 * static_cast<double>(r.texels));
@@ -110,7 +110,7 @@ TEST(Fragments, OfOneTriangleCoverEachTexelOnce) {
 // Of a box's edges the six diagonals of its sides lie between coplanar faces: nothing is closest to them.
 TEST(Sites, BetweenCoplanarFacesAreDropped) {
   const Pair pair("FigureInBox");
-  const RasterReport r = *gl_map(pair.surface, pair.sites).raster;
+  const GlReport r = *gl_map(pair.surface, pair.sites).raster;
   EXPECT_EQ(r.sites, 12u + 18u + 8u);
   EXPECT_EQ(r.sites_dropped, 6u);
 }
@@ -118,7 +118,7 @@ TEST(Sites, BetweenCoplanarFacesAreDropped) {
 // The pairs grow as the product of both meshes, the work must not.
 TEST(Bounds, LeaveFewPolygonsOfLargeMeshes) {
   const Pair pair("Apart");
-  const RasterReport r = *gl_map(pair.surface, pair.sites).raster;
+  const GlReport r = *gl_map(pair.surface, pair.sites).raster;
   EXPECT_GT(r.pairs, 1000000000u);
   EXPECT_LT(static_cast<double>(r.polygons), 1e-3 * static_cast<double>(r.pairs));
 }

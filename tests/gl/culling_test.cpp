@@ -22,7 +22,7 @@ std::vector<std::pair<std::string, Mesh>> meshes() {
 using SiteName = std::pair<SiteType, std::uint32_t>;
 
 /// The regions of all sites with an interior.
-std::map<SiteName, SiteRegion> regions_of(const Sites::Impl& sites) {
+std::map<SiteName, SiteRegion> regions_of(const SitesData& sites) {
   std::map<SiteName, SiteRegion> regions;
   for (std::size_t leaf = 0; leaf + 1 < sites.regions.leaves.size(); ++leaf)
     for_each_site(sites.regions, leaf, [&](const auto& found, std::size_t index) {

@@ -13,7 +13,7 @@ namespace {
 using test::Replaced;
 using ::testing::HasSubstr;
 
-class DeviceFailure : public testing::TestWithParam<RasterClip> {
+class DeviceFailure : public testing::TestWithParam<GlClip> {
  protected:
   [[nodiscard]] DistanceMap map() const {
     return compute_map(surface_, sites_, {.engine = EngineKind::gl, .raster = {.clip = GetParam()}});
@@ -29,7 +29,7 @@ class DeviceFailure : public testing::TestWithParam<RasterClip> {
   Sites sites_{test::load("head.off", "fit,translate:0.5:0:0")};
   std::vector<float> expected_;
 };
-INSTANTIATE_TEST_SUITE_P(Clips, DeviceFailure, testing::Values(RasterClip::planes, RasterClip::stencil));
+INSTANTIATE_TEST_SUITE_P(Clips, DeviceFailure, testing::Values(GlClip::planes, GlClip::stencil));
 
 TEST_P(DeviceFailure, AResetWhileDrawing) {
   const Replaced reset(epoxy_glGetGraphicsResetStatus,
@@ -76,9 +76,9 @@ TEST_P(DeviceFailure, WrongDepthsAreNotedAndDoNoHarm) {
                            std::memset(out, 0, static_cast<std::size_t>(size));
                        }));
   const DistanceMap found = map();
-  EXPECT_GT(found.raster->unconfirmed, surface_.samples().size() / 2);
+  EXPECT_GT(found.raster->unconfirmed, surface_.sample_texels().size() / 2);
   test::Disagreements distances(1e-6);
-  for (const std::uint32_t t : surface_.samples()) distances.compare(t, found.distance[t], expected_[t]);
+  for (const std::uint32_t t : surface_.sample_texels()) distances.compare(t, found.distance[t], expected_[t]);
   EXPECT_TRUE(distances.none());
 }
 

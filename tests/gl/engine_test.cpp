@@ -23,7 +23,7 @@ TEST(GlEngine, RigidMotionOfBothLeavesDistances) {
     ASSERT_TRUE(std::ranges::equal(here.texel_faces(), there.texel_faces()));
     const DistanceMap after = gl_map(there, Sites(test::placed(o2, motion)));
     test::Disagreements distances(1e-6 * test::scene_diagonal(o1, o2));
-    for (const std::uint32_t t : here.samples()) distances.compare(t, after.distance[t], before.distance[t]);
+    for (const std::uint32_t t : here.sample_texels()) distances.compare(t, after.distance[t], before.distance[t]);
     EXPECT_TRUE(distances.none());
   }
 }
@@ -58,7 +58,7 @@ TEST(GlEngine, RefitEqualsRebuild) {
   refitted.refit(twisted.positions);
   const DistanceMap a = gl_map(surface, refitted), b = gl_map(surface, Sites(twisted));
   test::Disagreements distances(1e-6 * test::scene_diagonal(surface.mesh(), twisted));
-  for (const std::uint32_t t : surface.samples()) distances.compare(t, a.distance[t], b.distance[t]);
+  for (const std::uint32_t t : surface.sample_texels()) distances.compare(t, a.distance[t], b.distance[t]);
   EXPECT_TRUE(distances.none());
 }
 
@@ -67,7 +67,7 @@ TEST(GlEngine, MapsOfAnySizeFollowEachOther) {
   const Surface small(test::load("head.off", "fit"), {.resolution = 64});
   const Surface large(test::cube(0.4), {.resolution = 512});
   const DistanceMap first_small = gl_map(small, sites), first_large = gl_map(large, sites);
-  for (const RasterClip clip : {RasterClip::stencil, RasterClip::planes})
+  for (const GlClip clip : {GlClip::stencil, GlClip::planes})
     for (int i = 0; i < 2; ++i) {
       const DistanceMap again_small = gl_map(small, sites, {.clip = clip});
       const DistanceMap again_large = gl_map(large, sites, {.clip = clip});
@@ -82,16 +82,16 @@ TEST(GlEngine, ThreadsMayAskAtOnce) {
   const Surface ball(test::sphere(2), {.resolution = 64});
   const DistanceMap head_alone = gl_map(head, elephant), ball_alone = gl_map(ball, box);
   const auto repeat = [](const Surface& surface, const Sites& sites, const DistanceMap& expected,
-                         RasterClip clip) {
+                         GlClip clip) {
     for (int i = 0; i < 5; ++i) {
       const DistanceMap map = gl_map(surface, sites, {.clip = clip});
       EXPECT_TRUE(test::identical(map, expected));
-      EXPECT_EQ(map.raster->texels, surface.samples().size());
+      EXPECT_EQ(map.raster->texels, surface.sample_texels().size());
     }
   };
-  std::thread first([&] { repeat(head, elephant, head_alone, RasterClip::planes); });
-  std::thread second([&] { repeat(ball, box, ball_alone, RasterClip::stencil); });
-  repeat(ball, box, ball_alone, RasterClip::planes);
+  std::thread first([&] { repeat(head, elephant, head_alone, GlClip::planes); });
+  std::thread second([&] { repeat(ball, box, ball_alone, GlClip::stencil); });
+  repeat(ball, box, ball_alone, GlClip::planes);
   first.join();
   second.join();
 }
@@ -122,7 +122,7 @@ TEST(GlEngine, ProgressIsReportedFromOneThreadAtATime) {
 TEST(GlEngine, CancelsAtAnyCallAndMapsAgain) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Sites sites(test::load("elephant.off", "fit"));
-  for (const RasterClip clip : {RasterClip::planes, RasterClip::stencil}) {
+  for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
     const DistanceMap whole = gl_map(surface, sites, {.clip = clip});
     const auto stop_at = [&](int last) {  // the number of calls; negative `last` never stops
       int calls = 0;

@@ -14,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 struct Refusal : testing::Test {
-  [[nodiscard]] std::string error(const RasterOptions& raster) const {
+  [[nodiscard]] std::string error(const GlOptions& raster) const {
     return error_of([&] { return test::gl_map(surface, sites, raster); });
   }
   const Surface surface{test::cube(), {.resolution = 32}};
@@ -23,9 +23,9 @@ struct Refusal : testing::Test {
 
 TEST_F(Refusal, OfStencilValuesOutOfRange) {
   for (const int values : {0, -1, 256, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()})
-    EXPECT_THAT(error({.clip = RasterClip::stencil, .stencil_values = values}),
+    EXPECT_THAT(error({.clip = GlClip::stencil, .stencil_values = values}),
                 AllOf(HasSubstr(std::to_string(values)), HasSubstr("255")));
-  EXPECT_EQ(error({.clip = RasterClip::stencil, .stencil_values = 1}), "");
+  EXPECT_EQ(error({.clip = GlClip::stencil, .stencil_values = 1}), "");
 }
 
 TEST_F(Refusal, OfUnknownDevices) {
@@ -62,7 +62,7 @@ TEST_F(Refusal, OfAMapLargerThanTheDevicesTextures) {
                   .triangles = {{0, 1, 2}},
                   .corner_uvs = {{{{0, 0}, {1e-3, 0}, {0, 1e-3}}}}};
   const Surface large(mesh, {.kind = AtlasKind::uv, .resolution = 16385});
-  RasterReport report;
+  GlReport report;
   const std::string message =
       error_of([&] { return gl_winners(large, sites, {.engine = EngineKind::gl}, report); });
   if (message.empty()) GTEST_SKIP() << "this device allows it";

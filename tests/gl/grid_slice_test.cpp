@@ -1,5 +1,5 @@
 // The rasteriser on a slice of a grid: any plane with an affine map is a domain, not only a face of O1.
-#include "engine/closest_on_face.h"
+#include "sites/closest_on_face.h"
 #include "engine/engine.h"
 #include "engine/gl/rasteriser.h"
 #include "engine/support.h"
@@ -20,7 +20,7 @@ PlanarDomain slice(double z) {
 
 TEST(GridSlice, HoldsTheClosestFaces) {
   const Sites sites(test::load("cow.off", "fit"));
-  const Sites::Impl& impl = sites.impl();
+  const SitesData& impl = sites.impl();
   const RasterDevice device("");
   const Context::Current current(device.context());
   for (const double z : {-0.9, 0.0, 0.37, 1.4}) {
@@ -34,7 +34,7 @@ TEST(GridSlice, HoldsTheClosestFaces) {
     Rasteriser rasteriser(device, kSide, WholeImage{});
     rasteriser.draw(batch);
     const std::vector<std::uint32_t> faces = rasteriser.read_back().faces;
-    RasterReport report;
+    GlReport report;
     rasteriser.count_into(report);
     EXPECT_GE(report.fragments, faces.size());
     EXPECT_EQ(report.stencil_lookups, 0u);

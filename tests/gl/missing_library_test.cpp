@@ -2,7 +2,7 @@
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/raster.h>
+#include <sdm/gl.h>
 
 #include <set>
 

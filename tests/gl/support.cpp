@@ -32,7 +32,7 @@ std::size_t count_owners(const Surface& surface) {
 
 }  // namespace
 
-DistanceMap gl_map(const Surface& surface, const Sites& sites, const RasterOptions& raster) {
+DistanceMap gl_map(const Surface& surface, const Sites& sites, const GlOptions& raster) {
   return compute_map(surface, sites, {.engine = EngineKind::gl, .raster = raster});
 }
 
@@ -45,8 +45,8 @@ testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b) {
   return testing::AssertionSuccess();
 }
 
-void expect_laws(const RasterReport& r, const Surface& surface, const Sites& sites,
-                 const RasterOptions& options) {
+void expect_laws(const GlReport& r, const Surface& surface, const Sites& sites,
+                 const GlOptions& options) {
   EXPECT_FALSE(r.device.name.empty());
   EXPECT_FALSE(r.device.driver.empty());
   EXPECT_EQ(r.clip, options.clip);
@@ -54,7 +54,7 @@ void expect_laws(const RasterReport& r, const Surface& surface, const Sites& sit
   EXPECT_EQ(r.sites, count_sites(sites));
   EXPECT_LT(r.sites_dropped, r.sites);
   EXPECT_EQ(r.faces, count_owners(surface));
-  EXPECT_EQ(r.texels, surface.samples().size());
+  EXPECT_EQ(r.texels, surface.sample_texels().size());
   EXPECT_GE(r.tiles, r.faces);
   EXPECT_EQ(r.pairs, (r.sites - r.sites_dropped) * r.tiles);
   EXPECT_EQ(r.pairs, r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons);
@@ -67,7 +67,7 @@ void expect_laws(const RasterReport& r, const Surface& surface, const Sites& sit
     EXPECT_EQ(r.culled_by_bound, 0u);
   }
 
-  if (options.clip == RasterClip::planes) {
+  if (options.clip == GlClip::planes) {
     EXPECT_EQ(r.stencil_lookups + r.stencil_hits + r.stencil_misses + r.stencil_evictions + r.stencil_clears,
               0u);
   } else {
@@ -86,7 +86,7 @@ void expect_laws(const RasterReport& r, const Surface& surface, const Sites& sit
   EXPECT_GT(r.time_ms.draw, 0);
 }
 
-void expect_same_counts(const RasterReport& a, const RasterReport& b) {
+void expect_same_counts(const GlReport& a, const GlReport& b) {
   EXPECT_EQ(a.sites, b.sites);
   EXPECT_EQ(a.sites_dropped, b.sites_dropped);
   EXPECT_EQ(a.faces, b.faces);

@@ -6,16 +6,16 @@
 namespace sdm::test {
 
 [[nodiscard]] DistanceMap gl_map(const Surface& surface, const Sites& sites,
-                                 const RasterOptions& raster = {});
+                                 const GlOptions& raster = {});
 
 /// Whether two maps have the very same bits in every value.
 [[nodiscard]] testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b);
 
-/// Fails unless the counters obey the laws of <sdm/raster.h>, for a map without a maximum distance.
-void expect_laws(const RasterReport& report, const Surface& surface, const Sites& sites,
-                 const RasterOptions& options);
+/// Fails unless the counters obey the laws of <sdm/gl.h>, for a map without a maximum distance.
+void expect_laws(const GlReport& report, const Surface& surface, const Sites& sites,
+                 const GlOptions& options);
 
 /// Fails unless the two reports have the same counts; times may differ.
-void expect_same_counts(const RasterReport& a, const RasterReport& b);
+void expect_same_counts(const GlReport& a, const GlReport& b);
 
 }  // namespace sdm::test

@@ -1,10 +1,10 @@
 // Tiles part the owned texels; their domains and bounds hold for every sample.
-#include "atlas/tiles.h"
+#include "surface/tiles.h"
 
 #include <algorithm>
 #include <set>
 
-#include "atlas/surface_impl.h"
+#include "surface/surface_data.h"
 #include "engine/engine.h"
 #include "engine/gl/domain_tree.h"
 #include "engine/support.h"
@@ -31,7 +31,7 @@ TEST(Tiles, PartTheOwnedTexels) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
     const Tiles& tiles = tiles_of(surface);
-    std::vector<std::uint32_t> all(tiles.texels), owned(surface.samples().begin(), surface.samples().end());
+    std::vector<std::uint32_t> all(tiles.texels), owned(surface.sample_texels().begin(), surface.sample_texels().end());
     std::ranges::sort(all);
     std::ranges::sort(owned);
     EXPECT_EQ(all, owned);
@@ -57,7 +57,7 @@ TEST(Tiles, PartTheOwnedTexels) {
 
 TEST(Tiles, DomainsHoldTheirSamples) {
   for (const Scene& scene : scenes())
-    for (const RasterClip clip : {RasterClip::planes, RasterClip::stencil}) {
+    for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
       SCOPED_TRACE(scene.name);
       const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
       const Tiles& tiles = tiles_of(surface);

@@ -59,7 +59,7 @@ TEST(Exr, HoldsMapsOverTime) {
   write_exr(folder / "temporal.exr", surface, maps);
   const Channels channels = read_exr(folder / "temporal.exr", 64);
   ASSERT_EQ(channels.size(), 4u);
-  for (const std::uint32_t t : surface.samples()) {
+  for (const std::uint32_t t : surface.sample_texels()) {
     const Vec3 p = surface.texel_point(t);
     const auto value = [&](const char* name) { return std::bit_cast<float>(channels.at(name)[t]); };
     ASSERT_FLOAT_EQ(value("min.D"), static_cast<float>(std::min({p[0], p[1], p[2]})));

@@ -84,7 +84,7 @@ TEST_F(Pictures, NothingInRangeHasItsOwnColourAndNoPartInTheScale) {
 
 TEST_F(Pictures, DirectionDecodesToTheUnitVector) {
   DistanceMap directed = map;
-  for (const std::uint32_t texel : surface.samples()) {
+  for (const std::uint32_t texel : surface.sample_texels()) {
     const auto t = static_cast<float>(texel);
     if (!std::isnan(map.distance[texel]))
       directed.vector[texel] = {std::sin(t) * 1e-3f, std::cos(t) * 1e-3f, -2e-3f};

@@ -45,7 +45,7 @@ inline DistanceMap map_of(const Surface& surface, const Field& field) {
   map.site.assign(texels, kNone);
   map.site_type.assign(texels, SiteType::none);
   map.sign = {SignMethod::pseudonormal, "made up"};
-  for (const std::uint32_t texel : surface.samples()) {
+  for (const std::uint32_t texel : surface.sample_texels()) {
     const double d = field(surface.texel_point(texel));
     if (std::isnan(d)) {
       ++map.beyond_max_distance;

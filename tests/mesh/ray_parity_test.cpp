@@ -1,4 +1,4 @@
-#include "mesh/ray_parity.h"
+#include "inside/crossings/ray_parity.h"
 
 #include <gtest/gtest.h>
 

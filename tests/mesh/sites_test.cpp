@@ -8,7 +8,7 @@
 
 #include "core/vec.h"
 #include "mesh/shapes.h"
-#include "mesh/sites_impl.h"
+#include "sites/sites_data.h"
 
 namespace sdm {
 namespace {
@@ -36,7 +36,7 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-void expect_same(const Sites::Impl& a, const Sites::Impl& b) {
+void expect_same(const SitesData& a, const SitesData& b) {
   EXPECT_TRUE(same_bits(a.topology.edges, b.topology.edges));
   EXPECT_TRUE(same_bits(a.topology.face_edges, b.topology.face_edges));
   EXPECT_TRUE(same_bits(a.topology.edge_offsets, b.topology.edge_offsets));

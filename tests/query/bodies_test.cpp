@@ -11,9 +11,9 @@
 #include "engine/support.h"
 #include "fcl_pair.h"
 #include "query/allocations.h"
-#include "query/mesh_pair.h"
+#include "proximity/exact/mesh_pair.h"
 #include "query/pair_oracle.h"
-#include "query/sweep.h"
+#include "core/sweep.h"
 
 namespace sdm::test {
 namespace {
@@ -83,11 +83,11 @@ std::vector<Mesh> crowd() {
           moved(sphere(2), {40, 3, 2})};
 }
 
-BodiesOptions options(double max_distance = kAny, bool exact = false) {
+MultiBodyOptions options(double max_distance = kAny, bool exact = false) {
   return {.atlas = {.resolution = 64}, .exact = exact, .max_distance = max_distance};
 }
 
-void expect_same(const Length& a, const Length& b) {
+void expect_same(const BoundedLength& a, const BoundedLength& b) {
   EXPECT_EQ(a.value, b.value);
   EXPECT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.lower, b.lower);
@@ -104,7 +104,7 @@ void expect_same(const PairProximity& a, const PairProximity& b) {
 }
 
 PairProximity by_query(const std::vector<Mesh>& meshes, std::uint32_t a, std::uint32_t b, bool exact) {
-  Query query(meshes[a], meshes[b], {.atlas = {.resolution = 64}, .exact = exact});
+  ProximityQuery query(meshes[a], meshes[b], {.atlas = {.resolution = 64}, .exact = exact});
   return {a, b, query.separation(), query.colliding(), query.penetration_depth()};
 }
 
@@ -121,7 +121,7 @@ TEST_P(ManyBodies, AnswerAsQueriesOfAllPairs) {
   std::size_t colliding = 0;
   for (const double max_distance : {kAny, 2.0, 0.3, 0.01}) {
     SCOPED_TRACE(max_distance);
-    Bodies bodies(meshes, options(max_distance, GetParam()));
+    MultiBodyQuery bodies(meshes, options(max_distance, GetParam()));
     std::set<std::pair<std::uint32_t, std::uint32_t>> reported;
     for (const PairProximity& pair : bodies.pairs()) {
       const auto same = std::ranges::find_if(
@@ -146,9 +146,9 @@ TEST_P(ManyBodies, AnswerAsQueriesOfAllPairs) {
 }
 
 // The triangles, by FCL and by all pairs of them; and the samples, by their bounds.
-TEST(Bodies, AgreeWithFclAndBruteForce) {
+TEST(MultiBodyQuery, AgreeWithFclAndBruteForce) {
   const std::vector<Mesh> meshes = crowd();
-  Bodies exact(meshes, options(kAny, true)), sampled(meshes, options());
+  MultiBodyQuery exact(meshes, options(kAny, true)), sampled(meshes, options());
   ASSERT_EQ(exact.pairs().size(), meshes.size() * (meshes.size() - 1) / 2);
   ASSERT_EQ(sampled.pairs().size(), exact.pairs().size());
   const Affine in_place;
@@ -159,7 +159,7 @@ TEST(Bodies, AgreeWithFclAndBruteForce) {
     SCOPED_TRACE(std::to_string(pair.first) + ' ' + std::to_string(pair.second));
     const double tolerance = 1e-6 * scene_diagonal(a, b);
     EXPECT_NEAR(pair.separation.value, std::max(0.0, bench::FclPair(a, b).distance(in_place)), tolerance);
-    const Length& bounded = sampled.pairs()[i].separation;
+    const BoundedLength& bounded = sampled.pairs()[i].separation;
     EXPECT_LE(bounded.lower, pair.separation.value + tolerance);
     EXPECT_GE(bounded.upper, pair.separation.value - tolerance);
     apart += pair.separation.value > 0;
@@ -175,10 +175,10 @@ TEST(Bodies, AgreeWithFclAndBruteForce) {
   EXPECT_GT(apart, 15);
 }
 
-TEST(Bodies, MapsHoldTheNearestOfSingleMaps) {
+TEST(MultiBodyQuery, MapsHoldTheNearestOfSingleMaps) {
   const std::vector<Mesh> meshes = crowd();
   for (const double max_distance : {kAny, 1.0}) {
-    const Bodies bodies(meshes, options(max_distance));
+    const MultiBodyQuery bodies(meshes, options(max_distance));
     for (std::uint32_t on = 0; on < meshes.size(); ++on) {
       SCOPED_TRACE(on);
       const Surface& surface = bodies.surface(on);
@@ -220,9 +220,9 @@ TEST(Bodies, MapsHoldTheNearestOfSingleMaps) {
 }
 
 // The same cube twice, once with a box that comes nearer.
-TEST(Bodies, MapsNameTheLowestOfEquals) {
+TEST(MultiBodyQuery, MapsNameTheLowestOfEquals) {
   const Mesh right = moved(cube(), {4, 0, 0});
-  const Bodies bodies({right, joined(right, moved(cube(), {0, 9, 0})), cube(), moved(cube(), {-6, 0, 0})},
+  const MultiBodyQuery bodies({right, joined(right, moved(cube(), {0, 9, 0})), cube(), moved(cube(), {-6, 0, 0})},
                       options(2.5));
   const NearestMap nearest = bodies.nearest_map(2);
   std::size_t to_right = 0;
@@ -239,7 +239,7 @@ TEST_P(ManyBodies, InAnotherOrderAnswerTheSame) {
   const std::vector<std::uint32_t> order{3, 6, 0, 7, 1, 5, 2, 4};
   std::vector<Mesh> shuffled;
   for (const std::uint32_t i : order) shuffled.push_back(meshes[i]);
-  Bodies bodies(meshes, options(3, GetParam())), others(shuffled, options(3, GetParam()));
+  MultiBodyQuery bodies(meshes, options(3, GetParam())), others(shuffled, options(3, GetParam()));
   ASSERT_EQ(bodies.pairs().size(), others.pairs().size());
   for (const PairProximity& pair : others.pairs()) {
     const auto [a, b] = std::minmax(order[pair.first], order[pair.second]);
@@ -264,7 +264,7 @@ TEST_P(ManyBodies, InAnotherOrderAnswerTheSame) {
 
 TEST_P(ManyBodies, FollowUpdatesWhateverTheThreads) {
   std::vector<Mesh> meshes = crowd();
-  Bodies bodies(meshes, options(2, GetParam()));
+  MultiBodyQuery bodies(meshes, options(2, GetParam()));
   const auto copy = [&] { return std::vector(bodies.pairs().begin(), bodies.pairs().end()); };
   const auto expect_all_same = [](const std::vector<PairProximity>& a, const std::vector<PairProximity>& b) {
     ASSERT_EQ(a.size(), b.size());
@@ -282,7 +282,7 @@ TEST_P(ManyBodies, FollowUpdatesWhateverTheThreads) {
   std::vector<std::span<const Vec3>> positions(meshes.size());
   positions[1] = away.positions, positions[7] = back.positions;
   bodies.update(positions);
-  Bodies others(meshes, options(2, GetParam()));
+  MultiBodyQuery others(meshes, options(2, GetParam()));
   others.update(7, back.positions);
   others.update(1, away.positions);
   const std::vector<PairProximity> now = copy();
@@ -301,7 +301,7 @@ TEST_P(ManyBodies, FollowUpdatesWhateverTheThreads) {
 TEST_P(ManyBodies, TakeNoMoreMemoryOnceTheyMove) {
   const ThreadLimit alone(1);  // threads that join later bring memory of their own
   const std::vector<Mesh> meshes = crowd();
-  Bodies bodies(meshes, options(1, GetParam()));
+  MultiBodyQuery bodies(meshes, options(1, GetParam()));
   std::array<std::vector<std::vector<Vec3>>, 2> frames;
   for (std::size_t f = 0; f < 2; ++f)
     for (std::size_t i = 0; i < meshes.size(); ++i)
@@ -318,32 +318,32 @@ TEST_P(ManyBodies, TakeNoMoreMemoryOnceTheyMove) {
   EXPECT_EQ(taken(), 0u);
 }
 
-TEST(Bodies, MayBeFew) {
-  Bodies none({});
+TEST(MultiBodyQuery, MayBeFew) {
+  MultiBodyQuery none({});
   EXPECT_EQ(none.size(), 0u);
   EXPECT_TRUE(none.pairs().empty());
   EXPECT_THROW(none.nearest_map(0), Error);
 
-  Bodies one({cube()}, options());
+  MultiBodyQuery one({cube()}, options());
   EXPECT_TRUE(one.pairs().empty());
   const NearestMap nearest = one.nearest_map(0);
-  EXPECT_EQ(nearest.map.beyond_max_distance, one.surface(0).samples().size());
+  EXPECT_EQ(nearest.map.beyond_max_distance, one.surface(0).sample_texels().size());
   EXPECT_THAT(nearest.body, testing::Each(kNone));
   EXPECT_THAT(nearest.map.site_type, testing::Each(SiteType::none));
 
-  Bodies two({cube(), moved(cube(), {5, 0, 0})}, options(2));
+  MultiBodyQuery two({cube(), moved(cube(), {5, 0, 0})}, options(2));
   EXPECT_TRUE(two.pairs().empty());
   EXPECT_EQ(two.candidate_pairs(), 0u);
-  EXPECT_EQ(two.nearest_map(0).map.beyond_max_distance, two.surface(0).samples().size());
+  EXPECT_EQ(two.nearest_map(0).map.beyond_max_distance, two.surface(0).sample_texels().size());
   two.update(1, moved(cube(), {3.5, 0, 0}).positions);
   ASSERT_EQ(two.pairs().size(), 1u);
   EXPECT_NEAR(two.pairs()[0].separation.value, 1.5, 1e-6);
 }
 
-TEST(Bodies, RefuseWhatDoesNotFit) {
+TEST(MultiBodyQuery, RefuseWhatDoesNotFit) {
   const std::vector<Mesh> meshes{cube(), moved(cube(), {3, 0, 0})};
-  Bodies bodies(meshes, options());
-  const Length before = bodies.pairs()[0].separation;
+  MultiBodyQuery bodies(meshes, options());
+  const BoundedLength before = bodies.pairs()[0].separation;
   const std::vector<Vec3> few(3), nan(8, Vec3{std::nan(""), 0, 0}), good = moved(cube(), {9, 0, 0}).positions;
   EXPECT_THROW(bodies.update(2, good), Error);
   EXPECT_THROW(bodies.update(0, few), Error);
@@ -353,10 +353,10 @@ TEST(Bodies, RefuseWhatDoesNotFit) {
   expect_same(bodies.pairs()[0].separation, before);
   EXPECT_THROW((void)bodies.surface(2), Error);
   EXPECT_THROW((void)bodies.sites(2), Error);
-  EXPECT_THROW(Bodies(meshes, options(0)), Error);
-  EXPECT_THROW(Bodies(meshes, options(std::nan(""))), Error);
+  EXPECT_THROW(MultiBodyQuery(meshes, options(0)), Error);
+  EXPECT_THROW(MultiBodyQuery(meshes, options(std::nan(""))), Error);
   try {
-    Bodies broken({cube(), {}}, options());
+    MultiBodyQuery broken({cube(), {}}, options());
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "body 1: there are no triangles");

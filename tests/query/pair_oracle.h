@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "query/triangle_pair.h"
+#include "proximity/exact/triangle_pair.h"
 
 namespace sdm::oracle {
 

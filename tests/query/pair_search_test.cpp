@@ -1,5 +1,5 @@
 // What holds for the closest points of any two surfaces.
-#include "query/pair_search.h"
+#include "proximity/exact/pair_search.h"
 
 #include <gmock/gmock.h>
 

@@ -9,7 +9,7 @@
 #include "fcl_pair.h"
 #include "poses.h"
 #include "query/pair_oracle.h"
-#include "query/pair_search.h"
+#include "proximity/exact/pair_search.h"
 
 namespace sdm {
 namespace {

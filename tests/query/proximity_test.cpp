@@ -11,7 +11,7 @@
 #include "core/vec.h"
 #include "engine/support.h"
 #include "mesh/shapes.h"
-#include "mesh/sites_impl.h"
+#include "sites/sites_data.h"
 #include "query/allocations.h"
 
 namespace sdm::test {
@@ -26,14 +26,14 @@ ProximityOptions at_resolution(std::uint32_t resolution, double margin = 0) {
   return {.atlas = {.resolution = resolution}, .contact_margin = margin};
 }
 
-void expect_holds(const Length& length, double truth, double slack) {
+void expect_holds(const BoundedLength& length, double truth, double slack) {
   EXPECT_LE(length.lower, truth + slack);
   EXPECT_GE(length.upper, truth - slack);
   EXPECT_LE(length.lower, length.value);
   EXPECT_LE(length.value, length.upper);
 }
 
-void expect_witness(const Length& length) {
+void expect_witness(const BoundedLength& length) {
   ASSERT_TRUE(length.witness);
   EXPECT_NEAR(norm((*length.witness)[1] - (*length.witness)[0]), length.value, 1e-6);
 }
@@ -41,7 +41,7 @@ void expect_witness(const Length& length) {
 // Faces 0.3 apart, or through each other by 0.3.
 TEST(Proximity, OfCubesIsKnown) {
   for (const double gap : {0.3, 2.0, 40.0}) {
-    Query query(cube(), moved(cube(), {2 + gap, 0.1, 0.2}), at_resolution(64));
+    ProximityQuery query(cube(), moved(cube(), {2 + gap, 0.1, 0.2}), at_resolution(64));
     expect_holds(query.separation(), gap, 1e-9);
     expect_witness(query.separation());
     EXPECT_LT(query.separation().upper - query.separation().lower, 0.2);
@@ -52,7 +52,7 @@ TEST(Proximity, OfCubesIsKnown) {
     EXPECT_EQ(query.penetration_depth()->upper, 0);
     EXPECT_TRUE(query.contacts().empty());
   }
-  Query query(cube(), moved(cube(), {1.7, 0.1, 0.2}), at_resolution(128));
+  ProximityQuery query(cube(), moved(cube(), {1.7, 0.1, 0.2}), at_resolution(128));
   EXPECT_TRUE(query.colliding().value);
   EXPECT_EQ(query.colliding().kind, Certainty::exact);
   expect_holds(*query.penetration_depth(), 0.3, 1e-9);
@@ -66,9 +66,9 @@ TEST(Proximity, DepthOfSpheresConverges) {
   double error = 1;
   for (const int level : {1, 2, 3, 4}) {
     const auto resolution = static_cast<std::uint32_t>(32 << level);
-    Query query(sphere(level), moved(sphere(level), {0.9, 1.2, 0}), at_resolution(resolution));
+    ProximityQuery query(sphere(level), moved(sphere(level), {0.9, 1.2, 0}), at_resolution(resolution));
     ASSERT_TRUE(query.penetration_depth());
-    const Length depth = *query.penetration_depth();
+    const BoundedLength depth = *query.penetration_depth();
     EXPECT_EQ(depth.kind, Certainty::bounded);
     EXPECT_GT(depth.lower, 0.2);
     const double now = std::max(std::abs(depth.lower - 0.5), std::abs(depth.upper - 0.5));
@@ -85,8 +85,8 @@ TEST(Proximity, DepthInATorus) {
   for (const std::uint32_t n : {24u, 48u, 96u}) {
     Mesh ball = sphere(3);
     for (Vec3& p : ball.positions) p = 0.4 * p + Vec3{2.3, 0, 0};
-    Query query(torus(2 * n, n), ball, at_resolution(4 * n));
-    const Length depth = *query.penetration_depth();
+    ProximityQuery query(torus(2 * n, n), ball, at_resolution(4 * n));
+    const BoundedLength depth = *query.penetration_depth();
     EXPECT_TRUE(query.colliding().value);
     expect_holds(depth, 1, 0.04 * 24 / n);
     const double now = depth.upper - depth.lower;
@@ -104,14 +104,14 @@ TEST(Proximity, AgreesWithWholeMaps) {
        {"fit,translate:0.8:0:0", "fit,translate:0.1:0:0", "fit,scale:0.2", "fit,translate:0.45:0:0"}) {
     SCOPED_TRACE(placement);
     const Mesh armadillo = load("armadillo.off", placement);
-    Query query(bunny, armadillo, at_resolution(256));
+    ProximityQuery query(bunny, armadillo, at_resolution(256));
     const double tolerance = 2e-6 * scene_diagonal(bunny, armadillo);
     double least = 1e300, deepest = 0, lower = 1e300;
     for (int b = 0; b < 2; ++b) {
       const Surface& surface = query.surface(b);
       const DistanceMap map = compute_map(surface, query.sites(1 - b));
-      for (std::size_t i = 0; i < surface.samples().size(); ++i) {
-        const double d = map.distance[surface.samples()[i]];
+      for (std::size_t i = 0; i < surface.sample_texels().size(); ++i) {
+        const double d = map.distance[surface.sample_texels()[i]];
         least = std::min(least, std::abs(d));
         lower = std::min(lower, std::abs(d) - surface.sample_radii()[i]);
         if (map.sign.method != SignMethod::none) deepest = std::max(deepest, -d);
@@ -133,8 +133,8 @@ TEST(Proximity, BoundsHoldTheExactAnswers) {
                          std::array{placed(cube(), "fit"), load("pig.off", "fit")}};
   std::size_t colliding = 0, undecided = 0;
   for (const auto& [a, b] : pairs) {
-    Query sampled(a, b, at_resolution(128));
-    Query exact(a, b, {.atlas = {.resolution = 128}, .exact = true});
+    ProximityQuery sampled(a, b, at_resolution(128));
+    ProximityQuery exact(a, b, {.atlas = {.resolution = 128}, .exact = true});
     for (int pose = 0; pose < 40; ++pose) {
       SCOPED_TRACE(pose);
       const auto text = [](auto... x) { return ((std::string(1, ':') + std::to_string(x)) + ...); };
@@ -144,7 +144,7 @@ TEST(Proximity, BoundsHoldTheExactAnswers) {
       sampled.update({}, posed.positions);
       exact.update({}, posed.positions);
       const double tolerance = 1e-6 * scene_diagonal(a, posed);
-      const Length truth = exact.separation();
+      const BoundedLength truth = exact.separation();
       EXPECT_EQ(truth.kind, Certainty::exact);
       expect_holds(sampled.separation(), truth.value, tolerance);
       if (sampled.colliding().kind == Certainty::exact) {
@@ -153,7 +153,7 @@ TEST(Proximity, BoundsHoldTheExactAnswers) {
         ++undecided;
       }
       colliding += exact.colliding().value;
-      const Length& depth = *exact.penetration_depth();
+      const BoundedLength& depth = *exact.penetration_depth();
       EXPECT_EQ(depth.kind, exact.colliding().value ? Certainty::bounded : Certainty::exact);
       EXPECT_TRUE(depth.kind == Certainty::bounded || depth.value == 0);
       // The same samples, whether or not some of them were ruled out.
@@ -171,12 +171,12 @@ TEST(Proximity, BoundsNarrowWithTheResolution) {
   for (const char* placement : {"fit,translate:0.9:0.1:0", "fit,translate:0.4:0.1:0"}) {
     SCOPED_TRACE(placement);
     const Mesh b = load("head.off", placement);
-    Query exact(a, b, {.atlas = {.resolution = 64}, .exact = true});
+    ProximityQuery exact(a, b, {.atlas = {.resolution = 64}, .exact = true});
     const double truth = exact.separation().value, tolerance = 1e-6 * scene_diagonal(a, b);
     double separation = 1e300, depth = 1e300, deepest = 0;
     for (const std::uint32_t resolution : {64u, 128u, 256u, 512u}) {
-      Query query(a, b, at_resolution(resolution));
-      const auto narrows = [](const Length& length, double& width) {
+      ProximityQuery query(a, b, at_resolution(resolution));
+      const auto narrows = [](const BoundedLength& length, double& width) {
         EXPECT_LT(length.upper - length.lower, 0.75 * width);
         width = length.upper - length.lower;
       };
@@ -194,20 +194,20 @@ TEST(Proximity, BoundsNarrowWithTheResolution) {
 }
 
 TEST(Proximity, LooksWhereItMatters) {
-  Query query(sphere(5), moved(sphere(5), {2.2, 0, 0}), at_resolution(512));
+  ProximityQuery query(sphere(5), moved(sphere(5), {2.2, 0, 0}), at_resolution(512));
   (void)query.separation();
-  const std::size_t all = query.surface(0).samples().size() + query.surface(1).samples().size();
+  const std::size_t all = query.surface(0).sample_texels().size() + query.surface(1).sample_texels().size();
   EXPECT_LT(query.samples_used(), all / 4);
 }
 
 TEST(Proximity, OpenMeshesHaveNoInside) {
   const Mesh open = band(30, false);
-  Query query(open, moved(open, {0.5, 0, 0.2}), at_resolution(128));
+  ProximityQuery query(open, moved(open, {0.5, 0, 0.2}), at_resolution(128));
   EXPECT_FALSE(query.penetration_depth());
   EXPECT_EQ(query.separation().lower, 0);
   EXPECT_EQ(query.colliding().kind, Certainty::estimate);
   // Of a pair with one solid the other's surface can be inside of it.
-  Query solid(cube(), moved(open, {0, 0, 0.8}), at_resolution(128));
+  ProximityQuery solid(cube(), moved(open, {0, 0, 0.8}), at_resolution(128));
   ASSERT_TRUE(solid.penetration_depth());
 }
 
@@ -215,7 +215,7 @@ TEST(Proximity, OpenMeshesHaveNoInside) {
 TEST(Proximity, HoldsWhatIsNested) {
   Mesh inner = cube(0.5);
   for (const bool swapped : {false, true}) {
-    Query query(swapped ? inner : cube(), swapped ? cube() : inner, at_resolution(64));
+    ProximityQuery query(swapped ? inner : cube(), swapped ? cube() : inner, at_resolution(64));
     EXPECT_TRUE(query.colliding().value);
     EXPECT_EQ(query.colliding().kind, Certainty::exact);
     expect_holds(query.separation(), 0.5, 1e-9);
@@ -225,7 +225,7 @@ TEST(Proximity, HoldsWhatIsNested) {
 
 // Two cubes with their edges parallel, overlapping by 0.3 along x: contacts push O1 to the left.
 TEST(Contacts, OfCubesPushThemApart) {
-  Query query(cube(), moved(cube(), {1.7, 0, 0}), at_resolution(256));
+  ProximityQuery query(cube(), moved(cube(), {1.7, 0, 0}), at_resolution(256));
   ASSERT_FALSE(query.contacts().empty());
   std::size_t along = 0;
   for (const Contact& c : query.contacts()) {
@@ -245,7 +245,7 @@ TEST(Contacts, OfCubesPushThemApart) {
 TEST(Contacts, WithinTheMarginAreAlongTheLineOfCentres) {
   const Vec3 centre{1.5, 1.2, 0.9};  // 2.12 away
   const double distance = norm(centre);
-  Query query(sphere(4), moved(sphere(4), centre), at_resolution(256, distance - 2 + 0.02));
+  ProximityQuery query(sphere(4), moved(sphere(4), centre), at_resolution(256, distance - 2 + 0.02));
   ASSERT_FALSE(query.contacts().empty());
   EXPECT_FALSE(query.colliding().value);
   const Vec3 along = (-1 / distance) * centre;  // pushes O1 off O2
@@ -271,7 +271,7 @@ TEST(Contacts, OfARoundBallAreAlongItsRadius) {
       const Vec3 &a = ball.positions[i], &b = ball.positions[j], &c = ball.positions[k];
       h = std::max(h, 1 - dot(normalized(cross(b - a, c - a)), a));
     }
-    Query query(ball, moved(cube(0.3), {0.3, 0.1, 0.2}), at_resolution(128));
+    ProximityQuery query(ball, moved(cube(0.3), {0.3, 0.1, 0.2}), at_resolution(128));
     std::size_t sampled = 0;
     double least = 1;
     for (const Contact& c : query.contacts()) {
@@ -296,7 +296,7 @@ TEST(Contacts, AreInPatches) {
   Mesh balls, plate = cube();
   for (Vec3& p : plate.positions) p = {4 * p[0], 4 * p[1], 0.5 * p[2] - 0.5};
   for (int i = 0; i < 3; ++i) append(balls, moved(sphere(3), {2.5 * (i - 1), 0.3 * i, 0.95 - 0.01 * i}));
-  Query query(balls, plate, at_resolution(512));
+  ProximityQuery query(balls, plate, at_resolution(512));
   std::set<std::uint32_t> patches;
   double last = 1;
   for (const Contact& c : query.contacts()) {
@@ -314,7 +314,7 @@ TEST(Contacts, AreInPatches) {
 
 TEST(Contacts, FlipWhenTheBodiesAreSwapped) {
   const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
-  Query ab(a, b, at_resolution(256)), ba(b, a, at_resolution(256));
+  ProximityQuery ab(a, b, at_resolution(256)), ba(b, a, at_resolution(256));
   ASSERT_FALSE(ab.contacts().empty());
   ASSERT_EQ(ab.contacts().size(), ba.contacts().size());
   const auto key = [](const Vec3& p) { return std::tuple(p[0], p[1], p[2]); };
@@ -339,7 +339,7 @@ struct Answers {
   bool operator==(const Answers&) const = default;
 };
 
-Answers answers(Query& query) {
+Answers answers(ProximityQuery& query) {
   Answers a{query.separation().value,         query.separation().lower, query.penetration_depth()->value,
             query.penetration_depth()->upper, query.colliding().value,  {}};
   for (const Contact& c : query.contacts()) a.depths.push_back(c.depth);
@@ -348,7 +348,7 @@ Answers answers(Query& query) {
 
 TEST(Update, FollowsTheBodiesAndComesBackToTheBit) {
   const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
-  Query query(a, b, at_resolution(128));
+  ProximityQuery query(a, b, at_resolution(128));
   const Answers first = answers(query);
   query.update(a.positions, b.positions);
   EXPECT_EQ(answers(query), first);
@@ -371,7 +371,7 @@ TEST(Update, FollowsTheBodiesAndComesBackToTheBit) {
 // A rigid motion of both changes nothing but by rounding.
 TEST(Update, KnowsRigidMotions) {
   const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
-  Query query(a, b, at_resolution(128));
+  ProximityQuery query(a, b, at_resolution(128));
   const Answers first = answers(query);
   query.update(placed(a, "rotate:20:50:-70,translate:2:3:4").positions,
                placed(b, "rotate:20:50:-70,translate:2:3:4").positions);
@@ -383,7 +383,7 @@ TEST(Update, KnowsRigidMotions) {
 /// Fails if updates and answers still take memory when bodies go through poses for the second time.
 void expect_steady(const Mesh& a, const Mesh& b, bool exact) {
   const std::array frames{b.positions, moved(b, {0.1, 0, 0}).positions, moved(b, {3, 0, 0}).positions};
-  Query query(a, b, {.atlas = {.resolution = 128}, .exact = exact, .contact_margin = 0.05});
+  ProximityQuery query(a, b, {.atlas = {.resolution = 128}, .exact = exact, .contact_margin = 0.05});
   const auto taken = [&] {
     const std::size_t before = allocations();
     for (const std::vector<Vec3>& frame : frames) {
@@ -413,14 +413,14 @@ TEST(Update, TakesNoMoreMemoryOnceTheBodiesMoveNorDoAnswers) {
 }
 
 TEST(Update, RefusesWhatDoesNotFit) {
-  Query query(cube(), moved(cube(), {3, 0, 0}), at_resolution(64));
+  ProximityQuery query(cube(), moved(cube(), {3, 0, 0}), at_resolution(64));
   const double before = query.separation().value;
   const std::vector<Vec3> few(3), nan(8, Vec3{std::nan(""), 0, 0}), good = moved(cube(), {9, 0, 0}).positions;
   EXPECT_THROW(query.update(few, {}), Error);
   EXPECT_THROW(query.update(good, nan), Error);
   EXPECT_EQ(query.separation().value, before);
-  EXPECT_THROW(Query(cube(), cube(), at_resolution(64, -1)), Error);
-  EXPECT_THROW(Query(cube(), cube(), at_resolution(64, std::nan(""))), Error);
+  EXPECT_THROW(ProximityQuery(cube(), cube(), at_resolution(64, -1)), Error);
+  EXPECT_THROW(ProximityQuery(cube(), cube(), at_resolution(64, std::nan(""))), Error);
 }
 
 }  // namespace

@@ -229,7 +229,7 @@ TEST(Self, SheetsOfAFoldAreTheirGapApart) {
   const Sites sites(mesh);
   // A rule at rest, where it is flat: the way round the bend counts.
   const DistanceMap map = compute_self_map(surface, sites, Exclusion(flat(60, 8), {.geodesic = 0.6}));
-  for (const std::uint32_t texel : surface.samples()) {
+  for (const std::uint32_t texel : surface.sample_texels()) {
     if (surface.texel_point(texel)[0] > 1) continue;
     ASSERT_NEAR(map.distance[texel], 0.2, 1e-6);
   }
@@ -242,12 +242,12 @@ TEST(Self, WhereAllIsExcludedThereIsNone) {
   const Exclusion exclusion(mesh);
   const DistanceMap map = compute_self_map(surface, sites, exclusion);
   expect_self_map(surface, sites, map, Relation(4, std::vector<bool>(4, true)));
-  EXPECT_EQ(map.beyond_max_distance, surface.samples().size());
+  EXPECT_EQ(map.beyond_max_distance, surface.sample_texels().size());
   EXPECT_EQ(statistics(surface, map).texels, 0u);
   EXPECT_TRUE(std::isnan(statistics(surface, map).max));
   EXPECT_EQ(area_fraction_beyond(surface, map, 1), 1);
   for (const float d : self_distances_at_vertices(sites, exclusion)) EXPECT_EQ(d, kInf);
-  SelfQuery query(mesh);
+  SelfProximityQuery query(mesh);
   EXPECT_FALSE(query.separation());
   EXPECT_TRUE(query.contacts(10).empty());
 }
@@ -279,11 +279,11 @@ TEST(Self, FlawedFacesAreNotMeasuredToNorFrom) {
   const Exclusion exclusion(flawed);
   const std::vector<float> found = self_distances_at_vertices(sites, exclusion);
   EXPECT_EQ(found, self_distances_at_vertices(Sites(clean), Exclusion(clean)));
-  SelfQuery query(clean), other(flawed);
+  SelfProximityQuery query(clean), other(flawed);
   EXPECT_EQ(query.separation()->value, other.separation()->value);
   const Surface with_flaws(flawed, {.resolution = 64});
   const DistanceMap map = compute_self_map(with_flaws, sites, exclusion);
-  for (const std::uint32_t texel : with_flaws.samples()) ASSERT_TRUE(std::isfinite(map.distance[texel]));
+  for (const std::uint32_t texel : with_flaws.sample_texels()) ASSERT_TRUE(std::isfinite(map.distance[texel]));
 }
 
 // The pairs that count, by CGAL.
@@ -308,11 +308,11 @@ void expect_on(const Mesh& mesh, const Vec3& p) {
   EXPECT_LE(oracle::brute_force(mesh, p), 1e-9 * diagonal(bounds(mesh)));
 }
 
-void expect_as_pairs(SelfQuery& query, const Relation& out) {
+void expect_as_pairs(SelfProximityQuery& query, const Relation& out) {
   const Mesh& mesh = query.sites().mesh();
   const Pairs pairs(mesh, out);
   const double tolerance = 1e-9 * diagonal(bounds(mesh));
-  const std::optional<Length> separation = query.separation();
+  const std::optional<BoundedLength> separation = query.separation();
   ASSERT_TRUE(separation);
   EXPECT_EQ(separation->kind, Certainty::exact);
   EXPECT_NEAR(separation->value, pairs.least, tolerance);
@@ -351,7 +351,7 @@ TEST(Self, SeparationAndContactsAreThoseOfAllPairs) {
   for (const Case& c : cases()) {
     if (c.mesh.triangles.size() > 500) continue;
     SCOPED_TRACE(c.name);
-    SelfQuery query(c.mesh, {.exclusion = c.rule});
+    SelfProximityQuery query(c.mesh, {.exclusion = c.rule});
     expect_as_pairs(query, excluded(c.mesh, c.rule));
   }
 }
@@ -359,7 +359,7 @@ TEST(Self, SeparationAndContactsAreThoseOfAllPairs) {
 TEST(Self, FollowsADeformation) {
   const ExclusionRule rule{.geodesic = 0.45};
   const Relation out = excluded(flat(), rule);
-  SelfQuery query(flat(), {.exclusion = rule});
+  SelfProximityQuery query(flat(), {.exclusion = rule});
   Surface surface(flat(), {.resolution = 64});
   for (const double gap : {0.6, 0.3, 0.05}) {
     const Mesh now = folded(gap);
@@ -378,7 +378,7 @@ TEST(Self, FollowsADeformation) {
 
 TEST(Self, SheetsThatPassThroughEachOtherAreNoDistanceApart) {
   const Mesh mesh = joined(flat(10, 3), placed(flat(10, 3), "rotate:0:90:0,translate:2.03:0.1:2.05"));
-  SelfQuery query(mesh);
+  SelfProximityQuery query(mesh);
   ASSERT_TRUE(query.separation());
   EXPECT_EQ(query.separation()->value, 0);
   const auto contacts = query.contacts(0);
@@ -396,14 +396,14 @@ bool same_bits(const DistanceMap& a, const DistanceMap& b) {
          a.site == b.site && a.site_type == b.site_type;
 }
 
-bool same(const std::optional<Length>& a, const std::optional<Length>& b) {
+bool same(const std::optional<BoundedLength>& a, const std::optional<BoundedLength>& b) {
   return a && b && a->value == b->value && a->witness == b->witness;
 }
 
 TEST(Self, SamePositionsGiveTheSameBitsWhateverTheNumberOfThreads) {
   const Mesh mesh = load("eight.off");
   const Surface surface(mesh, {.resolution = 256});
-  SelfQuery query(mesh, {.exclusion = {.rings = 3}});
+  SelfProximityQuery query(mesh, {.exclusion = {.rings = 3}});
   const double margin = 1.5 * query.separation()->value;
   const auto first = query.separation();
   const std::vector<Contact> contacts(query.contacts(margin).begin(), query.contacts(margin).end());
@@ -431,16 +431,16 @@ TEST(Self, RigidMotionsChangeNothing) {
   const DistanceMap before = compute_self_map(surface, sites, Exclusion(here, rule));
   surface.refit(there.positions);
   const DistanceMap after = compute_self_map(surface, moved, Exclusion(there, rule));
-  for (const std::uint32_t texel : surface.samples())
+  for (const std::uint32_t texel : surface.sample_texels())
     ASSERT_NEAR(before.distance[texel], after.distance[texel], 1e-6);
-  SelfQuery a(here, {.exclusion = rule}), b(there, {.exclusion = rule});
+  SelfProximityQuery a(here, {.exclusion = rule}), b(there, {.exclusion = rule});
   EXPECT_NEAR(a.separation()->value, b.separation()->value, 1e-12);
 }
 
 TEST(Self, MaximumDistanceHidesSeparations) {
-  const double gap = SelfQuery(folded(0.2), {.exclusion = {.rings = 3}}).separation()->value;
-  EXPECT_TRUE(SelfQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 1.001 * gap}).separation());
-  EXPECT_FALSE(SelfQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 0.999 * gap}).separation());
+  const double gap = SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}}).separation()->value;
+  EXPECT_TRUE(SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 1.001 * gap}).separation());
+  EXPECT_FALSE(SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 0.999 * gap}).separation());
 }
 
 TEST(Self, RefusesWhatIsOutOfRange) {
@@ -448,8 +448,8 @@ TEST(Self, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(Exclusion(mesh, {.rings = 0}), Error);
   for (const double bad : {0.0, -1.0, kInf, std::nan("")})
     EXPECT_THROW(Exclusion(mesh, {.geodesic = bad}), Error);
-  EXPECT_THROW(SelfQuery(mesh, {.max_distance = 0}), Error);
-  SelfQuery query(mesh);
+  EXPECT_THROW(SelfProximityQuery(mesh, {.max_distance = 0}), Error);
+  SelfProximityQuery query(mesh);
   EXPECT_THROW((void)query.contacts(-1), Error);
   EXPECT_THROW((void)query.contacts(kInf), Error);
   const Surface surface(mesh, {.resolution = 64}), other(flat(3, 3), {.resolution = 64});

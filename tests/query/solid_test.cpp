@@ -1,5 +1,5 @@
 // Meshes as solids: inside, outside, and beside each other.
-#include "query/solid.h"
+#include "inside/solid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <sdm/temporal.h>
+#include <sdm/temporal_maps.h>
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>
@@ -48,7 +48,7 @@ TEST(Temporal, TexelsWithoutAValueOnceHaveNone) {
     for (int t = 0; t < 3; ++t)
       maps.add(
           map_of(surface, [&](const Vec3& p) { return t == missing && p[0] > 0 ? std::nan("") : 1.0 + t; }));
-    for (const std::uint32_t texel : surface.samples()) {
+    for (const std::uint32_t texel : surface.sample_texels()) {
       const bool none = surface.texel_point(texel)[0] > 0;
       ASSERT_EQ(std::isnan(maps.least()[texel]), none);
       ASSERT_EQ(std::isnan(maps.largest()[texel]), none);
@@ -64,7 +64,7 @@ TEST(Temporal, NothingInRangeIsInfinitelyFar) {
     TemporalMaps maps;
     for (int t = 0; t < 3; ++t)
       maps.add(map_of(surface, [&](const Vec3&) { return t == missing ? kInf : 1.0 + t; }));
-    for (const std::uint32_t texel : surface.samples()) {
+    for (const std::uint32_t texel : surface.sample_texels()) {
       ASSERT_EQ(maps.least()[texel], missing == 0 ? 2 : 1);
       ASSERT_EQ(maps.largest()[texel], kInf);
       ASSERT_EQ(maps.mean()[texel], kInf);

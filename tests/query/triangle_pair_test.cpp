@@ -1,5 +1,5 @@
 // Two triangles of every kind against exact arithmetic.
-#include "query/triangle_pair.h"
+#include "proximity/exact/triangle_pair.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/vec.h"
-#include "query/orientation.h"
+#include "core/predicates.h"
 #include "query/pair_oracle.h"
 
 namespace sdm {

@@ -1,7 +1,7 @@
 #include "scene/cloth.h"
 
 #include <gtest/gtest.h>
-#include <sdm/self.h>
+#include <sdm/self_proximity_query.h>
 
 #include "core/vec.h"
 #include "scene/box_mesh.h"
@@ -93,7 +93,7 @@ TEST_F(FoldedCloth, KeepsItsEdgesItsDistanceAndItsEnergyAndComesToRest) {
   EXPECT_GT(closest, 0.5 * cloth.thickness());
 
   // And nowhere, between particles too, do they pass through each other.
-  SelfQuery query(cloth.mesh(), {.exclusion = {.geodesic = 2 * cloth.thickness()}});
+  SelfProximityQuery query(cloth.mesh(), {.exclusion = {.geodesic = 2 * cloth.thickness()}});
   query.update(now);
   ASSERT_TRUE(query.separation());
   EXPECT_GT(query.separation()->value, 0);

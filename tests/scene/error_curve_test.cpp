@@ -4,7 +4,7 @@
 #include <CGAL/Search_traits_3.h>
 #include <CGAL/Simple_cartesian.h>
 #include <gtest/gtest.h>
-#include <sdm/error_bound.h>
+#include <sdm/sampling_bound.h>
 #include <sdm/scene.h>
 
 #include <random>

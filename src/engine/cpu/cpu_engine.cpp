@@ -17,8 +17,8 @@ float unit_limit(const UnitFrame& frame, double max_distance) {
 
 }  // namespace
 
-void cpu_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
-                const Deliver& deliver) {
+void cpu_search(const SitesData& sites, std::span<const Vec3> points, double max_distance,
+                const ClosestSink& deliver) {
   thread_local const auto descent = std::make_unique<Descent>();
   const float limit = unit_limit(sites.frame, max_distance);
   for (std::size_t begin = 0; begin < points.size(); begin += PointGroup::kMostPoints) {

@@ -90,7 +90,7 @@ class Search {
       nearest = last_, nearest.squared = squared_distance(ball, last_.point);
     improve_in_tree(nearest, ball.centre);
     if (nearest.found) last_ = nearest;
-    const Reach reach(ball, nearest.squared, nearest.point, limit_);
+    const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
     const size_t points = PointGroup::points_at(level);
     const size_t most_leaves =
         points > kFewPoints ? points / kPointsPerLeaf : std::numeric_limits<size_t>::max();
@@ -175,7 +175,7 @@ class Search {
 
   // The leaves of the tree that come within reach, as children of nodes. Returns false if there are more than
   // `most`.
-  bool find_leaves(const Reach& reach, size_t most) {
+  bool find_leaves(const CandidateBound& reach, size_t most) {
     auto& open = s_.open;
     open.assign(1, 0);
     s_.leaves.clear();
@@ -198,7 +198,7 @@ class Search {
   }
 
   // The sites of the leaves found that matter: first by bounds on all that a face owns, then one by one.
-  void collect(const Reach& reach, SiteLists& lists) {
+  void collect(const CandidateBound& reach, SiteLists& lists) {
     s_.counts.leaves += s_.leaves.size();
     s_.owners.clear();
     for (const uint32_t child : s_.leaves) {
@@ -206,7 +206,7 @@ class Search {
       uint32_t places[SiteBlock::kWidth];
       for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
       append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {
-               return matters(Block(), regions_.bounds[leaf], lane, reach);
+               return may_be_closest(Block(), regions_.bounds[leaf], lane, reach);
              }));
     }
     // A face owns three edges and three vertices at most: none of these stores needs a branch.
@@ -237,7 +237,7 @@ class Search {
     keep(all, reach, lists);
   }
 
-  static void keep(const SiteLists& from, const Reach& reach, SiteLists& to) {
+  static void keep(const SiteLists& from, const CandidateBound& reach, SiteLists& to) {
     HWY_NAMESPACE::keep(from.faces, reach, to.faces);
     HWY_NAMESPACE::keep(from.edges, reach, to.edges);
     HWY_NAMESPACE::keep(from.vertices, reach, to.vertices);
@@ -264,7 +264,7 @@ class Search {
     improve(nearest, from.edges, ball.centre);
     improve(nearest, from.vertices, ball.centre);
     s_.counts.list_blocks += from.faces.used + from.edges.used + from.vertices.used;
-    const Reach reach(ball, nearest.squared, nearest.point, limit_);
+    const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
     keep(from, reach, to);
   }
 
@@ -327,7 +327,7 @@ void find_winners(const WideTree& tree, const Regions& regions, float limit, Des
   HWY_DYNAMIC_DISPATCH(FindWinners)(tree, regions, limit, descent);
 }
 
-DescentCounts count_work(const Sites::Impl& sites, std::span<const Vec3> points) {
+DescentCounts count_work(const SitesData& sites, std::span<const Vec3> points) {
   const auto descent = std::make_unique<Descent>();
   for (std::size_t first = 0; first < points.size(); first += PointGroup::kMostPoints) {
     descent->points.place(points.subspan(first, std::min(PointGroup::kMostPoints, points.size() - first)),

@@ -9,7 +9,7 @@
 
 #include "engine/cpu/point_group.h"
 #include "engine/cpu/site_lists.h"
-#include "mesh/sites_impl.h"
+#include "sites/sites_data.h"
 
 namespace sdm {
 
@@ -50,6 +50,6 @@ struct Descent {
 void find_winners(const WideTree& tree, const Regions& regions, float limit, Descent& descent);
 
 /// The work that it takes to find the winners of these points, at any distance: for tests and measurements.
-[[nodiscard]] DescentCounts count_work(const Sites::Impl& sites, std::span<const Vec3> points);
+[[nodiscard]] DescentCounts count_work(const SitesData& sites, std::span<const Vec3> points);
 
 }  // namespace sdm

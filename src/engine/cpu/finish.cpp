@@ -9,9 +9,9 @@
 #include <bit>
 
 #include "core/vec.h"
-#include "engine/closest_on_face.h"
+#include "sites/closest_on_face.h"
 #include "engine/engine.h"
-#include "mesh/vec_lanes-inl.h"
+#include "core/vec_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::HWY_NAMESPACE {
@@ -70,7 +70,7 @@ HWY_INLINE uint32_t for_lanes(Packet& p, uint32_t lanes, const On& on) {
 }
 
 // Over the face, on the inner side of its three walls.
-uint32_t on_face(const Sites::Impl& sites, uint32_t face, Packet& p, uint32_t lanes) {
+uint32_t on_face(const SitesData& sites, uint32_t face, Packet& p, uint32_t lanes) {
   if (sites.sliver[face]) return 0;
   const Triangle& t = sites.mesh.triangles[face];
   const Vec3 &a = sites.mesh.positions[t[0]], &b = sites.mesh.positions[t[1]],
@@ -90,7 +90,7 @@ uint32_t on_face(const Sites::Impl& sites, uint32_t face, Packet& p, uint32_t la
 }
 
 // Between the ends of the edge, where none of its faces comes closer.
-uint32_t on_edge(const Sites::Impl& sites, uint32_t edge, Packet& p, uint32_t lanes) {
+uint32_t on_edge(const SitesData& sites, uint32_t edge, Packet& p, uint32_t lanes) {
   const auto [a, b] = sites.topology.edges[edge];
   const Vec3 &start = sites.mesh.positions[a], along = sites.mesh.positions[b] - start;
   const double inverse = 1 / squared_norm(along);
@@ -112,7 +112,7 @@ uint32_t on_edge(const Sites::Impl& sites, uint32_t edge, Packet& p, uint32_t la
 }
 
 // Where no edge of the vertex comes closer.
-uint32_t on_vertex(const Sites::Impl& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
+uint32_t on_vertex(const SitesData& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
   const Vec3& point = sites.mesh.positions[vertex];
   // In a closed mesh whose faces all run alike every neighbour follows the vertex in one face.
   const int last = sites.alike ? 1 : 2;
@@ -130,7 +130,7 @@ uint32_t on_vertex(const Sites::Impl& sites, uint32_t vertex, Packet& p, uint32_
   });
 }
 
-uint32_t on_site(const Sites::Impl& sites, SiteId site, Packet& p, uint32_t lanes) {
+uint32_t on_site(const SitesData& sites, SiteId site, Packet& p, uint32_t lanes) {
   switch (site.type()) {
     case SiteType::face:
       return on_face(sites, site.site(), p, lanes);
@@ -170,7 +170,7 @@ HWY_INLINE void name_sites(const uint32_t* winners, ClosestPacket& found) {
 }
 
 // `winners` and `queries` have room for whole packets.
-void finish_packet(const Sites::Impl& sites, const uint32_t* winners, const Vec3* queries, size_t count,
+void finish_packet(const SitesData& sites, const uint32_t* winners, const Vec3* queries, size_t count,
                    double max_distance, ClosestPacket& found) {
   Packet p(queries, found);
   name_sites(winners, found);
@@ -196,8 +196,8 @@ void finish_packet(const Sites::Impl& sites, const uint32_t* winners, const Vec3
 }
 
 // `winners` has room for whole packets.
-void Finish(const Sites::Impl& sites, std::span<const uint32_t> winners, std::span<const Vec3> queries,
-            double max_distance, const Deliver& deliver) {
+void Finish(const SitesData& sites, std::span<const uint32_t> winners, std::span<const Vec3> queries,
+            double max_distance, const ClosestSink& deliver) {
   ClosestPacket closest{};
   const size_t whole = queries.size() / kPacket * kPacket;
   for (size_t i = 0; i < whole; i += kPacket) {
@@ -219,8 +219,8 @@ namespace sdm {
 
 HWY_EXPORT(Finish);
 
-void finish(const Sites::Impl& sites, std::span<const std::uint32_t> winners, std::span<const Vec3> queries,
-            double max_distance, const Deliver& deliver) {
+void finish(const SitesData& sites, std::span<const std::uint32_t> winners, std::span<const Vec3> queries,
+            double max_distance, const ClosestSink& deliver) {
   HWY_DYNAMIC_DISPATCH(Finish)(sites, winners, queries, max_distance, deliver);
 }
 

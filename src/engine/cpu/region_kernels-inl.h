@@ -49,13 +49,13 @@ inline float enlarged_radius(const Ball& ball) {
 // with |b' − a| ≤ |b − a| + |b − b'| it follows that
 //   |c − b|² ≤ |c − a|² + 2 r |b − a| + r².
 // Far from O2 this leaves much less than |c − b| ≤ |c − a| + 2r: the nearer b is to a, the less can x tell.
-struct Reach {
+struct CandidateBound {
   float centre[3], radius;  // of the ball; enlarged by what rounding does to tests of regions
   float from_a[3];          // c − a
   float squared;            // |c − a|² + r², and the rounding of squares
   float squared_limit;      // nor can what is beyond the limit for all x
 
-  Reach(const Ball& ball, float squared_to_a, const float (&a)[3], float limit) {
+  CandidateBound(const Ball& ball, float squared_to_a, const float (&a)[3], float limit) {
     for (int k = 0; k < 3; ++k) {
       centre[k] = ball.centre[k];
       from_a[k] = ball.centre[k] - a[k];
@@ -98,7 +98,7 @@ HWY_INLINE PointVec height(Points d, const float (&plane)[4][SiteBlock::kWidth],
 //             other part of a region needs to be tested, for a site is never closer than O2 is;
 //   closest   the point of one site that is closest to p.
 
-HWY_INLINE BlockMask matters(Block d, const FaceBounds& bounds, size_t i, const Reach& reach) {
+HWY_INLINE BlockMask may_be_closest(Block d, const FaceBounds& bounds, size_t i, const CandidateBound& reach) {
   BlockVec r[3], h = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
     r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, bounds.centre[k] + i));
@@ -122,7 +122,7 @@ HWY_INLINE BlockMask matters(Block d, const FaceBounds& bounds, size_t i, const 
                  reach.holds(d, hn::MulAdd(beyond, beyond, h2), from(0), from(1), from(2)));
 }
 
-HWY_INLINE BlockMask matters(Block d, const FaceBlock& block, size_t i, const Reach& reach) {
+HWY_INLINE BlockMask may_be_closest(Block d, const FaceBlock& block, size_t i, const CandidateBound& reach) {
   const BlockVec inner = hn::Set(d, -reach.radius);
   BlockMask pass = hn::Ge(height(d, block.wall[0], i, reach.centre), inner);
   pass = hn::And(pass, hn::Ge(height(d, block.wall[1], i, reach.centre), inner));
@@ -156,7 +156,7 @@ inline void closest(const FaceBlock& block, size_t lane, const float* p, float (
   for (int k = 0; k < 3; ++k) out[k] = p[k] - h * block.plane[k][lane];
 }
 
-HWY_INLINE BlockMask matters(Block d, const EdgeBlock& block, size_t i, const Reach& reach) {
+HWY_INLINE BlockMask may_be_closest(Block d, const EdgeBlock& block, size_t i, const CandidateBound& reach) {
   BlockVec r[3], t = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
     r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.start[k] + i));
@@ -202,7 +202,7 @@ inline void closest(const EdgeBlock& block, size_t lane, const float* p, float (
   for (int k = 0; k < 3; ++k) out[k] = block.start[k][lane] + t * block.direction[k][lane];
 }
 
-HWY_INLINE BlockMask matters(Block d, const VertexBlock& block, size_t i, const Reach& reach) {
+HWY_INLINE BlockMask may_be_closest(Block d, const VertexBlock& block, size_t i, const CandidateBound& reach) {
   BlockVec r[3];
   for (int k = 0; k < 3; ++k) r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.point[k] + i));
   BlockMask pass = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);

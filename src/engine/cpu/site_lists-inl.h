@@ -182,14 +182,14 @@ void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
 
 // Appends the sites of a block that matter.
 template <class Some>
-HWY_INLINE void keep(const Some& block, const Reach& reach, SiteList<Some>& list) {
+HWY_INLINE void keep(const Some& block, const CandidateBound& reach, SiteList<Some>& list) {
   const uint32_t bits =
-      select(block.count, [&](size_t i) HWY_ATTR { return matters(Block(), block, i, reach); });
+      select(block.count, [&](size_t i) HWY_ATTR { return may_be_closest(Block(), block, i, reach); });
   if (bits != 0) append(list, block, bits);
 }
 
 template <class Some>
-void keep(const SiteList<Some>& from, const Reach& reach, SiteList<Some>& to) {
+void keep(const SiteList<Some>& from, const CandidateBound& reach, SiteList<Some>& to) {
   to.used = 0;
   for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], reach, to);
 }

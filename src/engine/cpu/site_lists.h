@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "mesh/regions.h"
+#include "sites/regions.h"
 
 namespace sdm {
 

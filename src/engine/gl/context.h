@@ -1,7 +1,7 @@
 // An OpenGL 4.5 core context without window or display server, by EGL.
 #pragma once
 
-#include <sdm/raster.h>
+#include <sdm/gl.h>
 
 #include <memory>
 #include <string_view>
@@ -14,7 +14,7 @@ struct DisplayCandidate;
 /// One context on one device. Not bound to a thread, but current on at most one at a time.
 class Context {
  public:
-  /// On the device that `wanted` names, as RasterOptions::device does: a whole number is an index. Throws
+  /// On the device that `wanted` names, as GlOptions::device does: a whole number is an index. Throws
   /// sdm::Error where there is none.
   explicit Context(std::string_view wanted);
   ~Context();

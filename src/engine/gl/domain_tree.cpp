@@ -37,7 +37,7 @@ DomainTree::DomainTree(const Surface& surface, const Tiles& tiles, const UnitFra
   parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       boxes[i] =
-          box_of(face_domain(surface, tiles, static_cast<std::uint32_t>(i), frame, RasterClip::planes));
+          box_of(face_domain(surface, tiles, static_cast<std::uint32_t>(i), frame, GlClip::planes));
   });
   refit(tree, boxes);
 }
@@ -46,7 +46,7 @@ void set_bounds(DomainTree& tree, double bound) {
   std::fill(tree.bound.begin(), tree.bound.end(), bound);
 }
 
-void set_bounds(DomainTree& tree, const Sites::Impl& sites, double slack, double largest) {
+void set_bounds(DomainTree& tree, const SitesData& sites, double slack, double largest) {
   std::vector<std::uint32_t> nodes;
   for (std::uint32_t i = 0; i < tree.node_count(); ++i)
     if (tree.tree.nodes[i].leaf()) nodes.push_back(i);

@@ -7,7 +7,7 @@
 
 #include "engine/gl/face_domains.h"
 #include "hierarchy/aabb_tree.h"
-#include "mesh/sites_impl.h"
+#include "sites/sites_data.h"
 
 namespace sdm::gl {
 
@@ -41,6 +41,6 @@ void set_bounds(DomainTree& tree, double bound);
 /// Sets the bounds from one point of O2 for each leaf, the one closest to the middle of its box: no point of
 /// the box is farther from it than the farthest corner. The paper improves the bounds site after site, and
 /// depends on the order; this is where that process ends. `slack` is added, and `largest` never exceeded.
-void set_bounds(DomainTree& tree, const Sites::Impl& sites, double slack, double largest);
+void set_bounds(DomainTree& tree, const SitesData& sites, double slack, double largest);
 
 }  // namespace sdm::gl

@@ -21,7 +21,7 @@ std::array<Vec2, 3> atlas_corners(const Surface& surface, std::uint32_t face) {
 }  // namespace
 
 PlanarDomain face_domain(const Surface& surface, const Tiles& tiles, std::uint32_t tile,
-                         const UnitFrame& frame, RasterClip clip) {
+                         const UnitFrame& frame, GlClip clip) {
   const std::uint32_t face = tiles.faces[tile];
   const std::span<const std::uint32_t> texels = tiles.of(tile);
   PlanarDomain domain;
@@ -38,7 +38,7 @@ PlanarDomain face_domain(const Surface& surface, const Tiles& tiles, std::uint32
     for (int k = 0; k < 2; ++k) lo[k] = std::min(lo[k], c[k]), hi[k] = std::max(hi[k], c[k]);
   }
   domain.outline = ConvexPolygon::rectangle(lo - Vec2{kMargin, kMargin}, hi + Vec2{kMargin, kMargin});
-  if (clip == RasterClip::stencil) return domain;
+  if (clip == GlClip::stencil) return domain;
 
   // Cuts parallel to the sides, at the texels rather than at the sides themselves: closer, and sure to hold
   // every texel however the side was rounded.

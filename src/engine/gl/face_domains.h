@@ -2,18 +2,18 @@
 // updated.
 #pragma once
 
-#include <sdm/raster.h>
+#include <sdm/gl.h>
 #include <sdm/surface.h>
 
-#include "atlas/tiles.h"
+#include "surface/tiles.h"
 #include "engine/gl/planar_domain.h"
 #include "hierarchy/aabb_tree.h"
 
 namespace sdm::gl {
 
 /// The domain of a tile; its id is its face. Its outline is the rectangle of its texels, cut for
-/// RasterClip::planes along the face's sides.
+/// GlClip::planes along the face's sides.
 [[nodiscard]] PlanarDomain face_domain(const Surface& surface, const Tiles& tiles, std::uint32_t tile,
-                                       const UnitFrame& frame, RasterClip clip);
+                                       const UnitFrame& frame, GlClip clip);
 
 }  // namespace sdm::gl

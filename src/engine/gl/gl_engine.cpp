@@ -21,7 +21,7 @@ namespace {
 // Tiles of O1 drawn together, at most. A site's region and box are made once for each block.
 constexpr std::uint32_t kBlockTiles = 2048;
 
-void check(const RasterOptions& options) {
+void check(const GlOptions& options) {
   if (options.stencil_values < 1 || options.stencil_values > 255)
     throw Error(std::to_string(options.stencil_values) + " stencil values are out of range; use 1 to 255");
 }
@@ -80,7 +80,7 @@ constexpr double kRegionSlack = 0x1p-20;
 // Distances that differ by less may be mistaken for each other, so bounds leave more.
 constexpr double kBoundSlack = 0x1p-17;
 
-void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles, RasterReport& report) {
+void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles, GlReport& report) {
   const std::uint64_t kept = sites.before.back();
   report.sites = kept + sites.dropped;
   report.sites_dropped = sites.dropped;
@@ -97,7 +97,7 @@ void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles,
 }
 
 std::vector<PlanarDomain> domains_of(const DomainBlock& block, const DomainTree& tree, const Surface& surface,
-                                     const Tiles& tiles, const UnitFrame& frame, RasterClip clip) {
+                                     const Tiles& tiles, const UnitFrame& frame, GlClip clip) {
   const std::uint32_t first = tree.leaves.before[block.node];
   std::vector<PlanarDomain> domains(tree.leaves.count(block.node, block.end));
   parallel_for(domains.size(), 128, [&](std::size_t begin, std::size_t end) {
@@ -107,8 +107,8 @@ std::vector<PlanarDomain> domains_of(const DomainBlock& block, const DomainTree&
   return domains;
 }
 
-RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const Sites::Impl& sites,
-                       const MapOptions& options, RasterReport& report) {
+RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const SitesData& sites,
+                       const MapOptions& options, GlReport& report) {
   Stopwatch watch;
   const Tiles& tiles = tiles_of(surface);
   DomainTree tree(surface, tiles, sites.frame);
@@ -130,7 +130,7 @@ RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const
 
   const RasterScale scale{kRegionSlack * extent.size, std::exp2(-std::ceil(std::log2(reach)))};
   const Ownership owned =
-      options.raster.clip == RasterClip::planes
+      options.raster.clip == GlClip::planes
           ? Ownership(OwnerTable{surface.texel_faces()})
           : Ownership(StencilValues{tiles.face_offsets, tiles.texels, options.raster.stencil_values});
   Rasteriser rasteriser(device, surface.resolution(), owned);
@@ -164,9 +164,9 @@ RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const
 }
 
 void expect_no_cracks(const Surface& surface, const RasterWinners& winners, const MapOptions& options,
-                      const RasterReport& report) {
+                      const GlReport& report) {
   if (options.max_distance < std::numeric_limits<double>::infinity()) return;
-  for (const std::uint32_t texel : surface.samples())
+  for (const std::uint32_t texel : surface.sample_texels())
     if (winners.faces[texel] == kNone)
       throw Error(report.device.name + " left texel " + std::to_string(texel) +
                   " without a value, which OpenGL does not allow; use another device or engine");
@@ -175,7 +175,7 @@ void expect_no_cracks(const Surface& surface, const RasterWinners& winners, cons
 }  // namespace
 }  // namespace gl
 
-GlDevice gl_device(const RasterOptions& options, std::uint32_t resolution) {
+GlDevice gl_device(const GlOptions& options, std::uint32_t resolution) {
   gl::check(options);
   return gl::with_device(options.device, [&](const gl::RasterDevice& device, double) {
     gl::Rasteriser::check_size(device.context(), resolution);
@@ -184,12 +184,12 @@ GlDevice gl_device(const RasterOptions& options, std::uint32_t resolution) {
 }
 
 RasterWinners gl_winners(const Surface& surface, const Sites& sites, const MapOptions& options,
-                         RasterReport& report) {
+                         GlReport& report) {
   gl::check(options.raster);
   return gl::with_device(options.raster.device, [&](const gl::RasterDevice& device, double ms) {
     report.device = device.context().device();
     report.clip = options.raster.clip;
-    report.texels = surface.samples().size();
+    report.texels = surface.sample_texels().size();
     report.time_ms.context = ms;
     RasterWinners winners = gl::draw_map(device, surface, sites.impl(), options, report);
     gl::expect_no_cracks(surface, winners, options, report);

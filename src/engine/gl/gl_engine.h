@@ -26,6 +26,6 @@ struct RasterWinners {
 
 /// Draws the map. Throws sdm::Error where OpenGL fails, or sdm was built without; Cancelled.
 [[nodiscard]] RasterWinners gl_winners(const Surface& surface, const Sites& sites, const MapOptions& options,
-                                       RasterReport& report);
+                                       GlReport& report);
 
 }  // namespace sdm

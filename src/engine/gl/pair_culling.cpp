@@ -68,7 +68,7 @@ class Descent {
 
 }  // namespace
 
-SiteIndex::SiteIndex(const Sites::Impl& s) : sites(s), leaves(s.tree), before{0} {
+SiteIndex::SiteIndex(const SitesData& s) : sites(s), leaves(s.tree), before{0} {
   const std::size_t leaf_count = s.regions.bounds.size();
   for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
     std::uint64_t kept = 0;

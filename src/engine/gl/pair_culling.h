@@ -1,7 +1,7 @@
 // Which sites of O2 meet which domains of O1: bounds on distance, then oriented boxes, then clipping.
 #pragma once
 
-#include <sdm/raster.h>
+#include <sdm/gl.h>
 
 #include <cstdint>
 #include <vector>
@@ -13,15 +13,15 @@ namespace sdm::gl {
 
 /// O2's sites by the leaves of its tree, without those whose region has no interior.
 struct SiteIndex {
-  const Sites::Impl& sites;
+  const SitesData& sites;
   LeafOrder leaves;
   std::vector<std::uint64_t> before;  ///< sites kept in front of each leaf, and of the end
   std::uint64_t dropped = 0;
 
-  explicit SiteIndex(const Sites::Impl& sites);
+  explicit SiteIndex(const SitesData& sites);
 };
 
-/// Counts of what became of pairs; see RasterReport.
+/// Counts of what became of pairs; see GlReport.
 struct PairCounts {
   std::uint64_t bound_tests = 0, obb_tests = 0;
   std::uint64_t culled_by_bound = 0, culled_by_obb = 0, clipped_away = 0, polygons = 0;

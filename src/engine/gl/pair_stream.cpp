@@ -19,7 +19,7 @@ constexpr std::size_t kFirstLeaves = 4, kMostLeaves = 64;
 }  // namespace
 
 PairStream::PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterScale& scale,
-                       Rasteriser& rasteriser, RasterReport::Times& time)
+                       Rasteriser& rasteriser, GlReport::Times& time)
     : sites_(sites),
       tree_(tree),
       reach_(reach),

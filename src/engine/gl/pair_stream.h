@@ -15,7 +15,7 @@ class PairStream {
  public:
   /// `reach` is the largest distance of interest. All references must outlive it.
   PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterScale& scale,
-             Rasteriser& rasteriser, RasterReport::Times& time);
+             Rasteriser& rasteriser, GlReport::Times& time);
 
   /// `progress` is told the fraction of the block that is done, and may throw.
   void draw(const DomainBlock& block, const std::function<void(double)>& progress);
@@ -34,7 +34,7 @@ class PairStream {
   double reach_;
   const RasterScale& scale_;
   Rasteriser& rasteriser_;
-  RasterReport::Times& time_;
+  GlReport::Times& time_;
   std::vector<RasterBatch> parts_;  ///< one a leaf of O2's tree
   std::vector<PairCounts> counts_;
   RasterBatch batch_;

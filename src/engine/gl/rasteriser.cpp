@@ -348,7 +348,7 @@ RasterImage Rasteriser::read_back() {
   return image;
 }
 
-void Rasteriser::count_into(RasterReport& report) {
+void Rasteriser::count_into(GlReport& report) {
   impl_->collect_counters();
   report.fragments += impl_->fragments;
   impl_->fragments = 0;

@@ -1,7 +1,7 @@
 // Draws the polygons of sites on planar domains; what stays at each texel is the closest.
 #pragma once
 
-#include <sdm/raster.h>
+#include <sdm/gl.h>
 
 #include <cstdint>
 #include <memory>
@@ -67,7 +67,7 @@ class Rasteriser {
   [[nodiscard]] RasterImage read_back();
 
   /// Adds fragments, batches and stencil counts so far. Waits for the device.
-  void count_into(RasterReport& report);
+  void count_into(GlReport& report);
 
  private:
   struct Impl;

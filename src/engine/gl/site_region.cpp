@@ -50,7 +50,7 @@ bool has_interior(const VertexRegion&) {
   return true;
 }
 
-SiteRegion region_of(const Sites::Impl& sites, const FaceRegion& face, std::size_t index) {
+SiteRegion region_of(const SitesData& sites, const FaceRegion& face, std::size_t index) {
   SiteRegion region;
   region.type = SiteType::face;
   region.face = sites.regions.owners[index].face;
@@ -65,7 +65,7 @@ SiteRegion region_of(const Sites::Impl& sites, const FaceRegion& face, std::size
   return region;
 }
 
-SiteRegion region_of(const Sites::Impl& sites, const EdgeRegion& edge, std::size_t) {
+SiteRegion region_of(const SitesData& sites, const EdgeRegion& edge, std::size_t) {
   SiteRegion region;
   region.type = SiteType::edge;
   region.face = sites.face_of(SiteType::edge, edge.edge);
@@ -86,7 +86,7 @@ SiteRegion region_of(const Sites::Impl& sites, const EdgeRegion& edge, std::size
   return region;
 }
 
-SiteRegion region_of(const Sites::Impl& sites, const VertexRegion& vertex, std::size_t index) {
+SiteRegion region_of(const SitesData& sites, const VertexRegion& vertex, std::size_t index) {
   SiteRegion region;
   region.type = SiteType::vertex;
   region.face = sites.face_of(SiteType::vertex, vertex.vertex);

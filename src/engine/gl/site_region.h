@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/vec.h"
-#include "mesh/sites_impl.h"
+#include "sites/sites_data.h"
 
 namespace sdm::gl {
 
@@ -57,9 +57,9 @@ struct SiteRegion {
 [[nodiscard]] bool has_interior(const VertexRegion& region);
 
 /// Of the face, edge or vertex at an index of regions.faces, edges or vertices.
-[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const FaceRegion& region, std::size_t index);
-[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const EdgeRegion& region, std::size_t index);
-[[nodiscard]] SiteRegion region_of(const Sites::Impl& sites, const VertexRegion& region, std::size_t index);
+[[nodiscard]] SiteRegion region_of(const SitesData& sites, const FaceRegion& region, std::size_t index);
+[[nodiscard]] SiteRegion region_of(const SitesData& sites, const EdgeRegion& region, std::size_t index);
+[[nodiscard]] SiteRegion region_of(const SitesData& sites, const VertexRegion& region, std::size_t index);
 
 /// Calls visit(region, index) for every site of a leaf of O2's tree.
 template <class Visit>

@@ -17,11 +17,11 @@ std::vector<GlDevice> gl_devices() {
   refuse();
 }
 
-GlDevice gl_device(const RasterOptions&, std::uint32_t) {
+GlDevice gl_device(const GlOptions&, std::uint32_t) {
   refuse();
 }
 
-RasterWinners gl_winners(const Surface&, const Sites&, const MapOptions&, RasterReport&) {
+RasterWinners gl_winners(const Surface&, const Sites&, const MapOptions&, GlReport&) {
   refuse();
 }
 

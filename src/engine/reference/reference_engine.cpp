@@ -3,7 +3,7 @@
 #include <queue>
 
 #include "core/vec.h"
-#include "engine/closest_on_face.h"
+#include "sites/closest_on_face.h"
 #include "engine/engine.h"
 
 namespace sdm {
@@ -18,7 +18,7 @@ double lower_bound(const FloatBox& box, const Vec3& p) {
 
 }  // namespace
 
-ClosestPoint reference_closest(const Sites::Impl& sites, const Vec3& q, double max_distance) {
+ClosestPoint reference_closest(const SitesData& sites, const Vec3& q, double max_distance) {
   struct Open {
     double bound;
     std::uint32_t node;
@@ -49,8 +49,8 @@ ClosestPoint reference_closest(const Sites::Impl& sites, const Vec3& q, double m
   return best;
 }
 
-void reference_search(const Sites::Impl& sites, std::span<const Vec3> points, double max_distance,
-                      const Deliver& deliver) {
+void reference_search(const SitesData& sites, std::span<const Vec3> points, double max_distance,
+                      const ClosestSink& deliver) {
   ClosestPacket closest;
   for (std::size_t first = 0; first < points.size(); first += ClosestPacket::kSize) {
     closest.count = std::min(ClosestPacket::kSize, points.size() - first);

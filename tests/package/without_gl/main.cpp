@@ -26,7 +26,7 @@ int main() {
   const sdm::Surface surface(mesh, {.resolution = 64});
   const sdm::Sites sites(mesh);
   const sdm::DistanceMap map = sdm::compute_map(surface, sites, {.engine = sdm::EngineKind::cpu});
-  for (const auto texel : surface.samples())
+  for (const auto texel : surface.sample_texels())
     if (!(map.distance[texel] < 1e-6)) return 1;
   if (!is_refused([] { (void)sdm::gl_devices(); })) return 2;
   if (!is_refused([&] { (void)sdm::compute_map(surface, sites, {.engine = sdm::EngineKind::gl}); })) return 3;

@@ -1,0 +1,85 @@
+/// Proximity of many bodies, each against all others.
+#pragma once
+
+#include <sdm/map.h>
+#include <sdm/proximity_query.h>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+struct MultiBodyOptions {
+  AtlasOptions atlas{.resolution = 128};  ///< of each body: its samples are where distances are measured
+  /// Separation and collision from the triangles themselves; else from the samples, with their bounds.
+  bool exact = false;
+  /// Greater than 0, in units of the meshes. What is farther apart than this is of no interest.
+  double max_distance = std::numeric_limits<double>::infinity();
+};
+
+/// What Query tells of two bodies: O1 is `first`, O2 is `second`.
+struct PairProximity {
+  std::uint32_t first = kNone, second = kNone;  ///< first < second
+  BoundedLength separation{};
+  BoundedBool colliding{};
+  std::optional<BoundedLength> penetration_depth{};
+};
+
+/// The map of a body to all others together.
+struct NearestMap {
+  /// As compute_map writes it, to the body whose surface is nearest at each texel; of several as near, the
+  /// lowest. Signed by that body alone: negative inside of it, if it is closed and orientable.
+  DistanceMap map;
+  /// That body for each texel; kNone where the map has no value.
+  std::vector<std::uint32_t> body;
+};
+
+/// Bodies that deform, each against all others: for simulation loops.
+class MultiBodyQuery {
+ public:
+  /// Throws sdm::Error as Surface and Sites do, and then names the body, and for a maximum distance that is
+  /// not greater than 0. Any number of bodies will do, 0 too. Cost: all atlases and sites.
+  explicit MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options = {});
+  ~MultiBodyQuery();
+  MultiBodyQuery(MultiBodyQuery&&) noexcept;
+  MultiBodyQuery& operator=(MultiBodyQuery&&) noexcept;
+
+  [[nodiscard]] std::size_t size() const;
+
+  /// Moves the vertices of a body, keeping its triangles. Throws sdm::Error, and changes nothing, for a body
+  /// that does not exist, a wrong count or a coordinate that is not finite or beyond 1e37. Cost: linear.
+  void update(std::size_t body, std::span<const Vec3> positions);
+  /// The same for all bodies at once, on all cores: one entry for each; no positions: the body stays.
+  void update(std::span<const std::span<const Vec3>> positions);
+
+  /// All pairs that collide or whose separation is at most max_distance, and of the others those only that
+  /// the samples cannot tell from them: none with separation.lower > max_distance, unless they collide. By
+  /// first, then by second body. Each has the answers that Query has for its bodies. Computed at the first
+  /// call after an update, and valid until the next one. Neither this nor update takes memory once the bodies
+  /// have been through such poses. Cost: a sweep over the bodies' boxes; then each candidate pair as by
+  /// Query, all cores sharing the pairs.
+  [[nodiscard]] std::span<const PairProximity> pairs();
+  /// Pairs whose boxes were within max_distance of each other when pairs() was computed last.
+  [[nodiscard]] std::size_t candidate_pairs() const;
+
+  /// Distances from each texel of a body to the nearest of the other bodies; where none is within
+  /// max_distance, no value. Throws sdm::Error for a body that does not exist and for want of memory. Cost:
+  /// of compute_map to those bodies whose boxes are nearer than what has been found, all cores.
+  [[nodiscard]] NearestMap nearest_map(std::size_t body) const;
+  /// The same into `nearest`, in the memory that it has where that suffices.
+  void nearest_map(std::size_t body, NearestMap& nearest) const;
+
+  /// Throw sdm::Error for a body that does not exist.
+  [[nodiscard]] const Surface& surface(std::size_t body) const;
+  [[nodiscard]] const Sites& sites(std::size_t body) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sdm

@@ -1,0 +1,148 @@
+#include "atlas/charts/overlap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace sdm {
+namespace {
+
+struct Rectangle {
+  GridPoint lo, hi;
+};
+
+Rectangle bounds_of(const GridTriangle& t) {
+  Rectangle box{t[0], t[0]};
+  for (const GridPoint& p : t)
+    for (int k = 0; k < 2; ++k) {
+      box.lo[k] = std::min(box.lo[k], p[k]);
+      box.hi[k] = std::max(box.hi[k], p[k]);
+    }
+  return box;
+}
+
+bool boxes_meet(const Rectangle& a, const Rectangle& b) {
+  return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
+}
+
+// Whether an edge of `a` has all of `b` on its outer side.
+bool separates(const GridTriangle& a, const GridTriangle& b, double slack) {
+  for (int k = 0; k < 3; ++k) {
+    const GridPoint &p = a[k], &q = a[(k + 1) % 3];
+    const double limit = slack > 0 ? slack * std::hypot(q[0] - p[0], q[1] - p[1]) : 0;
+    // The sign of an integer survives its rounding to double.
+    const auto outside = [&](const GridPoint& r) {
+      return static_cast<double>(orientation(p, q, r)) <= limit;
+    };
+    if (outside(b[0]) && outside(b[1]) && outside(b[2])) return true;
+  }
+  return false;
+}
+
+// The separating axis theorem: disjoint interiors of convex polygons are separated along an edge of one of
+// them.
+bool interiors_meet(const GridTriangle& a, const GridTriangle& b, double slack) {
+  return !separates(a, b, slack) && !separates(b, a, slack);
+}
+
+// A uniform grid over the triangles' bounds, with lists of the triangles whose boxes meet each cell.
+class Buckets {
+ public:
+  explicit Buckets(std::span<const Rectangle> boxes) {
+    Rectangle all = boxes[0];
+    for (const Rectangle& b : boxes)
+      for (int k = 0; k < 2; ++k) {
+        all.lo[k] = std::min(all.lo[k], b.lo[k]);
+        all.hi[k] = std::max(all.hi[k], b.hi[k]);
+      }
+    origin_ = all.lo;
+    const double width = std::max(1, all.hi[0] - all.lo[0]), height = std::max(1, all.hi[1] - all.lo[1]);
+    cell_ = std::max(1.0, std::sqrt(width * height / static_cast<double>(boxes.size())));
+    // Long thin sets have few cells across: cells are squares, but never more of them than a few a triangle,
+    // nor so small that the lists grow long.
+    const auto limit = 8.0 * static_cast<double>(boxes.size()) + 64;
+    for (;; cell_ *= 2) {
+      columns_ = static_cast<std::int64_t>(width / cell_) + 1;
+      rows_ = static_cast<std::int64_t>(height / cell_) + 1;
+      double entries = static_cast<double>(columns_) * static_cast<double>(rows_);
+      for (const Rectangle& b : boxes)
+        entries += static_cast<double>(column(b.hi[0]) - column(b.lo[0]) + 1) *
+                   static_cast<double>(row(b.hi[1]) - row(b.lo[1]) + 1);
+      if (entries <= limit || (columns_ == 1 && rows_ == 1)) break;
+    }
+    fill(boxes);
+  }
+
+  [[nodiscard]] std::size_t cells() const { return offsets_.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> list(std::size_t cell) const {
+    return {entries_.data() + offsets_[cell], entries_.data() + offsets_[cell + 1]};
+  }
+  [[nodiscard]] std::size_t cell_of(std::int32_t x, std::int32_t y) const {
+    return static_cast<std::size_t>(row(y) * columns_ + column(x));
+  }
+
+ private:
+  [[nodiscard]] std::int64_t column(std::int32_t x) const {
+    return static_cast<std::int64_t>((x - origin_[0]) / cell_);
+  }
+  [[nodiscard]] std::int64_t row(std::int32_t y) const {
+    return static_cast<std::int64_t>((y - origin_[1]) / cell_);
+  }
+
+  void fill(std::span<const Rectangle> boxes) {
+    offsets_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+    const auto for_each_cell = [&](const Rectangle& b, auto&& visit) {
+      for (std::int64_t y = row(b.lo[1]); y <= row(b.hi[1]); ++y)
+        for (std::int64_t x = column(b.lo[0]); x <= column(b.hi[0]); ++x)
+          visit(static_cast<std::size_t>(y * columns_ + x));
+    };
+    for (const Rectangle& b : boxes) for_each_cell(b, [&](std::size_t cell) { ++offsets_[cell + 1]; });
+    for (std::size_t c = 1; c < offsets_.size(); ++c) offsets_[c] += offsets_[c - 1];
+    entries_.resize(offsets_.back());
+    std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+      for_each_cell(boxes[i], [&](std::size_t cell) { entries_[next[cell]++] = i; });
+  }
+
+  GridPoint origin_{};
+  double cell_ = 1;
+  std::int64_t columns_ = 1, rows_ = 1;
+  std::vector<std::size_t> offsets_;
+  std::vector<std::uint32_t> entries_;
+};
+
+}  // namespace
+
+std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const GridTriangle> triangles,
+                                                                double slack, std::uint64_t budget) {
+  std::vector<std::size_t> solid;
+  std::vector<Rectangle> boxes;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (orientation(triangles[i][0], triangles[i][1], triangles[i][2]) > 0) {
+      solid.push_back(i);
+      boxes.push_back(bounds_of(triangles[i]));
+    }
+  if (solid.size() < 2) return std::nullopt;
+
+  const Buckets buckets(boxes);
+  std::uint64_t pairs = 0;
+  for (std::size_t cell = 0; cell < buckets.cells(); ++cell) {
+    const auto list = buckets.list(cell);
+    // The last of the list first: where layers lie on each other, a pair far apart cuts their stack in the
+    // middle.
+    for (std::size_t i = 0; i + 1 < list.size(); ++i) {
+      if ((pairs += list.size() - i) > budget) return std::pair(solid[list[i]], solid[list.back()]);
+      for (std::size_t j = list.size() - 1; j > i; --j) {
+        const Rectangle &a = boxes[list[i]], &b = boxes[list[j]];
+        // Of the cells that two boxes share, the one with the low corner of their intersection tests them.
+        if (!boxes_meet(a, b)) continue;
+        if (buckets.cell_of(std::max(a.lo[0], b.lo[0]), std::max(a.lo[1], b.lo[1])) != cell) continue;
+        const std::size_t first = solid[list[i]], second = solid[list[j]];
+        if (interiors_meet(triangles[first], triangles[second], slack)) return std::pair(first, second);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace sdm

@@ -1,0 +1,117 @@
+#include "atlas/charts/shape.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "atlas/charts/tangent_frame.h"
+#include "core/parallel.h"
+
+namespace sdm {
+namespace {
+
+// Enough to try of a hull with many edges.
+constexpr std::size_t kDirections = 256;
+
+// The direction of the side of the least bounding rectangle: it lies along an edge of the hull (Freeman &
+// Shapira 1975).
+Vec2 least_rectangle(std::vector<Vec2> points) {
+  const auto hull = convex_hull(std::move(points), [](const Vec2& p) -> const Vec2& { return p; });
+  Vec2 best = {1, 0};
+  double least = std::numeric_limits<double>::infinity();
+  const std::size_t stride = hull.size() / kDirections + 1;
+  for (std::size_t i = 0; i < hull.size(); i += stride) {
+    const Vec2 edge = hull[(i + 1) % hull.size()] - hull[i];
+    const double length = std::hypot(edge[0], edge[1]);
+    if (!(length > 0)) continue;
+    const Vec2 along = (1 / length) * edge;
+    double lo = 0, hi = 0, height = 0;  // relative to the edge's start, all of the hull on its left
+    for (const Vec2& p : hull) {
+      lo = std::min(lo, dot(along, p - hull[i]));
+      hi = std::max(hi, dot(along, p - hull[i]));
+      height = std::max(height, cross(along, p - hull[i]));
+    }
+    if ((hi - lo) * height < least) {
+      least = (hi - lo) * height;
+      best = along;
+    }
+  }
+  return best;
+}
+
+// The face's corners in shape coordinates.
+std::array<Vec2, 3> project_face(const Mesh& mesh, const ShapeFrame& frame, std::uint32_t face) {
+  const auto [i, j, k] = mesh.triangles[face];
+  return {frame.project(mesh.positions[i]), frame.project(mesh.positions[j]),
+          frame.project(mesh.positions[k])};
+}
+
+ShapeFrame upright_frame(const Mesh& mesh, const Chart& chart) {
+  const auto [right, up] = tangent_frame(chart.axis);
+  ShapeFrame frame{mesh.positions[mesh.triangles[chart.faces[0]][0]], right, -up, {}};
+  std::vector<Vec2> points;
+  points.reserve(3 * chart.faces.size());
+  for (const std::uint32_t f : chart.faces)
+    for (const Vec2& p : project_face(mesh, frame, f)) points.push_back(p);
+  const Vec2 side = least_rectangle(points);
+  const Vec3 turned_right = side[0] * frame.right + side[1] * frame.down;
+  const Vec3 turned_down = side[0] * frame.down - side[1] * frame.right;
+  frame.right = turned_right;
+  frame.down = turned_down;
+  Vec2 lo = {0, 0};  // the origin is one of the corners
+  for (const Vec2& p : points) {
+    lo[0] = std::min(lo[0], dot(side, p));
+    lo[1] = std::min(lo[1], cross(side, p));
+  }
+  frame.corner = lo;
+  return frame;
+}
+
+// Total length of the sides of faces whose neighbour there is not of the chart.
+double border_length(const FaceGeometry& faces, const Chart& chart, const Shape& shape) {
+  double length = 0;
+  for (std::size_t i = 0; i < chart.faces.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t next = faces.neighbours[chart.faces[i]][k];
+      if (next != kNone && std::binary_search(chart.faces.begin(), chart.faces.end(), next)) continue;
+      const Vec2 side = shape.triangles[i][(k + 1) % 3] - shape.triangles[i][k];
+      length += std::hypot(side[0], side[1]);
+    }
+  return length;
+}
+
+Shape chart_shape(const Mesh& mesh, const FaceGeometry& faces, const Chart& chart) {
+  Shape shape;
+  shape.frame = upright_frame(mesh, chart);
+  shape.triangles.reserve(chart.faces.size());
+  double largest_area = -1;
+  for (const std::uint32_t f : chart.faces) {
+    const auto& t = shape.triangles.emplace_back(project_face(mesh, shape.frame, f));
+    const double area = 0.5 * std::abs(cross(t[1] - t[0], t[2] - t[0]));
+    shape.area += area;
+    if (area > largest_area) {
+      largest_area = area;
+      shape.largest = static_cast<std::uint32_t>(shape.triangles.size() - 1);
+    }
+    for (const Vec2& p : t)
+      for (int k = 0; k < 2; ++k) shape.size[k] = std::max(shape.size[k], p[k]);
+  }
+  shape.perimeter = border_length(faces, chart, shape);
+  return shape;
+}
+
+}  // namespace
+
+Vec2 ShapeFrame::project(const Vec3& p) const {
+  const Vec3 d = p - origin;
+  return Vec2{dot(right, d), dot(down, d)} - corner;
+}
+
+std::vector<Shape> chart_shapes(const Mesh& mesh, const FaceGeometry& faces, std::span<const Chart> charts) {
+  std::vector<Shape> shapes(charts.size());
+  parallel_for(charts.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) shapes[c] = chart_shape(mesh, faces, charts[c]);
+  });
+  return shapes;
+}
+
+}  // namespace sdm

@@ -1,0 +1,148 @@
+#include "atlas/charts/split.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "atlas/charts/tangent_frame.h"
+#include "atlas/charts/overlap.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+// A fan of many slivers has a box test for nearly every pair: such a chart is cut rather than waited for.
+std::uint64_t pair_budget(std::size_t faces) {
+  return 10'000'000 + 100 * std::uint64_t{faces};
+}
+
+// The faces in the chart's projection on a grid across it, right and up seen from outside: counter-clockwise
+// but for snapping.
+std::vector<GridTriangle> snap(const Mesh& mesh, const Chart& chart) {
+  const auto [right, up] = tangent_frame(chart.axis);
+  const Vec3& origin = mesh.positions[mesh.triangles[chart.faces[0]][0]];
+  std::vector<std::array<Vec2, 3>> projected;
+  projected.reserve(chart.faces.size());
+  Vec2 lo = {0, 0}, hi = {0, 0};
+  for (const std::uint32_t f : chart.faces) {
+    std::array<Vec2, 3>& corners = projected.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 p = mesh.positions[mesh.triangles[f][k]] - origin;
+      corners[k] = {dot(p, right), dot(p, up)};
+      for (int i = 0; i < 2; ++i) {
+        lo[i] = std::min(lo[i], corners[k][i]);
+        hi[i] = std::max(hi[i], corners[k][i]);
+      }
+    }
+  }
+  const double extent = std::max({hi[0] - lo[0], hi[1] - lo[1], std::numeric_limits<double>::min()});
+  const auto step = [&](double x) { return static_cast<std::int32_t>(std::lround(x / extent * kGridSteps)); };
+  std::vector<GridTriangle> snapped(projected.size());
+  for (std::size_t i = 0; i < projected.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      snapped[i][k] = {step(projected[i][k][0] - lo[0]), step(projected[i][k][1] - lo[1])};
+  return snapped;
+}
+
+class Splitter {
+ public:
+  Splitter(const Mesh& mesh, const FaceGeometry& faces) : mesh_(mesh), faces_(faces) {}
+
+  // Appends the pieces of the chart.
+  void split(Chart chart, std::vector<Chart>& result) const {
+    std::vector<Chart> pending;
+    pending.push_back(std::move(chart));
+    while (!pending.empty()) {
+      Chart piece = std::move(pending.back());
+      pending.pop_back();
+      const std::vector<GridTriangle> triangles = remove_flipped(piece, result);
+      if (piece.faces.empty()) continue;
+      const auto overlap = find_overlap(triangles, 0, pair_budget(triangles.size()));
+      if (!overlap) {
+        result.push_back(std::move(piece));
+        continue;
+      }
+      for (Chart& half : cut(piece, piece.faces[overlap->first], piece.faces[overlap->second]))
+        pending.push_back(std::move(half));
+    }
+  }
+
+ private:
+  std::vector<GridTriangle> remove_flipped(Chart& chart, std::vector<Chart>& result) const {
+    std::vector<GridTriangle> triangles = snap(mesh_, chart);
+    if (chart.faces.size() == 1) return triangles;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const std::uint32_t f = chart.faces[i];
+      if (orientation(triangles[i][0], triangles[i][1], triangles[i][2]) < 0) {
+        result.push_back({faces_.normal[f], {f}});
+      } else {
+        chart.faces[kept] = f;
+        triangles[kept++] = triangles[i];
+      }
+    }
+    chart.faces.resize(kept);
+    triangles.resize(kept);
+    return triangles;
+  }
+
+  // Two halves, grown from a face each, so that each face goes to the one nearer along the chart. Faces that
+  // neither reaches (an overlap elsewhere took their link away) form a third.
+  [[nodiscard]] std::vector<Chart> cut(const Chart& chart, std::uint32_t first, std::uint32_t second) const {
+    struct Front {
+      double cost;
+      std::uint32_t face;
+      std::uint8_t half;
+      bool operator>(const Front& other) const { return cost > other.cost; }
+    };
+    const auto index = [&](std::uint32_t face) {
+      const auto at = std::lower_bound(chart.faces.begin(), chart.faces.end(), face);
+      return static_cast<std::size_t>(at - chart.faces.begin());
+    };
+    const auto has = [&](std::uint32_t face) {
+      return std::binary_search(chart.faces.begin(), chart.faces.end(), face);
+    };
+    std::vector<std::uint8_t> half(chart.faces.size(), 0);
+    std::priority_queue<Front, std::vector<Front>, std::greater<>> queue;
+    queue.push({0, first, 1});
+    queue.push({0, second, 2});
+    while (!queue.empty()) {
+      const Front front = queue.top();
+      queue.pop();
+      if (half[index(front.face)] != 0) continue;
+      half[index(front.face)] = front.half;
+      for (const std::uint32_t next : faces_.neighbours[front.face])
+        if (next != kNone && has(next) && half[index(next)] == 0)
+          queue.push(
+              {front.cost + norm(faces_.centroid[next] - faces_.centroid[front.face]), next, front.half});
+    }
+    std::vector<Chart> halves(3, Chart{chart.axis, {}});
+    for (std::size_t i = 0; i < half.size(); ++i) halves[half[i]].faces.push_back(chart.faces[i]);
+    std::erase_if(halves, [](const Chart& part) { return part.faces.empty(); });
+    return halves;
+  }
+
+  const Mesh& mesh_;
+  const FaceGeometry& faces_;
+};
+
+}  // namespace
+
+std::vector<Chart> split_overlaps(const Mesh& mesh, const FaceGeometry& faces, std::vector<Chart> charts) {
+  const Splitter splitter(mesh, faces);
+  std::vector<std::vector<Chart>> pieces(charts.size());
+  parallel_for(charts.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) splitter.split(std::move(charts[c]), pieces[c]);
+  });
+  std::vector<Chart> result;
+  for (std::vector<Chart>& list : pieces)
+    for (Chart& piece : list) {
+      if (piece.faces.size() == 1) piece.axis = faces.normal[piece.faces[0]];
+      result.push_back(std::move(piece));
+    }
+  return result;
+}
+
+}  // namespace sdm

@@ -1,0 +1,17 @@
+// Charts whose projections do not overlap themselves.
+#pragma once
+
+#include <vector>
+
+#include "atlas/charts/chart.h"
+#include "atlas/charts/face_geometry.h"
+
+namespace sdm {
+
+/// Cuts charts in two until the interiors of no two faces of a chart meet in its projection: exactly so once
+/// the projection is snapped to a grid of 2^29 steps across the chart. Faces that the snapping flips become
+/// charts of their own. Cost: linear for faces of like size and few overlaps, in parallel over charts.
+[[nodiscard]] std::vector<Chart> split_overlaps(const Mesh& mesh, const FaceGeometry& faces,
+                                                std::vector<Chart> charts);
+
+}  // namespace sdm

@@ -1,0 +1,130 @@
+#include "atlas/packing/bitmap_bin.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace sdm {
+namespace {
+
+constexpr std::uint64_t kFull = ~std::uint64_t{0};
+
+// Bits x ... x + 63.
+inline std::uint64_t load(const std::uint64_t* words, std::size_t x) {
+  const std::size_t word = x / 64, shift = x % 64;
+  return words[word] >> shift | words[word + 1] << 1 << (63 - shift);
+}
+
+// Words a row: the last two are full, so that load may read past the end.
+std::size_t words_per_row(std::uint32_t size) {
+  return size / 64 + 3;
+}
+
+std::uint32_t level_of(std::uint32_t length) {
+  return static_cast<std::uint32_t>(std::bit_width(length)) - 1;
+}
+
+}  // namespace
+
+BitmapBin::BitmapBin(std::uint32_t size)
+    : size_(size),
+      levels_(level_of(size) + 1),
+      stride_(words_per_row(size)),
+      bits_(stride_ * size * levels_, kFull),
+      longest_(size, size),
+      stale_(size, 0) {
+  for (std::uint32_t y = 0; y < size; ++y) {
+    std::uint64_t* cells = row(0, y);
+    std::fill_n(cells, size / 64, 0);
+    cells[size / 64] = kFull << size % 64;
+    update_levels(y, 0, size);
+  }
+}
+
+std::size_t BitmapBin::bytes(std::uint32_t size) {
+  return words_per_row(size) * size * (level_of(size) + 1) * sizeof(std::uint64_t);
+}
+
+std::optional<BitmapBin::Spot> BitmapBin::first_fit(const Stamp& stamp, std::uint32_t first_y,
+                                                    std::uint32_t end_y) {
+  if (stamp.width > size_ || stamp.height > size_) return std::nullopt;
+  end_y = std::min(end_y, size_ - stamp.height + 1);
+  std::vector<std::uint64_t> blocked((size_ - stamp.width) / 64 + 1);
+  for (std::uint32_t y = first_y; y < end_y; ++y) {
+    const bool hopeless = std::any_of(stamp.runs.begin(), stamp.runs.end(),
+                                      [&](const Run& r) { return longest_[y + r.row] < r.length; });
+    if (hopeless) continue;
+    if (const auto x = fit_in_row(stamp, y, blocked)) return Spot{*x, y};
+    for (std::uint32_t r = y; r < y + stamp.height; ++r)
+      if (stale_[r]) update_longest(r);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> BitmapBin::fit_in_row(const Stamp& stamp, std::uint32_t y,
+                                                   std::vector<std::uint64_t>& blocked) const {
+  const std::uint32_t positions = size_ - stamp.width + 1;
+  std::fill(blocked.begin(), blocked.end(), 0);
+  if (positions % 64 != 0) blocked.back() = kFull << positions % 64;
+  std::size_t first = 0, last = blocked.size();  // words that may have a free position
+  for (const Run& run : stamp.runs) {
+    const std::uint32_t level = level_of(run.length);
+    const std::uint64_t* words = row(level, y + run.row);
+    const std::size_t second = run.begin + run.length - (std::size_t{1} << level);
+    for (std::size_t i = first; i < last; ++i)
+      blocked[i] |= load(words, 64 * i + run.begin) | load(words, 64 * i + second);
+    while (first < last && blocked[first] == kFull) ++first;
+    while (first < last && blocked[last - 1] == kFull) --last;
+    if (first == last) return std::nullopt;
+  }
+  return static_cast<std::uint32_t>(64 * first) + static_cast<std::uint32_t>(std::countr_one(blocked[first]));
+}
+
+void BitmapBin::place(const Stamp& stamp, Spot spot) {
+  for (const Run& run : stamp.runs) {
+    const std::uint32_t y = spot.y + run.row, begin = spot.x + run.begin, end = begin + run.length;
+    std::uint64_t* cells = row(0, y);
+    for (std::uint32_t x = begin; x < end;) {
+      const std::uint32_t count = std::min(end - x, 64 - x % 64);
+      cells[x / 64] |= kFull >> (64 - count) << x % 64;
+      x += count;
+    }
+    update_levels(y, begin, end);
+    stale_[y] = 1;
+  }
+}
+
+// Level k + 1 from level k, which tells of half as many cells, where cells [begin, end) of level 0 have
+// changed: from 2^(k+1) before them on. Done where a level stays as it was, since the next depends on it
+// alone.
+void BitmapBin::update_levels(std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
+  for (std::uint32_t k = 0; k + 1 < levels_; ++k) {
+    const std::uint64_t* lower = row(k, y);
+    std::uint64_t* upper = row(k + 1, y);
+    const std::size_t half = std::size_t{1} << k;
+    std::uint64_t changed = 0;
+    for (std::size_t i = (begin - std::min<std::size_t>(begin, 2 * half)) / 64; i <= end / 64; ++i) {
+      const std::uint64_t bits = 64 * i + half <= size_ ? lower[i] | load(lower, 64 * i + half) : kFull;
+      changed |= bits ^ upper[i];
+      upper[i] = bits;
+    }
+    if (changed == 0) return;
+  }
+}
+
+void BitmapBin::update_longest(std::uint32_t y) {
+  const std::uint64_t* cells = row(0, y);
+  std::uint32_t longest = 0, run = 0;
+  for (std::uint32_t x = 0; x < size_;) {
+    const std::uint64_t word = cells[x / 64] >> x % 64;
+    const bool taken = word & 1;
+    const int same = taken ? std::countr_one(word) : std::countr_zero(word);
+    const std::uint32_t count = std::min(64 - x % 64, static_cast<std::uint32_t>(same));
+    run = taken ? 0 : run + count;
+    longest = std::max(longest, run);
+    x += count;
+  }
+  longest_[y] = longest;
+  stale_[y] = 0;
+}
+
+}  // namespace sdm

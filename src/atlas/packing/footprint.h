@@ -1,0 +1,33 @@
+// The texels that a chart covers, and its gutter around them.
+#pragma once
+
+#include <array>
+
+#include "atlas/packing/bitmap_bin.h"
+#include "atlas/charts/shape.h"
+
+namespace sdm {
+
+/// A shape scaled to texels, in a rectangle of texels: in-rectangle position = scale · shape + shift. The
+/// stamp for a number of quarter turns holds every cell of `cell`² texels that a face touches, and the
+/// gutter, rounded up to cells.
+struct Footprint {
+  Vec2 shift{};
+  std::uint32_t width = 0, height = 0;  ///< of the rectangle, multiples of the cell
+  std::array<Stamp, 4> stamps;
+};
+
+struct FootprintOptions {
+  double scale = 1;
+  std::uint32_t gutter = 1, cell = 1;
+};
+
+/// The shape's bounds, gutter included, must fit some thousand texels. The shift is such that at least one
+/// texel centre lies in a face.
+[[nodiscard]] Footprint make_footprint(const Shape& shape, const FootprintOptions& options);
+
+/// A point of the rectangle after quarter turns of it from x to y: proper rotations, which map texels to
+/// texels.
+[[nodiscard]] Vec2 turned(const Footprint& footprint, unsigned quarter_turns, const Vec2& point);
+
+}  // namespace sdm

@@ -1,0 +1,177 @@
+#include "atlas/packing/pack.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+
+#include "atlas/packing/bitmap_bin.h"
+#include "atlas/packing/footprint.h"
+#include "atlas/packing/too_small.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+// Beyond this many cells a side, a cell is a square of several texels: charts are large then, and lose little
+// by it. Many small charts have more cells.
+constexpr double kCells = 2048, kCellsPerChart = 10;
+// The search tries this many scales at once, whatever the number of threads, and ends at a share of the
+// atlas.
+constexpr int kTrials = 4;
+constexpr double kPrecision = 0.005;
+// From so many charts on, speed goes before filling the last holes.
+constexpr std::size_t kManyCharts = 4096;
+constexpr double kPrecisionOfMany = 0.02;
+
+std::uint32_t texels_per_cell(std::uint32_t resolution, std::size_t charts) {
+  const double cells = std::max(kCells, kCellsPerChart * std::sqrt(static_cast<double>(charts)));
+  return static_cast<std::uint32_t>(std::ceil(resolution / cells));
+}
+
+// Lengths of the same three leading bits share a class.
+std::uint64_t size_class(std::uint32_t length) {
+  const auto shift = static_cast<std::uint32_t>(std::max(0, static_cast<int>(std::bit_width(length)) - 3));
+  return std::uint64_t{shift} << 3 | length >> shift;
+}
+
+class Packer {
+ public:
+  Packer(std::span<const Shape> shapes, std::uint32_t resolution, std::uint32_t gutter)
+      : shapes_(shapes),
+        resolution_(resolution),
+        gutter_(gutter),
+        cell_(texels_per_cell(resolution, shapes.size())) {
+    for (const Shape& s : shapes) longest_ = std::max({longest_, s.size[0], s.size[1]});
+    order_.resize(shapes.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    const auto extent = [&](std::uint32_t s) { return shapes[s].size[0] * shapes[s].size[1]; };
+    std::stable_sort(order_.begin(), order_.end(), [&](auto a, auto b) { return extent(a) > extent(b); });
+  }
+
+  [[nodiscard]] std::uint32_t cells() const { return resolution_ / cell_; }
+
+  // The scale at which footprints take about the given share of the atlas: a region dilated by r grows by r
+  // times its perimeter and a few texels for its corners. None where corners alone take more.
+  [[nodiscard]] std::optional<double> scale_for(double share) const {
+    const double gutter = std::ceil(1.0 * gutter_ / cell_) * cell_;
+    const double reach = gutter + 0.5 * cell_, corner = 2 * gutter + cell_;
+    double area = 0, perimeter = 0;
+    for (const Shape& s : shapes_) {
+      area += s.area;
+      perimeter += s.perimeter;
+    }
+    const double room =
+        share * resolution_ * resolution_ - corner * corner * static_cast<double>(shapes_.size());
+    if (room <= 0) return std::nullopt;
+    // area s² + reach perimeter s = room, without cancellation; a long thin shape may reach across before
+    // that
+    const double b = reach * perimeter;
+    const double longest_fit = (resolution_ - 2 * gutter - 2 * cell_) / longest_;
+    return std::min(2 * room / (b + std::sqrt(b * b + 4 * area * room)), longest_fit);
+  }
+
+  // First fit, large shapes first, in the turn that reaches least far down. None where a shape finds no
+  // place.
+  [[nodiscard]] std::optional<std::vector<Placement>> try_scale(double scale) const {
+    BitmapBin bin(cells());
+    std::vector<Placement> placements(shapes_.size());
+    // Where the last stamp of about the same size went, a later one hardly finds a place above: with many
+    // small charts this saves nearly all of the search.
+    const bool many = shapes_.size() > kManyCharts;
+    std::unordered_map<std::uint64_t, std::uint32_t> first_rows;
+    for (const std::uint32_t s : order_) {
+      const Vec2& size = shapes_[s].size;
+      if (scale * std::max(size[0], size[1]) + 2.0 * gutter_ > resolution_) return std::nullopt;
+      const Footprint footprint = make_footprint(shapes_[s], {scale, gutter_, cell_});
+      std::optional<BitmapBin::Spot> best;
+      unsigned best_turn = 0;
+      std::uint32_t bottom = cells() + 1;  // to be undercut
+      for (unsigned turn = 0; turn < 4; ++turn) {
+        const Stamp& stamp = footprint.stamps[turn];
+        if (stamp.height >= bottom) continue;
+        std::uint32_t& first_row = first_rows[size_class(stamp.width) << 32 | size_class(stamp.height)];
+        const std::uint32_t end_y = bottom - stamp.height;
+        const auto spot = bin.first_fit(stamp, first_row, end_y);
+        if (many) first_row = std::max(first_row, spot ? spot->y : end_y);
+        if (!spot) continue;
+        best = spot;
+        best_turn = turn;
+        bottom = spot->y + stamp.height;
+      }
+      if (!best) return std::nullopt;
+      bin.place(footprint.stamps[best_turn], *best);
+      placements[s] = placement(footprint, best_turn, scale, *best);
+    }
+    return placements;
+  }
+
+ private:
+  [[nodiscard]] Placement placement(const Footprint& footprint, unsigned turn, double scale,
+                                    BitmapBin::Spot spot) const {
+    const Vec2 origin = turned(footprint, turn, {0, 0});
+    const Vec2 x = turned(footprint, turn, {1, 0}) - origin, y = turned(footprint, turn, {0, 1}) - origin;
+    const Vec2 corner = {1.0 * spot.x * cell_, 1.0 * spot.y * cell_};
+    return {{Vec2{scale * x[0], scale * y[0]}, Vec2{scale * x[1], scale * y[1]}},
+            turned(footprint, turn, footprint.shift) + corner};
+  }
+
+  std::span<const Shape> shapes_;
+  std::uint32_t resolution_, gutter_, cell_;
+  double longest_ = 0;                // side of a shape's rectangle
+  std::vector<std::uint32_t> order_;  // of placing
+};
+
+[[noreturn]] void throw_too_small(std::size_t charts, std::uint32_t resolution, std::uint32_t gutter) {
+  // Charts of a texel or two, packed to four fifths.
+  const double side = (2.0 * gutter + 1) * std::sqrt(1.25 * static_cast<double>(charts));
+  const auto enough =
+      static_cast<std::uint64_t>(std::exp2(std::ceil(std::log2(std::max(side, resolution + 1.0)))));
+  throw TooSmall("an atlas of " + std::to_string(resolution) + "² texels is too small for " +
+                     std::to_string(charts) + " charts with gutters of " + std::to_string(gutter) +
+                     "; use a resolution of about " + std::to_string(enough),
+                 enough);
+}
+
+}  // namespace
+
+Vec2 Placement::apply(const Vec2& q) const {
+  return Vec2{dot(matrix[0], q), dot(matrix[1], q)} + offset;
+}
+
+std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolution, std::uint32_t gutter,
+                            const Progress& progress) {
+  const Packer packer(shapes, resolution, gutter);
+  require_memory(kTrials * BitmapBin::bytes(packer.cells()), "packing the atlas");
+  // Shares of the atlas: `low` is known to fit once there is a best packing, `high` is not expected to.
+  double low = 0.66, high = 1.0;
+  std::optional<std::vector<Placement>> best;
+  const double precision = shapes.size() > kManyCharts ? kPrecisionOfMany : kPrecision;
+  while (!best || high - low > precision) {
+    std::array<double, kTrials> shares{};
+    std::array<std::optional<std::vector<Placement>>, kTrials> packings;
+    for (int k = 0; k < kTrials; ++k)
+      shares[k] = best ? low + (high - low) * (k + 1) / (kTrials + 1) : low + (high - low) * k / kTrials;
+    parallel_for(kTrials, 1, progress, "atlas: packing", [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        if (const auto scale = packer.scale_for(shares[k])) packings[k] = packer.try_scale(*scale);
+    });
+    int fitting = kTrials - 1;
+    while (fitting >= 0 && !packings[fitting]) --fitting;
+    if (fitting + 1 < kTrials) high = shares[fitting + 1];
+    if (fitting >= 0) {
+      low = shares[fitting];
+      best = std::move(packings[fitting]);
+    } else if (!best) {
+      low = high / 2;
+      if (low < kPrecisionOfMany) throw_too_small(shapes.size(), resolution, gutter);
+    }
+  }
+  return std::move(*best);
+}
+
+}  // namespace sdm

@@ -1,0 +1,28 @@
+// Placing the shapes of charts in the atlas.
+#pragma once
+
+#include <sdm/progress.h>
+
+#include <span>
+#include <vector>
+
+#include "atlas/charts/shape.h"
+
+namespace sdm {
+
+/// Atlas coordinates of a shape point q: matrix · q + offset, the matrix a scale times quarter turns.
+struct Placement {
+  std::array<Vec2, 2> matrix{};  ///< rows
+  Vec2 offset{};
+
+  [[nodiscard]] Vec2 apply(const Vec2& q) const;
+};
+
+/// Places all shapes at one scale, as large as is found to fit, each with its own ring of `gutter` free
+/// texels, and owning at least one texel. Throws sdm::Error when the resolution is too small for so many
+/// charts, or memory is short. Deterministic. Cost: some packings, each about linear in the texels and in the
+/// faces.
+[[nodiscard]] std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolution,
+                                          std::uint32_t gutter, const Progress& progress);
+
+}  // namespace sdm

@@ -1,0 +1,69 @@
+#include "atlas/texel_owners.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atlas/rasterise.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+double atlas_area(const std::array<Vec2, 3>& t) {
+  return std::abs(cross(t[1] - t[0], t[2] - t[0]));
+}
+
+// Calls visit(face, x, y) for each texel centre in the chart's faces.
+template <class Visit>
+void for_each_texel(const Layout& layout, const std::vector<std::uint32_t>& faces, Visit visit) {
+  for (const std::uint32_t f : faces)
+    for_each_centre(layout.corners[f], [&](std::uint32_t x, std::uint32_t y) { visit(f, x, y); });
+}
+
+// Packing puts the centroid of the largest face on a texel centre where no other lies in a face; with a face
+// that is thinner than rounding, that centre may still fall beside it.
+void claim_centroid(const Layout& layout, const std::vector<std::uint32_t>& faces, std::uint32_t resolution,
+                    std::vector<std::uint32_t>& owner) {
+  const auto smaller = [&](auto f, auto g) {
+    return atlas_area(layout.corners[f]) < atlas_area(layout.corners[g]);
+  };
+  const std::uint32_t face = *std::max_element(faces.begin(), faces.end(), smaller);
+  const auto& [a, b, c] = layout.corners[face];
+  const Vec2 centroid = (1.0 / 3) * (a + b + c);
+  owner[static_cast<std::size_t>(centroid[1]) * resolution + static_cast<std::size_t>(centroid[0])] = face;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::uint32_t resolution) {
+  std::vector<std::uint32_t> owner(std::size_t{resolution} * resolution, kNone);
+  const auto rasterise_charts = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      bool any = false;
+      for_each_texel(layout, layout.charts[c], [&](std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+        if (x >= resolution || y >= resolution) return;  // rounding at the border of the image
+        std::uint32_t& texel = owner[std::size_t{y} * resolution + x];
+        if (texel == kNone) texel = face;
+        any = true;
+      });
+      if (!any && kind != AtlasKind::uv) claim_centroid(layout, layout.charts[c], resolution, owner);
+    }
+  };
+  // Packed charts share no texel; a mesh's own may overlap by rounding, so the first one in order has it.
+  if (kind == AtlasKind::uv)
+    rasterise_charts(0, layout.charts.size());
+  else
+    parallel_for(layout.charts.size(), 16, rasterise_charts);
+  return owner;
+}
+
+std::vector<std::uint32_t> owned_texels(const std::vector<std::uint32_t>& texel_faces) {
+  std::vector<std::uint32_t> texels;
+  texels.reserve(texel_faces.size() - static_cast<std::size_t>(std::ranges::count(texel_faces, kNone)));
+  for (std::size_t texel = 0; texel < texel_faces.size(); ++texel)
+    if (texel_faces[texel] != kNone) texels.push_back(static_cast<std::uint32_t>(texel));
+  return texels;
+}
+
+}  // namespace sdm

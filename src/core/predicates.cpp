@@ -1,0 +1,92 @@
+#include "core/predicates.h"
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+// J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997:
+// rounding of a determinant of differences is at most this share of the sum of its terms' magnitudes. What
+// underflows is added: far below kUnderflow, for coordinates of up to 1e40.
+constexpr double kHalfUlp = std::numeric_limits<double>::epsilon() / 2;
+constexpr double kError3 = (7 + 56 * kHalfUlp) * kHalfUlp, kError2 = (3 + 16 * kHalfUlp) * kHalfUlp;
+constexpr double kUnderflow = 1e-200;
+
+int sign(double x) {
+  return (x > 0) - (x < 0);
+}
+
+// Differences of coordinates as integers, in a unit that divides them all: of any two doubles they have at
+// most 2100 bits, and a product of three three times as many. No memory is taken.
+using boost::multiprecision::cpp_int_backend;
+using Integer =
+    boost::multiprecision::number<cpp_int_backend<6400, 6400, boost::multiprecision::signed_magnitude,
+                                                  boost::multiprecision::unchecked, void>>;
+
+int exponent_of(double x) {  // x is a multiple of 2 to this power
+  constexpr int kDigits = std::numeric_limits<double>::digits;
+  int exponent = 0;
+  std::frexp(x, &exponent);
+  return exponent - kDigits;
+}
+
+Integer in_units(double x, int exponent) {
+  const int own = exponent_of(x);
+  return x == 0 ? Integer(0) : Integer(static_cast<std::int64_t>(std::ldexp(x, -own))) << (own - exponent);
+}
+
+template <std::size_t n, std::size_t count>
+std::array<std::array<Integer, n>, count - 1> differences(
+    const std::array<std::array<double, n>, count>& points) {
+  int exponent = std::numeric_limits<int>::max();
+  for (const auto& p : points)
+    for (const double x : p)
+      if (x != 0) exponent = std::min(exponent, exponent_of(x));
+  std::array<std::array<Integer, n>, count - 1> result;
+  for (std::size_t i = 1; i < count; ++i)
+    for (std::size_t k = 0; k < n; ++k)
+      result[i - 1][k] = in_units(points[i][k], exponent) - in_units(points[0][k], exponent);
+  return result;
+}
+
+int exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const auto [u, v, w] = differences(std::array{a, b, c, d});
+  const Integer determinant = w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
+                              w[2] * (u[0] * v[1] - u[1] * v[0]);
+  return determinant.sign();
+}
+
+int exact(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const auto [u, v] = differences(std::array{a, b, c});
+  const Integer determinant = u[0] * v[1] - u[1] * v[0];
+  return determinant.sign();
+}
+
+}  // namespace
+
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 u = b - a, v = c - a, w = d - a;
+  double determinant = 0, magnitude = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const double plus = u[i] * v[j], minus = u[j] * v[i];
+    determinant += w[k] * (plus - minus);
+    magnitude += std::abs(w[k]) * (std::abs(plus) + std::abs(minus));
+  }
+  if (std::abs(determinant) > kError3 * magnitude + kUnderflow) return sign(determinant);
+  return exact(a, b, c, d);
+}
+
+int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const Vec2 u = b - a, v = c - a;
+  const double plus = u[0] * v[1], minus = u[1] * v[0];
+  if (std::abs(plus - minus) > kError2 * (std::abs(plus) + std::abs(minus)) + kUnderflow)
+    return sign(plus - minus);
+  return exact(a, b, c);
+}
+
+}  // namespace sdm

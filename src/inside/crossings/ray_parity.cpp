@@ -1,0 +1,85 @@
+#include "inside/crossings/ray_parity.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+// Rays run along (1, kSlopeY, kSlopeZ): a direction that no modelled edge or face is likely to contain.
+constexpr double kSlopeY = 0.0137035999, kSlopeZ = 0.0072973525;
+
+// A point seen along the ray from `origin`: its distance along X, and where it is beside the ray.
+struct Seen {
+  double along;
+  Vec2 beside;
+};
+Seen seen(const Vec3& p, const Vec3& origin) {
+  const Vec3 r = p - origin;
+  return {r[0], {r[1] - kSlopeY * r[0], r[2] - kSlopeZ * r[0]}};
+}
+
+bool meets(const FloatBox& box, const Vec3& origin) {
+  // The part of the ray at 0 ≤ x ≤ hi: the slopes are positive, so that y and z grow with x.
+  const double end = box.hi[0] - origin[0];
+  if (end < 0) return false;
+  const double begin = std::max(0.0, box.lo[0] - origin[0]);
+  return origin[1] + kSlopeY * begin <= box.hi[1] && origin[1] + kSlopeY * end >= box.lo[1] &&
+         origin[2] + kSlopeZ * begin <= box.hi[2] && origin[2] + kSlopeZ * end >= box.lo[2];
+}
+
+// On which side of the ray an edge passes, by the sign: of twice the area that its ends make with the ray; or
+// where that is 0, of what it becomes as the ray moves aside by ε in y and by far less, ε², in z. No vertex
+// lies on a ray so moved.
+double side_of_ray(const Vec2& from, const Vec2& to, double area) {
+  if (area != 0) return area;
+  return from[1] != to[1] ? from[1] - to[1] : to[0] - from[0];
+}
+
+bool meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& frame, const Vec3& origin) {
+  std::array<Seen, 3> corner;
+  for (int k = 0; k < 3; ++k) corner[k] = seen(frame.to_unit(positions[t[k]]), origin);
+  // An edge is evaluated from its smaller vertex to its larger: its two faces always agree on the side.
+  std::array<double, 3> area;  // opposite to corner k + 2
+  int on_left = 0;
+  for (int k = 0; k < 3; ++k) {
+    const bool forward = runs_forward(t, k);
+    const Vec2 &from = corner[forward ? k : (k + 1) % 3].beside,
+               &to = corner[forward ? (k + 1) % 3 : k].beside;
+    const double signed_area = cross(from, to);
+    area[k] = forward ? signed_area : -signed_area;
+    on_left += (side_of_ray(from, to, signed_area) > 0) == forward;
+  }
+  if (on_left != 0 && on_left != 3) return false;
+  const double sum = area[0] + area[1] + area[2];
+  if (sum == 0) return false;
+  const double along = area[1] * corner[0].along + area[2] * corner[1].along + area[0] * corner[2].along;
+  return along / sum > 0;
+}
+
+// Whether the ray meets an odd number of those faces below a node that are counted.
+template <class Counts>
+bool odd_below(std::uint32_t index, const AabbTree& tree, const Vec3& origin, const Counts& counts) {
+  const AabbTree::Node& node = tree.nodes[index];
+  if (!meets(node.box, origin)) return false;
+  if (!node.leaf())
+    return odd_below(index + 1, tree, origin, counts) != odd_below(node.right, tree, origin, counts);
+  bool odd = false;
+  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) odd ^= counts(tree.items[i]);
+  return odd;
+}
+
+}  // namespace
+
+bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
+                   std::span<const Triangle> triangles, const AabbTree& tree, const Vec3& origin,
+                   std::span<const std::uint32_t> component, std::uint32_t left_out) {
+  return odd_below(0, tree, origin, [&](std::uint32_t face) {
+    return (left_out == kNone || component[face] != left_out) &&
+           meets(triangles[face], positions, frame, origin);
+  });
+}
+
+}  // namespace sdm

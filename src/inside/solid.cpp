@@ -1,0 +1,114 @@
+#include "inside/solid.h"
+
+#include <algorithm>
+
+#include "core/predicates.h"
+#include "proximity/exact/triangle_pair.h"
+
+namespace sdm {
+namespace {
+
+// A box of the tree where the mesh stands, enlarged by far more than double precision rounds.
+Box posed(const FloatBox& box, const UnitFrame& frame, const Affine& pose) {
+  constexpr double kRounding = 1e-13;
+  Vec3 centre, half;
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = frame.origin[k] + (0.5 * box.lo[k] + 0.5 * box.hi[k]) / frame.scale;
+    half[k] = (0.5 * box.hi[k] - 0.5 * box.lo[k]) / frame.scale;
+  }
+  const Vec3 middle = pose(centre);
+  Vec3 reach{};
+  for (int i = 0; i < 3; ++i) {
+    double magnitude = std::abs(pose.offset[i]);
+    for (int j = 0; j < 3; ++j) {
+      reach[i] += std::abs(pose.rows[i][j]) * half[j];
+      magnitude += std::abs(pose.rows[i][j]) * (std::abs(frame.origin[j]) + 1 / frame.scale);
+    }
+    reach[i] += kRounding * magnitude;
+  }
+  return {middle - reach, middle + reach};
+}
+
+bool segment_meets(const Box& box, const Vec3& start, const Vec3& along) {
+  constexpr double kRounding = 1e-12;
+  double first = 0, last = 1;
+  for (int k = 0; k < 3; ++k) {
+    if (along[k] == 0) {
+      if (start[k] < box.lo[k] || start[k] > box.hi[k]) return false;
+      continue;
+    }
+    const auto [enter, leave] =
+        std::minmax({(box.lo[k] - start[k]) / along[k], (box.hi[k] - start[k]) / along[k]});
+    first = std::max(first, enter);
+    last = std::min(last, leave);
+  }
+  return first <= last + kRounding;
+}
+
+// ±1 if the segment pq crosses the triangle, by the side that it comes from, or 0; nothing where it meets the
+// triangle's edges. Neither p nor q lies on the triangle.
+std::optional<int> crossing(const Vec3& p, const Vec3& q, const Corners& t) {
+  const bool above_p = orientation(t[0], t[1], t[2], p) > 0, above_q = orientation(t[0], t[1], t[2], q) > 0;
+  if (above_p == above_q) return 0;
+  const int a = orientation(p, q, t[0], t[1]), b = orientation(p, q, t[1], t[2]),
+            c = orientation(p, q, t[2], t[0]);
+  const bool left = a > 0 || b > 0 || c > 0, right = a < 0 || b < 0 || c < 0;
+  if (left && right) return 0;
+  if (a * b * c == 0) return std::nullopt;
+  return above_p ? 1 : -1;
+}
+
+bool contains_part(const SitesData& solid, const Affine& pose, const SitesData& other,
+                   const Affine& other_pose, std::vector<std::uint32_t>& stack) {
+  if (!is_solid(solid)) return false;
+  return std::ranges::any_of(other.orientation.first_face, [&](std::uint32_t face) {
+    return contains(solid, pose, other_pose(other.mesh.positions[other.mesh.triangles[face][0]]), stack);
+  });
+}
+
+}  // namespace
+
+std::optional<int> winding(const SitesData& sites, const Affine& pose, const Vec3& p, const Vec3& q,
+                           std::vector<std::uint32_t>& stack) {
+  int turns = 0;
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const std::uint32_t index = stack.back();
+    const AabbTree::Node& node = sites.tree.nodes[index];
+    stack.pop_back();
+    if (!segment_meets(posed(node.box, sites.frame, pose), p, q - p)) continue;
+    if (!node.leaf()) {
+      stack.push_back(index + 1);
+      stack.push_back(node.right);
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const std::uint32_t face = sites.tree.items[i];
+      const auto [a, b, c] = sites.mesh.triangles[face];
+      const auto& at = sites.mesh.positions;
+      const std::optional<int> sign = crossing(p, q, {pose(at[a]), pose(at[b]), pose(at[c])});
+      if (!sign) return std::nullopt;
+      turns += sites.inverted[face] ? -*sign : *sign;
+    }
+  }
+  return turns;
+}
+
+bool contains(const SitesData& solid, const Affine& pose, const Vec3& point,
+              std::vector<std::uint32_t>& stack) {
+  const Box box = posed(solid.tree.nodes[0].box, solid.frame, pose);
+  if (!sdm::contains(box, point)) return false;
+  const double length = 2 * diagonal(box);
+  // Segments along (1, t, t²) that meet an edge are passed over. Those that meet the same edge lie in one
+  // plane, and no plane through the point holds more than two of them: this ends.
+  for (double t = 0.0137035999;; t += 0.0072973525)
+    if (const auto turns = winding(solid, pose, point, point + length * Vec3{1, t, t * t}, stack))
+      return *turns != 0;
+}
+
+bool one_contains_part_of_other(const MeshPair& pair, PairWorkspace& workspace) {
+  const Affine in_place;
+  return contains_part(pair.o1, in_place, pair.o2, pair.pose, workspace.nodes) ||
+         contains_part(pair.o2, pair.pose, pair.o1, in_place, workspace.nodes);
+}
+
+}  // namespace sdm

@@ -1,0 +1,33 @@
+// The generalised winding number of a soup around points.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <vector>
+
+#include "sites/sites_data.h"
+
+namespace sdm {
+
+/// How many times the mesh winds around a point (Jacobson, Kavan & Sorkine 2013): 1 inside and 0 outside a
+/// closed mesh, in between around an open one. Far subtrees act as dipoles (Barill et al. 2018), which errs
+/// by about 10⁻².
+class WindingNumber {
+ public:
+  explicit WindingNumber(const SitesData& sites);
+  [[nodiscard]] double operator()(const Vec3& q) const;
+
+ private:
+  struct Dipole {
+    Vec3 centre{};  ///< area-weighted mean of the faces' centroids
+    Vec3 moment{};  ///< sum of the faces' normals times areas
+    double area = 0;
+    double radius = 0;  ///< about the centre, of everything below
+  };
+  [[nodiscard]] double at(std::uint32_t node, const Vec3& q) const;
+
+  const SitesData& sites_;
+  std::vector<Dipole> dipoles_;  ///< of each node of the tree
+};
+
+}  // namespace sdm

@@ -1,0 +1,90 @@
+#include "map/map_writer.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <string>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+
+namespace sdm {
+
+namespace {
+
+void store_none(DistanceMap& map, std::size_t texel, std::size_t count) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  std::fill_n(map.distance.data() + texel, count, nan);
+  std::fill_n(map.vector.data() + texel, count, Vec3f{nan, nan, nan});
+  std::fill_n(map.site.data() + texel, count, kNone);
+  std::fill_n(map.site_type.data() + texel, count, SiteType::none);
+}
+
+}  // namespace
+
+void clear(DistanceMap& map, const Surface& surface) {
+  const std::span<const std::uint32_t> faces = surface.texel_faces();
+  if (map.distance.capacity() < faces.size())
+    require_memory(faces.size() * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
+                   "a map of " + std::to_string(surface.resolution()) + "² texels");
+  map.resolution = surface.resolution();
+  map.distance.resize(faces.size());
+  map.vector.resize(faces.size());
+  map.site.resize(faces.size());
+  map.site_type.resize(faces.size());
+  map.raster.reset();
+
+  constexpr std::size_t kGrain = 1 << 16;
+  parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    const auto last = faces.begin() + static_cast<std::ptrdiff_t>(end);
+    for (auto owned = faces.begin() + static_cast<std::ptrdiff_t>(begin); owned != last;) {
+      const auto free = std::find(owned, last, kNone);
+      owned = std::find_if(free, last, [](std::uint32_t face) { return face != kNone; });
+      store_none(map, static_cast<std::size_t>(free - faces.begin()), static_cast<std::size_t>(owned - free));
+    }
+  });
+}
+
+MapWriter::MapWriter(DistanceMap& map, const Surface& surface) : texels_(surface.sample_texels()), map_(map) {
+  clear(map, surface);
+  distance_ = map.distance.data();
+  vector_ = map.vector.data();
+  site_ = map.site.data();
+  site_type_ = map.site_type.data();
+}
+
+std::size_t MapWriter::store(std::size_t first, const ClosestPacket& closest, std::uint32_t inside) const {
+  constexpr std::size_t kSize = ClosestPacket::kSize;
+  // Neighbours in space lie here and there in the map: what is to be written soon is asked for now.
+  constexpr std::size_t kAhead = 4 * kSize;
+  for (std::size_t i = first + kAhead; i < std::min(first + kAhead + kSize, texels_.size()); ++i) {
+    __builtin_prefetch(distance_ + texels_[i], 1);
+    __builtin_prefetch(vector_ + texels_[i], 1);
+    __builtin_prefetch(site_ + texels_[i], 1);
+    __builtin_prefetch(site_type_ + texels_[i], 1);
+  }
+
+  float distance[kSize], vector[3][kSize];
+  for (std::size_t i = 0; i < kSize; ++i) distance[i] = static_cast<float>(closest.distance[i]);
+  for (int k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < kSize; ++i) vector[k][i] = static_cast<float>(closest.vector[k][i]);
+  for (; inside != 0; inside &= inside - 1) {
+    float& d = distance[std::countr_zero(inside)];
+    d = -d;
+  }
+
+  const std::uint32_t* texel = texels_.data() + first;
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < closest.count; ++i) {
+    distance_[texel[i]] = distance[i];
+    vector_[texel[i]] = {vector[0][i], vector[1][i], vector[2][i]};
+    site_[texel[i]] = closest.site[i];
+    site_type_[texel[i]] = closest.type[i];
+    without += closest.type[i] == SiteType::none;
+  }
+  for (std::size_t i = 0; without > 0 && i < closest.count; ++i)
+    if (closest.type[i] == SiteType::none) store_none(map_, texel[i], 1);
+  return without;
+}
+
+}  // namespace sdm

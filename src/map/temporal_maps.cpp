@@ -1,0 +1,42 @@
+#include <sdm/error.h>
+#include <sdm/temporal_maps.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+
+namespace sdm {
+
+void TemporalMaps::add(const DistanceMap& map) {
+  if (maps_ == 0) {
+    require_memory(map.distance.size() * (2 * sizeof(float) + sizeof(double)), "maps over time");
+    resolution_ = map.resolution;
+    least_ = largest_ = map.distance;
+    sum_.assign(map.distance.begin(), map.distance.end());
+  } else if (map.resolution != resolution_) {
+    throw Error("a map of " + std::to_string(map.resolution) + "² texels cannot be added to maps of " +
+                std::to_string(resolution_) + "²");
+  } else {
+    parallel_for(sum_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const float d = map.distance[i];
+        sum_[i] += d;  // NaN stays
+        // So NaN stays in the least and the largest, whichever has it.
+        if (d < least_[i] || std::isnan(d)) least_[i] = d;
+        if (d > largest_[i] || std::isnan(d)) largest_[i] = d;
+      }
+    });
+  }
+  ++maps_;
+}
+
+std::vector<float> TemporalMaps::mean() const {
+  std::vector<float> mean(sum_.size());
+  for (std::size_t i = 0; i < sum_.size(); ++i)
+    mean[i] = static_cast<float>(sum_[i] / static_cast<double>(maps_));
+  return mean;
+}
+
+}  // namespace sdm

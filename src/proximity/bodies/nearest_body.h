@@ -1,0 +1,15 @@
+// Which of many bodies is nearest, at every texel of one.
+#pragma once
+
+#include <sdm/multi_body_query.h>
+
+#include <span>
+
+#include "proximity/sampled/body.h"
+
+namespace sdm {
+
+/// As Bodies::nearest_map.
+void map_nearest(std::span<const Body> bodies, std::size_t on, double max_distance, NearestMap& nearest);
+
+}  // namespace sdm

@@ -1,0 +1,32 @@
+// Two meshes, and what is found between them.
+#pragma once
+
+#include <sdm/sites.h>
+
+#include <limits>
+
+#include "sites/sites_data.h"
+#include "core/affine.h"
+#include "proximity/exact/triangle_pair.h"
+
+namespace sdm {
+
+/// O1 where it is, and O2 moved by `pose`. Nothing is copied: a pose costs nothing.
+struct MeshPair {
+  const SitesData &o1, &o2;
+  Affine pose{};
+
+  /// The corners of a face. Compiled once: vector code must see the same roundings as all other code does.
+  [[nodiscard]] Corners face1(std::uint32_t face) const;
+  [[nodiscard]] Corners face2(std::uint32_t face) const;
+};
+
+/// The closest points of two surfaces.
+struct Separation {
+  double distance = std::numeric_limits<double>::infinity();  ///< |point2 − point1|, to rounding
+  bool intersecting = false;  ///< decided exactly; if so the distance is 0 and both points are one
+  Vec3 point1{}, point2{};    ///< as O2 is posed
+  std::uint32_t face1 = kNone, face2 = kNone;  ///< faces they lie on; kNone: nothing within the bound asked
+};
+
+}  // namespace sdm

@@ -1,0 +1,69 @@
+// The closest faces of two surfaces, by their two trees: no triangle is moved but those that are compared.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "proximity/exact/mesh_pair.h"
+
+namespace sdm {
+
+/// The work done, which tests hold down.
+struct PairSearchCounts {
+  std::size_t nodes = 0;           ///< opened: eight boxes tested against one
+  std::size_t leaf_pairs = 0;      ///< of up to eight faces each, tested in single precision
+  std::size_t triangle_pairs = 0;  ///< in double precision
+};
+
+/// What a thread keeps between searches: memory only, nothing that results depend on.
+struct PairWorkspace {
+  /// A node or leaf of the wide tree, and the binary node that has its box.
+  struct Place {
+    std::uint32_t child = 0, source = 0;
+
+    [[nodiscard]] bool leaf() const { return (child & WideTree::kLeafBit) != 0; }
+    [[nodiscard]] std::uint32_t leaf_number() const { return child & ~WideTree::kLeafBit; }
+  };
+  struct Entry {
+    std::array<Place, 2> place;  ///< in the trees of O1 and O2; at first both roots
+    float least = 0;             ///< lower bound on the distance; where boxes overlap, minus how far
+
+    [[nodiscard]] bool leaves() const { return place[0].leaf() && place[1].leaf(); }
+  };
+  /// The nearest on top.
+  class Heap {
+   public:
+    [[nodiscard]] bool empty() const { return entries_.empty(); }
+    void clear() { entries_.clear(); }
+    [[nodiscard]] const Entry& top() const { return entries_.front(); }
+    void push(const Entry& entry) {
+      entries_.push_back(entry);
+      std::ranges::push_heap(entries_, std::greater{}, &Entry::least);
+    }
+    Entry pop() {
+      std::ranges::pop_heap(entries_, std::greater{}, &Entry::least);
+      const Entry entry = entries_.back();
+      entries_.pop_back();
+      return entry;
+    }
+
+   private:
+    std::vector<Entry> entries_;
+  };
+
+  std::vector<Entry> overlapping;  ///< a stack
+  Heap apart;
+  std::vector<std::uint32_t> nodes;  ///< for `contains`
+  PairSearchCounts counts;           ///< summed over searches
+};
+
+/// The closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic where few
+/// faces compete, at worst all pairs of faces that do; one thread, no allocation once the workspace has
+/// grown.
+[[nodiscard]] Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace);
+
+/// Faces of the two surfaces that have a point in common, if any; decided exactly.
+[[nodiscard]] Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace);
+
+}  // namespace sdm

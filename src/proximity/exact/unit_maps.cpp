@@ -1,0 +1,87 @@
+#include "proximity/exact/unit_maps.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace sdm {
+namespace {
+
+// At least the largest factor by which a map stretches, |A|₂ = √|AAᵀ|₂ ≤ √|AAᵀ|∞, and that itself for
+// rotations and scales.
+double largest_stretch(const Affine& map) {
+  double most = 0;
+  for (const Vec3& row : map.rows) {
+    const Vec3 products{dot(row, map.rows[0]), dot(row, map.rows[1]), dot(row, map.rows[2])};
+    most = std::max(most, std::abs(products[0]) + std::abs(products[1]) + std::abs(products[2]));
+  }
+  return std::sqrt(most);
+}
+
+FrameMap in_floats(const Affine& map) {
+  // Coordinates are at most 1 before; the sum of a dozen roundings, each of half a unit in the last place.
+  constexpr double kError = 16 * std::numeric_limits<float>::epsilon();
+  constexpr double kLargest = 1e15;  // of which floats can still hold the square
+  FrameMap result{};
+  double largest = 1;
+  bool usable = true;
+  for (int i = 0; i < 3; ++i) {
+    double reach = std::abs(map.offset[i]);
+    for (const double x : map.rows[i]) reach += std::abs(x);
+    usable = usable && reach < kLargest;  // and no NaN
+    largest = std::max(largest, reach);
+  }
+  if (!usable) return {{}, {}, std::numeric_limits<float>::infinity()};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) result.row[i][j] = static_cast<float>(map.rows[i][j]);
+    result.offset[i] = static_cast<float>(map.offset[i]);
+  }
+  result.error = static_cast<float>(kError * largest);
+  return result;
+}
+
+bool diagonal(const Affine& map) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (i != j && map.rows[i][j] != 0) return false;
+  return true;
+}
+
+}  // namespace
+
+UnitMaps::UnitMaps(const MeshPair& pair) {
+  constexpr double kBelow = 1 - 1e-6;  // more than norms are rounded by
+  const UnitFrame &frame1 = pair.o1.frame, &frame2 = pair.o2.frame;
+  Affine to_frame1;
+  for (int i = 0; i < 3; ++i) to_frame1.rows[i] = (frame1.scale / frame2.scale) * pair.pose.rows[i];
+  to_frame1.offset = frame1.to_unit(pair.pose(frame2.origin));
+  const Affine to_frame2 = inverse(to_frame1);
+  to[0] = in_floats(to_frame1);
+  to[1] = in_floats(to_frame2);
+  aligned = diagonal(to_frame1) && std::isfinite(to[0].error) && std::isfinite(to[1].error);
+
+  const double scale_of_frame1 = std::min(1.0, 1 / largest_stretch(to_frame1));
+  scale_ = scale_of_frame1 * frame1.scale;
+  unit[0] = static_cast<float>(kBelow * scale_of_frame1);
+  unit[1] = std::isfinite(to[1].error)
+                ? static_cast<float>(kBelow * scale_of_frame1 / largest_stretch(to_frame2))
+                : 1;
+}
+
+float UnitMaps::round_up(double length) const {
+  constexpr double kAbove = 1 + 1e-6;
+  return static_cast<float>(std::min(kAbove * scale_ * length, 1e30));
+}
+
+Direction UnitMaps::direction(const Vec3& vector) const {
+  const Vec3 unit_vector = normalized(vector);
+  Direction result{.known = unit_vector != Vec3{}};
+  for (int i = 0; i < 3; ++i) {
+    const auto x = static_cast<float>(unit_vector[i]);
+    result.along[0][i] = -x;
+    for (int j = 0; j < 3; ++j) result.along[1][j] += x * to[0].row[i][j];
+    result.offset += x * to[0].offset[i];
+  }
+  return result;
+}
+
+}  // namespace sdm

@@ -1,0 +1,74 @@
+#include <sdm/error.h>
+#include <sdm/proximity_query.h>
+
+#include <cmath>
+#include <string>
+
+#include "mesh/validate.h"
+#include "proximity/sampled/body.h"
+#include "proximity/sampled/pair_answers.h"
+
+namespace sdm {
+
+struct ProximityQuery::Impl {
+  std::array<Body, 2> bodies;
+  PairAnswers answers;
+
+  Impl(const Mesh& o1, const Mesh& o2, const ProximityOptions& options)
+      : bodies{Body(o1, options.atlas), Body(o2, options.atlas)},
+        answers({.exact = options.exact, .contact_margin = options.contact_margin}) {
+    answers.begin(bodies[0], bodies[1]);
+  }
+};
+
+namespace {
+
+const ProximityOptions& checked(const ProximityOptions& options) {
+  if (!(options.contact_margin >= 0 && std::isfinite(options.contact_margin)))
+    throw Error("a contact margin of " + std::to_string(options.contact_margin) +
+                " is out of range; use 0 or more");
+  return options;
+}
+
+}  // namespace
+
+ProximityQuery::Query(Mesh o1, Mesh o2, const ProximityOptions& options)
+    : impl_(std::make_unique<Impl>(o1, o2, checked(options))) {}
+ProximityQuery::~ProximityQuery() = default;
+ProximityQuery::Query(ProximityQuery&&) noexcept = default;
+ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;
+
+void ProximityQuery::update(std::span<const Vec3> o1, std::span<const Vec3> o2) {
+  const std::array positions{o1, o2};
+  for (int b = 0; b < 2; ++b)
+    if (!positions[b].empty())
+      validate_positions(positions[b], impl_->bodies[b].surface().mesh().positions.size());
+  for (int b = 0; b < 2; ++b)
+    if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
+  impl_->answers.begin(impl_->bodies[0], impl_->bodies[1]);
+}
+
+const BoundedLength& ProximityQuery::separation() {
+  return impl_->answers.separation();
+}
+BoundedBool ProximityQuery::colliding() {
+  return impl_->answers.colliding();
+}
+const std::optional<BoundedLength>& ProximityQuery::penetration_depth() {
+  return impl_->answers.penetration_depth();
+}
+std::span<const Contact> ProximityQuery::contacts() {
+  return impl_->answers.contacts();
+}
+
+const Surface& ProximityQuery::surface(int body) const {
+  return impl_->bodies[body].surface();
+}
+const Sites& ProximityQuery::sites(int body) const {
+  return impl_->bodies[body].sites();
+}
+std::size_t ProximityQuery::samples_used() const {
+  return impl_->answers.samples_used();
+}
+
+}  // namespace sdm

@@ -1,0 +1,23 @@
+#include "proximity/sampled/body.h"
+
+#include <sdm/map.h>
+
+namespace sdm {
+
+Body::Body(const Mesh& mesh, const AtlasOptions& atlas)
+    : surface_(mesh, atlas), sites_(mesh), sign_(choose_sign(sites_, SignMethod::automatic).method) {
+  follow_positions();
+}
+
+void Body::refit(std::span<const Vec3> positions) {
+  surface_.refit(positions);
+  sites_.refit(positions);
+  follow_positions();
+}
+
+void Body::follow_positions() {
+  box_ = bounds(sites_.mesh());
+  inside_.emplace(sites_.impl(), sign_);
+}
+
+}  // namespace sdm

@@ -1,0 +1,40 @@
+// A mesh as both what distances are measured on and what they are measured to.
+#pragma once
+
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+
+#include <optional>
+#include <span>
+
+#include "inside/inside_test.h"
+
+namespace sdm {
+
+class Body {
+ public:
+  /// Throws sdm::Error as Surface and Sites do.
+  Body(const Mesh& mesh, const AtlasOptions& atlas);
+
+  /// Moves the vertices to positions that are valid for this mesh (see validate_positions).
+  void refit(std::span<const Vec3> positions);
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  [[nodiscard]] const Sites& sites() const { return sites_; }
+  /// Around all faces.
+  [[nodiscard]] const Box& box() const { return box_; }
+  /// Whether it is closed and orientable: only then it has an inside.
+  [[nodiscard]] bool solid() const { return sign_ != SignMethod::none; }
+  [[nodiscard]] const InsideTest& inside() const { return *inside_; }
+
+ private:
+  void follow_positions();
+
+  Surface surface_;
+  Sites sites_;
+  SignMethod sign_;
+  Box box_;
+  std::optional<InsideTest> inside_;
+};
+
+}  // namespace sdm

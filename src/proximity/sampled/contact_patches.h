@@ -1,0 +1,27 @@
+// Contacts in patches: those whose places on the surface are connected.
+#pragma once
+
+#include <sdm/proximity_query.h>
+
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+/// Sorts contacts, again and again in the same memory.
+class ContactPatches {
+ public:
+  /// Numbers patches, of contacts whose boxes meet, one after the other: by their deepest contact, the
+  /// deepest patch first. Returns the contacts patch by patch, in each by depth; valid until the next call.
+  std::span<const Contact> sort(std::span<Contact> contacts, std::span<const Box> boxes);
+
+ private:
+  void find_patches(std::span<const Box> boxes);
+  std::uint32_t root(std::uint32_t contact);
+  void join(std::uint32_t a, std::uint32_t b);
+
+  std::vector<Contact> sorted_;
+  std::vector<std::uint32_t> parent_, order_, open_;
+};
+
+}  // namespace sdm

@@ -1,0 +1,45 @@
+// Contacts from the samples that are inside the other body, or close to it.
+#pragma once
+
+#include <sdm/proximity_query.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "proximity/sampled/contact_patches.h"
+#include "proximity/sampled/local_distances.h"
+
+namespace sdm {
+
+/// A body with what has been measured of it.
+struct MeasuredBody {
+  const Surface& surface;
+  const Sites& sites;
+  const LocalDistances& distances;  ///< to the other body
+};
+
+/// Finds contacts, again and again in the same memory.
+class ContactFinder {
+ public:
+  /// As Query::contacts. `length`: below this, a depth says nothing about the normal.
+  std::span<const Contact> find(const std::array<MeasuredBody, 2>& bodies, double margin, double length);
+
+ private:
+  /// A small part of the surface: what one chart has in a run of samples.
+  struct Part {
+    std::uint32_t chart;
+    std::size_t deepest;  ///< sample of the part, among those measured
+    Box box;              ///< around all that its samples within the margin cover
+  };
+  void find_parts(const MeasuredBody& body, double margin);
+  void add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length);
+
+  std::vector<Part> parts_;   ///< of one body
+  std::vector<Vec3> points_;  ///< their deepest
+  std::vector<Contact> contacts_;
+  std::vector<Box> boxes_;  ///< of each contact: its part, and the way across a gap
+  ContactPatches patches_;
+};
+
+}  // namespace sdm

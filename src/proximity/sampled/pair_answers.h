@@ -1,0 +1,73 @@
+// What is told of two bodies: by Query of its own, by Bodies of pair after pair.
+#pragma once
+
+#include <sdm/proximity_query.h>
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "proximity/sampled/body.h"
+#include "proximity/sampled/contacts.h"
+#include "proximity/sampled/local_distances.h"
+#include "proximity/exact/pair_search.h"
+
+namespace sdm {
+
+/// Answers as they are documented at Query, each computed when it is first asked for. Memory is kept from
+/// pair to pair; no answer depends on those before.
+class PairAnswers {
+ public:
+  struct Options {
+    bool exact = false;
+    double contact_margin = 0;
+  };
+
+  explicit PairAnswers(const Options& options) : options_(options) {}
+
+  /// Answers for these bodies, as they are now, from now on. They must outlive the answers, and stay as they
+  /// are until the next call.
+  void begin(const Body& o1, const Body& o2);
+
+  [[nodiscard]] const BoundedLength& separation();
+  [[nodiscard]] BoundedBool colliding();
+  [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
+  [[nodiscard]] std::span<const Contact> contacts();
+  [[nodiscard]] std::size_t samples_used() const;
+
+ private:
+  /// A sample of one of the bodies, among those measured.
+  struct Sample {
+    int body = 0;
+    std::size_t index = kNone;
+  };
+
+  void measure();
+  template <class Value>
+  [[nodiscard]] std::pair<double, Sample> least(const Value& value) const;
+  [[nodiscard]] std::optional<std::array<Vec3, 2>> witness(const Sample& sample) const;
+  [[nodiscard]] MeshPair meshes() const;
+  const Separation& closest_triangles();
+  [[nodiscard]] BoundedLength exact_separation();
+  [[nodiscard]] BoundedBool exact_collision();
+  [[nodiscard]] BoundedLength bounded_separation();
+  [[nodiscard]] BoundedBool sampled_collision();
+  [[nodiscard]] std::optional<BoundedLength> depth();
+  [[nodiscard]] BoundedLength bounded_depth();
+
+  Options options_;
+  std::array<const Body*, 2> bodies_{};
+  double precision_ = 0;                     // of a distance
+  std::array<LocalDistances, 2> distances_;  // of each body to the other
+  ContactFinder finder_;
+  PairWorkspace workspace_;
+
+  // What has been found of these bodies.
+  bool measured_ = false, depth_found_ = false;
+  std::optional<Separation> closest_;  // of the triangles
+  std::optional<BoundedLength> separation_, depth_;
+  std::optional<BoundedBool> colliding_;
+  std::optional<std::span<const Contact>> contacts_;
+};
+
+}  // namespace sdm

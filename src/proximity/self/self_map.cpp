@@ -1,0 +1,103 @@
+#include <sdm/error.h>
+#include <sdm/self_proximity_query.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "surface/tiles.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+#include "map/map_writer.h"
+#include "proximity/self/self_search.h"
+
+namespace sdm {
+namespace {
+
+constexpr std::size_t kGrain = 256;  // tiles or faces
+
+void check(const Sites& sites, const Exclusion& exclusion, const SelfMapOptions& options) {
+  if (sites.mesh().triangles.size() != exclusion.faces())
+    throw Error("the exclusion is not one of this mesh: it has another number of faces");
+  if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+}
+
+void gather_around(std::span<const Vec3> points, double max_distance, SelfSearch& search) {
+  Box box;
+  for (const Vec3& p : points) extend(box, p);
+  double squared = 0;
+  for (const Vec3& p : points) squared = std::max(squared, squared_norm(p - centre(box)));
+  search.gather(centre(box), std::sqrt(squared), max_distance);
+}
+
+// Returns whether there is one.
+bool store(const ClosestPoint& closest, const Vec3& p, std::uint32_t texel, DistanceMap& map) {
+  const bool found = closest.type != SiteType::none;
+  map.distance[texel] = static_cast<float>(closest.distance);
+  for (int k = 0; k < 3; ++k)
+    map.vector[texel][k] = found ? static_cast<float>(closest.point[k] - p[k]) : 0.0f;
+  map.site[texel] = closest.site;
+  map.site_type[texel] = closest.type;
+  return found;
+}
+
+}  // namespace
+
+DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const Exclusion& exclusion,
+                             const SelfMapOptions& options) {
+  check(sites, exclusion, options);
+  if (surface.mesh().triangles.size() != exclusion.faces())
+    throw Error("the surface is not that of the sites: it has another number of faces");
+  DistanceMap map;
+  clear(map, surface);
+  map.sign.reason = "a surface has no inside of itself";
+  const Tiles& tiles = tiles_of(surface);
+  std::atomic<std::size_t> none{0};
+  parallel_for(tiles.count(), kGrain, options.progress, "map", [&](std::size_t begin, std::size_t end) {
+    SelfSearch search(sites.impl(), exclusion);
+    std::vector<Vec3> points;
+    std::size_t none_here = 0;
+    for (auto tile = static_cast<std::uint32_t>(begin); tile < end; ++tile) {
+      const std::span<const std::uint32_t> texels = tiles.of(tile);
+      points.clear();
+      for (const std::uint32_t texel : texels) points.push_back(surface.texel_point(texel));
+      search.start_from(tiles.faces[tile]);
+      gather_around(points, options.max_distance, search);
+      for (std::size_t i = 0; i < texels.size(); ++i)
+        none_here += !store(search.closest_to(points[i]), points[i], texels[i], map);
+    }
+    none += none_here;
+  });
+  map.beyond_max_distance = none;
+  return map;
+}
+
+std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusion& exclusion,
+                                              const SelfMapOptions& options) {
+  check(sites, exclusion, options);
+  const Mesh& mesh = sites.mesh();
+  const Topology& topology = sites.impl().topology;
+  std::vector<std::array<float, 3>> at_corners(mesh.triangles.size());
+  parallel_for(mesh.triangles.size(), kGrain, options.progress, "vertices",
+               [&](std::size_t begin, std::size_t end) {
+                 SelfSearch search(sites.impl(), exclusion);
+                 for (std::size_t f = begin; f < end; ++f) {
+                   if (topology.ignored(f)) continue;
+                   search.start_from(static_cast<std::uint32_t>(f));
+                   for (int k = 0; k < 3; ++k) {
+                     const Vec3& p = mesh.positions[mesh.triangles[f][k]];
+                     search.gather(p, 0, options.max_distance);
+                     at_corners[f][k] = static_cast<float>(search.closest_to(p).distance);
+                   }
+                 }
+               });
+  std::vector<float> least(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+    for (int k = 0; k < 3 && !topology.ignored(f); ++k) {
+      float& at_vertex = least[mesh.triangles[f][k]];
+      at_vertex = std::fmin(at_vertex, at_corners[f][k]);  // of NaN and a number the number
+    }
+  return least;
+}
+
+}  // namespace sdm

@@ -1,0 +1,140 @@
+#include <sdm/error.h>
+#include <sdm/self_proximity_query.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/vec.h"
+#include "proximity/sampled/contact_patches.h"
+#include "proximity/self/self_search.h"
+
+namespace sdm {
+namespace {
+
+constexpr std::size_t kGrain = 128;  // faces
+
+void check_max_distance(double max_distance) {
+  if (!(max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+}
+
+}  // namespace
+
+struct SelfProximityQuery::Impl {
+  Sites sites;
+  Exclusion exclusion;
+  double max_distance;
+
+  // What has been found since the last update.
+  std::optional<FacePair> closest;
+
+  std::vector<FacePair> nearest{};  // of each face with sites, in the order of the tree
+  std::vector<Contact> contacts{};
+  std::vector<Box> boxes{};
+  ContactPatches patches{};
+
+  Impl(Mesh rest, const SelfProximityOptions& options)
+      : sites(std::move(rest)),
+        exclusion(sites.mesh(), options.exclusion, options.progress),
+        max_distance(options.max_distance) {}
+
+  // Calls body(search, place) for the place of each face in the tree, neighbours one after the other.
+  template <class Body>
+  void for_each_face(const Body& body) const {
+    const std::vector<std::uint32_t>& faces = sites.impl().tree.items;
+    parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      SelfSearch search(sites.impl(), exclusion);
+      for (std::size_t place = begin; place < end; ++place) {
+        search.start_from(faces[place]);
+        body(search, place);
+      }
+    });
+  }
+
+  // Bounds come from whatever thread was first; but of the nearest pairs none is ever ruled out, and one of
+  // them is before all others.
+  FacePair find_closest() const {
+    std::atomic<double> bound{max_distance};
+    std::mutex mutex;
+    FacePair best;
+    for_each_face([&](const SelfSearch& search, std::size_t) {
+      const FacePair pair = search.nearest(bound.load(std::memory_order_relaxed));
+      if (pair.face1 == kNone) return;
+      const std::scoped_lock lock(mutex);
+      if (pair.before(best)) best = pair;
+      bound.store(best.distance, std::memory_order_relaxed);
+    });
+    return best;
+  }
+
+  void find_contacts(double margin) {
+    nearest.resize(sites.impl().tree.items.size());
+    for_each_face(
+        [&](const SelfSearch& search, std::size_t place) { nearest[place] = search.nearest(margin); });
+    // Two faces that are each other's nearest are found twice.
+    std::erase_if(nearest, [](const FacePair& pair) { return pair.face1 == kNone; });
+    std::ranges::sort(nearest, [](const FacePair& a, const FacePair& b) { return a.before(b); });
+    const auto same = [](const FacePair& a, const FacePair& b) {
+      return a.face1 == b.face1 && a.face2 == b.face2;
+    };
+    nearest.erase(std::unique(nearest.begin(), nearest.end(), same), nearest.end());
+    contacts.clear();
+    boxes.clear();
+    for (const FacePair& pair : nearest) {
+      contacts.push_back(contact_of(pair));
+      Box& box = boxes.emplace_back();
+      for (const std::uint32_t face : {pair.face1, pair.face2})
+        for (const std::uint32_t v : sites.mesh().triangles[face]) extend(box, sites.mesh().positions[v]);
+    }
+  }
+
+  [[nodiscard]] Contact contact_of(const FacePair& pair) const {
+    Contact c{.point1 = pair.point1, .point2 = pair.point2, .depth = -pair.distance};
+    c.normal =
+        pair.distance > 0 ? (1 / c.depth) * (c.point2 - c.point1) : sites.impl().normals.face[pair.face2];
+    return c;
+  }
+};
+
+SelfProximityQuery::SelfProximityQuery(Mesh rest, const SelfProximityOptions& options) {
+  check_max_distance(options.max_distance);
+  impl_ = std::make_unique<Impl>(std::move(rest), options);
+}
+SelfProximityQuery::~SelfProximityQuery() = default;
+SelfProximityQuery::SelfProximityQuery(SelfProximityQuery&&) noexcept = default;
+SelfProximityQuery& SelfProximityQuery::operator=(SelfProximityQuery&&) noexcept = default;
+
+void SelfProximityQuery::update(std::span<const Vec3> positions) {
+  impl_->sites.refit(positions);
+  impl_->closest.reset();
+}
+
+std::optional<BoundedLength> SelfProximityQuery::separation() {
+  if (!impl_->closest) impl_->closest = impl_->find_closest();
+  const FacePair& c = *impl_->closest;
+  if (c.face1 == kNone) return {};
+  return BoundedLength{.value = c.distance,
+                .kind = Certainty::exact,
+                .lower = c.distance,
+                .upper = c.distance,
+                .witness = std::array{c.point1, c.point2}};
+}
+
+std::span<const Contact> SelfProximityQuery::contacts(double margin) {
+  if (!(margin >= 0 && std::isfinite(margin)))
+    throw Error("a contact margin of " + std::to_string(margin) + " is out of range; use 0 or more");
+  impl_->find_contacts(margin);
+  return impl_->patches.sort(impl_->contacts, impl_->boxes);
+}
+
+const Sites& SelfProximityQuery::sites() const {
+  return impl_->sites;
+}
+const Exclusion& SelfProximityQuery::exclusion() const {
+  return impl_->exclusion;
+}
+
+}  // namespace sdm

@@ -1,0 +1,156 @@
+#include "proximity/self/self_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "core/vec.h"
+#include "sites/closest_on_face.h"
+#include "proximity/exact/triangle_pair.h"
+
+namespace sdm {
+
+struct SelfSearch::Scratch {
+  struct Entry {
+    std::uint32_t child;  ///< of a wide node
+    double squared;       ///< distance of its box in the unit frame
+  };
+  std::vector<Entry> stack;
+  std::vector<std::pair<double, std::uint32_t>> candidates;  ///< by their distance from the ball's centre
+  std::vector<std::uint8_t> excluded;                        ///< of each face; all 0 between searches
+
+  static Scratch& of_this_thread() {
+    thread_local Scratch scratch;
+    return scratch;
+  }
+};
+
+namespace {
+
+constexpr double kAbove = 1 + 1e-12;  // by more than squares are rounded: equals must be compared
+
+// Squared distances of a box to those of a node's children; both in the unit frame.
+void find_distances(const WideTree::Node& node, const Box& box, double (&squared)[WideTree::kWidth]) {
+  for (int i = 0; i < WideTree::kWidth; ++i) squared[i] = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < WideTree::kWidth; ++i) {
+      const double gap = std::max({node.lo[k][i] - box.hi[k], box.lo[k] - node.hi[k][i], 0.0});
+      squared[i] += gap * gap;
+    }
+}
+
+Corners corners(const Mesh& mesh, std::uint32_t face) {
+  const Triangle& t = mesh.triangles[face];
+  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+}
+
+}  // namespace
+
+bool FacePair::before(const FacePair& other) const {
+  return std::tie(distance, face1, face2) < std::tie(other.distance, other.face1, other.face2);
+}
+
+SelfSearch::SelfSearch(const SitesData& sites, const Exclusion& exclusion)
+    : sites_(sites), exclusion_(exclusion), scratch_(Scratch::of_this_thread()) {
+  if (scratch_.excluded.size() < exclusion.faces()) scratch_.excluded.resize(exclusion.faces());
+}
+
+SelfSearch::~SelfSearch() {
+  start_from(kNone);
+}
+
+void SelfSearch::start_from(std::uint32_t face) {
+  const auto mark = [&](std::uint8_t value) {
+    if (face_ == kNone) return;
+    for (const std::uint32_t f : exclusion_.of(face_)) scratch_.excluded[f] = value;
+  };
+  mark(0);
+  face_ = face;
+  mark(1);
+}
+
+// Calls visit(face) for the faces in leaves whose boxes are no farther from `box` than `limit`, which may
+// shrink meanwhile; the nearer leaves first, as far as depth first allows. Excluded faces are passed over.
+template <class Visit>
+void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) const {
+  const UnitFrame& frame = sites_.frame;
+  const Box unit{frame.to_unit(box.lo), frame.to_unit(box.hi)};
+  const auto too_far = [&](double squared) {
+    // Coordinates of the unit frame are rounded by 1e-16.
+    const double most = (1 + 1e-9) * frame.scale * limit + 1e-15;
+    return squared > most * most;
+  };
+  auto& stack = scratch_.stack;
+  stack.assign(1, {0, 0});
+  while (!stack.empty()) {
+    const auto [child, squared] = stack.back();
+    stack.pop_back();
+    if (too_far(squared)) continue;
+    if ((child & WideTree::kLeafBit) != 0) {
+      const std::uint32_t leaf = child & ~WideTree::kLeafBit;
+      for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
+        if (const std::uint32_t face = sites_.tree.items[i]; scratch_.excluded[face] == 0) visit(face);
+      continue;
+    }
+    const WideTree::Node& node = sites_.wide.nodes[child];
+    double distances[WideTree::kWidth];
+    find_distances(node, unit, distances);
+    const auto base = static_cast<std::ptrdiff_t>(stack.size());
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      if (too_far(distances[i])) continue;
+      auto at = stack.end();  // the nearest on top
+      while (at != stack.begin() + base && (at - 1)->squared < distances[i]) --at;
+      stack.insert(at, {node.child[i], distances[i]});
+    }
+  }
+}
+
+// A face g that is closest to a point q of the ball is so near its centre c: with d_c = min d(c, ·),
+// d(c, g) ≤ d(q, g) + r ≤ d_c + 2r.
+void SelfSearch::gather(const Vec3& centre, double radius, double max_distance) {
+  centre_ = centre, max_distance_ = max_distance;
+  auto& candidates = scratch_.candidates;
+  candidates.clear();
+  double limit = max_distance + radius;
+  visit_near({centre, centre}, limit, [&](std::uint32_t face) {
+    const double distance = closest_on_face(sites_, face, centre).distance;
+    if (distance > limit) return;
+    candidates.push_back({distance, face});
+    limit = std::min(limit, distance + 2 * radius);
+  });
+  std::ranges::sort(candidates);
+}
+
+ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
+  ClosestPoint best;
+  double limit = max_distance_;
+  const double from_centre = norm(q - centre_);
+  for (const auto& [at_centre, face] : scratch_.candidates) {
+    if (at_centre - from_centre > limit) break;  // d(q, g) ≥ d(c, g) − |q − c|
+    if (squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit) continue;
+    const ClosestPoint c = closest_on_face(sites_, face, q);
+    if (c.distance < best.distance && c.distance <= limit) best = c, limit = c.distance;
+  }
+  return best;
+}
+
+FacePair SelfSearch::nearest(double max_distance) const {
+  FacePair best;
+  double limit = max_distance;
+  const Corners own = corners(sites_.mesh, face_);
+  Box box;
+  for (const Vec3& p : own) extend(box, p);
+  visit_near(box, limit, [&](std::uint32_t other) {
+    const Corners others = corners(sites_.mesh, other);
+    if (squared_box_distance(own, others) > kAbove * limit * limit) return;
+    const bool first = face_ < other;  // either way the same roundings
+    const PointPair c = first ? closest_or_common(own, others) : closest_or_common(others, own);
+    const FacePair pair{std::sqrt(c.squared), std::min(face_, other), std::max(face_, other), c.point1,
+                        c.point2};
+    if (pair.distance <= limit && pair.before(best)) best = pair, limit = pair.distance;
+  });
+  return best;
+}
+
+}  // namespace sdm

@@ -1,0 +1,18 @@
+// The closest point of one face, and of the faces around it, in double precision.
+#pragma once
+
+#include <sdm/sites.h>
+
+#include "sites/sites_data.h"
+
+namespace sdm {
+
+/// The point of the closed triangle that is closest to q, and which of its sites it lies on.
+[[nodiscard]] ClosestPoint closest_on_face(const SitesData& sites, std::uint32_t face, const Vec3& q);
+
+/// From closest_on_face(face), on to neighbouring faces as long as they are strictly closer: a local minimum
+/// of the distance over the mesh, to double rounding. What single precision found becomes consistent with its
+/// neighbourhood, on which pseudonormals rely.
+[[nodiscard]] ClosestPoint closest_around_face(const SitesData& sites, std::uint32_t face, const Vec3& q);
+
+}  // namespace sdm

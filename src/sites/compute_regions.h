@@ -1,0 +1,25 @@
+// The numbers of regions of influence, many sites at a time.
+#pragma once
+
+#include <cstddef>
+
+#include "sites/regions.h"
+
+namespace sdm {
+
+// Each chooses the best vector instructions that the machine has, at run time.
+
+/// The faces of the leaves from `begin` to `end`: their regions and shapes, and the discs of their bounds.
+void compute_faces(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                   std::span<const std::uint8_t> inverted, std::span<FaceShape> shapes, std::size_t begin,
+                   std::size_t end);
+
+/// The regions of the edges from `begin` to `end`.
+void compute_edges(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, std::size_t begin,
+                   std::size_t end);
+
+/// The regions of the vertices from `begin` to `end`.
+void compute_vertices(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                      std::size_t begin, std::size_t end);
+
+}  // namespace sdm

@@ -1,0 +1,85 @@
+#include "sites/orient_outward.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "core/vec.h"
+#include "inside/crossings/ray_parity.h"
+
+namespace sdm {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+struct Shell {
+  std::uint32_t component;
+  std::span<const std::uint32_t> faces;
+  bool inward = false;  ///< as turned by the orientation, the faces enclose a negative volume
+};
+
+// Six times the volume; a corner of the shell as origin keeps the digits of small shells. Summed in parts
+// that do not depend on the number of threads.
+double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Triangle> triangles,
+              std::span<const std::uint8_t> turned) {
+  const Vec3& origin = p[triangles[shell.faces.front()][0]];
+  thread_local std::vector<double> parts_of_this_thread;  // one that waits for a loop takes up no other shell
+  std::vector<double>& parts = parts_of_this_thread;
+  parts.assign((shell.faces.size() + kGrain - 1) / kGrain, 0);
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const std::uint32_t f :
+           shell.faces.subspan(i * kGrain).first(std::min(kGrain, shell.faces.size() - i * kGrain))) {
+        const Triangle& t = triangles[f];
+        const double v = dot(p[t[0]] - origin, cross(p[t[1]] - origin, p[t[2]] - origin));
+        parts[i] += turned[f] ? -v : v;
+      }
+  });
+  return std::accumulate(parts.begin(), parts.end(), 0.0);
+}
+
+// Whether the shell lies inside an odd number of others. Shells that touch or overlap others lie partly
+// inside at most: a few points just outside faces far apart must all agree.
+bool hollow(const Shell& shell, std::span<const Vec3> positions, const UnitFrame& frame,
+            std::span<const Triangle> triangles, const Orientation& orientation, const AabbTree& tree) {
+  constexpr std::size_t kPoints = 5;
+  constexpr double kOff = 1e-7;  // in the unit frame
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const std::uint32_t f = shell.faces[i * shell.faces.size() / kPoints];
+    const auto corner = [&](int k) { return frame.to_unit(positions[triangles[f][k]]); };
+    const Vec3 a = corner(0), b = corner(1), c = corner(2);
+    const Vec3 normal = normalized(cross(b - a, c - a));
+    const bool inward = shell.inward != static_cast<bool>(orientation.turned[f]);
+    const Vec3 point = (1.0 / 3) * (a + b + c) + (inward ? -kOff : kOff) * normal;
+    if (!odd_crossings(positions, frame, triangles, tree, point, orientation.component, shell.component))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Shells find_shells(const Orientation& orientation) {
+  return make_rows<std::uint32_t>(orientation.first_face.size(), [&](const auto& put) {
+    for (std::uint32_t f = 0; f < orientation.component.size(); ++f)
+      if (orientation.component[f] != kNone) put(orientation.component[f], f);
+  });
+}
+
+void orient_outward(std::span<const Vec3> positions, const UnitFrame& frame,
+                   std::span<const Triangle> triangles, const Orientation& orientation, const Shells& shells,
+                   const AabbTree& tree, std::vector<std::uint8_t>& inverted) {
+  inverted = orientation.turned;
+  parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      Shell shell{static_cast<std::uint32_t>(s), shells.of(s)};
+      shell.inward = volume(shell, positions, triangles, orientation.turned) < 0;
+      const bool is_hollow =
+          shells.size() > 1 && hollow(shell, positions, frame, triangles, orientation, tree);
+      if (shell.inward != is_hollow)
+        for (std::uint32_t f : shell.faces) inverted[f] ^= 1;
+    }
+  });
+}
+
+}  // namespace sdm

@@ -1,0 +1,27 @@
+// Which side of a closed mesh is out.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <span>
+#include <vector>
+
+#include "hierarchy/aabb_tree.h"
+#include "mesh/topology.h"
+
+namespace sdm {
+
+/// The faces of each component of an orientation.
+using Shells = CompressedRows<std::uint32_t>;
+[[nodiscard]] Shells find_shells(const Orientation& orientation);
+
+/// For a closed, orientable mesh: sets `inverted` for the faces that run clockwise seen from outside. A shell
+/// bounds solid where it lies inside an even number of the others, and hollow where inside an
+/// odd number: a point is inside when a ray from it meets the mesh an odd number of times. Shells that touch
+/// or overlap each other bound solid. `tree` holds the faces, in the unit frame. Cost: linear, all cores, and
+/// a few rays for each shell where there are several.
+void orient_outward(std::span<const Vec3> positions, const UnitFrame& frame,
+                   std::span<const Triangle> triangles, const Orientation& orientation, const Shells& shells,
+                   const AabbTree& tree, std::vector<std::uint8_t>& inverted);
+
+}  // namespace sdm

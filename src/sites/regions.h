@@ -1,0 +1,129 @@
+// The regions of influence of sites.
+//
+// A site can hold the closest point of x only if x lies in its region, by first-order conditions that any
+// soup satisfies:
+//   face abc   the prism over it: x on the inner side of the three walls through its edges;
+//   edge ab    between the end planes through a and b, and for each incident face, with inward in-plane
+//   normal m ⟂ ab:
+//              (x − a)·m ≤ 0;
+//   vertex v   the polar cone (x − v)·(w − v) ≤ 0 over all incident edges vw.
+// Fewer conditions only make a region larger, which is always safe: edges keep two walls, vertices four
+// edges.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <span>
+#include <vector>
+
+#include "hierarchy/aabb_tree.h"
+#include "sites/pseudonormals.h"
+#include "mesh/topology.h"
+
+namespace sdm {
+
+// A cache line each, for sites are looked up one by one. Coordinates in the unit frame; all normals and
+// directions have length 1, or 0 where geometry gives none (and then never exclude anything).
+
+/// height(x) = plane·(x, −1); inside the prism where every wall·(x, −1) ≥ 0.
+struct alignas(64) FaceRegion {
+  float plane[4], wall[3][4];
+};
+
+/// start + t·direction, 0 ≤ t ≤ length; in the wedge where every wall·(x, −1) ≤ 0.
+struct alignas(64) EdgeRegion {
+  float start[3], direction[3], length, wall[2][4];
+  std::uint32_t edge;
+};
+
+/// In the cone where every ray·(x − point) ≤ 0.
+struct alignas(64) VertexRegion {
+  static constexpr int kRays = 4;
+  float point[3], ray[kRays][3];
+  std::uint32_t vertex;
+};
+
+/// Bounds for up to eight faces, tested together: x lies in the region of a face, or of an edge or vertex
+/// that the face owns, only if with r = x − centre and h = normal·r
+///   |r − h normal| ≤ radius + slope |h|.
+/// For all of these sites lie in a disc of the face's plane. And where the faces around them make a closed
+/// sheet whose normals keep within an angle of this normal, so does, up to its sign, the direction from a
+/// site to any x of its region: slope is the angle's tangent. (In polar cones: above any direction u in the
+/// plane the sheet around a vertex v has a point v + u + s normal, |s| ≤ slope; for u the direction of x − v
+/// in the plane, (x − v)·(u + s normal) ≤ 0 says |x − v in the plane| ≤ slope |h|.) Elsewhere slope is kOpen.
+struct FaceBounds {
+  static constexpr int kWidth = 8;
+  static constexpr float kOpen = 1e18f;  ///< slope elsewhere, and where a face is too thin for its normal
+  alignas(32) float centre[3][kWidth];   ///< a point of the face
+  alignas(32) float normal[3][kWidth];
+  alignas(32) float radius[kWidth];
+  alignas(32) float slope[kWidth];
+};
+
+/// The topology once more, by places: faces, edges and vertices are named by the indices of their regions.
+/// Refits read it in order, and what it refers to is near.
+struct SitePlaces {
+  struct Edge {
+    std::array<std::uint32_t, 4> corners;  ///< its ends, and the third corners of its first two faces
+    std::array<std::uint32_t, 2> faces;    ///< these faces, or one twice
+  };
+  std::vector<Triangle> corners;  ///< of each face
+  std::vector<Edge> edges;
+  std::vector<std::array<std::uint32_t, VertexRegion::kRays>> neighbours;  ///< of each vertex: ends of rays
+  CompressedRows<std::uint32_t> fans;  ///< of each vertex: 4f + k for each face f, of which it is corner k
+};
+
+/// The sites by the leaves of a tree over the faces. Each edge and vertex is owned by the first of its faces.
+struct Regions {
+  /// A face, and the first of the edges and vertices that it owns: the next entry's end them.
+  struct Owner {
+    std::uint32_t face, edges, vertices;
+  };
+  std::vector<std::uint32_t> leaves;  ///< the first face of each leaf, in the order of owners; and an end
+  std::vector<FaceBounds> bounds;     ///< of each leaf
+  std::vector<Owner> owners;          ///< one for each face in the tree's order, and an end
+  std::vector<FaceRegion> faces;      ///< of each owner
+  std::vector<EdgeRegion> edges;
+  std::vector<VertexRegion> vertices;
+
+  std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it make a closed sheet
+  SitePlaces places;
+};
+
+/// What regions are made of.
+struct RegionSource {
+  std::span<const Vec3> positions;
+  std::span<const Triangle> triangles;
+  const Topology& topology;
+  const VertexFaces& vertex_faces;
+  bool orientable;
+  double scale;  ///< of the frame that regions are in
+};
+
+/// Hands the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth a leaf. Their
+/// regions are left to refit(). Cost: linear, all cores.
+[[nodiscard]] Regions build_regions(const RegionSource& source, const AabbTree& tree);
+
+/// Sets `placed` to the positions in the order of the regions' vertices. Refits read them again and again,
+/// and this order is that of the tree, while a mesh may have any. Cost: linear, all cores.
+void place(const Regions& regions, std::span<const Vec3> positions, std::vector<Vec3>& placed);
+
+/// Sets `boxes` to those of the leaves. Cost: linear, all cores.
+void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+                     std::vector<FloatBox>& boxes);
+
+struct FaceShape {
+  Vec3 normal;  ///< unit length, outward, 0 without area
+  Vec3 angle;   ///< at each corner
+  bool thin;    ///< too thin for a prism in single precision: its edges stand for it
+  bool sliver;  ///< too thin for a normal that could be trusted
+};
+
+/// Computes the regions in this frame, and what signs need: pseudonormals, outward if `inverted` tells which
+/// faces run clockwise seen from outside, and which faces are slivers, too thin for normals that could be
+/// trusted. `shapes` are computed on the way, of each owner. Cost: linear, all cores.
+void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
+           std::span<const std::uint8_t> inverted, Pseudonormals& normals, std::vector<std::uint8_t>& sliver,
+           std::vector<FaceShape>& shapes);
+
+}  // namespace sdm

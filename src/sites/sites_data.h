@@ -1,0 +1,56 @@
+// What Sites holds, for the engines.
+#pragma once
+
+#include <sdm/sites.h>
+
+#include <vector>
+
+#include "hierarchy/aabb_tree.h"
+#include "hierarchy/wide_tree.h"
+#include "sites/orient_outward.h"
+#include "sites/pseudonormals.h"
+#include "sites/regions.h"
+#include "mesh/topology.h"
+
+namespace sdm {
+
+struct SitesData {
+  Mesh mesh;
+  Topology topology;
+  VertexFaces vertex_faces;
+  bool closed = false;
+  bool alike = false;  ///< closed, and all faces run alike
+  Orientation orientation;
+  Shells shells;  ///< if closed and orientable
+  std::vector<std::uint8_t>
+      inverted;  ///< of each face: turned against the outside; if open, against its neighbours
+
+  UnitFrame frame;  ///< of the faces that have sites
+  AabbTree tree;    ///< over those faces, in the unit frame
+  WideTree wide;    ///< the same, collapsed
+  Regions regions;  ///< by the leaves of both
+  Pseudonormals normals;
+  std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a normal that could be trusted
+
+  /// What a refit computes on the way: its memory is kept for the next one.
+  struct Refit {
+    std::vector<Vec3> placed;
+    std::vector<FloatBox> boxes;
+    std::vector<FaceShape> shapes;
+  };
+  Refit last_refit;
+
+  /// A face that the site belongs to.
+  [[nodiscard]] std::uint32_t face_of(SiteType type, std::uint32_t site) const {
+    switch (type) {
+      case SiteType::vertex:
+        return vertex_faces.of(site)[0];
+      case SiteType::edge:
+        return topology.edge_faces(site)[0];
+      default:
+        return site;
+    }
+  }
+};
+
+}  // namespace sdm

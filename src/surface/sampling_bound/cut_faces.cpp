@@ -1,0 +1,189 @@
+// Which pieces there are, and which sample each is assigned to. Any choice gives valid radii; a good one
+// gives small ones, now and when the surface has moved. A face is cut along the squares of the texels. Where
+// it owns a square, the sample is the square's centre.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "surface/sampling_bound/coverage.h"
+#include "surface/sampling_bound/cut_faces.h"
+#include "surface/sampling_bound/near_samples.h"
+#include "surface/sampling_bound/polygon.h"
+#include "surface/surface_data.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+/// A sample this many half diagonals away is near enough: points across an edge may be as far as its square.
+constexpr double kNearEnough = 1.1;
+
+std::array<Vec3, 3> vertices_of(const Mesh& mesh, std::size_t face) {
+  const auto& [a, b, c] = mesh.triangles[face];
+  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
+}
+
+/// Half the diagonal of a square texel, if all the area were shared among the samples.
+double typical_radius(const Surface& surface) {
+  double doubled_area = 0;
+  for (std::size_t f = 0; f < surface.mesh().triangles.size(); ++f) {
+    const auto [a, b, c] = vertices_of(surface.mesh(), f);
+    doubled_area += norm(cross(b - a, c - a));
+  }
+  return 0.5 * std::sqrt(doubled_area / static_cast<double>(surface.sample_texels().size()));
+}
+
+/// A face without area is its longest edge, up to its height. A triangle stands for it in the plane whose
+/// base is as many squares long as it should have pieces.
+std::array<Vec2, 3> unfolded(const std::array<Vec3, 3>& vertices, double piece_length) {
+  constexpr double kMostPieces = 1024;
+  const auto edge = [&](int k) { return vertices[(k + 1) % 3] - vertices[k]; };
+  int base = 0;  // the longest edge runs from this vertex to the next
+  for (int k = 1; k < 3; ++k)
+    if (squared_norm(edge(k)) > squared_norm(edge(base))) base = k;
+  const double length = norm(edge(base));
+  const double pieces = std::clamp(std::ceil(length / piece_length), 1.0, kMostPieces);
+  const double foot = length > 0 ? -dot(edge((base + 2) % 3), edge(base)) / (length * length) : 0;
+  std::array<Vec2, 3> triangle{};
+  triangle[(base + 1) % 3] = {pieces, 0};
+  triangle[(base + 2) % 3] = {std::clamp(foot, 0.0, 1.0) * pieces, 0.5};
+  return triangle;
+}
+
+/// About the most that the pieces take, twice, and a table of the texels: an edge crosses |Δu| + |Δv|
+/// squares.
+std::size_t bytes_needed(const Surface& surface, double typical) {
+  double pieces = 0;
+  for (std::size_t f = 0; f < surface.mesh().triangles.size(); ++f) {
+    const std::array<Vec2, 3> t = surface.face_charts()[f] == kNone
+                                      ? unfolded(vertices_of(surface.mesh(), f), typical)
+                                      : surface.impl().corners[f];
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 edge = t[(k + 1) % 3] - t[k];
+      pieces += 1 + std::abs(edge[0]) + std::abs(edge[1]);
+    }
+  }
+  return static_cast<std::size_t>(pieces) * (sizeof(Piece) + sizeof(FacePiece)) +
+         surface.texel_faces().size() * sizeof(std::uint32_t);
+}
+
+class Cutter {
+ public:
+  explicit Cutter(const Surface& surface)
+      : surface_(surface), typical_(typical_radius(surface)), near_samples_(surface, typical_) {
+    require_memory(bytes_needed(surface, typical_), "the error bound of the atlas");
+    const std::span<const std::uint32_t> samples = surface.sample_texels(), owners = surface.texel_faces();
+    owns_texel_.assign(surface.mesh().triangles.size(), 0);
+    sample_of_.resize(owners.size());
+    result_.whole_square.assign(samples.size(), 1);
+    for (std::uint32_t i = 0; i < samples.size(); ++i) {
+      sample_of_[samples[i]] = i;
+      owns_texel_[owners[samples[i]]] = 1;
+    }
+  }
+
+  FacePieces operator()() {
+    constexpr std::size_t kFacesPerBlock = 64;
+    // Chart after chart: what they look up then is near each other.
+    const std::span<const std::uint32_t> charts = surface_.face_charts();
+    std::vector<std::uint32_t> order(charts.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t face) { return charts[face]; });
+    std::vector<std::vector<FacePiece>>& blocks = result_.blocks;
+    blocks.resize((order.size() + kFacesPerBlock - 1) / kFacesPerBlock);
+    parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin * kFacesPerBlock; i < std::min(end * kFacesPerBlock, order.size()); ++i)
+        cut(order[i], blocks[i / kFacesPerBlock]);
+    });
+    return std::move(result_);
+  }
+
+ private:
+  using Block = std::vector<FacePiece>;
+
+  struct Face {
+    std::uint32_t index;
+    std::array<Vec3, 3> vertices;
+    double enough;  ///< a distance of pieces to their samples that need not be improved
+  };
+
+  void cut(std::uint32_t index, Block& block) {
+    const std::array<Vec3, 3> vertices = vertices_of(surface_.mesh(), index);
+    const double radius = owns_texel_[index] ? half_diagonal(surface_.texel_edges(index)) : typical_;
+    const Face face{index, vertices, kNearEnough * radius};
+    surface_.face_charts()[index] == kNone ? add_face_without_area(block, face) : add_face(block, face);
+  }
+
+  void add_face_without_area(Block& block, const Face& face) {
+    for_each_square(unfolded(face.vertices, typical_), [&](double, double, SquareCorners, const auto& part) {
+      if (const Polygon polygon = part(); !polygon.empty())
+        store(block, face, polygon, near_samples_.nearest_texel(Outline(face.vertices, polygon)));
+    });
+  }
+
+  void add_face(Block& block, const Face& face) {
+    const auto visit = [&](double x, double y, SquareCorners corners, const auto& part) {
+      const std::uint32_t texel = near_samples_.texel_at(x, y);
+      const bool owned = texel != kNone && surface_.texel_faces()[texel] == face.index;
+      if (owned && corners.both_diagonals()) return;
+      const Polygon polygon = part();
+      if (polygon.empty()) return;
+      if (owned) {
+        result_.whole_square[sample_of_[texel]] = 0;
+        store(block, face, polygon, texel);
+      } else {
+        add_piece(block, face, x, y, polygon, 0);
+      }
+    };
+    for_each_square(surface_.impl().corners[face.index], visit);
+  }
+
+  /// A piece in the square at (x, y), which its face does not own. If it is far from every sample because it
+  /// is large, it is halved.
+  void add_piece(Block& block, const Face& face, double x, double y, const Polygon& polygon, int cuts) {
+    constexpr int kMostCuts = 4;
+    constexpr std::size_t kMostCorners = 8;  // of which a cut makes 12 at most
+    const Outline outline(face.vertices, polygon);
+    const auto [texel, distance] = near_samples_.choose(face.index, x, y, outline, face.enough);
+    const bool large = 4 * outline.farthest_from(outline.middle()) > distance;
+    if (distance <= face.enough || !large || cuts == kMostCuts || polygon.corners().size() > kMostCorners)
+      return store(block, face, polygon, texel);
+    const auto [left, right] = polygon.range(0);
+    const auto [top, bottom] = polygon.range(1);
+    const bool wide = right - left > bottom - top;
+    const double middle = wide ? 0.5 * (left + right) : 0.5 * (top + bottom);
+    for (const double side : {1.0, -1.0})
+      if (const Polygon half = polygon.clipped(wide ? 0 : 1, middle, side); !half.empty())
+        add_piece(block, face, x, y, half, cuts + 1);
+  }
+
+  void store(Block& block, const Face& face, const Polygon& polygon, std::uint32_t texel) const {
+    const auto corners = polygon.corners();
+    for (std::size_t first = 0; first < corners.size(); first += 4) {
+      Piece& piece = block.emplace_back(face.index).piece;
+      piece.sample = sample_of_[texel];
+      for (std::size_t k = 0; k < 4; ++k)
+        for (int i = 0; i < 2; ++i)
+          piece.weights[i][k] =
+              static_cast<float>(corners[std::min(first + k, corners.size() - 1)].weights[i]);
+    }
+  }
+
+  const Surface& surface_;
+  const double typical_;
+  const NearSamples near_samples_;
+  FacePieces result_;
+  std::vector<std::uint32_t> sample_of_;  ///< of each texel that a face owns
+  std::vector<std::uint8_t> owns_texel_;  ///< whether each face does
+};
+
+}  // namespace
+
+FacePieces cut_faces(const Surface& surface) {
+  return Cutter(surface)();
+}
+
+}  // namespace sdm

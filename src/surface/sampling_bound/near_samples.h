@@ -1,0 +1,58 @@
+// Samples near a piece of a face.
+#pragma once
+
+#include <sdm/surface.h>
+
+#include "surface/sampling_bound/polygon.h"
+#include "surface/sampling_bound/sample_tree.h"
+
+namespace sdm {
+
+/// The corners of a polygon in space.
+class Outline {
+ public:
+  Outline(const std::array<Vec3, 3>& vertices, const Polygon& polygon);
+
+  [[nodiscard]] Vec3 middle() const;
+  /// The largest distance of any of its points: that of a corner, for |p − s| is convex in p.
+  [[nodiscard]] double farthest_from(const Vec3& s) const;
+
+ private:
+  std::array<Vec3, Polygon::kMostCorners> corners_;
+  std::size_t count_ = 0;
+};
+
+/// Chooses samples for pieces. Around a piece in the atlas are samples that will move along with it; beyond a
+/// seam the nearest in space may be nearer.
+class NearSamples {
+ public:
+  /// `radius` is about half a texel's diagonal. The surface must outlive this. Cost: linear in samples.
+  NearSamples(const Surface& surface, double radius)
+      : surface_(surface),
+        // A few texels: runs that jump to another chart are cut.
+        tree_(surface, 16 * radius) {}
+
+  struct Choice {
+    std::uint32_t texel = kNone;                                ///< whose sample it is
+    double distance = std::numeric_limits<double>::infinity();  ///< of the outline's farthest corner
+  };
+  /// For a piece of the face in the square of the texel at (x, y): the first found that is within `enough`,
+  /// else the nearest.
+  [[nodiscard]] Choice choose(std::uint32_t face, double x, double y, const Outline& outline,
+                              double enough) const;
+  /// For a piece of a face that has no place in the atlas.
+  [[nodiscard]] std::uint32_t nearest_texel(const Outline& outline) const {
+    return surface_.sample_texels()[tree_.nearest(outline.middle())];
+  }
+
+  /// The texel whose square has its upper left corner at (x, y), if a face owns it, else kNone.
+  [[nodiscard]] std::uint32_t texel_at(double x, double y) const;
+
+ private:
+  [[nodiscard]] bool same_side(std::uint32_t face, std::uint32_t other) const;
+
+  const Surface& surface_;
+  const SampleTree tree_;
+};
+
+}  // namespace sdm

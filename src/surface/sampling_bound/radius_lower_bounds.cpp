@@ -1,0 +1,76 @@
+// The radii from below: points of the surface with their true distance to the nearest sample.
+#include "surface/sampling_bound/coverage.h"
+#include "surface/sampling_bound/face_frame.h"
+#include "surface/sample_blocks.h"
+#include "surface/sampling_bound/sample_tree.h"
+#include "surface/surface_data.h"
+#include "core/atomic_max.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+/// The largest distance to the nearest sample of the points of one face that were looked at.
+class Farthest {
+ public:
+  Farthest(std::span<const Vec3> samples, const SampleTree& tree, double distance = 0)
+      : samples_(samples), tree_(tree), distance_(distance) {}
+
+  /// `most` is the distance to some sample.
+  void look_at(const Vec3& p, double most = std::numeric_limits<double>::infinity()) {
+    if (most > distance_) distance_ = std::max(distance_, norm(p - samples_[tree_.nearest(p)]));
+  }
+  [[nodiscard]] double distance() const { return distance_; }
+
+ private:
+  const std::span<const Vec3> samples_;
+  const SampleTree& tree_;
+  double distance_;
+};
+
+/// The weights of the corner of a texel's square that is nearest to the middle of a face: in a large one
+/// four samples are equally far from it, and the nearest.
+std::array<double, 2> middle_corner(const std::array<Vec2, 3>& triangle) {
+  const Vec2 a = triangle[1] - triangle[0], b = triangle[2] - triangle[0];
+  const Vec2 middle = triangle[0] + (1.0 / 3) * (a + b);
+  const Vec2 p = Vec2{std::round(middle[0]), std::round(middle[1])} - triangle[0];
+  return {cross(p, b) / cross(a, b), cross(a, p) / cross(a, b)};
+}
+
+}  // namespace
+
+std::vector<double> Coverage::radius_lower_bounds(const Surface& surface) const {
+  const std::span<const Vec3> points = surface.sample_points();
+  const SampleTree tree(surface, 16 * surface.sampling_bound());
+  std::vector<double> radii(surface.mesh().triangles.size());
+  parallel_for(radii.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const FaceFrame frame(surface.mesh(), f);
+      Farthest farthest(points, tree);
+      if (surface.face_charts()[f] != kNone) {
+        const auto [a, b] = middle_corner(surface.impl().corners[f]);
+        if (a >= 0 && b >= 0 && a + b <= 1) farthest.look_at(frame.at(a, b));
+      }
+      for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {0, 1}}) farthest.look_at(frame.at(a, b));
+      radii[f] = std::max(0.0, farthest.distance() - frame.rounding());
+    }
+  });
+  parallel_for(run_ends_.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r)
+      for_each_patch(r, [&](const Patch& patch, auto, std::span<const Piece> pieces) {
+        const FaceFrame frame(surface.mesh(), patch.face);
+        const std::atomic_ref<double> known(radii[patch.face]);
+        Farthest farthest(points, tree, known.load(std::memory_order_relaxed));
+        for (const auto& [sample, weights] : pieces)
+          for (int k = 0; k < 4; ++k) {
+            const Vec3 corner = frame.at(weights[0][k], weights[1][k]);
+            farthest.look_at(corner, norm(corner - points[r * kRunLength + sample]));
+          }
+        atomic_max(radii[patch.face], farthest.distance() - frame.rounding());
+      });
+  });
+  return radii;
+}
+
+}  // namespace sdm

@@ -1,0 +1,40 @@
+#include <sdm/error.h>
+#include <sdm/sampling_bound.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "surface/sampling_bound/coverage.h"
+
+namespace sdm {
+namespace {
+
+double ratio(double now, double first) {
+  return first > 0 ? now / first : std::numeric_limits<double>::infinity();
+}
+
+void check_faces(std::size_t count, std::size_t expected) {
+  if (count != expected)
+    throw Error("a relative error of " + std::to_string(count) + " faces was asked for of a surface of " +
+                std::to_string(expected) + "; compare a surface with its own first shape");
+}
+
+}  // namespace
+
+RelativeError::RelativeError(const Surface& first_shape)
+    : first_(coverage_of(first_shape).radius_lower_bounds(first_shape)),
+      largest_(*std::ranges::max_element(first_)) {}
+
+double RelativeError::of(const Surface& now) const {
+  check_faces(now.face_radii().size(), first_.size());
+  return ratio(now.sampling_bound(), largest_);
+}
+
+void RelativeError::of_faces(const Surface& now, std::span<double> errors) const {
+  check_faces(now.face_radii().size(), first_.size());
+  check_faces(errors.size(), first_.size());
+  std::ranges::transform(now.face_radii(), first_, errors.begin(), ratio);
+}
+
+}  // namespace sdm

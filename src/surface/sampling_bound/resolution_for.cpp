@@ -1,0 +1,81 @@
+#include <sdm/error.h>
+#include <sdm/sampling_bound.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "atlas/packing/too_small.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+constexpr double kStep = 16, kMost = 32768;
+constexpr double kGoodFactor = 0.9;  // neighbouring resolutions differ by as much
+
+double area_of(const Mesh& mesh) {
+  double doubled = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    doubled += norm(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]));
+  return doubled / 2;
+}
+
+double stepped(double resolution) {
+  return kStep * std::clamp(std::ceil(resolution / kStep), 1.0, kMost / kStep);
+}
+
+/// About how many times the resolution it takes; above 1 if and only if it does not suffice.
+double needed_factor(const Mesh& mesh, AtlasOptions options, double resolution, double precision) try {
+  options.resolution = static_cast<std::uint32_t>(resolution);
+  return Surface(mesh, options).sampling_bound() / precision;
+} catch (const TooSmall& error) {
+  return static_cast<double>(error.enough()) / resolution;
+}
+
+[[noreturn]] void throw_unreachable(double precision, double resolution) {
+  std::ostringstream message;
+  message.precision(2);
+  message << "a precision of " << precision << " takes about " << resolution / kMost
+          << " times the 32768 texels that a side of the map can have; ask for "
+          << 1.1 * precision * resolution / kMost << " or more";
+  throw Error(message.str());
+}
+
+}  // namespace
+
+std::uint32_t resolution_for(const Mesh& mesh, AtlasOptions options, double precision) {
+  if (!(precision > 0 && std::isfinite(precision)))
+    throw Error("a precision of " + std::to_string(precision) +
+                " is out of range; use a length above 0 in the units of the mesh");
+  validate(mesh);
+  // What most atlases take: seven tenths of their texels are owned, and points beside seams are a third
+  // farther from a sample than the corners of squares.
+  const double usual = 1.1 * std::sqrt(area_of(mesh)) / precision;
+  // A trial at the most possible takes tens of gigabytes: none where there is no hope.
+  if (usual > 2 * kMost) throw_unreachable(precision, usual);
+
+  // Trials that are too coarse and fine enough, with their factors.
+  double coarse = 0, coarse_factor = 0, fine = 0, fine_factor = 0, resolution = stepped(usual);
+  for (;;) {
+    const double factor = needed_factor(mesh, options, resolution, precision);
+    (factor <= 1 ? fine : coarse) = resolution;
+    (factor <= 1 ? fine_factor : coarse_factor) = factor;
+    const double gap = std::max(kStep, kStep * std::floor(fine / 8 / kStep));
+    if (fine > 0 && (fine_factor > kGoodFactor || fine - coarse <= gap))
+      return static_cast<std::uint32_t>(fine);
+    if (coarse == kMost) throw_unreachable(precision, factor * kMost);
+    if (fine == 0) {
+      resolution = stepped(std::max(factor, 1.125) * coarse);  // also where the bound hardly follows
+    } else if (coarse == 0) {
+      resolution = std::min(stepped(factor * fine), fine - gap);
+    } else {
+      // A power law through both trials; at least an eighth of the way from one to the other.
+      const double exponent = std::log(coarse_factor) / std::log(coarse_factor / fine_factor);
+      const double crossing = coarse * std::pow(fine / coarse, exponent);
+      resolution = std::min(stepped(std::max(crossing, coarse + (fine - coarse) / 8)), fine - gap);
+    }
+  }
+}
+
+}  // namespace sdm

@@ -1,0 +1,46 @@
+// What a Surface holds.
+#pragma once
+
+#include <sdm/surface.h>
+
+#include <mutex>
+#include <optional>
+
+#include "surface/sampling_bound/coverage.h"
+#include "atlas/layout.h"
+#include "surface/tiles.h"
+
+namespace sdm {
+
+struct SurfaceData {
+  Mesh mesh;
+  AtlasKind kind = AtlasKind::charts;
+  std::uint32_t resolution = 0;
+  std::size_t chart_count = 0;
+  double max_stretch = 1;
+  std::vector<FaceMap> maps;
+  std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
+  std::vector<std::uint32_t> face_charts, texel_faces, samples;
+  std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order lie here and there in texel_faces
+
+  /// Made when it is first asked for, by whichever thread that is.
+  struct Lazy {
+    std::once_flag tiled, cut;
+    Tiles tiles;                       ///< once `tiled`: see tiles_of
+    std::optional<Coverage> coverage;  ///< once `cut`: see coverage_of
+
+    /// Of the present positions; made anew when vertices move.
+    struct Present {
+      std::once_flag placed, measured;
+    };
+    std::optional<Present> present{std::in_place};
+    std::vector<Vec3> sample_points;  ///< once `placed`
+    Coverage::Radii radii;            ///< once `measured`: see radii_of
+  };
+  mutable Lazy lazy;
+};
+
+/// Sets `points` to those of the samples from `first` on.
+void place_samples(const SurfaceData& surface, std::size_t first, std::span<Vec3> points);
+
+}  // namespace sdm

@@ -1,0 +1,101 @@
+#include "surface/tiles.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "surface/surface_data.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace sdm {
+namespace {
+
+constexpr std::size_t kGrain = 512;  // faces or tiles
+
+// Owned texels by face, those of a face from the top left.
+void sort_by_face(const Surface& surface, Tiles& tiles) {
+  tiles.face_offsets.assign(surface.mesh().triangles.size() + 1, 0);
+  const std::span<const std::uint32_t> owners = surface.texel_faces();
+  for (const std::uint32_t texel : surface.sample_texels()) ++tiles.face_offsets[owners[texel] + 1];
+  std::partial_sum(tiles.face_offsets.begin(), tiles.face_offsets.end(), tiles.face_offsets.begin());
+  tiles.texels.resize(surface.sample_texels().size());
+  std::vector<std::uint32_t> next(tiles.face_offsets.begin(), tiles.face_offsets.end() - 1);
+  for (std::uint32_t texel = 0; texel < owners.size(); ++texel)
+    if (owners[texel] != kNone) tiles.texels[next[owners[texel]]++] = texel;
+}
+
+// The square of a face's bounding rectangle that a texel is in.
+struct TileGrid {
+  std::uint32_t resolution, left = kNone, top = kNone, right = 0;
+
+  TileGrid(std::uint32_t n, std::span<const std::uint32_t> texels) : resolution(n), top(texels.front() / n) {
+    for (const std::uint32_t texel : texels) {
+      left = std::min(left, texel % n);
+      right = std::max(right, texel % n);
+    }
+  }
+  [[nodiscard]] std::uint32_t operator()(std::uint32_t texel) const {
+    const std::uint32_t columns = (right - left) / Tiles::kSide + 1;
+    return (texel / resolution - top) / Tiles::kSide * columns + (texel % resolution - left) / Tiles::kSide;
+  }
+};
+
+void cut(const Surface& surface, Tiles& tiles) {
+  const std::size_t face_count = surface.mesh().triangles.size();
+  std::vector<std::uint32_t> tile_of(tiles.texels.size());  // within its face
+  parallel_for(face_count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t face = begin; face < end; ++face) {
+      const std::uint32_t first = tiles.face_offsets[face], last = tiles.face_offsets[face + 1];
+      if (first == last) continue;
+      const std::span<std::uint32_t> texels(tiles.texels.data() + first, last - first);
+      const TileGrid grid(surface.resolution(), texels);
+      std::ranges::stable_sort(texels, {}, grid);
+      std::ranges::transform(texels, tile_of.begin() + first, grid);
+    }
+  });
+  for (std::uint32_t face = 0; face < face_count; ++face)
+    for (std::uint32_t i = tiles.face_offsets[face]; i < tiles.face_offsets[face + 1]; ++i)
+      if (i == tiles.face_offsets[face] || tile_of[i] != tile_of[i - 1]) {
+        tiles.offsets.push_back(i);
+        tiles.faces.push_back(face);
+      }
+  tiles.offsets.push_back(static_cast<std::uint32_t>(tiles.texels.size()));
+}
+
+AabbTree build_tree(const Surface& surface, const Tiles& tiles) {
+  const UnitFrame frame = UnitFrame::of(bounds(surface.mesh()));
+  std::vector<Box> boxes(tiles.count());
+  parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t tile = begin; tile < end; ++tile)
+      for (const std::uint32_t texel : tiles.of(static_cast<std::uint32_t>(tile)))
+        extend(boxes[tile], frame.to_unit(surface.texel_point(texel)));
+  });
+  std::vector<std::uint32_t> items(tiles.count());
+  std::iota(items.begin(), items.end(), 0u);
+  return build_aabb_tree(boxes, std::move(items), 1);
+}
+
+}  // namespace
+
+const Tiles& tiles_of(const Surface& surface) {
+  SurfaceData::Lazy& lazy = surface.impl().lazy;
+  std::call_once(lazy.tiled, [&] {
+    // Texels and the tile of each; tiles with boxes and nodes while the tree is built, a few a face and more
+    // where faces are large.
+    constexpr std::size_t kBytesPerTexel = 8, kBytesPerTile = 300;
+    const std::size_t texels = surface.sample_texels().size();
+    const std::size_t most_tiles =
+        std::min(texels, 4 * surface.mesh().triangles.size() + texels / Tiles::kSide);
+    require_memory(kBytesPerTexel * texels + kBytesPerTile * most_tiles, "the tiles of the atlas");
+    Tiles tiles;
+    sort_by_face(surface, tiles);
+    cut(surface, tiles);
+    tiles.tree = build_tree(surface, tiles);
+    lazy.tiles = std::move(tiles);
+  });
+  return lazy.tiles;
+}
+
+}  // namespace sdm
