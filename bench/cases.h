@@ -31,7 +31,7 @@ struct Outcome {
   /// Of the first figure, if that is a ratio of times: (third − first quartile) / median of repetitions'.
   std::optional<double> spread{};
   std::optional<double> ours_mtexels_s{}, peer_mtexels_s{};
-  std::optional<DescentCounts> work{};  ///< of our search
+  std::optional<cpu::DescentCounts> work{};  ///< of our search
 };
 
 /// How a case is run.

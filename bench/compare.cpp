@@ -69,8 +69,8 @@ void print_rows(const Case& test, const Outcome& outcome) {
 }
 
 /// Counts of the search for each sixteen texels: they do not depend on the machine.
-nlohmann::ordered_json per_packet(const DescentCounts& work, std::size_t texels) {
-  const double packets = static_cast<double>(texels) / PointGroup::kPacket;
+nlohmann::ordered_json per_packet(const cpu::DescentCounts& work, std::size_t texels) {
+  const double packets = static_cast<double>(texels) / cpu::PointGroup::kPacket;
   const auto of = [&](std::size_t count) { return static_cast<double>(count) / packets; };
   return {{"groups", of(work.groups)},           {"nodes", of(work.nodes)},
           {"leaves", of(work.leaves)},           {"tree_sites", of(work.tree_sites)},

@@ -29,7 +29,9 @@ class MapTask {
   [[nodiscard]] bool agrees();
 
   [[nodiscard]] std::size_t texels() const { return queries_.size(); }
-  [[nodiscard]] DescentCounts work() const { return count_work(sites_.impl(), surface_->sample_points()); }
+  [[nodiscard]] cpu::DescentCounts work() const {
+    return cpu::count_work(internals(sites_), surface_->sample_points());
+  }
   [[nodiscard]] Surface& surface() { return *surface_; }
   [[nodiscard]] Sites& sites() { return sites_; }
 

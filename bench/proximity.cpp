@@ -107,12 +107,12 @@ Outcome measure(const Pair& pair, std::size_t pose_count) {
   const FclPair fcl(m1, m2);
   const double size = diagonal(bounds(m1)) + diagonal(bounds(m2));
   std::mt19937 random(1);
-  PairWorkspace workspace;
+  exact::PairWorkspace workspace;
   Outcome outcome;
   for (const Affine& pose : random_poses(o1, o2, pose_count, random)) {
-    const MeshPair posed{o1.impl(), o2.impl(), pose};
-    const auto separate = [&] { return find_closest(posed, 10 * size, workspace); };
-    const auto collide = [&] { return find_intersection(posed, workspace).intersecting; };
+    const exact::MeshPair posed{internals(o1), internals(o2), pose};
+    const auto separate = [&] { return exact::find_closest(posed, 10 * size, workspace); };
+    const auto collide = [&] { return exact::find_intersection(posed, workspace).intersecting; };
     // FCL says -1 for surfaces that intersect, and moves vertices with other roundings: of surfaces that just
     // touch it may say either.
     const Separation found = separate();

@@ -33,8 +33,8 @@ bool all_agree(const Tasks& tasks) {
   return good;
 }
 
-DescentCounts work_of(const Tasks& tasks) {
-  DescentCounts sum;
+cpu::DescentCounts work_of(const Tasks& tasks) {
+  cpu::DescentCounts sum;
   for (const MapTask* task : tasks) sum += task->work();
   return sum;
 }

@@ -22,7 +22,7 @@ struct Side {
 using Tasks = std::vector<MapTask*>;
 
 [[nodiscard]] bool all_agree(const Tasks& tasks);
-[[nodiscard]] DescentCounts work_of(const Tasks& tasks);
+[[nodiscard]] cpu::DescentCounts work_of(const Tasks& tasks);
 [[nodiscard]] Side ours(const Tasks& tasks, unsigned threads = 1);
 [[nodiscard]] Side embree(const Tasks& tasks);
 

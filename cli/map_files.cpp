@@ -10,7 +10,7 @@ std::vector<float> vertex_distances(const sdm::Mesh& mesh, const sdm::Sites& sit
   if (options.engine == sdm::EngineKind::gl) options.engine = sdm::EngineKind::cpu;  // gl draws maps only
   const auto closest = sdm::closest_points(sites, mesh.positions, options);
   std::vector<std::uint8_t> is_inside(closest.size(), 0);
-  if (sign != sdm::SignMethod::none) is_inside = sdm::inside(sites, mesh.positions, closest, sign);
+  if (sign != sdm::SignMethod::none) is_inside = sdm::inside_flags(sites, mesh.positions, closest, sign);
   std::vector<float> result;
   result.reserve(closest.size());
   for (std::size_t i = 0; i < closest.size(); ++i) {

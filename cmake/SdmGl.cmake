@@ -12,7 +12,7 @@ if(NOT GLSLANG_VALIDATOR)
   message(FATAL_ERROR "glslangValidator was not found: ${gl_advice}")
 endif()
 
-# sdm_embed_shaders(<target> <header> <file>...): compiles the files of shaders/ into the target, as constants of a
+# sdm_embed_shaders(<library> <header> <file>...): compiles the files of shaders/ into the library, as constants of a
 # header in the folder of the build that mirrors this one: site_polygon.vert becomes kSitePolygonVert. Vertex and
 # fragment shaders of one name are checked to fit. A shader that does not compile fails the build.
 function(sdm_embed_shaders target header)
@@ -34,6 +34,5 @@ function(sdm_embed_shaders target header)
     DEPENDS ${shaders} ${script}
     COMMENT "Validating and embedding the shaders"
     VERBATIM)
-  target_sources(${target} PRIVATE ${output})
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/src>)
+  target_sources(${target}_objects PRIVATE ${output})
 endfunction()

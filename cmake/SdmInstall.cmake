@@ -2,8 +2,7 @@
 include(CMakePackageConfigHelpers)
 
 get_property(sdm_libraries GLOBAL PROPERTY SDM_LIBRARIES)
-install(TARGETS sdm ${sdm_libraries} EXPORT sdm-targets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS ${sdm_libraries} EXPORT sdm-targets)
 install(DIRECTORY include/sdm DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${PROJECT_BINARY_DIR}/include/sdm/version.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sdm)

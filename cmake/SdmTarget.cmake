@@ -1,20 +1,51 @@
 # sdm_add_library(<name> SOURCES <file>... [LINK <target>...] [LINK_PRIVATE <target>...])
-# One static library for one folder of src/: C++20, strict warnings, public headers from include/,
-# private headers as "folder/file.h" from src/.
+# The exported library sdm::<name without sdm_>, static or shared by BUILD_SHARED_LIBS, from the object library <name>_objects.
+# Symbols are hidden but for the public API (SDM_API). Internal headers are on no user's include path; what tests and benchmarks of
+# the internals link is <name>_internals, which is the objects themselves where the library is shared.
 function(sdm_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LINK_PRIVATE" ${ARGN})
-  add_library(${name} STATIC ${ARG_SOURCES})
-  string(REPLACE "sdm_" "" short ${name})
+  set(internal_folders ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/src)
+  add_library(${name}_objects OBJECT ${ARG_SOURCES})
+  target_include_directories(${name}_objects
+    PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include
+    PRIVATE ${internal_folders})
+  set_target_properties(${name}_objects PROPERTIES
+    POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_link_libraries(${name}_objects PRIVATE ${ARG_LINK} ${ARG_LINK_PRIVATE})
+  sdm_compile_options(${name}_objects)
+
+  add_library(${name} $<TARGET_OBJECTS:${name}_objects>)
+  string(REGEX REPLACE "^sdm_" "" short ${name})
   add_library(sdm::${short} ALIAS ${name})
-  set_target_properties(${name} PROPERTIES EXPORT_NAME ${short} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${name} PROPERTIES
+    EXPORT_NAME ${short} LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${name} PUBLIC cxx_std_20)
   target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_LINK_PRIVATE})
-  sdm_compile_options(${name})
+
+  add_library(${name}_internals INTERFACE)
+  target_include_directories(${name}_internals INTERFACE ${internal_folders})
+  if(BUILD_SHARED_LIBS)
+    list(TRANSFORM ARG_LINK APPEND _internals)
+    target_sources(${name}_internals INTERFACE $<TARGET_OBJECTS:${name}_objects>)
+    target_include_directories(${name}_internals INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include)
+    target_link_libraries(${name}_internals INTERFACE ${ARG_LINK} ${ARG_LINK_PRIVATE})
+  else()
+    target_link_libraries(${name}_internals INTERFACE ${name})
+  endif()
   set_property(GLOBAL APPEND PROPERTY SDM_LIBRARIES ${name})
+endfunction()
+
+# sdm_link_private(<name> <target>...): what a library made by sdm_add_library needs besides.
+function(sdm_link_private name)
+  target_link_libraries(${name}_objects PRIVATE ${ARGN})
+  target_link_libraries(${name} PRIVATE ${ARGN})
+  if(BUILD_SHARED_LIBS)
+    target_link_libraries(${name}_internals INTERFACE ${ARGN})
+  endif()
 endfunction()
 
 # Strict warnings and C++20 for any of the project's targets.

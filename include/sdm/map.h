@@ -1,8 +1,10 @@
 /// The surface distance map: at every texel of O1's atlas, the distance to O2.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/engine.h>
 #include <sdm/gl.h>
+#include <sdm/progress.h>
+#include <sdm/sign.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 
@@ -14,27 +16,6 @@
 #include <vector>
 
 namespace sdm {
-
-enum class EngineKind {
-  cpu,        ///< lists of sites for groups of texels, SIMD, all cores
-  reference,  ///< scalar, double, plain: the oracle
-  gl,         ///< the paper's: polygons of sites rasterised by OpenGL; maps only
-};
-
-/// How the inside of O2 is told from the outside. Negative means inside.
-enum class SignMethod {
-  automatic,     ///< pseudonormal where O2 is closed and orientable, else none
-  none,          ///< unsigned distances
-  pseudonormal,  ///< the closest site's angle-weighted pseudonormal (Bærentzen & Aanæs 2005); for closed O2,
-                 ///< exact but at walls thinner than 1e-7 of the distance to them
-  winding,  ///< generalised winding number above 1/2 (Jacobson et al. 2013): an estimate for open O2
-};
-
-/// The method that was used, and why, in words for a report.
-struct SignUsed {
-  SignMethod method = SignMethod::none;
-  std::string reason;
-};
 
 struct MapOptions {
   EngineKind engine = EngineKind::cpu;
@@ -55,7 +36,7 @@ struct DistanceMap {
   std::vector<SiteType> site_type;
   SignUsed sign;
   std::size_t beyond_max_distance = 0;  ///< owned texels without a value
-  std::optional<GlReport> raster;   ///< of EngineKind::gl
+  std::optional<GlReport> raster;       ///< of EngineKind::gl
 };
 
 /// Computes the map. Distance and vector are those of a site found exactly (cpu: to 1e-6 of the diagonal of
@@ -67,21 +48,5 @@ struct DistanceMap {
 /// The same into `map`, in the memory that it has where that suffices: for one frame after another. If it
 /// throws, the map's values are unspecified.
 void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options, DistanceMap& map);
-
-/// Closest points of O2 to any points, in any order, by the same engines. `distance` in the result is
-/// unsigned; options.sign is not used. Throws sdm::Error for a coordinate that is NaN or beyond 1e37;
-/// Cancelled.
-[[nodiscard]] std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
-                                                       const MapOptions& options = {});
-
-/// The sign method that compute_map uses for `asked`, with its reason. Throws sdm::Error where O2 does not
-/// allow it.
-[[nodiscard]] SignUsed choose_sign(const Sites& sites, SignMethod asked);
-
-/// For each closest point: whether its query lies inside O2 (1) or not (0), by `method` (pseudonormal or
-/// winding, else none is). `closest` comes from closest_points with the same sites; where it has no site, the
-/// answer of pseudonormal is 0. Throws sdm::Error for a method that O2 does not allow.
-[[nodiscard]] std::vector<std::uint8_t> inside(const Sites& sites, std::span<const Vec3> queries,
-                                               std::span<const ClosestPoint> closest, SignMethod method);
 
 }  // namespace sdm

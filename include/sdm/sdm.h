@@ -1,15 +1,19 @@
 /// All of sdm but the reading and writing of files, which is <sdm/io.h>.
 #pragma once
 
-#include <sdm/multi_body_query.h>
+#include <sdm/atlas.h>
+#include <sdm/closest_points.h>
+#include <sdm/engine.h>
 #include <sdm/error.h>
-#include <sdm/sampling_bound.h>
+#include <sdm/gl.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/multi_body_query.h>
 #include <sdm/progress.h>
 #include <sdm/proximity_query.h>
-#include <sdm/gl.h>
+#include <sdm/sampling_bound.h>
 #include <sdm/self_proximity_query.h>
+#include <sdm/sign.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>

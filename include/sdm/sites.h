@@ -9,6 +9,9 @@
 #include <span>
 
 namespace sdm {
+namespace sites {
+struct SitesData;
+}
 
 enum class SiteType : std::uint8_t { vertex = 0, edge = 1, face = 2, none = 0xFF };
 
@@ -46,11 +49,10 @@ class Sites {
   /// Whether the faces can be turned so that all neighbours agree; Sites does so for itself.
   [[nodiscard]] bool orientable() const;
 
-  struct Impl;
-  [[nodiscard]] const Impl& impl() const { return *impl_; }
-
  private:
-  std::unique_ptr<Impl> impl_;
+  friend const sites::SitesData& internals(const Sites&);
+
+  std::unique_ptr<sites::SitesData> data_;
 };
 
 }  // namespace sdm

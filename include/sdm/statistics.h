@@ -9,8 +9,8 @@
 
 namespace sdm {
 
-/// Of the texels that hold a finite value, each weighted by the area of surface that its centre stands for. All are
-/// NaN when there are none.
+/// Of the texels that hold a finite value, each weighted by the area of surface that its centre stands for.
+/// All are NaN when there are none.
 struct DistanceStatistics {
   std::size_t texels = 0;  ///< with a value
   std::size_t negative_texels = 0;

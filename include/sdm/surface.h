@@ -1,28 +1,17 @@
 /// The surface on which distances are measured (O1): a mesh with a texture atlas.
 #pragma once
 
+#include <sdm/atlas.h>
 #include <sdm/mesh.h>
-#include <sdm/progress.h>
 
 #include <cstdint>
 #include <memory>
 #include <span>
 
 namespace sdm {
-
-enum class AtlasKind {
-  charts,     ///< clusters of faces with like normals, projected orthogonally
-  triangles,  ///< a chart for each triangle, mapped without distortion
-  uv,         ///< the mesh's own texture coordinates
-};
-
-struct AtlasOptions {
-  AtlasKind kind = AtlasKind::charts;
-  std::uint32_t resolution = 1024;  ///< texels a side, in [16, 32768]
-  double max_stretch = 1.3;  ///< charts: lengths grow by no more from atlas to surface; > 1, 100 at most
-  std::uint32_t gutter = 1;  ///< free texels around each chart, its own (charts, triangles)
-  Progress progress{};
-};
+namespace surface {
+struct SurfaceData;
+}
 
 /// O1: a mesh whose faces are laid out, without overlap, in a square texture.
 ///
@@ -54,7 +43,7 @@ class Surface {
   /// The face that owns each texel, or kNone; resolution² values.
   [[nodiscard]] std::span<const std::uint32_t> texel_faces() const;
   /// The indices of all owned texels, in an order in which neighbours are near each other on the surface.
-  [[nodiscard]] std::span<const std::uint32_t> samples() const;
+  [[nodiscard]] std::span<const std::uint32_t> sample_texels() const;
   /// texel_point of each of them; valid until the next refit. Computed at the first call, and after a refit
   /// again. Cost: linear in samples, all cores.
   [[nodiscard]] std::span<const Vec3> sample_points() const;
@@ -94,11 +83,10 @@ class Surface {
   /// Valid until the next refit.
   [[nodiscard]] std::span<const float> face_radii() const;
 
-  struct Impl;
-  [[nodiscard]] const Impl& impl() const { return *impl_; }
-
  private:
-  std::unique_ptr<Impl> impl_;
+  friend const surface::SurfaceData& internals(const Surface&);
+
+  std::unique_ptr<surface::SurfaceData> data_;
 };
 
 }  // namespace sdm

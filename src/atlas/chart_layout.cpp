@@ -3,14 +3,14 @@
 #include <algorithm>
 
 #include "atlas/charts/cluster.h"
-#include "atlas/layout.h"
-#include "atlas/packing/pack.h"
 #include "atlas/charts/shape.h"
 #include "atlas/charts/split.h"
+#include "atlas/layout.h"
+#include "atlas/packing/pack.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 // Charts gain nothing by more, and their axes stay well away from the planes of their faces.
@@ -84,4 +84,4 @@ Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
   return layout;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -2,7 +2,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 
 std::array<Vec3, 2> affine_edges(const std::array<Vec2, 3>& corners, std::span<const Vec3> positions,
                                  const Triangle& t) {
@@ -12,4 +12,4 @@ std::array<Vec3, 2> affine_edges(const std::array<Vec2, 3>& corners, std::span<c
   return {(1 / det) * (b[1] * first - a[1] * second), (1 / det) * (a[0] * second - b[0] * first)};
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

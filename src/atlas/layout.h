@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// M⁻¹ of a face: atlas coordinates (u, v) ↦ vertex 0 + (u − origin.u) edges[0] + (v − origin.v) edges[1].
 struct FaceMap {
@@ -31,4 +31,4 @@ struct Layout {
 /// AtlasKind::uv. A chart is a set of faces that join at edges where their coordinates agree.
 [[nodiscard]] Layout uv_layout(const Mesh& mesh, const AtlasOptions& options);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -9,7 +9,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// Twice the signed area of (a, b, p), evaluated the same way, but for the sign, for the edge (b, a): where
 /// two triangles share an edge, a point beside it is on exactly one side.
@@ -57,4 +57,4 @@ void for_each_centre(std::array<Vec2, 3> t, Visit visit) {
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

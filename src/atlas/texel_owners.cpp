@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 double atlas_area(const std::array<Vec2, 3>& t) {
@@ -66,4 +66,4 @@ std::vector<std::uint32_t> owned_texels(const std::vector<std::uint32_t>& texel_
   return texels;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -6,7 +6,7 @@
 
 #include "atlas/layout.h"
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// The face whose triangle in the atlas has each texel's centre, or kNone. Every chart owns a texel, but for
 /// AtlasKind::uv.
@@ -16,4 +16,4 @@ namespace sdm {
 /// The texels that a face owns, in their order.
 [[nodiscard]] std::vector<std::uint32_t> owned_texels(const std::vector<std::uint32_t>& texel_faces);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

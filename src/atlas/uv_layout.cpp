@@ -6,11 +6,11 @@
 #include <string>
 
 #include "atlas/charts/face_geometry.h"
-#include "atlas/layout.h"
 #include "atlas/charts/overlap.h"
+#include "atlas/layout.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 // Coordinates this far outside [0, 1] are taken for rounding; overlaps this deep, in texels, too.
@@ -116,4 +116,4 @@ Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
   return layout;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -3,7 +3,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::core {
 
 /// p ↦ rows·p + offset. The identity maps every point to itself, to the bit.
 struct Affine {
@@ -28,4 +28,8 @@ inline Affine inverse(const Affine& map) {
   return result;
 }
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-namespace sdm {
+namespace sdm::core {
 
 template <class T>
 void atomic_max(T& largest, T value) {
@@ -13,4 +13,8 @@ void atomic_max(T& largest, T value) {
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

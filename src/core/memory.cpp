@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-namespace sdm {
+namespace sdm::core {
 namespace {
 
 // MemAvailable counts page cache that can be dropped, which _SC_AVPHYS_PAGES does not.
@@ -59,4 +59,4 @@ void require_memory(std::size_t bytes, std::string_view purpose) {
   throw Error(message.str());
 }
 
-}  // namespace sdm
+}  // namespace sdm::core

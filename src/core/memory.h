@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::core {
 
 /// Bytes that a new allocation may take: what the machine has available, or a lower limit set on the process.
 [[nodiscard]] std::size_t available_memory();
@@ -12,4 +12,8 @@ namespace sdm {
 /// Throws sdm::Error, naming `purpose`, unless `bytes` are available.
 void require_memory(std::size_t bytes, std::string_view purpose);
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

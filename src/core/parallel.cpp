@@ -14,16 +14,7 @@
 #include <mutex>
 #include <utility>
 
-namespace sdm {
-
-struct ThreadLimit::Impl {
-  tbb::global_control control;
-};
-
-ThreadLimit::ThreadLimit(unsigned count)
-    : impl_(new Impl{{tbb::global_control::max_allowed_parallelism,
-                      count > 0 ? count : static_cast<std::size_t>(tbb::info::default_concurrency())}}) {}
-ThreadLimit::~ThreadLimit() = default;
+namespace sdm::core {
 
 unsigned thread_count() {
   return static_cast<unsigned>(
@@ -94,5 +85,18 @@ void parallel_tasks(const std::function<void(Tasks& tasks)>& first) {
     tasks.wait();
   });
 }
+
+}  // namespace sdm::core
+
+namespace sdm {
+
+struct ThreadLimit::Impl {
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(unsigned count)
+    : impl_(new Impl{{tbb::global_control::max_allowed_parallelism,
+                      count > 0 ? count : static_cast<std::size_t>(tbb::info::default_concurrency())}}) {}
+ThreadLimit::~ThreadLimit() = default;
 
 }  // namespace sdm

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace sdm {
+namespace sdm::core {
 
 /// Calls body(begin, end) for disjoint ranges that cover [0, count), of about `grain` or less, on all cores
 /// allowed. With a progress callback, reports the fraction done, 1 at the end, and throws Cancelled when it
@@ -46,4 +46,8 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
   run_parallel_for(count, grain, std::cref(body));  // a reference takes no memory, as a copy would
 }
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

@@ -6,7 +6,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::core {
 namespace {
 
 // J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997:
@@ -89,4 +89,4 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   return exact(a, b, c);
 }
 
-}  // namespace sdm
+}  // namespace sdm::core

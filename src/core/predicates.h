@@ -3,7 +3,7 @@
 
 #include <sdm/types.h>
 
-namespace sdm {
+namespace sdm::core {
 
 /// The sign of (d − a)·((b − a) × (c − a)): 1 where d is above the plane of a, b, c, that is where these run
 /// counter-clockwise seen from d; −1 below it; 0 on it, and where they lie on a line. Exact for all finite
@@ -13,4 +13,8 @@ namespace sdm {
 /// The sign of (b − a) × (c − a): 1 where c is to the left of the line from a to b. Exact.
 [[nodiscard]] int orientation(const Vec2& a, const Vec2& b, const Vec2& c);
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

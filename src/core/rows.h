@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace sdm {
+namespace sdm::core {
 
 /// Row i is items[offsets[i]] ... items[offsets[i + 1]].
 template <class Item>
@@ -38,4 +38,8 @@ CompressedRows<Item> make_rows(std::size_t count, const Visit& visit) {
   return rows;
 }
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

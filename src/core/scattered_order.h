@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace sdm {
+namespace sdm::core {
 
 /// A permutation of 0 ... count − 1 that begins with 0: multiples, modulo count, of a number without common
 /// divisor, near the golden section of count.
@@ -17,4 +17,8 @@ inline std::vector<std::uint32_t> scattered_order(std::size_t count) {
   return order;
 }
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

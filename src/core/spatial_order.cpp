@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::core {
 namespace {
 
 constexpr std::size_t kPacket = 16;
@@ -67,4 +67,4 @@ std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points) {
   return indices;
 }
 
-}  // namespace sdm
+}  // namespace sdm::core

@@ -6,11 +6,15 @@
 #include <span>
 #include <vector>
 
-namespace sdm {
+namespace sdm::core {
 
 /// Indices of the points such that every aligned 16·2^k of them lie in a small box: the points are halved
 /// across the longest side of their box, and so are the halves, down to packets of sixteen. Cost: O(n log n),
 /// all cores.
 [[nodiscard]] std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points);
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

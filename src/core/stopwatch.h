@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-namespace sdm {
+namespace sdm::core {
 
 class Stopwatch {
  public:
@@ -18,4 +18,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

@@ -5,7 +5,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::core {
 namespace {
 
 constexpr double kRoundedDown = 1 - 1e-15;  // by more than differences, squares, their sum and its root round
@@ -52,4 +52,4 @@ std::span<const Sweep::Pair> Sweep::near_pairs(std::span<const Box> boxes, doubl
   return pairs_;
 }
 
-}  // namespace sdm
+}  // namespace sdm::core

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace sdm {
+namespace sdm::core {
 
 /// The distance of two boxes, which is 0 where they meet; rounded down.
 [[nodiscard]] double box_distance(const Box& a, const Box& b);
@@ -28,4 +28,8 @@ class Sweep {
   std::vector<Pair> pairs_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

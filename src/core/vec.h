@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sdm {
+namespace sdm::core {
 
 constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -84,4 +84,8 @@ inline double diagonal(const Box& box) {
   return norm(box.hi - box.lo);
 }
 
-}  // namespace sdm
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}

@@ -1,17 +1,17 @@
 // Vectors of three doubles, one in each lane. Included once for each set of vector instructions.
 
-#if defined(SDM_MESH_VEC_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SDM_MESH_VEC_LANES_INL_H_
-#undef SDM_MESH_VEC_LANES_INL_H_
+#if defined(SDM_CORE_VEC_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SDM_CORE_VEC_LANES_INL_H_
+#undef SDM_CORE_VEC_LANES_INL_H_
 #else
-#define SDM_MESH_VEC_LANES_INL_H_
+#define SDM_CORE_VEC_LANES_INL_H_
 #endif
 
 #include <hwy/highway.h>
 #include <sdm/types.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::core::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr size_t kLanes = 8;  // at a time, in one vector or several
@@ -80,7 +80,7 @@ struct Vec3Lanes {
   }
 };
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::hierarchy {
 namespace {
 
 constexpr std::size_t kGrain = 2048;
@@ -28,19 +28,6 @@ float next(float x, bool above) {
 }
 
 }  // namespace
-
-UnitFrame UnitFrame::of(const Box& box) {
-  const Vec3 size = box.hi - box.lo;
-  const double longest = std::max({size[0], size[1], size[2]});
-  UnitFrame frame;
-  frame.origin = centre(box);
-  if (longest > 0) {
-    int exponent = 0;
-    std::frexp(0.5 * longest, &exponent);
-    frame.scale = std::ldexp(1.0, std::clamp(-exponent, -1000, 1000));  // finite, and so is its inverse
-  }
-  return frame;
-}
 
 FloatBox FloatBox::around(const Box& box) {
   FloatBox out;
@@ -82,4 +69,4 @@ void refit(AabbTree& tree, std::span<const Box> boxes) {
   refit_leaves(tree, leaf_boxes);
 }
 
-}  // namespace sdm
+}  // namespace sdm::hierarchy

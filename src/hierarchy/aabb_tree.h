@@ -7,19 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace sdm {
+#include "core/unit_frame.h"
 
-/// Moves a scene to the cube [-1, 1]³ about the origin, so that single precision serves any placement and
-/// size. The scale is a power of two: it adds no rounding.
-struct UnitFrame {
-  Vec3 origin{};
-  double scale = 1;
-
-  static UnitFrame of(const Box& box);
-  [[nodiscard]] Vec3 to_unit(const Vec3& p) const {
-    return {scale * (p[0] - origin[0]), scale * (p[1] - origin[1]), scale * (p[2] - origin[2])};
-  }
-};
+namespace sdm::hierarchy {
 
 /// A box in single precision, rounded outwards: it contains the box it was made from.
 struct FloatBox {
@@ -65,4 +55,4 @@ void refit(AabbTree& tree, std::span<const Box> boxes);
 /// The same from the boxes of the leaves, in their order.
 void refit_leaves(AabbTree& tree, std::span<const FloatBox> leaf_boxes);
 
-}  // namespace sdm
+}  // namespace sdm::hierarchy

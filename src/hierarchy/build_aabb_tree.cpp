@@ -14,7 +14,7 @@
 #include "core/parallel.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::hierarchy::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr uint32_t kParallelItems = 2048;  // a subtree of fewer is built by one thread
@@ -232,11 +232,11 @@ std::vector<AabbTree::Node> BuildNodes(std::span<const FloatBox> boxes, std::vec
   return Builder(boxes, indices, leaf_size).build();
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::hierarchy::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm {
+namespace sdm::hierarchy {
 
 HWY_EXPORT(BuildNodes);
 
@@ -248,5 +248,5 @@ AabbTree build_aabb_tree(std::span<const FloatBox> boxes, std::vector<std::uint3
   return tree;
 }
 
-}  // namespace sdm
+}  // namespace sdm::hierarchy
 #endif

@@ -4,7 +4,7 @@
 
 #include "core/parallel.h"
 
-namespace sdm {
+namespace sdm::hierarchy {
 namespace {
 
 float half_area(const FloatBox& box) {
@@ -84,4 +84,4 @@ void refit(WideTree& wide, const AabbTree& tree) {
   });
 }
 
-}  // namespace sdm
+}  // namespace sdm::hierarchy

@@ -7,7 +7,7 @@
 
 #include "hierarchy/aabb_tree.h"
 
-namespace sdm {
+namespace sdm::hierarchy {
 
 struct WideTree {
   static constexpr int kWidth = 8;
@@ -30,4 +30,4 @@ struct WideTree {
 /// Copies the boxes of the refitted binary tree. Cost: linear.
 void refit(WideTree& wide, const AabbTree& tree);
 
-}  // namespace sdm
+}  // namespace sdm::hierarchy

@@ -1,37 +1,38 @@
 // Inside or outside of O2.
 #pragma once
 
-#include <sdm/map.h>
+#include <sdm/sign.h>
 
 #include <optional>
 #include <span>
 
-#include "engine/engine.h"
 #include "inside/winding_number.h"
+#include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 
-namespace sdm {
+namespace sdm::inside {
 
 /// Tells whether queries lie inside, by one method, for many of them.
 class InsideTest {
  public:
   /// `method` as chosen by choose_sign; `none` makes every answer "outside".
-  InsideTest(const SitesData& sites, SignMethod method);
+  InsideTest(const sites::SitesData& sites, SignMethod method);
 
   /// `closest` is the closest point of the query (not used by the winding number). On the surface: outside.
   [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
   /// A bit for each query of a packet that is inside.
-  [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries, const ClosestPacket& closest) const;
+  [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries,
+                                         const sites::ClosestPacket& closest) const;
 
  private:
   /// Whether a face around the site is too thin for its normal to be trusted: there, a ray decides.
   [[nodiscard]] bool beside_sliver(const ClosestPoint& c) const;
 
-  const SitesData& sites_;
+  const sites::SitesData& sites_;
   SignMethod method_;
   Box box_;  ///< of O2: nothing outside of it is inside O2, however near the tie
   bool has_slivers_ = false;
   std::optional<WindingNumber> winding_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::inside

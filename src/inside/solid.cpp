@@ -3,13 +3,12 @@
 #include <algorithm>
 
 #include "core/predicates.h"
-#include "proximity/exact/triangle_pair.h"
 
-namespace sdm {
+namespace sdm::inside {
 namespace {
 
 // A box of the tree where the mesh stands, enlarged by far more than double precision rounds.
-Box posed(const FloatBox& box, const UnitFrame& frame, const Affine& pose) {
+Box posed(const hierarchy::FloatBox& box, const UnitFrame& frame, const Affine& pose) {
   constexpr double kRounding = 1e-13;
   Vec3 centre, half;
   for (int k = 0; k < 3; ++k) {
@@ -47,7 +46,7 @@ bool segment_meets(const Box& box, const Vec3& start, const Vec3& along) {
 
 // ±1 if the segment pq crosses the triangle, by the side that it comes from, or 0; nothing where it meets the
 // triangle's edges. Neither p nor q lies on the triangle.
-std::optional<int> crossing(const Vec3& p, const Vec3& q, const Corners& t) {
+std::optional<int> crossing(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
   const bool above_p = orientation(t[0], t[1], t[2], p) > 0, above_q = orientation(t[0], t[1], t[2], q) > 0;
   if (above_p == above_q) return 0;
   const int a = orientation(p, q, t[0], t[1]), b = orientation(p, q, t[1], t[2]),
@@ -58,23 +57,15 @@ std::optional<int> crossing(const Vec3& p, const Vec3& q, const Corners& t) {
   return above_p ? 1 : -1;
 }
 
-bool contains_part(const SitesData& solid, const Affine& pose, const SitesData& other,
-                   const Affine& other_pose, std::vector<std::uint32_t>& stack) {
-  if (!is_solid(solid)) return false;
-  return std::ranges::any_of(other.orientation.first_face, [&](std::uint32_t face) {
-    return contains(solid, pose, other_pose(other.mesh.positions[other.mesh.triangles[face][0]]), stack);
-  });
-}
-
 }  // namespace
 
-std::optional<int> winding(const SitesData& sites, const Affine& pose, const Vec3& p, const Vec3& q,
+std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p, const Vec3& q,
                            std::vector<std::uint32_t>& stack) {
   int turns = 0;
   stack.assign(1, 0);
   while (!stack.empty()) {
     const std::uint32_t index = stack.back();
-    const AabbTree::Node& node = sites.tree.nodes[index];
+    const hierarchy::AabbTree::Node& node = sites.tree.nodes[index];
     stack.pop_back();
     if (!segment_meets(posed(node.box, sites.frame, pose), p, q - p)) continue;
     if (!node.leaf()) {
@@ -93,7 +84,7 @@ std::optional<int> winding(const SitesData& sites, const Affine& pose, const Vec
   return turns;
 }
 
-bool contains(const SitesData& solid, const Affine& pose, const Vec3& point,
+bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point,
               std::vector<std::uint32_t>& stack) {
   const Box box = posed(solid.tree.nodes[0].box, solid.frame, pose);
   if (!sdm::contains(box, point)) return false;
@@ -105,10 +96,4 @@ bool contains(const SitesData& solid, const Affine& pose, const Vec3& point,
       return *turns != 0;
 }
 
-bool one_contains_part_of_other(const MeshPair& pair, PairWorkspace& workspace) {
-  const Affine in_place;
-  return contains_part(pair.o1, in_place, pair.o2, pair.pose, workspace.nodes) ||
-         contains_part(pair.o2, pair.pose, pair.o1, in_place, workspace.nodes);
-}
-
-}  // namespace sdm
+}  // namespace sdm::inside

@@ -7,7 +7,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::inside {
 
 /// The signed solid angle of triangle (a, b, c) seen from the origin, in (−2π, 2π], positive where it runs
 /// clockwise as seen from there: over a closed mesh around the origin the angles sum to 4π (van Oosterom &
@@ -19,4 +19,4 @@ inline double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return 2 * std::atan2(numerator, denominator);
 }
 
-}  // namespace sdm
+}  // namespace sdm::inside

@@ -6,13 +6,13 @@
 #include "core/vec.h"
 #include "inside/solid_angle.h"
 
-namespace sdm {
+namespace sdm::inside {
 namespace {
 
 // A dipole stands for its faces from this many radii on.
 constexpr double kFar = 3;
 
-std::array<Vec3, 3> corners(const SitesData& sites, std::uint32_t face) {
+std::array<Vec3, 3> corners(const sites::SitesData& sites, std::uint32_t face) {
   const Triangle& t = sites.mesh.triangles[face];
   const auto& p = sites.mesh.positions;
   const bool inverted = sites.inverted[face];
@@ -21,7 +21,8 @@ std::array<Vec3, 3> corners(const SitesData& sites, std::uint32_t face) {
 
 }  // namespace
 
-WindingNumber::WindingNumber(const SitesData& sites) : sites_(sites), dipoles_(sites.tree.nodes.size()) {
+WindingNumber::WindingNumber(const sites::SitesData& sites)
+    : sites_(sites), dipoles_(sites.tree.nodes.size()) {
   const auto& nodes = sites.tree.nodes;
   for (std::size_t i = nodes.size(); i-- > 0;) {  // children before parents
     Dipole& d = dipoles_[i];
@@ -40,7 +41,7 @@ WindingNumber::WindingNumber(const SitesData& sites) : sites_(sites), dipoles_(s
       for (const Dipole& child : {dipoles_[i + 1], dipoles_[nodes[i].right]})
         add(child.centre, child.moment, child.area);
     }
-    const FloatBox& box = nodes[i].box;
+    const hierarchy::FloatBox& box = nodes[i].box;
     const Vec3 lo{box.lo[0], box.lo[1], box.lo[2]}, hi{box.hi[0], box.hi[1], box.hi[2]};
     const Vec3 middle = sites.frame.origin + (0.5 / sites.frame.scale) * (lo + hi);
     d.centre = d.area > 0 ? (1 / d.area) * d.centre : middle;
@@ -60,7 +61,7 @@ double WindingNumber::at(std::uint32_t index, const Vec3& q) const {
   const Vec3 r = d.centre - q;
   const double distance = norm(r);
   if (distance > kFar * d.radius) return dot(d.moment, r) / (distance * distance * distance);
-  const AabbTree::Node& node = sites_.tree.nodes[index];
+  const hierarchy::AabbTree::Node& node = sites_.tree.nodes[index];
   if (!node.leaf()) return at(index + 1, q) + at(node.right, q);
   double sum = 0;
   for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
@@ -70,4 +71,4 @@ double WindingNumber::at(std::uint32_t index, const Vec3& q) const {
   return sum;
 }
 
-}  // namespace sdm
+}  // namespace sdm::inside

@@ -7,14 +7,14 @@
 
 #include "sites/sites_data.h"
 
-namespace sdm {
+namespace sdm::inside {
 
 /// How many times the mesh winds around a point (Jacobson, Kavan & Sorkine 2013): 1 inside and 0 outside a
 /// closed mesh, in between around an open one. Far subtrees act as dipoles (Barill et al. 2018), which errs
 /// by about 10⁻².
 class WindingNumber {
  public:
-  explicit WindingNumber(const SitesData& sites);
+  explicit WindingNumber(const sites::SitesData& sites);
   [[nodiscard]] double operator()(const Vec3& q) const;
 
  private:
@@ -26,8 +26,8 @@ class WindingNumber {
   };
   [[nodiscard]] double at(std::uint32_t node, const Vec3& q) const;
 
-  const SitesData& sites_;
+  const sites::SitesData& sites_;
   std::vector<Dipole> dipoles_;  ///< of each node of the tree
 };
 
-}  // namespace sdm
+}  // namespace sdm::inside

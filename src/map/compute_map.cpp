@@ -1,3 +1,4 @@
+#include <sdm/closest_points.h>
 #include <sdm/error.h>
 #include <sdm/map.h>
 
@@ -7,17 +8,18 @@
 #include <functional>
 #include <utility>
 
-#include "surface/surface_data.h"
 #include "core/parallel.h"
 #include "core/spatial_order.h"
 #include "core/stopwatch.h"
 #include "core/vec.h"
-#include "sites/closest_on_face.h"
+#include "engine/cpu/cpu_engine.h"
 #include "engine/cpu/point_group.h"
 #include "engine/engine.h"
 #include "engine/gl/gl_engine.h"
-#include "map/map_writer.h"
 #include "inside/inside_test.h"
+#include "map/map_writer.h"
+#include "sites/closest_on_face.h"
+#include "surface/surface_data.h"
 
 namespace sdm {
 namespace {
@@ -27,8 +29,8 @@ namespace {
 void for_each_run(std::size_t count, const Progress& progress, std::string_view step,
                   const std::function<void(std::size_t, std::size_t)>& body) {
   constexpr std::size_t kEnough = 32;
-  std::size_t run = PointGroup::kMostPoints;
-  while (run > PointGroup::kPacket && count < kEnough * run) run /= PointGroup::kFan;
+  std::size_t run = cpu::PointGroup::kMostPoints;
+  while (run > cpu::PointGroup::kPacket && count < kEnough * run) run /= cpu::PointGroup::kFan;
   parallel_for((count + run - 1) / run, 1, progress, step, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) body(run * i, std::min(count, run * (i + 1)));
   });
@@ -39,25 +41,25 @@ void check(const MapOptions& options) {
 }
 
 // Delivers the closest points of texels by their winners. Returns for how many these were not confirmed.
-std::size_t recompute(const SitesData& sites, const RasterWinners& winners,
+std::size_t recompute(const sites::SitesData& sites, const RasterWinners& winners,
                       std::span<const std::uint32_t> texels, std::span<const Vec3> points,
-                      double max_distance, const ClosestSink& deliver) {
+                      double max_distance, const engine::ClosestSink& deliver) {
   std::size_t unconfirmed = 0;
-  ClosestPacket packet;
+  sites::ClosestPacket packet;
   for (std::size_t first = 0; first < texels.size(); first += packet.count) {
-    packet.count = std::min(ClosestPacket::kSize, texels.size() - first);
+    packet.count = std::min(sites::ClosestPacket::kSize, texels.size() - first);
     for (std::size_t i = 0; i < packet.count; ++i) {
       const std::uint32_t texel = texels[first + i], face = winners.faces[texel];
       ClosestPoint closest;
-      if (face != kNone) closest = closest_around_face(sites, face, points[first + i]);
+      if (face != kNone) closest = sites::closest_around_face(sites, face, points[first + i]);
       const bool confirmed = face == kNone || winners.confirms(texel, closest.distance);
       packet.set(i, points[first + i], closest.distance <= max_distance ? closest : ClosestPoint{});
       if (confirmed) continue;
       ++unconfirmed;
-      cpu_search(sites, points.subspan(first + i, 1), max_distance,
-                 [&](std::size_t, const ClosestPacket& found) {
-                   packet.set(i, points[first + i], found.get(0, points[first + i]));
-                 });
+      cpu::cpu_search(sites, points.subspan(first + i, 1), max_distance,
+                      [&](std::size_t, const sites::ClosestPacket& found) {
+                        packet.set(i, points[first + i], found.get(0, points[first + i]));
+                      });
     }
     deliver(first, packet);
   }
@@ -65,12 +67,6 @@ std::size_t recompute(const SitesData& sites, const RasterWinners& winners,
 }
 
 }  // namespace
-
-ClosestSearch search_of(EngineKind engine) {
-  if (engine == EngineKind::gl)
-    throw Error("the gl engine computes maps only: for closest points choose cpu or reference");
-  return engine == EngineKind::reference ? reference_search : cpu_search;
-}
 
 DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOptions& options) {
   DistanceMap map;
@@ -81,16 +77,16 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
 void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options, DistanceMap& map) {
   check(options);
   const SignUsed sign = choose_sign(sites, options.sign);
-  const InsideTest is_inside(sites.impl(), sign.method);
+  const inside::InsideTest is_inside(internals(sites), sign.method);
 
   const bool raster = options.engine == EngineKind::gl;
   GlReport report;
   RasterWinners winners;
   if (raster) winners = gl_winners(surface, sites, options, report);
-  const ClosestSearch search = raster ? nullptr : search_of(options.engine);
+  const engine::ClosestSearch search = raster ? nullptr : engine::search_of(options.engine);
   Stopwatch watch;
 
-  const MapWriter writer(map, surface);
+  const map::MapWriter writer(map, surface);
   map.sign = sign;
   const std::size_t count = surface.sample_texels().size();
   std::atomic<std::size_t> beyond{0}, unconfirmed{0};
@@ -98,16 +94,16 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
     const std::span<const std::uint32_t> texels = surface.sample_texels().subspan(begin, end - begin);
     thread_local std::vector<Vec3> points;  // near at hand, while those of all samples fill much memory
     points.resize(end - begin);
-    place_samples(surface.impl(), begin, points);
+    surface::place_samples(internals(surface), begin, points);
     std::size_t beyond_here = 0;
-    const auto store = [&](std::size_t first, const ClosestPacket& closest) {
+    const auto store = [&](std::size_t first, const sites::ClosestPacket& closest) {
       const std::span packet = std::span(points).subspan(first, closest.count);
       beyond_here += writer.store(begin + first, closest, is_inside(packet, closest));
     };
     if (raster)
-      unconfirmed += recompute(sites.impl(), winners, texels, points, options.max_distance, store);
+      unconfirmed += recompute(internals(sites), winners, texels, points, options.max_distance, store);
     else
-      search(sites.impl(), points, options.max_distance, store);
+      search(internals(sites), points, options.max_distance, store);
     beyond += beyond_here;
   });
   map.beyond_max_distance = beyond;
@@ -126,18 +122,19 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
     for (const double x : points[i])
       if (!(std::abs(x) <= kMaxCoordinate))
         throw Error("query point " + std::to_string(i) + " has a coordinate that is NaN or beyond 1e37");
-  const ClosestSearch search = search_of(options.engine);
+  const engine::ClosestSearch search = engine::search_of(options.engine);
   const std::vector<std::uint32_t> order = spatial_order(points);
   std::vector<ClosestPoint> result(points.size());
   for_each_run(points.size(), options.progress, "closest points", [&](std::size_t begin, std::size_t end) {
     std::vector<Vec3> batch(end - begin);
     for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];
-    search(sites.impl(), batch, options.max_distance, [&](std::size_t first, const ClosestPacket& closest) {
-      for (std::size_t i = 0; i < closest.count; ++i) {
-        ClosestPoint& c = result[order[begin + first + i]] = closest.get(i, batch[first + i]);
-        if (c.type != SiteType::none) c.face = sites.impl().face_of(c.type, c.site);
-      }
-    });
+    search(internals(sites), batch, options.max_distance,
+           [&](std::size_t first, const sites::ClosestPacket& closest) {
+             for (std::size_t i = 0; i < closest.count; ++i) {
+               ClosestPoint& c = result[order[begin + first + i]] = closest.get(i, batch[first + i]);
+               if (c.type != SiteType::none) c.face = internals(sites).face_of(c.type, c.site);
+             }
+           });
   });
   return result;
 }

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 
-namespace sdm {
+namespace sdm::map {
 
 namespace {
 
@@ -53,8 +53,9 @@ MapWriter::MapWriter(DistanceMap& map, const Surface& surface) : texels_(surface
   site_type_ = map.site_type.data();
 }
 
-std::size_t MapWriter::store(std::size_t first, const ClosestPacket& closest, std::uint32_t inside) const {
-  constexpr std::size_t kSize = ClosestPacket::kSize;
+std::size_t MapWriter::store(std::size_t first, const sites::ClosestPacket& closest,
+                             std::uint32_t inside) const {
+  constexpr std::size_t kSize = sites::ClosestPacket::kSize;
   // Neighbours in space lie here and there in the map: what is to be written soon is asked for now.
   constexpr std::size_t kAhead = 4 * kSize;
   for (std::size_t i = first + kAhead; i < std::min(first + kAhead + kSize, texels_.size()); ++i) {
@@ -87,4 +88,4 @@ std::size_t MapWriter::store(std::size_t first, const ClosestPacket& closest, st
   return without;
 }
 
-}  // namespace sdm
+}  // namespace sdm::map

@@ -7,7 +7,7 @@
 
 #include "engine/engine.h"
 
-namespace sdm {
+namespace sdm::map {
 
 /// Makes room in `map` for the surface, in the memory that it has where that suffices, without values where
 /// no face owns a texel; others are unspecified.
@@ -20,7 +20,7 @@ class MapWriter {
 
   /// Stores the closest points of the samples from `first` on; `inside` has a bit for each whose distance is
   /// negative. Returns how many have none. Threads may store different samples at the same time.
-  std::size_t store(std::size_t first, const ClosestPacket& closest, std::uint32_t inside) const;
+  std::size_t store(std::size_t first, const sites::ClosestPacket& closest, std::uint32_t inside) const;
 
  private:
   std::span<const std::uint32_t> texels_;
@@ -32,4 +32,4 @@ class MapWriter {
   SiteType* site_type_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::map

@@ -45,7 +45,8 @@ void count_components(const Mesh& mesh, MeshInfo& info) {
 
 // Walks from face to face about a vertex, from `face` over its edge `edge`, until a border or `face` again;
 // returns the number of faces entered. No edge at the vertex has more than two faces.
-std::size_t walk(const Topology& topology, std::uint32_t vertex, std::uint32_t face, std::uint32_t edge) {
+std::size_t walk(const mesh::Topology& topology, std::uint32_t vertex, std::uint32_t face,
+                 std::uint32_t edge) {
   std::size_t entered = 0;
   for (std::uint32_t f = face;;) {
     const auto faces = topology.edge_faces(edge);
@@ -62,7 +63,7 @@ std::size_t walk(const Topology& topology, std::uint32_t vertex, std::uint32_t f
 
 // Whether the faces of a vertex form one fan, open or closed: each edge at the vertex has at most two of
 // them, and a walk from any of them over both of its edges meets them all.
-bool is_fan(const Topology& topology, std::uint32_t vertex, std::span<const std::uint32_t> faces) {
+bool is_fan(const mesh::Topology& topology, std::uint32_t vertex, std::span<const std::uint32_t> faces) {
   std::array<std::uint32_t, 2> first_edges{};
   for (const std::uint32_t f : faces) {
     int k = 0;
@@ -77,8 +78,8 @@ bool is_fan(const Topology& topology, std::uint32_t vertex, std::span<const std:
   return ahead + 1 + walk(topology, vertex, faces[0], first_edges[1]) == faces.size();
 }
 
-void count_nonmanifold_vertices(const Mesh& mesh, const Topology& topology, MeshInfo& info) {
-  const VertexFaces rows = vertex_faces(mesh.positions.size(), mesh.triangles, topology);
+void count_nonmanifold_vertices(const Mesh& mesh, const mesh::Topology& topology, MeshInfo& info) {
+  const mesh::VertexFaces rows = mesh::vertex_faces(mesh.positions.size(), mesh.triangles, topology);
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
     const std::span<const std::uint32_t> faces = rows.of(v);
     if (!faces.empty() && !is_fan(topology, v, faces)) ++info.nonmanifold_vertices;
@@ -87,7 +88,8 @@ void count_nonmanifold_vertices(const Mesh& mesh, const Topology& topology, Mesh
 
 // Area, and the sum of the signed tetrahedra over the centre of the bounds: Gauss's theorem for a closed
 // mesh.
-void measure(const Mesh& mesh, const Topology& topology, const Orientation& orientation, MeshInfo& info) {
+void measure(const Mesh& mesh, const mesh::Topology& topology, const mesh::Orientation& orientation,
+             MeshInfo& info) {
   const Vec3 origin = info.bounds.lo[0] <= info.bounds.hi[0] ? centre(info.bounds) : Vec3{};
   double six_volumes = 0;
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -111,7 +113,7 @@ MeshInfo inspect(const Mesh& mesh) {
   info.bounds = bounds(mesh);
   info.has_uvs = !mesh.corner_uvs.empty();
 
-  const Topology topology = build_topology(mesh.positions.size(), mesh.triangles);
+  const mesh::Topology topology = mesh::build_topology(mesh.positions.size(), mesh.triangles);
   info.edges = topology.edges.size();
   info.duplicate_faces = topology.duplicate_faces;
   for (std::size_t e = 0; e < topology.edges.size(); ++e) {
@@ -120,7 +122,7 @@ MeshInfo inspect(const Mesh& mesh) {
   }
   info.closed = info.edges > 0 && info.boundary_edges == 0 && info.nonmanifold_edges == 0;
 
-  const Orientation orientation = orient(mesh.triangles, topology);
+  const mesh::Orientation orientation = orient(mesh.triangles, topology);
   info.orientable = orientation.orientable;
   info.oriented = orientation.orientable && std::all_of(orientation.turned.begin(), orientation.turned.end(),
                                                         [](auto t) { return t == 0; });

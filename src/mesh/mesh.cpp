@@ -47,7 +47,7 @@ void validate_uvs(const Mesh& mesh) {
 
 }  // namespace
 
-void validate_positions(std::span<const Vec3> positions) {
+void mesh::validate_positions(std::span<const Vec3> positions) {
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (!finite(positions[v]))
       throw Error("vertex " + std::to_string(v) + " has a NaN or infinite coordinate");
@@ -58,11 +58,11 @@ void validate_positions(std::span<const Vec3> positions) {
   }
 }
 
-void validate_positions(std::span<const Vec3> positions, std::size_t count) {
+void mesh::validate_positions(std::span<const Vec3> positions, std::size_t count) {
   if (positions.size() != count)
     throw Error("the mesh has " + std::to_string(count) + " vertices, but " +
                 std::to_string(positions.size()) + " new positions were given");
-  validate_positions(positions);
+  mesh::validate_positions(positions);
 }
 
 void validate(const Mesh& mesh) {
@@ -72,7 +72,7 @@ void validate(const Mesh& mesh) {
   if (mesh.positions.size() >= kNone)
     throw Error("there are " + std::to_string(mesh.positions.size()) +
                 " vertices, too many for 32-bit indices");
-  validate_positions(mesh.positions);
+  mesh::validate_positions(mesh.positions);
   validate_triangles(mesh);
   if (!(diagonal(bounds(mesh)) > kMinSize))
     throw Error("the mesh is smaller than 1e-30, too small to compute with; scale it up");

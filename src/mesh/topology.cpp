@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 
-namespace sdm {
+namespace sdm::mesh {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -170,4 +170,4 @@ VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> tri
   });
 }
 
-}  // namespace sdm
+}  // namespace sdm::mesh

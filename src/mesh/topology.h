@@ -8,7 +8,7 @@
 
 #include "core/rows.h"
 
-namespace sdm {
+namespace sdm::mesh {
 
 /// Edges and their incident faces. Faces with repeated corners, and duplicates of an earlier face (same three
 /// vertices, in any order), are *ignored*: they have no edges here.
@@ -37,7 +37,7 @@ struct Topology {
 /// faces stay.
 struct Orientation {
   std::vector<std::uint8_t> turned;
-  std::vector<std::uint32_t> component;  ///< of each face, over two-face edges; kNone if ignored
+  std::vector<std::uint32_t> component;   ///< of each face, over two-face edges; kNone if ignored
   std::vector<std::uint32_t> first_face;  ///< of each component
   bool orientable = true;
 };
@@ -53,4 +53,4 @@ inline bool runs_forward(const Triangle& triangle, int k) {
   return triangle[k] < triangle[k < 2 ? k + 1 : 0];
 }
 
-}  // namespace sdm
+}  // namespace sdm::mesh

@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace sdm {
+namespace sdm::mesh {
 
 /// Throws sdm::Error for a coordinate that is not finite or too large to compute with.
 void validate_positions(std::span<const Vec3> positions);
@@ -13,4 +13,4 @@ void validate_positions(std::span<const Vec3> positions);
 /// The same for new positions of `count` vertices: also when there are more or fewer.
 void validate_positions(std::span<const Vec3> positions, std::size_t count);
 
-}  // namespace sdm
+}  // namespace sdm::mesh

@@ -11,11 +11,11 @@
 namespace sdm {
 
 struct ProximityQuery::Impl {
-  std::array<Body, 2> bodies;
-  PairAnswers answers;
+  std::array<sampled::Body, 2> bodies;
+  sampled::PairAnswers answers;
 
   Impl(const Mesh& o1, const Mesh& o2, const ProximityOptions& options)
-      : bodies{Body(o1, options.atlas), Body(o2, options.atlas)},
+      : bodies{sampled::Body(o1, options.atlas), sampled::Body(o2, options.atlas)},
         answers({.exact = options.exact, .contact_margin = options.contact_margin}) {
     answers.begin(bodies[0], bodies[1]);
   }
@@ -32,17 +32,17 @@ const ProximityOptions& checked(const ProximityOptions& options) {
 
 }  // namespace
 
-ProximityQuery::Query(Mesh o1, Mesh o2, const ProximityOptions& options)
+ProximityQuery::ProximityQuery(Mesh o1, Mesh o2, const ProximityOptions& options)
     : impl_(std::make_unique<Impl>(o1, o2, checked(options))) {}
 ProximityQuery::~ProximityQuery() = default;
-ProximityQuery::Query(ProximityQuery&&) noexcept = default;
+ProximityQuery::ProximityQuery(ProximityQuery&&) noexcept = default;
 ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;
 
 void ProximityQuery::update(std::span<const Vec3> o1, std::span<const Vec3> o2) {
   const std::array positions{o1, o2};
   for (int b = 0; b < 2; ++b)
     if (!positions[b].empty())
-      validate_positions(positions[b], impl_->bodies[b].surface().mesh().positions.size());
+      mesh::validate_positions(positions[b], impl_->bodies[b].surface().mesh().positions.size());
   for (int b = 0; b < 2; ++b)
     if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
   impl_->answers.begin(impl_->bodies[0], impl_->bodies[1]);

@@ -30,7 +30,7 @@ std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sit
   const SignMethod method =
       solid.closed() && solid.orientable() ? SignMethod::pseudonormal : SignMethod::winding;
   const std::vector<ClosestPoint> closest = closest_points(solid, near);
-  const std::vector<std::uint8_t> is_inside = inside(solid, near, closest, method);
+  const std::vector<std::uint8_t> is_inside = inside_flags(solid, near, closest, method);
   std::vector<VertexContact> contacts;
   for (std::size_t i = 0; i < near.size(); ++i) {
     const double distance = is_inside[i] ? -closest[i].distance : closest[i].distance;

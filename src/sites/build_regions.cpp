@@ -2,10 +2,10 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "sites/regions.h"
 #include "sites/cone_rays.h"
+#include "sites/regions.h"
 
-namespace sdm {
+namespace sdm::sites {
 namespace {
 
 constexpr std::size_t kGrain = 1024;  // faces
@@ -76,7 +76,8 @@ class HandOut {
     const Triangle& corners = places.corners.back();
     const std::uint32_t third = corners[(k + 2) % 3], place = place_of(edge, edge_place_, edges_);
     if (place == places.edges.size()) {
-      const int from = runs_forward(t, k) ? k : (k + 1) % 3, to = runs_forward(t, k) ? (k + 1) % 3 : k;
+      const int from = mesh::runs_forward(t, k) ? k : (k + 1) % 3,
+                to = mesh::runs_forward(t, k) ? (k + 1) % 3 : k;
       places.edges.push_back({{corners[from], corners[to], third, third}, {face, face}});
     } else if (SitePlaces::Edge& met = places.edges[place]; met.faces[1] == met.faces[0]) {
       met.corners[3] = third;
@@ -91,7 +92,7 @@ class HandOut {
 
 }  // namespace
 
-Regions build_regions(const RegionSource& s, const AabbTree& tree) {
+Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
   Regions regions;
   SitePlaces& places = regions.places;
   HandOut sites(s);
@@ -104,7 +105,7 @@ Regions build_regions(const RegionSource& s, const AabbTree& tree) {
       },
       [&] {
         sites.run(tree.items, regions.owners, places);
-        for (const AabbTree::Node& node : tree.nodes)
+        for (const hierarchy::AabbTree::Node& node : tree.nodes)
           if (node.leaf()) regions.leaves.push_back(node.first);
         regions.leaves.push_back(static_cast<std::uint32_t>(faces));
         regions.leaves.shrink_to_fit();
@@ -144,4 +145,4 @@ Regions build_regions(const RegionSource& s, const AabbTree& tree) {
   return regions;
 }
 
-}  // namespace sdm
+}  // namespace sdm::sites

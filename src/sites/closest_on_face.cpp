@@ -5,7 +5,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::sites {
 namespace {
 
 // Whether the direction from c to q points into any of the faces around the site: then that face is strictly
@@ -78,4 +78,4 @@ ClosestPoint closest_around_face(const SitesData& sites, std::uint32_t face, con
   return c;
 }
 
-}  // namespace sdm
+}  // namespace sdm::sites

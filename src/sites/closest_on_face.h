@@ -5,7 +5,7 @@
 
 #include "sites/sites_data.h"
 
-namespace sdm {
+namespace sdm::sites {
 
 /// The point of the closed triangle that is closest to q, and which of its sites it lies on.
 [[nodiscard]] ClosestPoint closest_on_face(const SitesData& sites, std::uint32_t face, const Vec3& q);
@@ -15,4 +15,4 @@ namespace sdm {
 /// neighbourhood, on which pseudonormals rely.
 [[nodiscard]] ClosestPoint closest_around_face(const SitesData& sites, std::uint32_t face, const Vec3& q);
 
-}  // namespace sdm
+}  // namespace sdm::sites

@@ -14,7 +14,9 @@
 #include "core/vec_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::sites::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace core::HWY_NAMESPACE;
 
 // In single precision the walls of a face thinner than this, in the unit frame, would close in nothing. Its
 // edges stand for it: no point of it is farther from them than half of this.
@@ -229,11 +231,11 @@ void ComputeVertices(Regions& regions, const UnitFrame& frame, std::span<const V
   }
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::sites::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm {
+namespace sdm::sites {
 
 HWY_EXPORT(ComputeFaces);
 HWY_EXPORT(ComputeEdges);
@@ -253,5 +255,5 @@ void compute_vertices(Regions& regions, const UnitFrame& frame, std::span<const 
   HWY_DYNAMIC_DISPATCH(ComputeVertices)(regions, frame, placed, begin, end);
 }
 
-}  // namespace sdm
+}  // namespace sdm::sites
 #endif

@@ -5,7 +5,7 @@
 
 #include "sites/regions.h"
 
-namespace sdm {
+namespace sdm::sites {
 
 // Each chooses the best vector instructions that the machine has, at run time.
 
@@ -22,4 +22,4 @@ void compute_edges(Regions& regions, const UnitFrame& frame, std::span<const Vec
 void compute_vertices(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
                       std::size_t begin, std::size_t end);
 
-}  // namespace sdm
+}  // namespace sdm::sites

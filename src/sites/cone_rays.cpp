@@ -13,7 +13,7 @@
 #include "core/vec.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::sites::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 8>;
 
@@ -90,19 +90,19 @@ std::array<uint32_t, VertexRegion::kRays> SpreadNeighbours(std::span<const Vec3>
   return chosen;
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::sites::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm {
+namespace sdm::sites {
 
 HWY_EXPORT(SpreadNeighbours);
 
-std::array<std::uint32_t, VertexRegion::kRays> choose_cone_rays(std::span<const Vec3> positions,
-                                                                 double scale, std::uint32_t vertex,
-                                                                 std::span<const std::uint32_t> neighbours) {
+std::array<std::uint32_t, VertexRegion::kRays> choose_cone_rays(std::span<const Vec3> positions, double scale,
+                                                                std::uint32_t vertex,
+                                                                std::span<const std::uint32_t> neighbours) {
   return HWY_DYNAMIC_DISPATCH(SpreadNeighbours)(positions, scale, vertex, neighbours);
 }
 
-}  // namespace sdm
+}  // namespace sdm::sites
 #endif

@@ -7,7 +7,7 @@
 
 #include "sites/regions.h"
 
-namespace sdm {
+namespace sdm::sites {
 
 /// Chooses neighbours of a vertex on all its sides: each the most opposed to the sum of the directions to
 /// those chosen before, so that no half of the directions around the vertex is left open, in which its cone
@@ -17,4 +17,4 @@ namespace sdm {
     std::span<const Vec3> positions, double scale, std::uint32_t vertex,
     std::span<const std::uint32_t> neighbours);
 
-}  // namespace sdm
+}  // namespace sdm::sites

@@ -7,7 +7,7 @@
 #include "core/vec.h"
 #include "inside/crossings/ray_parity.h"
 
-namespace sdm {
+namespace sdm::sites {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -41,7 +41,8 @@ double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Trian
 // Whether the shell lies inside an odd number of others. Shells that touch or overlap others lie partly
 // inside at most: a few points just outside faces far apart must all agree.
 bool hollow(const Shell& shell, std::span<const Vec3> positions, const UnitFrame& frame,
-            std::span<const Triangle> triangles, const Orientation& orientation, const AabbTree& tree) {
+            std::span<const Triangle> triangles, const mesh::Orientation& orientation,
+            const hierarchy::AabbTree& tree) {
   constexpr std::size_t kPoints = 5;
   constexpr double kOff = 1e-7;  // in the unit frame
   for (std::size_t i = 0; i < kPoints; ++i) {
@@ -51,7 +52,8 @@ bool hollow(const Shell& shell, std::span<const Vec3> positions, const UnitFrame
     const Vec3 normal = normalized(cross(b - a, c - a));
     const bool inward = shell.inward != static_cast<bool>(orientation.turned[f]);
     const Vec3 point = (1.0 / 3) * (a + b + c) + (inward ? -kOff : kOff) * normal;
-    if (!odd_crossings(positions, frame, triangles, tree, point, orientation.component, shell.component))
+    if (!inside::odd_crossings(positions, frame, triangles, tree, point, orientation.component,
+                               shell.component))
       return false;
   }
   return true;
@@ -59,7 +61,7 @@ bool hollow(const Shell& shell, std::span<const Vec3> positions, const UnitFrame
 
 }  // namespace
 
-Shells find_shells(const Orientation& orientation) {
+Shells find_shells(const mesh::Orientation& orientation) {
   return make_rows<std::uint32_t>(orientation.first_face.size(), [&](const auto& put) {
     for (std::uint32_t f = 0; f < orientation.component.size(); ++f)
       if (orientation.component[f] != kNone) put(orientation.component[f], f);
@@ -67,8 +69,9 @@ Shells find_shells(const Orientation& orientation) {
 }
 
 void orient_outward(std::span<const Vec3> positions, const UnitFrame& frame,
-                   std::span<const Triangle> triangles, const Orientation& orientation, const Shells& shells,
-                   const AabbTree& tree, std::vector<std::uint8_t>& inverted) {
+                    std::span<const Triangle> triangles, const mesh::Orientation& orientation,
+                    const Shells& shells, const hierarchy::AabbTree& tree,
+                    std::vector<std::uint8_t>& inverted) {
   inverted = orientation.turned;
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
@@ -82,4 +85,4 @@ void orient_outward(std::span<const Vec3> positions, const UnitFrame& frame,
   });
 }
 
-}  // namespace sdm
+}  // namespace sdm::sites

@@ -9,11 +9,11 @@
 #include "hierarchy/aabb_tree.h"
 #include "mesh/topology.h"
 
-namespace sdm {
+namespace sdm::sites {
 
 /// The faces of each component of an orientation.
 using Shells = CompressedRows<std::uint32_t>;
-[[nodiscard]] Shells find_shells(const Orientation& orientation);
+[[nodiscard]] Shells find_shells(const mesh::Orientation& orientation);
 
 /// For a closed, orientable mesh: sets `inverted` for the faces that run clockwise seen from outside. A shell
 /// bounds solid where it lies inside an even number of the others, and hollow where inside an
@@ -21,7 +21,8 @@ using Shells = CompressedRows<std::uint32_t>;
 /// or overlap each other bound solid. `tree` holds the faces, in the unit frame. Cost: linear, all cores, and
 /// a few rays for each shell where there are several.
 void orient_outward(std::span<const Vec3> positions, const UnitFrame& frame,
-                   std::span<const Triangle> triangles, const Orientation& orientation, const Shells& shells,
-                   const AabbTree& tree, std::vector<std::uint8_t>& inverted);
+                    std::span<const Triangle> triangles, const mesh::Orientation& orientation,
+                    const Shells& shells, const hierarchy::AabbTree& tree,
+                    std::vector<std::uint8_t>& inverted);
 
-}  // namespace sdm
+}  // namespace sdm::sites

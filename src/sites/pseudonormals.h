@@ -10,7 +10,7 @@
 
 #include "mesh/topology.h"
 
-namespace sdm {
+namespace sdm::sites {
 
 struct Pseudonormals {
   std::vector<Vec3> face;    ///< unit length, 0 for faces without area and ignored ones
@@ -18,7 +18,7 @@ struct Pseudonormals {
 };
 
 /// The pseudonormal of an edge: the sum of its faces' normals.
-[[nodiscard]] Vec3 edge_pseudonormal(const Pseudonormals& normals, const Topology& topology,
+[[nodiscard]] Vec3 edge_pseudonormal(const Pseudonormals& normals, const mesh::Topology& topology,
                                      std::uint32_t edge);
 
-}  // namespace sdm
+}  // namespace sdm::sites

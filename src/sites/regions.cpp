@@ -7,7 +7,7 @@
 #include "core/vec.h"
 #include "sites/compute_regions.h"
 
-namespace sdm {
+namespace sdm::sites {
 namespace {
 
 constexpr std::size_t kVertices = 4096, kLeaves = 128;  // grains
@@ -60,14 +60,14 @@ void place(const Regions& regions, std::span<const Vec3> positions, std::vector<
 }
 
 void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                     std::vector<FloatBox>& boxes) {
+                     std::vector<hierarchy::FloatBox>& boxes) {
   boxes.resize(regions.leaves.size() - 1);
   parallel_for(boxes.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
       Box box;
       for (std::uint32_t i = regions.leaves[leaf]; i < regions.leaves[leaf + 1]; ++i)
         for (const std::uint32_t v : regions.places.corners[i]) extend(box, placed[v]);
-      boxes[leaf] = FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
+      boxes[leaf] = hierarchy::FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
     }
   });
 }
@@ -93,4 +93,4 @@ void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> place
   });
 }
 
-}  // namespace sdm
+}  // namespace sdm::sites

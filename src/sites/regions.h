@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "hierarchy/aabb_tree.h"
-#include "sites/pseudonormals.h"
 #include "mesh/topology.h"
+#include "sites/pseudonormals.h"
 
-namespace sdm {
+namespace sdm::sites {
 
 // A cache line each, for sites are looked up one by one. Coordinates in the unit frame; all normals and
 // directions have length 1, or 0 where geometry gives none (and then never exclude anything).
@@ -94,15 +94,15 @@ struct Regions {
 struct RegionSource {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
-  const Topology& topology;
-  const VertexFaces& vertex_faces;
+  const mesh::Topology& topology;
+  const mesh::VertexFaces& vertex_faces;
   bool orientable;
   double scale;  ///< of the frame that regions are in
 };
 
 /// Hands the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth a leaf. Their
 /// regions are left to refit(). Cost: linear, all cores.
-[[nodiscard]] Regions build_regions(const RegionSource& source, const AabbTree& tree);
+[[nodiscard]] Regions build_regions(const RegionSource& source, const hierarchy::AabbTree& tree);
 
 /// Sets `placed` to the positions in the order of the regions' vertices. Refits read them again and again,
 /// and this order is that of the tree, while a mesh may have any. Cost: linear, all cores.
@@ -110,7 +110,7 @@ void place(const Regions& regions, std::span<const Vec3> positions, std::vector<
 
 /// Sets `boxes` to those of the leaves. Cost: linear, all cores.
 void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                     std::vector<FloatBox>& boxes);
+                     std::vector<hierarchy::FloatBox>& boxes);
 
 struct FaceShape {
   Vec3 normal;  ///< unit length, outward, 0 without area
@@ -126,4 +126,4 @@ void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> place
            std::span<const std::uint8_t> inverted, Pseudonormals& normals, std::vector<std::uint8_t>& sliver,
            std::vector<FaceShape>& shapes);
 
-}  // namespace sdm
+}  // namespace sdm::sites

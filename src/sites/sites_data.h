@@ -7,35 +7,35 @@
 
 #include "hierarchy/aabb_tree.h"
 #include "hierarchy/wide_tree.h"
+#include "mesh/topology.h"
 #include "sites/orient_outward.h"
 #include "sites/pseudonormals.h"
 #include "sites/regions.h"
-#include "mesh/topology.h"
 
-namespace sdm {
+namespace sdm::sites {
 
 struct SitesData {
   Mesh mesh;
-  Topology topology;
-  VertexFaces vertex_faces;
+  mesh::Topology topology;
+  mesh::VertexFaces vertex_faces;
   bool closed = false;
   bool alike = false;  ///< closed, and all faces run alike
-  Orientation orientation;
+  mesh::Orientation orientation;
   Shells shells;  ///< if closed and orientable
   std::vector<std::uint8_t>
       inverted;  ///< of each face: turned against the outside; if open, against its neighbours
 
-  UnitFrame frame;  ///< of the faces that have sites
-  AabbTree tree;    ///< over those faces, in the unit frame
-  WideTree wide;    ///< the same, collapsed
-  Regions regions;  ///< by the leaves of both
+  UnitFrame frame;           ///< of the faces that have sites
+  hierarchy::AabbTree tree;  ///< over those faces, in the unit frame
+  hierarchy::WideTree wide;  ///< the same, collapsed
+  Regions regions;           ///< by the leaves of both
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a normal that could be trusted
 
   /// What a refit computes on the way: its memory is kept for the next one.
   struct Refit {
     std::vector<Vec3> placed;
-    std::vector<FloatBox> boxes;
+    std::vector<hierarchy::FloatBox> boxes;
     std::vector<FaceShape> shapes;
   };
   Refit last_refit;
@@ -52,5 +52,14 @@ struct SitesData {
     }
   }
 };
+
+}  // namespace sdm::sites
+
+namespace sdm {
+
+/// What a Sites holds. Found by argument-dependent lookup.
+[[nodiscard]] inline const sites::SitesData& internals(const Sites& sites) {
+  return *sites.data_;
+}
 
 }  // namespace sdm

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace sdm {
+namespace sdm::surface {
 
 inline constexpr std::size_t kRunLength = 256;  // a compact piece of the surface: see core/spatial_order.h
 
@@ -29,4 +29,4 @@ struct RunRange {
   return (samples + kRunLength - 1) / kRunLength;
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

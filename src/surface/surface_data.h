@@ -6,11 +6,11 @@
 #include <mutex>
 #include <optional>
 
-#include "surface/sampling_bound/coverage.h"
 #include "atlas/layout.h"
+#include "surface/sampling_bound/coverage.h"
 #include "surface/tiles.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 struct SurfaceData {
   Mesh mesh;
@@ -18,7 +18,7 @@ struct SurfaceData {
   std::uint32_t resolution = 0;
   std::size_t chart_count = 0;
   double max_stretch = 1;
-  std::vector<FaceMap> maps;
+  std::vector<atlas::FaceMap> maps;
   std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
   std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order lie here and there in texel_faces
@@ -42,5 +42,14 @@ struct SurfaceData {
 
 /// Sets `points` to those of the samples from `first` on.
 void place_samples(const SurfaceData& surface, std::size_t first, std::span<Vec3> points);
+
+}  // namespace sdm::surface
+
+namespace sdm {
+
+/// What a Surface holds. Found by argument-dependent lookup.
+[[nodiscard]] inline const surface::SurfaceData& internals(const Surface& surface) {
+  return *surface.data_;
+}
 
 }  // namespace sdm

@@ -4,12 +4,12 @@
 #include <numeric>
 #include <utility>
 
-#include "surface/surface_data.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "surface/surface_data.h"
 
-namespace sdm {
+namespace sdm::surface {
 namespace {
 
 constexpr std::size_t kGrain = 512;  // faces or tiles
@@ -64,7 +64,7 @@ void cut(const Surface& surface, Tiles& tiles) {
   tiles.offsets.push_back(static_cast<std::uint32_t>(tiles.texels.size()));
 }
 
-AabbTree build_tree(const Surface& surface, const Tiles& tiles) {
+hierarchy::AabbTree build_tree(const Surface& surface, const Tiles& tiles) {
   const UnitFrame frame = UnitFrame::of(bounds(surface.mesh()));
   std::vector<Box> boxes(tiles.count());
   parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -74,13 +74,13 @@ AabbTree build_tree(const Surface& surface, const Tiles& tiles) {
   });
   std::vector<std::uint32_t> items(tiles.count());
   std::iota(items.begin(), items.end(), 0u);
-  return build_aabb_tree(boxes, std::move(items), 1);
+  return hierarchy::build_aabb_tree(boxes, std::move(items), 1);
 }
 
 }  // namespace
 
 const Tiles& tiles_of(const Surface& surface) {
-  SurfaceData::Lazy& lazy = surface.impl().lazy;
+  SurfaceData::Lazy& lazy = internals(surface).lazy;
   std::call_once(lazy.tiled, [&] {
     // Texels and the tile of each; tiles with boxes and nodes while the tree is built, a few a face and more
     // where faces are large.
@@ -98,4 +98,4 @@ const Tiles& tiles_of(const Surface& surface) {
   return lazy.tiles;
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

@@ -7,7 +7,7 @@
 
 #include "hierarchy/aabb_tree.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 /// A tile holds texels of one face in a square of kSide texels; most faces are one tile.
 struct Tiles {
@@ -17,7 +17,7 @@ struct Tiles {
   std::vector<std::uint32_t> face_offsets;  ///< texels of each face of the mesh, and the end
   std::vector<std::uint32_t> offsets;       ///< texels of each tile, and the end
   std::vector<std::uint32_t> faces;         ///< of each tile
-  AabbTree tree;                            ///< one tile a leaf; its boxes are those of the first call
+  hierarchy::AabbTree tree;                 ///< one tile a leaf; its boxes are those of the first call
 
   [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(faces.size()); }
   [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t tile) const {
@@ -29,4 +29,4 @@ struct Tiles {
 /// in. Cost: O(n log n) in texels and tiles, then none.
 [[nodiscard]] const Tiles& tiles_of(const Surface& surface);
 
-}  // namespace sdm
+}  // namespace sdm::surface

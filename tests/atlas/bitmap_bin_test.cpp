@@ -10,11 +10,11 @@ namespace {
 
 using Cells = std::vector<std::vector<bool>>;
 
-Stamp random_stamp(std::mt19937& random, std::uint32_t largest) {
+atlas::Stamp random_stamp(std::mt19937& random, std::uint32_t largest) {
   const auto below = [&](std::uint32_t n) {
     return std::uniform_int_distribution<std::uint32_t>(0, n - 1)(random);
   };
-  Stamp stamp{1 + below(largest), 1 + below(largest), {}};
+  atlas::Stamp stamp{1 + below(largest), 1 + below(largest), {}};
   for (std::uint32_t r = 0; r < stamp.height; ++r)
     for (std::uint32_t x = below(stamp.width); x < stamp.width; x += below(stamp.width) + 2) {
       const std::uint32_t length = 1 + below(stamp.width - x);
@@ -24,7 +24,7 @@ Stamp random_stamp(std::mt19937& random, std::uint32_t largest) {
   return stamp;
 }
 
-bool is_free(const Cells& cells, const Stamp& stamp, std::uint32_t x, std::uint32_t y) {
+bool is_free(const Cells& cells, const atlas::Stamp& stamp, std::uint32_t x, std::uint32_t y) {
   return std::ranges::none_of(stamp.runs, [&](const Run& run) {
     const auto row = cells[y + run.row].begin() + x + run.begin;
     return std::find(row, row + run.length, true) != row + run.length;
@@ -32,24 +32,24 @@ bool is_free(const Cells& cells, const Stamp& stamp, std::uint32_t x, std::uint3
 }
 
 // Row by row, cell by cell.
-std::optional<BitmapBin::Spot> plain_first_fit(const Cells& cells, const Stamp& stamp, std::uint32_t first_y,
-                                               std::uint32_t end_y) {
+std::optional<atlas::BitmapBin::Spot> plain_first_fit(const Cells& cells, const atlas::Stamp& stamp,
+                                                      std::uint32_t first_y, std::uint32_t end_y) {
   const auto size = static_cast<std::uint32_t>(cells.size());
   for (std::uint32_t y = first_y; y < end_y && y + stamp.height <= size; ++y)
     for (std::uint32_t x = 0; x + stamp.width <= size; ++x)
-      if (is_free(cells, stamp, x, y)) return BitmapBin::Spot{x, y};
+      if (is_free(cells, stamp, x, y)) return atlas::BitmapBin::Spot{x, y};
   return std::nullopt;
 }
 
-TEST(BitmapBin, FindsTheFirstFit) {
+TEST(atlas::BitmapBin, FindsTheFirstFit) {
   for (const std::uint32_t size : {16u, 63u, 64u, 65u, 100u, 128u, 200u}) {
     SCOPED_TRACE(size);
     std::mt19937 random(size);
-    BitmapBin bin(size);
+    atlas::BitmapBin bin(size);
     Cells cells(size, std::vector<bool>(size, false));
     int misses = 0;
     for (int i = 0; i < 600; ++i) {
-      const Stamp stamp = random_stamp(random, i < 300 ? size / 4 : 6);
+      const atlas::Stamp stamp = random_stamp(random, i < 300 ? size / 4 : 6);
       const std::uint32_t first_y = i % 5 == 0 ? size / 3 : 0, end_y = i % 7 == 0 ? size / 2 : size;
       const auto expected = plain_first_fit(cells, stamp, first_y, end_y);
       const auto spot = bin.first_fit(stamp, first_y, end_y);
@@ -66,9 +66,9 @@ TEST(BitmapBin, FindsTheFirstFit) {
   }
 }
 
-TEST(BitmapBin, HoldsAStampOfItsOwnSizeAndNoLarger) {
-  BitmapBin bin(64);
-  Stamp stamp{64, 1, {{0, 0, 64}}};
+TEST(atlas::BitmapBin, HoldsAStampOfItsOwnSizeAndNoLarger) {
+  atlas::BitmapBin bin(64);
+  atlas::Stamp stamp{64, 1, {{0, 0, 64}}};
   EXPECT_TRUE(bin.first_fit(stamp, 0, 64));
   stamp.width = 65;
   EXPECT_FALSE(bin.first_fit(stamp, 0, 64));

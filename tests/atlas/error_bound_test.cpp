@@ -6,8 +6,8 @@
 #include <random>
 
 #include "atlas/meshes.h"
-#include "surface/sampling_bound/sample_tree.h"
 #include "core/vec.h"
+#include "surface/sampling_bound/sample_tree.h"
 
 namespace sdm {
 namespace {
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 /// time.
 std::vector<double> seen(const Surface& surface) {
   const Mesh& mesh = surface.mesh();
-  const SampleTree tree(surface, surface.sampling_bound());
+  const surface::SampleTree tree(surface, surface.sampling_bound());
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<double> radii(mesh.triangles.size());

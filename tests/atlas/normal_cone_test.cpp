@@ -27,7 +27,7 @@ double widest(const std::vector<Vec3>& normals, const Vec3& axis) {
   return std::acos(least);
 }
 
-TEST(NormalCone, OfAJoinHoldsAllNormals) {
+TEST(atlas::NormalCone, OfAJoinHoldsAllNormals) {
   std::mt19937 random(4);
   int joined = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -35,7 +35,7 @@ TEST(NormalCone, OfAJoinHoldsAllNormals) {
     const Vec3 second = normals_near(first, 1.2, 1, random)[0];
     std::vector<Vec3> a = normals_near(first, 0.3, 1 + i % 40, random);
     const std::vector<Vec3> b = normals_near(second, 0.3, 1 + i % 7, random);
-    const auto cone = join(spanned_cone(a, first), spanned_cone(b, second), std::cos(0.6));
+    const auto cone = join(atlas::spanned_cone(a, first), atlas::spanned_cone(b, second), std::cos(0.6));
     a.insert(a.end(), b.begin(), b.end());
     EXPECT_TRUE(!cone || widest(a, cone->axis) <= 0.6 + 1e-7);
     // Two caps of 0.3 whose centres are no farther apart than 0.4 lie in one of 0.5.
@@ -46,10 +46,10 @@ TEST(NormalCone, OfAJoinHoldsAllNormals) {
   EXPECT_LT(joined, 1990);
 }
 
-TEST(NormalCone, KeepsFewRaysOfMany) {
+TEST(atlas::NormalCone, KeepsFewRaysOfMany) {
   std::mt19937 random(5);
   const auto normals = normals_near({0, 0.6, 0.8}, 0.5, 5000, random);
-  const NormalCone cone = spanned_cone(normals, {0, 0.6, 0.8});
+  const atlas::NormalCone cone = atlas::spanned_cone(normals, {0, 0.6, 0.8});
   EXPECT_LT(cone.rays.size(), 100u);
   EXPECT_LE(widest(normals, cone.axis), widest(normals, {0, 0.6, 0.8}));
   EXPECT_NEAR(widest(normals, cone.axis), widest(cone.rays, cone.axis), 1e-12);

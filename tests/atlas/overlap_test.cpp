@@ -11,10 +11,10 @@ namespace sdm {
 namespace {
 
 // The area of the first triangle clipped to the second (Sutherland & Hodgman 1974).
-double common_area(const GridTriangle& a, const GridTriangle& b) {
+double common_area(const atlas::GridTriangle& a, const atlas::GridTriangle& b) {
   if (orientation(b[0], b[1], b[2]) == 0) return 0;
   std::vector<Vec2> polygon;
-  for (const GridPoint& p : a) polygon.push_back({1.0 * p[0], 1.0 * p[1]});
+  for (const atlas::GridPoint& p : a) polygon.push_back({1.0 * p[0], 1.0 * p[1]});
   for (int k = 0; k < 3 && !polygon.empty(); ++k) {
     const Vec2 p = {1.0 * b[k][0], 1.0 * b[k][1]}, q = {1.0 * b[(k + 1) % 3][0], 1.0 * b[(k + 1) % 3][1]};
     std::vector<Vec2> kept;
@@ -32,10 +32,10 @@ double common_area(const GridTriangle& a, const GridTriangle& b) {
   return twice / 2;
 }
 
-GridTriangle random_triangle(std::mt19937& random, int lo, int hi) {
+atlas::GridTriangle random_triangle(std::mt19937& random, int lo, int hi) {
   std::uniform_int_distribution<std::int32_t> coordinate(lo, hi);
-  GridTriangle t;
-  for (GridPoint& p : t) p = {coordinate(random), coordinate(random)};
+  atlas::GridTriangle t;
+  for (atlas::GridPoint& p : t) p = {coordinate(random), coordinate(random)};
   if (orientation(t[0], t[1], t[2]) < 0) std::swap(t[1], t[2]);
   return t;
 }
@@ -45,9 +45,10 @@ TEST(Overlap, OfPairsIsACommonArea) {
   std::mt19937 random(1);
   int overlaps = 0;
   for (int i = 0; i < 100000; ++i) {
-    const std::array<GridTriangle, 2> pair = {random_triangle(random, 0, 7), random_triangle(random, 3, 10)};
+    const std::array<atlas::GridTriangle, 2> pair = {random_triangle(random, 0, 7),
+                                                     random_triangle(random, 3, 10)};
     const bool expected = common_area(pair[0], pair[1]) > 1e-9;
-    ASSERT_EQ(find_overlap(pair).has_value(), expected) << i;
+    ASSERT_EQ(atlas::find_overlap(pair).has_value(), expected) << i;
     overlaps += expected;
   }
   EXPECT_GT(overlaps, 10000);
@@ -55,33 +56,35 @@ TEST(Overlap, OfPairsIsACommonArea) {
 }
 
 TEST(Overlap, IsExactAtTheLimitsOfTheGrid) {
-  const GridPoint o = {0, 0}, x = {kGridSteps, kGridSteps - 1}, y = {kGridSteps, kGridSteps};
+  const atlas::GridPoint o = {0, 0}, x = {atlas::kGridSteps, atlas::kGridSteps - 1},
+                         y = {atlas::kGridSteps, atlas::kGridSteps};
   // Two slivers on both sides of the line from o to y, which miss each other by nothing, then meet by one
   // step.
-  const GridPoint above = {kGridSteps - 1, kGridSteps};
-  EXPECT_FALSE(find_overlap(std::array<GridTriangle, 2>{GridTriangle{o, x, y}, GridTriangle{o, y, above}}));
-  EXPECT_TRUE(
-      find_overlap(std::array<GridTriangle, 2>{GridTriangle{o, x, above}, GridTriangle{o, y, above}}));
+  const atlas::GridPoint above = {atlas::kGridSteps - 1, atlas::kGridSteps};
+  EXPECT_FALSE(atlas::find_overlap(
+      std::array<atlas::GridTriangle, 2>{atlas::GridTriangle{o, x, y}, atlas::GridTriangle{o, y, above}}));
+  EXPECT_TRUE(atlas::find_overlap(std::array<atlas::GridTriangle, 2>{atlas::GridTriangle{o, x, above},
+                                                                     atlas::GridTriangle{o, y, above}}));
 }
 
 // A triangulated grid has no overlap, whatever the order; one triangle more has.
 TEST(Overlap, IsFoundAmongMany) {
   std::mt19937 random(2);
-  std::vector<GridTriangle> triangles;
+  std::vector<atlas::GridTriangle> triangles;
   for (std::int32_t y = 0; y < 60; ++y)
     for (std::int32_t x = 0; x < 60; ++x) {
-      const GridPoint a = {1000 * x, 1000 * y}, b = {a[0] + 1000, a[1]}, c = {a[0] + 1000, a[1] + 1000},
-                      d = {a[0], a[1] + 1000};
+      const atlas::GridPoint a = {1000 * x, 1000 * y}, b = {a[0] + 1000, a[1]},
+                             c = {a[0] + 1000, a[1] + 1000}, d = {a[0], a[1] + 1000};
       triangles.push_back({a, b, c});
       triangles.push_back({a, c, d});
     }
   std::shuffle(triangles.begin(), triangles.end(), random);
-  EXPECT_FALSE(find_overlap(triangles));
+  EXPECT_FALSE(atlas::find_overlap(triangles));
   for (int i = 0; i < 50; ++i) {
     std::uniform_int_distribution<std::int32_t> corner(0, 59999);
-    const GridPoint p = {corner(random), corner(random)};
+    const atlas::GridPoint p = {corner(random), corner(random)};
     triangles.push_back({p, {p[0] + 1, p[1]}, {p[0] + 1, p[1] + 1}});
-    const auto pair = find_overlap(triangles);
+    const auto pair = atlas::find_overlap(triangles);
     ASSERT_TRUE(pair);
     EXPECT_EQ(std::max(pair->first, pair->second), triangles.size() - 1);
     EXPECT_GT(common_area(triangles[pair->first], triangles[pair->second]), 0.1);
@@ -90,10 +93,11 @@ TEST(Overlap, IsFoundAmongMany) {
 }
 
 TEST(Overlap, SlackForgivesShallowOnes) {
-  const GridTriangle low = {{{0, 0}, {1000, 0}, {0, 1000}}}, high = {{{997, 0}, {1997, 1000}, {997, 1000}}};
+  const atlas::GridTriangle low = {{{0, 0}, {1000, 0}, {0, 1000}}},
+                            high = {{{997, 0}, {1997, 1000}, {997, 1000}}};
   const std::array pair = {low, high};
-  EXPECT_TRUE(find_overlap(pair));
-  EXPECT_FALSE(find_overlap(pair, 4));
+  EXPECT_TRUE(atlas::find_overlap(pair));
+  EXPECT_FALSE(atlas::find_overlap(pair, 4));
 }
 
 }  // namespace

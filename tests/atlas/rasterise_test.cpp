@@ -25,7 +25,7 @@ TEST(Rasterise, SharedEdgesGiveEachCentreToOneTriangle) {
     for (std::size_t i = 0; i < rim.size(); ++i) {
       std::array<Vec2, 3> t = {apex, rim[i], rim[(i + 1) % rim.size()]};
       if (random() % 2) std::swap(t[0], t[2]);
-      for_each_centre(t, [&](std::uint32_t x, std::uint32_t y) { ++owners[{x, y}]; });
+      atlas::for_each_centre(t, [&](std::uint32_t x, std::uint32_t y) { ++owners[{x, y}]; });
     }
     ASSERT_EQ(owners.size(), 400u);
     for (const auto& [texel, count] : owners) ASSERT_EQ(count, 1) << texel.first << ' ' << texel.second;
@@ -33,8 +33,8 @@ TEST(Rasterise, SharedEdgesGiveEachCentreToOneTriangle) {
 }
 
 TEST(Rasterise, TrianglesWithoutAreaOwnNothing) {
-  for_each_centre({Vec2{0.5, 0.5}, Vec2{3.5, 3.5}, Vec2{2.5, 2.5}}, [](auto, auto) { FAIL(); });
-  for_each_centre({Vec2{0.5, 0.5}, Vec2{0.5, 0.5}, Vec2{0.5, 0.5}}, [](auto, auto) { FAIL(); });
+  atlas::for_each_centre({Vec2{0.5, 0.5}, Vec2{3.5, 3.5}, Vec2{2.5, 2.5}}, [](auto, auto) { FAIL(); });
+  atlas::for_each_centre({Vec2{0.5, 0.5}, Vec2{0.5, 0.5}, Vec2{0.5, 0.5}}, [](auto, auto) { FAIL(); });
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include "core/vec.h"
 #include "engine/cpu/finish.h"
-#include "engine/engine.h"
+#include "engine/reference/reference_engine.h"
 #include "engine/simd_targets.h"
 #include "engine/support.h"
 #include "sites/sites_data.h"
@@ -15,9 +15,9 @@ double distance(const float (&a)[3], const Vec3& b) {
   return norm(Vec3{a[0], a[1], a[2]} - b);
 }
 
-TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
+TEST(cpu::PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
   std::mt19937 random(4);
-  const auto group = std::make_unique<PointGroup>();
+  const auto group = std::make_unique<cpu::PointGroup>();
   for (const std::size_t count : {1u, 15u, 16u, 17u, 64u, 65u, 1000u, 4097u, 65536u}) {
     SCOPED_TRACE(count);
     std::vector<Vec3> points(count);
@@ -25,14 +25,15 @@ TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
     ASSERT_FALSE(group->place(points, {}));
     ASSERT_EQ(group->balls[group->top].size(), 1u);
     for (int level = 0; level <= group->top; ++level) {
-      const std::size_t size = PointGroup::points_at(level);
+      const std::size_t size = cpu::PointGroup::points_at(level);
       ASSERT_EQ(group->balls[level].size(), (count + size - 1) / size);
       for (std::size_t i = 0; i < count; ++i) {
         const Ball& ball = group->balls[level][i / size];
         ASSERT_LE(distance(ball.centre, points[i]), 1.00001 * ball.radius + 1e-6);
       }
       for (std::size_t i = 0; level > 0 && i < group->balls[level - 1].size(); ++i) {
-        const Ball &inner = group->balls[level - 1][i], &outer = group->balls[level][i / PointGroup::kFan];
+        const Ball &inner = group->balls[level - 1][i],
+                   &outer = group->balls[level][i / cpu::PointGroup::kFan];
         const Vec3 centre{inner.centre[0], inner.centre[1], inner.centre[2]};
         ASSERT_LE(distance(outer.centre, centre) + inner.radius, 1.00001 * outer.radius + 1e-6);
       }
@@ -50,17 +51,17 @@ TEST(Finish, TakesNoWinnerOnTrust) {
   std::vector<ClosestPoint> found(queries.size());
   const auto finish_all = [&](std::uint32_t winner, double limit) {
     const std::vector<std::uint32_t> winners(kRoom, winner);
-    finish(sites.impl(), {winners.data(), queries.size()}, queries, limit,
-           [&](std::size_t first, const ClosestPacket& packet) {
+    finish(internals(sites), {winners.data(), queries.size()}, queries, limit,
+           [&](std::size_t first, const sites::ClosestPacket& packet) {
              for (std::size_t i = 0; i < packet.count; ++i)
                found[first + i] = packet.get(i, queries[first + i]);
            });
   };
   const double limit = 0.4;
-  finish_all(SiteId::kUnsettled, limit);
+  finish_all(cpu::SiteId::kUnsettled, limit);
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const ClosestPoint expected = reference_closest(sites.impl(), queries[i], limit);
+    const ClosestPoint expected = reference::reference_closest(internals(sites), queries[i], limit);
     EXPECT_EQ(found[i].distance, expected.distance);
     EXPECT_EQ(found[i].type, expected.type);
     beyond += expected.type == SiteType::none;
@@ -70,7 +71,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
 
   // Sites that are none of theirs: still points of these sites' faces, or of neighbours that are closer.
   for (const SiteType type : {SiteType::vertex, SiteType::edge, SiteType::face}) {
-    finish_all(SiteId::of(type, 7).packed, 1e300);
+    finish_all(cpu::SiteId::of(type, 7).packed, 1e300);
     for (std::size_t i = 0; i < queries.size(); ++i) {
       ASSERT_NE(found[i].type, SiteType::none);
       EXPECT_NEAR(norm(found[i].point - queries[i]), found[i].distance, 1e-12);
@@ -85,7 +86,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
 
 // Soups and grids, flat and rough, whole and small slivers, of any size and place; queries on the mesh, on
 // its vertices and lattice points, where regions meet, and away from it.
-TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
+TEST(cpu::Descent, AgreesWithTheReferenceOnScenesAtRandom) {
   std::size_t within = 0, beyond = 0, wrong = 0;
   const std::vector<test::SimdTarget> targets = test::simd_targets();
   for (unsigned seed = 0; seed < 200; ++seed) {
@@ -156,17 +157,17 @@ TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
 
 // Lists are short, and what they save is traversal. Counts depend on the meshes alone, and hardly on
 // rounding.
-TEST(Descent, EvaluatesFewSites) {
+TEST(cpu::Descent, EvaluatesFewSites) {
   const Surface bunny(test::load("bunny.obj", "fit"), {.resolution = 1024});
-  const double packets = static_cast<double>(bunny.sample_texels().size()) / PointGroup::kPacket;
+  const double packets = static_cast<double>(bunny.sample_texels().size()) / cpu::PointGroup::kPacket;
   const auto work = [&](const char* placement) {
-    return count_work(Sites(test::load("armadillo.off", placement)).impl(), bunny.sample_points());
+    return cpu::count_work(internals(Sites(test::load("armadillo.off", placement))), bunny.sample_points());
   };
-  const DescentCounts apart = work("fit,translate:0.8:0:0");
+  const cpu::DescentCounts apart = work("fit,translate:0.8:0:0");
   EXPECT_LT(static_cast<double>(apart.evaluations), 3 * packets);
   EXPECT_LT(static_cast<double>(apart.list_blocks), 5 * packets);
   EXPECT_LT(static_cast<double>(apart.tree_sites), 20 * packets);
-  const DescentCounts through = work("fit,translate:0.1:0:0");
+  const cpu::DescentCounts through = work("fit,translate:0.1:0:0");
   EXPECT_LT(static_cast<double>(through.evaluations), 15 * packets);
   EXPECT_LT(static_cast<double>(through.tree_sites), 50 * packets);
   EXPECT_GT(apart.groups, 0u);

@@ -101,8 +101,8 @@ TEST(Sign, InwardAndLocallyTurnedFaces) {
 std::size_t count_inside(const Sites& sites, const std::vector<Vec3>& points) {
   std::size_t count = 0;
   for (const EngineKind engine : test::kEngines)
-    for (const std::uint8_t in :
-         inside(sites, points, closest_points(sites, points, {.engine = engine}), SignMethod::pseudonormal))
+    for (const std::uint8_t in : inside_flags(
+             sites, points, closest_points(sites, points, {.engine = engine}), SignMethod::pseudonormal))
       count += in;
   return count;
 }

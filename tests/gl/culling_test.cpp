@@ -1,9 +1,9 @@
 // Regions, their oriented boxes and clipping never lose a closest point.
 #include <map>
 
-#include "engine/engine.h"
 #include "engine/gl/oriented_box.h"
 #include "engine/gl/pair_culling.h"
+#include "engine/reference/reference_engine.h"
 #include "engine/support.h"
 
 namespace sdm::gl {
@@ -22,7 +22,7 @@ std::vector<std::pair<std::string, Mesh>> meshes() {
 using SiteName = std::pair<SiteType, std::uint32_t>;
 
 /// The regions of all sites with an interior.
-std::map<SiteName, SiteRegion> regions_of(const SitesData& sites) {
+std::map<SiteName, SiteRegion> regions_of(const sites::SitesData& sites) {
   std::map<SiteName, SiteRegion> regions;
   for (std::size_t leaf = 0; leaf + 1 < sites.regions.leaves.size(); ++leaf)
     for_each_site(sites.regions, leaf, [&](const auto& found, std::size_t index) {
@@ -30,8 +30,8 @@ std::map<SiteName, SiteRegion> regions_of(const SitesData& sites) {
       const SiteRegion region = region_of(sites, found, index);
       using Region = std::decay_t<decltype(found)>;
       std::uint32_t site = region.face;
-      if constexpr (std::is_same_v<Region, EdgeRegion>) site = found.edge;
-      if constexpr (std::is_same_v<Region, VertexRegion>) site = found.vertex;
+      if constexpr (std::is_same_v<Region, sites::EdgeRegion>) site = found.edge;
+      if constexpr (std::is_same_v<Region, sites::VertexRegion>) site = found.vertex;
       EXPECT_TRUE(regions.emplace(SiteName{region.type, site}, region).second);
     });
   return regions;
@@ -47,8 +47,8 @@ TEST(Culling, RegionsAndBoxesHoldTheClosestPoints) {
   for (const auto& [name, mesh] : meshes()) {
     SCOPED_TRACE(name);
     const Sites sites(mesh);
-    const auto regions = regions_of(sites.impl());
-    const UnitFrame& frame = sites.impl().frame;
+    const auto regions = regions_of(internals(sites));
+    const UnitFrame& frame = internals(sites).frame;
     std::mt19937 random(5);
     std::map<SiteType, int> seen;
     constexpr double kSlack = 4e-6;
@@ -56,7 +56,7 @@ TEST(Culling, RegionsAndBoxesHoldTheClosestPoints) {
       const double half = i % 2 ? 1.2 : 4;
       const Vec3 unit = test::random_point({{-half, -half, -half}, {half, half, half}}, random);
       const Vec3 q = (1 / frame.scale) * unit + frame.origin;
-      const ClosestPoint c = reference_closest(sites.impl(), q, 1e30);
+      const ClosestPoint c = reference::reference_closest(internals(sites), q, 1e30);
       const auto found = regions.find({c.type, c.site});
       // An edge without a wedge may still be named, for a point over it to rounding: not by random points.
       ASSERT_TRUE(found != regions.end()) << static_cast<int>(c.type) << ' ' << c.site;
@@ -78,7 +78,7 @@ TEST(Culling, OrientedBoxesOfNarrowRegionsAreNarrow) {
   // On a fine sphere wedges and cones are as narrow as the faces are small; boxes that were not would cull
   // nothing.
   const Sites sites(test::sphere(4));
-  for (const auto& [site, region] : regions_of(sites.impl())) {
+  for (const auto& [site, region] : regions_of(internals(sites))) {
     const OrientedBox box = oriented_box(region, 1, 0);
     std::array<double, 3> half = box.half;
     std::ranges::sort(half);
@@ -102,7 +102,7 @@ TEST(Culling, BoxesThatShareAPointMayMeet) {
     Box other;
     extend(other, Vec3{unit(random), unit(random), unit(random)});
     extend(other, Vec3{unit(random), unit(random), unit(random)});
-    const bool may = may_meet(box, FloatBox::around(other));
+    const bool may = may_meet(box, hierarchy::FloatBox::around(other));
     apart += !may;
     for (int k = 0; k < 20 && !may; ++k) {
       Vec3 p = box.centre;
@@ -145,7 +145,7 @@ TEST(ConvexPolygon, KeepsExactlyWhatTheHalfPlaneHolds) {
 
 TEST(Blocks, PartTheTree) {
   const Surface surface(test::load("cow.off", "fit"), {.resolution = 128});
-  const DomainTree tree(surface, tiles_of(surface), UnitFrame{});
+  const DomainTree tree(surface, surface::tiles_of(surface), UnitFrame{});
   for (const std::uint32_t size : {1u, 7u, 255u, 1000000u}) {
     std::uint32_t leaves = 0, end = 0;
     for (const DomainBlock& block : cut_into_blocks(tree, size)) {
@@ -154,7 +154,7 @@ TEST(Blocks, PartTheTree) {
       EXPECT_LE(tree.leaves.count(block.node, block.end), size);
       leaves += tree.leaves.count(block.node, block.end);
     }
-    EXPECT_EQ(leaves, tiles_of(surface).count());
+    EXPECT_EQ(leaves, surface::tiles_of(surface).count());
   }
 }
 

@@ -1,8 +1,8 @@
 // The rasteriser on a slice of a grid: any plane with an affine map is a domain, not only a face of O1.
-#include "sites/closest_on_face.h"
-#include "engine/engine.h"
 #include "engine/gl/rasteriser.h"
+#include "engine/reference/reference_engine.h"
 #include "engine/support.h"
+#include "sites/closest_on_face.h"
 
 namespace sdm::gl {
 namespace {
@@ -20,7 +20,7 @@ PlanarDomain slice(double z) {
 
 TEST(GridSlice, HoldsTheClosestFaces) {
   const Sites sites(test::load("cow.off", "fit"));
-  const SitesData& impl = sites.impl();
+  const sites::SitesData& impl = internals(sites);
   const RasterDevice device("");
   const Context::Current current(device.context());
   for (const double z : {-0.9, 0.0, 0.37, 1.4}) {
@@ -44,8 +44,8 @@ TEST(GridSlice, HoldsTheClosestFaces) {
       ASSERT_NE(faces[texel], kNone);
       const Vec3 unit = domain.point({texel % kSide + 0.5, texel / kSide + 0.5});
       const Vec3 q = (1 / impl.frame.scale) * unit + impl.frame.origin;
-      const ClosestPoint expected = reference_closest(impl, q, 1e30);
-      wrong.compare(texel, closest_on_face(impl, faces[texel], q).distance, expected.distance);
+      const ClosestPoint expected = reference::reference_closest(impl, q, 1e30);
+      wrong.compare(texel, sites::closest_on_face(impl, faces[texel], q).distance, expected.distance);
     }
     EXPECT_TRUE(wrong.none());
   }

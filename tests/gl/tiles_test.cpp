@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <set>
 
-#include "surface/surface_data.h"
 #include "engine/engine.h"
 #include "engine/gl/domain_tree.h"
 #include "engine/support.h"
+#include "surface/surface_data.h"
 
 namespace sdm::gl {
 namespace {
@@ -26,17 +26,18 @@ std::vector<Scene> scenes() {
           {"soup", test::soup(80, random), test::soup(50, random)}};
 }
 
-TEST(Tiles, PartTheOwnedTexels) {
+TEST(surface::Tiles, PartTheOwnedTexels) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
-    const Tiles& tiles = tiles_of(surface);
-    std::vector<std::uint32_t> all(tiles.texels), owned(surface.sample_texels().begin(), surface.sample_texels().end());
+    const surface::Tiles& tiles = surface::tiles_of(surface);
+    std::vector<std::uint32_t> all(tiles.texels),
+        owned(surface.sample_texels().begin(), surface.sample_texels().end());
     std::ranges::sort(all);
     std::ranges::sort(owned);
     EXPECT_EQ(all, owned);
     std::set<std::uint32_t> leaves;
-    for (const AabbTree::Node& node : tiles.tree.nodes)
+    for (const hierarchy::AabbTree::Node& node : tiles.tree.nodes)
       if (node.leaf()) {
         EXPECT_EQ(node.count, 1u);
         leaves.insert(tiles.tree.items[node.first]);
@@ -50,17 +51,17 @@ TEST(Tiles, PartTheOwnedTexels) {
         const std::uint32_t at[2] = {texel % 256, texel / 256};
         for (int k = 0; k < 2; ++k) lo[k] = std::min(lo[k], at[k]), hi[k] = std::max(hi[k], at[k]);
       }
-      for (int k = 0; k < 2; ++k) EXPECT_LT(hi[k] - lo[k], Tiles::kSide);
+      for (int k = 0; k < 2; ++k) EXPECT_LT(hi[k] - lo[k], surface::Tiles::kSide);
     }
   }
 }
 
-TEST(Tiles, DomainsHoldTheirSamples) {
+TEST(surface::Tiles, DomainsHoldTheirSamples) {
   for (const Scene& scene : scenes())
     for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
       SCOPED_TRACE(scene.name);
       const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
-      const Tiles& tiles = tiles_of(surface);
+      const surface::Tiles& tiles = surface::tiles_of(surface);
       const UnitFrame frame = UnitFrame::of(bounds(scene.o2));
       for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
         const PlanarDomain domain = face_domain(surface, tiles, tile, frame, clip);
@@ -85,16 +86,16 @@ TEST(Tiles, DomainsHoldTheirSamples) {
     }
 }
 
-TEST(Tiles, BoundsHoldForEverySample) {
+TEST(surface::Tiles, BoundsHoldForEverySample) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 128});
     const Sites sites(scene.o2);
-    const Tiles& tiles = tiles_of(surface);
-    DomainTree tree(surface, tiles, sites.impl().frame);
-    set_bounds(tree, sites.impl(), 0, 1e9);
+    const surface::Tiles& tiles = surface::tiles_of(surface);
+    DomainTree tree(surface, tiles, internals(sites).frame);
+    set_bounds(tree, internals(sites), 0, 1e9);
     for (std::uint32_t i = 0; i < tree.node_count(); ++i) {
-      const AabbTree::Node& node = tree.tree.nodes[i];
+      const hierarchy::AabbTree::Node& node = tree.tree.nodes[i];
       if (!node.leaf()) {
         EXPECT_EQ(tree.bound[i], std::max(tree.bound[i + 1], tree.bound[node.right]));
         continue;
@@ -104,7 +105,7 @@ TEST(Tiles, BoundsHoldForEverySample) {
         points.push_back(surface.texel_point(texel));
       double farthest = 0;
       for (const ClosestPoint& c : closest_points(sites, points, {.engine = EngineKind::reference}))
-        farthest = std::max(farthest, sites.impl().frame.scale * c.distance);
+        farthest = std::max(farthest, internals(sites).frame.scale * c.distance);
       EXPECT_LE(farthest, tree.bound[i]);
     }
   }

@@ -29,22 +29,22 @@ std::vector<std::uint32_t> all(std::size_t count) {
   return indices;
 }
 
-bool contains(const FloatBox& outer, const Vec3& lo, const Vec3& hi) {
+bool contains(const hierarchy::FloatBox& outer, const Vec3& lo, const Vec3& hi) {
   for (int k = 0; k < 3; ++k)
     if (lo[k] < outer.lo[k] || hi[k] > outer.hi[k]) return false;
   return true;
 }
-bool contains(const FloatBox& outer, const FloatBox& inner) {
+bool contains(const hierarchy::FloatBox& outer, const hierarchy::FloatBox& inner) {
   return contains(outer, {inner.lo[0], inner.lo[1], inner.lo[2]}, {inner.hi[0], inner.hi[1], inner.hi[2]});
 }
 
 // Every item in one leaf; every box holds what is below it; children after parents; leaves no larger than
 // asked.
-void expect_valid(const AabbTree& tree, std::span<const Box> boxes, std::uint32_t leaf_size) {
+void expect_valid(const hierarchy::AabbTree& tree, std::span<const Box> boxes, std::uint32_t leaf_size) {
   std::vector<int> seen(boxes.size(), 0);
   std::uint32_t next_item = 0;
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    const AabbTree::Node& node = tree.nodes[i];
+    const hierarchy::AabbTree::Node& node = tree.nodes[i];
     if (node.leaf()) {
       EXPECT_LE(node.count, leaf_size);
       EXPECT_EQ(node.first, next_item) << "leaves follow the order of the items";
@@ -63,24 +63,24 @@ void expect_valid(const AabbTree& tree, std::span<const Box> boxes, std::uint32_
   EXPECT_THAT(seen, testing::Each(1));
 }
 
-TEST(AabbTree, HoldsEveryItemOnceInBoxesThatContainIt) {
+TEST(hierarchy::AabbTree, HoldsEveryItemOnceInBoxesThatContainIt) {
   for (std::size_t count : {1u, 2u, 9u, 1000u, 20000u}) {
     const auto boxes = random_boxes(count, 1);
-    expect_valid(build_aabb_tree(boxes, all(count), 4), boxes, 4);
+    expect_valid(hierarchy::build_aabb_tree(boxes, all(count), 4), boxes, 4);
   }
 }
 
-TEST(AabbTree, TakesEqualBoxesAndNone) {
+TEST(hierarchy::AabbTree, TakesEqualBoxesAndNone) {
   const std::vector<Box> equal(100, Box{{1, 2, 3}, {1, 2, 3}});
-  expect_valid(build_aabb_tree(equal, all(equal.size()), 4), equal, 4);
-  EXPECT_TRUE(build_aabb_tree(std::span<const Box>{}, {}, 4).nodes.empty());
+  expect_valid(hierarchy::build_aabb_tree(equal, all(equal.size()), 4), equal, 4);
+  EXPECT_TRUE(hierarchy::build_aabb_tree(std::span<const Box>{}, {}, 4).nodes.empty());
 }
 
-TEST(AabbTree, DoesNotDependOnTheNumberOfThreads) {
+TEST(hierarchy::AabbTree, DoesNotDependOnTheNumberOfThreads) {
   const auto boxes = random_boxes(30000, 2);
-  const AabbTree many = build_aabb_tree(boxes, all(boxes.size()), 8);
+  const hierarchy::AabbTree many = hierarchy::build_aabb_tree(boxes, all(boxes.size()), 8);
   const ThreadLimit one(1);
-  const AabbTree single = build_aabb_tree(boxes, all(boxes.size()), 8);
+  const hierarchy::AabbTree single = hierarchy::build_aabb_tree(boxes, all(boxes.size()), 8);
   EXPECT_EQ(many.items, single.items);
   ASSERT_EQ(many.nodes.size(), single.nodes.size());
   for (std::size_t i = 0; i < many.nodes.size(); ++i) {
@@ -92,10 +92,10 @@ TEST(AabbTree, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(AabbTree, RefitGivesTheSmallestBoxesOfMovedItems) {
+TEST(hierarchy::AabbTree, RefitGivesTheSmallestBoxesOfMovedItems) {
   auto boxes = random_boxes(5000, 3);
-  AabbTree tree = build_aabb_tree(boxes, all(boxes.size()), 4);
-  const AabbTree before = tree;
+  hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, all(boxes.size()), 4);
+  const hierarchy::AabbTree before = tree;
   refit(tree, boxes);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     EXPECT_EQ(tree.nodes[i].box.lo, before.nodes[i].box.lo);
@@ -106,15 +106,15 @@ TEST(AabbTree, RefitGivesTheSmallestBoxesOfMovedItems) {
   expect_valid(tree, moved, 4);
   Box whole;
   for (const Box& box : moved) extend(whole, box);
-  EXPECT_EQ(tree.nodes[0].box.lo, FloatBox::around(whole).lo);
-  EXPECT_EQ(tree.nodes[0].box.hi, FloatBox::around(whole).hi);
+  EXPECT_EQ(tree.nodes[0].box.lo, hierarchy::FloatBox::around(whole).lo);
+  EXPECT_EQ(tree.nodes[0].box.hi, hierarchy::FloatBox::around(whole).hi);
 }
 
-TEST(WideTree, ReachesEveryLeafOnceWithItsBox) {
+TEST(hierarchy::WideTree, ReachesEveryLeafOnceWithItsBox) {
   for (std::size_t count : {1u, 5u, 40u, 5000u}) {
     auto boxes = random_boxes(count, 5);
-    AabbTree tree = build_aabb_tree(boxes, all(count), 4);
-    WideTree wide = collapse(tree);
+    hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, all(count), 4);
+    hierarchy::WideTree wide = hierarchy::collapse(tree);
     boxes = random_boxes(count, 6);
     refit(tree, boxes);
     refit(wide, tree);
@@ -122,15 +122,15 @@ TEST(WideTree, ReachesEveryLeafOnceWithItsBox) {
     for (std::uint32_t i = 0; i < tree.nodes.size(); ++i)
       if (tree.nodes[i].leaf()) leaves.push_back(i);
     std::vector<int> reached(leaves.size(), 0), entered(wide.nodes.size(), 0);
-    for (const WideTree::Node& node : wide.nodes) {
+    for (const hierarchy::WideTree::Node& node : wide.nodes) {
       ASSERT_GE(node.count, 1u);
       for (std::uint32_t i = 0; i < node.count; ++i) {
-        const FloatBox& box = tree.nodes[node.source[i]].box;
+        const hierarchy::FloatBox& box = tree.nodes[node.source[i]].box;
         for (int k = 0; k < 3; ++k) {
           EXPECT_EQ(node.lo[k][i], box.lo[k]);
           EXPECT_EQ(node.hi[k][i], box.hi[k]);
         }
-        if (node.child[i] & WideTree::kLeafBit) {
+        if (node.child[i] & hierarchy::WideTree::kLeafBit) {
           const std::uint32_t leaf = node.child[i] & ~WideTree::kLeafBit;
           EXPECT_EQ(leaves.at(leaf), node.source[i]);
           ++reached[leaf];

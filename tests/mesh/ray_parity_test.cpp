@@ -56,8 +56,8 @@ bool odd_from_origin(const Cone& cone) {
     Box& box = boxes.emplace_back();
     for (const std::uint32_t v : {a, b, c}) extend(box, cone.positions[v]);
   }
-  const AabbTree tree = build_aabb_tree(boxes, faces, 4);
-  return odd_crossings(cone.positions, UnitFrame{}, cone.triangles, tree, {0, 0, 0});
+  const hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, faces, 4);
+  return inside::odd_crossings(cone.positions, UnitFrame{}, cone.triangles, tree, {0, 0, 0});
 }
 
 // The ray passes through a vertex exactly: from outside into the cone and out of its base, or from inside

@@ -36,7 +36,7 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-void expect_same(const SitesData& a, const SitesData& b) {
+void expect_same(const sites::SitesData& a, const sites::SitesData& b) {
   EXPECT_TRUE(same_bits(a.topology.edges, b.topology.edges));
   EXPECT_TRUE(same_bits(a.topology.face_edges, b.topology.face_edges));
   EXPECT_TRUE(same_bits(a.topology.edge_offsets, b.topology.edge_offsets));
@@ -67,7 +67,7 @@ TEST(Sites, DoNotDependOnTheNumberOfThreads) {
   for (const Mesh& mesh : {rough_torus(), test::torus(200, 100)}) {
     const Sites many(mesh);
     const ThreadLimit one(1);
-    expect_same(many.impl(), Sites(mesh).impl());
+    expect_same(internals(many), internals(Sites(mesh)));
   }
 }
 
@@ -79,7 +79,7 @@ TEST(Sites, RefitToTheSamePositionsChangesNothing) {
   for (Vec3& p : moved) p = 1.5 * p + Vec3{0.1, 0.2 * p[0], 0};
   refitted.refit(moved);
   refitted.refit(mesh.positions);
-  expect_same(fresh.impl(), refitted.impl());
+  expect_same(internals(fresh), internals(refitted));
 }
 
 // A neighbourhood of any size is no more than sorted.
@@ -94,8 +94,8 @@ TEST(Sites, TakeManyFacesAroundOneEdge) {
   }
   const Sites sites(fan);
   EXPECT_EQ(sites.edges().size(), 2 * count + 1);
-  EXPECT_EQ(sites.impl().topology.duplicate_faces, count);
-  EXPECT_EQ(sites.impl().topology.edge_faces(0).size(), count);
+  EXPECT_EQ(internals(sites).topology.duplicate_faces, count);
+  EXPECT_EQ(internals(sites).topology.edge_faces(0).size(), count);
 }
 
 }  // namespace

@@ -22,12 +22,12 @@ std::vector<Triangle> random_soup(std::mt19937& random, std::uint32_t vertices, 
   return soup;
 }
 
-TEST(Topology, AgreesWithBruteForceOnRandomSoups) {
+TEST(mesh::Topology, AgreesWithBruteForceOnRandomSoups) {
   std::mt19937 random(1);
   for (int round = 0; round < 300; ++round) {
     const std::uint32_t vertices = 3 + round % 12;
     const std::vector<Triangle> soup = random_soup(random, vertices, 1 + round % 40);
-    const Topology topology = build_topology(vertices, soup);
+    const mesh::Topology topology = mesh::build_topology(vertices, soup);
 
     std::set<Triangle> seen;
     std::map<Edge, std::vector<std::uint32_t>> incident;
@@ -60,12 +60,12 @@ TEST(Topology, AgreesWithBruteForceOnRandomSoups) {
   }
 }
 
-TEST(Topology, VertexFacesAgreeWithBruteForce) {
+TEST(mesh::Topology, VertexFacesAgreeWithBruteForce) {
   std::mt19937 random(2);
   for (int round = 0; round < 100; ++round) {
     const std::vector<Triangle> soup = random_soup(random, 9, 25);
-    const Topology topology = build_topology(9, soup);
-    const VertexFaces rows = vertex_faces(9, soup, topology);
+    const mesh::Topology topology = mesh::build_topology(9, soup);
+    const mesh::VertexFaces rows = mesh::vertex_faces(9, soup, topology);
     for (std::uint32_t v = 0; v < 9; ++v) {
       std::vector<std::uint32_t> expected;
       for (std::uint32_t f = 0; f < soup.size(); ++f)
@@ -85,7 +85,7 @@ bool agree(const Triangle& f, bool f_turned, const Triangle& g, bool g_turned, c
   return (forward(f) != f_turned) != (forward(g) != g_turned);
 }
 
-bool satisfied(const std::vector<Triangle>& soup, const Topology& topology,
+bool satisfied(const std::vector<Triangle>& soup, const mesh::Topology& topology,
                const std::vector<std::uint8_t>& turned) {
   for (std::size_t e = 0; e < topology.edges.size(); ++e) {
     const auto faces = topology.edge_faces(e);
@@ -114,8 +114,8 @@ TEST(Orient, FindsATurningExactlyWhenThereIsOne) {
   for (int round = 0; round < 400; ++round) {
     const std::vector<Triangle> soup =
         round % 2 ? random_soup(random, 6, 10) : random_part_of_projective_plane(random, 5 + round % 6);
-    const Topology topology = build_topology(6, soup);
-    const Orientation orientation = orient(soup, topology);
+    const mesh::Topology topology = mesh::build_topology(6, soup);
+    const mesh::Orientation orientation = orient(soup, topology);
     bool exists = false;
     for (unsigned choice = 0; choice < 1u << soup.size() && !exists; ++choice) {
       std::vector<std::uint8_t> turned(soup.size());
@@ -136,8 +136,8 @@ TEST(Orient, ComponentsAreJoinedByTwoFaceEdgesAndTurnTheFewerFaces) {
   std::mt19937 random(4);
   for (int round = 0; round < 200; ++round) {
     const std::vector<Triangle> soup = random_soup(random, 12, 14);
-    const Topology topology = build_topology(12, soup);
-    const Orientation orientation = orient(soup, topology);
+    const mesh::Topology topology = mesh::build_topology(12, soup);
+    const mesh::Orientation orientation = orient(soup, topology);
     // Spread the lowest face of each component until nothing changes.
     std::vector<std::uint32_t> lowest(soup.size());
     for (std::uint32_t f = 0; f < soup.size(); ++f) lowest[f] = f;
@@ -175,8 +175,8 @@ TEST(Orient, TurnsBackWhatWasTurned) {
   std::vector<std::uint8_t> turned(mesh.triangles.size(), 0);
   for (std::size_t f = 1; f < turned.size(); ++f)
     if (random() % 2) turned[f] = 1, std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);
-  const Orientation orientation =
-      orient(mesh.triangles, build_topology(mesh.positions.size(), mesh.triangles));
+  const mesh::Orientation orientation =
+      orient(mesh.triangles, mesh::build_topology(mesh.positions.size(), mesh.triangles));
   EXPECT_TRUE(orientation.orientable);
   EXPECT_EQ(orientation.turned, turned);
 }

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <set>
 
+#include "core/sweep.h"
 #include "core/vec.h"
 #include "engine/support.h"
 #include "fcl_pair.h"
-#include "query/allocations.h"
 #include "proximity/exact/mesh_pair.h"
+#include "query/allocations.h"
 #include "query/pair_oracle.h"
-#include "core/sweep.h"
 
 namespace sdm::test {
 namespace {
@@ -165,7 +165,7 @@ TEST(MultiBodyQuery, AgreeWithFclAndBruteForce) {
     apart += pair.separation.value > 0;
     if (a.triangles.size() * b.triangles.size() > 4000) continue;
     const Sites o1(a), o2(b);
-    const MeshPair triangles{o1.impl(), o2.impl()};
+    const exact::MeshPair triangles{internals(o1), internals(o2)};
     double least = kAny;
     for (std::uint32_t f = 0; f < a.triangles.size(); ++f)
       for (std::uint32_t g = 0; g < b.triangles.size(); ++g)
@@ -222,8 +222,8 @@ TEST(MultiBodyQuery, MapsHoldTheNearestOfSingleMaps) {
 // The same cube twice, once with a box that comes nearer.
 TEST(MultiBodyQuery, MapsNameTheLowestOfEquals) {
   const Mesh right = moved(cube(), {4, 0, 0});
-  const MultiBodyQuery bodies({right, joined(right, moved(cube(), {0, 9, 0})), cube(), moved(cube(), {-6, 0, 0})},
-                      options(2.5));
+  const MultiBodyQuery bodies(
+      {right, joined(right, moved(cube(), {0, 9, 0})), cube(), moved(cube(), {-6, 0, 0})}, options(2.5));
   const NearestMap nearest = bodies.nearest_map(2);
   std::size_t to_right = 0;
   for (const std::uint32_t body : nearest.body) {

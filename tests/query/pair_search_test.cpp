@@ -15,8 +15,8 @@ constexpr double kAny = std::numeric_limits<double>::infinity();
 
 Separation closest(const Mesh& m1, const Mesh& m2, const Affine& pose = {}, double bound = kAny) {
   const Sites o1(m1), o2(m2);
-  PairWorkspace workspace;
-  return find_closest({o1.impl(), o2.impl(), pose}, bound, workspace);
+  exact::PairWorkspace workspace;
+  return exact::find_closest({internals(o1), internals(o2), pose}, bound, workspace);
 }
 
 Mesh moved(Mesh mesh, const Affine& pose) {
@@ -30,7 +30,7 @@ Affine shift(double x, double y = 0, double z = 0) {
 
 double brute_force(const Mesh& m1, const Mesh& m2, const Affine& pose) {
   const Sites o1(m1), o2(m2);
-  const MeshPair pair{o1.impl(), o2.impl(), pose};
+  const exact::MeshPair pair{internals(o1), internals(o2), pose};
   double least = kAny;
   for (std::uint32_t f = 0; f < m1.triangles.size(); ++f)
     for (std::uint32_t g = 0; g < m2.triangles.size(); ++g)
@@ -218,10 +218,10 @@ TEST(PairSearch, FacesThatTouchAreFoundAmongMany) {
 TEST(PairSearch, LooksAtFewFaces) {
   const Sites ball(test::sphere(5)), box(test::cube(1.1)), pig(test::load("pig.off", "fit"));
   const auto work = [](const Sites& o1, const Sites& o2, const Affine& pose) {
-    PairWorkspace workspace;
-    (void)find_intersection({o1.impl(), o2.impl(), pose}, workspace);
+    exact::PairWorkspace workspace;
+    (void)exact::find_intersection({internals(o1), internals(o2), pose}, workspace);
     const std::size_t nodes = workspace.counts.nodes;
-    (void)find_closest({o1.impl(), o2.impl(), pose}, kAny, workspace);
+    (void)exact::find_closest({internals(o1), internals(o2), pose}, kAny, workspace);
     return std::array{nodes, workspace.counts.nodes, workspace.counts.leaf_pairs,
                       workspace.counts.triangle_pairs};
   };
@@ -238,11 +238,11 @@ TEST(PairSearch, TakesNoMemoryOnceItHasSome) {
   const Sites o1(test::load("hand.off", "fit")), o2(test::load("head.off", "fit"));
   std::mt19937 random(9);
   const std::vector<Affine> poses = bench::random_poses(o1, o2, 20, random);
-  PairWorkspace workspace;
+  exact::PairWorkspace workspace;
   const auto run = [&] {
     for (const Affine& pose : poses) {
-      (void)find_closest({o1.impl(), o2.impl(), pose}, kAny, workspace);
-      (void)find_intersection({o1.impl(), o2.impl(), pose}, workspace);
+      (void)exact::find_closest({internals(o1), internals(o2), pose}, kAny, workspace);
+      (void)exact::find_intersection({internals(o1), internals(o2), pose}, workspace);
     }
   };
   run();
@@ -255,11 +255,11 @@ TEST(PairSearch, TakesNoMemoryOnceItHasSome) {
 TEST(PairSearch, ForgetsWhatItDidBefore) {
   const Sites o1(test::load("hand.off", "fit")), o2(test::load("head.off", "fit"));
   std::mt19937 random(10);
-  PairWorkspace used;
+  exact::PairWorkspace used;
   for (const Affine& pose : bench::random_poses(o1, o2, 10, random)) {
-    PairWorkspace fresh;
-    const MeshPair pair{o1.impl(), o2.impl(), pose};
-    const Separation a = find_closest(pair, kAny, used), b = find_closest(pair, kAny, fresh);
+    exact::PairWorkspace fresh;
+    const exact::MeshPair pair{internals(o1), internals(o2), pose};
+    const Separation a = exact::find_closest(pair, kAny, used), b = exact::find_closest(pair, kAny, fresh);
     EXPECT_EQ(a.point1, b.point1);
     EXPECT_EQ(a.point2, b.point2);
     EXPECT_EQ(a.face1, b.face1);

@@ -8,8 +8,8 @@
 #include "engine/support.h"
 #include "fcl_pair.h"
 #include "poses.h"
-#include "query/pair_oracle.h"
 #include "proximity/exact/pair_search.h"
+#include "query/pair_oracle.h"
 
 namespace sdm {
 namespace {
@@ -34,13 +34,13 @@ Mesh mesh_of(const std::string& name) {
   return mesh;
 }
 
-bool cgal_says_intersect(const oracle::CgalSurface& o1, const MeshPair& pair) {
+bool cgal_says_intersect(const oracle::CgalSurface& o1, const exact::MeshPair& pair) {
   for (std::uint32_t face = 0; face < pair.o2.mesh.triangles.size(); ++face)
     if (o1.meets(pair.face2(face))) return true;
   return false;
 }
 
-void expect_witnesses(const MeshPair& pair, const Separation& s, double tolerance) {
+void expect_witnesses(const exact::MeshPair& pair, const Separation& s, double tolerance) {
   const auto distance_from = [](const Vec3& p, const Corners& t) { return oracle::distance({p, p, p}, t); };
   EXPECT_NEAR(norm(s.point2 - s.point1), s.distance, tolerance);
   ASSERT_LT(s.face1, pair.o1.mesh.triangles.size());
@@ -59,16 +59,16 @@ TEST_P(Poses, AgreeWithFclAndCgal) {
   const bool small = m2.triangles.size() < 12'000;
   const double size = diagonal(bounds(m1)) + diagonal(bounds(m2));
   std::mt19937 random(7);
-  PairWorkspace workspace;
+  exact::PairWorkspace workspace;
   int apart = 0, intersecting = 0;
   test::Disagreements distances(1e-6 * size);
   for (const Affine& pose : bench::random_poses(o1, o2, 200, random)) {
     const std::size_t number = static_cast<std::size_t>(apart + intersecting);
     SCOPED_TRACE(number);
-    const MeshPair pair{o1.impl(), o2.impl(), pose};
-    const Separation found = find_closest(pair, 10 * size, workspace);
+    const exact::MeshPair pair{internals(o1), internals(o2), pose};
+    const Separation found = exact::find_closest(pair, 10 * size, workspace);
     expect_witnesses(pair, found, 1e-14 * size);
-    ASSERT_EQ(find_intersection(pair, workspace).intersecting, found.intersecting);
+    ASSERT_EQ(exact::find_intersection(pair, workspace).intersecting, found.intersecting);
     if (found.intersecting) {
       ASSERT_EQ(found.distance, 0);
     }
@@ -92,17 +92,17 @@ TEST_P(Poses, AgreeWithFclAndCgal) {
 TEST_P(Poses, AgreeWithEveryVectorInstructionSet) {
   const Sites o1(mesh_of(GetParam().o1)), o2(mesh_of(GetParam().o2));
   std::mt19937 random(8);
-  PairWorkspace workspace;
+  exact::PairWorkspace workspace;
   for (const Affine& pose : bench::random_poses(o1, o2, 10, random)) {
-    const MeshPair pair{o1.impl(), o2.impl(), pose};
-    const Separation expected = find_closest(pair, 100, workspace);
+    const exact::MeshPair pair{internals(o1), internals(o2), pose};
+    const Separation expected = exact::find_closest(pair, 100, workspace);
     for (const test::SimdTarget target : test::simd_targets()) {
       SCOPED_TRACE(test::name(target));
       const test::UseSimdTarget use(target);
-      const Separation found = find_closest(pair, 100, workspace);
+      const Separation found = exact::find_closest(pair, 100, workspace);
       EXPECT_EQ(found.distance, expected.distance);
       EXPECT_EQ(found.intersecting, expected.intersecting);
-      EXPECT_EQ(find_intersection(pair, workspace).intersecting, expected.intersecting);
+      EXPECT_EQ(exact::find_intersection(pair, workspace).intersecting, expected.intersecting);
     }
   }
 }

@@ -11,8 +11,8 @@
 #include "core/vec.h"
 #include "engine/support.h"
 #include "mesh/shapes.h"
-#include "sites/sites_data.h"
 #include "query/allocations.h"
+#include "sites/sites_data.h"
 
 namespace sdm::test {
 namespace {
@@ -400,9 +400,9 @@ void expect_steady(const Mesh& a, const Mesh& b, bool exact) {
 TEST(Update, TakesNoMoreMemoryOnceTheBodiesMoveNorDoAnswers) {
   const ThreadLimit alone(1);  // threads that join later bring memory of their own
   const Mesh sliver = placed(wedge(0.5), "rotate:31:127:201");
-  ASSERT_GT(std::ranges::count(Sites(sliver).impl().sliver, 1), 0);
+  ASSERT_GT(std::ranges::count(internals(Sites(sliver)).sliver, 1), 0);
   const Mesh hollow = joined(sphere(3), placed(sphere(3), "scale:0.5"));
-  ASSERT_EQ(Sites(hollow).impl().shells.size(), 2u);
+  ASSERT_EQ(internals(Sites(hollow)).shells.size(), 2u);
   for (const bool exact : {false, true}) {
     SCOPED_TRACE(exact);
     expect_steady(torus(60, 30), moved(sphere(4), {2.5, 0, 0.3}), exact);

@@ -69,7 +69,7 @@ Relation touching(const Mesh& mesh) {
 }
 
 bool within(double length, const Corners& a, const Corners& b) {
-  return squared_box_distance(a, b) < length * length && oracle::distance(a, b) < length;
+  return exact::squared_box_distance(a, b) < length * length && oracle::distance(a, b) < length;
 }
 
 // All pairs of faces, as the rule's words say.
@@ -283,7 +283,8 @@ TEST(Self, FlawedFacesAreNotMeasuredToNorFrom) {
   EXPECT_EQ(query.separation()->value, other.separation()->value);
   const Surface with_flaws(flawed, {.resolution = 64});
   const DistanceMap map = compute_self_map(with_flaws, sites, exclusion);
-  for (const std::uint32_t texel : with_flaws.sample_texels()) ASSERT_TRUE(std::isfinite(map.distance[texel]));
+  for (const std::uint32_t texel : with_flaws.sample_texels())
+    ASSERT_TRUE(std::isfinite(map.distance[texel]));
 }
 
 // The pairs that count, by CGAL.
@@ -296,7 +297,7 @@ struct Pairs {
       for (std::size_t g = 0; g < f; ++g) {
         const Corners a = corners(mesh, f), b = corners(mesh, g);
         const double most = std::max(nearest[f], nearest[g]);
-        if (out[f][g] || squared_box_distance(a, b) > most * most) continue;
+        if (out[f][g] || exact::squared_box_distance(a, b) > most * most) continue;
         const double d = oracle::distance(a, b);
         nearest[f] = std::min(nearest[f], d), nearest[g] = std::min(nearest[g], d);
         least = std::min(least, d);
@@ -439,8 +440,10 @@ TEST(Self, RigidMotionsChangeNothing) {
 
 TEST(Self, MaximumDistanceHidesSeparations) {
   const double gap = SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}}).separation()->value;
-  EXPECT_TRUE(SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 1.001 * gap}).separation());
-  EXPECT_FALSE(SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 0.999 * gap}).separation());
+  EXPECT_TRUE(
+      SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 1.001 * gap}).separation());
+  EXPECT_FALSE(
+      SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 0.999 * gap}).separation());
 }
 
 TEST(Self, RefusesWhatIsOutOfRange) {

@@ -12,9 +12,9 @@ namespace {
 
 bool collide(const Mesh& m1, const Mesh& m2, const Affine& pose = {}) {
   const Sites o1(m1), o2(m2);
-  PairWorkspace workspace;
-  const bool result = colliding({o1.impl(), o2.impl(), pose}, workspace);
-  EXPECT_EQ(colliding({o2.impl(), o1.impl(), inverse(pose)}, workspace), result) << "swapped";
+  exact::PairWorkspace workspace;
+  const bool result = colliding({internals(o1), internals(o2), pose}, workspace);
+  EXPECT_EQ(colliding({internals(o2), internals(o1), inverse(pose)}, workspace), result) << "swapped";
   return result;
 }
 
@@ -74,13 +74,13 @@ TEST(Solid, WindingIsNotToldByEdges) {
   std::vector<std::uint32_t> stack;
   const Vec3 middle{0, 0, 0};
   for (const Vec3& q : {Vec3{3, 3, 3}, Vec3{3, 0, 3}, Vec3{3, 3, 1}, Vec3{0, 0, 4}})
-    EXPECT_FALSE(winding(cube.impl(), {}, middle, q, stack)) << "corner, edge, edge, diagonal of a side";
+    EXPECT_FALSE(winding(internals(cube), {}, middle, q, stack)) << "corner, edge, edge, diagonal of a side";
   for (const Vec3& q : {Vec3{3, 1, 2}, Vec3{-1, 0.5, -4}, Vec3{0.5, -4, 0}}) {
-    const std::optional<int> turns = winding(cube.impl(), {}, middle, q, stack);
+    const std::optional<int> turns = winding(internals(cube), {}, middle, q, stack);
     ASSERT_TRUE(turns);
     EXPECT_EQ(std::abs(*turns), 1);
-    EXPECT_EQ(winding(mirrored.impl(), {}, middle, q, stack), turns);
-    EXPECT_EQ(winding(cube.impl(), {}, Vec3{-1.5, 0.9, -3}, q, stack), 0) << "outside";
+    EXPECT_EQ(winding(internals(mirrored), {}, middle, q, stack), turns);
+    EXPECT_EQ(winding(internals(cube), {}, Vec3{-1.5, 0.9, -3}, q, stack), 0) << "outside";
   }
 }
 
@@ -98,10 +98,10 @@ TEST(Solid, ContainsOnTheGrid) {
         const Vec3 p{double(x), double(y), double(z)};
         const double most = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
         if (most != 4) {
-          EXPECT_EQ(contains(cube.impl(), in_place, p, stack), most < 4);
+          EXPECT_EQ(contains(internals(cube), in_place, p, stack), most < 4);
         }
         const Vec3 q = 0.26 * p + Vec3{0.01, 0.02, 0.03};
-        EXPECT_EQ(contains(slanted.impl(), in_place, q, stack), expected(q));
+        EXPECT_EQ(contains(internals(slanted), in_place, q, stack), expected(q));
       }
 }
 
@@ -109,7 +109,7 @@ TEST(Solid, ContainsAgreesWithCgal) {
   std::mt19937 random(11);
   const Mesh mesh = test::load("elephant.off", "fit");
   const Sites sites(mesh);
-  ASSERT_TRUE(is_solid(sites.impl()));
+  ASSERT_TRUE(inside::is_solid(internals(sites)));
   const oracle::CgalInside expected(mesh);
   std::vector<std::uint32_t> stack;
   int inside = 0;
@@ -118,8 +118,8 @@ TEST(Solid, ContainsAgreesWithCgal) {
     Affine pose = bench::random_rotation(random);
     pose.offset = {1, 2, 3};
     if (i % 2 == 1) pose.rows[1] = -2.0 * pose.rows[1];  // mirrored
-    ASSERT_EQ(contains(sites.impl(), {}, p, stack), expected(p));
-    ASSERT_EQ(contains(sites.impl(), pose, pose(p), stack), expected(p));
+    ASSERT_EQ(contains(internals(sites), {}, p, stack), expected(p));
+    ASSERT_EQ(contains(internals(sites), pose, pose(p), stack), expected(p));
     inside += expected(p);
   }
   EXPECT_GT(inside, 100);

@@ -67,7 +67,7 @@ double volume(const Mesh& mesh) {
 double clearance(const Mesh& points, const Mesh& solid) {
   const Sites sites(solid);
   const auto closest = closest_points(sites, points.positions);
-  const auto is_inside = inside(sites, points.positions, closest, SignMethod::pseudonormal);
+  const auto is_inside = inside_flags(sites, points.positions, closest, SignMethod::pseudonormal);
   double least = 1e9;
   for (std::size_t i = 0; i < closest.size(); ++i)
     least = std::min(least, is_inside[i] ? -closest[i].distance : closest[i].distance);

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// Faces that share one orthogonal projection along `axis`; normal·axis ≥ cos θ > 0 for every one of them.
 struct Chart {
@@ -13,4 +13,4 @@ struct Chart {
   std::vector<std::uint32_t> faces;  ///< in increasing order
 };
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -5,11 +5,11 @@
 #include <queue>
 
 #include "atlas/charts/normal_cone.h"
-#include "core/scattered_order.h"
 #include "core/parallel.h"
+#include "core/scattered_order.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 // Normals of a chart keep this far inside the cone, so that rounding cannot take them out of it.
@@ -279,4 +279,4 @@ std::vector<Chart> cluster_faces(const Mesh& mesh, const FaceGeometry& faces, do
   return Clustering(mesh, faces, cos_angle).run();
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

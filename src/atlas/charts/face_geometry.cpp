@@ -6,13 +6,13 @@
 #include "core/vec.h"
 #include "mesh/topology.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
 
 std::vector<std::array<std::uint32_t, 3>> face_neighbours(const Mesh& mesh) {
-  const Topology topology = build_topology(mesh.positions.size(), mesh.triangles);
+  const mesh::Topology topology = mesh::build_topology(mesh.positions.size(), mesh.triangles);
   std::vector<std::array<std::uint32_t, 3>> neighbours(mesh.triangles.size(), {kNone, kNone, kNone});
   for (std::uint32_t f = 0; f < neighbours.size(); ++f) {
     if (topology.ignored(f)) continue;
@@ -66,4 +66,4 @@ FaceGeometry face_geometry(const Mesh& mesh) {
   return faces;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace sdm {
+namespace sdm::atlas {
 
 struct FaceGeometry {
   std::vector<Vec3> normal;  ///< unit; zero where the face has no area
@@ -24,4 +24,4 @@ struct FaceGeometry {
 /// Cost: O(n log n), in parallel but for the neighbours.
 [[nodiscard]] FaceGeometry face_geometry(const Mesh& mesh);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -5,7 +5,7 @@
 #include "atlas/charts/tangent_frame.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 struct Cap {
@@ -81,4 +81,4 @@ std::optional<NormalCone> join(const NormalCone& a, const NormalCone& b, double 
   return NormalCone{cap.axis, extreme_rays(rays, cap.axis)};
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// A set of unit vectors, reduced to the extreme rays of the convex cone that they span. Vectors x with
 /// x·axis ≥ cos θ |x| form a convex cone too (θ < 90°), so a cap holds the set when it holds the extreme
@@ -24,4 +24,4 @@ struct NormalCone {
 /// The cone of both, if an axis is found with ray·axis ≥ cos_angle for all of the rays.
 [[nodiscard]] std::optional<NormalCone> join(const NormalCone& a, const NormalCone& b, double cos_angle);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

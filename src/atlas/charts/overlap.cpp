@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 struct Rectangle {
@@ -145,4 +145,4 @@ std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const 
   return std::nullopt;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

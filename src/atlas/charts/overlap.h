@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// Coordinates lie in [0, 2^29]: differences fit 30 bits with their sign, products 58, so that an orientation
 /// determinant, the difference of two products, is exact in 64 bits.
@@ -29,4 +29,4 @@ constexpr std::int64_t orientation(const GridPoint& a, const GridPoint& b, const
 [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> find_overlap(
     std::span<const GridTriangle> triangles, double slack = 0, std::uint64_t budget = UINT64_MAX);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

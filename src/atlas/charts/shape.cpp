@@ -6,7 +6,7 @@
 #include "atlas/charts/tangent_frame.h"
 #include "core/parallel.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 // Enough to try of a hull with many edges.
@@ -114,4 +114,4 @@ std::vector<Shape> chart_shapes(const Mesh& mesh, const FaceGeometry& faces, std
   return shapes;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -9,7 +9,7 @@
 #include "atlas/charts/chart.h"
 #include "atlas/charts/face_geometry.h"
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// An isometric frame of a chart's projection. Shape coordinates of p: (right·(p − origin), down·(p −
 /// origin)) − corner. Seen from outside, `right` points to the right and `down` down: right × down = −axis.
@@ -33,4 +33,4 @@ struct Shape {
 [[nodiscard]] std::vector<Shape> chart_shapes(const Mesh& mesh, const FaceGeometry& faces,
                                               std::span<const Chart> charts);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -5,12 +5,12 @@
 #include <limits>
 #include <queue>
 
-#include "atlas/charts/tangent_frame.h"
 #include "atlas/charts/overlap.h"
+#include "atlas/charts/tangent_frame.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 // A fan of many slivers has a box test for nearly every pair: such a chart is cut rather than waited for.
@@ -145,4 +145,4 @@ std::vector<Chart> split_overlaps(const Mesh& mesh, const FaceGeometry& faces, s
   return result;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

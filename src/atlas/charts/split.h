@@ -6,7 +6,7 @@
 #include "atlas/charts/chart.h"
 #include "atlas/charts/face_geometry.h"
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// Cuts charts in two until the interiors of no two faces of a chart meet in its projection: exactly so once
 /// the projection is snapped to a grid of 2^29 steps across the chart. Faces that the snapping flips become
@@ -14,4 +14,4 @@ namespace sdm {
 [[nodiscard]] std::vector<Chart> split_overlaps(const Mesh& mesh, const FaceGeometry& faces,
                                                 std::vector<Chart> charts);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -8,7 +8,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// Unit vectors (right, up) so that right, up and the unit axis are a right-handed frame.
 inline std::array<Vec3, 2> tangent_frame(const Vec3& axis) {
@@ -42,4 +42,4 @@ std::vector<Point> convex_hull(std::vector<Point> points, At at) {
   return hull;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

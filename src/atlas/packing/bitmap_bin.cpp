@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 constexpr std::uint64_t kFull = ~std::uint64_t{0};
@@ -127,4 +127,4 @@ void BitmapBin::update_longest(std::uint32_t y) {
   stale_[y] = 0;
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

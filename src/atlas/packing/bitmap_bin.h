@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// Cells [begin, begin + length) of a row.
 struct Run {
@@ -57,4 +57,4 @@ class BitmapBin {
   std::vector<std::uint8_t> stale_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::atlas

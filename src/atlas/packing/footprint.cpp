@@ -8,7 +8,7 @@
 #include "core/scattered_order.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 /// A byte a cell.
@@ -161,4 +161,4 @@ Vec2 turned(const Footprint& footprint, unsigned quarter_turns, const Vec2& poin
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

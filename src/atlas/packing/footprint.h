@@ -3,10 +3,10 @@
 
 #include <array>
 
-#include "atlas/packing/bitmap_bin.h"
 #include "atlas/charts/shape.h"
+#include "atlas/packing/bitmap_bin.h"
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// A shape scaled to texels, in a rectangle of texels: in-rectangle position = scale · shape + shift. The
 /// stamp for a number of quarter turns holds every cell of `cell`² texels that a face touches, and the
@@ -30,4 +30,4 @@ struct FootprintOptions {
 /// texels.
 [[nodiscard]] Vec2 turned(const Footprint& footprint, unsigned quarter_turns, const Vec2& point);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

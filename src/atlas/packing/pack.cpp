@@ -14,7 +14,7 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 // Beyond this many cells a side, a cell is a square of several texels: charts are large then, and lose little
@@ -174,4 +174,4 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
   return std::move(*best);
 }
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -8,7 +8,7 @@
 
 #include "atlas/charts/shape.h"
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// Atlas coordinates of a shape point q: matrix · q + offset, the matrix a scale times quarter turns.
 struct Placement {
@@ -25,4 +25,4 @@ struct Placement {
 [[nodiscard]] std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolution,
                                           std::uint32_t gutter, const Progress& progress);
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace sdm {
+namespace sdm::atlas {
 
 /// A resolution at which the atlas cannot be laid out; a larger one may do.
 class TooSmall : public Error {
@@ -19,4 +19,4 @@ class TooSmall : public Error {
   std::uint64_t enough_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <memory>
 
+#include "engine/cpu/cpu_engine.h"
 #include "engine/cpu/descent.h"
 #include "engine/cpu/finish.h"
-#include "engine/engine.h"
 
-namespace sdm {
+namespace sdm::cpu {
 namespace {
 
 // A bound in the unit frame, enlarged so that rounding never excludes what lies within max_distance.
@@ -17,8 +17,8 @@ float unit_limit(const UnitFrame& frame, double max_distance) {
 
 }  // namespace
 
-void cpu_search(const SitesData& sites, std::span<const Vec3> points, double max_distance,
-                const ClosestSink& deliver) {
+void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
+                const engine::ClosestSink& deliver) {
   thread_local const auto descent = std::make_unique<Descent>();
   const float limit = unit_limit(sites.frame, max_distance);
   for (std::size_t begin = 0; begin < points.size(); begin += PointGroup::kMostPoints) {
@@ -30,8 +30,8 @@ void cpu_search(const SitesData& sites, std::span<const Vec3> points, double max
       for (std::size_t i = 0; i < queries.size(); ++i)
         if (PointGroup::far_away(sites.frame.to_unit(queries[i]))) descent->winners[i] = SiteId::kUnsettled;
     finish(sites, {descent->winners, queries.size()}, queries, max_distance,
-           [&](std::size_t first, const ClosestPacket& closest) { deliver(begin + first, closest); });
+           [&](std::size_t first, const sites::ClosestPacket& closest) { deliver(begin + first, closest); });
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::cpu

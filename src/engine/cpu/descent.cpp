@@ -15,7 +15,7 @@
 
 #ifndef SDM_DESCENT_ONCE
 #define SDM_DESCENT_ONCE
-namespace sdm {
+namespace sdm::cpu {
 namespace {
 
 // A list for a group is worth its traversal where the group has so many points for each leaf of O2's tree
@@ -29,11 +29,11 @@ constexpr std::size_t few_sites(int level) {
 }
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::cpu
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::cpu::HWY_NAMESPACE {
 
 // The point of O2 that is closest to c so far, with the square of the distance; else a bound, and c itself.
 struct Nearest {
@@ -64,7 +64,7 @@ HWY_INLINE void improve(Nearest& nearest, const SiteList<Some>& list, const floa
 struct FromBoxes {
   BlockVec x, y, z, squared;
 
-  HWY_INLINE FromBoxes(Block d, const WideTree::Node& node, size_t i, const float* c) {
+  HWY_INLINE FromBoxes(Block d, const hierarchy::WideTree::Node& node, size_t i, const float* c) {
     const auto from = [&](int k) HWY_ATTR {
       const BlockVec p = hn::Set(d, c[k]);
       return hn::Sub(p, hn::Min(hn::Max(p, hn::Load(d, node.lo[k] + i)), hn::Load(d, node.hi[k] + i)));
@@ -76,7 +76,7 @@ struct FromBoxes {
 
 class Search {
  public:
-  Search(const WideTree& tree, const Regions& regions, float limit, Descent& descent)
+  Search(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit, Descent& descent)
       : tree_(tree), regions_(regions), limit_(limit), s_(descent) {}
 
   // Finds the winners of a ball's points by a traversal for them all, or for each of the balls below.
@@ -129,13 +129,13 @@ class Search {
       const Descent::Entry entry = stack.back();
       stack.pop_back();
       if (!(entry.squared < nearest.squared)) continue;
-      if (entry.child & WideTree::kLeafBit) {
-        improve_by_centres(nearest, entry.child & ~WideTree::kLeafBit, p);
+      if (entry.child & hierarchy::WideTree::kLeafBit) {
+        improve_by_centres(nearest, entry.child & ~hierarchy::WideTree::kLeafBit, p);
         continue;
       }
       ++s_.counts.nodes;
-      const WideTree::Node& node = tree_.nodes[entry.child];
-      alignas(64) float squared[WideTree::kWidth];
+      const hierarchy::WideTree::Node& node = tree_.nodes[entry.child];
+      alignas(64) float squared[hierarchy::WideTree::kWidth];
       uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
         const Block d;
         const FromBoxes from(d, node, i, p);
@@ -155,7 +155,7 @@ class Search {
 
   void improve_by_centres(Nearest& nearest, uint32_t leaf, const float* p) const {
     const Block d;
-    const FaceBounds& bounds = regions_.bounds[leaf];
+    const sites::FaceBounds& bounds = regions_.bounds[leaf];
     const uint32_t count = faces_in(leaf);
     for (size_t i = 0; i < count; i += hn::Lanes(d)) {
       const auto from = [&](int k)
@@ -180,7 +180,7 @@ class Search {
     open.assign(1, 0);
     s_.leaves.clear();
     while (!open.empty()) {
-      const WideTree::Node& node = tree_.nodes[open.back()];
+      const hierarchy::WideTree::Node& node = tree_.nodes[open.back()];
       open.pop_back();
       ++s_.counts.nodes;
       uint32_t leaves = 0;
@@ -189,7 +189,8 @@ class Search {
         const FromBoxes from(d, node, i, reach.centre);
         return reach.holds(d, from.squared, from.x, from.y, from.z);
       });
-      for (uint32_t slot = 0; slot < WideTree::kWidth; ++slot) leaves |= (node.child[slot] >> 31) << slot;
+      for (uint32_t slot = 0; slot < hierarchy::WideTree::kWidth; ++slot)
+        leaves |= (node.child[slot] >> 31) << slot;
       append(s_.leaves, node.child, near & leaves);
       append(open, node.child, near & ~leaves);
       if (s_.leaves.size() > most) return false;
@@ -202,7 +203,7 @@ class Search {
     s_.counts.leaves += s_.leaves.size();
     s_.owners.clear();
     for (const uint32_t child : s_.leaves) {
-      const uint32_t leaf = child & ~WideTree::kLeafBit, first = regions_.leaves[leaf];
+      const uint32_t leaf = child & ~hierarchy::WideTree::kLeafBit, first = regions_.leaves[leaf];
       uint32_t places[SiteBlock::kWidth];
       for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
       append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {
@@ -214,7 +215,7 @@ class Search {
     s_.vertices.resize(3 * s_.owners.size());
     uint32_t *edge = s_.edges.data(), *vertex = s_.vertices.data();
     for (const uint32_t owner : s_.owners) {
-      const Regions::Owner &own = regions_.owners[owner], &next = regions_.owners[owner + 1];
+      const sites::Regions::Owner &own = regions_.owners[owner], &next = regions_.owners[owner + 1];
       for (uint32_t k = 0; k < 3; ++k) edge[k] = own.edges + k, vertex[k] = own.vertices + k;
       edge += next.edges - own.edges;
       vertex += next.vertices - own.vertices;
@@ -222,7 +223,7 @@ class Search {
     s_.edges.resize(static_cast<size_t>(edge - s_.edges.data()));
     s_.vertices.resize(static_cast<size_t>(vertex - s_.vertices.data()));
 
-    const Regions& r = regions_;
+    const sites::Regions& r = regions_;
     SiteLists& all = s_.gathered;
     gather(
         s_.owners, r.faces, [&](uint32_t i) { return SiteId::of(SiteType::face, r.owners[i].face); },
@@ -304,30 +305,32 @@ class Search {
     }
   }
 
-  const WideTree& tree_;
-  const Regions& regions_;
+  const hierarchy::WideTree& tree_;
+  const sites::Regions& regions_;
   const float limit_;
   Descent& s_;
   Nearest last_{0, {}, false};  // of the last traversal
 };
 
-void FindWinners(const WideTree& tree, const Regions& regions, float limit, Descent& descent) {
+void FindWinners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,
+                 Descent& descent) {
   Search(tree, regions, limit, descent).start(descent.points.top, 0);
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm {
+namespace sdm::cpu {
 
 HWY_EXPORT(FindWinners);
 
-void find_winners(const WideTree& tree, const Regions& regions, float limit, Descent& descent) {
+void find_winners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,
+                  Descent& descent) {
   HWY_DYNAMIC_DISPATCH(FindWinners)(tree, regions, limit, descent);
 }
 
-DescentCounts count_work(const SitesData& sites, std::span<const Vec3> points) {
+DescentCounts count_work(const sites::SitesData& sites, std::span<const Vec3> points) {
   const auto descent = std::make_unique<Descent>();
   for (std::size_t first = 0; first < points.size(); first += PointGroup::kMostPoints) {
     descent->points.place(points.subspan(first, std::min(PointGroup::kMostPoints, points.size() - first)),
@@ -337,5 +340,5 @@ DescentCounts count_work(const SitesData& sites, std::span<const Vec3> points) {
   return descent->counts;
 }
 
-}  // namespace sdm
+}  // namespace sdm::cpu
 #endif

@@ -11,7 +11,7 @@
 #include "engine/cpu/site_lists.h"
 #include "sites/sites_data.h"
 
-namespace sdm {
+namespace sdm::cpu {
 
 /// The work done, which tests hold down.
 struct DescentCounts {
@@ -47,9 +47,10 @@ struct Descent {
 /// Finds the closest site within `limit` for every point of descent.points; one that is farther may be named
 /// too. Selected in single precision: a winner can be another than the closest site only where the two differ
 /// by rounding. Chooses the best vector instructions that the machine has, at run time.
-void find_winners(const WideTree& tree, const Regions& regions, float limit, Descent& descent);
+void find_winners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,
+                  Descent& descent);
 
 /// The work that it takes to find the winners of these points, at any distance: for tests and measurements.
-[[nodiscard]] DescentCounts count_work(const SitesData& sites, std::span<const Vec3> points);
+[[nodiscard]] DescentCounts count_work(const sites::SitesData& sites, std::span<const Vec3> points);
 
-}  // namespace sdm
+}  // namespace sdm::cpu

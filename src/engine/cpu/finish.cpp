@@ -9,22 +9,24 @@
 #include <bit>
 
 #include "core/vec.h"
-#include "sites/closest_on_face.h"
-#include "engine/engine.h"
 #include "core/vec_lanes-inl.h"
+#include "engine/reference/reference_engine.h"
+#include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::cpu::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace core::HWY_NAMESPACE;
 
-constexpr size_t kPacket = ClosestPacket::kSize;
+constexpr size_t kPacket = sites::ClosestPacket::kSize;
 static_assert(kPacket == PointGroup::kPacket);  // winners come in whole packets
 
 // Queries, and what is found for them.
 struct Packet {
-  ClosestPacket& found;
+  sites::ClosestPacket& found;
   alignas(64) double query[3][kPacket];
 
-  Packet(const Vec3* queries, ClosestPacket& to) : found(to) {
+  Packet(const Vec3* queries, sites::ClosestPacket& to) : found(to) {
     const Doubles d;
     for (size_t i = 0; i < kPacket; i += hn::Lanes(d)) {
       Vec x, y, z;
@@ -70,7 +72,7 @@ HWY_INLINE uint32_t for_lanes(Packet& p, uint32_t lanes, const On& on) {
 }
 
 // Over the face, on the inner side of its three walls.
-uint32_t on_face(const SitesData& sites, uint32_t face, Packet& p, uint32_t lanes) {
+uint32_t on_face(const sites::SitesData& sites, uint32_t face, Packet& p, uint32_t lanes) {
   if (sites.sliver[face]) return 0;
   const Triangle& t = sites.mesh.triangles[face];
   const Vec3 &a = sites.mesh.positions[t[0]], &b = sites.mesh.positions[t[1]],
@@ -90,7 +92,7 @@ uint32_t on_face(const SitesData& sites, uint32_t face, Packet& p, uint32_t lane
 }
 
 // Between the ends of the edge, where none of its faces comes closer.
-uint32_t on_edge(const SitesData& sites, uint32_t edge, Packet& p, uint32_t lanes) {
+uint32_t on_edge(const sites::SitesData& sites, uint32_t edge, Packet& p, uint32_t lanes) {
   const auto [a, b] = sites.topology.edges[edge];
   const Vec3 &start = sites.mesh.positions[a], along = sites.mesh.positions[b] - start;
   const double inverse = 1 / squared_norm(along);
@@ -112,7 +114,7 @@ uint32_t on_edge(const SitesData& sites, uint32_t edge, Packet& p, uint32_t lane
 }
 
 // Where no edge of the vertex comes closer.
-uint32_t on_vertex(const SitesData& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
+uint32_t on_vertex(const sites::SitesData& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
   const Vec3& point = sites.mesh.positions[vertex];
   // In a closed mesh whose faces all run alike every neighbour follows the vertex in one face.
   const int last = sites.alike ? 1 : 2;
@@ -130,7 +132,7 @@ uint32_t on_vertex(const SitesData& sites, uint32_t vertex, Packet& p, uint32_t 
   });
 }
 
-uint32_t on_site(const SitesData& sites, SiteId site, Packet& p, uint32_t lanes) {
+uint32_t on_site(const sites::SitesData& sites, SiteId site, Packet& p, uint32_t lanes) {
   switch (site.type()) {
     case SiteType::face:
       return on_face(sites, site.site(), p, lanes);
@@ -154,7 +156,7 @@ HWY_INLINE uint32_t lanes_of(const uint32_t* winners, uint32_t winner) {
 }
 
 // What winners say of sites, for whole packets.
-HWY_INLINE void name_sites(const uint32_t* winners, ClosestPacket& found) {
+HWY_INLINE void name_sites(const uint32_t* winners, sites::ClosestPacket& found) {
   static_assert(static_cast<int>(SiteType::none) == 255);
   const hn::CappedTag<uint32_t, 8> d;
   const hn::Rebind<int32_t, decltype(d)> di;
@@ -170,8 +172,8 @@ HWY_INLINE void name_sites(const uint32_t* winners, ClosestPacket& found) {
 }
 
 // `winners` and `queries` have room for whole packets.
-void finish_packet(const SitesData& sites, const uint32_t* winners, const Vec3* queries, size_t count,
-                   double max_distance, ClosestPacket& found) {
+void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const Vec3* queries, size_t count,
+                   double max_distance, sites::ClosestPacket& found) {
   Packet p(queries, found);
   name_sites(winners, found);
   found.count = count;
@@ -186,8 +188,8 @@ void finish_packet(const SitesData& sites, const uint32_t* winners, const Vec3* 
       const auto i = static_cast<size_t>(std::countr_zero(open));
       found.set(i, queries[i],
                 site.packed == SiteId::kUnsettled
-                    ? reference_closest(sites, queries[i], max_distance)
-                    : closest_around_face(sites, sites.face_of(site.type(), site.site()), queries[i]));
+                    ? reference::reference_closest(sites, queries[i], max_distance)
+                    : sites::closest_around_face(sites, sites.face_of(site.type(), site.site()), queries[i]));
     }
   }
   if (max_distance < std::numeric_limits<double>::infinity())
@@ -196,9 +198,9 @@ void finish_packet(const SitesData& sites, const uint32_t* winners, const Vec3* 
 }
 
 // `winners` has room for whole packets.
-void Finish(const SitesData& sites, std::span<const uint32_t> winners, std::span<const Vec3> queries,
-            double max_distance, const ClosestSink& deliver) {
-  ClosestPacket closest{};
+void Finish(const sites::SitesData& sites, std::span<const uint32_t> winners, std::span<const Vec3> queries,
+            double max_distance, const engine::ClosestSink& deliver) {
+  sites::ClosestPacket closest{};
   const size_t whole = queries.size() / kPacket * kPacket;
   for (size_t i = 0; i < whole; i += kPacket) {
     finish_packet(sites, winners.data() + i, queries.data() + i, kPacket, max_distance, closest);
@@ -211,18 +213,18 @@ void Finish(const SitesData& sites, std::span<const uint32_t> winners, std::span
   deliver(whole, closest);
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm {
+namespace sdm::cpu {
 
 HWY_EXPORT(Finish);
 
-void finish(const SitesData& sites, std::span<const std::uint32_t> winners, std::span<const Vec3> queries,
-            double max_distance, const ClosestSink& deliver) {
+void finish(const sites::SitesData& sites, std::span<const std::uint32_t> winners,
+            std::span<const Vec3> queries, double max_distance, const engine::ClosestSink& deliver) {
   HWY_DYNAMIC_DISPATCH(Finish)(sites, winners, queries, max_distance, deliver);
 }
 
-}  // namespace sdm
+}  // namespace sdm::cpu
 #endif

@@ -10,11 +10,11 @@
 #include <cmath>
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The ball about the middle of the box of a packet's points.
-void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, FloatBox& box) {
+void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, hierarchy::FloatBox& box) {
   const hn::CappedTag<float, PointGroup::kPacket> d;
   const auto load = [&](int k, size_t i) HWY_ATTR {
     return hn::Load(d, group.position[k] + PointGroup::kPacket * packet + i);
@@ -67,26 +67,26 @@ bool MoveToFrame(std::span<const Vec3> points, const UnitFrame& frame,
   return some_far_away;
 }
 
-void AroundPackets(PointGroup& group, FloatBox* boxes) {
+void AroundPackets(PointGroup& group, hierarchy::FloatBox* boxes) {
   for (size_t i = 0; i < group.packets; ++i) AroundPacket(group, i, group.balls[0][i], boxes[i]);
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm {
+namespace sdm::cpu {
 namespace {
 
 HWY_EXPORT(AroundPackets);
 HWY_EXPORT(MoveToFrame);
 
 // The ball about the middle of the box of the points of some balls, and that box in the place of the first.
-Ball around(std::span<const Ball> balls, std::span<FloatBox> boxes, FloatBox& box) {
+Ball around(std::span<const Ball> balls, std::span<hierarchy::FloatBox> boxes, hierarchy::FloatBox& box) {
   box = boxes[0];
   Ball ball{};
   for (int k = 0; k < 3; ++k) {
-    for (const FloatBox& b : boxes)
+    for (const hierarchy::FloatBox& b : boxes)
       box.lo[k] = std::min(box.lo[k], b.lo[k]), box.hi[k] = std::max(box.hi[k], b.hi[k]);
     ball.centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
   }
@@ -120,5 +120,5 @@ bool PointGroup::place(std::span<const Vec3> points, const UnitFrame& frame) {
   return some_far_away;
 }
 
-}  // namespace sdm
+}  // namespace sdm::cpu
 #endif

@@ -10,7 +10,7 @@
 
 #include "hierarchy/aabb_tree.h"
 
-namespace sdm {
+namespace sdm::cpu {
 
 /// In the unit frame of O2, in single precision.
 struct Ball {
@@ -30,7 +30,7 @@ struct PointGroup {
   int top = 0;                                 ///< the level of the one ball
   alignas(64) float position[3][kMostPoints];  ///< of the points, the last one repeated to fill its packet
   std::vector<Ball> balls[kLevels];
-  std::vector<FloatBox> boxes;  ///< of the points of each ball of a level, while they are placed
+  std::vector<hierarchy::FloatBox> boxes;  ///< of the points of each ball of a level, while they are placed
 
   /// The group of 1 to kMostPoints points, in the frame. Balls are small where the points come in an order
   /// like that of core/spatial_order.h. They contain their points, and the balls below them, but for
@@ -45,4 +45,4 @@ struct PointGroup {
   static constexpr double kFarAway = 1e15;
 };
 
-}  // namespace sdm
+}  // namespace sdm::cpu

@@ -16,7 +16,7 @@
 #include "engine/cpu/site_lists.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Lanes over the points of a packet, and over the sites or boxes of a block.
@@ -98,7 +98,8 @@ HWY_INLINE PointVec height(Points d, const float (&plane)[4][SiteBlock::kWidth],
 //             other part of a region needs to be tested, for a site is never closer than O2 is;
 //   closest   the point of one site that is closest to p.
 
-HWY_INLINE BlockMask may_be_closest(Block d, const FaceBounds& bounds, size_t i, const CandidateBound& reach) {
+HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, size_t i,
+                                    const CandidateBound& reach) {
   BlockVec r[3], h = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
     r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, bounds.centre[k] + i));
@@ -202,7 +203,8 @@ inline void closest(const EdgeBlock& block, size_t lane, const float* p, float (
   for (int k = 0; k < 3; ++k) out[k] = block.start[k][lane] + t * block.direction[k][lane];
 }
 
-HWY_INLINE BlockMask may_be_closest(Block d, const VertexBlock& block, size_t i, const CandidateBound& reach) {
+HWY_INLINE BlockMask may_be_closest(Block d, const VertexBlock& block, size_t i,
+                                    const CandidateBound& reach) {
   BlockVec r[3];
   for (int k = 0; k < 3; ++k) r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.point[k] + i));
   BlockMask pass = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
@@ -232,7 +234,7 @@ inline void closest(const VertexBlock& block, size_t lane, const float*, float (
   for (int k = 0; k < 3; ++k) out[k] = block.point[k][lane];
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -19,7 +19,7 @@
 
 #ifndef SDM_SITE_LISTS_ONCE
 #define SDM_SITE_LISTS_ONCE
-namespace sdm {
+namespace sdm::cpu {
 namespace {
 
 // For each mask of eight bits, the positions of the bits that are set, a byte each.
@@ -38,27 +38,27 @@ template <>
 struct Rows<FaceBlock> {
   static constexpr std::size_t kCount = 16;
   static auto* first(auto& block) { return block.plane[0]; }
-  static const float* of(const FaceRegion& region) { return region.plane; }
+  static const float* of(const sites::FaceRegion& region) { return region.plane; }
 };
 template <>
 struct Rows<EdgeBlock> {
   static constexpr std::size_t kCount = 15;
   static auto* first(auto& block) { return block.start[0]; }
-  static const float* of(const EdgeRegion& region) { return region.start; }
+  static const float* of(const sites::EdgeRegion& region) { return region.start; }
 };
 template <>
 struct Rows<VertexBlock> {
-  static constexpr std::size_t kCount = 3 + 3 * VertexRegion::kRays;
+  static constexpr std::size_t kCount = 3 + 3 * sites::VertexRegion::kRays;
   static auto* first(auto& block) { return block.point[0]; }
-  static const float* of(const VertexRegion& region) { return region.point; }
+  static const float* of(const sites::VertexRegion& region) { return region.point; }
 };
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::cpu
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::cpu::HWY_NAMESPACE {
 
 // Runs test(i) → mask over the lanes of a block and returns the first `count` results as bits.
 template <class Test>
@@ -194,7 +194,7 @@ void keep(const SiteList<Some>& from, const CandidateBound& reach, SiteList<Some
   for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], reach, to);
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

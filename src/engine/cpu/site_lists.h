@@ -7,7 +7,7 @@
 
 #include "sites/regions.h"
 
-namespace sdm {
+namespace sdm::cpu {
 
 /// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could tell.
 struct SiteId {
@@ -30,13 +30,13 @@ struct SiteBlock {
   std::uint32_t count = 0;
 };
 struct FaceBlock : SiteBlock {
-  using Region = FaceRegion;
+  using Region = sites::FaceRegion;
   alignas(32) float plane[4][kWidth];
   alignas(32) float wall[3][4][kWidth];
   alignas(32) std::uint32_t id[kWidth];  ///< SiteId::packed
 };
 struct EdgeBlock : SiteBlock {
-  using Region = EdgeRegion;
+  using Region = sites::EdgeRegion;
   alignas(32) float start[3][kWidth];
   alignas(32) float direction[3][kWidth];
   alignas(32) float length[kWidth];
@@ -44,9 +44,9 @@ struct EdgeBlock : SiteBlock {
   alignas(32) std::uint32_t id[kWidth];
 };
 struct VertexBlock : SiteBlock {
-  using Region = VertexRegion;
+  using Region = sites::VertexRegion;
   alignas(32) float point[3][kWidth];
-  alignas(32) float ray[VertexRegion::kRays][3][kWidth];
+  alignas(32) float ray[sites::VertexRegion::kRays][3][kWidth];
   alignas(32) std::uint32_t id[kWidth];
 };
 
@@ -70,4 +70,4 @@ struct SiteLists {
   void clear() { faces.used = edges.used = vertices.used = 0; }
 };
 
-}  // namespace sdm
+}  // namespace sdm::cpu

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "engine/engine.h"
+#include "engine/cpu/cpu_engine.h"
 
 namespace sdm::gl {
 namespace {
@@ -20,24 +20,23 @@ Box box_of(const PlanarDomain& domain) {
 
 void raise_to_root(DomainTree& tree) {
   for (std::uint32_t i = tree.node_count(); i-- > 0;)
-    if (const AabbTree::Node& node = tree.tree.nodes[i]; !node.leaf())
+    if (const hierarchy::AabbTree::Node& node = tree.tree.nodes[i]; !node.leaf())
       tree.bound[i] = std::max(tree.bound[i + 1], tree.bound[node.right]);
 }
 
 }  // namespace
 
-LeafOrder::LeafOrder(const AabbTree& tree) : before(tree.nodes.size() + 1, 0) {
+LeafOrder::LeafOrder(const hierarchy::AabbTree& tree) : before(tree.nodes.size() + 1, 0) {
   for (std::size_t i = 0; i < tree.nodes.size(); ++i)
     before[i + 1] = before[i] + (tree.nodes[i].leaf() ? 1 : 0);
 }
 
-DomainTree::DomainTree(const Surface& surface, const Tiles& tiles, const UnitFrame& frame)
+DomainTree::DomainTree(const Surface& surface, const surface::Tiles& tiles, const UnitFrame& frame)
     : tree(tiles.tree), leaves(tree), bound(tree.nodes.size()) {
   std::vector<Box> boxes(tiles.count());
   parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      boxes[i] =
-          box_of(face_domain(surface, tiles, static_cast<std::uint32_t>(i), frame, GlClip::planes));
+      boxes[i] = box_of(face_domain(surface, tiles, static_cast<std::uint32_t>(i), frame, GlClip::planes));
   });
   refit(tree, boxes);
 }
@@ -46,7 +45,7 @@ void set_bounds(DomainTree& tree, double bound) {
   std::fill(tree.bound.begin(), tree.bound.end(), bound);
 }
 
-void set_bounds(DomainTree& tree, const SitesData& sites, double slack, double largest) {
+void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, double largest) {
   std::vector<std::uint32_t> nodes;
   for (std::uint32_t i = 0; i < tree.node_count(); ++i)
     if (tree.tree.nodes[i].leaf()) nodes.push_back(i);
@@ -55,16 +54,16 @@ void set_bounds(DomainTree& tree, const SitesData& sites, double slack, double l
   parallel_for(nodes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Vec3> middles;
     for (std::size_t i = begin; i < end; ++i) {
-      const FloatBox& box = tree.tree.nodes[nodes[i]].box;
+      const hierarchy::FloatBox& box = tree.tree.nodes[nodes[i]].box;
       Vec3 middle;
       for (int k = 0; k < 3; ++k)
         middle[k] = 0.5 * (double{box.lo[k]} + box.hi[k]) / frame.scale + frame.origin[k];
       middles.push_back(middle);
     }
-    const auto bound = [&](std::size_t first, const ClosestPacket& closest) {
+    const auto bound = [&](std::size_t first, const sites::ClosestPacket& closest) {
       for (std::size_t i = 0; i < closest.count; ++i) {
         const std::uint32_t node = nodes[begin + first + i];
-        const FloatBox& box = tree.tree.nodes[node].box;
+        const hierarchy::FloatBox& box = tree.tree.nodes[node].box;
         const Vec3 p = frame.to_unit(closest.get(i, middles[first + i]).point);
         Vec3 farthest;
         for (int k = 0; k < 3; ++k)
@@ -72,7 +71,7 @@ void set_bounds(DomainTree& tree, const SitesData& sites, double slack, double l
         tree.bound[node] = std::min(largest, norm(farthest) + slack);
       }
     };
-    cpu_search(sites, middles, std::numeric_limits<double>::infinity(), bound);
+    cpu::cpu_search(sites, middles, std::numeric_limits<double>::infinity(), bound);
   });
   raise_to_root(tree);
 }

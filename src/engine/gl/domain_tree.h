@@ -15,7 +15,7 @@ namespace sdm::gl {
 struct LeafOrder {
   std::vector<std::uint32_t> before;  ///< leaves in front of each node, and of the end
 
-  explicit LeafOrder(const AabbTree& tree);
+  explicit LeafOrder(const hierarchy::AabbTree& tree);
   /// Leaves below a node whose subtree ends in front of node `end`.
   [[nodiscard]] std::uint32_t count(std::uint32_t node, std::uint32_t end) const {
     return before[end] - before[node];
@@ -24,15 +24,15 @@ struct LeafOrder {
 
 /// A leaf is one domain. All in the unit frame of O2.
 struct DomainTree {
-  AabbTree tree;
+  hierarchy::AabbTree tree;
   LeafOrder leaves;
   std::vector<double> bound;  ///< of each node: no sample of its domains is farther from O2
 
   /// Boxes brought up to date with the domains as they lie now. Cost: linear.
-  DomainTree(const Surface& surface, const Tiles& tiles, const UnitFrame& frame);
+  DomainTree(const Surface& surface, const surface::Tiles& tiles, const UnitFrame& frame);
 
   [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(tree.nodes.size()); }
-  [[nodiscard]] const AabbTree::Node& root() const { return tree.nodes[0]; }
+  [[nodiscard]] const hierarchy::AabbTree::Node& root() const { return tree.nodes[0]; }
 };
 
 /// Sets the bound of every node to `bound`.
@@ -41,6 +41,6 @@ void set_bounds(DomainTree& tree, double bound);
 /// Sets the bounds from one point of O2 for each leaf, the one closest to the middle of its box: no point of
 /// the box is farther from it than the farthest corner. The paper improves the bounds site after site, and
 /// depends on the order; this is where that process ends. `slack` is added, and `largest` never exceeded.
-void set_bounds(DomainTree& tree, const SitesData& sites, double slack, double largest);
+void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, double largest);
 
 }  // namespace sdm::gl

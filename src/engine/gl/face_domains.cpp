@@ -20,7 +20,7 @@ std::array<Vec2, 3> atlas_corners(const Surface& surface, std::uint32_t face) {
 
 }  // namespace
 
-PlanarDomain face_domain(const Surface& surface, const Tiles& tiles, std::uint32_t tile,
+PlanarDomain face_domain(const Surface& surface, const surface::Tiles& tiles, std::uint32_t tile,
                          const UnitFrame& frame, GlClip clip) {
   const std::uint32_t face = tiles.faces[tile];
   const std::span<const std::uint32_t> texels = tiles.of(tile);

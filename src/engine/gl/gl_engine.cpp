@@ -62,9 +62,9 @@ struct Extent {
   double size;   // no coordinate is larger
   double reach;  // no sample is farther from O2
 
-  Extent(const FloatBox& o1, const FloatBox& o2) : size(0), reach(0) {
+  Extent(const hierarchy::FloatBox& o1, const hierarchy::FloatBox& o2) : size(0), reach(0) {
     for (int k = 0; k < 3; ++k) {
-      for (const FloatBox* box : {&o1, &o2})
+      for (const hierarchy::FloatBox* box : {&o1, &o2})
         size = std::max({size, std::abs(double{box->lo[k]}), std::abs(double{box->hi[k]})});
       const double farthest = std::max(double{o1.hi[k]} - o2.lo[k], double{o2.hi[k]} - o1.lo[k]);
       reach += farthest * farthest;
@@ -80,7 +80,7 @@ constexpr double kRegionSlack = 0x1p-20;
 // Distances that differ by less may be mistaken for each other, so bounds leave more.
 constexpr double kBoundSlack = 0x1p-17;
 
-void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles, GlReport& report) {
+void store(const PairCounts& counts, const SiteIndex& sites, const surface::Tiles& tiles, GlReport& report) {
   const std::uint64_t kept = sites.before.back();
   report.sites = kept + sites.dropped;
   report.sites_dropped = sites.dropped;
@@ -97,7 +97,7 @@ void store(const PairCounts& counts, const SiteIndex& sites, const Tiles& tiles,
 }
 
 std::vector<PlanarDomain> domains_of(const DomainBlock& block, const DomainTree& tree, const Surface& surface,
-                                     const Tiles& tiles, const UnitFrame& frame, GlClip clip) {
+                                     const surface::Tiles& tiles, const UnitFrame& frame, GlClip clip) {
   const std::uint32_t first = tree.leaves.before[block.node];
   std::vector<PlanarDomain> domains(tree.leaves.count(block.node, block.end));
   parallel_for(domains.size(), 128, [&](std::size_t begin, std::size_t end) {
@@ -107,10 +107,10 @@ std::vector<PlanarDomain> domains_of(const DomainBlock& block, const DomainTree&
   return domains;
 }
 
-RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const SitesData& sites,
+RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const sites::SitesData& sites,
                        const MapOptions& options, GlReport& report) {
   Stopwatch watch;
-  const Tiles& tiles = tiles_of(surface);
+  const surface::Tiles& tiles = surface::tiles_of(surface);
   DomainTree tree(surface, tiles, sites.frame);
   const SiteIndex index(sites);
   report.time_ms.refit = watch.lap();
@@ -191,7 +191,7 @@ RasterWinners gl_winners(const Surface& surface, const Sites& sites, const MapOp
     report.clip = options.raster.clip;
     report.texels = surface.sample_texels().size();
     report.time_ms.context = ms;
-    RasterWinners winners = gl::draw_map(device, surface, sites.impl(), options, report);
+    RasterWinners winners = gl::draw_map(device, surface, internals(sites), options, report);
     gl::expect_no_cracks(surface, winners, options, report);
     return winners;
   });

@@ -103,7 +103,7 @@ OrientedBox around_vertex(const SiteRegion& region, double reach, double slack) 
   for (int i = 0; i < edges.count; ++i) least = std::min(least, dot(edges.rays[i], middle));
   // A saddle's cone is the vertex alone. A cone that is no cone, or nearly fills a half-space, is not worth a
   // box.
-  if (edges.count == 0 && region.wall_count == VertexRegion::kRays && !edges.degenerate)
+  if (edges.count == 0 && region.wall_count == sites::VertexRegion::kRays && !edges.degenerate)
     return cube(region.anchor, slack);
   if (edges.count < 3 || edges.degenerate || least < 0.01) return cube(region.anchor, reach + slack);
 
@@ -134,7 +134,7 @@ OrientedBox oriented_box(const SiteRegion& region, double reach, double slack) {
   }
 }
 
-bool may_meet(const OrientedBox& box, const FloatBox& other) {
+bool may_meet(const OrientedBox& box, const hierarchy::FloatBox& other) {
   Vec3 centre, half;
   for (int k = 0; k < 3; ++k) {
     centre[k] = 0.5 * (double{other.lo[k]} + other.hi[k]);

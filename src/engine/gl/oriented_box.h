@@ -21,6 +21,6 @@ struct OrientedBox {
 /// Whether the boxes may meet: by the six directions of their faces. The nine products of edges, which would
 /// make the separating axis test complete, rarely separate what these do not (Gottschalk et al. 1996; van den
 /// Bergen 1997); clipping decides what is left.
-[[nodiscard]] bool may_meet(const OrientedBox& box, const FloatBox& other);
+[[nodiscard]] bool may_meet(const OrientedBox& box, const hierarchy::FloatBox& other);
 
 }  // namespace sdm::gl

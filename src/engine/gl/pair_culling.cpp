@@ -5,7 +5,7 @@
 namespace sdm::gl {
 namespace {
 
-double squared_distance(const FloatBox& a, const FloatBox& b) {
+double squared_distance(const hierarchy::FloatBox& a, const hierarchy::FloatBox& b) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
     const double gap = std::max({0.0, double{a.lo[k]} - b.hi[k], double{b.lo[k]} - a.hi[k]});
@@ -14,7 +14,7 @@ double squared_distance(const FloatBox& a, const FloatBox& b) {
   return sum;
 }
 
-bool beyond(const FloatBox& site, const DomainTree& tree, std::uint32_t node, PairCounts& counts) {
+bool beyond(const hierarchy::FloatBox& site, const DomainTree& tree, std::uint32_t node, PairCounts& counts) {
   ++counts.bound_tests;
   const double bound = tree.bound[node];
   return squared_distance(site, tree.tree.nodes[node].box) > bound * bound;
@@ -31,7 +31,7 @@ class Descent {
         scale_(scale),
         batch_(batch),
         counts_(counts),
-        box_(FloatBox::around(region.box())),
+        box_(hierarchy::FloatBox::around(region.box())),
         oriented_(oriented_box(region, reach, scale.slack)) {}
 
   void visit(std::uint32_t node, std::uint32_t end) {
@@ -40,7 +40,7 @@ class Descent {
       return;
     }
     ++counts_.obb_tests;
-    const AabbTree::Node& n = tree_.tree.nodes[node];
+    const hierarchy::AabbTree::Node& n = tree_.tree.nodes[node];
     if (!may_meet(oriented_, n.box)) {
       counts_.culled_by_obb += tree_.leaves.count(node, end);
       return;
@@ -62,13 +62,13 @@ class Descent {
   const RasterScale& scale_;
   RasterBatch& batch_;
   PairCounts& counts_;
-  FloatBox box_;
+  hierarchy::FloatBox box_;
   OrientedBox oriented_;
 };
 
 }  // namespace
 
-SiteIndex::SiteIndex(const SitesData& s) : sites(s), leaves(s.tree), before{0} {
+SiteIndex::SiteIndex(const sites::SitesData& s) : sites(s), leaves(s.tree), before{0} {
   const std::size_t leaf_count = s.regions.bounds.size();
   for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
     std::uint64_t kept = 0;

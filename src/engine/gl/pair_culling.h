@@ -13,12 +13,12 @@ namespace sdm::gl {
 
 /// O2's sites by the leaves of its tree, without those whose region has no interior.
 struct SiteIndex {
-  const SitesData& sites;
+  const sites::SitesData& sites;
   LeafOrder leaves;
   std::vector<std::uint64_t> before;  ///< sites kept in front of each leaf, and of the end
   std::uint64_t dropped = 0;
 
-  explicit SiteIndex(const SitesData& sites);
+  explicit SiteIndex(const sites::SitesData& sites);
 };
 
 /// Counts of what became of pairs; see GlReport.

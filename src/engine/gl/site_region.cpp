@@ -34,11 +34,11 @@ void add_end_planes(SiteRegion& region) {
 
 }  // namespace
 
-bool has_interior(const FaceRegion& region) {
+bool has_interior(const sites::FaceRegion& region) {
   return region.wall[0][3] < std::numeric_limits<float>::infinity();
 }
 
-bool has_interior(const EdgeRegion& region) {
+bool has_interior(const sites::EdgeRegion& region) {
   // Opposite to the rounding of single precision: the wedge between is narrower than what walls are loosened
   // by.
   constexpr double kOpposite = 2e-7;
@@ -46,11 +46,11 @@ bool has_interior(const EdgeRegion& region) {
   return a == Vec3{} || b == Vec3{} || norm(a + b) > kOpposite;
 }
 
-bool has_interior(const VertexRegion&) {
+bool has_interior(const sites::VertexRegion&) {
   return true;
 }
 
-SiteRegion region_of(const SitesData& sites, const FaceRegion& face, std::size_t index) {
+SiteRegion region_of(const sites::SitesData& sites, const sites::FaceRegion& face, std::size_t index) {
   SiteRegion region;
   region.type = SiteType::face;
   region.face = sites.regions.owners[index].face;
@@ -65,7 +65,7 @@ SiteRegion region_of(const SitesData& sites, const FaceRegion& face, std::size_t
   return region;
 }
 
-SiteRegion region_of(const SitesData& sites, const EdgeRegion& edge, std::size_t) {
+SiteRegion region_of(const sites::SitesData& sites, const sites::EdgeRegion& edge, std::size_t) {
   SiteRegion region;
   region.type = SiteType::edge;
   region.face = sites.face_of(SiteType::edge, edge.edge);
@@ -86,7 +86,7 @@ SiteRegion region_of(const SitesData& sites, const EdgeRegion& edge, std::size_t
   return region;
 }
 
-SiteRegion region_of(const SitesData& sites, const VertexRegion& vertex, std::size_t index) {
+SiteRegion region_of(const sites::SitesData& sites, const sites::VertexRegion& vertex, std::size_t index) {
   SiteRegion region;
   region.type = SiteType::vertex;
   region.face = sites.face_of(SiteType::vertex, vertex.vertex);

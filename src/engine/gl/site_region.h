@@ -52,20 +52,23 @@ struct SiteRegion {
 
 /// Whether the region has an interior. A face too thin for its walls has none, nor has an edge whose two
 /// faces lie in one plane: the sites around them hold all closest points.
-[[nodiscard]] bool has_interior(const FaceRegion& region);
-[[nodiscard]] bool has_interior(const EdgeRegion& region);
-[[nodiscard]] bool has_interior(const VertexRegion& region);
+[[nodiscard]] bool has_interior(const sites::FaceRegion& region);
+[[nodiscard]] bool has_interior(const sites::EdgeRegion& region);
+[[nodiscard]] bool has_interior(const sites::VertexRegion& region);
 
 /// Of the face, edge or vertex at an index of regions.faces, edges or vertices.
-[[nodiscard]] SiteRegion region_of(const SitesData& sites, const FaceRegion& region, std::size_t index);
-[[nodiscard]] SiteRegion region_of(const SitesData& sites, const EdgeRegion& region, std::size_t index);
-[[nodiscard]] SiteRegion region_of(const SitesData& sites, const VertexRegion& region, std::size_t index);
+[[nodiscard]] SiteRegion region_of(const sites::SitesData& sites, const sites::FaceRegion& region,
+                                   std::size_t index);
+[[nodiscard]] SiteRegion region_of(const sites::SitesData& sites, const sites::EdgeRegion& region,
+                                   std::size_t index);
+[[nodiscard]] SiteRegion region_of(const sites::SitesData& sites, const sites::VertexRegion& region,
+                                   std::size_t index);
 
 /// Calls visit(region, index) for every site of a leaf of O2's tree.
 template <class Visit>
-void for_each_site(const Regions& regions, std::size_t leaf, Visit&& visit) {
+void for_each_site(const sites::Regions& regions, std::size_t leaf, Visit&& visit) {
   const std::uint32_t begin = regions.leaves[leaf], end = regions.leaves[leaf + 1];
-  const Regions::Owner &first = regions.owners[begin], &last = regions.owners[end];
+  const sites::Regions::Owner &first = regions.owners[begin], &last = regions.owners[end];
   for (std::size_t i = begin; i < end; ++i) visit(regions.faces[i], i);
   for (std::size_t i = first.edges; i < last.edges; ++i) visit(regions.edges[i], i);
   for (std::size_t i = first.vertices; i < last.vertices; ++i) visit(regions.vertices[i], i);

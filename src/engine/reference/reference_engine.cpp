@@ -3,14 +3,14 @@
 #include <queue>
 
 #include "core/vec.h"
+#include "engine/reference/reference_engine.h"
 #include "sites/closest_on_face.h"
-#include "engine/engine.h"
 
-namespace sdm {
+namespace sdm::reference {
 namespace {
 
 // The distance of a point of the unit frame to a box, less what double rounding may have added to it.
-double lower_bound(const FloatBox& box, const Vec3& p) {
+double lower_bound(const hierarchy::FloatBox& box, const Vec3& p) {
   Vec3 gap;
   for (int k = 0; k < 3; ++k) gap[k] = std::max({box.lo[k] - p[k], p[k] - box.hi[k], 0.0});
   return (1 - 1e-12) * norm(gap);
@@ -18,7 +18,7 @@ double lower_bound(const FloatBox& box, const Vec3& p) {
 
 }  // namespace
 
-ClosestPoint reference_closest(const SitesData& sites, const Vec3& q, double max_distance) {
+ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q, double max_distance) {
   struct Open {
     double bound;
     std::uint32_t node;
@@ -31,12 +31,12 @@ ClosestPoint reference_closest(const SitesData& sites, const Vec3& q, double max
   open.push({0, 0});
   // A node is opened even when its bound equals the best distance: O2 may lie at max_distance exactly.
   while (!open.empty() && open.top().bound <= best.distance * sites.frame.scale) {
-    const AabbTree::Node& node = sites.tree.nodes[open.top().node];
+    const hierarchy::AabbTree::Node& node = sites.tree.nodes[open.top().node];
     const std::uint32_t left = open.top().node + 1;
     open.pop();
     if (node.leaf()) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const ClosestPoint c = closest_on_face(sites, sites.tree.items[i], q);
+        const ClosestPoint c = sites::closest_on_face(sites, sites.tree.items[i], q);
         if (c.distance < best.distance || (best.type == SiteType::none && c.distance <= max_distance))
           best = c;
       }
@@ -49,15 +49,15 @@ ClosestPoint reference_closest(const SitesData& sites, const Vec3& q, double max
   return best;
 }
 
-void reference_search(const SitesData& sites, std::span<const Vec3> points, double max_distance,
-                      const ClosestSink& deliver) {
-  ClosestPacket closest;
-  for (std::size_t first = 0; first < points.size(); first += ClosestPacket::kSize) {
-    closest.count = std::min(ClosestPacket::kSize, points.size() - first);
+void reference_search(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
+                      const engine::ClosestSink& deliver) {
+  sites::ClosestPacket closest;
+  for (std::size_t first = 0; first < points.size(); first += sites::ClosestPacket::kSize) {
+    closest.count = std::min(sites::ClosestPacket::kSize, points.size() - first);
     for (std::size_t i = 0; i < closest.count; ++i)
-      closest.set(i, points[first + i], reference_closest(sites, points[first + i], max_distance));
+      closest.set(i, points[first + i], reference::reference_closest(sites, points[first + i], max_distance));
     deliver(first, closest);
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::reference

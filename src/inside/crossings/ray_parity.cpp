@@ -5,7 +5,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::inside {
 namespace {
 
 // Rays run along (1, kSlopeY, kSlopeZ): a direction that no modelled edge or face is likely to contain.
@@ -21,7 +21,7 @@ Seen seen(const Vec3& p, const Vec3& origin) {
   return {r[0], {r[1] - kSlopeY * r[0], r[2] - kSlopeZ * r[0]}};
 }
 
-bool meets(const FloatBox& box, const Vec3& origin) {
+bool meets(const hierarchy::FloatBox& box, const Vec3& origin) {
   // The part of the ray at 0 ≤ x ≤ hi: the slopes are positive, so that y and z grow with x.
   const double end = box.hi[0] - origin[0];
   if (end < 0) return false;
@@ -45,7 +45,7 @@ bool meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& 
   std::array<double, 3> area;  // opposite to corner k + 2
   int on_left = 0;
   for (int k = 0; k < 3; ++k) {
-    const bool forward = runs_forward(t, k);
+    const bool forward = mesh::runs_forward(t, k);
     const Vec2 &from = corner[forward ? k : (k + 1) % 3].beside,
                &to = corner[forward ? (k + 1) % 3 : k].beside;
     const double signed_area = cross(from, to);
@@ -61,8 +61,9 @@ bool meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& 
 
 // Whether the ray meets an odd number of those faces below a node that are counted.
 template <class Counts>
-bool odd_below(std::uint32_t index, const AabbTree& tree, const Vec3& origin, const Counts& counts) {
-  const AabbTree::Node& node = tree.nodes[index];
+bool odd_below(std::uint32_t index, const hierarchy::AabbTree& tree, const Vec3& origin,
+               const Counts& counts) {
+  const hierarchy::AabbTree::Node& node = tree.nodes[index];
   if (!meets(node.box, origin)) return false;
   if (!node.leaf())
     return odd_below(index + 1, tree, origin, counts) != odd_below(node.right, tree, origin, counts);
@@ -74,7 +75,7 @@ bool odd_below(std::uint32_t index, const AabbTree& tree, const Vec3& origin, co
 }  // namespace
 
 bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
-                   std::span<const Triangle> triangles, const AabbTree& tree, const Vec3& origin,
+                   std::span<const Triangle> triangles, const hierarchy::AabbTree& tree, const Vec3& origin,
                    std::span<const std::uint32_t> component, std::uint32_t left_out) {
   return odd_below(0, tree, origin, [&](std::uint32_t face) {
     return (left_out == kNone || component[face] != left_out) &&
@@ -82,4 +83,4 @@ bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
   });
 }
 
-}  // namespace sdm
+}  // namespace sdm::inside

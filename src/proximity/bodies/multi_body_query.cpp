@@ -1,5 +1,5 @@
-#include <sdm/multi_body_query.h>
 #include <sdm/error.h>
+#include <sdm/multi_body_query.h>
 
 #include <algorithm>
 #include <functional>
@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "mesh/validate.h"
-#include "proximity/sampled/body.h"
-#include "proximity/bodies/nearest_body.h"
-#include "proximity/sampled/pair_answers.h"
 #include "core/sweep.h"
+#include "mesh/validate.h"
+#include "proximity/bodies/nearest_body.h"
+#include "proximity/sampled/body.h"
+#include "proximity/sampled/pair_answers.h"
 
 namespace sdm {
 namespace {
@@ -37,31 +37,31 @@ void on_behalf_of(std::size_t body, const Work& work) {
 // The memory of pairs that are measured at the same time: as many as there are threads.
 class AnswersPool {
  public:
-  explicit AnswersPool(const PairAnswers::Options& options) : options_(options) {}
+  explicit AnswersPool(const sampled::PairAnswers::Options& options) : options_(options) {}
 
-  std::unique_ptr<PairAnswers> take() {
+  std::unique_ptr<sampled::PairAnswers> take() {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<PairAnswers>(options_);
-    std::unique_ptr<PairAnswers> answers = std::move(idle_.back());
+    if (idle_.empty()) return std::make_unique<sampled::PairAnswers>(options_);
+    std::unique_ptr<sampled::PairAnswers> answers = std::move(idle_.back());
     idle_.pop_back();
     return answers;
   }
-  void give_back(std::unique_ptr<PairAnswers> answers) {
+  void give_back(std::unique_ptr<sampled::PairAnswers> answers) {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(answers));
   }
 
  private:
-  PairAnswers::Options options_;
+  sampled::PairAnswers::Options options_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<PairAnswers>> idle_;
+  std::vector<std::unique_ptr<sampled::PairAnswers>> idle_;
 };
 
 }  // namespace
 
 struct MultiBodyQuery::Impl {
   MultiBodyOptions options;
-  std::vector<Body> bodies;
+  std::vector<sampled::Body> bodies;
   AnswersPool pool;
   Sweep sweep;
   std::vector<Box> boxes;
@@ -85,17 +85,17 @@ struct MultiBodyQuery::Impl {
     return body;
   }
   void check(std::size_t body, std::span<const Vec3> positions) const {
-    on_behalf_of(body,
-                 [&] { validate_positions(positions, bodies[body].surface().mesh().positions.size()); });
+    on_behalf_of(
+        body, [&] { mesh::validate_positions(positions, bodies[body].surface().mesh().positions.size()); });
   }
 
   void find_pairs() {
-    std::ranges::transform(bodies, boxes.begin(), &Body::box);
+    std::ranges::transform(bodies, boxes.begin(), &sampled::Body::box);
     const std::span<const Sweep::Pair> near = sweep.near_pairs(boxes, options.max_distance);
     candidates = near.size();
     pairs.resize(near.size());
     const auto measure = [&](std::size_t begin, std::size_t end) {
-      std::unique_ptr<PairAnswers> answers = pool.take();
+      std::unique_ptr<sampled::PairAnswers> answers = pool.take();
       for (std::size_t i = begin; i < end; ++i) {
         const auto [a, b] = near[i];
         answers->begin(bodies[a], bodies[b]);
@@ -161,7 +161,7 @@ NearestMap MultiBodyQuery::nearest_map(std::size_t body) const {
 }
 
 void MultiBodyQuery::nearest_map(std::size_t body, NearestMap& nearest) const {
-  map_nearest(impl_->bodies, impl_->checked(body), impl_->options.max_distance, nearest);
+  bodies::map_nearest(impl_->bodies, impl_->checked(body), impl_->options.max_distance, nearest);
 }
 
 const Surface& MultiBodyQuery::surface(std::size_t body) const {

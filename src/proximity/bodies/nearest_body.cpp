@@ -6,21 +6,21 @@
 #include <string>
 #include <utility>
 
+#include "core/parallel.h"
+#include "core/sweep.h"
+#include "core/vec.h"
+#include "engine/cpu/cpu_engine.h"
+#include "map/map_writer.h"
 #include "surface/sample_blocks.h"
 #include "surface/surface_data.h"
-#include "core/parallel.h"
-#include "core/vec.h"
-#include "engine/engine.h"
-#include "map/map_writer.h"
-#include "core/sweep.h"
 
-namespace sdm {
+namespace sdm::bodies {
 namespace {
 
 // Finds the nearest bodies for the samples of a run, again and again.
 class RunSearch {
  public:
-  RunSearch(std::span<const Body> bodies, std::size_t on, double max_distance)
+  RunSearch(std::span<const sampled::Body> bodies, std::size_t on, double max_distance)
       : bodies_(bodies), on_(on), max_distance_(max_distance) {}
 
   void find(std::span<const Vec3> points) {
@@ -60,7 +60,7 @@ class RunSearch {
       asked_[count] = i;
       at_[count++] = points[i];
     }
-    const auto keep_nearer = [&](std::size_t first, const ClosestPacket& found) {
+    const auto keep_nearer = [&](std::size_t first, const sites::ClosestPacket& found) {
       for (std::size_t k = 0; k < found.count; ++k) {
         const std::uint32_t i = asked_[first + k];
         const ClosestPoint c = found.get(k, points[i]);
@@ -69,21 +69,22 @@ class RunSearch {
           closest_[i] = c, body_[i] = body;
       }
     };
-    cpu_search(bodies_[body].sites().impl(), std::span(at_).first(count), reach, std::ref(keep_nearer));
+    cpu::cpu_search(internals(bodies_[body].sites()), std::span(at_).first(count), reach,
+                    std::ref(keep_nearer));
   }
 
-  std::span<const Body> bodies_;
+  std::span<const sampled::Body> bodies_;
   std::size_t on_;
   double max_distance_;
   std::vector<std::pair<double, std::uint32_t>> order_;  // boxes' distances from the samples, and bodies
-  std::array<ClosestPoint, kRunLength> closest_;
-  std::array<std::uint32_t, kRunLength> body_, asked_;
-  std::array<Vec3, kRunLength> at_;  // of those asked for
+  std::array<ClosestPoint, surface::kRunLength> closest_;
+  std::array<std::uint32_t, surface::kRunLength> body_, asked_;
+  std::array<Vec3, surface::kRunLength> at_;  // of those asked for
 };
 
-SignUsed signs_of_others(std::span<const Body> bodies, std::size_t on) {
-  const auto solids =
-      static_cast<std::size_t>(std::ranges::count_if(bodies, &Body::solid)) - (bodies[on].solid() ? 1 : 0);
+SignUsed signs_of_others(std::span<const sampled::Body> bodies, std::size_t on) {
+  const auto solids = static_cast<std::size_t>(std::ranges::count_if(bodies, &sampled::Body::solid)) -
+                      (bodies[on].solid() ? 1 : 0);
   return {solids > 0 ? SignMethod::pseudonormal : SignMethod::none,
           std::to_string(solids) + " of " + std::to_string(bodies.size() - 1) +
               " other bodies are closed and orientable"};
@@ -91,25 +92,26 @@ SignUsed signs_of_others(std::span<const Body> bodies, std::size_t on) {
 
 }  // namespace
 
-void map_nearest(std::span<const Body> bodies, std::size_t on, double max_distance, NearestMap& nearest) {
+void map_nearest(std::span<const sampled::Body> bodies, std::size_t on, double max_distance,
+                 NearestMap& nearest) {
   const Surface& surface = bodies[on].surface();
   const std::span<const std::uint32_t> texels = surface.sample_texels();
-  const MapWriter writer(nearest.map, surface);
+  const map::MapWriter writer(nearest.map, surface);
   nearest.map.sign = signs_of_others(bodies, on);
   nearest.body.assign(surface.texel_faces().size(), kNone);
   std::atomic<std::size_t> beyond{0};
   constexpr std::size_t kGrain = 4;
-  parallel_for(run_count(texels.size()), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(surface::run_count(texels.size()), kGrain, [&](std::size_t begin, std::size_t end) {
     RunSearch search(bodies, on, max_distance);
-    std::array<Vec3, kRunLength> places;
-    ClosestPacket packet;
+    std::array<Vec3, surface::kRunLength> places;
+    sites::ClosestPacket packet;
     for (std::size_t r = begin; r < end; ++r) {
-      const SampleBlock run(r, texels.size());
+      const surface::SampleBlock run(r, texels.size());
       const std::span points = std::span(places).first(run.size());
-      place_samples(surface.impl(), run.first, points);
+      surface::place_samples(internals(surface), run.first, points);
       search.find(points);
       for (std::size_t i = 0; i < points.size(); i += packet.count) {
-        packet.count = std::min(ClosestPacket::kSize, points.size() - i);
+        packet.count = std::min(sites::ClosestPacket::kSize, points.size() - i);
         std::uint32_t inside = 0;
         for (std::size_t k = 0; k < packet.count; ++k) {
           const ClosestPoint& c = search.closest(i + k);
@@ -125,4 +127,4 @@ void map_nearest(std::span<const Body> bodies, std::size_t on, double max_distan
   nearest.map.beyond_max_distance = beyond;
 }
 
-}  // namespace sdm
+}  // namespace sdm::bodies

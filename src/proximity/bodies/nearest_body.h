@@ -7,9 +7,10 @@
 
 #include "proximity/sampled/body.h"
 
-namespace sdm {
+namespace sdm::bodies {
 
 /// As Bodies::nearest_map.
-void map_nearest(std::span<const Body> bodies, std::size_t on, double max_distance, NearestMap& nearest);
+void map_nearest(std::span<const sampled::Body> bodies, std::size_t on, double max_distance,
+                 NearestMap& nearest);
 
-}  // namespace sdm
+}  // namespace sdm::bodies

@@ -1,10 +1,10 @@
 // Boxes of one tree, a lane each, against a box of another. Included once for each set of vector
 // instructions.
-#if defined(SDM_QUERY_BOX_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SDM_QUERY_BOX_LANES_INL_H
-#undef SDM_QUERY_BOX_LANES_INL_H
+#if defined(SDM_PROXIMITY_BOX_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SDM_PROXIMITY_BOX_LANES_INL_H
+#undef SDM_PROXIMITY_BOX_LANES_INL_H
 #else
-#define SDM_QUERY_BOX_LANES_INL_H
+#define SDM_PROXIMITY_BOX_LANES_INL_H
 #endif
 
 #include <hwy/highway.h>
@@ -15,10 +15,10 @@
 #include "proximity/exact/unit_maps.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::exact::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr size_t kWidth = WideTree::kWidth;
+constexpr size_t kWidth = hierarchy::WideTree::kWidth;
 using Lanes = hn::CappedTag<float, kWidth>;
 using Vec = hn::Vec<Lanes>;
 
@@ -44,7 +44,7 @@ HWY_INLINE Vec distance_of_gaps(Lanes d, const Vec (&gap)[3]) {
 struct CentredBox {
   float centre[3], half[3];
 
-  explicit CentredBox(const FloatBox& box) {
+  explicit CentredBox(const hierarchy::FloatBox& box) {
     for (int k = 0; k < 3; ++k) {
       centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
       half[k] = 0.5f * (box.hi[k] - box.lo[k]);
@@ -71,7 +71,7 @@ class BoxDistances {
   BoxDistances(const UnitMaps& maps, const Direction& direction, int side, const CentredBox& other)
       : maps_(maps), direction_(direction), side_(side), other_(other), seen_(other, maps.to[side]) {}
 
-  HWY_INLINE Vec operator()(const WideTree::Node& node, size_t i) const {
+  HWY_INLINE Vec operator()(const hierarchy::WideTree::Node& node, size_t i) const {
     const Lanes d;
     const Vec one_half = hn::Set(d, 0.5f);
     Vec centre[3], half[3], gap[3];
@@ -111,7 +111,7 @@ class BoxDistances {
   CentredBox other_, seen_;  // the other box where it is, and around it in this frame
 };
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::exact::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

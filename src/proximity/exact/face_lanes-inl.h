@@ -1,16 +1,16 @@
 // The faces of two leaves against each other, a lane each. Included once for each set of vector instructions.
-#if defined(SDM_QUERY_FACE_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SDM_QUERY_FACE_LANES_INL_H
-#undef SDM_QUERY_FACE_LANES_INL_H
+#if defined(SDM_PROXIMITY_FACE_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SDM_PROXIMITY_FACE_LANES_INL_H
+#undef SDM_PROXIMITY_FACE_LANES_INL_H
 #else
-#define SDM_QUERY_FACE_LANES_INL_H
+#define SDM_PROXIMITY_FACE_LANES_INL_H
 #endif
 
-#include "sites/sites_data.h"
 #include "proximity/exact/box_lanes-inl.h"
+#include "sites/sites_data.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::exact::HWY_NAMESPACE {
 
 // An extent along an axis.
 struct Extent {
@@ -30,8 +30,8 @@ HWY_INLINE Vec gap(const Extent& a, const Extent& b) {
 // The faces of a leaf, in O1's frame.
 class LeafFaces {
  public:
-  void load(const SitesData& sites, std::uint32_t leaf) {
-    const Regions& regions = sites.regions;
+  void load(const sites::SitesData& sites, std::uint32_t leaf) {
+    const sites::Regions& regions = sites.regions;
     first_ = regions.leaves[leaf];
     count_ = regions.leaves[leaf + 1] - first_;
     for (uint32_t lane = 0; lane < kWidth; ++lane) {
@@ -164,8 +164,8 @@ inline float least_distance(const LeafFaces& faces, const PlacedBox& box) {
 }
 
 // The least that the faces of a leaf reach along u, by the discs around them; in the leaf's frame.
-inline float least_along(const Regions& regions, uint32_t leaf, const float (&u)[3]) {
-  const FaceBounds& bounds = regions.bounds[leaf];
+inline float least_along(const sites::Regions& regions, uint32_t leaf, const float (&u)[3]) {
+  const sites::FaceBounds& bounds = regions.bounds[leaf];
   const uint32_t count = regions.leaves[leaf + 1] - regions.leaves[leaf];
   const float squared = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
   const Lanes d;
@@ -176,7 +176,7 @@ inline float least_along(const Regions& regions, uint32_t leaf, const float (&u)
     load(d, bounds.normal, i, normal);
     // A disc reaches as far as its radius times the part of u in its plane; all of u where the normal may be
     // rounding noise.
-    const auto flat = hn::Lt(hn::Load(d, bounds.slope + i), hn::Set(d, FaceBounds::kOpen));
+    const auto flat = hn::Lt(hn::Load(d, bounds.slope + i), hn::Set(d, sites::FaceBounds::kOpen));
     const Vec across = hn::IfThenElseZero(flat, dot(d, normal, u));
     const Vec within = hn::Sqrt(hn::Max(hn::NegMulAdd(across, across, hn::Set(d, squared)), hn::Zero(d)));
     const Vec lowest = hn::NegMulAdd(within, hn::Load(d, bounds.radius + i), dot(d, centre, u));
@@ -185,7 +185,7 @@ inline float least_along(const Regions& regions, uint32_t leaf, const float (&u)
   return hn::GetLane(hn::MinOfLanes(d, least));
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::exact::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

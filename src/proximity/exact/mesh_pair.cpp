@@ -1,6 +1,6 @@
 #include "proximity/exact/mesh_pair.h"
 
-namespace sdm {
+namespace sdm::exact {
 
 Corners MeshPair::face1(std::uint32_t face) const {
   const auto& [a, b, c] = o1.mesh.triangles[face];
@@ -14,4 +14,4 @@ Corners MeshPair::face2(std::uint32_t face) const {
   return {pose(at[a]), pose(at[b]), pose(at[c])};
 }
 
-}  // namespace sdm
+}  // namespace sdm::exact

@@ -5,15 +5,15 @@
 
 #include <limits>
 
-#include "sites/sites_data.h"
 #include "core/affine.h"
 #include "proximity/exact/triangle_pair.h"
+#include "sites/sites_data.h"
 
-namespace sdm {
+namespace sdm::exact {
 
 /// O1 where it is, and O2 moved by `pose`. Nothing is copied: a pose costs nothing.
 struct MeshPair {
-  const SitesData &o1, &o2;
+  const sites::SitesData &o1, &o2;
   Affine pose{};
 
   /// The corners of a face. Compiled once: vector code must see the same roundings as all other code does.
@@ -29,4 +29,4 @@ struct Separation {
   std::uint32_t face1 = kNone, face2 = kNone;  ///< faces they lie on; kNone: nothing within the bound asked
 };
 
-}  // namespace sdm
+}  // namespace sdm::exact

@@ -12,7 +12,7 @@
 #include "proximity/exact/face_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::exact::HWY_NAMESPACE {
 
 using Entry = PairWorkspace::Entry;
 
@@ -64,7 +64,7 @@ class PairSearch {
     const int larger = box[0].size() * maps_.unit[0] < box[1].size() * maps_.unit[1];
     const int side = entry.place[larger].leaf() ? 1 - larger : larger;
     if (side != larger && put_off(entry, box[side])) return;
-    const WideTree::Node& node = sites_[side]->wide.nodes[entry.place[side].child];
+    const hierarchy::WideTree::Node& node = sites_[side]->wide.nodes[entry.place[side].child];
     const BoxDistances distances(maps_, direction_, side, box[1 - side]);
     alignas(64) float least[kWidth];
     const Lanes d;
@@ -185,7 +185,7 @@ class PairSearch {
   }
 
   const MeshPair& pair_;
-  const SitesData* sites_[2];
+  const sites::SitesData* sites_[2];
   const UnitMaps maps_;
   PairWorkspace& w_;
   Separation best_;
@@ -202,11 +202,11 @@ Separation FindIntersection(const MeshPair& pair, PairWorkspace& workspace) {
   return PairSearch<false>(pair, 0, workspace).run();
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::exact::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm {
+namespace sdm::exact {
 
 HWY_EXPORT(FindClosest);
 HWY_EXPORT(FindIntersection);
@@ -218,5 +218,5 @@ Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace) {
   return HWY_DYNAMIC_DISPATCH(FindIntersection)(pair, workspace);
 }
 
-}  // namespace sdm
+}  // namespace sdm::exact
 #endif

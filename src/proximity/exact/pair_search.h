@@ -7,7 +7,7 @@
 
 #include "proximity/exact/mesh_pair.h"
 
-namespace sdm {
+namespace sdm::exact {
 
 /// The work done, which tests hold down.
 struct PairSearchCounts {
@@ -22,8 +22,8 @@ struct PairWorkspace {
   struct Place {
     std::uint32_t child = 0, source = 0;
 
-    [[nodiscard]] bool leaf() const { return (child & WideTree::kLeafBit) != 0; }
-    [[nodiscard]] std::uint32_t leaf_number() const { return child & ~WideTree::kLeafBit; }
+    [[nodiscard]] bool leaf() const { return (child & hierarchy::WideTree::kLeafBit) != 0; }
+    [[nodiscard]] std::uint32_t leaf_number() const { return child & ~hierarchy::WideTree::kLeafBit; }
   };
   struct Entry {
     std::array<Place, 2> place;  ///< in the trees of O1 and O2; at first both roots
@@ -66,4 +66,4 @@ struct PairWorkspace {
 /// Faces of the two surfaces that have a point in common, if any; decided exactly.
 [[nodiscard]] Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace);
 
-}  // namespace sdm
+}  // namespace sdm::exact

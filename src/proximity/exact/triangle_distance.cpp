@@ -6,7 +6,7 @@
 #include "core/vec.h"
 #include "proximity/exact/triangle_pair.h"
 
-namespace sdm {
+namespace sdm::exact {
 namespace {
 
 void offer(PointPair& best, const Vec3& point1, const Vec3& point2) {
@@ -108,4 +108,4 @@ PointPair closest_or_common(const Corners& a, const Corners& b) {
   return {0, point, point};
 }
 
-}  // namespace sdm
+}  // namespace sdm::exact

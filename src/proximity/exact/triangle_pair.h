@@ -3,7 +3,7 @@
 
 #include <sdm/types.h>
 
-namespace sdm {
+namespace sdm::exact {
 
 using Corners = std::array<Vec3, 3>;
 
@@ -30,4 +30,4 @@ struct PointPair {
 /// Either: of any two triangles; 0 apart if and only if they intersect, or so near that squares vanish.
 [[nodiscard]] PointPair closest_or_common(const Corners& a, const Corners& b);
 
-}  // namespace sdm
+}  // namespace sdm::exact

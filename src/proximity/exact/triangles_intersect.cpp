@@ -1,9 +1,9 @@
 // Intersection of triangles by the signs of orientations only, which are exact.
-#include "core/vec.h"
 #include "core/predicates.h"
+#include "core/vec.h"
 #include "proximity/exact/triangle_pair.h"
 
-namespace sdm {
+namespace sdm::exact {
 namespace {
 
 using Signs = std::array<int, 3>;
@@ -95,4 +95,4 @@ bool triangles_intersect(const Corners& a, const Corners& b) {
   return any_edge_meets(b, b_sides, a) || any_edge_meets(a, a_sides, b);
 }
 
-}  // namespace sdm
+}  // namespace sdm::exact

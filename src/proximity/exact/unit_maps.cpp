@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace sdm {
+namespace sdm::exact {
 namespace {
 
 // At least the largest factor by which a map stretches, |A|₂ = √|AAᵀ|₂ ≤ √|AAᵀ|∞, and that itself for
@@ -84,4 +84,4 @@ Direction UnitMaps::direction(const Vec3& vector) const {
   return result;
 }
 
-}  // namespace sdm
+}  // namespace sdm::exact

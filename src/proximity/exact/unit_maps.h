@@ -3,7 +3,7 @@
 
 #include "proximity/exact/mesh_pair.h"
 
-namespace sdm {
+namespace sdm::exact {
 
 /// Into one unit frame from the other.
 struct FrameMap {
@@ -37,4 +37,4 @@ struct UnitMaps {
   double scale_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::exact

@@ -2,7 +2,7 @@
 
 #include <sdm/map.h>
 
-namespace sdm {
+namespace sdm::sampled {
 
 Body::Body(const Mesh& mesh, const AtlasOptions& atlas)
     : surface_(mesh, atlas), sites_(mesh), sign_(choose_sign(sites_, SignMethod::automatic).method) {
@@ -17,7 +17,7 @@ void Body::refit(std::span<const Vec3> positions) {
 
 void Body::follow_positions() {
   box_ = bounds(sites_.mesh());
-  inside_.emplace(sites_.impl(), sign_);
+  inside_.emplace(internals(sites_), sign_);
 }
 
-}  // namespace sdm
+}  // namespace sdm::sampled

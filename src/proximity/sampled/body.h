@@ -9,7 +9,7 @@
 
 #include "inside/inside_test.h"
 
-namespace sdm {
+namespace sdm::sampled {
 
 class Body {
  public:
@@ -25,7 +25,7 @@ class Body {
   [[nodiscard]] const Box& box() const { return box_; }
   /// Whether it is closed and orientable: only then it has an inside.
   [[nodiscard]] bool solid() const { return sign_ != SignMethod::none; }
-  [[nodiscard]] const InsideTest& inside() const { return *inside_; }
+  [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
 
  private:
   void follow_positions();
@@ -34,7 +34,7 @@ class Body {
   Sites sites_;
   SignMethod sign_;
   Box box_;
-  std::optional<InsideTest> inside_;
+  std::optional<inside::InsideTest> inside_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::sampled

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-namespace sdm {
+namespace sdm::sampled {
 namespace {
 
 bool meet(const Box& a, const Box& b) {
@@ -61,4 +61,4 @@ void ContactPatches::join(std::uint32_t a, std::uint32_t b) {
   parent_[std::max(a, b)] = std::min(a, b);
 }
 
-}  // namespace sdm
+}  // namespace sdm::sampled

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace sdm {
+namespace sdm::sampled {
 
 /// Sorts contacts, again and again in the same memory.
 class ContactPatches {
@@ -24,4 +24,4 @@ class ContactPatches {
   std::vector<std::uint32_t> parent_, order_, open_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::sampled

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/vec.h"
+#include "engine/cpu/cpu_engine.h"
+#include "sites/sites_data.h"
 #include "surface/sample_blocks.h"
 #include "surface/surface_data.h"
-#include "core/vec.h"
-#include "engine/engine.h"
-#include "sites/sites_data.h"
 
-namespace sdm {
+namespace sdm::sampled {
 namespace {
 
 // The contact of a sample of body `body`, as Contact defines it.
@@ -40,12 +40,12 @@ void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
   const Surface& surface = body.surface;
   const std::span<const float> distances = body.distances.distances(), radii = body.distances.radii();
   parts_.clear();
-  for (std::size_t r = 0; r < run_count(distances.size()); ++r) {
-    const SampleBlock run(r, distances.size());
+  for (std::size_t r = 0; r < surface::run_count(distances.size()); ++r) {
+    const surface::SampleBlock run(r, distances.size());
     const auto first_of_run = static_cast<std::ptrdiff_t>(parts_.size());
     for (std::size_t i = run.first; i < run.end; ++i) {
       if (!(distances[i] <= margin)) continue;
-      const std::uint32_t face = surface.impl().sample_faces[body.distances.sample(i)];
+      const std::uint32_t face = internals(surface).sample_faces[body.distances.sample(i)];
       const std::uint32_t chart = surface.face_charts()[face];
       auto part = std::find_if(parts_.begin() + first_of_run, parts_.end(),
                                [&](const Part& p) { return p.chart == chart; });
@@ -61,13 +61,13 @@ void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
 
 void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length) {
   const MeasuredBody &on = bodies[body], &to = bodies[1 - body];
-  const SitesData& sites = to.sites.impl();
+  const sites::SitesData& sites = internals(to.sites);
   points_.clear();
   for (const Part& part : parts_) {
     points_.push_back(on.distances.points()[part.deepest]);
     boxes_.push_back(part.box);
   }
-  const auto add = [&](std::size_t first, const ClosestPacket& closest) {
+  const auto add = [&](std::size_t first, const sites::ClosestPacket& closest) {
     for (std::size_t i = 0; i < closest.count; ++i) {
       const Vec3 vector{closest.vector[0][i], closest.vector[1][i], closest.vector[2][i]};
       const bool inside = on.distances.distances()[parts_[first + i].deepest] < 0;
@@ -78,7 +78,7 @@ void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int 
                                      sites.normals.face[face], length));
     }
   };
-  cpu_search(sites, points_, std::numeric_limits<double>::infinity(), std::ref(add));
+  cpu::cpu_search(sites, points_, std::numeric_limits<double>::infinity(), std::ref(add));
 }
 
-}  // namespace sdm
+}  // namespace sdm::sampled

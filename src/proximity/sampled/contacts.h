@@ -10,7 +10,7 @@
 #include "proximity/sampled/contact_patches.h"
 #include "proximity/sampled/local_distances.h"
 
-namespace sdm {
+namespace sdm::sampled {
 
 /// A body with what has been measured of it.
 struct MeasuredBody {
@@ -42,4 +42,4 @@ class ContactFinder {
   ContactPatches patches_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::sampled

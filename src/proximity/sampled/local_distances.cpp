@@ -5,30 +5,31 @@
 #include <functional>
 #include <limits>
 
+#include "core/parallel.h"
+#include "engine/cpu/cpu_engine.h"
 #include "surface/sample_blocks.h"
 #include "surface/surface_data.h"
-#include "core/parallel.h"
-#include "engine/engine.h"
 
-namespace sdm {
+namespace sdm::sampled {
 namespace {
 
 // Calls take(index, signed distance) for each point, which are in spatial order.
 template <class Take>
 void find_distances(const Body& body, std::span<const Vec3> points, const Take& take) {
-  const auto deliver = [&](std::size_t first, const ClosestPacket& closest) {
+  const auto deliver = [&](std::size_t first, const sites::ClosestPacket& closest) {
     const std::uint32_t inside = body.inside()(points.subspan(first, closest.count), closest);
     for (std::size_t i = 0; i < closest.count; ++i)
       take(first + i, inside >> i & 1 ? -closest.distance[i] : closest.distance[i]);
   };
-  cpu_search(body.sites().impl(), points, std::numeric_limits<double>::infinity(), std::ref(deliver));
+  cpu::cpu_search(internals(body.sites()), points, std::numeric_limits<double>::infinity(),
+                  std::ref(deliver));
 }
 
 }  // namespace
 
 void LocalDistances::start(const Body& on, const Body& to) {
   on_ = &on, to_ = &to;
-  probes_.assign(1, {.runs = {0, run_count(on.surface().sample_texels().size())}});
+  probes_.assign(1, {.runs = {0, surface::run_count(on.surface().sample_texels().size())}});
   least_probed_ = std::numeric_limits<double>::infinity();
 }
 
@@ -40,14 +41,15 @@ void LocalDistances::probe(std::size_t runs_per_probe) {
   std::swap(probes_, denser_);
 
   const Surface& surface = on_->surface();
-  const Coverage& coverage = coverage_of(surface);
+  const surface::Coverage& coverage = surface::coverage_of(surface);
   probe_points_.resize(probes_.size());
   constexpr std::size_t kGrain = 32;
   const auto probe_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Probe& probe = probes_[i];
       Vec3& point = probe_points_[i];
-      place_samples(surface.impl(), probe.runs.middle(surface.sample_texels().size()), {&point, 1});
+      surface::place_samples(internals(surface), probe.runs.middle(surface.sample_texels().size()),
+                             {&point, 1});
       probe.spread = runs_per_probe == 1 ? coverage.spread(surface, probe.runs.first, point)
                                          : coverage.face_spread(surface, probe.runs, point);
     }
@@ -65,7 +67,7 @@ void LocalDistances::keep(double reach) {
 void LocalDistances::measure() {
   const std::size_t samples = on_->surface().sample_texels().size();
   std::size_t count = 0;
-  for (const Probe& probe : probes_) count += SampleBlock(probe.runs.first, samples).size();
+  for (const Probe& probe : probes_) count += surface::SampleBlock(probe.runs.first, samples).size();
   points_.resize(count), radii_.resize(count), distances_.resize(count);
   constexpr std::size_t kGrain = 16;
   const auto measure = [&](std::size_t begin, std::size_t end) {
@@ -81,12 +83,13 @@ void LocalDistances::measure() {
 
 void LocalDistances::measure_runs(std::size_t begin, std::size_t end) {
   const Surface& surface = on_->surface();
-  const Coverage& coverage = coverage_of(surface);
-  const std::size_t first = begin * kRunLength, last = std::min(end * kRunLength, points_.size());
+  const surface::Coverage& coverage = surface::coverage_of(surface);
+  const std::size_t first = begin * surface::kRunLength,
+                    last = std::min(end * surface::kRunLength, points_.size());
   const std::span points = std::span(points_).subspan(first, last - first);
-  place_samples(surface.impl(), probes_[begin].runs.first * kRunLength, points);
+  surface::place_samples(internals(surface), probes_[begin].runs.first * surface::kRunLength, points);
   for (std::size_t i = begin; i < end; ++i) {
-    const SampleBlock run(i, points_.size());
+    const surface::SampleBlock run(i, points_.size());
     coverage.measure_run(surface, probes_[i].runs.first, std::span(points_).subspan(run.first, run.size()),
                          std::span(radii_).subspan(run.first, run.size()));
   }
@@ -96,7 +99,7 @@ void LocalDistances::measure_runs(std::size_t begin, std::size_t end) {
 }
 
 std::size_t LocalDistances::sample(std::size_t i) const {
-  return probes_[i / kRunLength].runs.first * kRunLength + i % kRunLength;
+  return probes_[i / surface::kRunLength].runs.first * surface::kRunLength + i % surface::kRunLength;
 }
 
-}  // namespace sdm
+}  // namespace sdm::sampled

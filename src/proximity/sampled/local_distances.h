@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "surface/sample_blocks.h"
 #include "proximity/sampled/body.h"
+#include "surface/sample_blocks.h"
 
-namespace sdm {
+namespace sdm::sampled {
 
 /// The samples are probed at a few of them: each bounds the distances of those around it, which are
 /// 1-Lipschitz. What can still be within reach is probed more densely, down to single runs, and of the runs
@@ -40,7 +40,7 @@ class LocalDistances {
 
  private:
   struct Probe {
-    RunRange runs;
+    surface::RunRange runs;
     double distance = 0;
     double spread = 0;  ///< no sample of the runs, and no point that one covers, is farther from the probe
     /// No sample of the runs, and no point that it covers, is nearer.
@@ -56,4 +56,4 @@ class LocalDistances {
   std::vector<float> radii_, distances_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::sampled

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/vec.h"
-#include "engine/engine.h"
-#include "inside/solid.h"
+#include "engine/cpu/cpu_engine.h"
+#include "proximity/exact/collision.h"
 
-namespace sdm {
+namespace sdm::sampled {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -88,22 +88,22 @@ std::optional<std::array<Vec3, 2>> PairAnswers::witness(const Sample& sample) co
   if (sample.index == kNone) return {};
   const Vec3& p = distances_[sample.body].points()[sample.index];
   Vec3 q = p;
-  cpu_search(bodies_[1 - sample.body]->sites().impl(), {&p, 1}, kNoLimit,
-             [&](std::size_t, const ClosestPacket& closest) { q = closest.get(0, p).point; });
+  cpu::cpu_search(internals(bodies_[1 - sample.body]->sites()), {&p, 1}, kNoLimit,
+                  [&](std::size_t, const sites::ClosestPacket& closest) { q = closest.get(0, p).point; });
   return sample.body == 0 ? std::array{p, q} : std::array{q, p};
 }
 
-MeshPair PairAnswers::meshes() const {
-  return {bodies_[0]->sites().impl(), bodies_[1]->sites().impl()};
+exact::MeshPair PairAnswers::meshes() const {
+  return {internals(bodies_[0]->sites()), internals(bodies_[1]->sites())};
 }
 
-const Separation& PairAnswers::closest_triangles() {
-  if (!closest_) closest_ = find_closest(meshes(), kNoLimit, workspace_);
+const exact::Separation& PairAnswers::closest_triangles() {
+  if (!closest_) closest_ = exact::find_closest(meshes(), kNoLimit, workspace_);
   return *closest_;
 }
 
 BoundedLength PairAnswers::exact_separation() {
-  const Separation& c = closest_triangles();
+  const exact::Separation& c = closest_triangles();
   return {.value = c.distance,
           .kind = Certainty::exact,
           .lower = c.distance,
@@ -112,7 +112,7 @@ BoundedLength PairAnswers::exact_separation() {
 }
 
 BoundedBool PairAnswers::exact_collision() {
-  return {closest_triangles().intersecting || one_contains_part_of_other(meshes(), workspace_),
+  return {closest_triangles().intersecting || exact::one_contains_part_of_other(meshes(), workspace_),
           Certainty::exact};
 }
 
@@ -153,4 +153,4 @@ BoundedLength PairAnswers::bounded_depth() {
   return found;
 }
 
-}  // namespace sdm
+}  // namespace sdm::sampled

@@ -7,12 +7,12 @@
 #include <optional>
 #include <span>
 
+#include "proximity/exact/pair_search.h"
 #include "proximity/sampled/body.h"
 #include "proximity/sampled/contacts.h"
 #include "proximity/sampled/local_distances.h"
-#include "proximity/exact/pair_search.h"
 
-namespace sdm {
+namespace sdm::sampled {
 
 /// Answers as they are documented at Query, each computed when it is first asked for. Memory is kept from
 /// pair to pair; no answer depends on those before.
@@ -46,8 +46,8 @@ class PairAnswers {
   template <class Value>
   [[nodiscard]] std::pair<double, Sample> least(const Value& value) const;
   [[nodiscard]] std::optional<std::array<Vec3, 2>> witness(const Sample& sample) const;
-  [[nodiscard]] MeshPair meshes() const;
-  const Separation& closest_triangles();
+  [[nodiscard]] exact::MeshPair meshes() const;
+  const exact::Separation& closest_triangles();
   [[nodiscard]] BoundedLength exact_separation();
   [[nodiscard]] BoundedBool exact_collision();
   [[nodiscard]] BoundedLength bounded_separation();
@@ -60,14 +60,14 @@ class PairAnswers {
   double precision_ = 0;                     // of a distance
   std::array<LocalDistances, 2> distances_;  // of each body to the other
   ContactFinder finder_;
-  PairWorkspace workspace_;
+  exact::PairWorkspace workspace_;
 
   // What has been found of these bodies.
   bool measured_ = false, depth_found_ = false;
-  std::optional<Separation> closest_;  // of the triangles
+  std::optional<exact::Separation> closest_;  // of the triangles
   std::optional<BoundedLength> separation_, depth_;
   std::optional<BoundedBool> colliding_;
   std::optional<std::span<const Contact>> contacts_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::sampled

@@ -6,8 +6,8 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "core/rows.h"
+#include "core/vec.h"
 #include "proximity/exact/triangle_pair.h"
 
 namespace sdm {
@@ -66,18 +66,18 @@ class Neighbours {
   }
 
  private:
-  [[nodiscard]] Corners corners(std::uint32_t face) const {
+  [[nodiscard]] exact::Corners corners(std::uint32_t face) const {
     const Triangle& t = mesh_.triangles[face];
     return {mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]};
   }
   [[nodiscard]] bool within(double length, std::uint32_t f, std::uint32_t g) const {
-    const Corners a = corners(f), b = corners(g);
+    const exact::Corners a = corners(f), b = corners(g);
     const double most = length * length;
     // Nearly always corners or boxes tell.
     for (const Vec3& p : a)
       for (const Vec3& q : b)
         if (squared_norm(q - p) < most) return true;
-    return squared_box_distance(a, b) < most && closest_or_common(a, b).squared < most;
+    return exact::squared_box_distance(a, b) < most && exact::closest_or_common(a, b).squared < most;
   }
 
   const Mesh& mesh_;

@@ -5,11 +5,11 @@
 #include <atomic>
 #include <cmath>
 
-#include "surface/tiles.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "map/map_writer.h"
 #include "proximity/self/self_search.h"
+#include "surface/tiles.h"
 
 namespace sdm {
 namespace {
@@ -22,7 +22,7 @@ void check(const Sites& sites, const Exclusion& exclusion, const SelfMapOptions&
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
 }
 
-void gather_around(std::span<const Vec3> points, double max_distance, SelfSearch& search) {
+void gather_around(std::span<const Vec3> points, double max_distance, self::SelfSearch& search) {
   Box box;
   for (const Vec3& p : points) extend(box, p);
   double squared = 0;
@@ -49,12 +49,12 @@ DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const E
   if (surface.mesh().triangles.size() != exclusion.faces())
     throw Error("the surface is not that of the sites: it has another number of faces");
   DistanceMap map;
-  clear(map, surface);
+  map::clear(map, surface);
   map.sign.reason = "a surface has no inside of itself";
-  const Tiles& tiles = tiles_of(surface);
+  const surface::Tiles& tiles = surface::tiles_of(surface);
   std::atomic<std::size_t> none{0};
   parallel_for(tiles.count(), kGrain, options.progress, "map", [&](std::size_t begin, std::size_t end) {
-    SelfSearch search(sites.impl(), exclusion);
+    self::SelfSearch search(internals(sites), exclusion);
     std::vector<Vec3> points;
     std::size_t none_here = 0;
     for (auto tile = static_cast<std::uint32_t>(begin); tile < end; ++tile) {
@@ -76,11 +76,11 @@ std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusio
                                               const SelfMapOptions& options) {
   check(sites, exclusion, options);
   const Mesh& mesh = sites.mesh();
-  const Topology& topology = sites.impl().topology;
+  const mesh::Topology& topology = internals(sites).topology;
   std::vector<std::array<float, 3>> at_corners(mesh.triangles.size());
   parallel_for(mesh.triangles.size(), kGrain, options.progress, "vertices",
                [&](std::size_t begin, std::size_t end) {
-                 SelfSearch search(sites.impl(), exclusion);
+                 self::SelfSearch search(internals(sites), exclusion);
                  for (std::size_t f = begin; f < end; ++f) {
                    if (topology.ignored(f)) continue;
                    search.start_from(static_cast<std::uint32_t>(f));

@@ -29,12 +29,12 @@ struct SelfProximityQuery::Impl {
   double max_distance;
 
   // What has been found since the last update.
-  std::optional<FacePair> closest;
+  std::optional<self::FacePair> closest;
 
-  std::vector<FacePair> nearest{};  // of each face with sites, in the order of the tree
+  std::vector<self::FacePair> nearest{};  // of each face with sites, in the order of the tree
   std::vector<Contact> contacts{};
   std::vector<Box> boxes{};
-  ContactPatches patches{};
+  sampled::ContactPatches patches{};
 
   Impl(Mesh rest, const SelfProximityOptions& options)
       : sites(std::move(rest)),
@@ -44,9 +44,9 @@ struct SelfProximityQuery::Impl {
   // Calls body(search, place) for the place of each face in the tree, neighbours one after the other.
   template <class Body>
   void for_each_face(const Body& body) const {
-    const std::vector<std::uint32_t>& faces = sites.impl().tree.items;
+    const std::vector<std::uint32_t>& faces = internals(sites).tree.items;
     parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      SelfSearch search(sites.impl(), exclusion);
+      self::SelfSearch search(internals(sites), exclusion);
       for (std::size_t place = begin; place < end; ++place) {
         search.start_from(faces[place]);
         body(search, place);
@@ -56,12 +56,12 @@ struct SelfProximityQuery::Impl {
 
   // Bounds come from whatever thread was first; but of the nearest pairs none is ever ruled out, and one of
   // them is before all others.
-  FacePair find_closest() const {
+  self::FacePair find_closest() const {
     std::atomic<double> bound{max_distance};
     std::mutex mutex;
-    FacePair best;
-    for_each_face([&](const SelfSearch& search, std::size_t) {
-      const FacePair pair = search.nearest(bound.load(std::memory_order_relaxed));
+    self::FacePair best;
+    for_each_face([&](const self::SelfSearch& search, std::size_t) {
+      const self::FacePair pair = search.nearest(bound.load(std::memory_order_relaxed));
       if (pair.face1 == kNone) return;
       const std::scoped_lock lock(mutex);
       if (pair.before(best)) best = pair;
@@ -71,19 +71,19 @@ struct SelfProximityQuery::Impl {
   }
 
   void find_contacts(double margin) {
-    nearest.resize(sites.impl().tree.items.size());
+    nearest.resize(internals(sites).tree.items.size());
     for_each_face(
-        [&](const SelfSearch& search, std::size_t place) { nearest[place] = search.nearest(margin); });
+        [&](const self::SelfSearch& search, std::size_t place) { nearest[place] = search.nearest(margin); });
     // Two faces that are each other's nearest are found twice.
-    std::erase_if(nearest, [](const FacePair& pair) { return pair.face1 == kNone; });
-    std::ranges::sort(nearest, [](const FacePair& a, const FacePair& b) { return a.before(b); });
-    const auto same = [](const FacePair& a, const FacePair& b) {
+    std::erase_if(nearest, [](const self::FacePair& pair) { return pair.face1 == kNone; });
+    std::ranges::sort(nearest, [](const self::FacePair& a, const self::FacePair& b) { return a.before(b); });
+    const auto same = [](const self::FacePair& a, const self::FacePair& b) {
       return a.face1 == b.face1 && a.face2 == b.face2;
     };
     nearest.erase(std::unique(nearest.begin(), nearest.end(), same), nearest.end());
     contacts.clear();
     boxes.clear();
-    for (const FacePair& pair : nearest) {
+    for (const self::FacePair& pair : nearest) {
       contacts.push_back(contact_of(pair));
       Box& box = boxes.emplace_back();
       for (const std::uint32_t face : {pair.face1, pair.face2})
@@ -91,10 +91,10 @@ struct SelfProximityQuery::Impl {
     }
   }
 
-  [[nodiscard]] Contact contact_of(const FacePair& pair) const {
+  [[nodiscard]] Contact contact_of(const self::FacePair& pair) const {
     Contact c{.point1 = pair.point1, .point2 = pair.point2, .depth = -pair.distance};
     c.normal =
-        pair.distance > 0 ? (1 / c.depth) * (c.point2 - c.point1) : sites.impl().normals.face[pair.face2];
+        pair.distance > 0 ? (1 / c.depth) * (c.point2 - c.point1) : internals(sites).normals.face[pair.face2];
     return c;
   }
 };
@@ -114,13 +114,13 @@ void SelfProximityQuery::update(std::span<const Vec3> positions) {
 
 std::optional<BoundedLength> SelfProximityQuery::separation() {
   if (!impl_->closest) impl_->closest = impl_->find_closest();
-  const FacePair& c = *impl_->closest;
+  const self::FacePair& c = *impl_->closest;
   if (c.face1 == kNone) return {};
   return BoundedLength{.value = c.distance,
-                .kind = Certainty::exact,
-                .lower = c.distance,
-                .upper = c.distance,
-                .witness = std::array{c.point1, c.point2}};
+                       .kind = Certainty::exact,
+                       .lower = c.distance,
+                       .upper = c.distance,
+                       .witness = std::array{c.point1, c.point2}};
 }
 
 std::span<const Contact> SelfProximityQuery::contacts(double margin) {

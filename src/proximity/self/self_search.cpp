@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/vec.h"
-#include "sites/closest_on_face.h"
 #include "proximity/exact/triangle_pair.h"
+#include "sites/closest_on_face.h"
 
-namespace sdm {
+namespace sdm::self {
 
 struct SelfSearch::Scratch {
   struct Entry {
@@ -31,16 +31,17 @@ namespace {
 constexpr double kAbove = 1 + 1e-12;  // by more than squares are rounded: equals must be compared
 
 // Squared distances of a box to those of a node's children; both in the unit frame.
-void find_distances(const WideTree::Node& node, const Box& box, double (&squared)[WideTree::kWidth]) {
-  for (int i = 0; i < WideTree::kWidth; ++i) squared[i] = 0;
+void find_distances(const hierarchy::WideTree::Node& node, const Box& box,
+                    double (&squared)[hierarchy::WideTree::kWidth]) {
+  for (int i = 0; i < hierarchy::WideTree::kWidth; ++i) squared[i] = 0;
   for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < WideTree::kWidth; ++i) {
+    for (int i = 0; i < hierarchy::WideTree::kWidth; ++i) {
       const double gap = std::max({node.lo[k][i] - box.hi[k], box.lo[k] - node.hi[k][i], 0.0});
       squared[i] += gap * gap;
     }
 }
 
-Corners corners(const Mesh& mesh, std::uint32_t face) {
+exact::Corners corners(const Mesh& mesh, std::uint32_t face) {
   const Triangle& t = mesh.triangles[face];
   return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
@@ -51,7 +52,7 @@ bool FacePair::before(const FacePair& other) const {
   return std::tie(distance, face1, face2) < std::tie(other.distance, other.face1, other.face2);
 }
 
-SelfSearch::SelfSearch(const SitesData& sites, const Exclusion& exclusion)
+SelfSearch::SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion)
     : sites_(sites), exclusion_(exclusion), scratch_(Scratch::of_this_thread()) {
   if (scratch_.excluded.size() < exclusion.faces()) scratch_.excluded.resize(exclusion.faces());
 }
@@ -87,14 +88,14 @@ void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) c
     const auto [child, squared] = stack.back();
     stack.pop_back();
     if (too_far(squared)) continue;
-    if ((child & WideTree::kLeafBit) != 0) {
-      const std::uint32_t leaf = child & ~WideTree::kLeafBit;
+    if ((child & hierarchy::WideTree::kLeafBit) != 0) {
+      const std::uint32_t leaf = child & ~hierarchy::WideTree::kLeafBit;
       for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
         if (const std::uint32_t face = sites_.tree.items[i]; scratch_.excluded[face] == 0) visit(face);
       continue;
     }
-    const WideTree::Node& node = sites_.wide.nodes[child];
-    double distances[WideTree::kWidth];
+    const hierarchy::WideTree::Node& node = sites_.wide.nodes[child];
+    double distances[hierarchy::WideTree::kWidth];
     find_distances(node, unit, distances);
     const auto base = static_cast<std::ptrdiff_t>(stack.size());
     for (std::uint32_t i = 0; i < node.count; ++i) {
@@ -114,7 +115,7 @@ void SelfSearch::gather(const Vec3& centre, double radius, double max_distance) 
   candidates.clear();
   double limit = max_distance + radius;
   visit_near({centre, centre}, limit, [&](std::uint32_t face) {
-    const double distance = closest_on_face(sites_, face, centre).distance;
+    const double distance = sites::closest_on_face(sites_, face, centre).distance;
     if (distance > limit) return;
     candidates.push_back({distance, face});
     limit = std::min(limit, distance + 2 * radius);
@@ -128,8 +129,8 @@ ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
   const double from_centre = norm(q - centre_);
   for (const auto& [at_centre, face] : scratch_.candidates) {
     if (at_centre - from_centre > limit) break;  // d(q, g) ≥ d(c, g) − |q − c|
-    if (squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit) continue;
-    const ClosestPoint c = closest_on_face(sites_, face, q);
+    if (exact::squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit) continue;
+    const ClosestPoint c = sites::closest_on_face(sites_, face, q);
     if (c.distance < best.distance && c.distance <= limit) best = c, limit = c.distance;
   }
   return best;
@@ -138,14 +139,15 @@ ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
 FacePair SelfSearch::nearest(double max_distance) const {
   FacePair best;
   double limit = max_distance;
-  const Corners own = corners(sites_.mesh, face_);
+  const exact::Corners own = corners(sites_.mesh, face_);
   Box box;
   for (const Vec3& p : own) extend(box, p);
   visit_near(box, limit, [&](std::uint32_t other) {
-    const Corners others = corners(sites_.mesh, other);
-    if (squared_box_distance(own, others) > kAbove * limit * limit) return;
+    const exact::Corners others = corners(sites_.mesh, other);
+    if (exact::squared_box_distance(own, others) > kAbove * limit * limit) return;
     const bool first = face_ < other;  // either way the same roundings
-    const PointPair c = first ? closest_or_common(own, others) : closest_or_common(others, own);
+    const exact::PointPair c =
+        first ? exact::closest_or_common(own, others) : exact::closest_or_common(others, own);
     const FacePair pair{std::sqrt(c.squared), std::min(face_, other), std::max(face_, other), c.point1,
                         c.point2};
     if (pair.distance <= limit && pair.before(best)) best = pair, limit = pair.distance;
@@ -153,4 +155,4 @@ FacePair SelfSearch::nearest(double max_distance) const {
   return best;
 }
 
-}  // namespace sdm
+}  // namespace sdm::self

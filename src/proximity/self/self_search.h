@@ -7,7 +7,7 @@
 
 #include "sites/sites_data.h"
 
-namespace sdm {
+namespace sdm::self {
 
 /// The closest points of two faces.
 struct FacePair {
@@ -24,7 +24,7 @@ struct FacePair {
 class SelfSearch {
  public:
   /// The arguments must outlive it. One at a time in a thread.
-  SelfSearch(const SitesData& sites, const Exclusion& exclusion);
+  SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion);
   ~SelfSearch();
   SelfSearch(const SelfSearch&) = delete;
   SelfSearch& operator=(const SelfSearch&) = delete;
@@ -45,7 +45,7 @@ class SelfSearch {
   template <class Visit>
   void visit_near(const Box& box, double& limit, const Visit& visit) const;
 
-  const SitesData& sites_;
+  const sites::SitesData& sites_;
   const Exclusion& exclusion_;
   Scratch& scratch_;
   std::uint32_t face_ = kNone;
@@ -53,4 +53,4 @@ class SelfSearch {
   double max_distance_ = 0;
 };
 
-}  // namespace sdm
+}  // namespace sdm::self

@@ -3,13 +3,13 @@
 #include <numeric>
 #include <ranges>
 
+#include "core/parallel.h"
+#include "surface/sample_blocks.h"
 #include "surface/sampling_bound/coverage.h"
 #include "surface/sampling_bound/cut_faces.h"
-#include "surface/sample_blocks.h"
 #include "surface/surface_data.h"
-#include "core/parallel.h"
 
-namespace sdm {
+namespace sdm::surface {
 namespace {
 
 struct SortedPieces {
@@ -73,7 +73,7 @@ class CoverageBuilder {
     std::array<std::pair<std::uint32_t, std::uint8_t>, kRunLength> by_face;
     const std::span samples(by_face.data(), run.size());
     for (std::size_t i = 0; i < samples.size(); ++i)
-      samples[i] = {surface_.impl().sample_faces[run.first + i], static_cast<std::uint8_t>(i)};
+      samples[i] = {internals(surface_).sample_faces[run.first + i], static_cast<std::uint8_t>(i)};
     std::ranges::sort(samples);
     RunPatches found;
     for (std::size_t s = 0, p = 0; s < samples.size() || p < pieces.size();) {
@@ -135,4 +135,4 @@ Coverage::Coverage(const Surface& surface) {
   CoverageBuilder(surface, *this).build();
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <utility>
 
-#include "surface/sampling_bound/face_frame.h"
-#include "surface/sample_blocks.h"
-#include "surface/surface_data.h"
 #include "core/atomic_max.h"
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "surface/sample_blocks.h"
+#include "surface/sampling_bound/face_frame.h"
+#include "surface/surface_data.h"
 
-namespace sdm {
+namespace sdm::surface {
 namespace {
 
 /// A float that is not less.
@@ -31,11 +31,11 @@ namespace {
 // How far whole squares of texels reach on the face, plus what M⁻¹, which places the samples, moves the
 // face's own corners by rounding.
 double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame& frame) {
-  const FaceMap& map = surface.impl().maps[face];
+  const atlas::FaceMap& map = internals(surface).maps[face];
   const auto& [du, dv] = map.edges;
   double mismatch = 0;
   for (int k = 0; k < 2; ++k) {
-    const Vec2 d = surface.impl().corners[face][k + 1] - map.origin;
+    const Vec2 d = internals(surface).corners[face][k + 1] - map.origin;
     mismatch = std::max(mismatch, norm(d[0] * du + d[1] * dv - frame.edges[k]));
   }
   return half_diagonal(map.edges) + mismatch + frame.rounding();
@@ -85,7 +85,7 @@ void Coverage::measure(const Surface& surface, Radii& radii) const {
     for (std::size_t r = begin; r < end; ++r) {
       const SampleBlock run(r, samples);
       const std::span points = std::span(places).first(run.size());
-      place_samples(surface.impl(), run.first, points);
+      place_samples(internals(surface), run.first, points);
       measure_run(surface, r, points, std::span(radii.samples).subspan(run.first, run.size()), take_face);
     }
   });
@@ -120,7 +120,7 @@ double Coverage::spread(const Surface& surface, std::size_t run, const Vec3& p) 
 // Pieces lie within their face, and samples within the triangle that M⁻¹ makes of the face's corners in the
 // atlas: a little off the face, by rounding.
 double Coverage::face_spread(const Surface& surface, RunRange runs, const Vec3& p) const {
-  const SurfaceData& s = surface.impl();
+  const SurfaceData& s = internals(surface);
   double squared = 0;
   std::uint32_t last = kNone;
   const std::size_t first = runs.first == 0 ? 0 : run_ends_[runs.first - 1];
@@ -141,4 +141,4 @@ double Coverage::face_spread(const Surface& surface, RunRange runs, const Vec3& 
   return farthest + 0x1p-22 * farthest + 1e-13 * (farthest + largest);
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

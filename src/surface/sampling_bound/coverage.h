@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "surface/sampling_bound/measure_pieces.h"
 #include "surface/sample_blocks.h"
+#include "surface/sampling_bound/measure_pieces.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 /// Half the longer diagonal of a texel's square on the surface, given its edges: the farthest that a point of
 /// it gets from its centre.
@@ -96,4 +96,4 @@ void Coverage::for_each_patch(std::size_t run, const Take& take) const {
 [[nodiscard]] const Coverage& coverage_of(const Surface& surface);
 [[nodiscard]] const Coverage::Radii& radii_of(const Surface& surface);
 
-}  // namespace sdm
+}  // namespace sdm::surface

@@ -6,16 +6,16 @@
 #include <numeric>
 #include <utility>
 
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/vec.h"
 #include "surface/sampling_bound/coverage.h"
 #include "surface/sampling_bound/cut_faces.h"
 #include "surface/sampling_bound/near_samples.h"
 #include "surface/sampling_bound/polygon.h"
 #include "surface/surface_data.h"
-#include "core/memory.h"
-#include "core/parallel.h"
-#include "core/vec.h"
 
-namespace sdm {
+namespace sdm::surface {
 namespace {
 
 /// A sample this many half diagonals away is near enough: points across an edge may be as far as its square.
@@ -60,7 +60,7 @@ std::size_t bytes_needed(const Surface& surface, double typical) {
   for (std::size_t f = 0; f < surface.mesh().triangles.size(); ++f) {
     const std::array<Vec2, 3> t = surface.face_charts()[f] == kNone
                                       ? unfolded(vertices_of(surface.mesh(), f), typical)
-                                      : surface.impl().corners[f];
+                                      : internals(surface).corners[f];
     for (int k = 0; k < 3; ++k) {
       const Vec2 edge = t[(k + 1) % 3] - t[k];
       pieces += 1 + std::abs(edge[0]) + std::abs(edge[1]);
@@ -138,7 +138,7 @@ class Cutter {
         add_piece(block, face, x, y, polygon, 0);
       }
     };
-    for_each_square(surface_.impl().corners[face.index], visit);
+    for_each_square(internals(surface_).corners[face.index], visit);
   }
 
   /// A piece in the square at (x, y), which its face does not own. If it is far from every sample because it
@@ -186,4 +186,4 @@ FacePieces cut_faces(const Surface& surface) {
   return Cutter(surface)();
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

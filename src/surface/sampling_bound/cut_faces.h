@@ -7,7 +7,7 @@
 
 #include "surface/sampling_bound/measure_pieces.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 struct FacePiece {
   std::uint32_t face;
@@ -26,4 +26,4 @@ struct FacePieces {
 /// sdm::Error when there is no memory for it. Cost: linear in texels and pieces, all cores.
 [[nodiscard]] FacePieces cut_faces(const Surface& surface);
 
-}  // namespace sdm
+}  // namespace sdm::surface

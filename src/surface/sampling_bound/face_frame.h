@@ -5,7 +5,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 /// The point of weights (a, b), a, b ≥ 0, a + b ≤ 1, is origin + a edges[0] + b edges[1].
 struct FaceFrame {
@@ -30,4 +30,4 @@ struct FaceFrame {
   }
 };
 
-}  // namespace sdm
+}  // namespace sdm::surface

@@ -7,7 +7,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::HWY_NAMESPACE {
+namespace sdm::surface::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Doubles = hn::CappedTag<double, 4>;  // corners of one piece
@@ -38,11 +38,11 @@ void MeasurePieces(std::span<const Piece> pieces, const Vec3& origin, const std:
   }
 }
 
-}  // namespace sdm::HWY_NAMESPACE
+}  // namespace sdm::surface::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm {
+namespace sdm::surface {
 
 HWY_EXPORT(MeasurePieces);
 
@@ -51,5 +51,5 @@ void measure_pieces(std::span<const Piece> pieces, const Vec3& origin, const std
   HWY_DYNAMIC_DISPATCH(MeasurePieces)(pieces, origin, edges, points, squared);
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface
 #endif

@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace sdm {
+namespace sdm::surface {
 
 /// Four points of a face: the corners of a convex polygon, the last one repeated where there are fewer; of a
 /// polygon with more, some of its corners, and a piece after it, of the same sample, has the others.
@@ -20,4 +20,4 @@ struct Piece {
 void measure_pieces(std::span<const Piece> pieces, const Vec3& origin, const std::array<Vec3, 2>& edges,
                     std::span<const Vec3> points, std::span<double> squared);
 
-}  // namespace sdm
+}  // namespace sdm::surface

@@ -3,7 +3,7 @@
 #include "atlas/charts/face_geometry.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 Outline::Outline(const std::array<Vec3, 3>& v, const Polygon& polygon) {
   for (const auto& [at, weights] : polygon.corners())
@@ -45,7 +45,7 @@ bool NearSamples::same_side(std::uint32_t face, std::uint32_t other) const {
   const auto normal = [this](std::uint32_t f) {
     const auto& [a, b, c] = surface_.mesh().triangles[f];
     const std::vector<Vec3>& positions = surface_.mesh().positions;
-    return face_normal(positions[a], positions[b], positions[c]);
+    return atlas::face_normal(positions[a], positions[b], positions[c]);
   };
   return dot(normal(face), normal(other)) > -0.5;
 }
@@ -57,4 +57,4 @@ std::uint32_t NearSamples::texel_at(double x, double y) const {
   return surface_.texel_faces()[texel] == kNone ? kNone : texel;
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

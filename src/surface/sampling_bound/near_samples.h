@@ -6,7 +6,7 @@
 #include "surface/sampling_bound/polygon.h"
 #include "surface/sampling_bound/sample_tree.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 /// The corners of a polygon in space.
 class Outline {
@@ -55,4 +55,4 @@ class NearSamples {
   const SampleTree tree_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::surface

@@ -8,7 +8,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 /// A convex polygon within a triangle of the atlas. Each corner knows its place in the atlas and its weights:
 /// the point is vertex 0 + weights[0] (vertex 1 − vertex 0) + weights[1] (vertex 2 − vertex 0), wherever the
@@ -114,4 +114,4 @@ void for_each_square(const std::array<Vec2, 3>& triangle, Visit visit) {
   } while (++y < bottom);
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

@@ -1,14 +1,14 @@
 // The radii from below: points of the surface with their true distance to the nearest sample.
-#include "surface/sampling_bound/coverage.h"
-#include "surface/sampling_bound/face_frame.h"
-#include "surface/sample_blocks.h"
-#include "surface/sampling_bound/sample_tree.h"
-#include "surface/surface_data.h"
 #include "core/atomic_max.h"
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "surface/sample_blocks.h"
+#include "surface/sampling_bound/coverage.h"
+#include "surface/sampling_bound/face_frame.h"
+#include "surface/sampling_bound/sample_tree.h"
+#include "surface/surface_data.h"
 
-namespace sdm {
+namespace sdm::surface {
 namespace {
 
 /// The largest distance to the nearest sample of the points of one face that were looked at.
@@ -49,7 +49,7 @@ std::vector<double> Coverage::radius_lower_bounds(const Surface& surface) const 
       const FaceFrame frame(surface.mesh(), f);
       Farthest farthest(points, tree);
       if (surface.face_charts()[f] != kNone) {
-        const auto [a, b] = middle_corner(surface.impl().corners[f]);
+        const auto [a, b] = middle_corner(internals(surface).corners[f]);
         if (a >= 0 && b >= 0 && a + b <= 1) farthest.look_at(frame.at(a, b));
       }
       for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {0, 1}}) farthest.look_at(frame.at(a, b));
@@ -73,4 +73,4 @@ std::vector<double> Coverage::radius_lower_bounds(const Surface& surface) const 
   return radii;
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

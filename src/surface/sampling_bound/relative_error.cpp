@@ -23,7 +23,7 @@ void check_faces(std::size_t count, std::size_t expected) {
 }  // namespace
 
 RelativeError::RelativeError(const Surface& first_shape)
-    : first_(coverage_of(first_shape).radius_lower_bounds(first_shape)),
+    : first_(surface::coverage_of(first_shape).radius_lower_bounds(first_shape)),
       largest_(*std::ranges::max_element(first_)) {}
 
 double RelativeError::of(const Surface& now) const {

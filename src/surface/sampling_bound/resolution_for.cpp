@@ -29,7 +29,7 @@ double stepped(double resolution) {
 double needed_factor(const Mesh& mesh, AtlasOptions options, double resolution, double precision) try {
   options.resolution = static_cast<std::uint32_t>(resolution);
   return Surface(mesh, options).sampling_bound() / precision;
-} catch (const TooSmall& error) {
+} catch (const atlas::TooSmall& error) {
   return static_cast<double>(error.enough()) / resolution;
 }
 

@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 struct SampleTree::Run {
   std::size_t first;
@@ -37,7 +37,7 @@ SampleTree::SampleTree(const Surface& surface, double radius)
   first_.push_back(count);
   std::vector<std::uint32_t> runs(boxes.size());
   std::iota(runs.begin(), runs.end(), 0u);
-  tree_ = build_aabb_tree(boxes, std::move(runs), 1);
+  tree_ = hierarchy::build_aabb_tree(boxes, std::move(runs), 1);
 }
 
 std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end, double radius) const {
@@ -62,7 +62,7 @@ std::uint32_t SampleTree::nearest(const Vec3& query) const {
 }
 
 double SampleTree::squared_distance(std::uint32_t node, const Nearest& found) const {
-  const FloatBox& box = tree_.nodes[node].box;
+  const hierarchy::FloatBox& box = tree_.nodes[node].box;
   Vec3 gap;
   for (int k = 0; k < 3; ++k)
     gap[k] = std::max({box.lo[k] - found.unit_query[k], 0.0, found.unit_query[k] - box.hi[k]}) / frame_.scale;
@@ -70,7 +70,7 @@ double SampleTree::squared_distance(std::uint32_t node, const Nearest& found) co
 }
 
 void SampleTree::descend(std::uint32_t index, Nearest& found) const {
-  const AabbTree::Node& node = tree_.nodes[index];
+  const hierarchy::AabbTree::Node& node = tree_.nodes[index];
   if (node.leaf()) {
     const std::uint32_t run = tree_.items[node.first];
     for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
@@ -88,4 +88,4 @@ void SampleTree::descend(std::uint32_t index, Nearest& found) const {
     if (distances[k] < found.squared_distance) descend(children[k], found);
 }
 
-}  // namespace sdm
+}  // namespace sdm::surface

@@ -7,7 +7,7 @@
 
 #include "hierarchy/aabb_tree.h"
 
-namespace sdm {
+namespace sdm::surface {
 
 /// A tree over runs of samples, whose order keeps neighbours together: so it is built in a fraction of the
 /// time of a tree over the samples themselves. The surface, which must have a sample, must outlive it and
@@ -31,7 +31,7 @@ class SampleTree {
   std::span<const Vec3> points_;
   UnitFrame frame_;
   std::vector<std::size_t> first_;  ///< sample of each run, and the end of the last run
-  AabbTree tree_;                   ///< over runs, one a leaf
+  hierarchy::AabbTree tree_;        ///< over runs, one a leaf
 };
 
-}  // namespace sdm
+}  // namespace sdm::surface

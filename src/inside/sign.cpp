@@ -1,0 +1,59 @@
+#include <sdm/error.h>
+#include <sdm/sign.h>
+
+#include <string>
+
+#include "core/parallel.h"
+#include "inside/inside_test.h"
+
+namespace sdm {
+namespace {
+
+// Why O2 has no inside, as a clause, or nothing if it has one.
+std::string open_reason(const sites::SitesData& sites) {
+  std::size_t boundary = 0, nonmanifold = 0;
+  for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
+    boundary += sites.topology.edge_faces(e).size() == 1;
+    nonmanifold += sites.topology.edge_faces(e).size() > 2;
+  }
+  if (boundary > 0) return "O2 is open (" + std::to_string(boundary) + " boundary edges)";
+  if (nonmanifold > 0)
+    return "O2 is not manifold (" + std::to_string(nonmanifold) + " edges of more than two faces)";
+  if (!sites.orientation.orientable) return "O2 is not orientable";
+  return {};
+}
+
+}  // namespace
+
+SignUsed choose_sign(const Sites& sites, SignMethod asked) {
+  const std::string open = open_reason(internals(sites));
+  switch (asked) {
+    case SignMethod::none:
+      return {SignMethod::none, "asked for"};
+    case SignMethod::winding:
+      return {SignMethod::winding, open.empty() ? "asked for; O2 is closed and orientable"
+                                                : "asked for; an estimate, because " + open};
+    case SignMethod::pseudonormal:
+      if (!open.empty())
+        throw Error("distances cannot be signed by pseudonormals: " + open +
+                    "; take sign none, or winding for an estimate");
+      return {SignMethod::pseudonormal, "asked for; O2 is closed and orientable"};
+    case SignMethod::automatic:
+      break;
+  }
+  if (!open.empty()) return {SignMethod::none, open};
+  return {SignMethod::pseudonormal, "O2 is closed and orientable"};
+}
+
+std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3> queries,
+                                       std::span<const ClosestPoint> closest, SignMethod method) {
+  if (queries.size() != closest.size()) throw Error("inside_flags() needs one closest point for each query");
+  const inside::InsideTest test(internals(sites), choose_sign(sites, method).method);
+  std::vector<std::uint8_t> result(queries.size());
+  parallel_for(queries.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result[i] = test(queries[i], closest[i]);
+  });
+  return result;
+}
+
+}  // namespace sdm

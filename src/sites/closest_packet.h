@@ -1,0 +1,37 @@
+// Closest points in the form that vector instructions fill.
+#pragma once
+
+#include <sdm/sites.h>
+
+#include "core/vec.h"
+
+namespace sdm::sites {
+
+/// Closest points of the first `count` of sixteen queries, as arrays that vector instructions can fill.
+struct ClosestPacket {
+  static constexpr std::size_t kSize = 16;
+
+  alignas(64) double vector[3][kSize];  ///< closest point − query
+  alignas(64) double distance[kSize];
+  std::uint32_t site[kSize];
+  SiteType type[kSize];  ///< `none`: then only this has a meaning
+  std::size_t count = 0;
+
+  void set(std::size_t i, const Vec3& query, const ClosestPoint& c) {
+    for (int k = 0; k < 3; ++k) vector[k][i] = c.point[k] - query[k];
+    distance[i] = c.distance;
+    site[i] = c.site;
+    type[i] = c.type;
+  }
+  /// Without a face, unless that is the site.
+  [[nodiscard]] ClosestPoint get(std::size_t i, const Vec3& query) const {
+    if (type[i] == SiteType::none) return {};
+    return {.point = {query[0] + vector[0][i], query[1] + vector[1][i], query[2] + vector[2][i]},
+            .distance = distance[i],
+            .site = site[i],
+            .type = type[i],
+            .face = type[i] == SiteType::face ? site[i] : kNone};
+  }
+};
+
+}  // namespace sdm::sites
