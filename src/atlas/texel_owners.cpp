@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atlas/rasterise.h"
+#include "atlas/packing/rasterise.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 

@@ -1,4 +1,4 @@
-#include "atlas/rasterise.h"
+#include "atlas/packing/rasterise.h"
 
 #include <gtest/gtest.h>
 

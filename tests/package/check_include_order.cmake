@@ -1,21 +1,61 @@
-# A folder of src/ includes only itself and the folders before it.
-set(order core hierarchy mesh atlas engine query io scene)
-file(GLOB folders RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/*)
-foreach(folder ${folders})
-  list(FIND order ${folder} place)
+# A folder of src/ includes only itself and the folders before it, so that the graph of includes has neither a
+# circle nor an arrow that points up. Prints the graph: for each folder the folders that it includes.
+set(order
+  core
+  hierarchy
+  mesh
+  atlas/charts
+  atlas/packing
+  atlas
+  surface
+  surface/sampling_bound
+  inside/crossings
+  sites
+  inside
+  engine
+  engine/reference
+  engine/cpu
+  engine/gl
+  engine/table
+  map
+  proximity/exact
+  proximity/sampled
+  proximity/bodies
+  proximity/self
+  proximity
+  io/read
+  io/write)
+
+file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/*.h ${SOURCE_DIR}/src/*.cpp)
+foreach(file ${files})
+  get_filename_component(folder ${file} DIRECTORY)
+  list(FIND order "${folder}" place)
   if(place EQUAL -1)
     message(SEND_ERROR "src/${folder} has no place in the order of dependence: ${order}")
     continue()
   endif()
-  file(GLOB_RECURSE files ${SOURCE_DIR}/src/${folder}/*.h ${SOURCE_DIR}/src/${folder}/*.cpp)
-  foreach(file ${files})
-    file(STRINGS ${file} includes REGEX "^ *# *include \"[^\"]+/")
-    foreach(include ${includes})
-      string(REGEX REPLACE "^[^\"]*\"([^/\"]+)/.*" "\\1" included "${include}")
-      list(FIND order ${included} included_place)
-      if(included_place EQUAL -1 OR included_place GREATER place)
-        message(SEND_ERROR "${file} may not have ${include}: src/${included} is not before src/${folder}")
-      endif()
-    endforeach()
+  file(STRINGS ${SOURCE_DIR}/src/${file} includes REGEX "^ *# *include \"")
+  foreach(include ${includes})
+    string(REGEX REPLACE "^[^\"]*\"([^\"]+)\".*" "\\1" included "${include}")
+    get_filename_component(included "${included}" DIRECTORY)
+    if(included STREQUAL "")
+      message(SEND_ERROR "src/${file}: ${include} does not name the folder of the file")
+      continue()
+    endif()
+    list(FIND order "${included}" included_place)
+    if(included_place EQUAL -1 OR included_place GREATER place)
+      message(SEND_ERROR "src/${file} may not have ${include}: ${included} is not before ${folder}")
+    endif()
+    if(NOT included STREQUAL folder)
+      string(MAKE_C_IDENTIFIER "${folder}" key)
+      list(APPEND arrows_${key} "${included}")
+    endif()
   endforeach()
+endforeach()
+
+foreach(folder ${order})
+  string(MAKE_C_IDENTIFIER "${folder}" key)
+  list(REMOVE_DUPLICATES arrows_${key})
+  string(REPLACE ";" " " text "${arrows_${key}}")
+  message(STATUS "${folder}: ${text}")
 endforeach()

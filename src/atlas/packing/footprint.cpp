@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "atlas/rasterise.h"
+#include "atlas/packing/rasterise.h"
 #include "core/scattered_order.h"
 #include "core/vec.h"
 
