@@ -1,5 +1,4 @@
-// The part of the library that reads and writes no files: how far points are from a mesh, and which feature
-// is closest.
+// Distances of points to a mesh and their closest features, without reading or writing files.
 #include <sdm/sdm.h>
 
 #include <cstdio>

@@ -1,24 +1,34 @@
-// A cube falls onto another: contacts push it off, frame by frame.
+// A cube falls onto another one and is pushed out of it at each frame by the deepest contact.
 #include <sdm/sdm.h>
 
 #include <cstdio>
 
 sdm::Mesh cube() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}},
-          {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-           {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}},
+          {{0, 2, 3},
+           {0, 3, 1},
+           {4, 5, 7},
+           {4, 7, 6},
+           {0, 1, 5},
+           {0, 5, 4},
+           {2, 6, 7},
+           {2, 7, 3},
+           {0, 4, 6},
+           {0, 6, 2},
+           {1, 3, 7},
+           {1, 7, 5}},
           {}};
 }
 
 int main() {
   sdm::Mesh falling = cube();
   for (sdm::Vec3& p : falling.positions) p[0] += 0.3, p[2] += 1.2;
-  sdm::Query query(falling, cube(), {.atlas = {.resolution = 64}, .exact = true});
+  sdm::ProximityQuery query(falling, cube(), {.atlas = {.resolution = 64}, .exact = true});
   double speed = 0;
   for (int frame = 0; frame < 40; ++frame) {
     speed -= 0.01;
     for (sdm::Vec3& p : falling.positions) p[2] += speed;
-    query.update(falling.positions, {});  // the other one stays
+    query.refit(falling.positions, {});  // the other cube stays at rest
     if (query.colliding().value && !query.contacts().empty()) {
       const sdm::Contact& deepest = query.contacts().front();
       for (sdm::Vec3& p : falling.positions)
