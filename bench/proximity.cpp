@@ -25,9 +25,9 @@
 #include "measure.h"
 #include "poses.h"
 #include "query/pair_search.h"
-#include "scene/letters.h"
-#include "scene/reduce_mesh.h"
 #include "scenes.h"
+#include "scenes/letters.h"
+#include "scenes/reduce_mesh.h"
 
 namespace sdm::bench {
 namespace {
@@ -43,19 +43,19 @@ std::vector<Pair> all_pairs() {
   return {
       {"letters", "E and G, 2.1k and 1.6k triangles",
        [] {
-         return std::array{letter_of('E', 2100), letter_of('G', 1600)};
+         return std::array{scenes::letter_e(), scenes::letter_g()};
        }},
       {"bunnies", "two bunnies of 2k",
        [=] {
-         return std::array{reduce_mesh(bunny(), 2000), reduce_mesh(bunny(), 2000)};
+         return std::array{scenes::reduce_mesh(bunny(), 2000), scenes::reduce_mesh(bunny(), 2000)};
        }},
       {"bunny-armadillo-5k", "5k each",
        [=] {
-         return std::array{reduce_mesh(bunny(), 5000), reduce_mesh(armadillo(), 5000)};
+         return std::array{scenes::reduce_mesh(bunny(), 5000), scenes::reduce_mesh(armadillo(), 5000)};
        }},
       {"figure-letter", "17.2k and 2.1k",
        [] {
-         return std::array{paper_figure(), letter_of('E', 2100)};
+         return std::array{paper_figure(), scenes::letter_e()};
        }},
       {"figure-box", "17.2k, and a box of 12 larger than it",
        [] {

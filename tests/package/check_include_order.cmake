@@ -1,5 +1,5 @@
 # A folder of src/ includes only itself and the folders before it.
-set(order core hierarchy mesh atlas engine query io scene)
+set(order core hierarchy mesh atlas engine query io)
 file(GLOB folders RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/*)
 foreach(folder ${folders})
   list(FIND order ${folder} place)
