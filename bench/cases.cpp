@@ -12,9 +12,9 @@
 #include "heap.h"
 #include "race.h"
 #include "refine_mesh.h"
-#include "scene/letters.h"
-#include "scene/reduce_mesh.h"
 #include "scenes.h"
+#include "scenes/letters.h"
+#include "scenes/reduce_mesh.h"
 
 namespace sdm::bench {
 namespace {
@@ -49,7 +49,7 @@ Outcome bunny_to_armadillo(const Trial& trial, std::uint32_t resolution, const c
 
 /// The paper's E and G, which overlap in part.
 std::array<Mesh, 2> letter_meshes() {
-  std::array result{letter_of('E', 2100), letter_of('G', 1600)};
+  std::array result{scenes::letter_e(), scenes::letter_g()};
   transform(result[1], parse_transform("rotate:10:30:5,translate:0.35:0.1:0.1"));
   return result;
 }
@@ -83,7 +83,7 @@ Outcome more_sites(const Trial& trial) {
   const auto o1 = bunny(512);
   const Mesh apart = armadillo(kApart), near = armadillo(kPenetrating);
   const std::size_t tenth = apart.triangles.size() / 10;
-  MapTask few_apart(o1, reduce_mesh(apart, tenth)), few_near(o1, reduce_mesh(near, tenth));
+  MapTask few_apart(o1, scenes::reduce_mesh(apart, tenth)), few_near(o1, scenes::reduce_mesh(near, tenth));
   MapTask many_apart(o1, apart), many_near(o1, near);
   const Tasks few{&few_apart, &few_near}, many{&many_apart, &many_near};
   if (!all_agree(few) || !all_agree(many)) return {};

@@ -4,7 +4,6 @@
 //
 //   build/dev/bench/frames [SCENE...] [--frames N] [--resolution N] [--exact] [--json FILE]
 #include <sdm/error.h>
-#include <sdm/scene.h>
 #include <sdm/sdm.h>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +21,7 @@
 
 #include "core/stopwatch.h"
 #include "core/vec.h"
+#include "scenes/scene.h"
 
 namespace sdm::bench {
 namespace {
@@ -38,8 +38,8 @@ struct Motion {
   std::array<Mesh, 2> first;
   std::vector<std::array<std::vector<Vec3>, 2>> frames;
 
-  Motion(SceneKind kind, std::size_t count) {
-    Scene scene(kind);
+  Motion(scenes::SceneKind kind, std::size_t count) {
+    scenes::Scene scene(kind);
     for (int b = 0; b < 2; ++b) first[b] = scene.bodies()[b].mesh;
     for (std::size_t i = 0; i < count; ++i) {
       frames.push_back({scene.bodies()[0].mesh.positions, scene.bodies()[1].mesh.positions});
@@ -134,8 +134,9 @@ void print(const std::string& scene, const nlohmann::ordered_json& result) {
 }
 
 int run(int argc, char** argv) {
-  static const std::map<std::string, SceneKind> kinds{
-      {"letters", SceneKind::letters}, {"bunnies", SceneKind::bunnies}, {"figure", SceneKind::figure}};
+  static const std::map<std::string, scenes::SceneKind> kinds{{"letters", scenes::SceneKind::letters},
+                                                              {"bunnies", scenes::SceneKind::bunnies},
+                                                              {"figure", scenes::SceneKind::figure}};
   Options options;
   CLI::App app{"The time of a frame: update, all queries, the maps of both directions; all cores"};
   app.add_option("SCENE", options.scenes, "letters, bunnies, figure; by default the first two")

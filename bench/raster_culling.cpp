@@ -21,8 +21,8 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "raster_laws.h"
-#include "scene/reduce_mesh.h"
 #include "scenes.h"
+#include "scenes/reduce_mesh.h"
 
 namespace sdm::bench {
 namespace {
@@ -143,7 +143,7 @@ std::vector<Scene> scenes(std::uint32_t resolution) {
   const Mesh armadillo = load("armadillo.off", "fit,translate:0.8:0:0");
   for (const std::size_t triangles : {1'000u, 10'000u, 50'000u})
     result.push_back({"bunny to armadillo of " + std::to_string(triangles / 1000) + "k", bunny,
-                      sites(reduce_mesh(armadillo, triangles))});
+                      sites(scenes::reduce_mesh(armadillo, triangles))});
   return result;
 }
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "scene/box_mesh.h"
-#include "scene/reduce_mesh.h"
+#include "scenes/box_mesh.h"
+#include "scenes/reduce_mesh.h"
 
 namespace sdm::bench {
 
@@ -17,14 +17,14 @@ Mesh load(std::string_view name, std::string_view steps) {
 }
 
 Mesh paper_figure() {
-  return reduce_mesh(load("man.off", "fit"), 17200);
+  return scenes::reduce_mesh(load("man.off", "fit"), 17200);
 }
 
 Mesh paper_box(const Mesh& figure) {
   constexpr double margin = 0.12;
   Box box = bounds(figure);
   for (int k = 0; k < 3; ++k) box.lo[k] -= margin, box.hi[k] += margin;
-  return box_mesh(box);
+  return scenes::box_mesh(box);
 }
 
 }  // namespace sdm::bench

@@ -6,7 +6,6 @@
 
 #include <sdm/error.h>
 #include <sdm/io.h>
-#include <sdm/scene.h>
 #include <sdm/sequence.h>
 #include <sdm/threads.h>
 
@@ -19,14 +18,18 @@
 #include <string>
 #include <vector>
 
+#include "scenes/scene.h"
+
 namespace {
 
 namespace fs = std::filesystem;
+using sdm::scenes::Scene;
+using sdm::scenes::SceneKind;
 
-const std::map<std::string, sdm::SceneKind> kKinds{{"letters", sdm::SceneKind::letters},
-                                                   {"bunnies", sdm::SceneKind::bunnies},
-                                                   {"figure", sdm::SceneKind::figure},
-                                                   {"cloth", sdm::SceneKind::cloth}};
+const std::map<std::string, SceneKind> kKinds{{"letters", SceneKind::letters},
+                                              {"bunnies", SceneKind::bunnies},
+                                              {"figure", SceneKind::figure},
+                                              {"cloth", SceneKind::cloth}};
 
 struct SceneCommand {
   std::string kind, format = "npy";
@@ -39,8 +42,7 @@ struct SceneCommand {
 /// A body's frames, written as they come.
 class Recorder {
  public:
-  Recorder(const sdm::Scene::Body& body, const fs::path& folder, bool numbered)
-      : folder_(folder / body.name) {
+  Recorder(const Scene::Body& body, const fs::path& folder, bool numbered) : folder_(folder / body.name) {
     if (!body.moves) {
       sequence_ = body.name + ".ply";
       sdm::write_ply(folder / sequence_, body.mesh);
@@ -76,11 +78,11 @@ class Recorder {
   bool numbered_ = false;
 };
 
-nlohmann::ordered_json describe(const SceneCommand& command, const sdm::Scene& scene,
+nlohmann::ordered_json describe(const SceneCommand& command, const Scene& scene,
                                 const std::vector<Recorder>& recorders) {
   nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < recorders.size(); ++i) {
-    const sdm::Scene::Body& body = scene.bodies()[i];
+    const Scene::Body& body = scene.bodies()[i];
     bodies.push_back({{"name", body.name},
                       {"sequence", recorders[i].sequence()},
                       {"moves", body.moves},
@@ -101,9 +103,9 @@ void run(const SceneCommand& command) {
   nlohmann::ordered_json description;
   try {
     progress.step("meshes");
-    sdm::Scene scene(kKinds.at(command.kind), {.mesh = command.mesh});
+    Scene scene(kKinds.at(command.kind), {.mesh = command.mesh});
     std::vector<Recorder> recorders;
-    for (const sdm::Scene::Body& body : scene.bodies())
+    for (const Scene::Body& body : scene.bodies())
       recorders.emplace_back(body, out.staging(), command.format == "ply");
     for (int frame = 0; frame < command.frames; ++frame) {
       if (frame > 0) scene.advance();

@@ -12,9 +12,8 @@ if(NOT GLSLANG_VALIDATOR)
   message(FATAL_ERROR "glslangValidator was not found: ${gl_advice}")
 endif()
 
-# sdm_embed_shaders(<library> <header> <file>...): compiles the files of shaders/ into the library, as constants of a
-# header in the folder of the build that mirrors this one: site_polygon.vert becomes kSitePolygonVert. Vertex and
-# fragment shaders of one name are checked to fit. A shader that does not compile fails the build.
+# sdm_embed_shaders(<target> <header> <file>...): embeds files of shaders/ (sdm_embed_files), after each vertex shader
+# was compiled and checked against the fragment shader of its name. A shader that does not compile fails the build.
 function(sdm_embed_shaders target header)
   set(shaders ${ARGN})
   list(TRANSFORM shaders PREPEND ${PROJECT_SOURCE_DIR}/shaders/)
@@ -25,14 +24,5 @@ function(sdm_embed_shaders target header)
   foreach(program ${programs})
     list(APPEND validations COMMAND ${GLSLANG_VALIDATOR} --quiet -l ${program}.vert ${program}.frag)
   endforeach()
-
-  set(script ${PROJECT_SOURCE_DIR}/cmake/SdmEmbedShaders.cmake)
-  set(output ${CMAKE_CURRENT_BINARY_DIR}/${header})
-  add_custom_command(OUTPUT ${output}
-    ${validations}
-    COMMAND ${CMAKE_COMMAND} -DHEADER=${output} "-DSHADERS=${shaders}" -P ${script}
-    DEPENDS ${shaders} ${script}
-    COMMENT "Validating and embedding the shaders"
-    VERBATIM)
-  target_sources(${target}_objects PRIVATE ${output})
+  sdm_embed_files(${target}_objects HEADER ${header} NAMESPACE sdm::gl FILES ${shaders} CHECK ${validations})
 endfunction()

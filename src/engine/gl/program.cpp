@@ -29,8 +29,8 @@ struct Shader {
   GLuint id;
 
   Shader(GLenum type, const ShaderSource& source) : id(glCreateShader(type)) {
-    const char* text = source.text.data();
-    const auto length = static_cast<GLint>(source.text.size());
+    const char* text = source.bytes.data();
+    const auto length = static_cast<GLint>(source.bytes.size());
     glShaderSource(id, 1, &text, &length);
     glCompileShader(id);
     GLint compiled = GL_FALSE;

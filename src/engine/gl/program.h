@@ -3,15 +3,12 @@
 
 #include <epoxy/gl.h>
 
-#include <string_view>
+#include "core/embedded_file.h"
 
 namespace sdm::gl {
 
-/// A file of shaders/, embedded by the build (shaders.h, generated).
-struct ShaderSource {
-  std::string_view name;  ///< of the file
-  std::string_view text;
-};
+/// GLSL. The build embeds the files of shaders/ (shaders.h, generated).
+using ShaderSource = EmbeddedFile;
 
 /// A vertex and a fragment shader, linked. Needs a current context, for its whole life.
 class Program {

@@ -1,0 +1,21 @@
+# sdm_embed_files(<target> HEADER <header> NAMESPACE <namespace> FILES <file>... [CHECK <command line>...])
+# Compiles files into the target, as EmbeddedFile constants of a generated header: site_polygon.vert becomes
+# kSitePolygonVert. The header lies in the folder of the build that mirrors the calling one. Paths are relative
+# to the calling folder. CHECK: lines "COMMAND ..." that run first; if one fails, so does the build.
+function(sdm_embed_files target)
+  cmake_parse_arguments(ARG "" "HEADER;NAMESPACE" "FILES;CHECK" ${ARGN})
+  set(files)
+  foreach(file ${ARG_FILES})
+    cmake_path(ABSOLUTE_PATH file NORMALIZE)
+    list(APPEND files ${file})
+  endforeach()
+  set(script ${PROJECT_SOURCE_DIR}/cmake/SdmEmbedFiles.cmake)
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/${ARG_HEADER})
+  add_custom_command(OUTPUT ${output}
+    ${ARG_CHECK}
+    COMMAND ${CMAKE_COMMAND} -DHEADER=${output} -DNAMESPACE=${ARG_NAMESPACE} "-DFILES=${files}" -P ${script}
+    DEPENDS ${files} ${script}
+    COMMENT "Embedding ${ARG_FILES}"
+    VERBATIM)
+  target_sources(${target} PRIVATE ${output})
+endfunction()

@@ -1,0 +1,47 @@
+// Cloth by extended position-based dynamics: M. Macklin, M. Müller and N. Chentanez, "XPBD: Position-Based
+// Simulation of Compliant Constrained Dynamics" (2016), with substeps of one iteration (M. Macklin et al.,
+// "Small Steps in Physics Simulation", 2019).
+#pragma once
+
+#include <sdm/sites.h>
+
+#include <span>
+#include <vector>
+
+#include "scenes/spatial_hash.h"
+
+namespace sdm::scenes {
+
+/// A square of n × n particles of mass 1, connected by springs along rows, columns and diagonals; springs
+/// between every second particle of a row or column resist bending.
+class Cloth {
+ public:
+  /// A square of this side length in the plane z = 0, centred at the origin.
+  Cloth(std::uint32_t n, double side);
+
+  /// At rest. Vertex y·n + x is the particle of column x and row y.
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] std::span<Vec3> positions() { return positions_; }
+  /// The least distance between particles, and of particles to solids, that contacts maintain.
+  [[nodiscard]] double thickness() const { return thickness_; }
+  /// Advances by dt seconds under gravity, with contacts with the solids and with itself.
+  void step(double dt, std::span<const Sites> solids);
+
+ private:
+  struct Spring {
+    std::uint32_t a, b;
+    double length, compliance;
+  };
+  void add_spring(std::uint32_t a, std::uint32_t b, double compliance);
+  void solve_springs(double dt);
+  void resolve_self_contacts();
+  void resolve_contacts(const Sites& solid);
+
+  Mesh mesh_;
+  double thickness_;
+  std::vector<Spring> springs_;
+  SpatialHash hash_;
+  std::vector<Vec3> positions_, previous_, velocities_;
+};
+
+}  // namespace sdm::scenes

@@ -1,0 +1,16 @@
+#include "scenes/letters.h"
+
+#include "io/read/formats.h"
+#include "scenes/mesh_files.h"
+
+namespace sdm::scenes {
+
+Mesh letter_e() {
+  return to_mesh(read_ply(kLetterEPly.bytes));
+}
+
+Mesh letter_g() {
+  return to_mesh(read_ply(kLetterGPly.bytes));
+}
+
+}  // namespace sdm::scenes

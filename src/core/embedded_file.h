@@ -1,0 +1,17 @@
+// A file that the build compiles into the program.
+#pragma once
+
+#include <string_view>
+
+namespace sdm::core {
+
+struct EmbeddedFile {
+  std::string_view name;   ///< without its folder
+  std::string_view bytes;  ///< lives as long as the program
+};
+
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // the vocabulary of every folder
+}
