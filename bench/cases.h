@@ -1,4 +1,4 @@
-// What `compare` measures.
+// The cases of `compare`.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace sdm::bench {
 
-/// A number that a case measures, and what is asked of it.
+/// A number that a case measures.
 struct Figure {
   std::string key{};
   double value = 0;
@@ -24,7 +24,7 @@ struct Figure {
 };
 
 struct Outcome {
-  bool verified = false;          ///< the results, before anything was timed; else nothing was
+  bool verified = false;          ///< whether the results were verified; nothing is timed otherwise
   std::vector<Figure> figures{};  ///< the case's own first
   std::size_t texels = 0;         ///< of our map or maps
   unsigned threads = 1;           ///< of ours

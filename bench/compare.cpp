@@ -1,9 +1,9 @@
 // Our maps against their peers: one case a row, measured side by side in one run, after the results have been
-// verified at every texel. Ratios of medians are what counts, for times depend on the machine.
+// verified at every texel. Compare ratios of medians; absolute times depend on the machine.
 //
 //   build/dev/bench/compare [CASE...] [--json FILE] [--list] [--repetitions N]
 //
-// Exits with 1 if a result is wrong; that a figure is missed is told, and no failure.
+// Exits with 1 if a result is wrong.
 #include <sdm/error.h>
 
 #include <CLI/CLI.hpp>

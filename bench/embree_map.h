@@ -11,7 +11,7 @@
 
 namespace sdm::bench {
 
-/// What Embree is given and gives, in single precision as Embree itself.
+/// Input and output of Embree, in single precision.
 struct EmbreeTexel {
   Vec3f point{};
   Vec3f vector{};

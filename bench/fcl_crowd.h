@@ -10,7 +10,7 @@
 
 namespace sdm::bench {
 
-/// What FCL says of all near pairs of meshes, on one thread.
+/// FCL's results for all near pairs of meshes, on one thread.
 class FclCrowd {
  public:
   explicit FclCrowd(std::span<const Mesh> meshes);

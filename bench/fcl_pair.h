@@ -9,7 +9,7 @@
 
 namespace sdm::bench {
 
-/// What FCL says of two meshes, the second moved by a rigid pose.
+/// FCL's results for two meshes, the second moved by a rigid pose.
 class FclPair {
  public:
   FclPair(const Mesh& o1, const Mesh& o2);

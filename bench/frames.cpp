@@ -56,7 +56,7 @@ struct Times {
   std::size_t wrong = 0;         ///< frames
 };
 
-/// Whether what was told from some samples is what all of them say.
+/// Whether the results from the culled samples equal those from all samples.
 bool agree(ProximityQuery& query, const std::array<DistanceMap, 2>& maps) {
   double least = std::numeric_limits<double>::infinity(), deepest = 0;
   for (const DistanceMap& map : maps)
@@ -68,7 +68,8 @@ bool agree(ProximityQuery& query, const std::array<DistanceMap, 2>& maps) {
   Box box = bounds(query.surface(0).mesh());
   extend(box, bounds(query.surface(1).mesh()));
   const double tolerance = 2e-6 * diagonal(box);
-  const BoundedLength &separation = query.separation(), depth = query.penetration_depth().value_or(BoundedLength{});
+  const BoundedLength &separation = query.separation(),
+                      depth = query.penetration_depth().value_or(BoundedLength{});
   const bool exact = separation.kind == Certainty::exact;
   return (exact ? separation.value <= least + tolerance : std::abs(separation.value - least) <= tolerance) &&
          std::abs(depth.value - deepest) <= tolerance;
@@ -90,7 +91,7 @@ Times measure(const Motion& motion, const ProximityOptions& options) {
     times.samples_used += query.samples_used();
     times.wrong += !agree(query, maps);
   };
-  frame(motion.frames.front());  // what is made once is made here
+  frame(motion.frames.front());  // one-time initialisation
   times = {};
   for (const auto& positions : motion.frames) frame(positions);
   return times;

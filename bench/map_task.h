@@ -1,4 +1,4 @@
-// A map that we compute and that Embree is asked for.
+// A map computed by sdm and by Embree.
 #pragma once
 
 #include <sdm/map.h>
@@ -24,8 +24,8 @@ class MapTask {
   /// Moves the vertices: ours are refitted; Embree is given the new texels, and its tree is built anew.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
-  /// Does both maps, and tells whether they agree at every texel to 1e-6 of the diagonal of both meshes' box.
-  /// Says on stderr where they do not.
+  /// Computes both maps and returns whether they agree at every texel to 1e-6 of the diagonal of both meshes'
+  /// box. Says on stderr where they do not.
   [[nodiscard]] bool agrees();
 
   [[nodiscard]] std::size_t texels() const { return queries_.size(); }

@@ -1,4 +1,4 @@
-// Times of works that take turns.
+// Interleaved timing of several tasks.
 #pragma once
 
 #include <functional>

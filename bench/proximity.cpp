@@ -3,7 +3,7 @@
 //
 //   build/dev/bench/proximity [PAIR...] [--poses N] [--json FILE] [--list]
 //
-// Exits with 1 if a result is wrong; that FCL is faster somewhere is told, and no failure.
+// Exits with 1 if a result is wrong.
 #include <sdm/error.h>
 #include <sdm/threads.h>
 #include <sdm/transform.h>

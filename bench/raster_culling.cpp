@@ -1,7 +1,7 @@
-// How culling pays in the gl engine (the paper's 4.2): prints a Markdown table of what is tested, clipped and
-// drawn a texel, and of the time, with and without the bounds on distance, for both ways of clipping. Fails
-// unless bounds change no bit of a map, all maps agree with the cpu engine, and their counters obey the laws
-// of <sdm/gl.h>.
+// The effect of culling in the gl engine (the paper's 4.2): prints a Markdown table of what is tested,
+// clipped and drawn a texel, and of the time, with and without the bounds on distance, for both ways of
+// clipping. Fails unless bounds change no bit of a map, all maps agree with the cpu engine, and their
+// counters obey the laws of <sdm/gl.h>.
 //
 //   build/dev/bench/raster_culling [--resolution N] [--device NAME]
 #include <sdm/sdm.h>
@@ -90,8 +90,7 @@ void print_heading() {
 void print_row(const Scene& scene, const GlOptions& options, const Measured& measured,
                double ms_with_bounds) {
   const GlReport& r = *measured.map.raster;
-  std::printf("| %s | %s | %s |", scene.name.c_str(),
-              options.clip == GlClip::planes ? "planes" : "stencil",
+  std::printf("| %s | %s | %s |", scene.name.c_str(), options.clip == GlClip::planes ? "planes" : "stencil",
               options.bound_culling ? "yes" : "no");
   for (const std::uint64_t count :
        {r.pairs, r.bound_tests, r.obb_tests, r.clipped_away + r.polygons, r.polygons, r.fragments})
@@ -150,7 +149,7 @@ std::vector<Scene> scenes(std::uint32_t resolution) {
 int run(int argc, char** argv) {
   std::uint32_t resolution = 256;
   std::string device;
-  CLI::App app{"How culling pays in the gl engine"};
+  CLI::App app{"The effect of culling in the gl engine"};
   app.add_option("--resolution", resolution, "Texels along each side of the maps")->capture_default_str();
   app.add_option("--device", device, "A part of the name of the device that draws");
   CLI11_PARSE(app, argc, argv);

@@ -1,4 +1,4 @@
-// What the counters of the gl engine must satisfy.
+// Invariants of the gl engine's counters.
 #pragma once
 
 #include <sdm/map.h>

@@ -24,7 +24,7 @@ struct Shown {
   bool only_inside = false;
 };
 
-/// What is seen at a point of the picture.
+/// The surface point visible at a pixel.
 struct Seen {
   std::uint32_t object = kNone;  ///< index into the list of what is shown, or kNone
   std::uint32_t texel = kNone;   ///< the one whose sample is nearest in the atlas

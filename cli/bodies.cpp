@@ -30,7 +30,8 @@ struct BodiesCommand {
 };
 
 /// The distance of each vertex of a body to the nearest of the others, signed as its map is.
-std::vector<float> nearest_vertex_distances(const sdm::MultiBodyQuery& bodies, std::size_t on, double max_distance) {
+std::vector<float> nearest_vertex_distances(const sdm::MultiBodyQuery& bodies, std::size_t on,
+                                            double max_distance) {
   const sdm::Mesh& mesh = bodies.surface(on).mesh();
   std::vector<float> nearest(mesh.positions.size(), std::nanf(""));
   for (std::size_t to = 0; to < bodies.size(); ++to) {
@@ -125,14 +126,13 @@ void run(BodiesCommand command) {
 }
 
 void add_options(CLI::App& app, BodiesCommand& c) {
-  app.add_option("FILE", c.files, "A mesh for each body (OBJ, PLY, STL, OFF, glTF, 3DS), two at least")
+  app.add_option("FILE", c.files, "One mesh per body (OBJ, PLY, STL, OFF, glTF, 3DS), at least two")
       ->required()
       ->expected(2, CLI::detail::expected_max_vector_size);
   add_output_option(app, c.out)
       ->required(false)
-      ->description("The folder of the maps of each body to all others, made if it is not there");
-  app.add_option("--max-distance", c.options.max_distance,
-                 "Leave out pairs, and texels, that are farther apart than D")
+      ->description("Output folder for the map of each body to all others, created if missing");
+  app.add_option("--max-distance", c.options.max_distance, "Omit pairs, and texels, farther apart than D")
       ->check(number("a positive number", [](double x) { return x > 0; }))
       ->type_name("D");
   add_proximity_options(app, c.options.exact, c.units);
@@ -143,10 +143,11 @@ void add_options(CLI::App& app, BodiesCommand& c) {
 }  // namespace
 
 void add_bodies_command(CLI::App& app) {
-  CLI::App* bodies =
-      app.add_subcommand("bodies", "Tell how many meshes meet: separation, collision and depth of all pairs");
+  CLI::App* bodies = app.add_subcommand(
+      "bodies", "Compute separation, collision and penetration depth of all near pairs of many meshes");
   bodies->footer(
-      "MultiBodyQuery are numbered from 0 as they are given. With -o, each has a folder of that number: its map as "
+      "MultiBodyQuery are numbered from 0 as they are given. With -o, each has a folder of that number: its "
+      "map as "
       "`sdm map` writes it, to the nearest of the other bodies, and body.npy, which body that is.\n\n"
       "Example, all pairs that are nearer than 5:\n"
       "  sdm bodies part1.stl part2.stl housing.stl --max-distance 5");

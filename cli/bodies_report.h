@@ -1,4 +1,4 @@
-// What was found of many bodies, as JSON and as a table. The keys are documented in docs/proximity.md.
+// The results of multi-body queries, as JSON and as a table. The keys are documented in docs/proximity.md.
 #pragma once
 
 #include <sdm/multi_body_query.h>

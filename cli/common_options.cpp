@@ -3,7 +3,7 @@
 #include "option_checks.h"
 
 CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder) {
-  return app.add_option("-o,--output", folder, "The folder of the results, made if it is not there")
+  return app.add_option("-o,--output", folder, "Output folder, created if missing")
       ->required()
       ->check(CLI::Validator(
           [](const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }, ""))
@@ -12,7 +12,7 @@ CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder) {
 
 void add_transform_option(CLI::App& app, const std::string& name, const std::string& mesh,
                           std::string& steps) {
-  app.add_option(name, steps, mesh + ", placed by steps such as fit,rotate:0:90:0,scale:2,translate:0.8:0:0")
+  app.add_option(name, steps, mesh + ": transform steps, such as fit,rotate:0:90:0,scale:2,translate:0.8:0:0")
       ->check(check_transform)
       ->type_name("STEPS");
 }
@@ -27,12 +27,12 @@ CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, cons
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh) {
   add_choice<sdm::AtlasKind>(
       app, "--atlas", atlas.kind,
-      "How " + mesh + " is laid out in the map: few charts, a chart a triangle, or its own UVs",
+      "How " + mesh + " is parametrised: few charts, one chart per triangle, or its own UVs",
       {{"charts", sdm::AtlasKind::charts},
        {"triangles", sdm::AtlasKind::triangles},
        {"uv", sdm::AtlasKind::uv}});
   app.add_option("--max-stretch", atlas.max_stretch,
-                 "Charts: the largest growth of a length from map to surface")
+                 "Charts: the largest stretch, the factor by which lengths grow from map to surface")
       ->check(number("a number above 1", [](double x) { return x > 1; }))
       ->type_name("S")
       ->capture_default_str();
@@ -40,24 +40,24 @@ void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::stri
 
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range) {
   add_choice<sdm::Colormap>(app, "--colormap", picture.colormap,
-                            "Colours; auto: diverging where distances have both signs, else viridis",
+                            "Colormap; auto: diverging if distances have both signs, otherwise viridis",
                             {{"auto", sdm::Colormap::automatic},
                              {"viridis", sdm::Colormap::viridis},
                              {"diverging", sdm::Colormap::diverging},
                              {"paper2006", sdm::Colormap::paper2006}});
-  app.add_option("--range", range, "The distances at the ends of the colours")
+  app.add_option("--range", range, "The distances at the ends of the colour scale")
       ->expected(2)
       ->check(number("a number", [](double) { return true; }))
       ->type_name("LO HI");
   app.add_option("--units", picture.units,
-                 "Of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
+                 "Units of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
       ->type_name("NAME");
 }
 
 void add_proximity_options(CLI::App& app, bool& exact, std::string& units) {
   app.add_flag("--exact", exact,
-               "Separation and collision from the triangles themselves, not from samples with bounds");
-  app.add_option("--units", units, "Of the meshes, for what is printed and drawn")->type_name("NAME");
+               "Compute separation and collision from the triangles instead of from samples with bounds");
+  app.add_option("--units", units, "Units of the meshes, for printed and drawn values")->type_name("NAME");
 }
 
 void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
@@ -67,7 +67,7 @@ void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--json", json, "Print " + json_prints);
-  app.add_flag("--quiet", quiet, "Print nothing but errors, and what --json asks for");
+  app.add_flag("--quiet", quiet, "Print only errors, and the JSON if requested");
 }
 
 void check_range(const std::vector<double>& range) {

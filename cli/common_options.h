@@ -18,14 +18,14 @@ void add_transform_option(CLI::App& app, const std::string& name, const std::str
 /// Returns --resolution; `maps` are those that it is of.
 CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
                                    const std::string& maps = "the map");
-/// `mesh` is what is laid out.
+/// `mesh` names the mesh that is parametrised.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
 /// --exact and --units of commands that print proximity.
 void add_proximity_options(CLI::App& app, bool& exact, std::string& units);
-/// --threads, --json and --quiet; `json_prints` what.
+/// --threads, --json and --quiet; `json_prints` describes the JSON for the help text.
 void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
                      const std::string& json_prints);
 
-/// Throws CLI::ValidationError for a range that is none.
+/// Throws CLI::ValidationError unless the range is empty or increasing.
 void check_range(const std::vector<double>& range);

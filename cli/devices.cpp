@@ -35,7 +35,7 @@ void print_table(std::ostream& out, const std::vector<sdm::GlDevice>& devices) {
 
 void add_devices_command(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("devices", "List what --engine gl can run on, in the order in which it chooses");
+      app.add_subcommand("devices", "List the devices for --engine gl, in order of preference");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON");
   command->footer("Example:\n  sdm devices");

@@ -1,4 +1,4 @@
-// `sdm devices`: what the gl engine can run on.
+// `sdm devices`: lists the devices for the gl engine.
 #pragma once
 
 namespace CLI {

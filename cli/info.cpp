@@ -92,8 +92,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("info", "Tell what a mesh is: counts, bounds, topology, area, volume");
+  CLI::App* command = app.add_subcommand("info", "Print counts, bounds, topology, area and volume of a mesh");
   const auto options = std::make_shared<Options>();
   command->add_option("MESH", options->file, "OBJ, PLY, STL, OFF, glTF, GLB or 3DS file")->required();
   command->add_flag("--json", options->json, "Print JSON");

@@ -1,4 +1,4 @@
-// `sdm info MESH`: what a mesh is.
+// `sdm info MESH`: counts, bounds and topology of a mesh.
 #pragma once
 
 namespace CLI {

@@ -20,14 +20,13 @@
 namespace {
 
 void flush_output() {
-  if (!std::cout.flush()) throw sdm::Error("cannot write to the standard output; where it goes may be full");
+  if (!std::cout.flush()) throw sdm::Error("cannot write to the standard output; the disk may be full");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Surface distance maps: how far one triangle mesh is from another, everywhere on its surface.",
-               "sdm");
+  CLI::App app("Surface distance maps: the distance from everywhere on one triangle mesh to another.", "sdm");
   app.set_version_flag("--version", std::string("sdm ") + sdm::kVersion);
   app.require_subcommand(0, 1);
   app.footer(

@@ -1,4 +1,4 @@
-// What commands write of a map.
+// The output files of a map.
 #pragma once
 
 #include <sdm/io.h>

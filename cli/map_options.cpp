@@ -5,8 +5,9 @@
 
 void add_options(CLI::App& app, MapCommand& c) {
   const auto positive = number("a positive number", [](double x) { return x > 0; });
-  app.add_option("O1", c.o1, "The mesh that is measured on (OBJ, PLY, STL, OFF, glTF, 3DS)")->required();
-  app.add_option("O2", c.o2, "The mesh that distances are measured to")->required();
+  app.add_option("O1", c.o1, "The mesh on which distances are measured (OBJ, PLY, STL, OFF, glTF, 3DS)")
+      ->required();
+  app.add_option("O2", c.o2, "The mesh to which distances are measured")->required();
   add_output_option(app, c.out);
   app.add_flag("--both", c.both, "Measure O2 as well: results in DIR/o1 and DIR/o2");
 
@@ -14,27 +15,27 @@ void add_options(CLI::App& app, MapCommand& c) {
   add_transform_option(app, "--transform-o2", "O2", c.transform_o2);
 
   CLI::Option* resolution = add_resolution_option(app, c.atlas);
-  app.add_option(
-         "--precision", c.precision,
-         "Instead: as many texels as it takes for no point to be farther than EPS from a texel's sample, so "
-         "that distances between samples are known to EPS (error_bound)")
+  app.add_option("--precision", c.precision,
+                 "Instead: choose the resolution so that every surface point is within EPS of a sample, and "
+                 "distances between samples are known to within EPS (error_bound)")
       ->check(positive)
       ->type_name("EPS")
       ->excludes(resolution);
   add_layout_options(app, c.atlas, "O1");
 
-  app.add_option("--max-distance", c.map.max_distance, "Texels farther than this hold no value")
+  app.add_option("--max-distance", c.map.max_distance, "Texels farther than this have no value")
       ->check(positive)
       ->type_name("D");
   add_choice<sdm::SignMethod>(app, "--sign", c.map.sign,
-                              "How the inside of O2 (negative) is told; auto: only where O2 is closed",
+                              "How the inside of O2 (negative) is determined; auto: pseudonormal if O2 is "
+                              "closed and orientable, otherwise none",
                               {{"auto", sdm::SignMethod::automatic},
                                {"none", sdm::SignMethod::none},
                                {"pseudonormal", sdm::SignMethod::pseudonormal},
                                {"winding", sdm::SignMethod::winding}});
   add_choice<sdm::EngineKind>(
       app, "--engine", c.map.engine,
-      "The fast engine, the plain one to compare it with, or the paper's, which draws with OpenGL",
+      "cpu: fast; reference: plain, to verify the others; gl: the paper's, using OpenGL",
       {{"cpu", sdm::EngineKind::cpu},
        {"reference", sdm::EngineKind::reference},
        {"gl", sdm::EngineKind::gl}});
@@ -43,18 +44,18 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->type_name("NAME");
   add_choice<sdm::GlClip>(
       app, "--clip", c.map.raster.clip,
-      "gl: what keeps polygons within faces of O1, planes or, as in the paper, a cache of stencil values",
+      "gl: how polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil cache",
       {{"planes", sdm::GlClip::planes}, {"stencil", sdm::GlClip::stencil}});
   app.add_option("--stencil-values", c.map.raster.stencil_values,
-                 "gl, --clip stencil: how many values the faces share")
+                 "gl, --clip stencil: the number of stencil values")
       ->check(whole_number(1, 255))
       ->type_name("K")
       ->capture_default_str();
   app.add_flag_callback(
       "--no-bound-culling", [&c] { c.map.raster.bound_culling = false; },
-      "gl: keep sites that upper bounds on the distance rule out; the map is the same");
+      "gl: do not cull sites by upper bounds on the distance; the map is unchanged");
   app.add_option("--tolerance", c.picture.tolerance,
-                 "Colour bands and exit code 3 where a distance is above D, inside or outside")
+                 "Colour bands, and exit code 3 if any distance exceeds D, inside or outside")
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
       ->type_name("D");
 
@@ -66,7 +67,7 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
   check_range(c.range);
   if (c.picture.tolerance && *c.picture.tolerance > c.map.max_distance)
     throw CLI::ValidationError("--tolerance",
-                               "must not be above --max-distance, which hides what exceeds it");
+                               "must not be greater than --max-distance, beyond which texels have no value");
   for (const char* option : {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling"})
     if (app.count(option) > 0 && c.map.engine != sdm::EngineKind::gl)
       throw CLI::ValidationError(option, "needs --engine gl");

@@ -1,4 +1,4 @@
-// What options of several commands accept.
+// Validators for options of several commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// Steps of sdm::parse_transform: what is wrong with them, or nothing.
+/// Checks steps for sdm::parse_transform; returns the fault, or an empty string.
 [[nodiscard]] std::string check_transform(const std::string& text);
 
 /// A finite number that is accepted.

@@ -55,7 +55,7 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::remove_traces() {
   std::error_code ignored;
   fs::remove_all(staging_, ignored);
-  // Folders with results in them are not empty, and stay.
+  // Folders that contain results are not empty and remain.
   for (fs::path made = folder_; made != existing_; made = made.parent_path()) fs::remove(made, ignored);
 }
 
@@ -76,7 +76,8 @@ void OutputFolder::commit() {
   for (const auto& entry : fs::recursive_directory_iterator(staging_)) {
     if (!entry.is_regular_file()) continue;
     moves.emplace_back(entry.path(), folder_ / fs::relative(entry.path(), staging_));
-    if (fs::is_directory(moves.back().second)) fail(moves.back().second, "a folder has the name of a result");
+    if (fs::is_directory(moves.back().second))
+      fail(moves.back().second, "a folder with the name of an output file exists");
   }
   for (const auto& [from, to] : moves) create_folder(to.parent_path());
   for (const auto& [from, to] : moves) {

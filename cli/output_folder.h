@@ -1,4 +1,4 @@
-// The folder of a run's results, which gets all of them or stays as it was.
+// The output folder of a command, which receives all files or is left unchanged.
 #pragma once
 
 #include <filesystem>

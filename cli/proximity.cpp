@@ -50,11 +50,11 @@ void run(PairCommand command) {
 }  // namespace
 
 void add_proximity_command(CLI::App& app) {
-  CLI::App* proximity =
-      app.add_subcommand("proximity", "Tell how two meshes meet: separation, collision, depth, contacts");
+  CLI::App* proximity = app.add_subcommand(
+      "proximity", "Compute separation, collision, penetration depth and contacts of two meshes");
   proximity->footer(
-      "Every number says what it is worth: exact, bounded (with its bounds) or an estimate.\n\n"
-      "Example, two meshes that meet:\n"
+      "Every number is marked as exact, bounded (with its bounds) or an estimate.\n\n"
+      "Example, two meshes in contact:\n"
       "  sdm proximity bunny.obj armadillo.off --transform-o1 fit --transform-o2 fit,translate:0.1:0:0");
   const auto command = std::make_shared<PairCommand>();
   add_options(*proximity, *command, {"A mesh (OBJ, PLY, STL, OFF, glTF, 3DS)", "The other mesh"});

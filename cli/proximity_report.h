@@ -1,4 +1,4 @@
-// What queries found, as JSON and in words. The keys are documented in docs/proximity.md.
+// The results of proximity queries, as JSON and as text. The keys are documented in docs/proximity.md.
 #pragma once
 
 #include <sdm/proximity_query.h>

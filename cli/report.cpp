@@ -164,7 +164,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
     text += "            " + std::to_string(outcome.beyond_max_distance) +
             " texels are farther than --max-distance\n";
   text += "  error     at most " + number(outcome.error_bound) + unit +
-          ", anywhere between the texels (where the values are exact)\n";
+          ", everywhere between the texels (whose values are exact)\n";
   if (outcome.tolerance)
     text += std::string("  tolerance ") + (outcome.tolerance->within ? "kept" : "exceeded on ") +
             (outcome.tolerance->within

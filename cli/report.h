@@ -1,4 +1,4 @@
-// What a run found, as JSON and in words. The keys are documented in docs/report.md.
+// The results of `sdm map`, as JSON and as text. The keys are documented in docs/report.md.
 #pragma once
 
 #include <sdm/io.h>
@@ -28,7 +28,7 @@ struct Tolerance {
   bool certified = true;  ///< `within` holds for every point of the surface
 };
 
-/// Wall-clock milliseconds. Steps that run at the same time each count in full.
+/// Wall-clock milliseconds. Overlapping steps are each counted in full.
 struct Times {
   double import = 0, atlas = 0, sites = 0, map = 0, output = 0, total = 0;
 };

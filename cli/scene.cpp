@@ -132,17 +132,16 @@ void run(const SceneCommand& command) {
 }  // namespace
 
 void add_scene_command(CLI::App& app) {
-  CLI::App* scene = app.add_subcommand("scene", "Make one of the paper's deforming scenes");
+  CLI::App* scene = app.add_subcommand("scene", "Generate one of the paper's deforming scenes");
   const auto command = std::make_shared<SceneCommand>();
   scene
-      ->add_option(
-          "SCENE", command->kind,
-          "letters that collide, bunnies that do, a figure that walks in a box, or a cloth that falls")
+      ->add_option("SCENE", command->kind,
+                   "colliding letters, colliding bunnies, a figure walking in a box, or a falling cloth")
       ->required()
       ->check(CLI::IsMember(kKinds))
       ->type_name("letters|bunnies|figure|cloth");
   add_output_option(*scene, command->out);
-  scene->add_option("--frames", command->frames, "How many, 60 a second")
+  scene->add_option("--frames", command->frames, "Number of frames, at 60 per second")
       ->check(CLI::Range(1, 100000).description(""))
       ->type_name("N")
       ->capture_default_str();
@@ -154,7 +153,7 @@ void add_scene_command(CLI::App& app) {
       ->capture_default_str();
   scene
       ->add_option("--mesh", command->mesh,
-                   "bunnies: the mesh to reduce, instead of that of Debian's glmark2-data")
+                   "bunnies: the mesh to simplify, instead of the one of Debian's glmark2-data")
       ->type_name("FILE");
   scene->add_option("--threads", command->threads, "Threads to use, 0 for all cores")
       ->check(CLI::Range(0, 1024).description(""))
@@ -162,11 +161,11 @@ void add_scene_command(CLI::App& app) {
       ->capture_default_str();
   scene->add_flag("--quiet", command->quiet, "Print nothing but errors");
   scene->footer(
-      "The files are what the forms of sequences read, and the same to the bit every time.\n\n"
+      "The files can be used as sequences. They are bit-identical every time.\n\n"
       "Example:\n  sdm scene letters -o letters");
   scene->callback([scene, command] {
     if (scene->count("--mesh") > 0 && command->kind != "bunnies")
-      throw CLI::ValidationError("--mesh", "needs the scene of the bunnies");
+      throw CLI::ValidationError("--mesh", "requires the scene bunnies");
     run(*command);
   });
 }

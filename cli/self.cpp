@@ -125,7 +125,7 @@ void add_self_command(CLI::App& app) {
   CLI::App* self =
       app.add_subcommand("self", "Measure the distance from everywhere on a mesh to the rest of it");
   self->footer(
-      "Every face passes over its own neighbourhood, and measures to all other faces.\n"
+      "Each face excludes a neighbourhood; distances are measured to all other faces.\n"
       "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb and report.json.\n\n"
       "Example, walls nearer than the way around them:\n"
       "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
@@ -136,18 +136,17 @@ void add_self_command(CLI::App& app) {
   add_output_option(*self, c.out);
   add_transform_option(*self, "--transform", "The mesh", c.transform);
   CLI::Option* rings =
-      self->add_option(
-              "--rings", c.self.exclusion.rings,
-              "What each face passes over: itself, the faces that share a vertex with it, and so on, K times")
+      self->add_option("--rings", c.self.exclusion.rings,
+                       "Each face excludes itself, the faces that share a vertex with it, and so on, K times")
           ->check(whole_number(1, 1 << 20))
           ->type_name("K")
           ->capture_default_str();
   self->add_option("--geodesic", c.self.exclusion.geodesic,
-                   "Instead: what is nearer than L along the surface, and a little more")
+                   "Instead: each face excludes what is closer than L along the surface (conservatively)")
       ->check(positive)
       ->type_name("L")
       ->excludes(rings);
-  self->add_option("--max-distance", c.self.max_distance, "Texels with nothing as near as D hold no value")
+  self->add_option("--max-distance", c.self.max_distance, "Texels without a surface within D have no value")
       ->check(positive)
       ->type_name("D");
   add_resolution_option(*self, c.atlas);

@@ -64,7 +64,7 @@ std::size_t common_frames(const Body& a, const Body& b) {
   if (b.still() || a.frames() == b.frames()) return a.frames();
   throw sdm::Error(a.input() + " has " + std::to_string(a.frames()) + " frames and " + b.input() + " has " +
                    std::to_string(b.frames()) +
-                   "; give two sequences of the same length, or one mesh that stays");
+                   "; give two sequences of the same length, or one mesh at rest");
 }
 
 std::string four_digits(std::size_t frame) {
@@ -73,7 +73,7 @@ std::string four_digits(std::size_t frame) {
   return text;
 }
 
-/// A run over the frames.
+/// Processes the frames of one command.
 class Run {
  public:
   explicit Run(const SequenceCommand& command)
@@ -100,9 +100,8 @@ class Run {
     }
     finish();
     if (stopped_)
-      throw sdm::Error(bad_.back().fault + "; " + std::to_string(frames_.size()) +
-                       " frames before it are in " + command_.out.string() +
-                       " (--keep-going leaves bad frames out)");
+      throw sdm::Error(bad_.back().fault + "; " + std::to_string(frames_.size()) + " earlier frames are in " +
+                       command_.out.string() + " (--keep-going skips bad frames)");
     return 0;
   }
 
@@ -227,29 +226,30 @@ class Run {
 
 void add_sequence_command(CLI::App& app) {
   CLI::App* sequence = app.add_subcommand(
-      "sequence", "Follow two bodies that deform: proximity, errors and maps, frame by frame");
+      "sequence", "Compute proximity, error bounds and maps of two deforming bodies, frame by frame");
   sequence->footer(
       "A sequence is a folder of numbered mesh files, a pattern such as walk_%04d.ply, mesh.obj+motion.npy "
       "with\n"
       "positions (T, V, 3), or a glTF file with morph targets; any other mesh file is a body at rest.\n"
-      "Writes frames.jsonl, frames.csv, plot.png, and of O1 the least, mean and largest distance over time:\n"
+      "Writes frames.jsonl, frames.csv, plot.png, and, for O1, the minimum, mean and maximum distance over "
+      "time:\n"
       "temporal.exr, min.png, mean.png, max.png.\n\n"
       "Example:\n"
       "  sdm scene letters -o letters\n"
       "  sdm sequence letters/E.ply+letters/E.npy letters/G.ply+letters/G.npy -o out");
   const auto command = std::make_shared<SequenceCommand>();
-  add_options(*sequence, command->pair, {"A sequence, or a mesh that stays", "The other one"});
+  add_options(*sequence, command->pair, {"A sequence, or a mesh at rest", "The other one"});
   add_output_option(*sequence, command->out);
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
       ->check(whole_number(1, 1000000))
       ->type_name("K");
-  sequence->add_option("--rate", command->rate, "Of glTF animations: frames a second; 0: one a key")
+  sequence->add_option("--rate", command->rate, "glTF animations: frames per second; 0: one frame per key")
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
       ->type_name("FPS");
-  sequence->add_flag("--keep-going", command->keep_going, "Leave out frames that cannot be read, and go on");
+  sequence->add_flag("--keep-going", command->keep_going, "Skip frames that cannot be read");
   sequence->add_flag("--no-temporal", command->no_temporal,
-                     "No maps over time: frames then need no whole map");
+                     "Do not compute maps over time; faster, because frames then need no complete map");
   sequence->callback([command] {
     const sdm::ThreadLimit limit(command->pair.threads);
     if (const int code = Run(*command)(); code != 0) throw CLI::RuntimeError(code);

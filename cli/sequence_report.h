@@ -1,4 +1,4 @@
-// What the frames of a sequence showed: as lines of JSON, as a table, as a plot. The keys and columns are
+// The results of a sequence, as lines of JSON, as a table and as a plot. The keys and columns are
 // documented in docs/sequences.md.
 #pragma once
 
@@ -33,7 +33,7 @@ struct BadFrame {
   std::string fault;
 };
 
-/// One line. `contacts` are those of the frame: the deepest of each patch is told.
+/// One line. `contacts` are those of the frame; the deepest of each contact patch is reported.
 [[nodiscard]] nlohmann::ordered_json to_json(const Frame& frame, std::span<const sdm::Contact> contacts);
 [[nodiscard]] nlohmann::ordered_json to_json(const BadFrame& frame);
 

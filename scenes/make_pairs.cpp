@@ -34,7 +34,7 @@ Mesh bunny(const std::filesystem::path& file) {
   constexpr const char* kDefault = "/usr/share/glmark2/models/bunny.obj";
   constexpr std::size_t kTriangles = 2000;
   if (file.empty() && !std::filesystem::exists(kDefault))
-    throw Error(std::string("there is no bunny at ") + kDefault +
+    throw Error(std::string("there is no mesh at ") + kDefault +
                 "; install Debian's glmark2-data, or give another mesh file");
   return placed(reduce_mesh(read_mesh(file.empty() ? kDefault : file), kTriangles), "fit,rotate:90:0:0");
 }

@@ -5,13 +5,13 @@
 
 namespace sdm {
 
-/// Bad input or a resource that is missing: one sentence that names the thing, the fault and what to do.
+/// Invalid input or a missing resource: one sentence that names the object, the fault and the remedy.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A progress callback asked to stop; nothing was produced.
+/// A progress callback requested cancellation; there is no result.
 class Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled") {}

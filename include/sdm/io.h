@@ -15,17 +15,16 @@
 namespace sdm {
 
 /// Reads OBJ, PLY, STL, OFF, glTF/GLB or 3DS, told apart by content first, then by extension. Polygons are
-/// triangulated; node transforms applied; all meshes of the file become one. Vertices of the file that the
-/// faces use are kept in their order, positions that are bit-identical become one vertex. The result is valid
-/// in the sense of validate().
+/// triangulated; node transforms applied; all meshes of the file become one. Vertices used by faces keep
+/// their order; bit-identical positions are welded. The result is valid in the sense of validate().
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& file);
 
 /// Binary PLY of the positions, in double precision, and triangles; read_mesh returns them to the bit.
 void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 
-/// Colours for looking at maps.
+/// Colour scales for images of maps.
 enum class Colormap {
-  automatic,  ///< diverging where the map has both signs; else viridis, which then uses its whole scale
+  automatic,  ///< diverging if the map has both signs, otherwise viridis over its whole range
   viridis,
   diverging,  ///< blue (negative) – white – red (positive), centred on zero
   paper2006,  ///< red (near) to green (far), as in the paper's figures
@@ -34,8 +33,8 @@ enum class Colormap {
 struct PictureOptions {
   Colormap colormap = Colormap::automatic;
   std::optional<std::array<double, 2>>
-      range{};                        ///< of the colours; else from the map (symmetric if diverging)
-  std::optional<double> tolerance{};  ///< bands: green within ±tolerance, and out of it by sign
+      range{};  ///< of the colour scale; by default from the map (symmetric if diverging)
+  std::optional<double> tolerance{};  ///< bands: green within ±tolerance, outside it by sign
   std::string units{};                ///< written in the legend: "mm", ...
 };
 
@@ -59,7 +58,7 @@ void write_voronoi_png(const std::filesystem::path& file, const Surface& surface
 /// direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
 void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
 
-/// A curve of a plot: one value for each place along the axis; NaN leaves a gap.
+/// A curve of a plot: one value per position on the axis; NaN leaves a gap.
 struct Curve {
   std::string name;
   std::vector<double> values;

@@ -20,7 +20,7 @@ namespace sdm {
 struct MapOptions {
   EngineKind engine = EngineKind::cpu;
   SignMethod sign = SignMethod::automatic;
-  /// Greater than 0, in units of the meshes. Texels farther than this hold no value (NaN).
+  /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
   double max_distance = std::numeric_limits<double>::infinity();
   GlOptions raster{};  ///< for EngineKind::gl
   Progress progress{};
@@ -45,7 +45,7 @@ struct DistanceMap {
 [[nodiscard]] DistanceMap compute_map(const Surface& surface, const Sites& sites,
                                       const MapOptions& options = {});
 
-/// The same into `map`, in the memory that it has where that suffices: for one frame after another. If it
+/// Writes into `map`, reusing its memory where possible: for sequences of frames. If it
 /// throws, the map's values are unspecified.
 void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options, DistanceMap& map);
 

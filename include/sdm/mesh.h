@@ -1,4 +1,4 @@
-/// Triangle meshes as they come: any soup, open or closed, manifold or not.
+/// Triangle meshes: any triangle soup, open or closed, manifold or not.
 #pragma once
 
 #include <sdm/types.h>
@@ -25,7 +25,7 @@ void validate(const Mesh& mesh);
 /// Bounds of all positions that a triangle refers to. Cost: linear.
 [[nodiscard]] Box bounds(const Mesh& mesh);
 
-/// What a mesh is, as `sdm info` prints it.
+/// Counts and topology of a mesh, as printed by `sdm info`.
 struct MeshInfo {
   std::size_t vertices = 0, triangles = 0, edges = 0;
   Box bounds;
@@ -34,11 +34,11 @@ struct MeshInfo {
   std::size_t nonmanifold_edges = 0;     ///< edges of three faces or more
   std::size_t nonmanifold_vertices = 0;  ///< vertices whose faces do not form one fan
   std::size_t degenerate_faces = 0;      ///< faces of zero area, repeated corners included
-  std::size_t duplicate_faces = 0;       ///< faces whose three vertices an earlier face has too
+  std::size_t duplicate_faces = 0;       ///< faces with the same three vertices as an earlier face
   std::size_t unused_vertices = 0;       ///< vertices of no face
   bool closed = false;                   ///< no boundary edge and no non-manifold edge
-  bool orientable = false;               ///< the faces can be turned so that all neighbours agree
-  bool oriented = false;                 ///< and they do agree as they are
+  bool orientable = false;               ///< the faces can be oriented consistently
+  bool oriented = false;                 ///< the faces are oriented consistently
   bool manifold = false;                 ///< no non-manifold edge or vertex
   bool has_uvs = false;
   double area = 0;

@@ -6,9 +6,10 @@
 
 namespace sdm {
 
-/// Called now and then, from one thread at a time, with the step at hand ("atlas", "map", ...) and the
+/// Called repeatedly, from one thread at a time, with the current step ("atlas", "map", ...) and the
 /// fraction of it that is done, in [0, 1]. Return false to cancel: the work then throws sdm::Cancelled.
-/// Whoever makes an OpenGL context current in it restores the former one: the gl engine's may be in use.
+/// A callback that makes an OpenGL context current must restore the previous one, which may be the gl
+/// engine's.
 using Progress = std::function<bool(std::string_view step, double fraction)>;
 
 }  // namespace sdm

@@ -1,4 +1,4 @@
-/// All of sdm but the reading and writing of files, which is <sdm/io.h>.
+/// All of sdm except reading and writing files, which is in <sdm/io.h>.
 #pragma once
 
 #include <sdm/atlas.h>

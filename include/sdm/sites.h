@@ -20,14 +20,14 @@ struct ClosestPoint {
   Vec3 point{};
   double distance = std::numeric_limits<double>::infinity();  ///< ≥ 0, = |point − query|
   std::uint32_t site = kNone;                                 ///< index among the sites of its type
-  SiteType type = SiteType::none;                             ///< none: nothing within the distance asked for
+  SiteType type = SiteType::none;                             ///< none: no site within the maximum distance
   std::uint32_t face = kNone;                                 ///< a face that the site belongs to
 };
 
 /// O2: the sites of a mesh with their regions of influence, pseudonormals, and an AABB tree.
 ///
 /// Vertices and faces are numbered as in the mesh, edges as in edges(). Duplicate faces, and degenerate faces
-/// with repeated corners, are ignored; other faces without area count by their edges and vertices.
+/// with repeated corners, are ignored; other faces without area contribute their edges and vertices.
 class Sites {
  public:
   /// Throws sdm::Error when the mesh is unusable (see validate). Cost: O(n log n), all cores.
@@ -36,9 +36,9 @@ class Sites {
   Sites(Sites&&) noexcept;
   Sites& operator=(Sites&&) noexcept;
 
-  /// Moves the vertices, keeping the triangles: everything is brought up to date in linear time (and a few
-  /// rays for each component of a closed mesh). Throws sdm::Error, and changes nothing, when the count
-  /// differs or a coordinate is not finite or beyond 1e37.
+  /// Moves the vertices and keeps the triangles. Cost: linear, and a few rays per component of a closed mesh.
+  /// Throws sdm::Error, and changes nothing, when the count differs or a coordinate is not finite or beyond
+  /// 1e37.
   void refit(std::span<const Vec3> positions);
 
   [[nodiscard]] const Mesh& mesh() const;
@@ -46,7 +46,7 @@ class Sites {
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const;
   /// Whether every edge has exactly two faces.
   [[nodiscard]] bool closed() const;
-  /// Whether the faces can be turned so that all neighbours agree; Sites does so for itself.
+  /// Whether the faces can be oriented consistently; Sites orients its own copy.
   [[nodiscard]] bool orientable() const;
 
  private:

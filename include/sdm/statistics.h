@@ -1,4 +1,4 @@
-/// Numbers about a map.
+/// Statistics of a map.
 #pragma once
 
 #include <sdm/map.h>
@@ -9,16 +9,16 @@
 
 namespace sdm {
 
-/// Of the texels that hold a finite value, each weighted by the area of surface that its centre stands for.
+/// Of the texels that hold a finite value, each weighted by the surface area of its texel.
 /// All are NaN when there are none.
 struct DistanceStatistics {
   std::size_t texels = 0;  ///< with a value
   std::size_t negative_texels = 0;
   double min = 0, max = 0, mean = 0, rms = 0;
-  double p50 = 0, p95 = 0, p99 = 0;  ///< the smallest distance below which that share of the area lies
+  double p50 = 0, p95 = 0, p99 = 0;  ///< area-weighted percentiles
 };
 
-/// Over `map.distance` as it is, signed or not. Throws sdm::Error when the map is not one of this surface.
+/// Over `map.distance` as it is, signed or not. Throws sdm::Error if the map does not belong to this surface.
 /// Cost: O(n log n) in texels.
 [[nodiscard]] DistanceStatistics statistics(const Surface& surface, const DistanceMap& map);
 

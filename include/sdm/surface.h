@@ -30,10 +30,9 @@ class Surface {
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
 
-  /// Moves the vertices, keeping the triangles and the atlas: every face's texels move with it, affinely; a
-  /// face whose vertices stay keeps its map to the bit. Throws sdm::Error, and changes nothing, when the
-  /// count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces, all cores; what is
-  /// asked for then is computed again.
+  /// Moves the vertices and keeps the triangles and the atlas: the samples of a face move affinely with it;
+  /// the map of a face whose vertices do not move is bit-identical. Throws sdm::Error, and changes nothing,
+  /// when the count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces, all cores.
   void refit(std::span<const Vec3> positions);
 
   [[nodiscard]] const Mesh& mesh() const;
@@ -64,11 +63,11 @@ class Surface {
   [[nodiscard]] double utilisation() const;
   /// The largest factor by which a length grows from atlas to surface, relative to the atlas's own scale (for
   /// `uv`: the scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for
-  /// `charts`. Of the mesh that the atlas was laid out for, whatever refit has made of it.
+  /// `charts`. Refers to the mesh that the atlas was laid out for, before any refit.
   [[nodiscard]] double max_stretch() const;
-  /// How far the surface strays from its samples. Every point p of it, on faces without texel or area too,
-  /// has a sample s_i with |p − s_i| ≤ sample_radii()[i]: no point is farther from its nearest sample than
-  /// the largest of them, the sampling bound. As distances are 1-Lipschitz,
+  /// Bounds the distance from any surface point to its nearest sample. Every point p of it, on faces without
+  /// texel or area too, has a sample s_i with |p − s_i| ≤ sample_radii()[i]: no point is farther from its
+  /// nearest sample than the largest of them, the sampling bound. As distances are 1-Lipschitz,
   ///
   ///     min over i of d_i − r_i  ≤  d(p)  ≤  max over i of d_i + r_i
   ///
@@ -77,7 +76,7 @@ class Surface {
   /// costs far less: linear in faces, samples and texels along edges, all cores. Throws sdm::Error when there
   /// is no memory for it.
   [[nodiscard]] double sampling_bound() const;
-  /// r_i of each of samples(), 0 where no other sample is in need of it. Valid until the next refit.
+  /// r_i of each sample; 0 if no surface point is assigned to it. Valid until the next refit.
   [[nodiscard]] std::span<const float> sample_radii() const;
   /// For each face a radius within which every one of its points has a sample, which may lie on another face.
   /// Valid until the next refit.

@@ -1,4 +1,4 @@
-/// How many cores the library may use.
+/// The number of threads that the library may use.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-/// Placing a mesh: lists of steps such as "fit,rotate:0:90:0,translate:0.8:0:0".
+/// Transforms as lists of steps, such as "fit,rotate:0:90:0,translate:0.8:0:0".
 #pragma once
 
 #include <sdm/mesh.h>
@@ -14,7 +14,7 @@ struct TransformStep {
   enum class Kind {
     fit,        ///< scale and move so that the longest side of the bounds is 1, centred at the origin
     scale,      ///< multiply by value[0], about the origin
-    rotate,     ///< turn by value degrees about X, then Y, then Z, through the origin, right-handed
+    rotate,     ///< rotate by value degrees about the X, then Y, then Z axis, right-handed
     translate,  ///< add value
   };
   Kind kind;
@@ -25,13 +25,13 @@ struct TransformStep {
 /// Throws sdm::Error that names the step at fault.
 [[nodiscard]] std::vector<TransformStep> parse_transform(std::string_view text);
 
-/// Applies the steps in order. Throws sdm::Error where a coordinate stops being finite. Cost: linear.
+/// Applies the steps in order. Throws sdm::Error if a coordinate becomes infinite. Cost: linear.
 void transform(Mesh& mesh, const std::vector<TransformStep>& steps);
 /// The same for points alone. Throws sdm::Error for `fit` too, which needs a mesh.
 void transform(std::span<Vec3> points, const std::vector<TransformStep>& steps);
 
-/// The steps with each `fit` replaced by the translation and the scale that it means for this mesh: to place
-/// all frames of a sequence as the first. Throws as transform does.
+/// Returns the steps with each `fit` replaced by its translation and scale for this mesh, so that all frames
+/// of a sequence are placed like the first. Throws as transform does.
 [[nodiscard]] std::vector<TransformStep> without_fit(Mesh mesh, const std::vector<TransformStep>& steps);
 
 }  // namespace sdm

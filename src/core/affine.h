@@ -1,4 +1,4 @@
-// Where a mesh stands: a rigid or any other affine map of its points.
+// The pose of a mesh: an affine map of its points.
 #pragma once
 
 #include "core/vec.h"
@@ -16,7 +16,7 @@ struct Affine {
   [[nodiscard]] Vec3 operator()(const Vec3& p) const { return linear(p) + offset; }
 };
 
-/// The map back; not finite where the map flattens space.
+/// The inverse map; not finite if the map is singular.
 inline Affine inverse(const Affine& map) {
   const auto& [x, y, z] = map.rows;
   const Vec3 columns[3] = {cross(y, z), cross(z, x), cross(x, y)};

@@ -40,7 +40,7 @@ std::span<const Sweep::Pair> Sweep::near_pairs(std::span<const Box> boxes, doubl
   std::iota(order_.begin(), order_.end(), 0u);
   std::ranges::sort(order_, {}, [&](std::uint32_t b) { return std::pair(boxes[b].lo[axis], b); });
   for (const std::uint32_t b : order_) {
-    // Boxes to come begin farther on: what ends too early for this one is of no more use.
+    // Later boxes begin farther along the axis, so boxes that end before this one are removed.
     std::erase_if(open_, [&](std::uint32_t o) {
       return kRoundedDown * (boxes[b].lo[axis] - boxes[o].hi[axis]) > reach;
     });

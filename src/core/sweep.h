@@ -10,7 +10,7 @@
 
 namespace sdm::core {
 
-/// The distance of two boxes, which is 0 where they meet; rounded down.
+/// The distance of two boxes, rounded down; 0 if they overlap.
 [[nodiscard]] double box_distance(const Box& a, const Box& b);
 
 /// Finds near boxes, again and again in the same memory.

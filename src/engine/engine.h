@@ -12,7 +12,7 @@
 
 namespace sdm::engine {
 
-/// Takes closest points as they are found: those of the points from `first` on.
+/// Receives closest points as they are found: those of the points from index `first`.
 using ClosestSink = std::function<void(std::size_t first, const sites::ClosestPacket& closest)>;
 
 /// Finds, for each point, the closest point of O2 within max_distance; type `none` where there is none. One

@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr uint32_t kParallelItems = 2048;  // a subtree of fewer is built by one thread
 
-// A box by how far it reaches against and along each axis, −lo and hi: a union reaches as far as the farther.
+// A box as its extents against and along each axis, −lo and hi, so that a union is a maximum.
 // The fourth lanes are spare.
 struct Bounds {
   alignas(32) float reach[2][4];
@@ -162,7 +162,7 @@ class Builder {
   };
 
   // The cut of least cost, area × leaves summed over both sides, by the surface area heuristic: a leaf is
-  // visited as a whole, full or not. Of many items a sample tells as much as all.
+  // visited as a whole, full or not. For many items, a sample of them suffices.
   Cut best_cut(const Bounds* items, uint32_t item_count, const Binning& binning) const {
     constexpr int kBins = Binning::kBins;
     constexpr uint32_t kSample = 512;

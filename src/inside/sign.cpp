@@ -9,7 +9,7 @@
 namespace sdm {
 namespace {
 
-// Why O2 has no inside, as a clause, or nothing if it has one.
+// The reason why O2 has no inside, as a clause; empty if it has one.
 std::string open_reason(const sites::SitesData& sites) {
   std::size_t boundary = 0, nonmanifold = 0;
   for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
@@ -31,13 +31,13 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
     case SignMethod::none:
       return {SignMethod::none, "asked for"};
     case SignMethod::winding:
-      return {SignMethod::winding, open.empty() ? "asked for; O2 is closed and orientable"
-                                                : "asked for; an estimate, because " + open};
+      return {SignMethod::winding, open.empty() ? "requested; O2 is closed and orientable"
+                                                : "requested; an estimate, because " + open};
     case SignMethod::pseudonormal:
       if (!open.empty())
         throw Error("distances cannot be signed by pseudonormals: " + open +
-                    "; take sign none, or winding for an estimate");
-      return {SignMethod::pseudonormal, "asked for; O2 is closed and orientable"};
+                    "; use sign none, or winding for an estimate");
+      return {SignMethod::pseudonormal, "requested; O2 is closed and orientable"};
     case SignMethod::automatic:
       break;
   }

@@ -7,7 +7,8 @@
 namespace sdm::inside {
 namespace {
 
-// A box of the tree where the mesh stands, enlarged by far more than double precision rounds.
+// A box of the tree in the coordinates of the mesh, enlarged by much more than the rounding error of double
+// precision.
 Box posed(const hierarchy::FloatBox& box, const UnitFrame& frame, const Affine& pose) {
   constexpr double kRounding = 1e-13;
   Vec3 centre, half;
@@ -89,7 +90,7 @@ bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& poi
   const Box box = posed(solid.tree.nodes[0].box, solid.frame, pose);
   if (!sdm::contains(box, point)) return false;
   const double length = 2 * diagonal(box);
-  // Segments along (1, t, t²) that meet an edge are passed over. Those that meet the same edge lie in one
+  // Segments along (1, t, t²) that intersect an edge are skipped. Those that meet the same edge lie in one
   // plane, and no plane through the point holds more than two of them: this ends.
   for (double t = 0.0137035999;; t += 0.0072973525)
     if (const auto turns = winding(solid, pose, point, point + length * Vec3{1, t, t * t}, stack))

@@ -15,9 +15,9 @@ namespace sdm::inside {
   return sites.closed && sites.orientation.orientable;
 }
 
-/// How often the faces of a closed mesh moved by `pose`, turned outwards, wind around p: told by the segment
-/// to a point q outside the mesh. Nothing where that meets an edge. Exact, if p does not lie on the surface.
-/// Cost: O(log n) and the faces that the segment meets.
+/// The winding number of a closed mesh moved by `pose`, with outward-oriented faces, around p, from the
+/// crossings of the segment to a point q outside the mesh. Empty if the segment intersects an edge. Exact if
+/// p does not lie on the surface. Cost: O(log n) and the faces that the segment meets.
 [[nodiscard]] std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p,
                                          const Vec3& q, std::vector<std::uint32_t>& stack);
 

@@ -1,4 +1,4 @@
-// Writes what engines find into a map.
+// Stores the results of engines in a map.
 #pragma once
 
 #include <sdm/map.h>

@@ -35,7 +35,7 @@ std::vector<float> texel_areas(const Surface& surface) {
 
 void check(const Surface& surface, const DistanceMap& map) {
   if (map.distance.size() != surface.texel_faces().size())
-    throw Error("the map is not one of this surface: it has another number of texels");
+    throw Error("the map belongs to another surface: its number of texels differs");
 }
 
 }  // namespace

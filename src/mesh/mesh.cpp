@@ -32,7 +32,7 @@ void validate_triangles(const Mesh& mesh) {
                     std::to_string(v) + " of " + std::to_string(mesh.positions.size()));
     any_area = any_area || has_area(mesh, mesh.triangles[f]);
   }
-  if (!any_area) throw Error("all triangles are degenerate: none has an area");
+  if (!any_area) throw Error("all triangles are degenerate: none has positive area");
 }
 
 void validate_uvs(const Mesh& mesh) {
@@ -54,7 +54,7 @@ void mesh::validate_positions(std::span<const Vec3> positions) {
     for (const double x : positions[v])
       if (std::abs(x) > kMaxCoordinate)
         throw Error("vertex " + std::to_string(v) +
-                    " has a coordinate beyond 1e37, too large to compute with; scale the mesh down");
+                    " has a coordinate beyond 1e37, too large for the computation; scale the mesh down");
   }
 }
 
@@ -75,7 +75,7 @@ void validate(const Mesh& mesh) {
   mesh::validate_positions(mesh.positions);
   validate_triangles(mesh);
   if (!(diagonal(bounds(mesh)) > kMinSize))
-    throw Error("the mesh is smaller than 1e-30, too small to compute with; scale it up");
+    throw Error("the mesh is smaller than 1e-30, too small for the computation; scale it up");
   validate_uvs(mesh);
 }
 

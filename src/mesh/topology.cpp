@@ -16,7 +16,7 @@ struct Side {
   std::uint32_t corner;  ///< 3f + k for the side from corner k of face f to the next
 };
 
-// What a vertex adds to the arrays of a topology.
+// The contribution of one vertex to the arrays of a topology.
 struct Share {
   std::uint32_t edges = 0, sides = 0;
 
@@ -154,7 +154,7 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
         }
       }
     }
-    // Of two ways to agree, the one that turns fewer faces.
+    // Of the two consistent orientations, the one that flips fewer faces.
     if (turned_members > members.size() - turned_members)
       for (const std::uint32_t f : members) result.turned[f] ^= 1;
   }

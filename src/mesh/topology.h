@@ -32,9 +32,9 @@ struct Topology {
 /// Cost: O(n log d), d the largest valence, all cores.
 [[nodiscard]] Topology build_topology(std::size_t vertex_count, std::span<const Triangle> triangles);
 
-/// For each face, whether to turn it so that neighbours over two-face edges agree, turning the fewer faces of
-/// each component of such neighbours; `orientable` is false when no choice satisfies all of them. Ignored
-/// faces stay.
+/// For each face, whether to flip it so that neighbours across two-face edges are consistently oriented,
+/// flipping the fewer faces of each component of such neighbours; `orientable` is false when no choice
+/// satisfies all of them. Ignored faces stay.
 struct Orientation {
   std::vector<std::uint8_t> turned;
   std::vector<std::uint32_t> component;   ///< of each face, over two-face edges; kNone if ignored

@@ -71,7 +71,7 @@ void rotate(std::span<Vec3> points, int axis, double degrees) {
   }
 }
 
-// A mirror image: turn the faces, so that their outside stays outside.
+// A reflection: flip the faces, so that their outside stays outside.
 void turn_faces(Mesh& mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   for (auto& uv : mesh.corner_uvs) std::swap(uv[1], uv[2]);
@@ -86,7 +86,7 @@ Fit fit_of(const Mesh& mesh) {
   const Box box = bounds(mesh);
   const Vec3 size = box.hi - box.lo;
   const double longest = std::max({size[0], size[1], size[2]});
-  if (!(longest > 0)) throw Error("transform step 'fit' needs a mesh that has an extent");
+  if (!(longest > 0)) throw Error("transform step 'fit' requires a mesh with positive extent");
   return {centre(box), longest};
 }
 
@@ -105,7 +105,7 @@ void apply(std::span<Vec3> points, const TransformStep& step) {
       break;
   }
   for (const Vec3& p : points)
-    if (!finite(p)) throw Error("the transform makes a coordinate infinite; use smaller numbers");
+    if (!finite(p)) throw Error("the transform produces an infinite coordinate; use smaller values");
 }
 
 }  // namespace

@@ -10,9 +10,9 @@ namespace sdm::sites {
 /// The point of the closed triangle that is closest to q, and which of its sites it lies on.
 [[nodiscard]] ClosestPoint closest_on_face(const SitesData& sites, std::uint32_t face, const Vec3& q);
 
-/// From closest_on_face(face), on to neighbouring faces as long as they are strictly closer: a local minimum
-/// of the distance over the mesh, to double rounding. What single precision found becomes consistent with its
-/// neighbourhood, on which pseudonormals rely.
+/// Starts with closest_on_face(face) and moves to neighbouring faces while they are strictly closer: a local
+/// minimum of the distance over the mesh, to double rounding. This makes a site selected in single precision
+/// consistent with its neighbourhood, which pseudonormals rely on.
 [[nodiscard]] ClosestPoint closest_around_face(const SitesData& sites, std::uint32_t face, const Vec3& q);
 
 }  // namespace sdm::sites

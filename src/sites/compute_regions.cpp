@@ -124,11 +124,11 @@ void ComputeLeaf(Regions& regions, const UnitFrame& frame, std::span<const Vec3>
     for (int k = 0; k < 3; ++k) {
       inverse[k] = inverse_or_zero(hn::Sqrt(squared[k]));
       const Vec3v inward = mul(inverse[k], cross(normal, side[k]));
-      // Without a prism, a wall that nothing is on the inner side of.
+      // No prism: a wall whose inner side is empty.
       wall[k].store(inward, hn::IfThenElse(has_prism, dot(inward, unit.point(corner[k])), hn::Inf(d)), i);
     }
 
-    // Two angles tell the third.
+    // The third angle follows from the other two.
     const Vec a = angle_of(hn::Neg(hn::Mul(hn::Mul(inverse[0], inverse[2]), dot(side[0], side[2]))));
     const Vec b = angle_of(hn::Neg(hn::Mul(hn::Mul(inverse[1], inverse[0]), dot(side[1], side[0]))));
     angles.store({a, b, hn::Sub(hn::Sub(hn::Set(d, std::numbers::pi), a), b)}, i);

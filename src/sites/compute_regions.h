@@ -7,7 +7,7 @@
 
 namespace sdm::sites {
 
-// Each chooses the best vector instructions that the machine has, at run time.
+// Each selects the best vector instructions of the machine at run time.
 
 /// The faces of the leaves from `begin` to `end`: their regions and shapes, and the discs of their bounds.
 void compute_faces(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,

@@ -22,7 +22,7 @@
 
 namespace sdm::sites {
 
-// A cache line each, for sites are looked up one by one. Coordinates in the unit frame; all normals and
+// One cache line each, because sites are loaded individually. Coordinates in the unit frame; all normals and
 // directions have length 1, or 0 where geometry gives none (and then never exclude anything).
 
 /// height(x) = plane·(x, −1); inside the prism where every wall·(x, −1) ≥ 0.
@@ -46,11 +46,11 @@ struct alignas(64) VertexRegion {
 /// Bounds for up to eight faces, tested together: x lies in the region of a face, or of an edge or vertex
 /// that the face owns, only if with r = x − centre and h = normal·r
 ///   |r − h normal| ≤ radius + slope |h|.
-/// For all of these sites lie in a disc of the face's plane. And where the faces around them make a closed
-/// sheet whose normals keep within an angle of this normal, so does, up to its sign, the direction from a
-/// site to any x of its region: slope is the angle's tangent. (In polar cones: above any direction u in the
-/// plane the sheet around a vertex v has a point v + u + s normal, |s| ≤ slope; for u the direction of x − v
-/// in the plane, (x − v)·(u + s normal) ≤ 0 says |x − v in the plane| ≤ slope |h|.) Elsewhere slope is kOpen.
+/// For all of these sites lie in a disc of the face's plane. Where the faces around them form a closed fan
+/// whose normals stay within an angle of this normal, so does, up to its sign, the direction from a site to
+/// any x of its region: slope is the angle's tangent. (In polar cones: above any direction u in the plane the
+/// sheet around a vertex v has a point v + u + s normal, |s| ≤ slope; for u the direction of x − v in the
+/// plane, (x − v)·(u + s normal) ≤ 0 says |x − v in the plane| ≤ slope |h|.) Elsewhere slope is kOpen.
 struct FaceBounds {
   static constexpr int kWidth = 8;
   static constexpr float kOpen = 1e18f;  ///< slope elsewhere, and where a face is too thin for its normal
@@ -60,8 +60,8 @@ struct FaceBounds {
   alignas(32) float slope[kWidth];
 };
 
-/// The topology once more, by places: faces, edges and vertices are named by the indices of their regions.
-/// Refits read it in order, and what it refers to is near.
+/// A copy of the topology in which faces, edges and vertices are indexed by region. Refits read it in order,
+/// and its references are nearby in memory.
 struct SitePlaces {
   struct Edge {
     std::array<std::uint32_t, 4> corners;  ///< its ends, and the third corners of its first two faces
@@ -90,7 +90,7 @@ struct Regions {
   SitePlaces places;
 };
 
-/// What regions are made of.
+/// The input from which regions are built.
 struct RegionSource {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
@@ -100,8 +100,8 @@ struct RegionSource {
   double scale;  ///< of the frame that regions are in
 };
 
-/// Hands the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth a leaf. Their
-/// regions are left to refit(). Cost: linear, all cores.
+/// Assigns the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth per leaf.
+/// refit() computes their regions. Cost: linear, all cores.
 [[nodiscard]] Regions build_regions(const RegionSource& source, const hierarchy::AabbTree& tree);
 
 /// Sets `placed` to the positions in the order of the regions' vertices. Refits read them again and again,

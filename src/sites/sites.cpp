@@ -86,7 +86,7 @@ Sites::Sites(Mesh mesh) : data_(std::make_unique<sites::SitesData>()) {
   s.normals = {std::vector<Vec3>(triangles.size()), std::vector<Vec3>(s.mesh.positions.size())};
   s.sliver.resize(triangles.size());
   set_inverted(s);
-  sites::SitesData::Refit refit;  // of a mesh that stays nothing is kept
+  sites::SitesData::Refit refit;  // nothing is kept for a mesh that is never refitted
   sites::place(s.regions, s.mesh.positions, refit.placed);
   sites::refit(s.regions, s.frame, refit.placed, s.inverted, s.normals, s.sliver, refit.shapes);
 }

@@ -24,12 +24,12 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
   if (n < kMinResolution || n > kMaxResolution)
     throw Error("an atlas resolution of " + std::to_string(n) + " is out of range; use 16 to 32768");
   if (!(options.max_stretch > 1))
-    throw Error("a largest stretch of " + std::to_string(options.max_stretch) +
+    throw Error("a maximum stretch of " + std::to_string(options.max_stretch) +
                 " is out of range; use more than 1");
   if (options.gutter > n / 4)
     throw Error("a gutter of " + std::to_string(options.gutter) + " texels is too wide for an atlas of " +
                 std::to_string(n) + "² texels; use a quarter of that at most");
-  // The texel table, its order and its points; and what charts and layout keep of each face.
+  // The texel table, its order and its points, and the chart and layout data of each face.
   constexpr std::size_t kBytesPerTexel = 64, kBytesPerFace = 600;
   require_memory(kBytesPerTexel * n * n + kBytesPerFace * mesh.triangles.size(), "the atlas");
 }

@@ -129,7 +129,7 @@ TEST(ResolutionFor, SaysWhatIsOutOfReach) {
     (void)resolution_for(mesh, {}, 1e-9);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the 32768 texels that a side"));
+    EXPECT_THAT(error.what(), HasSubstr("the maximum of 32768 texels per side"));
   }
 }
 

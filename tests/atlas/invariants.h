@@ -1,4 +1,4 @@
-// What holds for the atlas of every mesh.
+// Invariants of the atlas of any mesh.
 #pragma once
 
 #include <sdm/surface.h>

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 struct Failure : ::testing::Test, TwoTori {
-  /// The run fails with one sentence that names `thing`, and leaves no trace.
+  /// The command fails with one sentence that names `thing`, and leaves no files.
   void expect_failure(const Outcome& run, const std::string& thing, int code = 1) {
     EXPECT_EQ(run.code, code) << run.out << run.err;
     EXPECT_EQ(run.out, "");

@@ -1,8 +1,8 @@
 // `sdm proximity` and `sdm sequence`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/sampling_bound.h>
 #include <sdm/proximity_query.h>
+#include <sdm/sampling_bound.h>
 #include <sdm/transform.h>
 
 #include <cmath>
@@ -160,13 +160,13 @@ TEST_F(SequenceCommand, PrintsLinesAsJson) {
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"frames.csv", "frames.jsonl", "plot.png"}));
 }
 
-// What was finished stays, and is said.
+// Completed frames are kept, and the message mentions them.
 TEST_F(SequenceCommand, StopsAtABadFrame) {
   std::filesystem::remove(moving + "/4.obj");
   Outcome run = run_sdm(sequence());
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("frame 4"));
-  EXPECT_THAT(run.err, HasSubstr("4 frames before it are in " + out));
+  EXPECT_THAT(run.err, HasSubstr("4 earlier frames are in " + out));
   std::vector<Json> all = lines();
   ASSERT_EQ(all.size(), 5u);
   EXPECT_THAT(all[4]["error"].get<std::string>(), HasSubstr("frame 4"));

@@ -3,8 +3,8 @@
 #include <sdm/threads.h>
 
 #include <atomic>
-#include <functional>
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <numeric>
 #include <random>
@@ -81,7 +81,8 @@ TEST(ParallelInvoke, AnExceptionLeavesTheLoopsOfTheOtherBranchWhole) {
   }
 }
 
-// Once, a thread that waited in a nested loop took up another turn of the outer one, and the lock it held.
+// Regression: a thread waiting in a nested loop started another iteration of the outer loop while holding a
+// lock.
 TEST(ParallelTasks, RunsAllThatIsAddedAndPassesExceptionsOn) {
   std::atomic<int> leaves{0};
   const std::function<void(Tasks&, int)> split = [&](Tasks& tasks, int depth) {

@@ -1,4 +1,4 @@
-// What the exactness tests do not see: the parts of the cpu engine, and how much work it does.
+// Parts of the cpu engine that the exactness tests cannot observe.
 #include <memory>
 
 #include "core/vec.h"

@@ -101,8 +101,8 @@ TEST(Exactness, ScenesHaveMeshesOfEveryKind) {
   EXPECT_TRUE(open && degenerate && many && pinched);
 }
 
-// What no file at hand has: edges of three faces and more, faces turned at random, duplicates, faces of no
-// area.
+// Defects that no available file has: edges of three faces and more, randomly flipped faces, duplicates,
+// faces without area.
 TEST(Exactness, SpoiltMesh) {
   std::mt19937 random(9);
   Mesh mesh = test::turned(test::load("blobby.off", "fit"), 3);

@@ -1,4 +1,4 @@
-// What holds for every distance map, whatever the meshes.
+// Properties of distance maps of any meshes.
 #include "core/vec.h"
 #include "engine/oracle.h"
 #include "engine/support.h"

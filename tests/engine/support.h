@@ -1,4 +1,4 @@
-// Meshes to test with, and what every map must satisfy.
+// Test meshes, and the invariants of every map.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ inline constexpr EngineKind kEngines[] = {EngineKind::cpu, EngineKind::reference
 [[nodiscard]] std::string name(EngineKind engine);
 [[nodiscard]] std::string engine_name(const testing::TestParamInfo<EngineKind>& parameter);
 
-/// Counts what disagrees and keeps the worst: one message for a million texels.
+/// Counts disagreements and keeps the worst, for one message per map.
 class Disagreements {
  public:
   explicit Disagreements(double tolerance) : tolerance_(tolerance) {}

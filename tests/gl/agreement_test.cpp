@@ -93,7 +93,7 @@ TEST_P(Agreement, EveryTexelWithTheReference) {
   }
 }
 
-// The scenes are worth what their meshes are.
+// The scenes cover all awkward kinds of meshes.
 TEST(Agreement, ScenesHaveMeshesOfEveryKind) {
   bool open = false, nonmanifold = false, degenerate = false, large = false;
   for (const test::Scene& scene : test::scenes()) {

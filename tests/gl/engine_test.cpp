@@ -1,4 +1,4 @@
-// What holds for every map by rasterisation, and how its engine behaves in a process.
+// Properties of all maps of the gl engine, and the behaviour of the engine within a process.
 #include <atomic>
 #include <thread>
 
@@ -23,7 +23,8 @@ TEST(GlEngine, RigidMotionOfBothLeavesDistances) {
     ASSERT_TRUE(std::ranges::equal(here.texel_faces(), there.texel_faces()));
     const DistanceMap after = gl_map(there, Sites(test::placed(o2, motion)));
     test::Disagreements distances(1e-6 * test::scene_diagonal(o1, o2));
-    for (const std::uint32_t t : here.sample_texels()) distances.compare(t, after.distance[t], before.distance[t]);
+    for (const std::uint32_t t : here.sample_texels())
+      distances.compare(t, after.distance[t], before.distance[t]);
     EXPECT_TRUE(distances.none());
   }
 }

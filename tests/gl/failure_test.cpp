@@ -1,4 +1,4 @@
-// What the gl engine refuses, and in which words.
+// Errors of the gl engine and their messages.
 #include <gmock/gmock.h>
 
 #include "core/memory.h"

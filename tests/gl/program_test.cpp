@@ -1,4 +1,4 @@
-// Shader programs, and what is said where a driver refuses one.
+// Shader programs, and the error if a driver rejects one.
 #include "engine/gl/program.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// A driver that does what a test wants.
+// A driver whose functions a test can replace.
 #pragma once
 
 #include <epoxy/egl.h>

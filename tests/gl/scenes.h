@@ -20,7 +20,7 @@ struct Scene {
 [[nodiscard]] std::string scene_name(const testing::TestParamInfo<Scene>& info);
 void PrintTo(const Scene& scene, std::ostream* out);
 
-/// A closed mesh spoilt: edges of three faces, faces turned, duplicates, faces without area.
+/// A closed mesh with defects: edges of three faces, flipped faces, duplicates, faces without area.
 [[nodiscard]] Mesh spoilt(std::string_view name);
 
 /// The mesh with texture coordinates of its own, laid out as an atlas of charts: the same texels in the same

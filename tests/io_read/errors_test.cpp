@@ -1,4 +1,4 @@
-// Every fault is told in one sentence that names the file and the fault.
+// Every error is one sentence that names the file and the fault.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
@@ -46,22 +46,22 @@ TEST(Errors, FilesThatCannotBeRead) {
 
 TEST(Errors, UnknownFormats) {
   const std::string garbage("\x7F\x45\x4C\x46\x02\x01\x01\x00garbage\x00\xFF\xFE", 18);
-  expect_fault("a.dat", garbage, "format is not known");
-  expect_fault("a", "Dear Sir or Madam", "format is not known");
-  expect_fault("a.obj", garbage, "binary data where text is needed");
-  expect_fault("a.off", garbage, "binary data where text is needed");
+  expect_fault("a.dat", garbage, "unknown format");
+  expect_fault("a", "Dear Sir or Madam", "unknown format");
+  expect_fault("a.obj", garbage, "binary data where text is expected");
+  expect_fault("a.off", garbage, "binary data where text is expected");
   expect_fault("a.ply", garbage, "begins with 'ply'");
   expect_fault("a.stl", garbage, "fewer than the header of a binary STL");
-  expect_fault("a.stl", garbage + std::string(100, '\xAA'), "truncated or no STL");
+  expect_fault("a.stl", garbage + std::string(100, '\xAA'), "truncated or not an STL");
   expect_fault("a.3ds", garbage, "does not fit in");
-  expect_fault("a.glb", garbage, "JSON is at fault");
+  expect_fault("a.glb", garbage, "JSON is invalid");
   expect_fault("a.obj", "Dear Sir or Madam", "no triangles");
   expect_fault("a.obj", "# only a comment", "no triangles");
 }
 
 TEST(Errors, NoTriangles) {
-  expect_fault("a.obj", kVertices, "only a cloud of 3 points");
-  expect_fault("a.off", "OFF 3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "only a cloud of 3 points");
+  expect_fault("a.obj", kVertices, "only a point cloud of 3 points");
+  expect_fault("a.off", "OFF 3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "only a point cloud of 3 points");
   expect_fault("a.off", "OFF 0 0 0\n", "no triangles");
   expect_fault("a.stl", "solid a\nendsolid a\n", "no triangles");
   expect_fault("a.stl", stl_binary({}), "no triangles");
@@ -69,9 +69,9 @@ TEST(Errors, NoTriangles) {
                "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float "
                "z\nend_header\n"
                "0 0 0\n1 1 1\n",
-               "only a cloud of 2 points");
+               "only a point cloud of 2 points");
   expect_fault("a.gltf", R"({"asset":{"version":"2.0"}})", "no triangles");
-  expect_fault("a.obj", std::string(kVertices) + "f 1 2\nl 1 2 3\n", "only a cloud");
+  expect_fault("a.obj", std::string(kVertices) + "f 1 2\nl 1 2 3\n", "only a point cloud");
 }
 
 TEST(Errors, AllTrianglesDegenerate) {
@@ -101,7 +101,7 @@ TEST(Errors, IndicesOutOfRange) {
   expect_fault("a.obj", std::string(kVertices) + "f -1 -2 -4\n", "line 4: index out of range");
   expect_fault("a.obj", std::string(kVertices) + "f 1 2 99999999999\n", "line 4: index out of range");
   expect_fault("a.obj", std::string(kVertices) + "f 1 2 99999999999999999999999\n",
-               "line 4: a whole number is needed");
+               "line 4: an integer is expected");
   expect_fault("a.obj", std::string(kVertices) + "f 1/1 2/1 3/1\n", "texture coordinate 1 of 0");
   expect_fault("a.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
                "line 5: index out of range: a face refers to vertex 3 of 3");
@@ -155,19 +155,19 @@ TEST(Errors, ObjStatements) {
   expect_fault("a.obj", "v 0 0\n", "line 1: a number is needed");
   expect_fault("a.obj", "v 0 0 0x10\n", "line 1: a number is needed, not '0x10'");
   expect_fault("a.obj", "v 0 0 zero\n", "not 'zero'");
-  expect_fault("a.obj", "v 0 0 0\nf 1 2 c\n", "line 2: a whole number is needed, not 'c'");
-  expect_fault("a.obj", "v 0 0 0\nf 1.5 2 3\n", "line 2: a whole number is needed");
-  expect_fault("a.obj", "v 0 0 0\nf 1 2 \\3\n", "line 2: a whole number is needed");
+  expect_fault("a.obj", "v 0 0 0\nf 1 2 c\n", "line 2: an integer is expected, not 'c'");
+  expect_fault("a.obj", "v 0 0 0\nf 1.5 2 3\n", "line 2: an integer is expected");
+  expect_fault("a.obj", "v 0 0 0\nf 1 2 \\3\n", "line 2: an integer is expected");
 }
 
 TEST(Errors, PlyHeaders) {
   expect_fault("a.ply", "ply\nformat ebcdic 1.0\n", "line 2: ascii, binary_little_endian");
   expect_fault("a.ply", "ply\nelement vertex 1\nproperty real x\n",
-               "line 3: a type of PLY is needed, not 'real'");
+               "line 3: a PLY type is expected, not 'real'");
   expect_fault("a.ply", "ply\nproperty float x\n", "before the first element");
   expect_fault("a.ply", "ply\nelement vertex -1\n", "negative");
-  expect_fault("a.ply", "ply\nelement vertex\n", "whole number is needed");
-  expect_fault("a.ply", "ply\nend_header\n", "does not tell its format");
+  expect_fault("a.ply", "ply\nelement vertex\n", "integer is expected");
+  expect_fault("a.ply", "ply\nend_header\n", "has no format line");
   expect_fault("a.ply", "ply\nformat ascii 1.0\nnonsense\n", "not 'nonsense'");
   expect_fault(
       "a.ply",
@@ -178,10 +178,10 @@ TEST(Errors, PlyHeaders) {
 }
 
 TEST(Errors, OffOfOtherKinds) {
-  expect_fault("a.off", "4OFF\n1 1 0\n", "three dimensions");
-  expect_fault("a.off", "nOFF\n4\n1 1 0\n", "three dimensions");
+  expect_fault("a.off", "4OFF\n1 1 0\n", "three-dimensional");
+  expect_fault("a.off", "nOFF\n4\n1 1 0\n", "three-dimensional");
   expect_fault("a.off", std::string("OFF BINARY\n\0\0\0\1", 15), "binary data");
-  expect_fault("a.off", "OFF BINARY\n", "binary OFF is not read");
+  expect_fault("a.off", "OFF BINARY\n", "binary OFF is not supported");
 }
 
 TEST(Errors, StlOutOfOrder) {
@@ -219,15 +219,15 @@ TEST(Errors, Gltf) {
       {"\"mesh\":0", "\"mesh\":0,\"matrix\":[1,2]", "not valid glTF"},
       {"\"POSITION\":0", "\"POSITION\":9", "item 9 of accessors"},
       {"\"POSITION\":0", "\"POSITION\":2", "not vectors of three"},
-      {"\"count\":3", "\"count\":4", "reaches beyond its buffer view"},
+      {"\"count\":3", "\"count\":4", "extends beyond its buffer view"},
       {"\"count\":3", "\"count\":18446744073709551615", "more than 2^32"},
-      {"\"bufferView\":0", "\"bufferView\":0,\"byteOffset\":40", "reaches beyond its buffer view"},
+      {"\"bufferView\":0", "\"bufferView\":0,\"byteOffset\":40", "extends beyond its buffer view"},
       {"\"bufferView\":0", "\"bufferView\":0,\"sparse\":{}", "key 'count' not found"},
       {"\"bufferView\":0,", "", "not valid glTF"},
       {"5126", "9", "component type 9"},
       {"VEC3", "MAT4", "type MAT4"},
-      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":0", "reaches beyond"},
-      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":18446744073709551615", "reaches beyond"},
+      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":0", "extends beyond"},
+      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":18446744073709551615", "extends beyond"},
       {"{\"buffer\":0", "{\"buffer\":5", "buffer 5"},
       {"\"byteLength\":36", "\"byteLength\":99999", "beyond its buffer"},
       {"\"byteLength\":72", "\"byteLength\":73", "promises 73 bytes and has 72"},
@@ -236,8 +236,8 @@ TEST(Errors, Gltf) {
       {"data:;base64,", "nowhere.bin?", "no such file"},
       {"\"asset\"", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"asset\"",
        "compressed by KHR_draco"},
-      {"{\"asset\"", "[{\"asset\"", "JSON is at fault"},
-      {"{\"asset\"", "{\"a\":\"\xFF\",\"asset\"", "JSON is at fault"},
+      {"{\"asset\"", "[{\"asset\"", "JSON is invalid"},
+      {"{\"asset\"", "{\"a\":\"\xFF\",\"asset\"", "JSON is invalid"},
   };
   for (const auto& [from, to, fault] : cases) expect_fault("a.gltf", gltf_with(from, to), fault);
 }
@@ -245,7 +245,7 @@ TEST(Errors, Gltf) {
 TEST(Errors, DeeplyNestedJson) {
   const std::size_t depth = 1000000;
   expect_fault("a.gltf", "{\"a\":" + std::string(depth, '[') + std::string(depth, ']') + "}", "no asset");
-  expect_fault("a.gltf", "{\"a\":" + std::string(depth, '['), "JSON is at fault");
+  expect_fault("a.gltf", "{\"a\":" + std::string(depth, '['), "JSON is invalid");
 }
 
 // A small file that shows one mesh very often asks for more memory than there is.

@@ -1,4 +1,4 @@
-// What is written is read, in every variant of every format.
+// Round trips of every variant of every format.
 #include <gtest/gtest.h>
 #include <sdm/io.h>
 

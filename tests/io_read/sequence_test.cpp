@@ -115,10 +115,10 @@ TEST(Sequence, PatternsTakeTheNamesThatPrintfWouldMake) {
   expect_refused(folder + "a%d.obj", {"only 3 have a file"});  // 7, 10 and 100
   expect_refused(folder, {"several sequences", "*.obj"});
   for (const char* pattern : {"a%x.obj", "a%", "a%0d.obj", "a%02", "a%123d.obj"})
-    expect_refused(folder + pattern, {pattern, "after % a pattern goes on with d"});
+    expect_refused(folder + pattern, {pattern, "% in a pattern must be followed by d"});
   for (const char* pattern : {"a%d%d.obj", "a*.*", "*%d.obj"})
-    expect_refused(folder + pattern, {pattern, "one number only"});
-  expect_refused(folder + "d%d.obj", {"d%d.obj", "no file has such a name"});
+    expect_refused(folder + pattern, {pattern, "exactly one number"});
+  expect_refused(folder + "d%d.obj", {"d%d.obj", "no file matches"});
   add("a010.obj");
   expect_refused(folder + "a*.obj", {"a010.obj and a10.obj have the same number"});
   add("a99999999999999999999.obj");
@@ -185,7 +185,7 @@ TEST(Sequence, VerticesThatAreOneStayTogether) {
   EXPECT_EQ(sequence.mesh().positions.size(), 32u);
   EXPECT_EQ(corner_positions(at(sequence.mesh(), copy(sequence.positions(1)))),
             corner_positions(at(mesh, frames[1])));
-  expect_fault([&] { (void)sequence.positions(2); }, {"frame 2 (2.stl)", "has left another one"});
+  expect_fault([&] { (void)sequence.positions(2); }, {"frame 2 (2.stl)", "separates from another one"});
 }
 
 TEST(Sequence, AnyMeshFileIsOneFrame) {
@@ -277,7 +277,7 @@ TEST(SequenceNpy, FaultsAreNamed) {
                                  {", }", "} x"},
                                  {"'shape'", "'descr'"},
                                  {"(2, 4, 3)", "(2 4 3)"}})
-    refuse(with(from, to), "its header is not one that NumPy writes");
+    refuse(with(from, to), "its header is invalid");
   expect_refused(write("x.npy", good), {"x.npy: holds positions without triangles"});
   expect_refused(file + "+/no/such.npy", {"/no/such.npy: cannot be opened: No such file"});
   expect_refused(file + "+/dev.npy/x.npy", {"x.npy: cannot be opened"});
@@ -330,7 +330,7 @@ TEST(SequenceGltf, FaultsAreNamed) {
   const auto refuse = [](const WeightChannel& channel, const std::string& fault) {
     expect_refused(write("morph.glb", morph_gltf(tetrahedron(), kTargets, channel)), {"morph.glb: ", fault});
   };
-  refuse({"SPLINE", {0}, {0, 0}}, "interpolated by none of");
+  refuse({"SPLINE", {0}, {0, 0}}, "unknown interpolation");
   refuse({"LINEAR", {}, {}}, "no keys");
   refuse({"LINEAR", {0, 1, 1}, {0, 0, 0, 0, 0, 0}}, "do not increase at key 2");
   refuse({"LINEAR", {0, std::nanf("")}, {0, 0, 0, 0}}, "do not increase at key 1");
@@ -344,7 +344,7 @@ TEST(SequenceGltf, FaultsAreNamed) {
     expect_refused(write("morph.glb", contents), {"morph.glb: ", fault});
   };
   refuse_with("\"weights\"", "\"rotate\"", "moves nodes");
-  refuse_with("\"node\":0", "\"node\":1", "changes nothing");
+  refuse_with("\"node\":0", "\"node\":1", "no effect");
   refuse_with("\"sampler\":0", "\"sampler\":7", "not valid glTF");
   refuse_with("{\"POSITION\":1}", "{\"POSITION\":3}", "more or fewer vertices");
   const std::string file = write("morph.glb", good);

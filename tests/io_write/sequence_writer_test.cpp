@@ -1,4 +1,4 @@
-// What is written of meshes, their motion and their texels is read again.
+// Round trips of meshes, sequences and values per texel.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
 #include <sdm/io.h>

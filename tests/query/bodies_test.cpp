@@ -201,7 +201,7 @@ TEST(MultiBodyQuery, MapsHoldTheNearestOfSingleMaps) {
           beyond += surface.texel_faces()[texel] != kNone;
           continue;
         }
-        // The body is one of the nearest; what is told of it, its own map says too.
+        // The body is one of the nearest, and the values agree with its own map.
         ASSERT_LT(body, meshes.size());
         ASSERT_NE(body, on);
         const Vec3f& v = nearest.map.vector[texel];

@@ -1,4 +1,4 @@
-// What holds for the closest points of any two surfaces.
+// Properties of the closest points of any two surfaces.
 #include "proximity/exact/pair_search.h"
 
 #include <gmock/gmock.h>

@@ -97,7 +97,7 @@ TEST(Proximity, DepthInATorus) {
   }
 }
 
-// What is pruned cannot matter: the whole maps say the same.
+// Culled samples do not affect results: complete maps give the same.
 TEST(Proximity, AgreesWithWholeMaps) {
   const Mesh bunny = load("bunny.obj", "fit");
   for (const char* placement :
@@ -368,7 +368,7 @@ TEST(Update, FollowsTheBodiesAndComesBackToTheBit) {
   EXPECT_EQ(answers(query), back);
 }
 
-// A rigid motion of both changes nothing but by rounding.
+// A rigid motion of both bodies changes results only by rounding.
 TEST(Update, KnowsRigidMotions) {
   const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
   ProximityQuery query(a, b, at_resolution(128));

@@ -1,4 +1,4 @@
-// The parts of the simulations, each against what it is defined by.
+// Tests of the parts of the simulations against their definitions.
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/io.h>

@@ -47,7 +47,7 @@ class Clustering {
     return dot(faces_.normal[face], axis) >= std::min(cos_, 1 - 1e-12);
   }
 
-  // Every face that has no cluster yet begins one, with its normal as the axis, and takes all it can reach.
+  // Every face without a cluster starts one, with its normal as the axis, which grows as far as possible.
   void flood_rest() {
     std::vector<std::uint32_t> stack;
     for (const std::uint32_t seed : scattered_order(label_.size())) {

@@ -1,4 +1,4 @@
-// Normals, areas and neighbours of faces: what charts are grown from.
+// Normals, areas and neighbours of faces, from which charts are grown.
 #pragma once
 
 #include <sdm/mesh.h>

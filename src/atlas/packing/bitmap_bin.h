@@ -22,7 +22,7 @@ struct Stamp {
 
 /// Each row is kept as bitmaps of 64 columns a word: level k has bit x set when one of the 2^k cells from x
 /// on is taken. A run of length l, 2^k ≤ l < 2^(k+1), then fits at x where neither bit x nor bit x + l − 2^k
-/// of level k is set: two shifted words tell of 64 positions.
+/// of level k is set: two shifted words test 64 positions.
 class BitmapBin {
  public:
   struct Spot {
@@ -52,7 +52,7 @@ class BitmapBin {
   std::uint32_t size_, levels_;
   std::size_t stride_;  // words a row; bits from size_ on are always set
   std::vector<std::uint64_t> bits_;
-  // No free run of a row is longer: rejects most rows at a glance. Exact but for stale rows.
+  // An upper bound on the free spans of a row, which rejects most rows. Exact except for stale rows.
   std::vector<std::uint32_t> longest_;
   std::vector<std::uint8_t> stale_;
 };

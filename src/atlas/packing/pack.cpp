@@ -24,7 +24,7 @@ constexpr double kCells = 2048, kCellsPerChart = 10;
 // atlas.
 constexpr int kTrials = 4;
 constexpr double kPrecision = 0.005;
-// From so many charts on, speed goes before filling the last holes.
+// From this number of charts, speed is preferred over filling the last gaps.
 constexpr std::size_t kManyCharts = 4096;
 constexpr double kPrecisionOfMany = 0.02;
 

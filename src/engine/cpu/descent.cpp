@@ -18,9 +18,8 @@
 namespace sdm::cpu {
 namespace {
 
-// A list for a group is worth its traversal where the group has so many points for each leaf of O2's tree
-// within reach, or is as small as kFewPoints; else its parts fare better with traversals of their own.
-// (Measured.)
+// A shared traversal pays off if the group has at least this many points per leaf of O2's tree within range,
+// or at most kFewPoints points; otherwise its parts use traversals of their own. (Measured.)
 constexpr std::size_t kPointsPerLeaf = 14, kFewPoints = 64;
 // So many sites are evaluated for all packets of a ball, rather than filtered any further: more where there
 // are only four packets. (Measured.)
@@ -86,7 +85,7 @@ class Search {
     lists.clear();
     ++s_.counts.groups;
     Nearest nearest = within_limit(ball);
-    if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the group before lies near
+    if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the previous group is nearby
       nearest = last_, nearest.squared = squared_distance(ball, last_.point);
     improve_in_tree(nearest, ball.centre);
     if (nearest.found) last_ = nearest;

@@ -29,7 +29,7 @@ struct DescentCounts {
   }
 };
 
-/// What a thread keeps between groups.
+/// Per-thread state kept between groups.
 struct Descent {
   PointGroup points;
   std::uint32_t winners[PointGroup::kMostPoints];  ///< SiteId::packed of each point's closest site

@@ -37,7 +37,7 @@ struct PointGroup {
   /// rounding. Points that are far away are put at the frame's origin; returns whether there are any.
   bool place(std::span<const Vec3> points, const UnitFrame& frame);
 
-  /// Beyond this many sizes of O2 squares come near the end of single precision.
+  /// Beyond this multiple of O2's size, squares approach the range of single precision.
   static bool far_away(const Vec3& unit_point) {
     return !(std::abs(unit_point[0]) < kFarAway && std::abs(unit_point[1]) < kFarAway &&
              std::abs(unit_point[2]) < kFarAway);

@@ -48,9 +48,10 @@ inline float enlarged_radius(const Ball& ball) {
 //   |c − b'|² ≤ |c − a|² + 2 r |b' − a|,  and  |c − b'|² ≥ |c − b|² + |b − b'|²,  for B is convex;
 // with |b' − a| ≤ |b − a| + |b − b'| it follows that
 //   |c − b|² ≤ |c − a|² + 2 r |b − a| + r².
-// Far from O2 this leaves much less than |c − b| ≤ |c − a| + 2r: the nearer b is to a, the less can x tell.
+// Far from O2 this is much tighter than |c − b| ≤ |c − a| + 2r: the closer b is to a, the smaller the
+// difference of their distances for any x.
 struct CandidateBound {
-  float centre[3], radius;  // of the ball; enlarged by what rounding does to tests of regions
+  float centre[3], radius;  // of the ball; enlarged by the rounding error of the region tests
   float from_a[3];          // c − a
   float squared;            // |c − a|² + r², and the rounding of squares
   float squared_limit;      // nor can what is beyond the limit for all x

@@ -9,7 +9,7 @@
 
 namespace sdm::cpu {
 
-/// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could tell.
+/// A site of O2, or none: no site within the limit, or (unsettled) single precision could not decide.
 struct SiteId {
   static constexpr std::uint32_t kUnsettled = kNone - 1, kSiteMask = 0x3FFFFFFF;
 

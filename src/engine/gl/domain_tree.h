@@ -28,7 +28,7 @@ struct DomainTree {
   LeafOrder leaves;
   std::vector<double> bound;  ///< of each node: no sample of its domains is farther from O2
 
-  /// Boxes brought up to date with the domains as they lie now. Cost: linear.
+  /// Refits the boxes to the current domains. Cost: linear.
   DomainTree(const Surface& surface, const surface::Tiles& tiles, const UnitFrame& frame);
 
   [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(tree.nodes.size()); }

@@ -1,4 +1,4 @@
-// Where EGL may find OpenGL on this machine.
+// The EGL displays of this machine that may support OpenGL.
 #pragma once
 
 #define EGL_NO_X11  // whose headers define words such as None
@@ -13,8 +13,8 @@ namespace sdm::gl {
 struct DisplayCandidate {
   EGLDisplay display;        ///< may not be initialised yet
   std::string name;          ///< for messages
-  bool software = false;     ///< says EGL, where it knows
-  bool last_resort = false;  ///< for use only where nothing before it runs
+  bool software = false;     ///< as reported by EGL, if known
+  bool last_resort = false;  ///< used only if none before it works
 };
 
 /// In order of preference: EGL's devices, hardware first; then Mesa's surfaceless platform and the default

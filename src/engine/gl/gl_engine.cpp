@@ -26,7 +26,7 @@ void check(const GlOptions& options) {
     throw Error(std::to_string(options.stencil_values) + " stencil values are out of range; use 1 to 255");
 }
 
-// The devices of the process, by what was asked for. One map at a time is drawn. They live as long as the
+// The devices of the process, by the requested name. One map is drawn at a time. They live as long as the
 // process: at its end drivers may be gone before anything that could be destroyed.
 struct Devices {
   std::mutex drawing;
@@ -75,7 +75,7 @@ struct Extent {
 
 // Beyond this many sizes of O2 squares come near the end of single precision.
 constexpr double kFarAway = 1e15;
-// What single precision may get wrong, as a part of the scene's size: regions are larger by this.
+// The rounding error of single precision relative to the scene's size; regions are enlarged by it.
 constexpr double kRegionSlack = 0x1p-20;
 // Distances that differ by less may be mistaken for each other, so bounds leave more.
 constexpr double kBoundSlack = 0x1p-17;
@@ -118,7 +118,8 @@ RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const
   const Extent extent(tree.root().box, sites.tree.nodes[0].box);
   if (!(extent.size < kFarAway))
     throw Error(
-        "O1 is more than 10^15 sizes of O2 away, which is too far for the gl engine; use another one");
+        "the distance of O1 exceeds 10^15 times the size of O2, too far for the gl engine; use another "
+        "engine");
   const double slack = kBoundSlack * extent.size;
   const double farthest = std::min(extent.reach, sites.frame.scale * options.max_distance) + slack;
   if (options.raster.bound_culling)

@@ -17,10 +17,10 @@ class PairStream {
   PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterScale& scale,
              Rasteriser& rasteriser, GlReport::Times& time);
 
-  /// `progress` is told the fraction of the block that is done, and may throw.
+  /// `progress` receives the completed fraction of the block, and may throw.
   void draw(const DomainBlock& block, const std::function<void(double)>& progress);
 
-  /// Hands the last batch to the device.
+  /// Submits the last batch to the device.
   void finish();
 
   [[nodiscard]] const PairCounts& counts() const { return total_; }

@@ -13,7 +13,8 @@ using ShaderSource = EmbeddedFile;
 /// A vertex and a fragment shader, linked. Needs a current context, for its whole life.
 class Program {
  public:
-  /// Throws sdm::Error with the names of the files, the device and what its compiler says, if it refuses.
+  /// Throws sdm::Error with the names of the files and the device and the compiler's message if compilation
+  /// fails.
   Program(const ShaderSource& vertex, const ShaderSource& fragment);
   ~Program();
   Program(const Program&) = delete;

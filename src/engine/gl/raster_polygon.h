@@ -1,4 +1,4 @@
-// What is drawn: the part of a domain that lies in a site's region, with the distance vector to the site.
+// A drawn polygon: the part of a domain inside a site's region, with the distance vector to the site.
 #pragma once
 
 #include <vector>

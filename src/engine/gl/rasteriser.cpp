@@ -137,7 +137,7 @@ void Rasteriser::Impl::make_target() {
   glTextureStorage2D(depth, 1, GL_DEPTH32F_STENCIL8, side, side);
   glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT0, faces, 0);
   glNamedFramebufferTexture(target, GL_DEPTH_STENCIL_ATTACHMENT, depth, 0);
-  device.context().check("making a map of " + std::to_string(resolution) + "² texels");
+  device.context().check("allocating a map of " + std::to_string(resolution) + "² texels");
   if (glCheckNamedFramebufferStatus(target, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     throw Error(device.context().device().name +
                 " cannot draw into a 32-bit depth buffer with stencil; use another device or engine");
@@ -189,7 +189,7 @@ void Rasteriser::Impl::begin() {
   glDepthFunc(GL_LESS);
 }
 
-// Sends what was drawn on its way. No more than two calls' worth of it is under way at a time.
+// Submits the drawn batch. At most two draw calls are in flight.
 void Rasteriser::Impl::end() {
   const Fence before = std::exchange(last, Fence::after_all_commands());
   before.wait();
@@ -226,7 +226,7 @@ void Rasteriser::Impl::draw_piece(const RasterBatch& batch, std::size_t begin, s
   std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(begin));
   if (stencil) {
     const auto domain = [&](std::uint32_t polygon) { return batch.polygons[polygon].domain; };
-    // To and fro: what the cache still holds of the last piece comes first.
+    // Alternating order: faces still in the cache from the previous piece come first.
     if (batches % 2 == 0)
       std::ranges::stable_sort(order, std::ranges::less{}, domain);
     else
@@ -324,7 +324,8 @@ void Rasteriser::check_size(const Context& context, std::uint32_t resolution) {
 
 void Rasteriser::draw(const RasterBatch& batch) {
   impl_->begin();
-  // A piece's counter must not overflow, nor its draw call run for so long that a driver takes it for a hang.
+  // A piece's counter must not overflow, and its draw call must not take so long that the driver resets the
+  // device.
   constexpr double kMostFragments = 1u << 31;
   for (std::size_t begin = 0; begin < batch.size();) {
     double bound = 0;

@@ -1,4 +1,4 @@
-// Draws the polygons of sites on planar domains; what stays at each texel is the closest.
+// Draws the polygons of sites on planar domains; the depth test keeps the closest at each texel.
 #pragma once
 
 #include <sdm/gl.h>
@@ -31,7 +31,7 @@ struct RasterImage {
   std::vector<float> depths;         ///< the distance drawn, in units of RasterScale; 1 where there is none
 };
 
-/// What a device needs once: the context and the programs.
+/// Per-device state: the context and the programs.
 class RasterDevice {
  public:
   /// Throws sdm::Error where there is no such device, or it refuses a shader.
@@ -59,11 +59,11 @@ class Rasteriser {
   /// Throws sdm::Error for a resolution larger than the device's images.
   static void check_size(const Context& context, std::uint32_t resolution);
 
-  /// Draws in the order of the batch, on each domain. The device goes on with it after the return, but is
-  /// done with what was drawn before. Throws sdm::Error.
+  /// Draws in the order of the batch, on each domain. The device may still be drawing this batch on return,
+  /// but has finished the previous one. Throws sdm::Error.
   void draw(const RasterBatch& batch);
 
-  /// What has been drawn. Waits for the device.
+  /// Returns the drawn result. Waits for the device.
   [[nodiscard]] RasterImage read_back();
 
   /// Adds fragments, batches and stencil counts so far. Waits for the device.

@@ -7,7 +7,7 @@
 
 namespace sdm::gl {
 
-/// Values 1 ... K, reassigned from the least recently used. Knows nothing of OpenGL.
+/// Values 1 ... K, reassigned from the least recently used. Independent of OpenGL.
 class StencilCache {
  public:
   static constexpr std::uint32_t kNobody = 0xFFFFFFFFu;

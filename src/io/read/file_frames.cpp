@@ -58,7 +58,7 @@ class FileFrames : public FrameSource {
 
   void read(std::size_t frame, std::vector<Vec3>& positions) override {
     const fs::path file = files_.file(frame);
-    if (file.empty()) throw Error("there is no file of that number");
+    if (file.empty()) throw Error("there is no file with that number");
     PolygonMesh polygons = read_file(file);
     require_same_faces(polygons);
     positions = std::move(polygons.positions);
@@ -79,7 +79,7 @@ class FileFrames : public FrameSource {
       if (polygons.ends[f] != ends_[f] ||
           !std::equal(corners_.begin() + first, corners_.begin() + last, polygons.corners.begin() + first))
         throw Error("face " + std::to_string(f) +
-                    " joins other vertices than in the first frame; all frames need the same faces");
+                    " has other vertices than in the first frame; all frames must have the same faces");
     }
   }
 

@@ -18,7 +18,7 @@ namespace sdm {
 /// STL, text or binary. Normals and attributes are skipped.
 [[nodiscard]] PolygonMesh read_stl_text(std::string_view text);
 [[nodiscard]] PolygonMesh read_stl_binary(std::string_view bytes);
-/// Whether a binary STL file of this size says that it holds as many triangles as it does.
+/// Whether the triangle count in the header of a binary STL matches the file size.
 [[nodiscard]] bool is_stl_binary(std::string_view bytes);
 
 /// Geomview OFF as text, with any of the prefixes ST, C and N.
@@ -26,8 +26,8 @@ namespace sdm {
 /// Whether `word` is the header of any kind of OFF.
 [[nodiscard]] bool is_off_header(std::string_view word);
 
-/// glTF 2.0, as JSON or GLB: the triangles of all meshes of the default scene, in its coordinates. `file`
-/// tells where buffers outside of it lie.
+/// glTF 2.0, as JSON or GLB: the triangles of all meshes of the default scene, in its coordinates. External
+/// buffers are resolved relative to `file`.
 [[nodiscard]] PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file);
 
 /// Autodesk 3DS: all meshes. They are stored in the coordinates of the scene; its axes are kept.

@@ -1,4 +1,4 @@
-// Where the frames of a sequence come from: one implementation a form of input.
+// The source of a sequence's frames: one implementation per input form.
 #pragma once
 
 #include <filesystem>

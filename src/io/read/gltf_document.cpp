@@ -26,7 +26,7 @@ Chunks split(std::string_view bytes) {
   ByteScanner in(bytes);
   in.take(4);
   if (const auto version = in.number<std::uint32_t>(); version != 2)
-    throw Error("glTF version " + std::to_string(version) + " is not read, only version 2");
+    throw Error("glTF version " + std::to_string(version) + " is not supported, only version 2");
   if (in.number<std::uint32_t>() > bytes.size()) throw Error("the GLB file is truncated");
   Chunks chunks;
   while (in.remaining() >= 8) {
@@ -57,7 +57,7 @@ FileBytes decode_base64(std::string_view text) {
   return bytes;
 }
 
-// Turns %20 and the like into what they stand for.
+// Decodes percent escapes such as %20.
 std::string decode_percent(std::string_view uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -144,17 +144,17 @@ GltfDocument::GltfDocument(std::string_view bytes, const std::filesystem::path& 
   try {
     root_ = json::parse(chunks.json);
   } catch (const json::parse_error& fault) {
-    throw Error("its JSON is at fault at byte " + std::to_string(fault.byte) +
+    throw Error("its JSON is invalid at byte " + std::to_string(fault.byte) +
                 "; the file is truncated or damaged");
   }
   if (!root_.is_object() || !root_.contains("asset"))
-    throw Error("this is JSON, but not glTF: it has no asset");
+    throw Error("this is JSON, but not glTF: it has no asset object");
   if (root_["asset"].at("version").get<std::string>().substr(0, 2) != "2.")
-    throw Error("only glTF version 2 is read");
+    throw Error("only glTF version 2 is supported");
   for (const json& extension : root_.value("extensionsRequired", json::array()))
     if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression")
       throw Error("is compressed by " + extension.get<std::string>() +
-                  ", which is not read; save it without");
+                  ", which is not supported; save it without compression");
   load_buffers(chunks.binary, folder);
 }
 
@@ -191,7 +191,7 @@ std::vector<double> GltfDocument::rows_of(const json& place, std::size_t compone
   const std::size_t view_begin = whole_number(view, "byteOffset", 0),
                     view_length = whole_number(view, "byteLength");
   if (view_begin > buffers_[buffer].size() || view_length > buffers_[buffer].size() - view_begin)
-    throw Error("a buffer view reaches beyond its buffer");
+    throw Error("a buffer view extends beyond its buffer");
   const std::string_view bytes = buffers_[buffer].substr(view_begin, view_length);
 
   std::vector<double> values;
@@ -203,7 +203,7 @@ std::vector<double> GltfDocument::rows_of(const json& place, std::size_t compone
     // The first row must fit, and each further one takes `stride` more bytes.
     if (rows > 0 && (begin > bytes.size() || row_bytes > bytes.size() - begin || stride == 0 ||
                      rows - 1 > (bytes.size() - begin - row_bytes) / stride))
-      throw Error("an accessor reaches beyond its buffer view");
+      throw Error("an accessor extends beyond its buffer view");
     const bool divide = normalized && std::numeric_limits<Component>::is_integer;
     values.reserve(rows * columns);
     for (std::size_t r = 0; r < rows; ++r)

@@ -95,7 +95,7 @@ class GltfFrames : public FrameSource {
         first_vertex += document.count(whole_number(primitive["attributes"], "POSITION"));
       }
     }
-    if (parts_.empty()) throw Error("its animation changes nothing that the scene shows");
+    if (parts_.empty()) throw Error("its animation has no effect on the scene");
     choose_times(rate);
   }
 

@@ -1,4 +1,4 @@
-// What of a glTF file is shown, and where.
+// The visible meshes of a glTF file and their transforms.
 #pragma once
 
 #include <sdm/types.h>

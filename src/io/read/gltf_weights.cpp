@@ -12,7 +12,7 @@ WeightTrack::WeightTrack(const GltfDocument& document, const nlohmann::json& sam
     : targets_(targets) {
   const std::string name = sampler.value("interpolation", "LINEAR");
   if (name != "STEP" && name != "LINEAR" && name != "CUBICSPLINE")
-    throw Error("its animation is interpolated by none of STEP, LINEAR and CUBICSPLINE");
+    throw Error("its animation has an unknown interpolation; STEP, LINEAR and CUBICSPLINE are supported");
   interpolation_ = name == "STEP"     ? Interpolation::step
                    : name == "LINEAR" ? Interpolation::linear
                                       : Interpolation::cubic;

@@ -29,7 +29,7 @@ fs::path npy_file(const fs::path& mesh, const fs::path& npy) {
 std::unique_ptr<FrameSource> open_file(const fs::path& file, double rate) {
   const FileBytes contents = read_bytes(file);
   if (contents.view().starts_with("\x93NUMPY"))
-    throw Error("holds positions without triangles; add the mesh that they move, as in mesh.obj+" +
+    throw Error("contains positions without triangles; add the mesh that they belong to, as in mesh.obj+" +
                 file.filename().string());
   if (format_of(contents.view(), file) == MeshFormat::gltf)
     if (auto frames = gltf_frames(contents.view(), file, rate)) return frames;
@@ -88,8 +88,8 @@ void MeshSequence::Impl::read(std::size_t frame) {
       positions[found++] = file_positions[v];
     else if (norm(file_positions[v] - positions[vertex]) > weld_tolerance)
       throw Error("vertex " + std::to_string(v) +
-                  " has left another one that has the same place in the first frame; sequences need such "
-                  "vertices to stay together");
+                  " separates from another one that coincides with it in the first frame; such vertices must "
+                  "stay together");
   }
   validate_positions(positions);
 }

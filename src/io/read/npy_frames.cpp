@@ -107,7 +107,8 @@ class NpyFrames : public FrameSource {
     for (const std::uint64_t n : shape) text += (text.empty() ? "" : ", ") + std::to_string(n);
     if (shape.size() != 3 || shape[2] != 3)
       throw Error("has the shape (" + text + "); frames of positions have (T, V, 3)");
-    if (shape[0] == 0 || shape[1] == 0) throw Error("has the shape (" + text + "), which holds no positions");
+    if (shape[0] == 0 || shape[1] == 0)
+      throw Error("has the shape (" + text + "), which contains no positions");
     if (shape[1] != vertices)
       throw Error("has " + std::to_string(shape[1]) + " vertices a frame, and " +
                   mesh_name_.filename().string() + " lists " + std::to_string(vertices));
@@ -117,7 +118,7 @@ class NpyFrames : public FrameSource {
     if (data % frame_bytes != 0 || data / frame_bytes != shape[0])
       throw Error("has " + std::to_string(data) + " bytes of numbers, which are not the " +
                   std::to_string(shape[0]) + " frames of " + std::to_string(frame_bytes) +
-                  " bytes that its header promises; it is truncated or damaged");
+                  " bytes declared by its header; it is truncated or damaged");
   }
 
   // In Fortran order number (t, v, k) stands at place t + T·(v + V·k).

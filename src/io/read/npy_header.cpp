@@ -12,7 +12,7 @@ namespace sdm {
 namespace {
 
 [[noreturn]] void fail() {
-  throw Error("its header is not one that NumPy writes; the file is damaged");
+  throw Error("its header is invalid; the file is damaged");
 }
 
 // The Python dictionary of a header, as far as NumPy uses it: strings, True or False, tuples of whole
@@ -92,7 +92,7 @@ NpyHeader parse_npy_header(std::string_view bytes) {
   const auto version = in.number<std::uint8_t>();
   in.take(1);
   if (version < 1 || version > 3)
-    throw Error("NPY version " + std::to_string(version) + " is not read, only 1 to 3");
+    throw Error("NPY version " + std::to_string(version) + " is not supported, only 1 to 3");
   const std::size_t length = version == 1 ? in.number<std::uint16_t>() : in.number<std::uint32_t>();
   Dictionary text(in.take(length));
 
@@ -105,7 +105,7 @@ NpyHeader parse_npy_header(std::string_view bytes) {
     text.expect(":");
     if (key == "descr") {
       if (text.accept("["))
-        throw Error("holds records, not plain numbers; save an array of float32 or float64");
+        throw Error("contains records, not plain numbers; save an array of float32 or float64");
       set_type(header, text.string());
       keys |= 1;
     } else if (key == "fortran_order") {

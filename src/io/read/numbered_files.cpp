@@ -31,10 +31,10 @@ std::optional<Name> split_at_number(std::string_view name) {
   return Name{name.substr(0, begin), name.substr(begin, dot - begin), name.substr(dot)};
 }
 
-// A pattern in parts: what stands around the number, and the fewest digits of it.
+// A parsed pattern: the text around the number, and the minimum number of its digits.
 struct Pattern {
   std::string before, after;
-  std::optional<std::size_t> width;  // none: * takes digits as they come
+  std::optional<std::size_t> width;  // none: * matches any digits
 };
 
 Pattern parse_pattern(const std::string& text) {
@@ -48,11 +48,11 @@ Pattern parse_pattern(const std::string& text) {
       end += 2;
     }
     if (end == text.size() || text[end++] != 'd')
-      throw Error("after % a pattern goes on with d, or with a width and d, as in walk_%04d.ply");
+      throw Error("% in a pattern must be followed by d, or by a width and d, as in walk_%04d.ply");
   }
   pattern.after = text.substr(end);
   if (pattern.after.find_first_of("%*") != std::string::npos)
-    throw Error("a pattern has one number only, as in walk_%04d.ply or walk_*.ply");
+    throw Error("a pattern must contain exactly one number, as in walk_%04d.ply or walk_*.ply");
   return pattern;
 }
 
@@ -104,7 +104,7 @@ NumberedFiles NumberedFiles::like(const fs::path& pattern) {
     const std::string name = path.filename().string();
     if (const auto digits = match(parsed, name)) files.push_back({to_number(*digits, name), path});
   });
-  if (files.empty()) throw Error("no file has such a name");
+  if (files.empty()) throw Error("no file matches");
   return NumberedFiles(std::move(files));
 }
 
@@ -143,7 +143,7 @@ NumberedFiles::NumberedFiles(std::vector<File> files) : files_(std::move(files))
   if (count() - files_.size() > files_.size())
     throw Error("of the numbers from " + std::to_string(files_.front().number) + " to " +
                 std::to_string(files_.back().number) + " only " + std::to_string(files_.size()) +
-                " have a file; number the files one after the other");
+                " exist; number the files consecutively");
 }
 
 std::size_t NumberedFiles::count() const {

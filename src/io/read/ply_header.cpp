@@ -29,7 +29,7 @@ Type parse_type(TextScanner& in) {
   if (in.more_on_line())
     for (const Spelling& spelling : spellings)
       if (in.accept(spelling.name)) return spelling.type;
-  in.fail_at_word("a type of PLY is needed");
+  in.fail_at_word("a PLY type is expected");
 }
 
 PlyHeader::Encoding parse_encoding(TextScanner& in) {
@@ -38,7 +38,7 @@ PlyHeader::Encoding parse_encoding(TextScanner& in) {
     if (in.accept("binary_little_endian")) return PlyHeader::Encoding::little_endian;
     if (in.accept("binary_big_endian")) return PlyHeader::Encoding::big_endian;
   }
-  in.fail_at_word("ascii, binary_little_endian or binary_big_endian is needed");
+  in.fail_at_word("ascii, binary_little_endian or binary_big_endian is expected");
 }
 
 PlyHeader::Element parse_element(TextScanner& in) {
@@ -100,7 +100,7 @@ PlyHeader parse_ply_header(std::string_view bytes) {
       if (header.elements.empty()) in.fail("a property comes before the first element");
       header.elements.back().properties.push_back(parse_property(in));
     } else if (in.accept("end_header")) {
-      if (!has_format) in.fail("the PLY header does not tell its format");
+      if (!has_format) in.fail("the PLY header has no format line");
       in.skip_line();
       header.size = bytes.size() - in.remaining();
       return header;

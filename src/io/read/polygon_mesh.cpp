@@ -16,7 +16,7 @@ namespace {
 void check_indices(const PolygonMesh& polygons) {
   if (polygons.ends.empty()) {
     if (polygons.positions.empty()) throw Error("there are no triangles");
-    throw Error("there are no triangles, only a cloud of " + std::to_string(polygons.positions.size()) +
+    throw Error("there are no triangles, only a point cloud of " + std::to_string(polygons.positions.size()) +
                 " points; make a mesh of them first");
   }
   for (std::size_t c = 0; c < polygons.corners.size(); ++c) {

@@ -1,4 +1,4 @@
-// What the readers make of a file, and the mesh it becomes.
+// The output of the readers, and its conversion to a mesh.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -8,7 +8,7 @@
 
 namespace sdm {
 
-/// Polygons over shared vertices, as they stand in a file; nothing in it is checked.
+/// Polygons over shared vertices, as stored in a file; unchecked.
 struct PolygonMesh {
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;
@@ -25,8 +25,8 @@ struct PolygonMesh {
 /// range and where there is no face.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons);
 
-/// The same; tells what became of each vertex: its number in the mesh, where vertices keep the order in which
-/// they are met first, or kNone for one that was dropped.
+/// The same, and returns the new index of each vertex: its number in the mesh, where vertices keep the order
+/// in which they are met first, or kNone for one that was dropped.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered);
 
 }  // namespace sdm

@@ -56,15 +56,15 @@ PolygonMesh read_off(std::string_view text) {
     header = parse_header(ahead.word());
     if (header.is_off) in = ahead;  // without one, the counts come first
   }
-  if (header.four || header.any_dimension) throw Error("OFF in other than three dimensions is not read");
+  if (header.four || header.any_dimension) throw Error("only three-dimensional OFF is supported");
   if (header.is_off && in.more_on_line() && in.accept("BINARY"))
-    throw Error("binary OFF is not read; save it as text");
+    throw Error("binary OFF is not supported; save it as text");
 
   const std::size_t vertices = parse_count(in), faces = parse_count(in);
   in.skip_line();  // the count of edges, if any, says nothing
   // A vertex takes at least the 6 bytes "0 0 0\n", a face the 2 bytes "0\n"; the last newline may be missing.
   if (vertices > in.remaining() || faces > in.remaining() || 6 * vertices + 2 * faces > in.remaining() + 1)
-    throw Error("the header promises " + std::to_string(vertices) + " vertices and " + std::to_string(faces) +
+    throw Error("the header declares " + std::to_string(vertices) + " vertices and " + std::to_string(faces) +
                 " faces, more than the file can hold; it is truncated or damaged");
 
   PolygonMesh mesh;

@@ -91,7 +91,7 @@ class PlyReader {
     for (const Property& p : element.properties)
       row_bytes += Source::least_bytes(p.count_type.value_or(p.type));
     if (element.count > in_.remaining() / row_bytes)
-      throw Error("the header promises " + std::to_string(element.count) + " rows of element " +
+      throw Error("the header declares " + std::to_string(element.count) + " rows of element " +
                   element.name + ", more than the file can hold; it is truncated or damaged");
   }
 
@@ -158,7 +158,7 @@ class PlyReader {
     }
   }
 
-  // Strips follow each other in a list, parted by −1; every other triangle of a strip is turned.
+  // A list contains several strips separated by −1; every other triangle of a strip is flipped.
   void read_strips(const Element& element) {
     const std::size_t indices = list_place(element, {"vertex_indices", "vertex_index"});
     for (std::size_t row = 0; row < element.count; ++row) {

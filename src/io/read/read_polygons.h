@@ -14,7 +14,7 @@ namespace sdm {
 
 enum class MeshFormat { unknown, obj, ply, stl_text, stl_binary, off, gltf, tds };
 
-/// Told by the contents, else by the extension of the file's name.
+/// Detected by content, otherwise by the file extension.
 [[nodiscard]] MeshFormat format_of(std::string_view bytes, const std::filesystem::path& file);
 
 /// Reads the contents of a mesh file. Throws sdm::Error that names the fault, not the file.

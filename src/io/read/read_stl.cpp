@@ -33,8 +33,8 @@ PolygonMesh read_stl_binary(std::string_view bytes) {
                 " bytes, fewer than the header of a binary STL; it is truncated");
   const std::size_t count = triangle_count(bytes);
   if (bytes.size() < kHeaderBytes + kTriangleBytes * count)
-    throw Error("the header promises " + std::to_string(count) + " triangles, more than the file of " +
-                std::to_string(bytes.size()) + " bytes can hold; it is truncated or no STL");
+    throw Error("the header declares " + std::to_string(count) + " triangles, more than the file of " +
+                std::to_string(bytes.size()) + " bytes can contain; it is truncated or not an STL file");
 
   PolygonMesh mesh;
   mesh.positions.reserve(3 * count);

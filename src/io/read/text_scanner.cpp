@@ -16,7 +16,7 @@ void TextScanner::fail_at_word(const std::string& fault) {
   for (char& c : found)
     if (c < ' ' || c > '~') c = '?';
   if (!found.empty()) found = ", not '" + found + "'";
-  if (at_end()) found += "; the text ends here, so that the file seems truncated";
+  if (at_end()) found += "; the file ends here and may be truncated";
   fail_at(start, fault + found);
 }
 

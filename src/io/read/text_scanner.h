@@ -82,11 +82,11 @@ class TextScanner {
   }
   /// The whole number next on this line; '/' may follow.
   std::int64_t integer() {
-    if (!more_on_line()) fail_at_word("a whole number is needed");
+    if (!more_on_line()) fail_at_word("an integer is expected");
     std::int64_t value = 0;
     const auto [stop, error] = std::from_chars(at_, end_, value);
     if (error != std::errc{} || (stop != end_ && *stop != '/' && !is_delimiter(*stop)))
-      fail_at_word("a whole number is needed");
+      fail_at_word("an integer is expected");
     at_ = stop;
     return value;
   }

@@ -31,8 +31,7 @@ AtomicFile::AtomicFile(std::filesystem::path file)
     : file_(std::move(file)), temporary_(temporary_beside(file_)) {
   std::error_code ignored;
   if (exists(file_, ignored) && !is_regular_file(file_, ignored))
-    throw Error("cannot write " + file_.string() +
-                ": something that is no file has that name; choose another");
+    throw Error("cannot write " + file_.string() + ": that name exists and is not a file; choose another");
   errno = 0;
   stream_.open(temporary_, std::ios::binary | std::ios::trunc);
   if (!stream_)

@@ -7,7 +7,7 @@
 
 namespace sdm {
 
-/// Collects what is written in a temporary file beside `file`; commit() renames it, otherwise it is removed.
+/// Writes to a temporary file next to `file`; commit() renames it, otherwise it is removed.
 class AtomicFile {
  public:
   /// Throws sdm::Error when the folder cannot be written to, or `file` is there and no plain file.

@@ -26,7 +26,7 @@ struct ColorScale {
   [[nodiscard]] Rgb operator()(double distance) const;
 };
 
-/// The scale that `options` ask for; what they leave open follows from the map.
+/// The scale selected by `options`, with defaults from the map.
 /// Throws sdm::Error unless the range is finite and increasing and the tolerance finite and ≥ 0.
 [[nodiscard]] ColorScale color_scale(const DistanceMap& map, const PictureOptions& options);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr double kWidth = 900, kPanel = 220, kLeft = 90, kRight = 24, kTop = 40, kFoot = 26, kAxis = 40;
 constexpr double kTitleSize = 15, kTextSize = 12, kZoom = 1.5;
 constexpr Rgb kGrid{228, 230, 233};
-// Of Okabe and Ito, told apart by colour-blind readers too.
+// The palette of Okabe and Ito, distinguishable by colour-blind readers.
 constexpr Rgb kColors[] = {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {86, 180, 233}};
 
 struct Range {

@@ -26,7 +26,7 @@ struct SequenceWriter::Impl {
 
 SequenceWriter::SequenceWriter(const std::filesystem::path& file, std::size_t vertices)
     : impl_(new Impl{.out = AtomicFile(file), .vertices = vertices}) {
-  impl_->write_header();  // once more when the number of frames is known
+  impl_->write_header();  // again when the number of frames is known
 }
 SequenceWriter::~SequenceWriter() = default;
 SequenceWriter::SequenceWriter(SequenceWriter&&) noexcept = default;
@@ -41,7 +41,7 @@ void SequenceWriter::add(std::span<const Vec3> positions) {
     for (const double x : positions[v]) {
       if (!(std::abs(x) <= std::numeric_limits<float>::max()))
         throw Error("frame " + std::to_string(impl_->frames) + ": vertex " + std::to_string(v) +
-                    " has a coordinate that a float does not hold");
+                    " has a coordinate beyond the range of float");
       append_little_endian(impl_->bytes, static_cast<float>(x));
     }
   impl_->out.stream().write(impl_->bytes.data(), static_cast<std::streamsize>(impl_->bytes.size()));

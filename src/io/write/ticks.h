@@ -8,7 +8,7 @@ namespace sdm {
 
 /// Round numbers (1, 2 or 5 times a power of ten) apart by about a `count`-th of [lo, hi], all within.
 [[nodiscard]] std::vector<double> ticks(double lo, double hi, int count);
-/// A number for a tick: short, but told apart from its neighbours, which are `step` away.
+/// The label of a tick: short, but distinct from its neighbours, which are `step` away.
 [[nodiscard]] std::string tick_label(double value, double step);
 
 }  // namespace sdm

@@ -136,7 +136,7 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
 
 void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps) {
   if (maps.resolution() != surface.resolution())
-    throw Error("cannot write " + file.string() + ": the maps are not of this surface");
+    throw Error("cannot write " + file.string() + ": the maps belong to another surface");
   const Channel channels[] = {{"min.D", Imf::FLOAT, offsetof(TemporalTexel, least)},
                               {"mean.D", Imf::FLOAT, offsetof(TemporalTexel, mean)},
                               {"max.D", Imf::FLOAT, offsetof(TemporalTexel, largest)},

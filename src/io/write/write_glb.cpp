@@ -83,7 +83,7 @@ struct GlbModel {
     auto& data = model.buffers[0].data;
     data.resize((data.size() + 3) / 4 * 4);  // accessors of floats start at multiples of 4
     if (data.size() + size > std::numeric_limits<std::uint32_t>::max() - (1u << 20))
-      throw Error("the model is larger than the 4 GB that a GLB file holds");
+      throw Error("the model exceeds the 4 GB limit of GLB files");
     tinygltf::BufferView view;
     view.buffer = 0;
     view.byteOffset = data.size();

@@ -38,10 +38,10 @@ class RunSearch {
   [[nodiscard]] std::uint32_t body(std::size_t i) const { return body_[i]; }
 
  private:
-  // Only what is as near as this can be the answer.
+  // The result is at most this far.
   [[nodiscard]] double limit(std::size_t i) const { return std::min(max_distance_, closest_[i].distance); }
 
-  // The nearest box first: it most likely leaves nothing for the others.
+  // The nearest box first: it most likely makes the others unnecessary.
   void sort_bodies(std::span<const Vec3> points) {
     Box box;
     for (const Vec3& p : points) extend(box, p);

@@ -62,7 +62,7 @@ class LeafFaces {
       for (int k = 0; k < 3; ++k) v[k] = hn::Sub(corner[2][k], corner[0][k]);
       for (int k = 0; k < 3; ++k)
         normal[k] = hn::MulSub(u[(k + 1) % 3], v[(k + 2) % 3], hn::Mul(u[(k + 2) % 3], v[(k + 1) % 3]));
-      // Any axis will do, if it is not longer than 1: no harm if rounding turns a needle's.
+      // Any axis of length at most 1 is valid, so rounding of the axis of a needle is harmless.
       const Vec squared = dot(normal, normal), least = hn::Set(d, 1e-37f);
       const Vec inverse =
           hn::IfThenElseZero(hn::Gt(squared, least), hn::Div(hn::Set(d, 1.0f), hn::Sqrt(squared)));
@@ -95,7 +95,7 @@ class LeafFaces {
 };
 
 // Lower bounds for faces of `a`, from lane i on, and one of `b`: from their boxes, and along both normals and
-// the direction between the closest points so far (which is 0 if there are none: then it tells nothing).
+// the direction between the closest points so far (0 if there are none, which excludes nothing).
 HWY_INLINE Vec face_distances(const LeafFaces& a, size_t i, const LeafFaces& b, uint32_t face,
                               const Direction& direction) {
   const Lanes d;

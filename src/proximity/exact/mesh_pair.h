@@ -1,4 +1,4 @@
-// Two meshes, and what is found between them.
+// Two meshes, and the results of a search between them.
 #pragma once
 
 #include <sdm/sites.h>
@@ -11,7 +11,7 @@
 
 namespace sdm::exact {
 
-/// O1 where it is, and O2 moved by `pose`. Nothing is copied: a pose costs nothing.
+/// O1 in place, and O2 moved by `pose`. No vertices are copied.
 struct MeshPair {
   const sites::SitesData &o1, &o2;
   Affine pose{};
@@ -26,7 +26,8 @@ struct Separation {
   double distance = std::numeric_limits<double>::infinity();  ///< |point2 − point1|, to rounding
   bool intersecting = false;  ///< decided exactly; if so the distance is 0 and both points are one
   Vec3 point1{}, point2{};    ///< as O2 is posed
-  std::uint32_t face1 = kNone, face2 = kNone;  ///< faces they lie on; kNone: nothing within the bound asked
+  std::uint32_t face1 = kNone,
+                face2 = kNone;  ///< faces they lie on; kNone: nothing within the requested bound
 };
 
 }  // namespace sdm::exact

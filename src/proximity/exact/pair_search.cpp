@@ -88,7 +88,7 @@ class PairSearch {
   }
 
   // The box of a leaf says little of its faces if they are large: against a smaller box they are bounded one
-  // by one. Returns whether this pair is done with, or to be opened when it is its turn.
+  // by one. Returns whether this pair is finished; otherwise it is opened later.
   bool put_off(Entry entry, const CentredBox& small) {
     const int large = entry.place[0].leaf() ? 0 : 1;
     load_faces(large, entry.place[large].leaf_number());
@@ -166,7 +166,7 @@ class PairSearch {
     const uint32_t face1 = sites_[0]->tree.items[candidate.owner1],
                    face2 = sites_[1]->tree.items[candidate.owner2];
     const Corners a = pair_.face1(face1), b = pair_.face2(face2);
-    // Where details are too fine for single precision, most pairs end here.
+    // Most pairs end here if details are too fine for single precision.
     if (squared_box_distance(a, b) > kAbove * best_.distance * best_.distance) return;
     ++w_.counts.triangle_pairs;
     if (!(candidate.least > 0) && triangles_intersect(a, b)) {
@@ -189,7 +189,7 @@ class PairSearch {
   const UnitMaps maps_;
   PairWorkspace& w_;
   Separation best_;
-  float limit_;          // what is farther does not matter
+  float limit_;          // pairs farther than this are excluded
   Direction direction_;  // from the closest point of O1 so far to that of O2
   LeafFaces faces_[2];
   uint32_t loaded_[2] = {kNone, kNone};  // their leaves

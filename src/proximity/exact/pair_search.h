@@ -9,14 +9,14 @@
 
 namespace sdm::exact {
 
-/// The work done, which tests hold down.
+/// Work counters, for tests.
 struct PairSearchCounts {
   std::size_t nodes = 0;           ///< opened: eight boxes tested against one
   std::size_t leaf_pairs = 0;      ///< of up to eight faces each, tested in single precision
   std::size_t triangle_pairs = 0;  ///< in double precision
 };
 
-/// What a thread keeps between searches: memory only, nothing that results depend on.
+/// Per-thread memory reused between searches; results do not depend on it.
 struct PairWorkspace {
   /// A node or leaf of the wide tree, and the binary node that has its box.
   struct Place {

@@ -54,7 +54,7 @@ bool segments_meet(const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) {
          orientation(r, s, p) * orientation(r, s, q) <= 0;
 }
 
-// A triangle without area holds no more than its edges do.
+// A triangle without area consists of its edges.
 bool holds(const Corners2& t, const Vec2& p) {
   const auto& [a, b, c] = t.at;
   return orientation(a, b, c) != 0 &&
@@ -68,13 +68,13 @@ bool meet(const Corners2& a, const Corners2& b) {
   return holds(a, b.at[0]) || holds(b, a.at[0]);
 }
 
-// Triangles of which each lies in the plane of the other, or has none.
+// Coplanar triangles, or triangles without a plane.
 bool flat_intersect(const Corners& a, const Corners& b) {
   // Two without a plane: segments, which may pass each other.
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       if (orientation(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]) != 0) return false;
-  // All points lie in one plane. A projection along an axis keeps apart what is apart unless it flattens the
+  // All points lie in one plane. A projection along an axis preserves disjointness unless it flattens the
   // plane to a line, or the line to a point, and one of the three does not.
   for (int axis = 0; axis < 3; ++axis)
     if (!meet(Corners2(a, axis), Corners2(b, axis))) return false;

@@ -1,4 +1,4 @@
-// A mesh as both what distances are measured on and what they are measured to.
+// A mesh as O1 and as O2: its surface and its sites.
 #pragma once
 
 #include <sdm/sites.h>

@@ -12,7 +12,7 @@
 
 namespace sdm::sampled {
 
-/// A body with what has been measured of it.
+/// A body with its measured samples.
 struct MeasuredBody {
   const Surface& surface;
   const Sites& sites;
@@ -22,11 +22,11 @@ struct MeasuredBody {
 /// Finds contacts, again and again in the same memory.
 class ContactFinder {
  public:
-  /// As Query::contacts. `length`: below this, a depth says nothing about the normal.
+  /// As Query::contacts. `length`: below this, the depth does not determine the normal.
   std::span<const Contact> find(const std::array<MeasuredBody, 2>& bodies, double margin, double length);
 
  private:
-  /// A small part of the surface: what one chart has in a run of samples.
+  /// The samples of one chart within a block.
   struct Part {
     std::uint32_t chart;
     std::size_t deepest;  ///< sample of the part, among those measured

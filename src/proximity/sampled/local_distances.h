@@ -1,4 +1,4 @@
-// Distances of a surface's samples to another body, where they matter.
+// Distances from a surface's samples to another body, for the samples that affect a result.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace sdm::sampled {
 
 /// The samples are probed at a few of them: each bounds the distances of those around it, which are
 /// 1-Lipschitz. What can still be within reach is probed more densely, down to single runs, and of the runs
-/// that remain all samples are measured. A distance to the inside of a solid is negative. What is not
-/// measured costs next to nothing: its samples are not even placed.
+/// that remain all samples are measured. A distance to the inside of a solid is negative. Culled samples are
+/// never evaluated, so they cost almost nothing.
 class LocalDistances {
  public:
   /// One probe for so many runs, at one density after the other. (Measured.)
@@ -21,11 +21,11 @@ class LocalDistances {
 
   /// Starts with all samples of `on`. The bodies must stay until these are measured.
   void start(const Body& on, const Body& to);
-  /// Probes what is left, on all cores.
+  /// Probes the remaining blocks, on all cores.
   void probe(std::size_t runs_per_probe);
   /// The least of the |distances| probed so far.
   [[nodiscard]] double least_probed() const { return least_probed_; }
-  /// Leaves what can be nearer than `reach`, or is inside.
+  /// Keeps blocks that may be nearer than `reach` or inside.
   void keep(double reach);
   /// Measures all samples that are left, on all cores; they were last probed run by run.
   void measure();

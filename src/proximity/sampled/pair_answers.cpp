@@ -62,7 +62,8 @@ void PairAnswers::measure() {
   for (int b = 0; b < 2; ++b) distances_[b].start(*bodies_[b], *bodies_[1 - b]);
   for (const std::size_t runs_per_probe : LocalDistances::kRunsPerProbe) {
     for (LocalDistances& distances : distances_) distances.probe(runs_per_probe);
-    // What is nearer matters for contacts, for depth, and unless the triangles tell it, for the separation.
+    // Samples nearer than this affect contacts, depth and, unless it is computed from the triangles,
+    // separation.
     double reach = options_.contact_margin;
     if (!options_.exact)
       reach = std::max(reach, std::min(distances_[0].least_probed(), distances_[1].least_probed()));
@@ -131,7 +132,7 @@ BoundedBool PairAnswers::sampled_collision() {
   measure();
   if (least([](double d, double) { return d; }).first < -precision_) return {true, Certainty::exact};
   if (separation().lower > 0) return {false, Certainty::exact};
-  return {true, Certainty::estimate};  // as near as the samples can tell
+  return {true, Certainty::estimate};  // the samples cannot distinguish this from contact
 }
 
 std::optional<BoundedLength> PairAnswers::depth() {

@@ -1,4 +1,4 @@
-// What is told of two bodies: by Query of its own, by Bodies of pair after pair.
+// The results for two bodies: used by ProximityQuery for its pair and by MultiBodyQuery for each pair.
 #pragma once
 
 #include <sdm/proximity_query.h>
@@ -14,7 +14,7 @@
 
 namespace sdm::sampled {
 
-/// Answers as they are documented at Query, each computed when it is first asked for. Memory is kept from
+/// Results as documented at ProximityQuery, each computed on first use. Memory is reused from
 /// pair to pair; no answer depends on those before.
 class PairAnswers {
  public:
@@ -25,7 +25,7 @@ class PairAnswers {
 
   explicit PairAnswers(const Options& options) : options_(options) {}
 
-  /// Answers for these bodies, as they are now, from now on. They must outlive the answers, and stay as they
+  /// Sets the bodies to which the results refer. They must outlive this object and remain as they
   /// are until the next call.
   void begin(const Body& o1, const Body& o2);
 
@@ -62,7 +62,7 @@ class PairAnswers {
   ContactFinder finder_;
   exact::PairWorkspace workspace_;
 
-  // What has been found of these bodies.
+  // Results for these bodies.
   bool measured_ = false, depth_found_ = false;
   std::optional<exact::Separation> closest_;  // of the triangles
   std::optional<BoundedLength> separation_, depth_;

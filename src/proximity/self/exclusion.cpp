@@ -14,13 +14,13 @@ namespace sdm {
 namespace {
 
 void check(const ExclusionRule& rule) {
-  if (rule.rings == 0) throw Error("0 rings exclude nothing but the face itself; use 1 or more");
+  if (rule.rings == 0) throw Error("with 0 rings a face excludes only itself; use 1 or more");
   if (rule.geodesic && !(*rule.geodesic > 0 && std::isfinite(*rule.geodesic)))
     throw Error("a geodesic length of " + std::to_string(*rule.geodesic) +
                 " is out of range; use a positive number");
 }
 
-// What every face of a mesh reaches over shared vertices.
+// The faces reachable from each face over shared vertices.
 class Neighbours {
  public:
   Neighbours(const Mesh& mesh, const ExclusionRule& rule)
@@ -73,7 +73,7 @@ class Neighbours {
   [[nodiscard]] bool within(double length, std::uint32_t f, std::uint32_t g) const {
     const exact::Corners a = corners(f), b = corners(g);
     const double most = length * length;
-    // Nearly always corners or boxes tell.
+    // Corners or boxes decide nearly always.
     for (const Vec3& p : a)
       for (const Vec3& q : b)
         if (squared_norm(q - p) < most) return true;

@@ -18,7 +18,7 @@ constexpr std::size_t kGrain = 256;  // tiles or faces
 
 void check(const Sites& sites, const Exclusion& exclusion, const SelfMapOptions& options) {
   if (sites.mesh().triangles.size() != exclusion.faces())
-    throw Error("the exclusion is not one of this mesh: it has another number of faces");
+    throw Error("the exclusion belongs to another mesh: its number of faces differs");
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
 }
 
@@ -47,10 +47,10 @@ DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const E
                              const SelfMapOptions& options) {
   check(sites, exclusion, options);
   if (surface.mesh().triangles.size() != exclusion.faces())
-    throw Error("the surface is not that of the sites: it has another number of faces");
+    throw Error("surface and sites belong to different meshes: their numbers of faces differ");
   DistanceMap map;
   map::clear(map, surface);
-  map.sign.reason = "a surface has no inside of itself";
+  map.sign.reason = "the distance of a surface to itself has no sign";
   const surface::Tiles& tiles = surface::tiles_of(surface);
   std::atomic<std::size_t> none{0};
   parallel_for(tiles.count(), kGrain, options.progress, "map", [&](std::size_t begin, std::size_t end) {

@@ -1,4 +1,4 @@
-// How far a surface strays from its samples, however its vertices move.
+// Covering radii: the distance from any surface point to a sample, for any positions of the vertices.
 #pragma once
 
 #include <sdm/surface.h>
@@ -20,8 +20,8 @@ namespace sdm::surface {
 ///
 /// In all functions the surface is the one that this was made for, at whatever positions.
 ///
-/// Memory: a byte a sample, 36 a face and run that it has samples or pieces in, and 36 a piece: one for about
-/// every second square that an edge of a face crosses, and for every one along the borders of charts.
+/// Memory: a byte a sample, 36 a face and run that it has samples or pieces in, and 36 a piece: about one for
+/// every second square crossed by an edge of a face, and one for every square along chart borders.
 class Coverage {
  public:
   /// Assigns each piece to a sample that is near now. Throws sdm::Error when there is no memory for it. Cost:
@@ -54,7 +54,7 @@ class Coverage {
  private:
   friend class CoverageBuilder;
 
-  /// What a face has of the samples of a run, and of their pieces.
+  /// The samples of one face in a block, and their pieces.
   struct Patch {
     std::uint32_t face = kNone;
     std::uint32_t square_end = 0,

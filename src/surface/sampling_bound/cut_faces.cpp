@@ -87,7 +87,7 @@ class Cutter {
 
   FacePieces operator()() {
     constexpr std::size_t kFacesPerBlock = 64;
-    // Chart after chart: what they look up then is near each other.
+    // Chart by chart, so that lookups are local.
     const std::span<const std::uint32_t> charts = surface_.face_charts();
     std::vector<std::uint32_t> order(charts.size());
     std::iota(order.begin(), order.end(), 0u);

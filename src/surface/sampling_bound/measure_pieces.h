@@ -1,4 +1,4 @@
-// How far convex pieces of faces reach from a point: all corners of a piece at once.
+// The largest distance from a point to convex pieces of faces: all corners of a piece at once.
 #pragma once
 
 #include <sdm/types.h>

@@ -40,7 +40,7 @@ NearSamples::Choice NearSamples::choose(std::uint32_t face, double x, double y, 
   return best;
 }
 
-// What looks the other way may touch the surface now, but need not move along with it.
+// A face with an opposed normal may be in contact now, but may move independently.
 bool NearSamples::same_side(std::uint32_t face, std::uint32_t other) const {
   const auto normal = [this](std::uint32_t f) {
     const auto& [a, b, c] = surface_.mesh().triangles[f];

@@ -1,4 +1,4 @@
-// Convex parts of a triangle: what is left of it between lines of a grid.
+// Convex parts of a triangle, clipped to the cells of a grid.
 #pragma once
 
 #include <algorithm>

@@ -17,7 +17,7 @@ double ratio(double now, double first) {
 void check_faces(std::size_t count, std::size_t expected) {
   if (count != expected)
     throw Error("a relative error of " + std::to_string(count) + " faces was asked for of a surface of " +
-                std::to_string(expected) + "; compare a surface with its own first shape");
+                std::to_string(expected) + "; compare a surface with its own initial geometry");
 }
 
 }  // namespace
