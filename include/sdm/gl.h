@@ -1,5 +1,4 @@
-/// The gl engine: surface distance maps by rasterisation on OpenGL (Sud et al. 2006), its choices and what it
-/// did.
+/// The gl engine: surface distance maps by rasterisation on OpenGL (Sud et al. 2006): options and report.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +14,15 @@ struct GlDevice {
   bool software = false;
 };
 
-/// All devices that can run the gl engine, in the order in which it prefers them: hardware first. Needs
+/// All devices that can run the gl engine, in order of preference: hardware first. Needs
 /// neither a window nor a display server. Throws sdm::Error where there is none, or where sdm was built
 /// without OpenGL (SDM_BUILD_GL).
 [[nodiscard]] std::vector<GlDevice> gl_devices();
 
-/// How the polygons of sites are kept within the faces of O1.
+/// How the polygons of sites are clipped to the faces of O1.
 enum class GlClip {
   planes,   ///< cut at the face's sides before they are drawn; fragments look up who owns their texel
-  stencil,  ///< the paper's way (4.1): each face has a value in the stencil buffer, of a cache of them
+  stencil,  ///< the paper's method (4.1): each face has a stencil value, assigned by a cache
 };
 
 struct GlOptions {
@@ -37,12 +36,13 @@ struct GlOptions {
   bool bound_culling = true;
 };
 
-/// The device that maps of `resolution`² texels are drawn on. Throws sdm::Error where there is none, or its
-/// images are smaller: what compute_map would find out only once there is a surface.
+/// Returns the device for maps of `resolution`² texels. Throws sdm::Error if there is none or its images are
+/// smaller, before a surface is built.
 [[nodiscard]] GlDevice gl_device(const GlOptions& options, std::uint32_t resolution);
 
-/// What the gl engine did. Counts are exact and do not depend on the number of threads; a pair is a site of
-/// O2 and a tile of O1, the texels of one face in a square of 16². Each pair has one fate:
+/// Counters and times of the gl engine. Counts are exact and do not depend on the number of threads; a pair
+/// is a site of O2 and a tile of O1, the texels of one face in a square of 16². Each pair has exactly one
+/// outcome:
 ///   pairs = culled_by_bound + culled_by_obb + clipped_away + polygons.
 struct GlReport {
   GlDevice device;
@@ -65,7 +65,7 @@ struct GlReport {
   std::uint64_t texels = 0;        ///< owned by a face: fragments / texels is the overdraw
   std::uint64_t batches = 0;       ///< of polygons sent to the device
   /// Texels whose site proved to be farther than the distance drawn, for which the cpu engine found the
-  /// closest one: hardly any, unless the driver is at fault.
+  /// closest one: close to none unless the driver is faulty.
   std::uint64_t unconfirmed = 0;
 
   // GlClip::stencil, else 0. lookups = hits + misses; misses − evictions values are in use at the end.
@@ -78,7 +78,7 @@ struct GlReport {
 
   /// Wall-clock milliseconds. The device draws while the next batch is culled and clipped.
   struct Times {
-    double context = 0;    ///< device, shaders: next to nothing but for the first map of a process
+    double context = 0;    ///< device and shaders: close to 0 except for the first map of a process
     double refit = 0;      ///< affine maps, boxes of O1's tree
     double bounds = 0;     ///< upper bounds on distance
     double cull = 0;       ///< bounds, oriented boxes, clipping

@@ -11,11 +11,11 @@
 
 namespace sdm {
 
-/// What a number is worth.
+/// How reliable a number is.
 enum class Certainty {
-  exact,    ///< the truth, to 1e-6 of the diagonal of both bodies' box
-  bounded,  ///< the truth lies between the bounds given
-  estimate  ///< a good guess, with no such promise
+  exact,    ///< accurate to 1e-6 of the diagonal of both bodies' box
+  bounded,  ///< the true value lies between the given bounds
+  estimate  ///< no guarantee
 };
 
 /// A length.
@@ -23,7 +23,7 @@ struct BoundedLength {
   double value = 0;
   Certainty kind = Certainty::bounded;
   double lower = 0, upper = 0;  ///< lower ≤ truth ≤ upper, unless an estimate
-  /// A point of O1 and one of O2 that are `value` apart; nothing where the value stands for no two points.
+  /// A point of O1 and a point of O2 that are `value` apart; empty where no pair of points attains the value.
   std::optional<std::array<Vec3, 2>> witness{};
 };
 
@@ -46,14 +46,15 @@ struct ProximityOptions {
   AtlasOptions atlas{.resolution = 512};  ///< of both bodies: its samples are where distances are measured
   /// Separation and collision from the triangles themselves; else from the samples, with their bounds.
   bool exact = false;
-  /// Contacts are of all that is inside the other body or as near to it as this; ≥ 0, in units of the meshes.
+  /// Contacts are reported for everything inside the other body or within this distance of it; ≥ 0, in units
+  /// of the meshes.
   double contact_margin = 0;
 };
 
-/// The proximity of two bodies that deform: for simulation loops.
+/// Proximity of two deforming bodies, for simulation loops.
 ///
-/// A body that is closed and orientable is solid; of another there is only the surface. Distances are
-/// measured at the samples of both bodies' atlases, but only there where they can matter. By the covering
+/// A closed, orientable body is a solid; any other body is a surface without an inside. Distances are
+/// measured at those samples of both bodies' atlases that can affect a result. By the covering
 /// radii R of the samples (Surface::sample_radii) and because distances are 1-Lipschitz, they bound the
 /// distance everywhere:
 ///     min (d − R) ≤ separation ≤ min d,    max (−d) ≤ penetration depth ≤ max (R − d).
@@ -68,15 +69,15 @@ class ProximityQuery {
 
   /// Moves the vertices of the bodies, keeping their triangles: for others, make a new Query. No positions: a
   /// body stays. Throws sdm::Error, and changes nothing, for a wrong count or a coordinate that is not
-  /// finite. Cost: linear. Neither this nor the answers take memory once the bodies have been through such
-  /// poses.
+  /// finite. Cost: linear. Neither this nor the queries allocate memory once the bodies have been through
+  /// similar poses.
   void update(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
-  // Answers are computed when they are first asked for after an update.
+  // Results are computed by the first call after a refit.
 
-  /// The least distance of the two surfaces; 0 where they intersect.
+  /// The smallest distance between the two surfaces; 0 if they intersect.
   [[nodiscard]] const BoundedLength& separation();
-  /// Whether the surfaces intersect, or one body is solid and holds a part of the other.
+  /// Whether the surfaces intersect or one body is a solid that contains part of the other.
   [[nodiscard]] BoundedBool colliding();
   /// The largest distance to the surface of a body, of all points of the other body's surface that lie inside
   /// of it. Nothing if neither body is solid.
@@ -84,13 +85,13 @@ class ProximityQuery {
   /// From both bodies: each small part of the surface (256 samples that are neighbours, those of one chart)
   /// with samples inside the other body, or within the margin, has a contact at the deepest. Patch by patch,
   /// the deepest first, and so in each. Parts whose boxes, grown by what the samples cover, meet are of one
-  /// patch: a connected region of contact is never cut.
+  /// patch: a connected contact region is never divided.
   [[nodiscard]] std::span<const Contact> contacts();
 
   /// O1 for 0, O2 for 1.
   [[nodiscard]] const Surface& surface(int body) const;
   [[nodiscard]] const Sites& sites(int body) const;
-  /// Samples of both bodies that the last answers took: the others cannot matter.
+  /// The number of samples of both bodies measured for the last results; the others cannot affect them.
   [[nodiscard]] std::size_t samples_used() const;
 
  private:

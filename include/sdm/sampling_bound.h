@@ -1,5 +1,4 @@
-/// What lies between the samples: how its error grows as a surface deforms, and how many texels a precision
-/// takes.
+/// Errors between samples: their growth as a surface deforms, and the resolution that a precision requires.
 #pragma once
 
 #include <sdm/surface.h>
@@ -8,8 +7,8 @@
 
 namespace sdm {
 
-/// How much farther a deformed surface strays from its samples than its first shape did (Fig. 6 of the
-/// paper): with
+/// The growth of the largest distance from a surface point to its nearest sample under deformation (Fig. 6 of
+/// the paper): with
 ///
 ///     r(t) = max over points p of the surface of min over samples s of |p − s|,    e(t) = r(t) / r(0),
 ///
@@ -18,8 +17,8 @@ namespace sdm {
 /// 1-Lipschitz, e is how much the error of a map grows between its samples.
 class RelativeError {
  public:
-  /// Measures r(0) from below. Throws sdm::Error when there is no memory for it. Cost: some nearest samples a
-  /// face, all cores.
+  /// Computes a lower bound on r(0). Throws sdm::Error if there is not enough memory. Cost: some nearest
+  /// samples a face, all cores.
   explicit RelativeError(const Surface& first_shape);
 
   /// sampling_bound() / w ≥ e, where w ≤ r(0) is the distance from the nearest sample that some point of the
@@ -37,11 +36,11 @@ class RelativeError {
 };
 
 /// A resolution at which Surface(mesh, options).sampling_bound() ≤ precision, a length in units of the mesh,
-/// whatever options.resolution is; a multiple of 16, since a power of two may take four times the texels
-/// needed. About the smallest: the bound is more than nine tenths of the precision, or a resolution smaller
-/// by 16 or an eighth does not suffice. Throws sdm::Error when the precision is not a positive number, when
-/// 32768 texels a side are not enough for it, and as Surface does. Cost: two to six layouts, as the bound is
-/// about proportional to 1 / resolution.
+/// whatever options.resolution is; a multiple of 16, because a power of two may need four times the texels.
+/// About the smallest: the bound is more than nine tenths of the precision, or a resolution smaller by 16 or
+/// an eighth does not suffice. Throws sdm::Error when the precision is not a positive number, when 32768
+/// texels a side are not enough for it, and as Surface does. Cost: two to six layouts, as the bound is about
+/// proportional to 1 / resolution.
 [[nodiscard]] std::uint32_t resolution_for(const Mesh& mesh, AtlasOptions options, double precision);
 
 }  // namespace sdm

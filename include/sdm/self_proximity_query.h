@@ -13,11 +13,11 @@
 
 namespace sdm {
 
-/// What is near a face because the surface is connected, and so is not measured to.
+/// The neighbourhood of a face along the surface, to which no distances are measured.
 struct ExclusionRule {
   /// The face, all faces that share a vertex with it, and so on, this many times; ≥ 1.
   std::uint32_t rings = 1;
-  /// Instead: what is nearer than this along the surface at rest; > 0, in units of the mesh.
+  /// Instead: faces closer than this along the surface at rest; > 0, in units of the mesh.
   std::optional<double> geodesic{};
 };
 
@@ -26,8 +26,8 @@ struct ExclusionRule {
 ///
 /// With a geodesic length L, face g is excluded for f if faces that share vertices, one with the next, lead
 /// from f to g, all of them less than L from f in a straight line at rest; and as well from g to f. So no
-/// point that remains is nearer than L along the surface at rest: the way to it would be such a chain. It
-/// errs by excluding more, where the surface turns back within L already at rest.
+/// point that remains is nearer than L along the surface at rest: the way to it would be such a chain. It is
+/// conservative: it excludes more where the surface folds back within L at rest.
 class Exclusion {
  public:
   /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and when there is
@@ -60,9 +60,9 @@ struct SelfMapOptions {
 /// beyond_max_distance; NaN means that no face owns the texel. Within a face the distance is 1-Lipschitz;
 /// from face to face it may jump, as the exclusion does.
 ///
-/// `surface` and `sites` are of one mesh in one shape, `exclusion` of the same at rest; throws sdm::Error if
-/// their numbers of faces differ, for a maximum distance out of range, and for want of memory; Cancelled.
-/// Cost: a search a texel, which passes over what is excluded; all cores.
+/// `surface` and `sites` are built from the same mesh and positions, `exclusion` from the same mesh at rest;
+/// throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, and for want of
+/// memory; Cancelled. Cost: one search per texel that skips excluded faces; all cores.
 [[nodiscard]] DistanceMap compute_self_map(const Surface& surface, const Sites& sites,
                                            const Exclusion& exclusion, const SelfMapOptions& options = {});
 
@@ -78,8 +78,8 @@ struct SelfProximityOptions {
   Progress progress{};                          ///< of the construction
 };
 
-/// The proximity of a deforming mesh to itself: for simulation loops. Answers come from the triangles, not
-/// from samples, so that they need no bounds.
+/// The proximity of a deforming mesh to itself: for simulation loops. Results are computed from the
+/// triangles, not from samples, so they need no bounds.
 class SelfProximityQuery {
  public:
   /// Throws sdm::Error as Sites and Exclusion do, and for a maximum distance out of range.
@@ -88,13 +88,13 @@ class SelfProximityQuery {
   SelfProximityQuery(SelfProximityQuery&&) noexcept;
   SelfProximityQuery& operator=(SelfProximityQuery&&) noexcept;
 
-  /// Moves the vertices; what is excluded stays. Throws sdm::Error, and changes nothing, for a wrong count or
-  /// a coordinate that is not finite or beyond 1e37. Cost: linear.
+  /// Moves the vertices; the excluded faces stay the same. Throws sdm::Error, and changes nothing, for a
+  /// wrong count or a coordinate that is not finite or beyond 1e37. Cost: linear.
   void update(std::span<const Vec3> positions);
 
-  /// The least distance of two faces that do not exclude each other, 0 where they intersect; exact. Nothing
-  /// if there are none within the maximum distance. The witness is a point of either face, that of the lower
-  /// index first. Cost: a search a face, with the least distance found so far as its bound; all cores.
+  /// The smallest distance between two faces that do not exclude each other, 0 if they intersect; exact.
+  /// Empty if there are none within the maximum distance. The witness is a point of either face, that of the
+  /// lower index first. Cost: a search a face, with the least distance found so far as its bound; all cores.
   [[nodiscard]] std::optional<BoundedLength> separation();
 
   /// Each face that comes as near as `margin`, in units of the mesh, to a face it does not exclude has a

@@ -1,4 +1,4 @@
-/// Maps of one surface at many moments.
+/// Statistics over time of the maps of one surface.
 #pragma once
 
 #include <sdm/map.h>
@@ -9,9 +9,9 @@
 
 namespace sdm {
 
-/// At every texel of an atlas that stays the same: the least, the largest and the mean of its distances over
-/// the maps that were added. NaN where a texel has no owner, or was beyond the maximum distance in one of the
-/// maps; of self maps, whose +∞ says so, the least is of the other maps.
+/// For every texel of a fixed atlas: the minimum, maximum and mean distance over the added maps. NaN where a
+/// texel has no owner, or was beyond the maximum distance in one of the maps; of self maps, whose +∞ says so,
+/// the least is of the other maps.
 class TemporalMaps {
  public:
   /// Throws sdm::Error when the map has another resolution than those before. Cost: O(n) in texels, all

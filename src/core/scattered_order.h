@@ -1,4 +1,4 @@
-// An order in which what comes one after the other is far apart.
+// An order in which consecutive items are far apart.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@
 
 namespace sdm::inside {
 
-/// Tells whether queries lie inside, by one method, for many of them.
+/// Tests whether points lie inside O2, by one method, for many queries.
 class InsideTest {
  public:
   /// `method` as chosen by choose_sign; `none` makes every answer "outside".
@@ -25,12 +25,12 @@ class InsideTest {
                                          const sites::ClosestPacket& closest) const;
 
  private:
-  /// Whether a face around the site is too thin for its normal to be trusted: there, a ray decides.
+  /// Whether a face around the site is too thin for a reliable normal; a ray decides there.
   [[nodiscard]] bool beside_sliver(const ClosestPoint& c) const;
 
   const sites::SitesData& sites_;
   SignMethod method_;
-  Box box_;  ///< of O2: nothing outside of it is inside O2, however near the tie
+  Box box_;  ///< of O2: no point outside it is inside O2, however close the tie
   bool has_slivers_ = false;
   std::optional<WindingNumber> winding_;
 };

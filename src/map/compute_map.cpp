@@ -24,8 +24,8 @@
 namespace sdm {
 namespace {
 
-// Calls body(begin, end) for aligned runs of points in spatial order, as long as the cpu engine can make use
-// of, but enough of them to share evenly.
+// Calls body(begin, end) for aligned runs of points in spatial order, as long as the cpu engine can use, but
+// numerous enough to distribute evenly.
 void for_each_run(std::size_t count, const Progress& progress, std::string_view step,
                   const std::function<void(std::size_t, std::size_t)>& body) {
   constexpr std::size_t kEnough = 32;
@@ -92,7 +92,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   std::atomic<std::size_t> beyond{0}, unconfirmed{0};
   for_each_run(count, options.progress, raster ? "finish" : "map", [&](std::size_t begin, std::size_t end) {
     const std::span<const std::uint32_t> texels = surface.sample_texels().subspan(begin, end - begin);
-    thread_local std::vector<Vec3> points;  // near at hand, while those of all samples fill much memory
+    thread_local std::vector<Vec3> points;  // of one block only: those of all samples would take much memory
     points.resize(end - begin);
     surface::place_samples(internals(surface), begin, points);
     std::size_t beyond_here = 0;

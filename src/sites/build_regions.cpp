@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;  // faces
 
-// Whether the faces around the sites that a face owns, all turned alike, enclose them.
+// Whether the faces around the sites owned by a face form closed, consistently oriented fans.
 bool encloses(const RegionSource& s, const Regions& regions, std::size_t owner) {
   const auto inner = [&](std::uint32_t edge) { return s.topology.edge_faces(edge).size() == 2; };
   const Regions::Owner &own = regions.owners[owner], &next = regions.owners[owner + 1];
@@ -27,7 +27,7 @@ bool encloses(const RegionSource& s, const Regions& regions, std::size_t owner) 
   return true;
 }
 
-// Hands out sites in the order of the faces, and tells what the faces have in common by places.
+// Assigns sites in the order of the faces and builds the topology indexed by region.
 class HandOut {
  public:
   explicit HandOut(const RegionSource& source)
@@ -52,7 +52,7 @@ class HandOut {
     owners.push_back(next_owner(kNone));
   }
 
-  // What is at each place.
+  // The site at each region index.
   [[nodiscard]] const std::vector<std::uint32_t>& edges() const { return edges_; }
   [[nodiscard]] const std::vector<std::uint32_t>& vertices() const { return vertices_; }
 

@@ -16,7 +16,7 @@ using Shells = CompressedRows<std::uint32_t>;
 [[nodiscard]] Shells find_shells(const mesh::Orientation& orientation);
 
 /// For a closed, orientable mesh: sets `inverted` for the faces that run clockwise seen from outside. A shell
-/// bounds solid where it lies inside an even number of the others, and hollow where inside an
+/// bounds a solid if it lies inside an even number of the others, and a cavity if inside an
 /// odd number: a point is inside when a ray from it meets the mesh an odd number of times. Shells that touch
 /// or overlap each other bound solid. `tree` holds the faces, in the unit frame. Cost: linear, all cores, and
 /// a few rays for each shell where there are several.

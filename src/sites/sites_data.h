@@ -1,4 +1,4 @@
-// What Sites holds, for the engines.
+// The data of Sites, for the engines.
 #pragma once
 
 #include <sdm/sites.h>
@@ -19,11 +19,11 @@ struct SitesData {
   mesh::Topology topology;
   mesh::VertexFaces vertex_faces;
   bool closed = false;
-  bool alike = false;  ///< closed, and all faces run alike
+  bool alike = false;  ///< closed and consistently oriented
   mesh::Orientation orientation;
   Shells shells;  ///< if closed and orientable
   std::vector<std::uint8_t>
-      inverted;  ///< of each face: turned against the outside; if open, against its neighbours
+      inverted;  ///< of each face: opposite to the outward orientation; if open, to its neighbours
 
   UnitFrame frame;           ///< of the faces that have sites
   hierarchy::AabbTree tree;  ///< over those faces, in the unit frame
@@ -32,7 +32,7 @@ struct SitesData {
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a normal that could be trusted
 
-  /// What a refit computes on the way: its memory is kept for the next one.
+  /// Intermediate data of a refit, whose memory the next one reuses.
   struct Refit {
     std::vector<Vec3> placed;
     std::vector<hierarchy::FloatBox> boxes;

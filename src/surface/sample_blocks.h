@@ -1,4 +1,4 @@
-// Samples in runs of neighbours: the last run may be shorter.
+// Samples in blocks of neighbours; the last block may be shorter.
 #pragma once
 
 #include <algorithm>

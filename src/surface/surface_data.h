@@ -1,4 +1,4 @@
-// What a Surface holds.
+// The data of Surface.
 #pragma once
 
 #include <sdm/surface.h>
@@ -21,9 +21,9 @@ struct SurfaceData {
   std::vector<atlas::FaceMap> maps;
   std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
-  std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order lie here and there in texel_faces
+  std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order are scattered over texel_faces
 
-  /// Made when it is first asked for, by whichever thread that is.
+  /// Computed on first use, by the first thread that needs it.
   struct Lazy {
     std::once_flag tiled, cut;
     Tiles tiles;                       ///< once `tiled`: see tiles_of
@@ -47,7 +47,7 @@ void place_samples(const SurfaceData& surface, std::size_t first, std::span<Vec3
 
 namespace sdm {
 
-/// What a Surface holds. Found by argument-dependent lookup.
+/// The data of Surface. Found by argument-dependent lookup.
 [[nodiscard]] inline const surface::SurfaceData& internals(const Surface& surface) {
   return *surface.data_;
 }

@@ -148,7 +148,7 @@ GltfDocument::GltfDocument(std::string_view bytes, const std::filesystem::path& 
                 "; the file is truncated or damaged");
   }
   if (!root_.is_object() || !root_.contains("asset"))
-    throw Error("this is JSON, but not glTF: it has no asset object");
+    throw Error("this is JSON, but not glTF: it has no asset object object");
   if (root_["asset"].at("version").get<std::string>().substr(0, 2) != "2.")
     throw Error("only glTF version 2 is supported");
   for (const json& extension : root_.value("extensionsRequired", json::array()))

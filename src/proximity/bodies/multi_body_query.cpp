@@ -22,7 +22,7 @@ const MultiBodyOptions& checked(const MultiBodyOptions& options) {
   return options;
 }
 
-// Names the body in what `work` throws.
+// Adds the body to the message of errors thrown by `work`.
 template <class Work>
 void on_behalf_of(std::size_t body, const Work& work) {
   try {
@@ -66,7 +66,7 @@ struct MultiBodyQuery::Impl {
   Sweep sweep;
   std::vector<Box> boxes;
 
-  // What has been found since the last update.
+  // Results since the last refit.
   bool found = false;
   std::size_t candidates = 0;
   std::vector<PairProximity> pairs;
@@ -133,7 +133,7 @@ void MultiBodyQuery::update(std::size_t body, std::span<const Vec3> positions) {
 void MultiBodyQuery::update(std::span<const std::span<const Vec3>> positions) {
   if (positions.size() != size())
     throw Error("there are " + std::to_string(size()) + " bodies, but positions for " +
-                std::to_string(positions.size()) + " were given; give an entry for each");
+                std::to_string(positions.size()) + " were given; give one entry per body");
   for (std::size_t b = 0; b < size(); ++b)
     if (!positions[b].empty()) impl_->check(b, positions[b]);
   impl_->found = false;

@@ -14,7 +14,7 @@ void offer(PointPair& best, const Vec3& point1, const Vec3& point2) {
   if (squared < best.squared) best = {squared, point1, point2};
 }
 
-// What all features of a triangle share.
+// Data common to all features of a triangle.
 struct Sides {
   const Corners& corner;
   Corners side;

@@ -28,7 +28,7 @@ struct SelfProximityQuery::Impl {
   Exclusion exclusion;
   double max_distance;
 
-  // What has been found since the last update.
+  // Results since the last refit.
   std::optional<self::FacePair> closest;
 
   std::vector<self::FacePair> nearest{};  // of each face with sites, in the order of the tree

@@ -37,8 +37,8 @@ double needed_factor(const Mesh& mesh, AtlasOptions options, double resolution, 
   std::ostringstream message;
   message.precision(2);
   message << "a precision of " << precision << " takes about " << resolution / kMost
-          << " times the 32768 texels that a side of the map can have; ask for "
-          << 1.1 * precision * resolution / kMost << " or more";
+          << " times the maximum of 32768 texels per side; use " << 1.1 * precision * resolution / kMost
+          << " or more";
   throw Error(message.str());
 }
 
