@@ -37,21 +37,23 @@ struct Scene {
 
 struct Measured {
   DistanceMap map;
+  GlReport report;
   double ms = 0;
 };
 
-Measured run_once(const Scene& scene, const MapOptions& options) {
+Measured run_once(const Scene& scene, const std::shared_ptr<const Engine>& engine) {
   const auto start = std::chrono::steady_clock::now();
-  DistanceMap map = compute_map(*scene.surface, *scene.sites, options);
-  return {std::move(map),
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()};
+  DistanceMap map = compute_map(*scene.surface, *scene.sites, {.engine = engine, .sign = SignMethod::none});
+  const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+  return {std::move(map), gl_report(*engine).value(), time.count()};
 }
 
 /// The median of three runs, or one long run.
-Measured measure(const Scene& scene, const MapOptions& options) {
-  Measured first = run_once(scene, options);
+Measured measure(const Scene& scene, const GlOptions& options) {
+  const std::shared_ptr<const Engine> engine = make_gl_engine(options);
+  Measured first = run_once(scene, engine);
   if (first.ms > kLongRun) return first;
-  std::array times{first.ms, run_once(scene, options).ms, run_once(scene, options).ms};
+  std::array times{first.ms, run_once(scene, engine).ms, run_once(scene, engine).ms};
   std::ranges::sort(times);
   first.ms = times[1];
   return first;
@@ -89,7 +91,7 @@ void print_heading() {
 
 void print_row(const Scene& scene, const GlOptions& options, const Measured& measured,
                double ms_with_bounds) {
-  const GlReport& r = *measured.map.raster;
+  const GlReport& r = measured.report;
   std::printf("| %s | %s | %s |", scene.name.c_str(), options.clip == GlClip::planes ? "planes" : "stencil",
               options.bound_culling ? "yes" : "no");
   for (const std::uint64_t count :
@@ -111,13 +113,12 @@ bool tabulate(const Scene& scene, const std::string& device) {
     double ms_with_bounds = 0;
     std::vector<float> distances;  // with bounds
     for (const bool bounds : {true, false}) {
-      const GlOptions raster{.device = device, .clip = clip, .bound_culling = bounds};
-      const Measured measured =
-          measure(scene, {.engine = EngineKind::gl, .sign = SignMethod::none, .raster = raster});
+      const GlOptions options{.device = device, .clip = clip, .bound_culling = bounds};
+      const Measured measured = measure(scene, options);
       if (bounds) ms_with_bounds = measured.ms;
-      print_row(scene, raster, measured, ms_with_bounds);
+      print_row(scene, options, measured, ms_with_bounds);
 
-      for (const std::string& law : broken_laws(*scene.surface, measured.map, raster))
+      for (const std::string& law : broken_laws(*scene.surface, measured.map, measured.report, options))
         complain("the counters break the law " + law);
       if (distances.empty()) {
         distances = measured.map.distance;
@@ -156,9 +157,9 @@ int run(int argc, char** argv) {
 
   const std::vector<Scene> all = scenes(resolution);
   // The first map of a process pays for the context.
-  const Measured warm_up = run_once(all[0], {.engine = EngineKind::gl, .raster = {.device = device}});
+  const Measured warm_up = run_once(all[0], make_gl_engine({.device = device}));
   std::printf("%s, %u threads, %u² texels. Times are the median of three runs, or one of over %g s.\n",
-              warm_up.map.raster->device.name.c_str(), thread_count(), resolution, kLongRun / 1000);
+              warm_up.report.device.name.c_str(), thread_count(), resolution, kLongRun / 1000);
   std::puts("Counts are per texel: pairs of a site and a tile of a face, tests against nodes of the tree of");
   std::puts("tiles, pairs that were clipped, polygons and fragments drawn.\n");
   print_heading();

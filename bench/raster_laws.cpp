@@ -2,9 +2,9 @@
 
 namespace sdm::bench {
 
-std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& map,
+std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& map, const GlReport& report,
                                      const GlOptions& options) {
-  const GlReport& r = map.raster.value();
+  const GlReport& r = report;
   const bool stencil = options.clip == GlClip::stencil;
   const std::uint64_t values_in_use = r.stencil_misses - r.stencil_evictions;
   std::vector<std::string> broken;

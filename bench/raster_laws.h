@@ -1,6 +1,7 @@
 // Invariants of the gl engine's counters.
 #pragma once
 
+#include <sdm/gl.h>
 #include <sdm/map.h>
 
 #include <string>
@@ -8,8 +9,8 @@
 
 namespace sdm::bench {
 
-/// The laws of <sdm/gl.h> that the map's report breaks, in words; none if all is well.
-[[nodiscard]] std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& map,
+/// The laws of <sdm/gl.h> that the report of a map breaks, in words; none if all is well.
+[[nodiscard]] std::vector<std::string> broken_laws(const Surface& surface, const DistanceMap& map, const GlReport& report,
                                                    const GlOptions& options);
 
 }  // namespace sdm::bench

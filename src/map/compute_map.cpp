@@ -3,7 +3,7 @@
 #include <array>
 #include <atomic>
 
-#include "inside/inside_test.h"
+#include "inside/inside.h"
 #include "map/engine_of.h"
 #include "map/map_writer.h"
 

@@ -49,13 +49,13 @@ std::vector<hierarchy::FloatBox> face_boxes(const sites::SitesData& s) {
 }
 
 void set_inverted(sites::SitesData& s) {
-  if (!s.orientation.orientable)
-    s.inverted.assign(s.mesh.triangles.size(), 0);
-  else if (s.closed)
+  if (s.is_solid())
     sites::orient_outward(s.mesh.positions, s.frame, s.mesh.triangles, s.orientation, s.shells, s.tree,
                           s.inverted);
-  else
+  else if (s.orientation.orientable)
     s.inverted = s.orientation.turned;
+  else
+    s.inverted.assign(s.mesh.triangles.size(), 0);
 }
 
 }  // namespace
@@ -73,8 +73,8 @@ Sites::Sites(Mesh mesh) : data_(std::make_unique<sites::SitesData>()) {
         s.vertex_faces = mesh::vertex_faces(s.mesh.positions.size(), triangles, s.topology);
         s.orientation = mesh::orient(triangles, s.topology);
         s.closed = s.topology.closed();
-        if (s.closed && s.orientation.orientable) s.shells = sites::find_shells(s.orientation);
-        s.alike = s.closed && s.orientation.orientable && std::ranges::count(s.orientation.turned, 1) == 0;
+        if (s.is_solid()) s.shells = sites::find_shells(s.orientation);
+        s.alike = s.is_solid() && std::ranges::count(s.orientation.turned, 1) == 0;
       },
       [&] {
         s.tree = hierarchy::build_aabb_tree(face_boxes(s), faces_with_sites(s.topology), kLeafFaces);

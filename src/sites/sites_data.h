@@ -19,9 +19,9 @@ struct SitesData {
   mesh::Topology topology;
   mesh::VertexFaces vertex_faces;
   bool closed = false;
-  bool alike = false;  ///< closed and consistently oriented
+  bool alike = false;  ///< solid, and consistently oriented in the file
   mesh::Orientation orientation;
-  Shells shells;  ///< if closed and orientable
+  Shells shells;  ///< of a solid
   std::vector<std::uint8_t>
       inverted;  ///< of each face: opposite to the outward orientation; if open, to its neighbours
 
@@ -40,6 +40,8 @@ struct SitesData {
   };
   Refit last_refit;
 
+  /// Whether the mesh bounds a solid, and so has an inside.
+  [[nodiscard]] bool is_solid() const { return closed && orientation.orientable; }
   /// A face that the site belongs to.
   [[nodiscard]] std::uint32_t face_of(SiteType type, std::uint32_t site) const {
     switch (type) {

@@ -104,7 +104,7 @@ TEST(surface::Tiles, BoundsHoldForEverySample) {
       for (const std::uint32_t texel : tiles.of(tree.tree.items[node.first]))
         points.push_back(surface.texel_point(texel));
       double farthest = 0;
-      for (const ClosestPoint& c : closest_points(sites, points, {.engine = EngineKind::reference}))
+      for (const ClosestPoint& c : closest_points(sites, points, {.engine = make_engine("reference")}))
         farthest = std::max(farthest, internals(sites).frame.scale * c.distance);
       EXPECT_LE(farthest, tree.bound[i]);
     }

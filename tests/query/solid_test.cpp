@@ -109,7 +109,7 @@ TEST(Solid, ContainsAgreesWithCgal) {
   std::mt19937 random(11);
   const Mesh mesh = test::load("elephant.off", "fit");
   const Sites sites(mesh);
-  ASSERT_TRUE(inside::is_solid(internals(sites)));
+  ASSERT_TRUE(internals(sites).is_solid());
   const oracle::CgalInside expected(mesh);
   std::vector<std::uint32_t> stack;
   int inside = 0;

@@ -17,10 +17,14 @@ struct Row {
   std::shared_ptr<const Engine> (*make)();
 };
 
+template <class T>
+std::shared_ptr<const Engine> make() {
+  return std::make_shared<const T>();
+}
+
 constexpr Row kEngines[] = {
-    {cpu::CpuEngine::kInfo, [] { return std::shared_ptr<const Engine>(new cpu::CpuEngine); }},
-    {reference::ReferenceEngine::kInfo,
-     [] { return std::shared_ptr<const Engine>(new reference::ReferenceEngine); }},
+    {cpu::CpuEngine::kInfo, make<cpu::CpuEngine>},
+    {reference::ReferenceEngine::kInfo, make<reference::ReferenceEngine>},
     {gl::kInfo, [] { return make_gl_engine({}); }},
 };
 

@@ -1,11 +1,8 @@
 #include "proximity/sampled/body.h"
 
-#include <sdm/map.h>
-
 namespace sdm::sampled {
 
-Body::Body(const Mesh& mesh, const AtlasOptions& atlas)
-    : surface_(mesh, atlas), sites_(mesh), sign_(choose_sign(sites_, SignMethod::automatic).method) {
+Body::Body(const Mesh& mesh, const AtlasOptions& atlas) : surface_(mesh, atlas), sites_(mesh) {
   follow_positions();
 }
 
@@ -17,7 +14,7 @@ void Body::refit(std::span<const Vec3> positions) {
 
 void Body::follow_positions() {
   box_ = bounds(sites_.mesh());
-  inside_.emplace(internals(sites_), sign_);
+  inside_.emplace(internals(sites_), solid() ? SignMethod::pseudonormal : SignMethod::none);
 }
 
 }  // namespace sdm::sampled

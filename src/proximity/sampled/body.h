@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "inside/inside_test.h"
+#include "inside/inside.h"
 
 namespace sdm::sampled {
 
@@ -23,8 +23,8 @@ class Body {
   [[nodiscard]] const Sites& sites() const { return sites_; }
   /// Around all faces.
   [[nodiscard]] const Box& box() const { return box_; }
-  /// Whether it is closed and orientable: only then it has an inside.
-  [[nodiscard]] bool solid() const { return sign_ != SignMethod::none; }
+  /// Whether it has an inside.
+  [[nodiscard]] bool solid() const { return internals(sites_).is_solid(); }
   [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
 
  private:
@@ -32,7 +32,6 @@ class Body {
 
   Surface surface_;
   Sites sites_;
-  SignMethod sign_;
   Box box_;
   std::optional<inside::InsideTest> inside_;
 };
