@@ -3,6 +3,7 @@
 
 #include <sdm/sites.h>
 
+#include <cstddef>
 #include <vector>
 
 #include "mesh/regions.h"
@@ -24,31 +25,46 @@ struct SiteId {
   [[nodiscard]] std::uint32_t site() const { return packed & kSiteMask; }
 };
 
-/// Eight regions of mesh/regions.h, a lane each: rows in the order of the region's numbers, then the site.
+/// Up to eight sites, a lane each.
 struct SiteBlock {
   static constexpr std::uint32_t kWidth = 8;
+  using Row = float[kWidth];  ///< the same number of each site
   std::uint32_t count = 0;
 };
-struct FaceBlock : SiteBlock {
-  using Region = FaceRegion;
-  alignas(32) float plane[4][kWidth];
-  alignas(32) float wall[3][4][kWidth];
+
+/// The regions of eight sites, transposed: row[r][lane] is number r of a region of mesh/regions.h.
+template <class RegionType, std::size_t rows>
+struct RegionBlock : SiteBlock {
+  using Region = RegionType;
+  static constexpr std::size_t kRows = rows;
+  alignas(32) Row row[kRows];
   alignas(32) std::uint32_t id[kWidth];  ///< SiteId::packed
 };
-struct EdgeBlock : SiteBlock {
-  using Region = EdgeRegion;
-  alignas(32) float start[3][kWidth];
-  alignas(32) float direction[3][kWidth];
-  alignas(32) float length[kWidth];
-  alignas(32) float wall[2][4][kWidth];
-  alignas(32) std::uint32_t id[kWidth];
+
+// Each names its rows: a vector has three, one for each coordinate, and a plane four.
+
+struct FaceBlock : RegionBlock<FaceRegion, 16> {
+  static constexpr std::size_t kPlane = 0;
+  static constexpr std::size_t wall(std::size_t k) { return 4 + 4 * k; }
 };
-struct VertexBlock : SiteBlock {
-  using Region = VertexRegion;
-  alignas(32) float point[3][kWidth];
-  alignas(32) float ray[VertexRegion::kRays][3][kWidth];
-  alignas(32) std::uint32_t id[kWidth];
+struct EdgeBlock : RegionBlock<EdgeRegion, 15> {
+  static constexpr std::size_t kStart = 0, kDirection = 3, kLength = 6;
+  static constexpr std::size_t wall(std::size_t k) { return 7 + 4 * k; }
 };
+struct VertexBlock : RegionBlock<VertexRegion, 3 + 3 * VertexRegion::kRays> {
+  static constexpr std::size_t kPoint = 0;
+  static constexpr std::size_t ray(std::size_t k) { return 3 + 3 * k; }
+};
+
+// The order is that of the members.
+static_assert(offsetof(FaceRegion, plane) == FaceBlock::kPlane * sizeof(float) &&
+              offsetof(FaceRegion, wall) == FaceBlock::wall(0) * sizeof(float));
+static_assert(offsetof(EdgeRegion, start) == EdgeBlock::kStart * sizeof(float) &&
+              offsetof(EdgeRegion, direction) == EdgeBlock::kDirection * sizeof(float) &&
+              offsetof(EdgeRegion, length) == EdgeBlock::kLength * sizeof(float) &&
+              offsetof(EdgeRegion, wall) == EdgeBlock::wall(0) * sizeof(float));
+static_assert(offsetof(VertexRegion, point) == VertexBlock::kPoint * sizeof(float) &&
+              offsetof(VertexRegion, ray) == VertexBlock::ray(0) * sizeof(float));
 
 /// All blocks are full but the last one.
 template <class Block>
