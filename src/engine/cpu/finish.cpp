@@ -10,6 +10,7 @@
 
 #include "core/vec.h"
 #include "engine/closest_on_face.h"
+#include "engine/cpu/ablation.h"
 #include "engine/engine.h"
 #include "mesh/vec_lanes-inl.h"
 
@@ -181,7 +182,8 @@ void finish_packet(const Sites::Impl& sites, const uint32_t* winners, const Vec3
     pending &= ~lanes;
     uint32_t open = lanes;
     if (site.packed == kNone) continue;
-    if (site.packed != SiteId::kUnsettled) open &= ~on_site(sites, site, p, lanes);
+    if (uses(Idea::packed_finish) && site.packed != SiteId::kUnsettled)
+      open &= ~on_site(sites, site, p, lanes);
     for (; open != 0; open &= open - 1) {
       const auto i = static_cast<size_t>(std::countr_zero(open));
       found.set(i, queries[i],
