@@ -50,7 +50,7 @@ double mtexels_s(double texels, double ms) {
 Outcome against_embree(const Trial& trial, const Tasks& tasks) {
   if (!all_agree(tasks)) return {};
   const Race result = race(ours(tasks, trial.threads), embree(tasks, trial.threads), trial.repetitions);
-  std::vector<Figure> figures = result.figures(), counts = count_work(tasks);
+  std::vector<Figure> figures = result.figures(), counts = work_figures(tasks);
   const double texels = counts[0].value;
   figures.push_back({"ours_mtexels_s", mtexels_s(texels, result.ours_ms)});
   figures.push_back({"peer_mtexels_s", mtexels_s(texels, result.peer_ms)});

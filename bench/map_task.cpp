@@ -76,7 +76,7 @@ Contender embree(const Tasks& tasks, unsigned threads) {
           threads};
 }
 
-std::vector<Figure> count_work(const Tasks& tasks) {
+std::vector<Figure> work_figures(const Tasks& tasks) {
   std::size_t texels = 0;
   for (const MapTask* task : tasks) texels += task->texels();
   std::vector<Figure> figures{{"texels", static_cast<double>(texels)}};

@@ -51,6 +51,6 @@ using Tasks = std::vector<MapTask*>;
 [[nodiscard]] Contender embree(const Tasks& tasks, unsigned threads);
 
 /// "texels"; in builds that count the engine's work also its counts per packet of sixteen texels.
-[[nodiscard]] std::vector<Figure> count_work(const Tasks& tasks);
+[[nodiscard]] std::vector<Figure> work_figures(const Tasks& tasks);
 
 }  // namespace sdm::bench
