@@ -20,7 +20,7 @@ Vec3 twice_area(const Vec3& a, const Vec3& b, const Vec3& c) {
 // The triangles tile a simple planar polygon exactly when they are all turned as it is and their areas add up
 // to its own, and their borders cancel but for the polygon's sides.
 void expect_tiling(const Polygon& polygon) {
-  Triangulator triangulator;
+  io::Triangulator triangulator;
   const auto triangles = triangulator.triangulate(polygon);
   ASSERT_EQ(triangles.size(), polygon.size() - 2);
   Vec3 area{};
@@ -62,7 +62,7 @@ Polygon star(std::mt19937& random, std::size_t n) {
 }
 
 TEST(Triangulate, ConvexQuadsByTheShorterDiagonal) {
-  Triangulator triangulator;
+  io::Triangulator triangulator;
   const Polygon kite = {{0, 0, 0}, {1, -0.5, 0}, {3, 0, 0}, {1, 0.5, 0}};
   for (int first = 0; first < 4; ++first) {
     Polygon turned;
@@ -134,7 +134,7 @@ TEST(Triangulate, CombsAndHolesWithBridges) {
 }
 
 TEST(Triangulate, PolygonsWithoutAreaOrThatCrossThemselvesGiveTrianglesToo) {
-  Triangulator triangulator;
+  io::Triangulator triangulator;
   EXPECT_EQ(triangulator.triangulate(Polygon(6, Vec3{1, 2, 3})).size(), 4u);
   EXPECT_EQ(triangulator.triangulate(Polygon{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u);
   Polygon pentagram;

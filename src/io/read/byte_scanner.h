@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::io {
 
 /// A number stored at `bytes`, in the byte order told.
 template <typename T>
@@ -44,4 +44,4 @@ class ByteScanner {
   std::endian order_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Every format takes at least a fifth as many bytes as the mesh, and what it is made from, in memory.
@@ -40,4 +40,4 @@ FileBytes read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

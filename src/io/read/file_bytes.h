@@ -6,7 +6,7 @@
 #include <memory>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::io {
 
 struct FileBytes {
   std::unique_ptr<char[]> data;
@@ -19,4 +19,4 @@ struct FileBytes {
 /// sdm::Error that names the fault, not the file.
 [[nodiscard]] FileBytes read_bytes(const std::filesystem::path& file);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -9,7 +9,7 @@
 #include "io/read/numbered_files.h"
 #include "io/read/read_polygons.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +41,7 @@ class FileFrames : public FrameSource {
   explicit FileFrames(NumberedFiles files) : files_(std::move(files)) {}
 
   PolygonMesh take_polygons() override {
-    PolygonMesh polygons = naming(polygons_name(), [&] { return read_file(files_.file(0)); });
+    PolygonMesh polygons = with_error_prefix(polygons_name(), [&] { return read_file(files_.file(0)); });
     vertices_ = polygons.positions.size();
     corners_ = polygons.corners;
     ends_ = polygons.ends;
@@ -102,4 +102,4 @@ std::unique_ptr<FrameSource> single_file(const fs::path& file) {
   return std::make_unique<SingleFile>(file);
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -6,7 +6,7 @@
 
 #include "io/read/polygon_mesh.h"
 
-namespace sdm {
+namespace sdm::io {
 
 /// Wavefront OBJ: v, vt and f statements (polygons, indices from 1 or relative); all others are skipped.
 [[nodiscard]] PolygonMesh read_obj(std::string_view text);
@@ -33,4 +33,4 @@ namespace sdm {
 /// Autodesk 3DS: all meshes. They are stored in the coordinates of the scene; its axes are kept.
 [[nodiscard]] PolygonMesh read_3ds(std::string_view bytes);
 
-}  // namespace sdm
+}  // namespace sdm::io

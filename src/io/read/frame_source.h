@@ -9,7 +9,7 @@
 
 #include "io/read/polygon_mesh.h"
 
-namespace sdm {
+namespace sdm::io {
 
 /// All throw sdm::Error that names the fault, not the frame.
 class FrameSource {
@@ -40,4 +40,4 @@ class FrameSource {
 [[nodiscard]] std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes,
                                                        const std::filesystem::path& file, double rate);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -10,7 +10,7 @@
 #include "core/memory.h"
 #include "io/read/byte_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using nlohmann::json;
@@ -256,4 +256,4 @@ void throw_gltf_fault(const json::exception& fault) {
   throw Error("this is not valid glTF: " + text.substr(std::min(text.size(), text.find("] ") + 2)));
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -11,7 +11,7 @@
 
 #include "io/read/file_bytes.h"
 
-namespace sdm {
+namespace sdm::io {
 
 /// A member that is an index, a count or a size. Throws sdm::Error where it is not a whole number.
 [[nodiscard]] std::size_t whole_number(const nlohmann::json& object, const char* name);
@@ -60,4 +60,4 @@ class GltfDocument {
   std::vector<std::string_view> buffers_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

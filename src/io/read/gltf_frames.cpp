@@ -12,7 +12,7 @@
 #include "io/read/gltf_scene.h"
 #include "io/read/gltf_weights.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using nlohmann::json;
@@ -166,4 +166,4 @@ std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes, const std::file
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

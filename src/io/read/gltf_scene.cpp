@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using nlohmann::json;
@@ -77,4 +77,4 @@ std::size_t gltf_mode(const json& primitive) {
   return whole_number(primitive, "mode", kTriangles);
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -9,7 +9,7 @@
 #include "io/read/gltf_document.h"
 #include "io/read/polygon_mesh.h"
 
-namespace sdm {
+namespace sdm::io {
 
 /// x → linear · x + offset, the columns of the linear part one after the other.
 struct GltfTransform {
@@ -44,4 +44,4 @@ enum GltfMode : std::size_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 /// All triangles of the scene: the vertices of each primitive that has them, in the order of gltf_instances.
 [[nodiscard]] PolygonMesh read_gltf_scene(const GltfDocument& document);
 
-}  // namespace sdm
+}  // namespace sdm::io

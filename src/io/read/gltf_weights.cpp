@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace sdm {
+namespace sdm::io {
 
 WeightTrack::WeightTrack(const GltfDocument& document, const nlohmann::json& sampler, std::size_t targets)
     : targets_(targets) {
@@ -57,4 +57,4 @@ void WeightTrack::sample(double time, std::span<double> weights) const {
                  span * (t3 - t2) * in[i];
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

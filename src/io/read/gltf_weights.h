@@ -6,7 +6,7 @@
 
 #include "io/read/gltf_document.h"
 
-namespace sdm {
+namespace sdm::io {
 
 /// The sampler of an animation's channel, for a node with so many targets.
 class WeightTrack {
@@ -31,4 +31,4 @@ class WeightTrack {
   std::vector<double> times_, values_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -10,7 +10,7 @@
 #include "io/read/read_polygons.h"
 #include "mesh/validate.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,10 +49,13 @@ std::unique_ptr<FrameSource> open_source(const std::string& input, double rate) 
 }
 
 }  // namespace
+}  // namespace sdm::io
+
+namespace sdm {
 
 struct MeshSequence::Impl {
   std::string input;
-  std::unique_ptr<FrameSource> source;
+  std::unique_ptr<io::FrameSource> source;
   Mesh mesh;                              // the first frame
   std::vector<std::uint32_t> renumbered;  // the vertex of mesh for each vertex of the files, or kNone
   double weld_tolerance = 0;              // rounding of what was one vertex
@@ -63,12 +66,12 @@ struct MeshSequence::Impl {
 };
 
 void MeshSequence::Impl::open(double rate) {
-  source = open_source(input, rate);
-  const PolygonMesh polygons = source->take_polygons();
-  mesh = naming(source->polygons_name(), [&] { return to_mesh(polygons, renumbered); });
+  source = io::open_source(input, rate);
+  const io::PolygonMesh polygons = source->take_polygons();
+  mesh = io::with_error_prefix(source->polygons_name(), [&] { return io::to_mesh(polygons, renumbered); });
   constexpr double kRounding = 1e-6;
   weld_tolerance = kRounding * diagonal(bounds(mesh));
-  naming(source->count() > 1 ? source->name(0) : "", [&] {
+  io::with_error_prefix(source->count() > 1 ? source->name(0) : "", [&] {
     read(0);
     mesh.positions = positions;
     validate(mesh);
@@ -99,7 +102,7 @@ MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& opti
   if (!(options.rate >= 0) || !std::isfinite(options.rate))
     throw Error("the rate of a sequence must be a number of frames a second, or 0 for one at every key");
   impl_->input = input;
-  naming(input, [&] { impl_->open(options.rate); });
+  io::with_error_prefix(input, [&] { impl_->open(options.rate); });
 }
 MeshSequence::~MeshSequence() = default;
 MeshSequence::MeshSequence(MeshSequence&&) noexcept = default;
@@ -122,8 +125,8 @@ std::span<const Vec3> MeshSequence::positions(std::size_t frame) {
     throw Error(impl_->input + ": there is no frame " + std::to_string(frame) + ", only " +
                 std::to_string(frame_count()));
   if (frame_count() == 1) return impl_->mesh.positions;
-  naming(impl_->input + ": frame " + std::to_string(frame) + " (" + frame_name(frame) + ")",
-         [&] { impl_->read(frame); });
+  io::with_error_prefix(impl_->input + ": frame " + std::to_string(frame) + " (" + frame_name(frame) + ")",
+                        [&] { impl_->read(frame); });
   return impl_->positions;
 }
 

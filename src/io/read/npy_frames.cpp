@@ -17,7 +17,7 @@
 #include "io/read/npy_header.h"
 #include "io/read/read_polygons.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,9 +65,9 @@ class NpyFrames : public FrameSource {
       : mesh_name_(std::move(mesh)), npy_name_(std::move(npy)), file_(npy_name_), header_(read_header()) {}
 
   PolygonMesh take_polygons() override {
-    PolygonMesh polygons =
-        naming(polygons_name(), [&] { return read_polygons(read_bytes(mesh_name_).view(), mesh_name_); });
-    naming(npy_name_.string(), [&] { check_shape(polygons.positions.size()); });
+    PolygonMesh polygons = with_error_prefix(
+        polygons_name(), [&] { return read_polygons(read_bytes(mesh_name_).view(), mesh_name_); });
+    with_error_prefix(npy_name_.string(), [&] { check_shape(polygons.positions.size()); });
     require_memory(header_.shape[1] * 3 * header_.number_bytes, "a frame");
     bytes_.resize(header_.shape[1] * 3 * header_.number_bytes);
     return polygons;
@@ -138,7 +138,7 @@ class NpyFrames : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> npy_frames(const fs::path& mesh, const fs::path& npy) {
-  return naming(npy.string(), [&] { return std::make_unique<NpyFrames>(mesh, npy); });
+  return with_error_prefix(npy.string(), [&] { return std::make_unique<NpyFrames>(mesh, npy); });
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

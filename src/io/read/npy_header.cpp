@@ -8,7 +8,7 @@
 
 #include "io/read/byte_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 [[noreturn]] void fail() {
@@ -128,4 +128,4 @@ NpyHeader parse_npy_header(std::string_view bytes) {
   return header;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
 /// An array of floating-point numbers.
 struct NpyHeader {
@@ -24,4 +24,4 @@ inline constexpr std::size_t kMaxNpyHeader = 65536;
 /// such header, or that of an array of anything but float32 and float64.
 [[nodiscard]] NpyHeader parse_npy_header(std::string_view bytes);
 
-}  // namespace sdm
+}  // namespace sdm::io

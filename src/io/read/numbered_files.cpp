@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ fs::path NumberedFiles::file(std::size_t index) const {
   return found != files_.end() && found->number == number(index) ? found->path : fs::path();
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

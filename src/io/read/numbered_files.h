@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
 /// Names of files that are alike but for a number, which goes up in equal steps; some may be missing.
 class NumberedFiles {
@@ -36,4 +36,4 @@ class NumberedFiles {
   std::uint64_t step_ = 1;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

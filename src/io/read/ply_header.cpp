@@ -4,7 +4,7 @@
 
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using Type = PlyHeader::Type;
@@ -111,4 +111,4 @@ PlyHeader parse_ply_header(std::string_view bytes) {
   in.fail("the PLY header has no end; the file is truncated");
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
 struct PlyHeader {
   enum class Encoding { text, little_endian, big_endian };
@@ -37,4 +37,4 @@ struct PlyHeader {
 /// Throws sdm::Error for anything that is no PLY header.
 [[nodiscard]] PlyHeader parse_ply_header(std::string_view bytes);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -10,7 +10,7 @@
 #include "core/vec.h"
 #include "io/read/triangulate.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 void check_indices(const PolygonMesh& polygons) {
@@ -162,4 +162,4 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
   return mesh;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
 /// Polygons over shared vertices, as they stand in a file; nothing in it is checked.
 struct PolygonMesh {
@@ -29,4 +29,4 @@ struct PolygonMesh {
 /// they are met first, or kNone for one that was dropped.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -5,7 +5,7 @@
 #include "io/read/byte_scanner.h"
 #include "io/read/formats.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // A file is a tree of chunks: a kind, a length that counts these six bytes too, then data and chunks.
@@ -102,4 +102,4 @@ PolygonMesh read_3ds(std::string_view bytes) {
   return mesh;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -6,7 +6,7 @@
 #include "io/read/formats.h"
 #include "io/read/gltf_scene.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using nlohmann::json;
@@ -97,4 +97,4 @@ PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file)
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,7 +1,7 @@
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // The highest index that a face uses, and where: faces may come before what they refer to, so it is checked
@@ -85,4 +85,4 @@ PolygonMesh read_obj(std::string_view text) {
   return ObjReader(text).read();
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -3,7 +3,7 @@
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Which prefixes a header has; in the order of Geomview they are [ST][C][N][4][n]OFF.
@@ -96,4 +96,4 @@ PolygonMesh read_off(std::string_view text) {
   return mesh;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -7,7 +7,7 @@
 #include "io/read/ply_header.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using Type = PlyHeader::Type;
@@ -211,4 +211,4 @@ PolygonMesh read_ply(std::string_view bytes) {
   return PlyReader(header, BinarySource(data, std::endian::big)).read();
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

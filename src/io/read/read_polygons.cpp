@@ -7,7 +7,7 @@
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Text as far as the first bytes tell: no control characters but blanks.
@@ -84,4 +84,4 @@ PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& f
   throw Error("the format is not known; OBJ, PLY, STL, OFF, glTF, GLB and 3DS are read");
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -10,7 +10,7 @@
 
 #include "io/read/polygon_mesh.h"
 
-namespace sdm {
+namespace sdm::io {
 
 enum class MeshFormat { unknown, obj, ply, stl_text, stl_binary, off, gltf, tds };
 
@@ -23,7 +23,7 @@ enum class MeshFormat { unknown, obj, ply, stl_text, stl_binary, off, gltf, tds 
 /// Calls `read`; an sdm::Error of it, or want of memory, becomes one that begins with `name`, if that is
 /// not empty.
 template <typename Read>
-auto naming(const std::string& name, const Read& read) {
+auto with_error_prefix(const std::string& name, const Read& read) {
   const std::string prefix = name.empty() ? "" : name + ": ";
   try {
     return read();
@@ -34,4 +34,4 @@ auto naming(const std::string& name, const Read& read) {
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -4,7 +4,7 @@
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Binary: 80 bytes of anything, a count, and for each triangle a normal, three corners, and an attribute.
@@ -78,4 +78,4 @@ PolygonMesh read_stl_text(std::string_view text) {
   return mesh;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

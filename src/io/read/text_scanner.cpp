@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace sdm {
+namespace sdm::io {
 
 void TextScanner::fail_at(const char* position, const std::string& fault) const {
   throw Error("line " + std::to_string(1 + std::count(begin_, position, newline_)) + ": " + fault);
@@ -20,4 +20,4 @@ void TextScanner::fail_at_word(const std::string& fault) {
   fail_at(start, fault + found);
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

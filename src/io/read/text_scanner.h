@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::io {
 
 /// A position in a text. Lines end with LF, CR LF or CR; a backslash at the end of a line joins it with the
 /// next; '#' starts a comment. Faults are reported by throwing sdm::Error with the number of the line.
@@ -129,4 +129,4 @@ class TextScanner {
   char newline_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

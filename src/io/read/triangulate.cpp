@@ -4,7 +4,7 @@
 
 #include "core/vec.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Newell's normal: the area vector of a polygon, planar or not (twice over).
@@ -90,4 +90,4 @@ std::span<const std::array<std::uint32_t, 3>> Triangulator::triangulate(std::spa
   return triangles_;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

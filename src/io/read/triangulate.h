@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
 /// Cuts polygons into triangles; keeps its buffers from one to the next.
 class Triangulator {
@@ -36,4 +36,4 @@ class Triangulator {
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io
