@@ -188,12 +188,6 @@ TEST(Errors, StlOutOfOrder) {
   expect_fault("a.stl", "solid\nvertex 0 0 0\n", "line 2: a vertex outside of a loop");
 }
 
-TEST(Errors, FacesWithTooManyCorners) {
-  std::string contents = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
-  for (int k = 0; k < 9000; ++k) contents += std::array{" 1", " 2", " 3"}[k % 3];
-  expect_fault("a.obj", contents, "triangulate it first");
-}
-
 // A glTF file with one triangle, some of whose text is replaced.
 std::string gltf_with(const std::string& from, const std::string& to) {
   const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};

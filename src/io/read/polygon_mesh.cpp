@@ -147,9 +147,6 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
     if (end - begin == 3) {
       add_triangle(begin, begin + 1, begin + 2);
     } else {
-      if (end - begin > Triangulator::kMaxCorners)
-        throw Error("a face has " + std::to_string(end - begin) + " corners, more than " +
-                    std::to_string(Triangulator::kMaxCorners) + "; triangulate it first");
       gather(polygons.corners, renumbered, begin, end, places);
       points.clear();
       for (const std::uint32_t place : places)
