@@ -1,4 +1,4 @@
-// Every fault is told in one sentence that names the file and the fault.
+// Every fault is reported in one sentence that names the file and the fault.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
@@ -46,15 +46,15 @@ TEST(Errors, FilesThatCannotBeRead) {
 
 TEST(Errors, UnknownFormats) {
   const std::string garbage("\x7F\x45\x4C\x46\x02\x01\x01\x00garbage\x00\xFF\xFE", 18);
-  expect_fault("a.dat", garbage, "format is not known");
-  expect_fault("a", "Dear Sir or Madam", "format is not known");
-  expect_fault("a.obj", garbage, "binary data where text is needed");
-  expect_fault("a.off", garbage, "binary data where text is needed");
-  expect_fault("a.ply", garbage, "begins with 'ply'");
+  expect_fault("a.dat", garbage, "unknown format");
+  expect_fault("a", "Dear Sir or Madam", "unknown format");
+  expect_fault("a.obj", garbage, "binary data where text is expected");
+  expect_fault("a.off", garbage, "binary data where text is expected");
+  expect_fault("a.ply", garbage, "must begin with 'ply'");
   expect_fault("a.stl", garbage, "fewer than the header of a binary STL");
-  expect_fault("a.stl", garbage + std::string(100, '\xAA'), "truncated or no STL");
-  expect_fault("a.3ds", garbage, "does not fit in");
-  expect_fault("a.glb", garbage, "JSON is at fault");
+  expect_fault("a.stl", garbage + std::string(100, '\xAA'), "truncated or not STL");
+  expect_fault("a.3ds", garbage, "does not fit");
+  expect_fault("a.glb", garbage, "invalid JSON");
   expect_fault("a.obj", "Dear Sir or Madam", "no triangles");
   expect_fault("a.obj", "# only a comment", "no triangles");
 }
@@ -90,7 +90,7 @@ TEST(Errors, NumbersThatAreNotFiniteOrTooLarge) {
   for (const std::string& contents :
        {stl_binary(mesh), ply_binary(mesh, std::endian::big), glb(mesh), tds(mesh)})
     expect_fault("a", contents, "has a NaN or infinite coordinate");
-  expect_fault("a.obj", std::string(kVertices) + "v 1e999 0 0\n", "line 4: a number is needed, not '1e999'");
+  expect_fault("a.obj", std::string(kVertices) + "v 1e999 0 0\n", "line 4: expected a number, not '1e999'");
   expect_fault("a.obj", std::string(kVertices) + "v 1e200 0 0\nf 1 2 4\n", "too large");
 }
 
@@ -101,7 +101,7 @@ TEST(Errors, IndicesOutOfRange) {
   expect_fault("a.obj", std::string(kVertices) + "f -1 -2 -4\n", "line 4: index out of range");
   expect_fault("a.obj", std::string(kVertices) + "f 1 2 99999999999\n", "line 4: index out of range");
   expect_fault("a.obj", std::string(kVertices) + "f 1 2 99999999999999999999999\n",
-               "line 4: a whole number is needed");
+               "line 4: expected a whole number");
   expect_fault("a.obj", std::string(kVertices) + "f 1/1 2/1 3/1\n", "texture coordinate 1 of 0");
   expect_fault("a.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
                "line 5: index out of range: a face refers to vertex 3 of 3");
@@ -152,22 +152,22 @@ TEST(Errors, CountsBeyondTheFile) {
 }
 
 TEST(Errors, ObjStatements) {
-  expect_fault("a.obj", "v 0 0\n", "line 1: a number is needed");
-  expect_fault("a.obj", "v 0 0 0x10\n", "line 1: a number is needed, not '0x10'");
+  expect_fault("a.obj", "v 0 0\n", "line 1: expected a number");
+  expect_fault("a.obj", "v 0 0 0x10\n", "line 1: expected a number, not '0x10'");
   expect_fault("a.obj", "v 0 0 zero\n", "not 'zero'");
-  expect_fault("a.obj", "v 0 0 0\nf 1 2 c\n", "line 2: a whole number is needed, not 'c'");
-  expect_fault("a.obj", "v 0 0 0\nf 1.5 2 3\n", "line 2: a whole number is needed");
-  expect_fault("a.obj", "v 0 0 0\nf 1 2 \\3\n", "line 2: a whole number is needed");
+  expect_fault("a.obj", "v 0 0 0\nf 1 2 c\n", "line 2: expected a whole number, not 'c'");
+  expect_fault("a.obj", "v 0 0 0\nf 1.5 2 3\n", "line 2: expected a whole number");
+  expect_fault("a.obj", "v 0 0 0\nf 1 2 \\3\n", "line 2: expected a whole number");
 }
 
 TEST(Errors, PlyHeaders) {
-  expect_fault("a.ply", "ply\nformat ebcdic 1.0\n", "line 2: ascii, binary_little_endian");
+  expect_fault("a.ply", "ply\nformat ebcdic 1.0\n", "line 2: expected ascii, binary_little_endian");
   expect_fault("a.ply", "ply\nelement vertex 1\nproperty real x\n",
-               "line 3: a type of PLY is needed, not 'real'");
-  expect_fault("a.ply", "ply\nproperty float x\n", "before the first element");
+               "line 3: expected a PLY type, not 'real'");
+  expect_fault("a.ply", "ply\nproperty float x\n", "precedes the first element");
   expect_fault("a.ply", "ply\nelement vertex -1\n", "negative");
-  expect_fault("a.ply", "ply\nelement vertex\n", "whole number is needed");
-  expect_fault("a.ply", "ply\nend_header\n", "does not tell its format");
+  expect_fault("a.ply", "ply\nelement vertex\n", "expected a whole number");
+  expect_fault("a.ply", "ply\nend_header\n", "has no format");
   expect_fault("a.ply", "ply\nformat ascii 1.0\nnonsense\n", "not 'nonsense'");
   expect_fault(
       "a.ply",
@@ -181,11 +181,11 @@ TEST(Errors, OffOfOtherKinds) {
   expect_fault("a.off", "4OFF\n1 1 0\n", "three dimensions");
   expect_fault("a.off", "nOFF\n4\n1 1 0\n", "three dimensions");
   expect_fault("a.off", std::string("OFF BINARY\n\0\0\0\1", 15), "binary data");
-  expect_fault("a.off", "OFF BINARY\n", "binary OFF is not read");
+  expect_fault("a.off", "OFF BINARY\n", "binary OFF is not supported");
 }
 
 TEST(Errors, StlOutOfOrder) {
-  expect_fault("a.stl", "solid\nvertex 0 0 0\n", "line 2: a vertex outside of a loop");
+  expect_fault("a.stl", "solid\nvertex 0 0 0\n", "line 2: a vertex outside a loop");
 }
 
 // A glTF file with one triangle, some of whose text is replaced.
@@ -201,45 +201,50 @@ std::string gltf_with(const std::string& from, const std::string& to) {
 TEST(Errors, Gltf) {
   EXPECT_EQ(fault_of("a.gltf", gltf_with("asset", "asset")), "");
   const std::array<const char*, 3> cases[] = {
-      {"\"asset\"", "\"assets\"", "no asset"},
+      {"\"asset\"", "\"assets\"", "asset is missing"},
       {"2.0", "1.0", "version 2"},
-      {"\"2.0\"", "2", "not valid glTF"},
+      {"\"2.0\"", "2", "invalid glTF"},
       {"\"mesh\":0", "\"mesh\":1", "item 1 of meshes"},
       {"\"mesh\":0", "\"mesh\":-1", "mesh must be a whole number"},
       {"\"mesh\":0", "\"mesh\":\"0\"", "mesh must be a whole number"},
       {"\"mesh\":0", "\"mesh\":1e300", "mesh must be a whole number"},
       {"\"mesh\":0", "\"mesh\":0,\"children\":[0]", "two parents"},
       {"\"mesh\":0", "\"mesh\":0,\"children\":[7]", "item 7 of nodes"},
-      {"\"mesh\":0", "\"mesh\":0,\"matrix\":[1,2]", "not valid glTF"},
+      {"\"mesh\":0", "\"mesh\":0,\"matrix\":[1,2]", "invalid glTF"},
       {"\"POSITION\":0", "\"POSITION\":9", "item 9 of accessors"},
-      {"\"POSITION\":0", "\"POSITION\":2", "not vectors of three"},
-      {"\"count\":3", "\"count\":4", "reaches beyond its buffer view"},
+      {"\"POSITION\":0", "\"POSITION\":2", "not of type VEC3"},
+      {"\"count\":3", "\"count\":4", "extends beyond its buffer view"},
       {"\"count\":3", "\"count\":18446744073709551615", "more than 2^32"},
-      {"\"bufferView\":0", "\"bufferView\":0,\"byteOffset\":40", "reaches beyond its buffer view"},
+      {"\"bufferView\":0", "\"bufferView\":0,\"byteOffset\":40", "extends beyond its buffer view"},
       {"\"bufferView\":0", "\"bufferView\":0,\"sparse\":{}", "key 'count' not found"},
-      {"\"bufferView\":0,", "", "not valid glTF"},
+      {"\"bufferView\":0,", "", "invalid glTF"},
       {"5126", "9", "component type 9"},
       {"VEC3", "MAT4", "type MAT4"},
-      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":0", "reaches beyond"},
-      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":18446744073709551615", "reaches beyond"},
+      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":0", "extends beyond"},
+      {"{\"buffer\":0", "{\"buffer\":0,\"byteStride\":18446744073709551615", "extends beyond"},
       {"{\"buffer\":0", "{\"buffer\":5", "buffer 5"},
       {"\"byteLength\":36", "\"byteLength\":99999", "beyond its buffer"},
-      {"\"byteLength\":72", "\"byteLength\":73", "promises 73 bytes and has 72"},
-      {"base64,", "base64,!", "not base64"},
+      {"\"byteLength\":72", "\"byteLength\":73", "should have 73 bytes but has 72"},
+      {"base64,", "base64,!", "not valid base64"},
       {"base64,", "base32,", "not base64"},
       {"data:;base64,", "nowhere.bin?", "no such file"},
       {"\"asset\"", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"asset\"",
-       "compressed by KHR_draco"},
-      {"{\"asset\"", "[{\"asset\"", "JSON is at fault"},
-      {"{\"asset\"", "{\"a\":\"\xFF\",\"asset\"", "JSON is at fault"},
+       "compressed with KHR_draco"},
+      {"{\"asset\"", "[{\"asset\"", "invalid JSON"},
+      {"{\"asset\"", "{\"a\":\"\xFF\",\"asset\"", "invalid JSON"},
   };
   for (const auto& [from, to, fault] : cases) expect_fault("a.gltf", gltf_with(from, to), fault);
 }
 
 TEST(Errors, DeeplyNestedJson) {
   const std::size_t depth = 1000000;
-  expect_fault("a.gltf", "{\"a\":" + std::string(depth, '[') + std::string(depth, ']') + "}", "no asset");
-  expect_fault("a.gltf", "{\"a\":" + std::string(depth, '['), "JSON is at fault");
+  expect_fault("a.gltf", "{\"a\":" + std::string(depth, '[') + std::string(depth, ']') + "}",
+               "asset is missing");
+  expect_fault("a.gltf", "{\"a\":" + std::string(depth, '['), "invalid JSON");
+  expect_fault(
+      "a.gltf",
+      R"({"asset":{"version":"2.0"},"extras":)" + std::string(depth, '[') + std::string(depth, ']') + "}",
+      "no triangles");
 }
 
 // A small file that shows one mesh very often asks for more memory than there is.

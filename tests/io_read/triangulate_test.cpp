@@ -17,8 +17,8 @@ Vec3 twice_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return cross(b - a, c - a);
 }
 
-// The triangles tile a simple planar polygon exactly when they are all turned as it is and their areas add up
-// to its own, and their borders cancel but for the polygon's sides.
+// Triangles tile a simple planar polygon exactly if they all have its orientation, their areas add up to its
+// area, and their boundaries cancel except for the sides of the polygon.
 void expect_tiling(const Polygon& polygon) {
   io::Triangulator triangulator;
   const auto triangles = triangulator.triangulate(polygon);

@@ -1,4 +1,4 @@
-// A whole file in memory.
+// A file in memory.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ struct FileBytes {
   [[nodiscard]] std::string_view view() const { return {data.get(), size}; }
 };
 
-/// Reads a regular file, after checking that there is memory for it and for a mesh made of it. Throws
-/// sdm::Error that names the fault, not the file.
+/// Reads a regular file after checking that there is enough memory for it and for the mesh made from it.
+/// Throws sdm::Error; the message does not name the file.
 [[nodiscard]] FileBytes read_bytes(const std::filesystem::path& file);
 
 }  // namespace sdm::io

@@ -1,4 +1,5 @@
-// Sequences of one mesh file a frame.
+// Sequences of mesh files, one for each frame.
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
@@ -53,12 +54,12 @@ class FileFrames : public FrameSource {
 
   std::string name(std::size_t frame) const override {
     const fs::path file = files_.file(frame);
-    return file.empty() ? "number " + std::to_string(files_.number(frame)) : file.filename().string();
+    return file.empty() ? fmt::format("number {}", files_.number(frame)) : file.filename().string();
   }
 
   void read(std::size_t frame, std::vector<Vec3>& positions) override {
     const fs::path file = files_.file(frame);
-    if (file.empty()) throw Error("there is no file of that number");
+    if (file.empty()) throw Error("there is no file with that number");
     PolygonMesh polygons = read_file(file);
     require_same_faces(polygons);
     positions = std::move(polygons.positions);
@@ -68,8 +69,8 @@ class FileFrames : public FrameSource {
   void require_same_faces(const PolygonMesh& polygons) const {
     const auto require_count = [](std::size_t count, std::size_t expected, const char* things) {
       if (count != expected)
-        throw Error("has " + std::to_string(count) + ' ' + things + ", and the first frame has " +
-                    std::to_string(expected) + "; all frames need the same");
+        throw Error(fmt::format("has {} {}, and the first frame has {}; all frames need the same number",
+                                count, things, expected));
     };
     require_count(polygons.positions.size(), vertices_, "vertices");
     require_count(polygons.ends.size(), ends_.size(), "faces");
@@ -78,8 +79,8 @@ class FileFrames : public FrameSource {
       const auto first = static_cast<std::ptrdiff_t>(begin), last = static_cast<std::ptrdiff_t>(ends_[f]);
       if (polygons.ends[f] != ends_[f] ||
           !std::equal(corners_.begin() + first, corners_.begin() + last, polygons.corners.begin() + first))
-        throw Error("face " + std::to_string(f) +
-                    " joins other vertices than in the first frame; all frames need the same faces");
+        throw Error(fmt::format(
+            "face {} has other vertices than in the first frame; all frames need the same faces", f));
     }
   }
 

@@ -10,7 +10,7 @@
 namespace sdm::io {
 namespace {
 
-// Text as far as the first bytes tell: no control characters but blanks.
+// Whether the first bytes are text: no control characters except whitespace.
 bool is_text(std::string_view bytes) {
   return std::all_of(bytes.begin(), bytes.begin() + std::min<std::size_t>(bytes.size(), 1024),
                      [](char c) { return static_cast<unsigned char>(c) >= ' ' || (c >= '\t' && c <= '\r'); });
@@ -62,7 +62,7 @@ PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& f
   bytes = without_byte_order_mark(bytes);
   const MeshFormat format = format_of(bytes, file);
   if (!is_text(bytes) && (format == MeshFormat::obj || format == MeshFormat::off))
-    throw Error("holds binary data where text is needed; it is damaged or of another format");
+    throw Error("holds binary data where text is expected; it is damaged or has another format");
   switch (format) {
     case MeshFormat::obj:
       return read_obj(bytes);
@@ -81,7 +81,7 @@ PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& f
     case MeshFormat::unknown:
       break;
   }
-  throw Error("the format is not known; OBJ, PLY, STL, OFF, glTF, GLB and 3DS are read");
+  throw Error("unknown format; OBJ, PLY, STL, OFF, glTF, GLB and 3DS are supported");
 }
 
 }  // namespace sdm::io
