@@ -8,8 +8,8 @@
 namespace sdm::io {
 namespace {
 
-// Smaller polygons are searched corner by corner. That is faster for most of them, and where corners lie in
-// line but for rounding, the index may choose other ears.
+// Smaller polygons are searched corner by corner. Where corners are collinear up to rounding, the boxes of
+// the index exclude some that the test of single corners would not, and so other ears may be chosen.
 constexpr std::size_t kIndexedCorners = 1024;
 
 // Newell's normal, of a polygon that need not be planar: twice the area vector.
