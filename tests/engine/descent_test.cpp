@@ -15,7 +15,7 @@ double distance(const float (&a)[3], const Vec3& b) {
   return norm(Vec3{a[0], a[1], a[2]} - b);
 }
 
-TEST(cpu::PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
+TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
   std::mt19937 random(4);
   const auto group = std::make_unique<cpu::PointGroup>();
   for (const std::size_t count : {1u, 15u, 16u, 17u, 64u, 65u, 1000u, 4097u, 65536u}) {
@@ -86,7 +86,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
 
 // Soups and grids, flat and rough, whole and small slivers, of any size and place; queries on the mesh, on
 // its vertices and lattice points, where regions meet, and away from it.
-TEST(cpu::Descent, AgreesWithTheReferenceOnScenesAtRandom) {
+TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
   std::size_t within = 0, beyond = 0, wrong = 0;
   const std::vector<test::SimdTarget> targets = test::simd_targets();
   for (unsigned seed = 0; seed < 200; ++seed) {

@@ -139,7 +139,7 @@ class Search {
       stack.pop_back();
       if (!(entry.squared < nearest.squared)) continue;
       if (entry.child & hierarchy::WideTree::kLeafBit) {
-        improve_by_centres(nearest, entry.child & ~WideTree::kLeafBit, p);
+        improve_by_centres(nearest, entry.child & ~hierarchy::WideTree::kLeafBit, p);
         continue;
       }
       count_work(&WorkCounts::nodes);
@@ -212,7 +212,7 @@ class Search {
     count_work(&WorkCounts::leaves, s_.leaves.size());
     s_.owners.clear();
     for (const uint32_t child : s_.leaves) {
-      const uint32_t leaf = child & ~WideTree::kLeafBit, first = regions_.leaves[leaf];
+      const uint32_t leaf = child & ~hierarchy::WideTree::kLeafBit, first = regions_.leaves[leaf];
       uint32_t places[SiteBlock::kWidth];
       for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
       append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {

@@ -12,6 +12,7 @@
 #include "core/vec_lanes-inl.h"
 #include "engine/cpu/ablation.h"
 #include "engine/engine.h"
+#include "engine/reference/reference_engine.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -117,7 +117,7 @@ HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, si
   // Beside the disc, but for what cancels in the difference of squares.
   const BlockVec beside =
       hn::Sqrt(hn::Max(hn::NegMulAdd(squared, hn::Set(d, 1e-6f), hn::Sub(squared, h2)), hn::Zero(d)));
-  const BlockVec slope = uses(Idea::cones) ? hn::Load(d, bounds.slope + i) : hn::Set(d, FaceBounds::kOpen);
+  const BlockVec slope = uses(Idea::cones) ? hn::Load(d, bounds.slope + i) : hn::Set(d, sites::FaceBounds::kOpen);
   const BlockVec most = hn::MulAdd(slope, hn::Add(hn::Abs(h), reach_radius), hn::Add(radius, reach_radius));
   // c − b = h normal + s (r − h normal), and the convex piece is the disc.
   const BlockVec beyond = hn::Max(hn::Sub(beside, radius), hn::Zero(d));
@@ -227,7 +227,7 @@ HWY_INLINE BlockMask may_be_closest(Block d, const VertexBlock& block, size_t i,
   for (int k = 0; k < 3; ++k)
     r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.row[VertexBlock::kPoint + k] + i));
   BlockMask pass = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
-  for (size_t ray = 0; uses(Idea::regions) && ray < VertexRegion::kRays; ++ray) {
+  for (size_t ray = 0; uses(Idea::regions) && ray < sites::VertexRegion::kRays; ++ray) {
     const SiteBlock::Row* direction = block.row + VertexBlock::ray(ray);
     BlockVec along = hn::Mul(r[0], hn::Load(d, direction[0] + i));
     along = hn::MulAdd(r[1], hn::Load(d, direction[1] + i), along);
