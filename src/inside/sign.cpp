@@ -1,8 +1,10 @@
 #include <sdm/error.h>
 #include <sdm/sign.h>
 
+#include <new>
 #include <string>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "inside/inside.h"
 
@@ -46,7 +48,7 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
 }
 
 std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3> queries,
-                                       std::span<const ClosestPoint> closest, SignMethod method) {
+                                       std::span<const ClosestPoint> closest, SignMethod method) try {
   if (queries.size() != closest.size()) throw Error("inside_flags() needs one closest point for each query");
   const inside::InsideTest test(internals(sites), choose_sign(sites, method).method);
   std::vector<std::uint8_t> result(queries.size());
@@ -54,6 +56,8 @@ std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3>
     for (std::size_t i = begin; i < end; ++i) result[i] = test(queries[i], closest[i]);
   });
   return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("inside or outside of points");
 }
 
 }  // namespace sdm

@@ -1,31 +1,15 @@
 #include <sdm/mesh.h>
 
 #include <algorithm>
-#include <numeric>
+#include <new>
 
+#include "core/disjoint_sets.h"
+#include "core/memory.h"
 #include "core/vec.h"
 #include "mesh/topology.h"
 
 namespace sdm {
 namespace {
-
-// Disjoint sets of vertices, with path halving.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 void count_components(const Mesh& mesh, MeshInfo& info) {
   DisjointSets sets(mesh.positions.size());
@@ -106,7 +90,7 @@ void measure(const Mesh& mesh, const mesh::Topology& topology, const mesh::Orien
 
 }  // namespace
 
-MeshInfo inspect(const Mesh& mesh) {
+MeshInfo inspect(const Mesh& mesh) try {
   MeshInfo info;
   info.vertices = mesh.positions.size();
   info.triangles = mesh.triangles.size();
@@ -132,6 +116,8 @@ MeshInfo inspect(const Mesh& mesh) {
   info.manifold = info.nonmanifold_edges == 0 && info.nonmanifold_vertices == 0;
   measure(mesh, topology, orientation, info);
   return info;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("mesh statistics");
 }
 
 }  // namespace sdm

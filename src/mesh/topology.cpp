@@ -101,11 +101,11 @@ Topology build_topology(std::size_t vertex_count, std::span<const Triangle> tria
   Topology topology;
   topology.face_edges.assign(triangles.size(), {kNone, kNone, kNone});
   topology.edges.resize(first.back().edges);
-  topology.edge_offsets.resize(first.back().edges + 1);
-  topology.incident.resize(first.back().sides);
-  topology.edge_offsets.back() = first.back().sides;
+  topology.incident.offsets.resize(first.back().edges + 1);
+  topology.incident.items.resize(first.back().sides);
+  topology.incident.offsets.back() = first.back().sides;
   topology.collapsed_faces = triangles.size() - sides.items.size() / 3;
-  topology.duplicate_faces = (sides.items.size() - topology.incident.size()) / 3;
+  topology.duplicate_faces = (sides.items.size() - topology.incident.items.size()) / 3;
   parallel_for(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       auto [edges, incident] = first[v];
@@ -114,10 +114,10 @@ Topology build_topology(std::size_t vertex_count, std::span<const Triangle> tria
         if (side.larger != larger) {
           larger = side.larger;
           topology.edges[edges] = {static_cast<std::uint32_t>(v), larger};
-          topology.edge_offsets[edges++] = incident;
+          topology.incident.offsets[edges++] = incident;
         }
         topology.face_edges[side.corner / 3][side.corner % 3] = edges - 1;
-        topology.incident[incident++] = side.corner / 3;
+        topology.incident.items[incident++] = side.corner / 3;
       }
     }
   });

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "hierarchy/traverse.h"
 #include "sites/cone_rays.h"
 #include "sites/regions.h"
 
@@ -105,8 +106,7 @@ Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
       },
       [&] {
         sites.run(tree.items, regions.owners, places);
-        for (const hierarchy::AabbTree::Node& node : tree.nodes)
-          if (node.leaf()) regions.leaves.push_back(node.first);
+        for (const std::uint32_t leaf : leaf_nodes(tree)) regions.leaves.push_back(tree.nodes[leaf].first);
         regions.leaves.push_back(static_cast<std::uint32_t>(faces));
         regions.leaves.shrink_to_fit();
       });

@@ -1,8 +1,7 @@
 // Errors of the gl engine and their messages.
 #include <gmock/gmock.h>
 
-#include "core/memory.h"
-#include "engine/engine.h"
+#include "core/platform.h"
 #include "gl/error_of.h"
 #include "gl/support.h"
 

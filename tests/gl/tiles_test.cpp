@@ -94,7 +94,7 @@ TEST(Tiles, BoundsHoldForEverySample) {
     const surface::Tiles& tiles = surface::tiles_of(surface);
     DomainTree tree(surface, tiles, internals(sites).frame);
     set_bounds(tree, internals(sites), 0, 1e9);
-    for (std::uint32_t i = 0; i < tree.node_count(); ++i) {
+    for (std::uint32_t i = 0; i < tree.tree.nodes.size(); ++i) {
       const hierarchy::AabbTree::Node& node = tree.tree.nodes[i];
       if (!node.leaf()) {
         EXPECT_EQ(tree.bound[i], std::max(tree.bound[i + 1], tree.bound[node.right]));

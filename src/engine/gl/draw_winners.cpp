@@ -86,7 +86,7 @@ RasterWinners draw_winners(const RasterDevice& device, const Surface& surface, c
   const SiteIndex index(sites);
   report.time_ms.refit = watch.lap();
 
-  const Extent extent(tree.root().box, sites.tree.nodes[0].box);
+  const Extent extent(tree.bounds(), sites.tree.box(0));
   if (!(extent.size < kFarAway))
     throw Error(
         "the distance of O1 exceeds 10^15 times the size of O2, too far for the gl engine; use another "

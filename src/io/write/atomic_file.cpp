@@ -1,7 +1,6 @@
 #include "io/write/atomic_file.h"
 
 #include <sdm/error.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
@@ -9,6 +8,8 @@
 #include <string>
 #include <system_error>
 #include <utility>
+
+#include "core/platform.h"
 
 namespace sdm {
 namespace {
@@ -21,7 +22,7 @@ std::string reason(int error) {
 std::filesystem::path temporary_beside(const std::filesystem::path& file) {
   static std::atomic<unsigned> count{0};
   std::ostringstream name;
-  name << '.' << file.filename().string() << '.' << getpid() << '.' << count++ << ".part";
+  name << '.' << file.filename().string() << '.' << process_number() << '.' << count++ << ".part";
   return file.parent_path() / name.str();
 }
 

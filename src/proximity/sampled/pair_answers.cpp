@@ -113,8 +113,7 @@ BoundedLength PairAnswers::exact_separation() {
 }
 
 BoundedBool PairAnswers::exact_collision() {
-  return {closest_triangles().intersecting || exact::one_contains_part_of_other(meshes(), workspace_),
-          Certainty::exact};
+  return {closest_triangles().intersecting || exact::one_contains_part_of_other(meshes()), Certainty::exact};
 }
 
 BoundedLength PairAnswers::bounded_separation() {

@@ -23,10 +23,7 @@ class SampleTree {
 
  private:
   struct Run;
-  struct Nearest;
   [[nodiscard]] std::vector<Run> cut(std::size_t begin, std::size_t end, double radius) const;
-  [[nodiscard]] double squared_distance(std::uint32_t node, const Nearest& found) const;
-  void descend(std::uint32_t index, Nearest& found) const;
 
   std::span<const Vec3> points_;
   UnitFrame frame_;
