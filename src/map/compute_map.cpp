@@ -94,7 +94,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
     const std::span<const std::uint32_t> texels = surface.sample_texels().subspan(begin, end - begin);
     thread_local std::vector<Vec3> points;  // of one block only: those of all samples would take much memory
     points.resize(end - begin);
-    surface::place_samples(internals(surface), begin, points);
+    internals(surface).place_samples(begin, points);
     std::size_t beyond_here = 0;
     const auto store = [&](std::size_t first, const sites::ClosestPacket& closest) {
       const std::span packet = std::span(points).subspan(first, closest.count);

@@ -12,7 +12,7 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "surface/sample_blocks.h"
-#include "surface/sampling_bound/coverage.h"
+#include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/sample_tree.h"
 
 namespace sdm {
@@ -90,7 +90,7 @@ struct Ball {
 class SampleBalls {
  public:
   explicit SampleBalls(const Surface& surface) : surface_(surface) {
-    for (std::size_t r = 0; r < surface::run_count(surface.sample_texels().size()); ++r) {
+    for (std::size_t r = 0; r < surface::block_count(surface.sample_texels().size()); ++r) {
       const surface::SampleBlock run(r, surface.sample_texels().size());
       Ball& around = runs_.emplace_back(surface.sample_points()[run.first], 0);
       for (std::size_t i = run.first; i < run.end; ++i)
@@ -120,13 +120,13 @@ class SampleBalls {
 
 /// The balls that Coverage tells of all ranges of so many runs, around the sample in their middle.
 std::vector<Ball> spreads(const Surface& surface, std::size_t runs) {
-  const std::size_t samples = surface.sample_texels().size(), count = surface::run_count(samples);
+  const std::size_t samples = surface.sample_texels().size(), count = surface::block_count(samples);
   std::vector<Ball> balls;
   for (std::size_t first = 0; first < count; first += runs) {
-    const surface::RunRange range{first, std::min(count, first + runs)};
+    const surface::BlockRange range{first, std::min(count, first + runs)};
     const Vec3& p = surface.sample_points()[range.middle(samples)];
     balls.push_back({p, runs == 1 ? surface::coverage_of(surface).spread(surface, first, p)
-                                  : surface::coverage_of(surface).face_spread(surface, range, p)});
+                                  : surface::coverage_of(surface).face_radius_about(surface, range, p)});
   }
   return balls;
 }
@@ -174,7 +174,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-TEST(surface::Coverage, HoldsAndIsTightInMotion) {
+TEST(surface::PieceAssignment, HoldsAndIsTightInMotion) {
   std::vector<double> ratios;
   for (const char* name : {"head.off", "bunny.obj", "knot2.off", "elephant-with-holes.off"})
     for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
@@ -191,7 +191,7 @@ TEST(surface::Coverage, HoldsAndIsTightInMotion) {
 
 // The ball of each range of runs has its samples, all balls together have all points, and none is needlessly
 // large.
-TEST(surface::Coverage, SpreadsHoldInMotion) {
+TEST(surface::PieceAssignment, SpreadsHoldInMotion) {
   for (const char* name : {"head.off", "elephant-with-holes.off", "pig.off", "degtri_sliding.off"}) {
     SCOPED_TRACE(name);
     const Mesh mesh = test::load(name);
@@ -204,8 +204,8 @@ TEST(surface::Coverage, SpreadsHoldInMotion) {
         std::vector<double> slack;
         for (std::size_t b = 0; b < balls.size(); ++b) {
           double farthest = 0;
-          for (std::size_t i = b * runs * surface::kRunLength;
-               i < std::min(samples.size(), (b + 1) * runs * surface::kRunLength); ++i)
+          for (std::size_t i = b * runs * surface::kBlockSize;
+               i < std::min(samples.size(), (b + 1) * runs * surface::kBlockSize); ++i)
             farthest = std::max(farthest, norm(samples[i] - balls[b].centre));
           ASSERT_LE(farthest, balls[b].radius);
           slack.push_back(balls[b].radius / farthest);
@@ -219,18 +219,18 @@ TEST(surface::Coverage, SpreadsHoldInMotion) {
 }
 
 // Every chart is smaller than a texel: a sample's square is far larger than what its face has of it.
-TEST(surface::Coverage, ChartsSmallerThanTexels) {
+TEST(surface::PieceAssignment, ChartsSmallerThanTexels) {
   const std::vector<double> ratios =
       expect_covered_in_motion(test::load("pig.off"), {.kind = AtlasKind::triangles, .resolution = 256});
   EXPECT_LE(median(ratios), 1.5);
 }
 
 // Hardly a face owns a texel: what it has of others' squares moves on its own.
-TEST(surface::Coverage, FacesSmallerThanTexels) {
+TEST(surface::PieceAssignment, FacesSmallerThanTexels) {
   EXPECT_LE(median(expect_covered_in_motion(test::load("armadillo.off"), {.resolution = 256})), 1.7);
 }
 
-TEST(surface::Coverage, SliversFacesWithoutAreaAndSoups) {
+TEST(surface::PieceAssignment, SliversFacesWithoutAreaAndSoups) {
   for (const char* name : {"cylinder_locally_refined.off", "degtri_sliding.off", "boeing.off"}) {
     SCOPED_TRACE(name);
     (void)expect_covered_in_motion(test::load(name), {.resolution = 256});
@@ -240,7 +240,7 @@ TEST(surface::Coverage, SliversFacesWithoutAreaAndSoups) {
 }
 
 // A face without area opens: all of it is covered still.
-TEST(surface::Coverage, FacesThatGainAnArea) {
+TEST(surface::PieceAssignment, FacesThatGainAnArea) {
   Mesh mesh{.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 0, 0}},
             .triangles = {{0, 1, 2}, {0, 3, 1}},
             .corner_uvs = {}};
@@ -255,7 +255,7 @@ TEST(surface::Coverage, FacesThatGainAnArea) {
   EXPECT_LT(before, 0.1);
 }
 
-TEST(surface::Coverage, IsTheSameForAllThreadsAndAfterAWayBack) {
+TEST(surface::PieceAssignment, IsTheSameForAllThreadsAndAfterAWayBack) {
   const Mesh mesh = test::load("bunny.obj");
   const std::vector<Vec3> bent = moved(mesh, bend), crumpled = moved(mesh, crumple);
   const auto radii = [&](unsigned threads) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/gl/face_domains.h"
+#include "engine/gl/tile_tree.h"
 #include "hierarchy/aabb_tree.h"
 #include "sites/sites_data.h"
 
@@ -29,7 +30,7 @@ struct DomainTree {
   std::vector<double> bound;  ///< of each node: no sample of its domains is farther from O2
 
   /// Refits the boxes to the current domains. Cost: linear.
-  DomainTree(const Surface& surface, const surface::Tiles& tiles, const UnitFrame& frame);
+  DomainTree(const Surface& surface, const TileTree& tiles, const UnitFrame& frame);
 
   [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(tree.nodes.size()); }
   [[nodiscard]] const hierarchy::AabbTree::Node& root() const { return tree.nodes[0]; }

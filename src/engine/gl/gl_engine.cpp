@@ -31,6 +31,7 @@ void check(const GlOptions& options) {
 struct Devices {
   std::mutex drawing;
   std::map<std::string, std::unique_ptr<RasterDevice>, std::less<>> open;
+  TileTreeCache tiles;  // of the surfaces mapped by any of them
 };
 
 Devices& devices() {
@@ -110,8 +111,9 @@ std::vector<PlanarDomain> domains_of(const DomainBlock& block, const DomainTree&
 RasterWinners draw_map(const RasterDevice& device, const Surface& surface, const sites::SitesData& sites,
                        const MapOptions& options, GlReport& report) {
   Stopwatch watch;
-  const surface::Tiles& tiles = surface::tiles_of(surface);
-  DomainTree tree(surface, tiles, sites.frame);
+  const TileTree& tile_tree = devices().tiles.of(surface);
+  const surface::Tiles& tiles = tile_tree.tiles;
+  DomainTree tree(surface, tile_tree, sites.frame);
   const SiteIndex index(sites);
   report.time_ms.refit = watch.lap();
 

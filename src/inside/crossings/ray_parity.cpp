@@ -74,12 +74,11 @@ bool odd_below(std::uint32_t index, const hierarchy::AabbTree& tree, const Vec3&
 
 }  // namespace
 
-bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
-                   std::span<const Triangle> triangles, const hierarchy::AabbTree& tree, const Vec3& origin,
-                   std::span<const std::uint32_t> component, std::uint32_t left_out) {
-  return odd_below(0, tree, origin, [&](std::uint32_t face) {
+bool odd_crossings(const FaceTree& faces, const Vec3& origin, std::span<const std::uint32_t> component,
+                   std::uint32_t left_out) {
+  return odd_below(0, faces.tree, origin, [&](std::uint32_t face) {
     return (left_out == kNone || component[face] != left_out) &&
-           meets(triangles[face], positions, frame, origin);
+           meets(faces.triangles[face], faces.positions, faces.frame, origin);
   });
 }
 

@@ -40,14 +40,14 @@ void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
   const Surface& surface = body.surface;
   const std::span<const float> distances = body.distances.distances(), radii = body.distances.radii();
   parts_.clear();
-  for (std::size_t r = 0; r < surface::run_count(distances.size()); ++r) {
-    const surface::SampleBlock run(r, distances.size());
-    const auto first_of_run = static_cast<std::ptrdiff_t>(parts_.size());
-    for (std::size_t i = run.first; i < run.end; ++i) {
+  for (std::size_t b = 0; b < surface::block_count(distances.size()); ++b) {
+    const surface::SampleBlock block(b, distances.size());
+    const auto first_of_block = static_cast<std::ptrdiff_t>(parts_.size());
+    for (std::size_t i = block.first; i < block.end; ++i) {
       if (!(distances[i] <= margin)) continue;
       const std::uint32_t face = internals(surface).sample_faces[body.distances.sample(i)];
       const std::uint32_t chart = surface.face_charts()[face];
-      auto part = std::find_if(parts_.begin() + first_of_run, parts_.end(),
+      auto part = std::find_if(parts_.begin() + first_of_block, parts_.end(),
                                [&](const Part& p) { return p.chart == chart; });
       if (part == parts_.end()) part = parts_.insert(part, {chart, i, {}});
       if (distances[i] < distances[part->deepest]) part->deepest = i;
