@@ -12,12 +12,10 @@
 namespace sdm::sampled {
 namespace {
 
-// The contact of a sample of body `body`, as Contact defines it.
-Contact contact_of(int body, const Vec3& sample, const Vec3& vector, double depth, const Vec3& other_normal,
-                   double length) {
+// The contact of a sample of body `body`, as Contact defines it; `outwards` is the direction in which the
+// other body pushes this one.
+Contact contact_of(int body, const Vec3& sample, const Vec3& vector, double depth, const Vec3& outwards) {
   Contact c{.point1 = sample, .point2 = sample + vector, .depth = depth};
-  Vec3 outwards = other_normal;  // of the other body, which pushes this one
-  if (std::abs(depth) > length) outwards = (1 / depth) * vector;
   if (body == 1) std::swap(c.point1, c.point2);
   c.normal = body == 0 ? outwards : -outwards;
   return c;
@@ -73,9 +71,9 @@ void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int 
       const bool inside = on.distances.distances()[parts_[first + i].deepest] < 0;
       const std::uint32_t face = sites.face_of(closest.type[i], closest.site[i]);
       if (!inside) extend(boxes_[contacts_.size()], points_[first + i] + vector);  // across the gap
-      contacts_.push_back(contact_of(body, points_[first + i], vector,
-                                     inside ? closest.distance[i] : -closest.distance[i],
-                                     sites.normals.face[face], length));
+      const double depth = inside ? closest.distance[i] : -closest.distance[i];
+      const Vec3 outwards = std::abs(depth) > length ? (1 / depth) * vector : sites.normals.face[face];
+      contacts_.push_back(contact_of(body, points_[first + i], vector, depth, outwards));
     }
   };
   cpu::cpu_search(sites, points_, std::numeric_limits<double>::infinity(), std::ref(add));
