@@ -86,7 +86,7 @@ class SiteOrder {
   }
 
   const RegionSource& s_;
-  std::vector<std::uint32_t> edge_place_, vertex_place_;  // kNone: not handed out yet
+  std::vector<std::uint32_t> edge_place_, vertex_place_;  // kNone: not assigned yet
   std::vector<std::uint32_t> edges_, vertices_;
 };
 
