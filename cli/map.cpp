@@ -21,7 +21,8 @@ namespace {
 Tolerance judge(double tolerance, const sdm::Surface& surface, const sdm::DistanceMap& map,
                 const std::vector<float>& at_vertices, double error_bound) {
   double largest = map.beyond_max_distance > 0 ? std::numeric_limits<double>::infinity() : 0;
-  for (const auto texel : surface.sample_texels()) largest = std::fmax(largest, std::abs(map.distance[texel]));
+  for (const auto texel : surface.sample_texels())
+    largest = std::fmax(largest, std::abs(map.distance[texel]));
   for (const auto& triangle : surface.mesh().triangles)
     for (const auto vertex : triangle) {
       const double d = std::abs(at_vertices[vertex]);
@@ -86,7 +87,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   sdm::parallel_invoke([&] { write_map_files(folder, *surface, map, at_vertices, command.picture); },
                        [&] {
                          outcome.distance = sdm::statistics(*surface, map);
-                         outcome.error_bound = surface->sampling_bound();
+                         outcome.error_bound = sdm::SamplingBound(*surface).value();
                        });
   if (command.picture.tolerance)
     outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices,

@@ -24,7 +24,7 @@ void for_each_sample_block(const Surface& surface, const Progress& progress, std
     // A block's points stay in the cache; those of all samples would not.
     thread_local std::vector<Vec3> points;
     points.resize(end - begin);
-    surface::place_samples(internals(surface), begin, points);
+    internals(surface).place_samples(begin, points);
     body(begin, points);
   });
 }

@@ -28,9 +28,7 @@ bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) cons
     case SignMethod::pseudonormal:
       if (closest.type == SiteType::none || !sdm::contains(box_, query)) return false;
       if (beside_sliver(closest))
-        return closest.distance > 0 &&
-               odd_crossings(sites_.mesh.positions, sites_.frame, sites_.mesh.triangles, sites_.tree,
-                             sites_.frame.to_unit(query));
+        return closest.distance > 0 && odd_crossings(sites_.face_tree(), sites_.frame.to_unit(query));
       return dot(query - closest.point, sites::pseudonormal(sites_.normals, sites_.topology, closest)) < 0;
     case SignMethod::winding:
       return (*winding_)(query) > 0.5;

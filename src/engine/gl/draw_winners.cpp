@@ -78,11 +78,11 @@ void expect_no_cracks(const Surface& surface, std::span<const std::uint32_t> fac
 
 }  // namespace
 
-RasterWinners draw_winners(const RasterDevice& device, const Surface& surface, const sites::SitesData& sites,
-                           const GlOptions& gl, const engine::EngineOptions& options, GlReport& report) {
+RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlReport& report) {
+  const auto& [surface, tile_tree, sites, gl, options] = task;
+  const surface::Tiles& tiles = tile_tree.tiles;
   Stopwatch watch;
-  const surface::Tiles& tiles = surface::tiles_of(surface);
-  DomainTree tree(surface, tiles, sites.frame);
+  DomainTree tree(surface, tile_tree, sites.frame);
   const SiteIndex index(sites);
   report.time_ms.refit = watch.lap();
 

@@ -7,6 +7,7 @@
 
 #include "engine/engine.h"
 #include "engine/gl/rasteriser.h"
+#include "engine/gl/tile_tree.h"
 #include "sites/sites_data.h"
 
 namespace sdm::gl {
@@ -28,10 +29,17 @@ struct RasterWinners {
   }
 };
 
+/// What to draw.
+struct DrawTask {
+  const Surface& surface;
+  const TileTree& tile_tree;  ///< of the surface
+  const sites::SitesData& sites;
+  const GlOptions& gl;
+  const engine::EngineOptions& options;
+};
+
 /// Draws the map on a device whose context is current, and fills the counts and times of the report up to
 /// read_back. Throws sdm::Error where OpenGL fails; Cancelled.
-[[nodiscard]] RasterWinners draw_winners(const RasterDevice& device, const Surface& surface,
-                                         const sites::SitesData& sites, const GlOptions& gl,
-                                         const engine::EngineOptions& options, GlReport& report);
+[[nodiscard]] RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlReport& report);
 
 }  // namespace sdm::gl

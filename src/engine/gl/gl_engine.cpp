@@ -30,6 +30,7 @@ void check(const GlOptions& options) {
 struct Devices {
   std::mutex drawing;
   std::map<std::string, std::unique_ptr<RasterDevice>, std::less<>> open;
+  TileTreeCache tiles;  // of the surfaces mapped by any of them
 };
 
 Devices& devices() {
@@ -115,7 +116,8 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
     report.clip = options_.clip;
     report.texels = surface.sample_texels().size();
     report.time_ms.context = ms;
-    return draw_winners(device, surface, internals(sites), options_, options, report);
+    const TileTree& tile_tree = devices().tiles.of(surface);
+    return draw_winners(device, {surface, tile_tree, internals(sites), options_, options}, report);
   });
 
   Stopwatch watch;

@@ -12,6 +12,10 @@ void Body::refit(std::span<const Vec3> positions) {
   follow_positions();
 }
 
+void Body::require_pieces() const {
+  std::call_once(pieces_->built, [this] { pieces_->assignment.emplace(surface_); });
+}
+
 void Body::follow_positions() {
   box_ = bounds(sites_.mesh());
   inside_.emplace(internals(sites_), solid() ? SignMethod::pseudonormal : SignMethod::none);
