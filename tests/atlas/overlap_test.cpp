@@ -41,7 +41,7 @@ atlas::GridTriangle random_triangle(std::mt19937& random, int lo, int hi) {
 }
 
 // On few grid points, so that shared corners, touching edges and zero areas are common.
-TEST(Overlap, OfPairsIsACommonArea) {
+TEST(Overlap, PairsWithACommonArea) {
   std::mt19937 random(1);
   int overlaps = 0;
   for (int i = 0; i < 100000; ++i) {
@@ -92,7 +92,7 @@ TEST(Overlap, IsFoundAmongMany) {
   }
 }
 
-TEST(Overlap, SlackForgivesShallowOnes) {
+TEST(Overlap, SlackToleratesShallowOverlaps) {
   const atlas::GridTriangle low = {{{0, 0}, {1000, 0}, {0, 1000}}},
                             high = {{{997, 0}, {1997, 1000}, {997, 1000}}};
   const std::array pair = {low, high};

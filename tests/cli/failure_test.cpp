@@ -1,5 +1,5 @@
-#include "run.h"
-#include "samples.h"
+#include "support/run_sdm.h"
+#include "cli/samples.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -91,7 +91,7 @@ TEST_F(Failure, AResultWhosePlaceIsTakenByAFolderReplacesNothing) {
 }
 
 TEST_F(Failure, ResolutionsTooSmallForTheChartsOrTheMemory) {
-  write_obj(o1, torus(60));
+  write_obj(o1, ring(60));
   expect_failure(run_sdm({"map", o1, o2, "-o", out, "--resolution", "16", "--atlas", "triangles"}), "16");
   // 32768² texels take tens of gigabytes.
 #ifdef __SANITIZE_ADDRESS__
@@ -105,15 +105,15 @@ TEST_F(Failure, OptionsThatTheMeshesDoNotAllow) {
   // Often, because the atlas fails while O2 is being prepared on the other cores.
   for (int repeat = 0; repeat < 10; ++repeat)
     expect_failure(run_sdm(map({"--atlas", "uv"})), "texture coordinates");
-  Mesh open = torus(16);
+  Mesh open = ring(16);
   open.triangles.resize(100);
   write_obj(o2, open);
   expect_failure(run_sdm(map({"--sign", "pseudonormal"})), "O2 is open");
 }
 
 TEST_F(Failure, AnInterruptedRunLeavesNoTrace) {
-  write_obj(o1, torus(250));
-  write_obj(o2, torus(250, 1, {0.3, 0, 0}));
+  write_obj(o1, ring(250));
+  write_obj(o2, ring(250, 1, {0.3, 0, 0}));
   const Outcome run = run_sdm({"map", o1, o2, "-o", out, "--resolution", "4096", "--engine", "reference"},
                               {.interrupt_after_ms = 1500});
   expect_failure(run, "cancelled", 128 + SIGINT);  // as a shell expects that is to end its loop

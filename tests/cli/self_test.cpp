@@ -1,6 +1,6 @@
 // `sdm self`.
-#include "run.h"
-#include "samples.h"
+#include "support/run_sdm.h"
+#include "cli/samples.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,20 @@
 // The parts of the cpu engine, which the exactness tests see only as a whole.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
 #include <memory>
+#include <random>
+#include <vector>
 
 #include "core/vec.h"
 #include "engine/cpu/finish.h"
 #include "engine/engine.h"
-#include "engine/simd_targets.h"
-#include "engine/support.h"
 #include "sites/sites_data.h"
+#include "support/map_checks.h"
+#include "support/points.h"
+#include "support/shapes.h"
+#include "support/simd_targets.h"
 
 namespace sdm {
 namespace {
@@ -15,7 +23,7 @@ double distance(const float (&a)[3], const Vec3& b) {
   return norm(Vec3{a[0], a[1], a[2]} - b);
 }
 
-TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
+TEST(PointGroup, BallsContainTheirPointsAndChildren) {
   std::mt19937 random(4);
   const auto group = std::make_unique<cpu::PointGroup>();
   for (const std::size_t count : {1u, 15u, 16u, 17u, 64u, 65u, 1000u, 4097u, 65536u}) {
@@ -42,7 +50,7 @@ TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
 }
 
 // Whatever single precision says, what is named is a local minimum; and what it leaves open is settled.
-TEST(Finish, TakesNoWinnerOnTrust) {
+TEST(Finish, VerifiesEveryWinner) {
   std::mt19937 random(8);
   const Sites sites(test::soup(40, random));
   std::vector<Vec3> queries(37);
@@ -86,7 +94,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
 
 // Soups and grids, flat and rough, whole and small slivers, of any size and place; queries on the mesh, on
 // its vertices and lattice points, where regions meet, and away from it.
-TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
+TEST(Descent, AgreesWithTheReferenceOnRandomScenes) {
   std::size_t within = 0, beyond = 0, wrong = 0;
   const std::vector<test::SimdTarget> targets = test::simd_targets();
   for (unsigned seed = 0; seed < 200; ++seed) {

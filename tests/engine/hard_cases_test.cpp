@@ -1,8 +1,19 @@
 // Inputs that break careless engines: ties everywhere, contact, extreme scales, slivers, soup.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
 #include "core/vec.h"
-#include "engine/oracle.h"
-#include "engine/simd_targets.h"
-#include "engine/support.h"
+#include "support/engines.h"
+#include "support/map_checks.h"
+#include "support/meshes.h"
+#include "support/oracle.h"
+#include "support/points.h"
+#include "support/shapes.h"
+#include "support/simd_targets.h"
 
 namespace sdm {
 namespace {
@@ -16,7 +27,7 @@ class HardCases : public testing::TestWithParam<test::EngineOnTarget> {
     const Surface surface(o1, {.resolution = resolution});
     const Sites sites(o2);
     const double tolerance = 1e-6 * test::scene_diagonal(o1, o2);
-    const std::vector<Vec3> points = test::sample_points(surface);
+    const std::vector<Vec3> points = surface.sample_points();
     const auto expected = test::evaluate([&](const Vec3& p) { return oracle::brute_force(o2, p); }, points);
     test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam().engine}), expected,
                      tolerance);
@@ -35,7 +46,7 @@ TEST_P(HardCases, ConcentricSpheres) {
   expect_exact(test::placed(test::sphere(2), "scale:0.001"), test::sphere(4));
 }
 
-TEST_P(HardCases, EverySiteEquallyNear) {
+TEST_P(HardCases, EquidistantSites) {
   const Sites sites(test::sphere(5));
   const std::vector<Vec3> centre(1000, Vec3{});
   const double expected = oracle::brute_force(sites.mesh(), {});
@@ -88,7 +99,7 @@ TEST_P(HardCases, SliversWhoseNormalIsNoise) {
   }
 }
 
-TEST_P(HardCases, TinyAndFar) {
+TEST_P(HardCases, TinyMeshesFarAway) {
   expect_exact(test::cube(), test::placed(test::sphere(1), "scale:1e-6,translate:1000:200:-300"));
   expect_exact(test::cube(), test::placed(test::sphere(1), "scale:1e-6,translate:1:1:1"));
   expect_exact(test::placed(test::cube(), "scale:1e-6"), test::placed(test::sphere(3), "translate:0:0:1.5"));
@@ -112,11 +123,7 @@ TEST_P(HardCases, Slivers) {
   // A fan of needles, a thousand times longer than wide and worse, of which many share the tip.
   for (const double width : {1e-3, 1e-6, 1e-9, 1e-12}) {
     SCOPED_TRACE(width);
-    Mesh fan;
-    fan.positions = {{0, 0, 0}};
-    for (std::uint32_t i = 0; i <= 200; ++i)
-      fan.positions.push_back({1, width * i, 0.1 * std::sin(0.05 * i)});
-    for (std::uint32_t i = 1; i <= 200; ++i) fan.triangles.push_back({0, i, i + 1});
+    const Mesh fan = test::needles(width);
     expect_exact(test::placed(test::sphere(2), "translate:0.5:0:0"), fan);
     expect_exact(test::placed(test::sphere(2), "scale:0.01,translate:0.5:0:0.02"), fan);
   }
@@ -136,8 +143,7 @@ TEST_P(HardCases, CapsAlmostWithoutHeight) {
 }
 
 TEST_P(HardCases, SingleTriangle) {
-  const Mesh triangle{
-      .positions = {{0, 0, 0}, {1, 0, 0.2}, {0.3, 0.8, 0}}, .triangles = {{0, 1, 2}}, .corner_uvs = {}};
+  const Mesh triangle = test::single_triangle();
   expect_exact(test::sphere(2), triangle);
   expect_exact(triangle, test::sphere(2));
   expect_exact(triangle, triangle);

@@ -1,7 +1,7 @@
 // Every texel of every map by rasterisation against the reference engine.
 #include "core/vec.h"
-#include "engine/oracle.h"
 #include "gl/support.h"
+#include "support/oracle.h"
 
 namespace sdm {
 namespace {
@@ -71,7 +71,7 @@ void expect_signs(const Surface& surface, const DistanceMap& map, const Distance
 class Agreement : public testing::TestWithParam<test::Scene> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, Agreement, testing::ValuesIn(test::scenes()), test::scene_name);
 
-TEST_P(Agreement, EveryTexelWithTheReference) {
+TEST_P(Agreement, EveryTexelMatchesTheReference) {
   const test::Scene& scene = GetParam();
   const Surface surface(scene.o1(), scene.atlas);
   const Sites sites(scene.o2());
@@ -93,7 +93,7 @@ TEST_P(Agreement, EveryTexelWithTheReference) {
 }
 
 // The scenes cover all awkward kinds of meshes.
-TEST(Agreement, ScenesHaveMeshesOfEveryKind) {
+TEST(Agreement, ScenesCoverAllKindsOfMeshes) {
   bool open = false, nonmanifold = false, degenerate = false, large = false;
   for (const test::Scene& scene : test::scenes()) {
     const MeshInfo info = inspect(scene.o2());

@@ -13,7 +13,7 @@ namespace {
 class StencilCacheOf : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Values, StencilCacheOf, testing::Values(1, 2, 7, 255));
 
-TEST_P(StencilCacheOf, FollowsTheModel) {
+TEST_P(StencilCacheOf, MatchesAnLruModel) {
   struct Entry {
     std::uint32_t face;
     int value;

@@ -1,12 +1,19 @@
 // Tiles part the owned texels; their domains and bounds hold for every sample.
 #include "surface/tiles.h"
 
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
 #include <algorithm>
+#include <cmath>
+#include <random>
 #include <set>
+#include <vector>
 
 #include "engine/engine.h"
 #include "engine/gl/domain_tree.h"
-#include "engine/support.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
 #include "surface/surface_data.h"
 
 namespace sdm::gl {
@@ -26,7 +33,7 @@ std::vector<Scene> scenes() {
           {"soup", test::soup(80, random), test::soup(50, random)}};
 }
 
-TEST(Tiles, PartTheOwnedTexels) {
+TEST(Tiles, PartitionTheOwnedTexels) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
@@ -57,7 +64,7 @@ TEST(Tiles, PartTheOwnedTexels) {
   }
 }
 
-TEST(Tiles, DomainsHoldTheirSamples) {
+TEST(Tiles, DomainsContainTheirSamples) {
   for (const Scene& scene : scenes())
     for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
       SCOPED_TRACE(scene.name);
@@ -113,7 +120,7 @@ TEST(Tiles, BoundsHoldForEverySample) {
   }
 }
 
-TEST(TileTreeCache, FollowsSurfaces) {
+TEST(TileTreeCache, TracksMovedAndReplacedSurfaces) {
   TileTreeCache cache;
   Surface cow(test::load("cow.off", "fit"), {.resolution = 128});
   const std::uint32_t tiles = cache.of(cow).tiles.count();

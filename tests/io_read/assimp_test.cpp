@@ -1,17 +1,18 @@
 // An independent reader agrees on real files and on what the tests write.
-#include <gtest/gtest.h>
-#include <sdm/io.h>
-
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <gtest/gtest.h>
+#include <sdm/io.h>
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
 #include <functional>
+#include <vector>
 
 #include "core/vec.h"
 #include "io_read/writers.h"
-#include "mesh/shapes.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -59,11 +60,11 @@ void expect_agreement(const std::filesystem::path& file) {
   EXPECT_LE(norm(our_sum - their_sum), tolerance * static_cast<double>(ours.size()));
 }
 
-TEST(Assimp, AgreesOnRealFiles) {
+TEST(Assimp, AgreesOnInstalledFiles) {
   for (const char* name :
        {"bunny.obj", "armadillo.off", "horse.3ds", "elephant.off", "camel.off", "fandisk.off", "hand.off",
         "sphere.stl", "pig.stl", "sphere.ply", "colored_tetra.ply"})
-    expect_agreement(std::filesystem::path(SDM_TEST_MESHES) / name);
+    expect_agreement(test::mesh_file(name));
 }
 
 TEST(Assimp, AgreesOnWrittenFiles) {

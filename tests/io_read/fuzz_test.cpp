@@ -4,10 +4,11 @@
 #include <sdm/sequence.h>
 
 #include <random>
+#include <vector>
 
 #include "io_read/sequences.h"
 #include "io_read/writers.h"
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {

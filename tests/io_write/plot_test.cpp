@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/io.h>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "read_png.h"
-#include "samples.h"
+#include "io_write/read_png.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {
@@ -70,7 +72,7 @@ TEST(Plot, LeavesGaps) {
   EXPECT_EQ(between(0.52, 0.58), 0);
 }
 
-TEST(Plot, DrawsWhateverThereIs) {
+TEST(Plot, DrawsAnyValues) {
   const TemporaryFolder folder;
   const auto draw = [&](const std::vector<double>& places, const std::vector<double>& values) {
     const std::vector<PlotPanel> panels{{"title", {{"", values}}}};

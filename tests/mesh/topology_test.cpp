@@ -6,8 +6,9 @@
 #include <map>
 #include <random>
 #include <set>
+#include <vector>
 
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -108,7 +109,7 @@ std::vector<Triangle> random_part_of_projective_plane(std::mt19937& random, std:
   return soup;
 }
 
-TEST(Orient, FindsATurningExactlyWhenThereIsOne) {
+TEST(Orient, FindsAnOrientationExactlyIfOneExists) {
   std::mt19937 random(3);
   int orientable = 0, not_orientable = 0;
   for (int round = 0; round < 400; ++round) {
@@ -132,7 +133,7 @@ TEST(Orient, FindsATurningExactlyWhenThereIsOne) {
   EXPECT_GT(not_orientable, 20);
 }
 
-TEST(Orient, ComponentsAreJoinedByTwoFaceEdgesAndTurnTheFewerFaces) {
+TEST(Orient, FlipsTheFewerFacesOfComponentsJoinedByTwoFaceEdges) {
   std::mt19937 random(4);
   for (int round = 0; round < 200; ++round) {
     const std::vector<Triangle> soup = random_soup(random, 12, 14);
@@ -169,7 +170,7 @@ TEST(Orient, ComponentsAreJoinedByTwoFaceEdgesAndTurnTheFewerFaces) {
   }
 }
 
-TEST(Orient, TurnsBackWhatWasTurned) {
+TEST(Orient, RestoresFlippedFaces) {
   Mesh mesh = test::torus(12, 9);
   std::mt19937 random(5);
   std::vector<std::uint8_t> turned(mesh.triangles.size(), 0);

@@ -2,8 +2,11 @@
 #include <sdm/error.h>
 #include <sdm/transform.h>
 
+#include <cmath>
+#include <vector>
+
 #include "core/vec.h"
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -62,7 +65,7 @@ TEST(Transform, FitMakesTheLongestSideOneAndCentresIt) {
   EXPECT_LT(box.hi[1] - box.lo[1], 1);
 }
 
-TEST(Transform, MirrorImagesKeepTheirOutside) {
+TEST(Transform, MirrorImagesKeepTheirOrientation) {
   Mesh mesh = test::torus(16, 12);
   const auto outward_volume = [](const Mesh& m) {
     double six = 0;
@@ -75,7 +78,7 @@ TEST(Transform, MirrorImagesKeepTheirOutside) {
   EXPECT_NEAR(outward_volume(mesh), 8 * volume, 1e-12 * volume);
 }
 
-TEST(Transform, RefusesToLeaveTheFiniteNumbers) {
+TEST(Transform, RejectsOverflow) {
   Mesh mesh = test::tetrahedron();
   EXPECT_THROW(transform(mesh, parse_transform("scale:1e300,scale:1e300")), Error);
 }
@@ -95,7 +98,7 @@ TEST(ParseTransform, ReadsAllSteps) {
 }
 
 // Frames of a sequence are placed as the first, wherever they are.
-TEST(Transform, WithoutFitPlacesOtherPointsAlike) {
+TEST(Transform, WithoutFitMovesOtherPointsTheSameWay) {
   Mesh mesh = test::tetrahedron();
   transform(mesh, parse_transform("scale:3,translate:7:8:9"));
   const auto steps = parse_transform("rotate:10:20:30,fit,scale:-2,fit,translate:1:2:3");
@@ -115,7 +118,7 @@ TEST(Transform, WithoutFitPlacesOtherPointsAlike) {
   EXPECT_THROW(transform(points, parse_transform("fit")), Error);
 }
 
-TEST(ParseTransform, NamesTheStepAtFault) {
+TEST(ParseTransform, ErrorNamesTheInvalidStep) {
   const auto expect_refused = [](const char* text, const char* step) {
     EXPECT_THAT([&] { static_cast<void>(parse_transform(text)); }, ThrowsMessage<Error>(HasSubstr(step)))
         << text;

@@ -26,7 +26,7 @@ TEST(Cloth, IsASheet) {
   EXPECT_NEAR(info.area, 4, 1e-9);
 }
 
-TEST(Cloth, FallsFreelyAsOne) {
+TEST(Cloth, FallsRigidly) {
   Cloth cloth(20, 1);
   for (int i = 0; i < 60; ++i) cloth.step(kStep, {});
   const double t = 60 * kStep;
@@ -46,7 +46,7 @@ struct FoldedCloth : ::testing::Test {
   }
 };
 
-TEST_F(FoldedCloth, KeepsItsEdgesItsDistanceAndItsEnergyAndComesToRest) {
+TEST_F(FoldedCloth, KeepsEdgesDistanceAndEnergyAndComesToRest) {
   const double start = height_sum(cloth);
   std::vector<Vec3> before(cloth.positions().begin(), cloth.positions().end());
   double last_kinetic = 0;

@@ -7,6 +7,7 @@
 
 #include "core/vec.h"
 #include "scenes/scene.h"
+#include "support/meshes.h"
 
 namespace sdm::scenes {
 namespace {
@@ -15,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 SceneOptions options() {
-  return {.mesh = SDM_TEST_MESHES "/bunny.obj"};
+  return {.mesh = test::mesh_file("bunny.obj")};
 }
 
 void expect_triangles(const Scene& scene, const std::vector<std::pair<std::string, double>>& expected) {
@@ -27,14 +28,14 @@ void expect_triangles(const Scene& scene, const std::vector<std::pair<std::strin
   }
 }
 
-TEST(Scene, BodiesHaveTheSizesOfThePaper) {
+TEST(Scene, BodiesHaveThePapersSizes) {
   expect_triangles(Scene(SceneKind::letters), {{"E", 2100}, {"G", 1600}});
   expect_triangles(Scene(SceneKind::bunnies, options()), {{"left", 2000}, {"right", 2000}});
   expect_triangles(Scene(SceneKind::figure), {{"figure", 17200}, {"box", 12}});
   expect_triangles(Scene(SceneKind::cloth), {{"cloth", 2 * 99 * 99}, {"ball", 2048}, {"floor", 12}});
 }
 
-TEST(Scene, IsTheSameToTheBitWhateverTheNumberOfThreads) {
+TEST(Scene, IsBitIdenticalForAnyThreadCount) {
   for (const auto& [kind, frames] : {std::pair{SceneKind::letters, 40},
                                      {SceneKind::bunnies, 35},
                                      {SceneKind::figure, 3},
@@ -51,7 +52,7 @@ TEST(Scene, IsTheSameToTheBitWhateverTheNumberOfThreads) {
   }
 }
 
-TEST(Scene, BunniesNeedAMesh) {
+TEST(Scene, BunniesRequireAMesh) {
   EXPECT_THAT([] { Scene(SceneKind::bunnies, {.mesh = "/no/such/bunny.obj"}); },
               ThrowsMessage<Error>(HasSubstr("/no/such/bunny.obj: there is no such file")));
 }
@@ -89,7 +90,7 @@ double strained(const Mesh& now, const Mesh& rest) {
 
 struct Collision : ::testing::TestWithParam<SceneKind> {};
 
-TEST_P(Collision, TouchesDeformsPartsAndKeepsMomentumAndShape) {
+TEST_P(Collision, TouchesDeformsSeparatesAndKeepsMomentumAndShape) {
   Scene scene(GetParam(), options());
   const std::vector<Scene::Body> rest(scene.bodies().begin(), scene.bodies().end());
   for (const Scene::Body& body : rest) EXPECT_TRUE(inspect(body.mesh).closed);
@@ -130,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Scene, Collision, ::testing::Values(SceneKind::letters,
                            return std::string(kind.param == SceneKind::letters ? "Letters" : "Bunnies");
                          });
 
-TEST(Scene, TheFigureWalksOnTheSpotWithinItsBox) {
+TEST(Scene, FigureWalksInPlaceInsideItsBox) {
   Scene scene(SceneKind::figure);
   const Mesh first = scene.bodies()[0].mesh, box = scene.bodies()[1].mesh;
   const MeshInfo info = inspect(first);
