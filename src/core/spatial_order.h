@@ -1,4 +1,4 @@
-// An order of points in which neighbours are near each other in space.
+// An order of points in which consecutive points are near each other in space.
 #pragma once
 
 #include <sdm/types.h>
@@ -8,9 +8,9 @@
 
 namespace sdm::core {
 
-/// Indices of the points such that every aligned 16·2^k of them lie in a small box: the points are halved
-/// across the longest side of their box, and so are the halves, down to packets of sixteen. Cost: O(n log n),
-/// all cores.
+/// Indices of the points such that every aligned 16·2^k of them lie in a small box: the points are split in
+/// half along the longest side of their box, recursively, down to packets of sixteen. Cost: O(n log n), all
+/// cores.
 [[nodiscard]] std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points);
 
 }  // namespace sdm::core
