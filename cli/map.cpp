@@ -21,7 +21,8 @@ namespace {
 Tolerance judge(double tolerance, const sdm::Surface& surface, const sdm::DistanceMap& map,
                 const std::vector<float>& at_vertices, double error_bound) {
   double largest = map.beyond_max_distance > 0 ? std::numeric_limits<double>::infinity() : 0;
-  for (const auto texel : surface.sample_texels()) largest = std::fmax(largest, std::abs(map.distance[texel]));
+  for (const auto texel : surface.sample_texels())
+    largest = std::fmax(largest, std::abs(map.distance[texel]));
   for (const auto& triangle : surface.mesh().triangles)
     for (const auto vertex : triangle) {
       const double d = std::abs(at_vertices[vertex]);
@@ -38,16 +39,15 @@ struct Result {
   nlohmann::ordered_json report;
 };
 
-/// How far a value of the map can be off: the engine's 1e-6, or gl's 2e-6, of the diagonal of both meshes,
-/// which covers the rounding to single precision too.
-double engine_error(sdm::EngineKind engine, const Input& on, const Input& to) {
+/// A bound on the error of a value of the map.
+double engine_error(const sdm::EngineInfo& engine, const Input& on, const Input& to) {
   double squared = 0;
   for (int k = 0; k < 3; ++k) {
     const double lo = std::min(on.info.bounds.lo[k], to.info.bounds.lo[k]);
     const double hi = std::max(on.info.bounds.hi[k], to.info.bounds.hi[k]);
     squared += (hi - lo) * (hi - lo);
   }
-  return (engine == sdm::EngineKind::gl ? 2e-6 : 1e-6) * std::sqrt(squared);
+  return engine.relative_error * std::sqrt(squared);
 }
 
 /// Computes the map on `on` of the distances to `to`, and writes all its files into `folder`.
@@ -80,18 +80,18 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
-  outcome.raster = map.raster;
+  outcome.raster = sdm::gl_report(*command.map.engine);
 
   progress.step("export");
   sdm::Stopwatch export_watch;
   sdm::parallel_invoke([&] { write_map_files(folder, *surface, map, at_vertices, command.picture); },
                        [&] {
                          outcome.distance = sdm::statistics(*surface, map);
-                         outcome.error_bound = surface->sampling_bound();
+                         outcome.error_bound = sdm::SamplingBound(*surface).value();
                        });
   if (command.picture.tolerance)
     outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices,
-                              outcome.error_bound + engine_error(command.map.engine, on, to));
+                              outcome.error_bound + engine_error(command.engine, on, to));
   outcome.time.output = export_watch.lap();
   outcome.time.total = import_ms + total.lap();
 
@@ -105,7 +105,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   report["units"] = command.picture.units;
   report["atlas"] = to_json(*surface);
   report["precision"] = command.precision ? nlohmann::ordered_json(*command.precision) : nullptr;
-  report["engine"] = name(command.map.engine);
+  report["engine"] = command.engine.name;
   report["max_distance"] = command.map.max_distance;  // null: no limit
   report.update(to_json(outcome));
   write_text(folder / "report.json", to_text(report));
@@ -121,8 +121,12 @@ int run(MapCommand command) {
   command.atlas.progress = command.map.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
-  if (command.map.engine == sdm::EngineKind::gl)  // before hours of work, if it cannot be
-    (void)sdm::gl_device(command.map.raster, command.atlas.resolution);
+  if (command.engine.name == "gl") {
+    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // before hours of work, if it cannot be
+    command.map.engine = sdm::make_gl_engine(command.gl);
+  } else {
+    command.map.engine = sdm::make_engine(command.engine.name);
+  }
 
   progress.step("import");
   sdm::Stopwatch import;

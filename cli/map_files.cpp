@@ -7,7 +7,7 @@
 
 std::vector<float> vertex_distances(const sdm::Mesh& mesh, const sdm::Sites& sites, sdm::SignMethod sign,
                                     sdm::MapOptions options) {
-  if (options.engine == sdm::EngineKind::gl) options.engine = sdm::EngineKind::cpu;  // gl draws maps only
+  if (options.engine && sdm::engine_info(*options.engine).maps_only) options.engine = nullptr;
   const auto closest = sdm::closest_points(sites, mesh.positions, options);
   std::vector<std::uint8_t> is_inside(closest.size(), 0);
   if (sign != sdm::SignMethod::none) is_inside = sdm::inside_flags(sites, mesh.positions, closest, sign);

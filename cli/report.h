@@ -44,8 +44,6 @@ struct Outcome {
   Times time;
 };
 
-[[nodiscard]] const char* name(sdm::EngineKind engine);
-
 /// Throughout, `on` is the mesh that carries the map and `to` the other one.
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Surface& surface);

@@ -6,13 +6,14 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "inside/inside_test.h"
+#include "inside/inside.h"
 
 namespace sdm {
 namespace {
 
 // The reason why O2 has no inside, as a clause; empty if it has one.
 std::string open_reason(const sites::SitesData& sites) {
+  if (sites.is_solid()) return {};
   std::size_t boundary = 0, nonmanifold = 0;
   for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
     boundary += sites.topology.edge_faces(e).size() == 1;
@@ -21,8 +22,7 @@ std::string open_reason(const sites::SitesData& sites) {
   if (boundary > 0) return "O2 is open (" + std::to_string(boundary) + " boundary edges)";
   if (nonmanifold > 0)
     return "O2 is not manifold (" + std::to_string(nonmanifold) + " edges of more than two faces)";
-  if (!sites.orientation.orientable) return "O2 is not orientable";
-  return {};
+  return "O2 is not orientable";
 }
 
 }  // namespace

@@ -8,11 +8,6 @@
 
 namespace sdm::inside {
 
-/// Whether a mesh bounds a solid: it is closed and orientable.
-[[nodiscard]] inline bool is_solid(const sites::SitesData& sites) {
-  return sites.closed && sites.orientation.orientable;
-}
-
 /// The winding number of a closed mesh moved by `pose`, with outward-oriented faces, around p, from the
 /// crossings of the segment to a point q outside the mesh. Empty if the segment intersects an edge. Exact if
 /// p does not lie on the surface. Cost: O(log n) and the faces that the segment meets.

@@ -83,7 +83,7 @@ void measure(const Mesh& mesh, const mesh::Topology& topology, const mesh::Orien
     const Vec3 n = cross(b - a, c - a);
     info.degenerate_faces += n == Vec3{};
     info.area += 0.5 * norm(n);
-    if (!topology.ignored(f)) six_volumes += (orientation.turned[f] ? -1 : 1) * dot(a, n);
+    if (!topology.ignored(f)) six_volumes += (orientation.flipped[f] ? -1 : 1) * dot(a, n);
   }
   if (info.closed && info.orientable) info.volume = std::abs(six_volumes) / 6;
 }
@@ -108,8 +108,9 @@ MeshInfo inspect(const Mesh& mesh) try {
 
   const mesh::Orientation orientation = orient(mesh.triangles, topology);
   info.orientable = orientation.orientable;
-  info.oriented = orientation.orientable && std::all_of(orientation.turned.begin(), orientation.turned.end(),
-                                                        [](auto t) { return t == 0; });
+  info.oriented =
+      orientation.orientable &&
+      std::all_of(orientation.flipped.begin(), orientation.flipped.end(), [](auto t) { return t == 0; });
 
   count_components(mesh, info);
   count_nonmanifold_vertices(mesh, topology, info);

@@ -35,7 +35,7 @@ struct Topology {
 /// flipping the fewer faces of each component of such neighbours; `orientable` is false when no choice
 /// satisfies all of them. Ignored faces stay.
 struct Orientation {
-  std::vector<std::uint8_t> turned;
+  std::vector<std::uint8_t> flipped;      ///< 1 for each face to flip
   std::vector<std::uint32_t> component;   ///< of each face, over two-face edges; kNone if ignored
   std::vector<std::uint32_t> first_face;  ///< of each component
   bool orientable = true;

@@ -29,9 +29,9 @@ bool encloses(const RegionSource& s, const Regions& regions, std::size_t owner) 
 }
 
 // Assigns sites in the order of the faces and builds the topology indexed by region.
-class HandOut {
+class SiteOrder {
  public:
-  explicit HandOut(const RegionSource& source)
+  explicit SiteOrder(const RegionSource& source)
       : s_(source),
         edge_place_(source.topology.edges.size(), kNone),
         vertex_place_(source.positions.size(), kNone) {
@@ -87,7 +87,7 @@ class HandOut {
   }
 
   const RegionSource& s_;
-  std::vector<std::uint32_t> edge_place_, vertex_place_;  // kNone: not handed out yet
+  std::vector<std::uint32_t> edge_place_, vertex_place_;  // kNone: not assigned yet
   std::vector<std::uint32_t> edges_, vertices_;
 };
 
@@ -96,7 +96,7 @@ class HandOut {
 Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
   Regions regions;
   SitePlaces& places = regions.places;
-  HandOut sites(s);
+  SiteOrder sites(s);
   const std::size_t faces = tree.items.size();
   parallel_invoke(
       [&] {

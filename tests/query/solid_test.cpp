@@ -107,7 +107,7 @@ TEST(Solid, ContainsAgreesWithCgal) {
   std::mt19937 random(11);
   const Mesh mesh = test::load("elephant.off", "fit");
   const Sites sites(mesh);
-  ASSERT_TRUE(inside::is_solid(internals(sites)));
+  ASSERT_TRUE(internals(sites).is_solid());
   const oracle::CgalInside expected(mesh);
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -28,8 +28,9 @@ void raise_to_root(DomainTree& tree) {
 
 }  // namespace
 
-DomainTree::DomainTree(const Surface& surface, const surface::Tiles& tiles, const UnitFrame& frame)
-    : tree(tiles.tree), leaves(tree), bound(tree.nodes.size()) {
+DomainTree::DomainTree(const Surface& surface, const TileTree& tile_tree, const UnitFrame& frame)
+    : tree(tile_tree.tree), leaves(tree), bound(tree.nodes.size()) {
+  const surface::Tiles& tiles = tile_tree.tiles;
   std::vector<Box> boxes(tiles.count());
   parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)

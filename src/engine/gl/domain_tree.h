@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/gl/face_domains.h"
+#include "engine/gl/tile_tree.h"
 #include "hierarchy/traverse.h"
 #include "sites/sites_data.h"
 
@@ -18,7 +19,7 @@ struct DomainTree {
   std::vector<double> bound;  ///< of each node: no sample of its domains is farther from O2
 
   /// Refits the boxes to the current domains. Cost: linear.
-  DomainTree(const Surface& surface, const surface::Tiles& tiles, const UnitFrame& frame);
+  DomainTree(const Surface& surface, const TileTree& tiles, const UnitFrame& frame);
 
   [[nodiscard]] const hierarchy::FloatBox& bounds() const { return tree.box(0); }
 };

@@ -35,14 +35,14 @@ ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q, dou
   return best;
 }
 
-void reference_search(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
-                      const engine::ClosestSink& deliver) {
+void ReferenceEngine::closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
+                                     const ClosestSink& sink) const {
   sites::ClosestPacket closest;
   for (std::size_t first = 0; first < points.size(); first += sites::ClosestPacket::kSize) {
     closest.count = std::min(sites::ClosestPacket::kSize, points.size() - first);
     for (std::size_t i = 0; i < closest.count; ++i)
-      closest.set(i, points[first + i], reference::reference_closest(sites, points[first + i], max_distance));
-    deliver(first, closest);
+      closest.set(i, points[first + i], reference_closest(internals(sites), points[first + i], max_distance));
+    sink(first, closest);
   }
 }
 

@@ -62,16 +62,16 @@ bool meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& 
 
 }  // namespace
 
-bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
-                   std::span<const Triangle> triangles, const hierarchy::AabbTree& tree, const Vec3& origin,
-                   std::span<const std::uint32_t> component, std::uint32_t left_out) {
+bool odd_crossings(const FaceTree& faces, const Vec3& origin, std::span<const std::uint32_t> component,
+                   std::uint32_t left_out) {
   bool odd = false;
   traverse(
-      tree, whole(tree), [&](hierarchy::Subtree below) { return meets(tree.box(below.root), origin); },
+      faces.tree, whole(faces.tree),
+      [&](hierarchy::Subtree below) { return meets(faces.tree.box(below.root), origin); },
       [&](std::uint32_t leaf) {
-        for (const std::uint32_t face : tree.items_of(leaf))
+        for (const std::uint32_t face : faces.tree.items_of(leaf))
           odd ^= (left_out == kNone || component[face] != left_out) &&
-                 meets(triangles[face], positions, frame, origin);
+                 meets(faces.triangles[face], faces.positions, faces.frame, origin);
       });
   return odd;
 }

@@ -7,7 +7,7 @@ namespace {
 
 bool contains_part(const sites::SitesData& solid, const Affine& pose, const sites::SitesData& other,
                    const Affine& other_pose) {
-  if (!inside::is_solid(solid)) return false;
+  if (!solid.is_solid()) return false;
   return std::ranges::any_of(other.orientation.first_face, [&](std::uint32_t face) {
     return inside::contains(solid, pose, other_pose(other.mesh.positions[other.mesh.triangles[face][0]]));
   });

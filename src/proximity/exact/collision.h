@@ -1,7 +1,7 @@
 // Whether two meshes collide.
 #pragma once
 
-#include "inside/solid.h"
+#include "inside/inside.h"
 #include "proximity/exact/pair_search.h"
 
 namespace sdm::exact {

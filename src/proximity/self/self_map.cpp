@@ -53,7 +53,7 @@ DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const E
   DistanceMap map;
   map::clear(map, surface);
   map.sign.reason = "the distance of a surface to itself has no sign";
-  const surface::Tiles& tiles = surface::tiles_of(surface);
+  const surface::Tiles tiles(surface);
   std::atomic<std::size_t> none{0};
   parallel_for(tiles.count(), kGrain, options.progress, "map", [&](std::size_t begin, std::size_t end) {
     self::SelfSearch search(internals(sites), exclusion);

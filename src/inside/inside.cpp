@@ -1,4 +1,4 @@
-#include "inside/inside_test.h"
+#include "inside/inside.h"
 
 #include <algorithm>
 #include <string>
@@ -8,20 +8,6 @@
 #include "inside/crossings/ray_parity.h"
 
 namespace sdm::inside {
-namespace {
-
-Vec3 pseudonormal(const sites::SitesData& sites, const ClosestPoint& c) {
-  switch (c.type) {
-    case SiteType::vertex:
-      return sites.normals.vertex[c.site];
-    case SiteType::edge:
-      return sites::edge_pseudonormal(sites.normals, sites.topology, c.site);
-    default:
-      return sites.normals.face[c.face];
-  }
-}
-
-}  // namespace
 
 InsideTest::InsideTest(const sites::SitesData& sites, SignMethod method)
     : sites_(sites), method_(method), box_(bounds(sites.mesh)) {
@@ -40,12 +26,10 @@ bool InsideTest::beside_sliver(const ClosestPoint& c) const {
 bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) const {
   switch (method_) {
     case SignMethod::pseudonormal:
-      if (closest.type == SiteType::none || !contains(box_, query)) return false;
+      if (closest.type == SiteType::none || !sdm::contains(box_, query)) return false;
       if (beside_sliver(closest))
-        return closest.distance > 0 &&
-               odd_crossings(sites_.mesh.positions, sites_.frame, sites_.mesh.triangles, sites_.tree,
-                             sites_.frame.to_unit(query));
-      return dot(query - closest.point, pseudonormal(sites_, closest)) < 0;
+        return closest.distance > 0 && odd_crossings(sites_.face_tree(), sites_.frame.to_unit(query));
+      return dot(query - closest.point, sites::pseudonormal(sites_.normals, sites_.topology, closest)) < 0;
     case SignMethod::winding:
       return (*winding_)(query) > 0.5;
     default:
@@ -59,7 +43,7 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
   if (method_ == SignMethod::none) return inside;
   const bool in_box = method_ == SignMethod::pseudonormal;  // most queries are told by it alone
   for (std::size_t i = 0; i < closest.count; ++i)
-    if (!in_box || contains(box_, queries[i]))
+    if (!in_box || sdm::contains(box_, queries[i]))
       inside |= static_cast<std::uint32_t>((*this)(queries[i], closest.get(i, queries[i]))) << i;
   return inside;
 }

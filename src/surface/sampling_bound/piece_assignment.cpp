@@ -1,4 +1,4 @@
-#include "surface/sampling_bound/coverage.h"
+#include "surface/sampling_bound/piece_assignment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,14 +45,14 @@ double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame
 
 // Calls take_face(face, how far any of its points here is from its sample).
 template <class Take>
-void Coverage::measure_run(const Surface& surface, std::size_t run, std::span<const Vec3> points,
-                           std::span<float> radii, const Take& take_face) const {
+void PieceAssignment::measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
+                                    std::span<float> radii, const Take& take_face) const {
   std::ranges::fill(radii, 0.0f);
-  for_each_patch(run, [&](const Patch& patch, auto squares, std::span<const Piece> pieces) {
-    const FaceFrame frame(surface.mesh(), patch.face);
+  for_each_face(block, [&](const FaceInBlock& part, auto squares, std::span<const Piece> pieces) {
+    const FaceFrame frame(surface.mesh(), part.face);
     float largest = 0;
     if (!squares.empty()) {
-      largest = rounded_up(square_radius(surface, patch.face, frame));
+      largest = rounded_up(square_radius(surface, part.face, frame));
       for (const std::uint8_t sample : squares) radii[sample] = std::max(radii[sample], largest);
     }
     const double rounding = frame.rounding();
@@ -66,27 +66,28 @@ void Coverage::measure_run(const Surface& surface, std::size_t run, std::span<co
       }
       pieces = pieces.subspan(some.size());
     }
-    take_face(patch.face, largest);
+    take_face(part.face, largest);
   });
 }
 
-void Coverage::measure_run(const Surface& surface, std::size_t run, std::span<const Vec3> points,
-                           std::span<float> radii) const {
-  measure_run(surface, run, points, radii, [](std::uint32_t, float) {});
+void PieceAssignment::measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
+                                    std::span<float> radii) const {
+  measure_block(surface, block, points, radii, [](std::uint32_t, float) {});
 }
 
-void Coverage::measure(const Surface& surface, Radii& radii) const {
+void PieceAssignment::measure(const Surface& surface, Radii& radii) const {
   const std::size_t samples = surface.sample_texels().size();
   radii.faces.assign(surface.mesh().triangles.size(), 0);
   radii.samples.resize(samples);
   const auto take_face = [&](std::uint32_t face, float largest) { atomic_max(radii.faces[face], largest); };
-  parallel_for(run_count(samples), 16, [&](std::size_t begin, std::size_t end) {
-    std::array<Vec3, kRunLength> places;
-    for (std::size_t r = begin; r < end; ++r) {
-      const SampleBlock run(r, samples);
-      const std::span points = std::span(places).first(run.size());
-      place_samples(internals(surface), run.first, points);
-      measure_run(surface, r, points, std::span(radii.samples).subspan(run.first, run.size()), take_face);
+  parallel_for(block_count(samples), 16, [&](std::size_t begin, std::size_t end) {
+    std::array<Vec3, kBlockSize> places;
+    for (std::size_t b = begin; b < end; ++b) {
+      const SampleBlock block(b, samples);
+      const std::span points = std::span(places).first(block.size());
+      internals(surface).place_samples(block.first, points);
+      measure_block(surface, b, points, std::span(radii.samples).subspan(block.first, block.size()),
+                    take_face);
     }
   });
   radii.largest = *std::ranges::max_element(radii.faces);
@@ -94,24 +95,24 @@ void Coverage::measure(const Surface& surface, Radii& radii) const {
 
 // A face maps the rectangle around its texels, and the one around its weights, to parallelograms, which are
 // farthest from p at a corner.
-double Coverage::spread(const Surface& surface, std::size_t run, const Vec3& p) const {
+double PieceAssignment::radius_about(const Surface& surface, std::size_t block, const Vec3& p) const {
   double farthest = 0;
-  for_each_patch(run, [&](const Patch& patch, auto squares, std::span<const Piece> pieces) {
-    const FaceFrame frame(surface.mesh(), patch.face);
+  for_each_face(block, [&](const FaceInBlock& part, auto squares, std::span<const Piece> pieces) {
+    const FaceFrame frame(surface.mesh(), part.face);
     const auto reach = [&](const auto& low, const auto& high, const auto& point_at) {
       double squared = 0;
       for (const auto a : {low[0], high[0]})
         for (const auto b : {low[1], high[1]}) squared = std::max(squared, squared_norm(point_at(a, b) - p));
       return std::sqrt(squared);
     };
-    if (patch.low_texel[0] <= patch.high_texel[0]) {
-      const double square = squares.empty() ? 0 : square_radius(surface, patch.face, frame);
-      farthest = std::max(farthest, square + reach(patch.low_texel, patch.high_texel, [&](auto x, auto y) {
-                                      return surface.to_surface(patch.face, {x + 0.5, y + 0.5});
+    if (part.low_texel[0] <= part.high_texel[0]) {
+      const double square = squares.empty() ? 0 : square_radius(surface, part.face, frame);
+      farthest = std::max(farthest, square + reach(part.low_texel, part.high_texel, [&](auto x, auto y) {
+                                      return surface.to_surface(part.face, {x + 0.5, y + 0.5});
                                     }));
     }
     if (!pieces.empty())
-      farthest = std::max(farthest, frame.rounding() + reach(patch.low_weights, patch.high_weights,
+      farthest = std::max(farthest, frame.rounding() + reach(part.low_weights, part.high_weights,
                                                              [&](auto a, auto b) { return frame.at(a, b); }));
   });
   return farthest;
@@ -119,13 +120,13 @@ double Coverage::spread(const Surface& surface, std::size_t run, const Vec3& p) 
 
 // Pieces lie within their face, and samples within the triangle that M⁻¹ makes of the face's corners in the
 // atlas: a little off the face, by rounding.
-double Coverage::face_spread(const Surface& surface, RunRange runs, const Vec3& p) const {
+double PieceAssignment::face_radius_about(const Surface& surface, BlockRange blocks, const Vec3& p) const {
   const SurfaceData& s = internals(surface);
   double squared = 0;
   std::uint32_t last = kNone;
-  const std::size_t first = runs.first == 0 ? 0 : run_ends_[runs.first - 1];
-  for (std::size_t i = first; i < run_ends_[runs.end - 1]; ++i) {
-    const std::uint32_t face = patches_[i].face;
+  const std::size_t first = blocks.first == 0 ? 0 : block_ends_[blocks.first - 1];
+  for (std::size_t i = first; i < block_ends_[blocks.end - 1]; ++i) {
+    const std::uint32_t face = faces_in_blocks_[i].face;
     if (std::exchange(last, face) == face) continue;
     const Triangle& corners = s.mesh.triangles[face];
     for (const std::uint32_t v : corners) squared = std::max(squared, squared_norm(s.mesh.positions[v] - p));

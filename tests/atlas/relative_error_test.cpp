@@ -18,7 +18,7 @@ using testing::HasSubstr;
 /// time.
 std::vector<double> seen(const Surface& surface) {
   const Mesh& mesh = surface.mesh();
-  const surface::SampleTree tree(surface, surface.sampling_bound());
+  const surface::SampleTree tree(surface, SamplingBound(surface).value());
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<double> radii(mesh.triangles.size());
@@ -28,7 +28,7 @@ std::vector<double> seen(const Surface& surface) {
       const auto& [a, b, c] = mesh.triangles[f];
       const Vec3 p =
           (1 - s) * mesh.positions[a] + (s * (1 - t)) * mesh.positions[b] + (s * t) * mesh.positions[c];
-      radii[f] = std::max(radii[f], norm(p - surface.sample_points()[tree.nearest(p)]));
+      radii[f] = std::max(radii[f], norm(p - tree.points()[tree.nearest(p)]));
     }
   return radii;
 }
@@ -39,15 +39,16 @@ TEST(RelativeError, IsNeverBelowWhatIsSeenAndNotFarAbove) {
     SCOPED_TRACE(name);
     const Mesh mesh = test::load(name);
     Surface surface(mesh, {.resolution = 256});
-    const RelativeError error(surface);
+    SamplingBound bound(surface);
+    const RelativeError error(surface, bound);
     const std::vector<double> first = seen(surface);
     const double largest = *std::ranges::max_element(first), size = diagonal(bounds(mesh));
-    EXPECT_GE(error.of(surface), 1);
-    EXPECT_LE(error.of(surface), 1.5);
+    EXPECT_GE(error.of(bound), 1);
+    EXPECT_LE(error.of(bound), 1.5);
     std::vector<double> errors(first.size());
-    error.of_faces(surface, errors);
+    error.of_faces(bound, errors);
     EXPECT_GE(*std::ranges::min_element(errors), 1);
-    const std::vector<float> radii(surface.face_radii().begin(), surface.face_radii().end());
+    const std::vector<float> radii(bound.face_radii().begin(), bound.face_radii().end());
     for (int frame = 0; frame < 10; ++frame) {
       std::vector<Vec3> positions = mesh.positions;
       for (Vec3& p : positions) {
@@ -55,11 +56,12 @@ TEST(RelativeError, IsNeverBelowWhatIsSeenAndNotFarAbove) {
         p = {(1 + 0.1 * frame) * p[0], c * p[1] - s * p[2], s * p[1] + c * p[2]};
       }
       surface.refit(positions);
+      bound.refit(surface);
       const std::vector<double> now = seen(surface);
       const double measured = *std::ranges::max_element(now) / largest;
-      EXPECT_GE(error.of(surface), measured);
-      slack.push_back(error.of(surface) / measured);
-      error.of_faces(surface, errors);
+      EXPECT_GE(error.of(bound), measured);
+      slack.push_back(error.of(bound) / measured);
+      error.of_faces(bound, errors);
       for (std::size_t f = 0; f < now.size(); ++f) ASSERT_GE(errors[f], now[f] / radii[f]) << f;
     }
   }
@@ -70,24 +72,32 @@ TEST(RelativeError, IsNeverBelowWhatIsSeenAndNotFarAbove) {
 TEST(RelativeError, OfAPlaneThatGrowsIsItsFactor) {
   Mesh mesh = test::load("cube.off");
   Surface surface(mesh, {.resolution = 128});
-  const RelativeError error(surface);
-  EXPECT_NEAR(error.of(surface), 1, 0.05);
+  SamplingBound bound(surface);
+  const RelativeError error(surface, bound);
+  EXPECT_NEAR(error.of(bound), 1, 0.05);
   for (Vec3& p : mesh.positions) p = 3.0 * p;
   surface.refit(mesh.positions);
-  EXPECT_NEAR(error.of(surface), 3, 0.15);
+  bound.refit(surface);
+  EXPECT_NEAR(error.of(bound), 3, 0.15);
   std::vector<double> errors(mesh.triangles.size());
-  error.of_faces(surface, errors);
+  error.of_faces(bound, errors);
   for (const double e : errors) EXPECT_NEAR(e, 3, 0.15);
 }
 
 TEST(RelativeError, IsOfOneSurface) {
-  const RelativeError error(Surface(test::load("cube.off"), {.resolution = 64}));
-  EXPECT_THROW((void)error.of(Surface(test::load("pig.off"), {.resolution = 64})), Error);
+  const Surface cube(test::load("cube.off"), {.resolution = 64}),
+      pig(test::load("pig.off"), {.resolution = 64});
+  SamplingBound bound(cube);
+  const RelativeError error(cube, bound);
+  EXPECT_THROW((void)error.of(SamplingBound(pig)), Error);
+  const double before = bound.value();
+  EXPECT_THROW(bound.refit(pig), Error);
+  EXPECT_EQ(bound.value(), before);
 }
 
 /// Infinite where the atlas is too small for its charts.
 double bound_or_none(const Mesh& mesh, const AtlasOptions& options) try {
-  return Surface(mesh, options).sampling_bound();
+  return SamplingBound(Surface(mesh, options)).value();
 } catch (const Error&) {
   return std::numeric_limits<double>::infinity();
 }

@@ -1,18 +1,19 @@
 // The radii of samples and faces against random points of surfaces that bend, twist, shear, stretch and
 // crumple.
 #include <gtest/gtest.h>
-#include <sdm/surface.h>
+#include <sdm/sampling_bound.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <random>
 
 #include "atlas/meshes.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "surface/sample_blocks.h"
-#include "surface/sampling_bound/coverage.h"
+#include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/sample_tree.h"
 
 namespace sdm {
@@ -74,9 +75,9 @@ std::vector<FacePoint> points_of_faces(const Mesh& mesh, std::size_t count) {
   return points;
 }
 
-double to_nearest(const Surface& surface, const Vec3& p) {
+double to_nearest(std::span<const Vec3> samples, const Vec3& p) {
   double squared = std::numeric_limits<double>::infinity();
-  for (const Vec3& s : surface.sample_points()) squared = std::min(squared, squared_norm(s - p));
+  for (const Vec3& s : samples) squared = std::min(squared, squared_norm(s - p));
   return std::sqrt(squared);
 }
 
@@ -86,85 +87,88 @@ struct Ball {
   [[nodiscard]] bool contains(const Vec3& p) const { return norm(p - centre) <= radius; }
 };
 
-/// The balls of samples, and around those of each run of samples.
+/// The balls of samples, and around those of each block of samples.
 class SampleBalls {
  public:
-  explicit SampleBalls(const Surface& surface) : surface_(surface) {
-    for (std::size_t r = 0; r < surface::run_count(surface.sample_texels().size()); ++r) {
-      const surface::SampleBlock run(r, surface.sample_texels().size());
-      Ball& around = runs_.emplace_back(surface.sample_points()[run.first], 0);
-      for (std::size_t i = run.first; i < run.end; ++i)
+  SampleBalls(std::span<const Vec3> points, std::span<const float> radii) : points_(points), radii_(radii) {
+    for (std::size_t b = 0; b < surface::block_count(points.size()); ++b) {
+      const surface::SampleBlock block(b, points.size());
+      Ball& around = blocks_.emplace_back(points[block.first], 0);
+      for (std::size_t i = block.first; i < block.end; ++i)
         around.radius = std::max(around.radius, norm(ball(i).centre - around.centre) + ball(i).radius);
       around.radius *= 1 + 1e-9;
     }
   }
 
   [[nodiscard]] bool some_contains(const Vec3& p) const {
-    for (std::size_t r = 0; r < runs_.size(); ++r) {
-      if (!runs_[r].contains(p)) continue;
-      const surface::SampleBlock run(r, surface_.sample_texels().size());
-      for (std::size_t i = run.first; i < run.end; ++i)
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      if (!blocks_[b].contains(p)) continue;
+      const surface::SampleBlock block(b, points_.size());
+      for (std::size_t i = block.first; i < block.end; ++i)
         if (ball(i).contains(p)) return true;
     }
     return false;
   }
 
  private:
-  [[nodiscard]] Ball ball(std::size_t i) const {
-    return {surface_.sample_points()[i], surface_.sample_radii()[i]};
-  }
+  [[nodiscard]] Ball ball(std::size_t i) const { return {points_[i], radii_[i]}; }
 
-  const Surface& surface_;
-  std::vector<Ball> runs_;
+  std::span<const Vec3> points_;
+  std::span<const float> radii_;
+  std::vector<Ball> blocks_;
 };
 
-/// The balls that Coverage tells of all ranges of so many runs, around the sample in their middle.
-std::vector<Ball> spreads(const Surface& surface, std::size_t runs) {
-  const std::size_t samples = surface.sample_texels().size(), count = surface::run_count(samples);
+/// The balls of all ranges of so many blocks, around the sample in their middle.
+std::vector<Ball> block_balls(const Surface& surface, const surface::PieceAssignment& pieces,
+                              std::size_t blocks) {
+  const std::vector<Vec3> points = surface.sample_points();
+  const std::size_t count = surface::block_count(points.size());
   std::vector<Ball> balls;
-  for (std::size_t first = 0; first < count; first += runs) {
-    const surface::RunRange range{first, std::min(count, first + runs)};
-    const Vec3& p = surface.sample_points()[range.middle(samples)];
-    balls.push_back({p, runs == 1 ? surface::coverage_of(surface).spread(surface, first, p)
-                                  : surface::coverage_of(surface).face_spread(surface, range, p)});
+  for (std::size_t first = 0; first < count; first += blocks) {
+    const surface::BlockRange range{first, std::min(count, first + blocks)};
+    const Vec3& p = points[range.middle(points.size())];
+    balls.push_back({p, blocks == 1 ? pieces.radius_about(surface, first, p)
+                                    : pieces.face_radius_about(surface, range, p)});
   }
   return balls;
 }
 
 /// Fails unless all points have a sample within its radius, and within the radius of their face. The largest
 /// distance of a point from its nearest sample.
-double expect_covered(const Surface& surface) {
+double expect_covered(const Surface& surface, const SamplingBound& bound) {
   const std::vector<FacePoint> points = points_of_faces(surface.mesh(), 60000);
-  const surface::SampleTree tree(surface, surface.sampling_bound());
-  const SampleBalls balls(surface);
+  const surface::SampleTree tree(surface, bound.value());
+  const std::span<const Vec3> samples = tree.points();
+  const SampleBalls balls(samples, bound.sample_radii());
   std::vector<double> distances(points.size());
   std::vector<std::uint8_t> covered(points.size());
   parallel_for(points.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& p = points[i].point;
       const std::uint32_t nearest = tree.nearest(p);
-      distances[i] = norm(p - surface.sample_points()[nearest]);
-      covered[i] = distances[i] <= surface.face_radii()[points[i].face] &&
-                   (distances[i] <= surface.sample_radii()[nearest] || balls.some_contains(p));
+      distances[i] = norm(p - samples[nearest]);
+      covered[i] = distances[i] <= bound.face_radii()[points[i].face] &&
+                   (distances[i] <= bound.sample_radii()[nearest] || balls.some_contains(p));
     }
   });
-  EXPECT_TRUE(std::ranges::all_of(surface.sample_points(), finite));
+  EXPECT_TRUE(std::ranges::all_of(samples, finite));
   EXPECT_EQ(std::ranges::count(covered, 0), 0) << "of " << covered.size();
-  EXPECT_DOUBLE_EQ(distances[points.size() / 2], to_nearest(surface, points[points.size() / 2].point));
-  EXPECT_EQ(surface.sampling_bound(), *std::ranges::max_element(surface.face_radii()));
-  EXPECT_EQ(surface.sampling_bound(), *std::ranges::max_element(surface.sample_radii()));
+  EXPECT_DOUBLE_EQ(distances[points.size() / 2], to_nearest(samples, points[points.size() / 2].point));
+  EXPECT_EQ(bound.value(), *std::ranges::max_element(bound.face_radii()));
+  EXPECT_EQ(bound.value(), *std::ranges::max_element(bound.sample_radii()));
   return *std::ranges::max_element(distances);
 }
 
 /// The bounds over what is seen, for all motions.
 std::vector<double> expect_covered_in_motion(const Mesh& mesh, const AtlasOptions& options) {
   Surface surface(mesh, options);
-  (void)surface.sampling_bound();  // pieces are assigned now
+  SamplingBound bound(surface);  // pieces are assigned now
   std::vector<double> ratios;
   for (std::size_t i = 0; i < kMotions.size(); ++i) {
     SCOPED_TRACE(i);
     surface.refit(moved(mesh, kMotions[i]));
-    ratios.push_back(surface.sampling_bound() / expect_covered(surface));
+    bound.refit(surface);
+    ratios.push_back(bound.value() / expect_covered(surface, bound));
   }
   return ratios;
 }
@@ -174,7 +178,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-TEST(Coverage, HoldsAndIsTightInMotion) {
+TEST(PieceAssignment, HoldsAndIsTightInMotion) {
   std::vector<double> ratios;
   for (const char* name : {"head.off", "bunny.obj", "knot2.off", "elephant-with-holes.off"})
     for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
@@ -189,28 +193,30 @@ TEST(Coverage, HoldsAndIsTightInMotion) {
   EXPECT_LE(median(ratios), 1.5);
 }
 
-// The ball of each range of runs has its samples, all balls together have all points, and none is needlessly
-// large.
-TEST(Coverage, SpreadsHoldInMotion) {
+// The ball of each range of blocks has its samples, all balls together have all points, and none is
+// needlessly large.
+TEST(PieceAssignment, BallsOfBlocksHoldInMotion) {
   for (const char* name : {"head.off", "elephant-with-holes.off", "pig.off", "degtri_sliding.off"}) {
     SCOPED_TRACE(name);
     const Mesh mesh = test::load(name);
     Surface surface(mesh, {.resolution = 256});
+    std::optional<surface::PieceAssignment> pieces;
     for (const Motion& motion : kMotions) {
       surface.refit(moved(mesh, motion));
-      const std::span<const Vec3> samples = surface.sample_points();
-      for (const std::size_t runs : {1, 8}) {
-        const std::vector<Ball> balls = spreads(surface, runs);
+      if (!pieces) pieces.emplace(surface);
+      const std::vector<Vec3> samples = surface.sample_points();
+      for (const std::size_t blocks : {1, 8}) {
+        const std::vector<Ball> balls = block_balls(surface, *pieces, blocks);
         std::vector<double> slack;
         for (std::size_t b = 0; b < balls.size(); ++b) {
           double farthest = 0;
-          for (std::size_t i = b * runs * surface::kRunLength;
-               i < std::min(samples.size(), (b + 1) * runs * surface::kRunLength); ++i)
+          for (std::size_t i = b * blocks * surface::kBlockSize;
+               i < std::min(samples.size(), (b + 1) * blocks * surface::kBlockSize); ++i)
             farthest = std::max(farthest, norm(samples[i] - balls[b].centre));
           ASSERT_LE(farthest, balls[b].radius);
           slack.push_back(balls[b].radius / farthest);
         }
-        EXPECT_LE(median(slack), runs == 1 ? 2 : 5);  // faces may be larger than eight runs
+        EXPECT_LE(median(slack), blocks == 1 ? 2 : 5);  // faces may be larger than eight blocks
         for (const FacePoint& p : points_of_faces(surface.mesh(), 1))
           ASSERT_TRUE(std::ranges::any_of(balls, [&](const Ball& ball) { return ball.contains(p.point); }));
       }
@@ -219,18 +225,18 @@ TEST(Coverage, SpreadsHoldInMotion) {
 }
 
 // Every chart is smaller than a texel: a sample's square is far larger than what its face has of it.
-TEST(Coverage, ChartsSmallerThanTexels) {
+TEST(PieceAssignment, ChartsSmallerThanTexels) {
   const std::vector<double> ratios =
       expect_covered_in_motion(test::load("pig.off"), {.kind = AtlasKind::triangles, .resolution = 256});
   EXPECT_LE(median(ratios), 1.5);
 }
 
 // Hardly a face owns a texel: what it has of others' squares moves on its own.
-TEST(Coverage, FacesSmallerThanTexels) {
+TEST(PieceAssignment, FacesSmallerThanTexels) {
   EXPECT_LE(median(expect_covered_in_motion(test::load("armadillo.off"), {.resolution = 256})), 1.7);
 }
 
-TEST(Coverage, SliversFacesWithoutAreaAndSoups) {
+TEST(PieceAssignment, SliversFacesWithoutAreaAndSoups) {
   for (const char* name : {"cylinder_locally_refined.off", "degtri_sliding.off", "boeing.off"}) {
     SCOPED_TRACE(name);
     (void)expect_covered_in_motion(test::load(name), {.resolution = 256});
@@ -240,33 +246,36 @@ TEST(Coverage, SliversFacesWithoutAreaAndSoups) {
 }
 
 // A face without area opens: all of it is covered still.
-TEST(Coverage, FacesThatGainAnArea) {
+TEST(PieceAssignment, FacesThatGainAnArea) {
   Mesh mesh{.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 0, 0}},
             .triangles = {{0, 1, 2}, {0, 3, 1}},
             .corner_uvs = {}};
   Surface surface(mesh, {.resolution = 64});
   ASSERT_EQ(surface.face_charts()[1], kNone);
-  expect_covered(surface);
-  const double before = surface.face_radii()[1];
+  SamplingBound bound(surface);
+  expect_covered(surface, bound);
+  const double before = bound.face_radii()[1];
   mesh.positions[3] = {1, -1, 2};
   surface.refit(mesh.positions);
-  expect_covered(surface);
-  EXPECT_GT(surface.face_radii()[1], 1.5);
+  bound.refit(surface);
+  expect_covered(surface, bound);
+  EXPECT_GT(bound.face_radii()[1], 1.5);
   EXPECT_LT(before, 0.1);
 }
 
-TEST(Coverage, IsTheSameForAllThreadsAndAfterAWayBack) {
+TEST(PieceAssignment, IsTheSameForAllThreadsAndAfterAWayBack) {
   const Mesh mesh = test::load("bunny.obj");
   const std::vector<Vec3> bent = moved(mesh, bend), crumpled = moved(mesh, crumple);
   const auto radii = [&](unsigned threads) {
     const ThreadLimit limit(threads);
     Surface surface(mesh, {.resolution = 512});
-    (void)surface.sampling_bound();
+    SamplingBound bound(surface);
     std::vector<std::vector<float>> result;
     for (const auto& positions : {bent, crumpled, bent}) {
       surface.refit(positions);
-      result.emplace_back(surface.sample_radii().begin(), surface.sample_radii().end());
-      result.back().insert(result.back().end(), surface.face_radii().begin(), surface.face_radii().end());
+      bound.refit(surface);
+      result.emplace_back(bound.sample_radii().begin(), bound.sample_radii().end());
+      result.back().insert(result.back().end(), bound.face_radii().begin(), bound.face_radii().end());
     }
     return result;
   };

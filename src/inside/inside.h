@@ -1,4 +1,6 @@
-// Inside or outside of O2.
+// Inside or outside of a mesh. All such questions go through this header: on which side queries lie whose
+// closest points are known (InsideTest), and whether a moved solid contains a point, exactly (contains).
+// Which meshes have an inside is up to SitesData::is_solid.
 #pragma once
 
 #include <sdm/sign.h>
@@ -6,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "inside/solid.h"
 #include "inside/winding_number.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
