@@ -30,9 +30,9 @@ struct ExclusionRule {
 /// conservative: it excludes more where the surface folds back within L at rest.
 class Exclusion {
  public:
-  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and when there is
-  /// no memory for all neighbourhoods; Cancelled. Cost: the sum of their sizes, with L that many distances of
-  /// triangles; all cores.
+  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and if there is
+  /// not enough memory for all neighbourhoods; Cancelled. Cost: the sum of their sizes, with L that many
+  /// distances of triangles; all cores.
   explicit Exclusion(const Mesh& rest, const ExclusionRule& rule = {}, const Progress& progress = {});
 
   [[nodiscard]] std::size_t faces() const { return offsets_.size() - 1; }

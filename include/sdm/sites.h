@@ -30,7 +30,8 @@ struct ClosestPoint {
 /// with repeated corners, are ignored; other faces without area contribute their edges and vertices.
 class Sites {
  public:
-  /// Throws sdm::Error when the mesh is unusable (see validate). Cost: O(n log n), all cores.
+  /// Throws sdm::Error when the mesh is unusable (see validate) or there is not enough memory. Cost:
+  /// O(n log n), all cores.
   explicit Sites(Mesh mesh);
   ~Sites();
   Sites(Sites&&) noexcept;

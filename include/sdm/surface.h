@@ -23,7 +23,7 @@ class SurfaceData;
 class Surface {
  public:
   /// Lays out the atlas. Throws sdm::Error when the mesh is unusable (see validate), when the resolution is
-  /// out of range or too small for the charts, when there is no memory for it, and for AtlasKind::uv when
+  /// out of range or too small for the charts, if there is not enough memory, and for AtlasKind::uv when
   /// coordinates are missing or faces overlap (the message names two of them). Faces without area belong to
   /// no chart. Cost: O(n log n) for charts, then packing.
   explicit Surface(Mesh mesh, const AtlasOptions& options = {});
