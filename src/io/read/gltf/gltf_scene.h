@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "io/read/gltf_document.h"
-#include "io/read/polygon_mesh.h"
+#include "io/read/gltf/gltf_document.h"
+#include "io/read/polygons/polygon_mesh.h"
 
 namespace sdm::io {
 

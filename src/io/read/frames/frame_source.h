@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/read/polygon_mesh.h"
+#include "io/read/polygons/polygon_mesh.h"
 
 namespace sdm::io {
 

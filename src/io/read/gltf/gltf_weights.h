@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "io/read/gltf_document.h"
+#include "io/read/gltf/gltf_document.h"
 
 namespace sdm::io {
 

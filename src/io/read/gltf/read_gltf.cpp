@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "io/read/formats.h"
-#include "io/read/gltf_scene.h"
+#include "io/read/gltf/gltf_scene.h"
 
 namespace sdm::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/gl/egl_displays.h"
+#include "engine/gl/device/egl_displays.h"
 
 #include <dlfcn.h>
 #include <sdm/error.h>

@@ -1,4 +1,4 @@
-#include "io/read/numbered_files.h"
+#include "io/read/frames/numbered_files.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>

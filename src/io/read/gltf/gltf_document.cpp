@@ -1,4 +1,4 @@
-#include "io/read/gltf_document.h"
+#include "io/read/gltf/gltf_document.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>

@@ -1,4 +1,4 @@
-#include "engine/gl/context.h"
+#include "engine/gl/device/context.h"
 
 #include <sdm/error.h>
 
@@ -8,7 +8,7 @@
 #include <charconv>
 #include <string>
 
-#include "engine/gl/egl_displays.h"
+#include "engine/gl/device/egl_displays.h"
 
 namespace sdm {
 namespace gl {

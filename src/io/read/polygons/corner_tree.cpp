@@ -1,4 +1,4 @@
-#include "io/read/corner_tree.h"
+#include "io/read/polygons/corner_tree.h"
 
 #include <algorithm>
 #include <bit>

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/read/corner_tree.h"
-#include "io/read/tournament.h"
+#include "io/read/polygons/corner_tree.h"
+#include "io/read/polygons/tournament.h"
 
 namespace sdm::io {
 

@@ -1,4 +1,4 @@
-#include "io/read/gltf_weights.h"
+#include "io/read/gltf/gltf_weights.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>

@@ -1,4 +1,4 @@
-#include "engine/gl/program.h"
+#include "engine/gl/device/program.h"
 
 #include <sdm/error.h>
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/memory.h"
-#include "io/read/frame_source.h"
-#include "io/read/gltf_scene.h"
-#include "io/read/gltf_weights.h"
+#include "io/read/frames/frame_source.h"
+#include "io/read/gltf/gltf_scene.h"
+#include "io/read/gltf/gltf_weights.h"
 
 namespace sdm::io {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "io/read/file_bytes.h"
-#include "io/read/frame_source.h"
-#include "io/read/numbered_files.h"
+#include "io/read/frames/frame_source.h"
+#include "io/read/frames/numbered_files.h"
 #include "io/read/read_polygons.h"
 
 namespace sdm::io {

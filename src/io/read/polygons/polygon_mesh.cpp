@@ -1,4 +1,4 @@
-#include "io/read/polygon_mesh.h"
+#include "io/read/polygons/polygon_mesh.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/vec.h"
-#include "io/read/triangulate.h"
+#include "io/read/polygons/triangulate.h"
 
 namespace sdm::io {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/vec.h"
 #include "io/read/file_bytes.h"
-#include "io/read/frame_source.h"
+#include "io/read/frames/frame_source.h"
 #include "io/read/read_polygons.h"
 #include "mesh/validate.h"
 

@@ -1,4 +1,4 @@
-#include "io/read/gltf_scene.h"
+#include "io/read/gltf/gltf_scene.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
