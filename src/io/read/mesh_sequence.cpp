@@ -91,7 +91,7 @@ void MeshSequence::Impl::read(std::size_t frame) {
                   " separates from another one that coincides with it in the first frame; such vertices must "
                   "stay together");
   }
-  validate_positions(positions);
+  mesh::validate_positions(positions);
 }
 
 MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& options)
