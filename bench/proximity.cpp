@@ -6,7 +6,6 @@
 // Exits with 1 if a result is wrong.
 #include <sdm/error.h>
 #include <sdm/threads.h>
-#include <sdm/transform.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// Checks steps for sdm::parse_transform; returns the fault, or an empty string.
+/// Checks steps for sdm::scenes::parse_placement; returns the fault, or an empty string.
 [[nodiscard]] std::string check_transform(const std::string& text);
 
 /// A finite number that is accepted.

@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include "common_options.h"
+#include "format.h"
 #include "output_folder.h"
 #include "progress_line.h"
 
@@ -9,7 +10,6 @@
 #include <sdm/sequence.h>
 #include <sdm/threads.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -61,9 +61,7 @@ class Recorder {
   void add(const sdm::Mesh& mesh, int frame) {
     if (writer_) writer_->add(mesh.positions);
     if (!numbered_) return;
-    char name[32];
-    std::snprintf(name, sizeof name, "%05d.ply", frame);
-    sdm::write_ply(folder_ / name, mesh);
+    sdm::write_ply(folder_ / fmt::format("{:05}.ply", frame), mesh);
   }
   void commit() {
     if (writer_) writer_->commit();
@@ -101,7 +99,7 @@ void run(const SceneCommand& command) {
   ProgressLine progress(command.quiet);
   const sdm::Progress report = progress.callback();
   nlohmann::ordered_json description;
-  try {
+  out.fill([&] {
     progress.step("meshes");
     Scene scene(kKinds.at(command.kind), {.mesh = command.mesh});
     std::vector<Recorder> recorders;
@@ -115,12 +113,7 @@ void run(const SceneCommand& command) {
     for (Recorder& recorder : recorders) recorder.commit();
     description = describe(command, scene, recorders);
     write_text(out.staging() / "scene.json", description.dump(2) + '\n');
-    out.commit();
-  } catch (const sdm::Cancelled&) {
-    throw;
-  } catch (const sdm::Error& error) {
-    throw sdm::Error(out.publicly(error.what()));
-  }
+  });
   if (command.quiet) return;
   std::cout << command.frames << " frames of " << description["time_step"].get<double>() << " s in "
             << command.out.string() << "/, described by scene.json:\n";
@@ -147,7 +140,7 @@ void add_scene_command(CLI::App& app) {
       ->capture_default_str();
   scene
       ->add_option("--format", command->format,
-                   "MultiBodyQuery that move: NAME.ply and NAME.npy, or NAME/00000.ply and so on")
+                   "Moving bodies: NAME.ply and NAME.npy, or NAME/00000.ply and so on")
       ->check(CLI::IsMember({"npy", "ply"}).description(""))
       ->type_name("npy|ply")
       ->capture_default_str();
