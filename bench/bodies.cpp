@@ -1,39 +1,31 @@
-// Crowds of deforming bodies: all near pairs in each frame, against FCL's dynamic tree of boxes with
-// distances of the same pairs, side by side in one run; separations are compared in every frame.
+// Crowds of deforming bodies: all near pairs in each frame, against FCL's dynamic AABB tree with distances of
+// the same pairs. A repetition is a frame, in which separations are compared.
 //
-//   build/dev/bench/bodies [--bodies N...] [--frames N] [--threads N] [--json FILE]
+//   build/dev/bench/bodies [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 //
 // A frame of ours is an update of all bodies and pairs(): separation with bounds, collision and penetration
-// depth, from samples or exactly. A frame of FCL's is a refit of all and the separations, on one thread.
-// Exits with 1 if a result is wrong.
+// depth, from samples or exactly. A frame of FCL's is a refit of all bodies and the separations; FCL uses one
+// thread.
 #include <sdm/multi_body_query.h>
-#include <sdm/error.h>
 #include <sdm/threads.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
-#include <exception>
-#include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numbers>
-#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "core/vec.h"
 #include "fcl_crowd.h"
-#include "measure.h"
+#include "harness.h"
+#include "timing.h"
 
 namespace sdm::bench {
 namespace {
-
-constexpr double kAny = std::numeric_limits<double>::infinity();
 
 /// A sphere of diameter 1, of 500 triangles.
 Mesh ball() {
@@ -61,8 +53,8 @@ Mesh ball() {
   return mesh;
 }
 
-/// Balls with waves on them, which drift through a cube that holds one body for each 5 units of volume, and
-/// are reflected by its walls.
+/// Balls with travelling waves on their surfaces. They drift through a cube of 5 units of volume per body,
+/// and are reflected at its walls.
 class Crowd {
  public:
   explicit Crowd(std::size_t size) : side_(std::cbrt(5.0 * static_cast<double>(size))), positions_(size) {
@@ -105,17 +97,7 @@ class Crowd {
   std::vector<std::vector<Vec3>> positions_;
 };
 
-struct Outcome {
-  std::size_t wrong = 0;                                 ///< frames
-  std::size_t candidates = 0, pairs = 0, colliding = 0;  ///< of all frames
-  std::vector<double> sampled, exact, fcl;               ///< milliseconds of each frame
-
-  [[nodiscard]] double per_frame(std::size_t count) const {
-    return static_cast<double>(count) / static_cast<double>(exact.size());
-  }
-};
-
-// FCL moves through other roundings, and says -1 of surfaces that intersect.
+// FCL rounds moved vertices differently, and returns -1 for surfaces that intersect.
 bool agree(std::span<const PairProximity> ours, std::span<const FclCrowd::Pair> fcl, double max_distance) {
   constexpr double kTolerance = 1e-6;
   auto pair = ours.begin();
@@ -129,116 +111,78 @@ bool agree(std::span<const PairProximity> ours, std::span<const FclCrowd::Pair> 
   return pair == ours.end();
 }
 
-Outcome measure(std::size_t size, double max_distance, int frames) {
+Outcome measure(const Trial& trial, std::size_t size, double max_distance) {
+  const ThreadLimit limit(trial.threads);
   Crowd crowd(size);
   const std::vector<Mesh> meshes = crowd.meshes();
   MultiBodyQuery sampled(meshes, {.max_distance = max_distance});
   MultiBodyQuery exact(meshes, {.exact = true, .max_distance = max_distance});
   FclCrowd fcl(meshes);
-  Outcome outcome;
+  std::vector<double> sampled_ms, exact_ms, fcl_ms;
+  std::size_t candidates = 0, pairs = 0, colliding = 0;
+  bool verified = true;
   std::vector<std::span<const Vec3>> positions(size);
   constexpr int kWarmUp = 3;
-  for (int frame = -kWarmUp; frame < frames; ++frame) {
+  for (int frame = -kWarmUp; frame < trial.repetitions; ++frame) {
     const std::span<const std::vector<Vec3>> moved = crowd.at(frame);
     std::ranges::copy(moved, positions.begin());
     Stopwatch watch;
-    sampled.update(positions);
+    sampled.refit(positions);
     (void)sampled.pairs();
-    const double sampled_ms = watch.lap();
-    exact.update(positions);
+    const double sampled_time = watch.lap();
+    exact.refit(positions);
     (void)exact.pairs();
-    const double exact_ms = watch.lap();
-    fcl.update(moved);
+    const double exact_time = watch.lap();
+    fcl.refit(moved);
     const auto theirs = fcl.distances(max_distance);
-    const double fcl_ms = watch.lap();
+    const double fcl_time = watch.lap();
     if (frame < 0) continue;
-    outcome.sampled.push_back(sampled_ms);
-    outcome.exact.push_back(exact_ms);
-    outcome.fcl.push_back(fcl_ms);
-    outcome.wrong += !agree(exact.pairs(), theirs, max_distance);
-    outcome.candidates += exact.candidate_pairs();
-    outcome.pairs += exact.pairs().size();
-    for (const PairProximity& pair : exact.pairs()) outcome.colliding += pair.colliding.value;
+    sampled_ms.push_back(sampled_time);
+    exact_ms.push_back(exact_time);
+    fcl_ms.push_back(fcl_time);
+    verified &= agree(exact.pairs(), theirs, max_distance);
+    candidates += exact.candidate_pairs();
+    pairs += exact.pairs().size();
+    for (const PairProximity& pair : exact.pairs()) colliding += pair.colliding.value;
   }
-  return outcome;
+
+  const auto per_frame = [&](std::size_t count) { return static_cast<double>(count) / trial.repetitions; };
+  const auto row = [&](const char* name, const std::vector<double>& times) {
+    return Row{name,
+               {{"mean_ms", mean(times)},
+                {"p99_ms", quantile(times, 0.99)},
+                {"fcl_over_this", mean(fcl_ms) / mean(times)}}};
+  };
+  return {.verified = verified,
+          .rows = {row("sampled", sampled_ms), row("exact", exact_ms), row("fcl", fcl_ms)},
+          .counts = {{"candidate_pairs", per_frame(candidates)},
+                     {"pairs", per_frame(pairs)},
+                     {"colliding", per_frame(colliding)}}};
 }
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-void print_row(std::size_t size, double max_distance, const Outcome& o) {
-  std::printf("| %zu | %g | %.1f | %.1f | %.1f |", size, max_distance, o.per_frame(o.candidates),
-              o.per_frame(o.pairs), o.per_frame(o.colliding));
-  for (const std::vector<double>* times : {&o.sampled, &o.exact, &o.fcl})
-    std::printf(" %.2f | %.2f |", mean(*times), quantile(*times, 0.99));
-  std::printf(" %.1f |\n", mean(o.fcl) / mean(o.exact));
-  std::fflush(stdout);
-}
-
-nlohmann::ordered_json to_json(const std::vector<double>& times) {
-  return {{"mean_ms", mean(times)}, {"p99_ms", quantile(times, 0.99)}};
-}
-
-nlohmann::ordered_json to_json(std::size_t size, double max_distance, int frames, const Outcome& o) {
-  return {{"bodies", size},
-          {"max_distance", max_distance},  // null: all pairs
-          {"frames", frames},
-          {"threads", thread_count()},
-          {"verified", o.wrong == 0},
-          {"candidate_pairs", o.per_frame(o.candidates)},
-          {"pairs", o.per_frame(o.pairs)},
-          {"colliding", o.per_frame(o.colliding)},
-          {"sampled", to_json(o.sampled)},
-          {"exact", to_json(o.exact)},
-          {"fcl", to_json(o.fcl)}};
-}
-
-int run(int argc, char** argv) {
-  std::vector<std::size_t> sizes{5, 10, 20, 40};
-  int frames = 100;
-  unsigned threads = 0;
-  std::string json_file;
-  CLI::App app{"Frames of many bodies of 500 triangles, near pairs and all pairs, against FCL on one thread"};
-  app.add_option("--bodies", sizes, "How many; several sizes")->check(CLI::Range(1, 1000));
-  app.add_option("--frames", frames, "Of each size")->check(CLI::Range(2, 100000));
-  app.add_option("--threads", threads, "That ours may use, 0 for all cores");
-  app.add_option("--json", json_file, "Write the results to this file");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  std::ofstream file;
-  if (!json_file.empty()) file.open(json_file);
-  if (!file) throw Error("cannot write " + json_file);
-  const ThreadLimit limit(threads);
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  bool good = true;
-  std::printf(
-      "Milliseconds a frame, mean and 99th percentile; ours on %u threads.\n\n"
-      "| bodies | max distance | candidates | pairs | colliding | sampled | p99 | exact | p99 | FCL | p99 | "
-      "FCL / exact |\n|%s\n",
-      thread_count(), " ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
-  for (const double max_distance : {0.5, kAny})
-    for (const std::size_t size : sizes) {
-      const Outcome outcome = measure(size, max_distance, frames);
-      print_row(size, max_distance, outcome);
-      if (outcome.wrong > 0)
-        std::fprintf(stderr, "%zu bodies: in %zu of %d frames FCL disagrees\n", size, outcome.wrong, frames);
-      json.push_back(to_json(size, max_distance, frames, outcome));
-      good = good && outcome.wrong == 0;
+std::vector<Case> cases() {
+  std::vector<Case> result;
+  for (const bool near : {true, false})
+    for (const std::size_t size : {5u, 10u, 20u, 40u}) {
+      const double max_distance = near ? 0.5 : std::numeric_limits<double>::infinity();
+      result.push_back({.name = (near ? "near-" : "all-") + std::to_string(size),
+                        .description = std::to_string(size) + " bodies of 500 triangles, " +
+                                       (near ? "pairs nearer than half a body's width" : "all pairs"),
+                        .run = [=](const Trial& trial) { return measure(trial, size, max_distance); },
+                        .repetitions = 100,
+                        .threads = 0});
     }
-  if (!json_file.empty() && !(file << json.dump(2) << std::endl)) throw Error("cannot write " + json_file);
-  return good ? 0 : 1;
+  return result;
 }
 
 }  // namespace
 }  // namespace sdm::bench
 
-int main(int argc, char** argv) try {
-  return sdm::bench::run(argc, argv);
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "bodies: %s\n", error.what());
-  return 1;
+int main(int argc, char** argv) {
+  using namespace sdm::bench;
+  return run_program(argc, argv,
+                     {.name = "bodies",
+                      .description = "Proximity of many deforming bodies against FCL on one thread",
+                      .repetition = "frames",
+                      .cases = cases()});
 }

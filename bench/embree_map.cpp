@@ -62,8 +62,8 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   texel.vector = vector;
   texel.distance = distance;
   texel.face = arguments->primID;
-  arguments->query->radius = distance;  // and tell Embree that it shrank
-  return true;
+  arguments->query->radius = distance;
+  return true;  // the radius has changed
 }
 
 }  // namespace

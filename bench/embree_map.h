@@ -1,4 +1,4 @@
-// The peer: one closest-point query of Embree's a texel.
+// Distance maps by Embree: one closest-point query per texel.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -11,7 +11,7 @@
 
 namespace sdm::bench {
 
-/// Input and output of Embree, in single precision.
+/// A query and its result, in single precision as all of Embree.
 struct EmbreeTexel {
   Vec3f point{};
   Vec3f vector{};
@@ -19,12 +19,12 @@ struct EmbreeTexel {
   unsigned face = kNone;
 };
 
-/// A mesh in a scene of Embree's, built at its highest quality.
+/// A mesh in an Embree scene, built at the highest quality.
 class EmbreeScene {
  public:
   explicit EmbreeScene(const Mesh& mesh);
 
-  /// Fills in vector, distance and face for every point, on as many threads as the library uses.
+  /// Sets vector, distance and face for every point, on as many threads as the library uses.
   void closest(std::span<EmbreeTexel> texels) const;
 
  private:

@@ -1,4 +1,4 @@
-// Embree's devices and scenes, and meshes for them.
+// Handles of Embree's devices and scenes, and meshes in them.
 #pragma once
 
 #include <embree3/rtcore.h>

@@ -22,15 +22,15 @@ struct Body {
   std::unique_ptr<Object> object;
 };
 
-struct Question {
+struct PairQuery {
   double max_distance;
   std::vector<FclCrowd::Pair>& pairs;
 };
 
-// FCL passes on pairs of boxes nearer than `reach`, which a search for the nearest pair would lower.
+// Called for pairs of boxes nearer than `reach`, which a search for the nearest pair would lower.
 bool measure(Object* a, Object* b, void* data, double& reach) {
-  auto& question = *static_cast<Question*>(data);
-  reach = question.max_distance;
+  auto& query = *static_cast<PairQuery*>(data);
+  reach = query.max_distance;
   if (a->getAABB().distance(b->getAABB()) > reach) return false;
   fcl::DistanceResultd result;
   fcl::distance(a, b, fcl::DistanceRequestd(true), result);
@@ -38,7 +38,7 @@ bool measure(Object* a, Object* b, void* data, double& reach) {
     return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(object->getUserData()));
   };
   const std::uint32_t i = number(a), j = number(b);
-  question.pairs.push_back({std::min(i, j), std::max(i, j), result.min_distance});
+  query.pairs.push_back({std::min(i, j), std::max(i, j), result.min_distance});
   return false;
 }
 
@@ -74,8 +74,8 @@ void FclCrowd::update(std::span<const std::vector<Vec3>> positions) {
     set_vertices(impl_->vertices, positions[i]);
     body.model->beginReplaceModel();
     body.model->replaceSubModel(impl_->vertices);
-    constexpr bool kRefit = true,
-                   kBottomUp = false;  // from below boxes grow: tens of times slower to search
+    // Top down: bottom-up refits enlarge the boxes, which makes queries tens of times slower.
+    constexpr bool kRefit = true, kBottomUp = false;
     body.model->endReplaceModel(kRefit, kBottomUp);
     body.model->computeLocalAABB();
     body.object->computeAABB();
@@ -85,8 +85,8 @@ void FclCrowd::update(std::span<const std::vector<Vec3>> positions) {
 
 std::span<const FclCrowd::Pair> FclCrowd::distances(double max_distance) {
   impl_->pairs.clear();
-  Question question{max_distance, impl_->pairs};
-  impl_->manager.distance(&question, measure);
+  PairQuery query{max_distance, impl_->pairs};
+  impl_->manager.distance(&query, measure);
   std::ranges::sort(impl_->pairs, {}, [](const Pair& p) { return std::pair(p.first, p.second); });
   return impl_->pairs;
 }

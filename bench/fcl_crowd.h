@@ -1,4 +1,4 @@
-// Many deforming meshes in FCL's dynamic tree of boxes.
+// Many deforming meshes in FCL's dynamic AABB tree.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -10,7 +10,7 @@
 
 namespace sdm::bench {
 
-/// FCL's results for all near pairs of meshes, on one thread.
+/// Distances of all near pairs of meshes by FCL, on one thread.
 class FclCrowd {
  public:
   explicit FclCrowd(std::span<const Mesh> meshes);
@@ -23,8 +23,8 @@ class FclCrowd {
     std::uint32_t first, second;  ///< first < second
     double distance;              ///< of the surfaces, with closest points; -1 or 0 where they intersect
   };
-  /// Of all pairs whose boxes are nearer than max_distance, by first and then by second; valid until the next
-  /// call.
+  /// The distances of all pairs whose boxes are nearer than max_distance, sorted by first, then second. Valid
+  /// until the next call.
   [[nodiscard]] std::span<const Pair> distances(double max_distance);
 
  private:

@@ -1,4 +1,4 @@
-// Two meshes as FCL's bounding-volume hierarchies of oriented boxes and swept spheres.
+// Two meshes as FCL's bounding-volume hierarchies of oriented boxes and rectangle-swept spheres.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -9,15 +9,15 @@
 
 namespace sdm::bench {
 
-/// FCL's results for two meshes, the second moved by a rigid pose.
+/// Distance and collision of two meshes by FCL, the second moved by a rigid pose.
 class FclPair {
  public:
   FclPair(const Mesh& o1, const Mesh& o2);
   ~FclPair();
 
-  /// The distance of the surfaces, with closest points; -1 or 0 where they intersect.
+  /// The distance between the surfaces, computed with closest points; -1 or 0 where they intersect.
   [[nodiscard]] double distance(const Affine& pose) const;
-  /// Whether the surfaces intersect; the first contact ends the search.
+  /// Whether the surfaces intersect; the search ends at the first contact.
   [[nodiscard]] bool collide(const Affine& pose) const;
 
  private:

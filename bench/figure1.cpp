@@ -1,6 +1,6 @@
-// The paper's Figure 1: surface distance maps of a figure in a box, both ways, at 256² texels. Writes into
-// DIR the meshes, for each of them the three pictures of its map, and figure1.png, where the figure stands in
-// its box and both carry their distance, Voronoi diagram and direction.
+// The paper's Figure 1: surface distance maps of a figure in a box, in both directions, at 256² texels.
+// Writes the meshes and the three pictures of each map to DIR, and figure1.png, which shows the figure in its
+// box with the distances, Voronoi diagrams and directions of both.
 //
 //   build/release/bench/figure1 [--engine gl|cpu] [DIR]
 #include <sdm/error.h>
@@ -39,7 +39,7 @@ struct Side {
   Side(std::string its_name, const Mesh& mesh)
       : name(std::move(its_name)), surface(mesh, {.resolution = kResolution}), sites(mesh) {}
 
-  /// Unsigned, as in the paper. Returns the milliseconds, without those of opening the device.
+  /// Unsigned, as in the paper. Returns the time in milliseconds, without that of opening the device.
   double measure(const Sites& to, EngineKind engine) {
     const auto start = std::chrono::steady_clock::now();
     map = compute_map(surface, to, {.engine = engine, .sign = SignMethod::none});
@@ -57,13 +57,13 @@ void write_obj(const std::filesystem::path& path, const Mesh& mesh) {
   file.commit();
 }
 
-/// One scale for both maps, so that a colour says the same on the figure and on its box.
+/// One scale for both maps, so that a colour is the same distance on the figure and on its box.
 ColorScale common_scale(const Side& a, const Side& b) {
   const DistanceStatistics on_a = statistics(a.surface, a.map), on_b = statistics(b.surface, b.map);
   return {.map = Colormap::paper2006, .lo = std::min(on_a.min, on_b.min), .hi = std::max(on_a.max, on_b.max)};
 }
 
-/// The camera's samples averaged over the pixels of a panel, each the colour of its texel in its light.
+/// The pixels of a panel: averages of the camera's samples, each the colour of its texel times its light.
 Picture paint(std::span<const Seen> seen, const std::function<Rgb(const Seen&)>& color) {
   Picture panel{kPanelWidth, kPanelHeight, std::vector<Rgb>(kPanelWidth * kPanelHeight)};
   for (std::uint32_t y = 0; y < kPanelHeight; ++y)
@@ -126,7 +126,7 @@ void draw(const std::filesystem::path& path, const Side& figure, const Side& box
 
 int run(int argc, char** argv) {
   std::filesystem::path folder = "out/figure1";
-  CLI::App app{"The paper's Figure 1: surface distance maps of a figure in a box, both ways"};
+  CLI::App app{"The paper's Figure 1: surface distance maps of a figure in a box, in both directions"};
   std::string engine_name = "gl";
   app.add_option("--engine", engine_name, "The engine that computes the maps")
       ->check(CLI::IsMember({"gl", "cpu"}))
@@ -161,7 +161,7 @@ int run(int argc, char** argv) {
     write_direction_png(folder / side->name / "direction.png", side->surface, side->map);
   }
   draw(folder / "figure1.png", figure, box, scale);
-  std::printf("The picture is %s; the meshes, and the maps of each, lie beside it.\n",
+  std::printf("The picture is %s; the meshes and their maps are beside it.\n",
               (folder / "figure1.png").c_str());
   return 0;
 }

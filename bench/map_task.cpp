@@ -1,9 +1,12 @@
 #include "map_task.h"
 
+#include <sdm/threads.h>
+
 #include <cmath>
 #include <cstdio>
 
 #include "core/vec.h"
+#include "engine/cpu/point_group.h"
 
 namespace sdm::bench {
 
@@ -23,7 +26,7 @@ void MapTask::compute() {
   compute_map(*surface_, sites_, {.sign = SignMethod::none}, map_);
 }
 
-void MapTask::ask_embree() {
+void MapTask::compute_with_embree() {
   embree_->closest(queries_);
 }
 
@@ -36,7 +39,7 @@ void MapTask::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
 
 bool MapTask::agrees() {
   compute();
-  ask_embree();
+  compute_with_embree();
   Box box = bounds(surface_->mesh());
   extend(box, bounds(sites_.mesh()));
   const double tolerance = 1e-6 * diagonal(box);
@@ -48,9 +51,49 @@ bool MapTask::agrees() {
     worst = std::fmax(worst, error);
   }
   if (wrong > 0)
-    std::fprintf(stderr, "%zu of %zu texels disagree with Embree, by up to %g; allowed is %g\n", wrong,
+    std::fprintf(stderr, "%zu of %zu texels differ from Embree's, by up to %g; the tolerance is %g\n", wrong,
                  queries_.size(), worst, tolerance);
   return wrong == 0;
+}
+
+bool all_agree(const Tasks& tasks) {
+  bool good = true;
+  for (MapTask* task : tasks) good &= task->agrees();
+  return good;
+}
+
+Contender ours(const Tasks& tasks, unsigned threads) {
+  return {[tasks] {
+            for (MapTask* task : tasks) task->compute();
+          },
+          threads};
+}
+
+Contender embree(const Tasks& tasks, unsigned threads) {
+  return {[tasks] {
+            for (MapTask* task : tasks) task->compute_with_embree();
+          },
+          threads};
+}
+
+std::vector<Figure> work_figures(const Tasks& tasks) {
+  std::size_t texels = 0;
+  for (const MapTask* task : tasks) texels += task->texels();
+  std::vector<Figure> figures{{"texels", static_cast<double>(texels)}};
+  if constexpr (cpu::kCountWork) {
+    const ThreadLimit this_one(1);  // counts are the calling thread's
+    cpu::work_counts() = {};
+    for (MapTask* task : tasks) task->compute();
+    const cpu::WorkCounts& counts = cpu::work_counts();
+    const double packets = static_cast<double>(texels) / cpu::PointGroup::kPacket;
+    for (const auto& [key, count] :
+         {std::pair("groups_per_packet", counts.groups), std::pair("nodes_per_packet", counts.nodes),
+          std::pair("leaves_per_packet", counts.leaves), std::pair("gathered_per_packet", counts.gathered),
+          std::pair("list_blocks_per_packet", counts.list_blocks),
+          std::pair("evaluations_per_packet", counts.evaluations)})
+      figures.push_back({key, static_cast<double>(count) / packets});
+  }
+  return figures;
 }
 
 }  // namespace sdm::bench

@@ -1,4 +1,4 @@
-// A map computed by sdm and by Embree.
+// A map that both the cpu engine and Embree compute.
 #pragma once
 
 #include <sdm/map.h>
@@ -8,30 +8,28 @@
 #include <vector>
 
 #include "embree_map.h"
-#include "engine/cpu/descent.h"
+#include "engine/cpu/work_counts.h"
+#include "timing.h"
 
 namespace sdm::bench {
 
-/// The unsigned map of O1 to O2. Both fill in the same texels in the same order, each into memory that it has
-/// already.
+/// The unsigned map of O1 to O2. Both compute the same texels in the same order, each into memory that is
+/// already allocated.
 class MapTask {
  public:
   MapTask(std::shared_ptr<Surface> o1, const Mesh& o2);
 
   void compute();
-  void ask_embree();
+  void compute_with_embree();
 
-  /// Moves the vertices: ours are refitted; Embree is given the new texels, and its tree is built anew.
+  /// Moves the vertices: refits the surface and the sites, and rebuilds Embree's scene.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
-  /// Computes both maps and returns whether they agree at every texel to 1e-6 of the diagonal of both meshes'
-  /// box. Says on stderr where they do not.
+  /// Computes both maps. Returns whether they agree at every texel to 1e-6 of the diagonal of both meshes'
+  /// bounding box; prints to stderr how many texels do not.
   [[nodiscard]] bool agrees();
 
   [[nodiscard]] std::size_t texels() const { return queries_.size(); }
-  [[nodiscard]] cpu::DescentCounts work() const {
-    return cpu::count_work(internals(sites_), surface_->sample_points());
-  }
   [[nodiscard]] Surface& surface() { return *surface_; }
   [[nodiscard]] Sites& sites() { return sites_; }
 
@@ -44,5 +42,15 @@ class MapTask {
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<EmbreeTexel> queries_;
 };
+
+/// Maps that are measured together, one after another.
+using Tasks = std::vector<MapTask*>;
+
+[[nodiscard]] bool all_agree(const Tasks& tasks);
+[[nodiscard]] Contender ours(const Tasks& tasks, unsigned threads);
+[[nodiscard]] Contender embree(const Tasks& tasks, unsigned threads);
+
+/// "texels"; in builds that count the engine's work also its counts per packet of sixteen texels.
+[[nodiscard]] std::vector<Figure> work_figures(const Tasks& tasks);
 
 }  // namespace sdm::bench

@@ -32,7 +32,7 @@ std::vector<Affine> random_poses(const Sites& o1, const Sites& o2, std::size_t c
     const Stand stand = kStands[poses.size() % std::size(kStands)];
     double at = 2 * size;
     place(at);
-    // Closer by as much as is certainly free: to where the surfaces touch, from this side.
+    // Move closer by the separation, which cannot make the surfaces intersect, until they touch.
     for (int step = 0; step < 60 && stand != Stand::deep; ++step) {
       const double free = exact::find_closest(pair, 4 * size, workspace).distance;
       if (free < 1e-15 * size) break;

@@ -11,14 +11,15 @@ namespace sdm::bench {
 /// A rotation about the origin, all equally likely.
 [[nodiscard]] Affine random_rotation(std::mt19937& random);
 
-/// How two meshes may stand.
+/// Placements of two meshes.
 enum class Stand { far, near, touching, penetrating, deep };
 inline constexpr Stand kStands[] = {Stand::far, Stand::near, Stand::touching, Stand::penetrating,
                                     Stand::deep};
 
-/// Rigid poses of O2, turned at random and put on a random side of O1: half of both meshes' size away; a
-/// hundredth; as close as doubles allow; a twentieth inside from there; and centre on centre. The stands take
-/// turns.
+/// Rigid poses of O2, with a random rotation and on a random side of O1, which alternate between the stands.
+/// With s the mean diagonal of both bounding boxes: far is 0.5 s from touching, near 0.01 s, touching as
+/// close as doubles allow without intersecting, penetrating 0.05 s deeper than that, and deep centre on
+/// centre.
 [[nodiscard]] std::vector<Affine> random_poses(const Sites& o1, const Sites& o2, std::size_t count,
                                                std::mt19937& random);
 

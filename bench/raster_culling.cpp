@@ -1,61 +1,33 @@
-// The effect of culling in the gl engine (the paper's 4.2): prints a Markdown table of what is tested,
-// clipped and drawn a texel, and of the time, with and without the bounds on distance, for both ways of
-// clipping. Fails unless bounds change no bit of a map, all maps agree with the cpu engine, and their
-// counters obey the laws of <sdm/gl.h>.
+// The effect of culling by bounds on distance in the gl engine (the paper's Section 4.2), for both ways of
+// clipping. "time" is the time of a row divided by that with bounds; all else but "ms" is per texel: pairs of
+// a site and a tile of a face, tests against nodes of the tree of tiles, pairs that were clipped, polygons
+// and fragments drawn. Verifies that bounds change no bit of a map, that distances agree with those of the
+// cpu engine, and that the engine's counters are consistent.
 //
-//   build/dev/bench/raster_culling [--resolution N] [--device NAME]
+//   build/dev/bench/raster_culling [--device NAME]
+//                                  [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 #include <sdm/sdm.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
-#include <memory>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "core/parallel.h"
 #include "core/vec.h"
-#include "raster_laws.h"
+#include "gl_counters.h"
+#include "harness.h"
 #include "scenes.h"
 #include "scenes/reduce_mesh.h"
+#include "timing.h"
 
 namespace sdm::bench {
 namespace {
-
-constexpr double kLongRun = 2000;  // milliseconds, beyond which a map is computed only once
-
-struct Scene {
-  std::string name;
-  std::shared_ptr<const Surface> surface;
-  std::shared_ptr<const Sites> sites;
-};
-
-struct Measured {
-  DistanceMap map;
-  double ms = 0;
-};
-
-Measured run_once(const Scene& scene, const MapOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
-  DistanceMap map = compute_map(*scene.surface, *scene.sites, options);
-  return {std::move(map),
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()};
-}
-
-/// The median of three runs, or one long run.
-Measured measure(const Scene& scene, const MapOptions& options) {
-  Measured first = run_once(scene, options);
-  if (first.ms > kLongRun) return first;
-  std::array times{first.ms, run_once(scene, options).ms, run_once(scene, options).ms};
-  std::ranges::sort(times);
-  first.ms = times[1];
-  return first;
-}
 
 bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return std::ranges::equal(a, b, {}, std::bit_cast<std::uint32_t, float>,
@@ -63,116 +35,107 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 /// Whether all distances agree to the accuracy that engines promise.
-bool agree(const Scene& scene, const DistanceMap& a, const DistanceMap& b) {
-  Box box = bounds(scene.surface->mesh());
-  extend(box, bounds(scene.sites->mesh()));
-  return std::ranges::all_of(scene.surface->samples(),
-                             [&, tolerance = 2e-6 * diagonal(box)](std::uint32_t t) {
-                               return std::abs(a.distance[t] - b.distance[t]) <= tolerance;
-                             });
+bool agree(const Surface& surface, const Sites& sites, const DistanceMap& a, const DistanceMap& b) {
+  Box box = bounds(surface.mesh());
+  extend(box, bounds(sites.mesh()));
+  return std::ranges::all_of(surface.sample_texels(), [&, tolerance = 2e-6 * diagonal(box)](std::uint32_t t) {
+    return std::abs(a.distance[t] - b.distance[t]) <= tolerance;
+  });
 }
 
-/// To three digits or the unit, without an exponent.
-std::string number(double value) {
-  char text[32];
-  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(std::max(value, 0.1)))), 0, 2);
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-void print_heading() {
-  std::puts(
-      "| map | clip | bounds | pairs | bound tests | OBB tests | clipped | polygons | fragments | ms | time "
-      "|\n"
-      "| --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
-}
-
-void print_row(const Scene& scene, const GlOptions& options, const Measured& measured,
-               double ms_with_bounds) {
-  const GlReport& r = *measured.map.raster;
-  std::printf("| %s | %s | %s |", scene.name.c_str(), options.clip == GlClip::planes ? "planes" : "stencil",
-              options.bound_culling ? "yes" : "no");
-  for (const std::uint64_t count :
-       {r.pairs, r.bound_tests, r.obb_tests, r.clipped_away + r.polygons, r.polygons, r.fragments})
-    std::printf(" %s |", number(static_cast<double>(count) / static_cast<double>(r.texels)).c_str());
-  std::printf(" %s | %s× |\n", number(measured.ms).c_str(), number(measured.ms / ms_with_bounds).c_str());
-  std::fflush(stdout);
-}
-
-/// Prints the four rows of a scene. Returns whether all is as it should be.
-bool tabulate(const Scene& scene, const std::string& device) {
-  const DistanceMap expected = compute_map(*scene.surface, *scene.sites, {.sign = SignMethod::none});
-  bool good = true;
-  const auto complain = [&](const std::string& what) {
-    std::fprintf(stderr, "%s: %s\n", scene.name.c_str(), what.c_str());
-    good = false;
-  };
-  for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
-    double ms_with_bounds = 0;
-    std::vector<float> distances;  // with bounds
-    for (const bool bounds : {true, false}) {
-      const GlOptions raster{.device = device, .clip = clip, .bound_culling = bounds};
-      const Measured measured =
-          measure(scene, {.engine = EngineKind::gl, .sign = SignMethod::none, .raster = raster});
-      if (bounds) ms_with_bounds = measured.ms;
-      print_row(scene, raster, measured, ms_with_bounds);
-
-      for (const std::string& law : broken_laws(*scene.surface, measured.map, raster))
-        complain("the counters break the law " + law);
-      if (distances.empty()) {
-        distances = measured.map.distance;
-        if (!agree(scene, measured.map, expected)) complain("distances differ from those of the cpu engine");
-      }
-      if (!same_bits(measured.map.distance, distances)) complain("distances depend on culling");
-    }
-  }
-  return good;
-}
-
-std::vector<Scene> scenes(std::uint32_t resolution) {
-  const auto surface = [resolution](Mesh mesh) {
-    return std::make_shared<const Surface>(std::move(mesh), AtlasOptions{.resolution = resolution});
-  };
-  const auto sites = [](Mesh mesh) { return std::make_shared<const Sites>(std::move(mesh)); };
-
-  const Mesh figure = paper_figure(), box = paper_box(figure);
-  std::vector<Scene> result{{"figure to box", surface(figure), sites(box)},
-                            {"box to figure", surface(box), sites(figure)}};
-  const auto bunny = surface(load("bunny.obj", "fit"));
-  const Mesh armadillo = load("armadillo.off", "fit,translate:0.8:0:0");
-  for (const std::size_t triangles : {1'000u, 10'000u, 50'000u})
-    result.push_back({"bunny to armadillo of " + std::to_string(triangles / 1000) + "k", bunny,
-                      sites(scenes::reduce_mesh(armadillo, triangles))});
+Row row(std::string name, const GlReport& r, double ms, double ms_with_bounds) {
+  Row result{std::move(name), {}};
+  for (const auto& [key, count] :
+       {std::pair("pairs", r.pairs), std::pair("bound_tests", r.bound_tests),
+        std::pair("obb_tests", r.obb_tests), std::pair("clipped", r.clipped_away + r.polygons),
+        std::pair("polygons", r.polygons), std::pair("fragments", r.fragments)})
+    result.figures.push_back({key, static_cast<double>(count) / static_cast<double>(r.texels)});
+  result.figures.push_back({"ms", ms});
+  result.figures.push_back({"time", ms / ms_with_bounds});
   return result;
 }
 
-int run(int argc, char** argv) {
-  std::uint32_t resolution = 256;
-  std::string device;
-  CLI::App app{"The effect of culling in the gl engine"};
-  app.add_option("--resolution", resolution, "Texels along each side of the maps")->capture_default_str();
-  app.add_option("--device", device, "A part of the name of the device that draws");
-  CLI11_PARSE(app, argc, argv);
+Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, GlOptions raster) {
+  const Surface surface(o1, {.resolution = 256});
+  const Sites sites(o2);
+  const auto map_by = [&](bool bounds) {
+    raster.bound_culling = bounds;
+    return compute_map(surface, sites,
+                       {.engine = EngineKind::gl, .sign = SignMethod::none, .raster = raster});
+  };
+  bool verified = true;
+  const auto check = [&](bool good, const std::string& what) {
+    if (!good) std::fprintf(stderr, "%s\n", what.c_str());
+    verified &= good;
+  };
+  const DistanceMap with = map_by(true), without = map_by(false);
+  std::fprintf(stderr, "on %s\n", with.raster->device.name.c_str());
+  check(agree(surface, sites, with, compute_map(surface, sites, {.sign = SignMethod::none})),
+        "distances differ from those of the cpu engine");
+  check(same_bits(with.distance, without.distance), "distances depend on culling");
+  for (const bool bounds : {true, false}) {
+    raster.bound_culling = bounds;
+    for (const std::string& relation : violated_relations(surface, bounds ? with : without, raster))
+      check(false, "counters violate " + relation);
+  }
+  if (!verified) return {};
 
-  const std::vector<Scene> all = scenes(resolution);
-  // The first map of a process pays for the context.
-  const Measured warm_up = run_once(all[0], {.engine = EngineKind::gl, .raster = {.device = device}});
-  std::printf("%s, %u threads, %u² texels. Times are the median of three runs, or one of over %g s.\n",
-              warm_up.map.raster->device.name.c_str(), thread_count(), resolution, kLongRun / 1000);
-  std::puts("Counts are per texel: pairs of a site and a tile of a face, tests against nodes of the tree of");
-  std::puts("tiles, pairs that were clipped, polygons and fragments drawn.\n");
-  print_heading();
-  bool good = true;
-  for (const Scene& scene : all) good &= tabulate(scene, device);
-  return good ? 0 : 1;
+  const std::array contenders{Contender{[&] { (void)map_by(true); }, trial.threads},
+                              Contender{[&] { (void)map_by(false); }, trial.threads}};
+  const auto times = take_turns(contenders, trial.repetitions, 0);
+  const double ms = median(times[0]);
+  return {.verified = true,
+          .rows = {row("with bounds", *with.raster, ms, ms),
+                   row("without", *without.raster, median(times[1]), ms)}};
+}
+
+std::vector<Case> cases(const std::string& device) {
+  using Meshes = std::function<std::pair<Mesh, Mesh>()>;
+  std::vector<Case> result;
+  const auto add = [&](const std::string& name, const std::string& what, const Meshes& meshes) {
+    for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
+      const std::string by = clip == GlClip::planes ? "planes" : "stencil";
+      result.push_back({.name = name + "-" + by,
+                        .description = what + ", 256², clipped by " + by,
+                        .run =
+                            [&device, clip, meshes](const Trial& trial) {
+                              const auto [o1, o2] = meshes();
+                              return measure(trial, o1, o2, {.device = device, .clip = clip});
+                            },
+                        .repetitions = 3,
+                        .threads = 0});
+    }
+  };
+  add("figure-to-box", "the figure to its box", [] {
+    const Mesh figure = paper_figure();
+    return std::pair(figure, paper_box(figure));
+  });
+  add("box-to-figure", "the box to its figure", [] {
+    const Mesh figure = paper_figure();
+    return std::pair(paper_box(figure), figure);
+  });
+  for (const std::size_t thousands : {1u, 10u, 50u}) {
+    const std::string size = std::to_string(thousands) + "k";
+    add("bunny-to-armadillo-" + size, "bunny to armadillo of " + size + " triangles", [thousands] {
+      return std::pair(load("bunny.obj", "fit"),
+                       scenes::reduce_mesh(load("armadillo.off", "fit,translate:0.8:0:0"), 1000 * thousands));
+    });
+  }
+  return result;
 }
 
 }  // namespace
 }  // namespace sdm::bench
 
-int main(int argc, char** argv) try {
-  return sdm::bench::run(argc, argv);
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "raster_culling: %s\n", error.what());
-  return 1;
+int main(int argc, char** argv) {
+  using namespace sdm::bench;
+  static std::string device;
+  return run_program(argc, argv,
+                     {.name = "raster_culling",
+                      .description = "The effect of culling by bounds in the gl engine",
+                      .repetition = "repetitions",
+                      .cases = cases(device),
+                      .add_options = [](CLI::App& app) {
+                        app.add_option("--device", device, "A part of the name of the device that draws");
+                      }});
 }

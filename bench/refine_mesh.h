@@ -7,8 +7,8 @@
 
 namespace sdm::bench {
 
-/// Cuts each triangle into parts² and moves the vertices at random, always the same, by up to `noise` edges
-/// of the result, as scanners do: nothing stays flat. Texture coordinates are dropped.
+/// Cuts each triangle into parts² triangles, and moves each coordinate of the vertices by pseudo-random noise
+/// of up to `noise` mean edge lengths, as in scans, so that nothing stays flat. Drops texture coordinates.
 [[nodiscard]] Mesh refine_mesh(const Mesh& mesh, std::uint32_t parts, double noise);
 
 }  // namespace sdm::bench

@@ -1,4 +1,4 @@
-// Which texels of maps a camera sees, by ray casting.
+// The texels of maps that a camera sees, by ray casting.
 #pragma once
 
 #include <sdm/surface.h>
@@ -20,18 +20,18 @@ struct View {
 /// A surface before the camera.
 struct Shown {
   const Surface* surface = nullptr;
-  /// Leave out the faces that show their outside to the camera, as the near walls of a box around the scene.
+  /// Leave out the faces whose outside faces the camera, such as the near walls of a box around the scene.
   bool only_inside = false;
 };
 
-/// The surface point visible at a pixel.
+/// What the camera sees at a point of the picture.
 struct Seen {
-  std::uint32_t object = kNone;  ///< index into the list of what is shown, or kNone
+  std::uint32_t object = kNone;  ///< index into the list of surfaces, or kNone
   std::uint32_t texel = kNone;   ///< the one whose sample is nearest in the atlas
-  float light = 1;               ///< of the face, by its angle to the ray: 1 if looked at straight
+  float light = 1;               ///< brightness: |cosine| of the angle between ray and normal
 };
 
-/// What is seen at the centres of width x height pixels, rows from the top.
+/// Returns what the camera sees at the centres of width × height pixels, by rows from the top.
 [[nodiscard]] std::vector<Seen> visible_texels(const View& view, std::span<const Shown> objects);
 
 }  // namespace sdm::bench

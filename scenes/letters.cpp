@@ -6,11 +6,11 @@
 namespace sdm::scenes {
 
 Mesh letter_e() {
-  return to_mesh(read_ply(kLetterEPly.bytes));
+  return io::to_mesh(io::read_ply(kLetterEPly.bytes));
 }
 
 Mesh letter_g() {
-  return to_mesh(read_ply(kLetterGPly.bytes));
+  return io::to_mesh(io::read_ply(kLetterGPly.bytes));
 }
 
 }  // namespace sdm::scenes

@@ -25,7 +25,7 @@ atlas::Stamp random_stamp(std::mt19937& random, std::uint32_t largest) {
 }
 
 bool is_free(const Cells& cells, const atlas::Stamp& stamp, std::uint32_t x, std::uint32_t y) {
-  return std::ranges::none_of(stamp.runs, [&](const Run& run) {
+  return std::ranges::none_of(stamp.runs, [&](const atlas::Run& run) {
     const auto row = cells[y + run.row].begin() + x + run.begin;
     return std::find(row, row + run.length, true) != row + run.length;
   });
@@ -41,7 +41,7 @@ std::optional<atlas::BitmapBin::Spot> plain_first_fit(const Cells& cells, const 
   return std::nullopt;
 }
 
-TEST(atlas::BitmapBin, FindsTheFirstFit) {
+TEST(BitmapBin, FindsTheFirstFit) {
   for (const std::uint32_t size : {16u, 63u, 64u, 65u, 100u, 128u, 200u}) {
     SCOPED_TRACE(size);
     std::mt19937 random(size);
@@ -59,14 +59,14 @@ TEST(atlas::BitmapBin, FindsTheFirstFit) {
       ASSERT_EQ(spot->x, expected->x) << i;
       ASSERT_EQ(spot->y, expected->y) << i;
       bin.place(stamp, *spot);
-      for (const sdm::Run& run : stamp.runs)
+      for (const atlas::Run& run : stamp.runs)
         std::fill_n(cells[spot->y + run.row].begin() + spot->x + run.begin, run.length, true);
     }
     EXPECT_GT(misses, 50);
   }
 }
 
-TEST(atlas::BitmapBin, HoldsAStampOfItsOwnSizeAndNoLarger) {
+TEST(BitmapBin, HoldsAStampOfItsOwnSizeAndNoLarger) {
   atlas::BitmapBin bin(64);
   atlas::Stamp stamp{64, 1, {{0, 0, 64}}};
   EXPECT_TRUE(bin.first_fit(stamp, 0, 64));

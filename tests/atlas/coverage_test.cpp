@@ -174,7 +174,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-TEST(surface::Coverage, HoldsAndIsTightInMotion) {
+TEST(Coverage, HoldsAndIsTightInMotion) {
   std::vector<double> ratios;
   for (const char* name : {"head.off", "bunny.obj", "knot2.off", "elephant-with-holes.off"})
     for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
@@ -191,7 +191,7 @@ TEST(surface::Coverage, HoldsAndIsTightInMotion) {
 
 // The ball of each range of runs has its samples, all balls together have all points, and none is needlessly
 // large.
-TEST(surface::Coverage, SpreadsHoldInMotion) {
+TEST(Coverage, SpreadsHoldInMotion) {
   for (const char* name : {"head.off", "elephant-with-holes.off", "pig.off", "degtri_sliding.off"}) {
     SCOPED_TRACE(name);
     const Mesh mesh = test::load(name);
@@ -219,18 +219,18 @@ TEST(surface::Coverage, SpreadsHoldInMotion) {
 }
 
 // Every chart is smaller than a texel: a sample's square is far larger than what its face has of it.
-TEST(surface::Coverage, ChartsSmallerThanTexels) {
+TEST(Coverage, ChartsSmallerThanTexels) {
   const std::vector<double> ratios =
       expect_covered_in_motion(test::load("pig.off"), {.kind = AtlasKind::triangles, .resolution = 256});
   EXPECT_LE(median(ratios), 1.5);
 }
 
 // Hardly a face owns a texel: what it has of others' squares moves on its own.
-TEST(surface::Coverage, FacesSmallerThanTexels) {
+TEST(Coverage, FacesSmallerThanTexels) {
   EXPECT_LE(median(expect_covered_in_motion(test::load("armadillo.off"), {.resolution = 256})), 1.7);
 }
 
-TEST(surface::Coverage, SliversFacesWithoutAreaAndSoups) {
+TEST(Coverage, SliversFacesWithoutAreaAndSoups) {
   for (const char* name : {"cylinder_locally_refined.off", "degtri_sliding.off", "boeing.off"}) {
     SCOPED_TRACE(name);
     (void)expect_covered_in_motion(test::load(name), {.resolution = 256});
@@ -240,7 +240,7 @@ TEST(surface::Coverage, SliversFacesWithoutAreaAndSoups) {
 }
 
 // A face without area opens: all of it is covered still.
-TEST(surface::Coverage, FacesThatGainAnArea) {
+TEST(Coverage, FacesThatGainAnArea) {
   Mesh mesh{.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 0, 0}},
             .triangles = {{0, 1, 2}, {0, 3, 1}},
             .corner_uvs = {}};
@@ -255,7 +255,7 @@ TEST(surface::Coverage, FacesThatGainAnArea) {
   EXPECT_LT(before, 0.1);
 }
 
-TEST(surface::Coverage, IsTheSameForAllThreadsAndAfterAWayBack) {
+TEST(Coverage, IsTheSameForAllThreadsAndAfterAWayBack) {
   const Mesh mesh = test::load("bunny.obj");
   const std::vector<Vec3> bent = moved(mesh, bend), crumpled = moved(mesh, crumple);
   const auto radii = [&](unsigned threads) {

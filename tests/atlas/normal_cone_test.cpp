@@ -27,7 +27,7 @@ double widest(const std::vector<Vec3>& normals, const Vec3& axis) {
   return std::acos(least);
 }
 
-TEST(atlas::NormalCone, OfAJoinHoldsAllNormals) {
+TEST(NormalCone, OfAJoinHoldsAllNormals) {
   std::mt19937 random(4);
   int joined = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -46,7 +46,7 @@ TEST(atlas::NormalCone, OfAJoinHoldsAllNormals) {
   EXPECT_LT(joined, 1990);
 }
 
-TEST(atlas::NormalCone, KeepsFewRaysOfMany) {
+TEST(NormalCone, KeepsFewRaysOfMany) {
   std::mt19937 random(5);
   const auto normals = normals_near({0, 0.6, 0.8}, 0.5, 5000, random);
   const atlas::NormalCone cone = atlas::spanned_cone(normals, {0, 0.6, 0.8});

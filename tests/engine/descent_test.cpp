@@ -1,9 +1,9 @@
-// Parts of the cpu engine that the exactness tests cannot observe.
+// The parts of the cpu engine, which the exactness tests see only as a whole.
 #include <memory>
 
 #include "core/vec.h"
 #include "engine/cpu/finish.h"
-#include "engine/reference/reference_engine.h"
+#include "engine/engine.h"
 #include "engine/simd_targets.h"
 #include "engine/support.h"
 #include "sites/sites_data.h"
@@ -15,7 +15,7 @@ double distance(const float (&a)[3], const Vec3& b) {
   return norm(Vec3{a[0], a[1], a[2]} - b);
 }
 
-TEST(cpu::PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
+TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
   std::mt19937 random(4);
   const auto group = std::make_unique<cpu::PointGroup>();
   for (const std::size_t count : {1u, 15u, 16u, 17u, 64u, 65u, 1000u, 4097u, 65536u}) {
@@ -86,7 +86,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
 
 // Soups and grids, flat and rough, whole and small slivers, of any size and place; queries on the mesh, on
 // its vertices and lattice points, where regions meet, and away from it.
-TEST(cpu::Descent, AgreesWithTheReferenceOnScenesAtRandom) {
+TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
   std::size_t within = 0, beyond = 0, wrong = 0;
   const std::vector<test::SimdTarget> targets = test::simd_targets();
   for (unsigned seed = 0; seed < 200; ++seed) {
@@ -153,25 +153,6 @@ TEST(cpu::Descent, AgreesWithTheReferenceOnScenesAtRandom) {
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(within, 50000u);
   EXPECT_GT(beyond, 1000u);
-}
-
-// Lists are short, and what they save is traversal. Counts depend on the meshes alone, and hardly on
-// rounding.
-TEST(cpu::Descent, EvaluatesFewSites) {
-  const Surface bunny(test::load("bunny.obj", "fit"), {.resolution = 1024});
-  const double packets = static_cast<double>(bunny.sample_texels().size()) / cpu::PointGroup::kPacket;
-  const auto work = [&](const char* placement) {
-    return cpu::count_work(internals(Sites(test::load("armadillo.off", placement))), bunny.sample_points());
-  };
-  const cpu::DescentCounts apart = work("fit,translate:0.8:0:0");
-  EXPECT_LT(static_cast<double>(apart.evaluations), 3 * packets);
-  EXPECT_LT(static_cast<double>(apart.list_blocks), 5 * packets);
-  EXPECT_LT(static_cast<double>(apart.tree_sites), 20 * packets);
-  const cpu::DescentCounts through = work("fit,translate:0.1:0:0");
-  EXPECT_LT(static_cast<double>(through.evaluations), 15 * packets);
-  EXPECT_LT(static_cast<double>(through.tree_sites), 50 * packets);
-  EXPECT_GT(apart.groups, 0u);
-  EXPECT_LT(static_cast<double>(through.groups), packets);
 }
 
 }  // namespace

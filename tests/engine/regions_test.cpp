@@ -13,7 +13,7 @@ class Regions : public testing::TestWithParam<EngineKind> {
     return closest_points(sites, std::vector{query}, {.engine = GetParam()})[0];
   }
 };
-INSTANTIATE_TEST_SUITE_P(Engines, sites::Regions, testing::ValuesIn(test::kEngines), test::engine_name);
+INSTANTIATE_TEST_SUITE_P(Engines, Regions, testing::ValuesIn(test::kEngines), test::engine_name);
 
 constexpr Box kUnit{{-1, -1, -1}, {1, 1, 1}};
 
@@ -26,7 +26,7 @@ void expect_closest(const ClosestPoint& actual, SiteType type, std::uint32_t sit
   EXPECT_NEAR(actual.distance, norm(point - query), 1e-6);
 }
 
-TEST_P(sites::Regions, OfRandomTriangles) {
+TEST_P(Regions, OfRandomTriangles) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> unit(0.1, 1);
   int triangles = 0;
@@ -71,7 +71,7 @@ TEST_P(sites::Regions, OfRandomTriangles) {
   }
 }
 
-TEST_P(sites::Regions, OfFacesWithoutArea) {
+TEST_P(Regions, OfFacesWithoutArea) {
   std::mt19937 random(3);
   // Collinear corners, in every order; a good triangle far away, for a mesh needs some area.
   for (const Triangle& order : {Triangle{0, 1, 2}, Triangle{1, 2, 0}, Triangle{2, 0, 1}, Triangle{0, 2, 1}}) {
@@ -93,7 +93,7 @@ TEST_P(sites::Regions, OfFacesWithoutArea) {
   }
 }
 
-TEST_P(sites::Regions, CollapsedAndDuplicateFacesAddNothing) {
+TEST_P(Regions, CollapsedAndDuplicateFacesAddNothing) {
   Mesh mesh = test::cube();
   const Sites clean(mesh);
   mesh.triangles.push_back({3, 3, 3});

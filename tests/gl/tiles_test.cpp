@@ -26,7 +26,7 @@ std::vector<Scene> scenes() {
           {"soup", test::soup(80, random), test::soup(50, random)}};
 }
 
-TEST(surface::Tiles, PartTheOwnedTexels) {
+TEST(Tiles, PartTheOwnedTexels) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
@@ -56,7 +56,7 @@ TEST(surface::Tiles, PartTheOwnedTexels) {
   }
 }
 
-TEST(surface::Tiles, DomainsHoldTheirSamples) {
+TEST(Tiles, DomainsHoldTheirSamples) {
   for (const Scene& scene : scenes())
     for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
       SCOPED_TRACE(scene.name);
@@ -86,7 +86,7 @@ TEST(surface::Tiles, DomainsHoldTheirSamples) {
     }
 }
 
-TEST(surface::Tiles, BoundsHoldForEverySample) {
+TEST(Tiles, BoundsHoldForEverySample) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 128});

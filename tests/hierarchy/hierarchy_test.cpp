@@ -63,20 +63,20 @@ void expect_valid(const hierarchy::AabbTree& tree, std::span<const Box> boxes, s
   EXPECT_THAT(seen, testing::Each(1));
 }
 
-TEST(hierarchy::AabbTree, HoldsEveryItemOnceInBoxesThatContainIt) {
+TEST(AabbTree, HoldsEveryItemOnceInBoxesThatContainIt) {
   for (std::size_t count : {1u, 2u, 9u, 1000u, 20000u}) {
     const auto boxes = random_boxes(count, 1);
     expect_valid(hierarchy::build_aabb_tree(boxes, all(count), 4), boxes, 4);
   }
 }
 
-TEST(hierarchy::AabbTree, TakesEqualBoxesAndNone) {
+TEST(AabbTree, TakesEqualBoxesAndNone) {
   const std::vector<Box> equal(100, Box{{1, 2, 3}, {1, 2, 3}});
   expect_valid(hierarchy::build_aabb_tree(equal, all(equal.size()), 4), equal, 4);
   EXPECT_TRUE(hierarchy::build_aabb_tree(std::span<const Box>{}, {}, 4).nodes.empty());
 }
 
-TEST(hierarchy::AabbTree, DoesNotDependOnTheNumberOfThreads) {
+TEST(AabbTree, DoesNotDependOnTheNumberOfThreads) {
   const auto boxes = random_boxes(30000, 2);
   const hierarchy::AabbTree many = hierarchy::build_aabb_tree(boxes, all(boxes.size()), 8);
   const ThreadLimit one(1);
@@ -92,7 +92,7 @@ TEST(hierarchy::AabbTree, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(hierarchy::AabbTree, RefitGivesTheSmallestBoxesOfMovedItems) {
+TEST(AabbTree, RefitGivesTheSmallestBoxesOfMovedItems) {
   auto boxes = random_boxes(5000, 3);
   hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, all(boxes.size()), 4);
   const hierarchy::AabbTree before = tree;
@@ -110,7 +110,7 @@ TEST(hierarchy::AabbTree, RefitGivesTheSmallestBoxesOfMovedItems) {
   EXPECT_EQ(tree.nodes[0].box.hi, hierarchy::FloatBox::around(whole).hi);
 }
 
-TEST(hierarchy::WideTree, ReachesEveryLeafOnceWithItsBox) {
+TEST(WideTree, ReachesEveryLeafOnceWithItsBox) {
   for (std::size_t count : {1u, 5u, 40u, 5000u}) {
     auto boxes = random_boxes(count, 5);
     hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, all(count), 4);

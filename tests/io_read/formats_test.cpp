@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 #include <sdm/io.h>
 
+#include <array>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "io_read/writers.h"
 #include "mesh/shapes.h"
@@ -76,6 +79,20 @@ TEST(Obj, SkipsWhatItDoesNotNeed) {
       "v 0 0 0 1 0.5 0.2\nv +1 0 0 1.0\nv 0 1e0 0\nvn 0 0 1\nvp 0 1\nl 1 2\np 1\nf 1 2\ncurv 1\nf 1 2 3");
   EXPECT_EQ(read.positions.size(), 3u);
   EXPECT_EQ(read.triangles.size(), 1u);
+}
+
+TEST(Obj, FacesMayHaveAnyNumberOfCorners) {
+  std::string vertices, face = "f";
+  constexpr int kCorners = 100000;
+  for (int k = 0; k < kCorners; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kCorners, radius = k % 2 ? 1 : 0.999;
+    vertices += "v " + text(radius * std::cos(angle)) + ' ' + text(radius * std::sin(angle)) + " 0\n";
+    face += ' ' + std::to_string(k + 1);
+  }
+  EXPECT_EQ(read_as("a.obj", vertices + face + '\n').triangles.size(), kCorners - 2u);
+  face = "f";
+  for (int k = 0; k < kCorners; ++k) face += std::array{" 1", " 2", " 3"}[k % 3];
+  EXPECT_EQ(read_as("a.obj", vertices + face + '\n').positions.size(), 3u);
 }
 
 TEST(Obj, LinesMayEndAsOnWindowsAndOldMacs) {

@@ -1,4 +1,4 @@
-// Whatever the bytes are: a valid mesh, or sequence of positions, or sdm::Error.
+// Any bytes give a valid mesh or sequence, or sdm::Error.
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/sequence.h>
@@ -113,8 +113,8 @@ TEST(Fuzz, MutatedFiles) {
   }
 }
 
-// Where a cut cannot be told: OBJ has no end, and text may be cut within its last numbers or after its last
-// face.
+// The least length of a cut that cannot be detected: OBJ has no end, and text may be cut within its last
+// number or after its last face.
 std::size_t shortest_whole(const Seed& seed) {
   if (seed.name == "a.obj") return 0;
   if (seed.name == "a.stl") return seed.contents.rfind("endsolid") + 8;

@@ -110,15 +110,15 @@ TEST(Sequence, PatternsTakeTheNamesThatPrintfWouldMake) {
   add("a08.obj"), add("a09.obj"), add("a10.obj"), add("a7.obj"), add("a100.obj"), add("b1.obj"),
       add("c99.obj"), add("c100.obj"), add("c0101.obj");
   EXPECT_EQ(MeshSequence(folder + "c%02d.obj").frame_count(), 2u);
-  expect_refused(folder + "a%02d.obj", {"from 8 to 100 only 4 have a file"});
+  expect_refused(folder + "a%02d.obj", {"from 8 to 100, only 4 have a file"});
   EXPECT_EQ(MeshSequence(folder + "b%d.obj").frame_count(), 1u);
   expect_refused(folder + "a%d.obj", {"only 3 have a file"});  // 7, 10 and 100
   expect_refused(folder, {"several sequences", "*.obj"});
   for (const char* pattern : {"a%x.obj", "a%", "a%0d.obj", "a%02", "a%123d.obj"})
-    expect_refused(folder + pattern, {pattern, "% in a pattern must be followed by d"});
+    expect_refused(folder + pattern, {pattern, "% must be followed by d"});
   for (const char* pattern : {"a%d%d.obj", "a*.*", "*%d.obj"})
-    expect_refused(folder + pattern, {pattern, "exactly one number"});
-  expect_refused(folder + "d%d.obj", {"d%d.obj", "no file matches"});
+    expect_refused(folder + pattern, {pattern, "only one number"});
+  expect_refused(folder + "d%d.obj", {"d%d.obj", "no file matches the pattern"});
   add("a010.obj");
   expect_refused(folder + "a*.obj", {"a010.obj and a10.obj have the same number"});
   add("a99999999999999999999.obj");
@@ -153,7 +153,7 @@ TEST(Sequence, FramesThatDifferFromTheFirstAreNamedAndOthersAreReadAllTheSame) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {obj(more), "has 33 vertices, and the first frame has 32"},
       {obj(fewer), "has 63 faces, and the first frame has 64"},
-      {obj(turned), "face 5 joins other vertices"},
+      {obj(turned), "face 5 has other vertices"},
       {obj(far), "vertex 3 has a coordinate beyond 1e37"},
       {nan, "vertex 0 has a NaN or infinite coordinate"},
       {"", "the file is empty"},
@@ -185,7 +185,7 @@ TEST(Sequence, VerticesThatAreOneStayTogether) {
   EXPECT_EQ(sequence.mesh().positions.size(), 32u);
   EXPECT_EQ(corner_positions(at(sequence.mesh(), copy(sequence.positions(1)))),
             corner_positions(at(mesh, frames[1])));
-  expect_fault([&] { (void)sequence.positions(2); }, {"frame 2 (2.stl)", "separates from another one"});
+  expect_fault([&] { (void)sequence.positions(2); }, {"frame 2 (2.stl)", "has moved away"});
 }
 
 TEST(Sequence, AnyMeshFileIsOneFrame) {
@@ -237,7 +237,7 @@ TEST(SequenceNpy, VerticesAreThoseOfTheFile) {
             (std::vector<Vec3>{{0.5, 0, 0}, {1.5, 0, 0}, {0.5, 1, 0}, {0.5, 0, 1}}));
   frames[1][4][0] = 7;
   MeshSequence apart(file + "+" + write("seam.npy", npy(frames)));
-  expect_fault([&] { (void)apart.positions(1); }, {"frame 1 of seam.npy", "vertex 4 has left"});
+  expect_fault([&] { (void)apart.positions(1); }, {"frame 1 of seam.npy", "vertex 4 has moved away"});
 }
 
 TEST(SequenceNpy, FaultsAreNamed) {
@@ -254,8 +254,8 @@ TEST(SequenceNpy, FaultsAreNamed) {
   };
   refuse("", "not an NPY file");
   refuse("PK", "not an NPY file");
-  refuse(good.substr(0, 9), "data end too early");
-  refuse(good.substr(0, 40), "data end too early");
+  refuse(good.substr(0, 9), "unexpected end of data");
+  refuse(good.substr(0, 40), "unexpected end of data");
   refuse(good.substr(0, good.size() - 1), "truncated");
   refuse(good + "x", "bytes of numbers");
   refuse(with("\1", "\4"), "version 4");
@@ -266,8 +266,8 @@ TEST(SequenceNpy, FaultsAreNamed) {
   refuse(with("(2, 4, 3)", "(2, 3, 4)"), "the shape (2, 3, 4)");
   refuse(with("(2, 4, 3)", "()"), "the shape ()");
   refuse(with("(2, 4, 3)", "(0, 4, 3)"), "no positions");
-  refuse(with("(2, 4, 3)", "(2, 5, 3)"), "has 5 vertices a frame, and four.off lists 4");
-  refuse(with("(2, 4, 3)", "(3, 4, 3)"), "the 3 frames of 48 bytes");
+  refuse(with("(2, 4, 3)", "(2, 5, 3)"), "has 5 vertices per frame, but four.off has 4");
+  refuse(with("(2, 4, 3)", "(3, 4, 3)"), "3 frames of 48 bytes");
   refuse(with("(2, 4, 3)", "(384307168202282328, 4, 3)"),
          "384307168202282328 frames");  // 48 times that wraps
   for (const auto& [from, to] : {std::pair{"(2, 4, 3)", "(2, -4, 3)"},
@@ -277,7 +277,7 @@ TEST(SequenceNpy, FaultsAreNamed) {
                                  {", }", "} x"},
                                  {"'shape'", "'descr'"},
                                  {"(2, 4, 3)", "(2 4 3)"}})
-    refuse(with(from, to), "its header is invalid");
+    refuse(with(from, to), "the header is not as NumPy writes it");
   expect_refused(write("x.npy", good), {"x.npy: holds positions without triangles"});
   expect_refused(file + "+/no/such.npy", {"/no/such.npy: cannot be opened: No such file"});
   expect_refused(file + "+/dev.npy/x.npy", {"x.npy: cannot be opened"});
@@ -330,7 +330,7 @@ TEST(SequenceGltf, FaultsAreNamed) {
   const auto refuse = [](const WeightChannel& channel, const std::string& fault) {
     expect_refused(write("morph.glb", morph_gltf(tetrahedron(), kTargets, channel)), {"morph.glb: ", fault});
   };
-  refuse({"SPLINE", {0}, {0, 0}}, "unknown interpolation");
+  refuse({"SPLINE", {0}, {0, 0}}, "interpolation of the animation is none of");
   refuse({"LINEAR", {}, {}}, "no keys");
   refuse({"LINEAR", {0, 1, 1}, {0, 0, 0, 0, 0, 0}}, "do not increase at key 2");
   refuse({"LINEAR", {0, std::nanf("")}, {0, 0, 0, 0}}, "do not increase at key 1");
@@ -344,9 +344,9 @@ TEST(SequenceGltf, FaultsAreNamed) {
     expect_refused(write("morph.glb", contents), {"morph.glb: ", fault});
   };
   refuse_with("\"weights\"", "\"rotate\"", "moves nodes");
-  refuse_with("\"node\":0", "\"node\":1", "no effect");
-  refuse_with("\"sampler\":0", "\"sampler\":7", "not valid glTF");
-  refuse_with("{\"POSITION\":1}", "{\"POSITION\":3}", "more or fewer vertices");
+  refuse_with("\"node\":0", "\"node\":1", "does not change any mesh");
+  refuse_with("\"sampler\":0", "\"sampler\":7", "invalid glTF");
+  refuse_with("{\"POSITION\":1}", "{\"POSITION\":3}", "differ in their number of vertices");
   const std::string file = write("morph.glb", good);
   expect_refused(file, {"rate"}, {.rate = -1});
   expect_refused(file, {"rate"}, {.rate = std::nan("")});

@@ -17,10 +17,10 @@ Vec3 twice_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return cross(b - a, c - a);
 }
 
-// The triangles tile a simple planar polygon exactly when they are all turned as it is and their areas add up
-// to its own, and their borders cancel but for the polygon's sides.
+// Triangles tile a simple planar polygon exactly if they all have its orientation, their areas add up to its
+// area, and their boundaries cancel except for the sides of the polygon.
 void expect_tiling(const Polygon& polygon) {
-  Triangulator triangulator;
+  io::Triangulator triangulator;
   const auto triangles = triangulator.triangulate(polygon);
   ASSERT_EQ(triangles.size(), polygon.size() - 2);
   Vec3 area{};
@@ -62,7 +62,7 @@ Polygon star(std::mt19937& random, std::size_t n) {
 }
 
 TEST(Triangulate, ConvexQuadsByTheShorterDiagonal) {
-  Triangulator triangulator;
+  io::Triangulator triangulator;
   const Polygon kite = {{0, 0, 0}, {1, -0.5, 0}, {3, 0, 0}, {1, 0.5, 0}};
   for (int first = 0; first < 4; ++first) {
     Polygon turned;
@@ -133,13 +133,74 @@ TEST(Triangulate, CombsAndHolesWithBridges) {
                  {1, 1, 0}});
 }
 
+// Rotates a polygon of the plane z = 0, so that its sides are no longer parallel to the axes.
+Polygon rotated(Polygon polygon) {
+  for (Vec3& p : polygon) p = {0.8 * p[0] - 0.6 * p[1], 0.6 * p[0] + 0.8 * p[1], p[2]};
+  return polygon;
+}
+
+TEST(Triangulate, PolygonsOfManyCorners) {
+  std::mt19937 random(8);
+  for (const std::size_t n : {1024, 1025, 1500, 20000}) expect_tiling(star(random, n));
+  Polygon circle, comb = {{0, -1, 0}, {5000, -1, 0}}, stairs;
+  for (int i = 0; i < 100000; ++i)
+    circle.push_back({std::cos(i * 2e-5 * std::numbers::pi), std::sin(i * 2e-5 * std::numbers::pi), 0});
+  for (int i = 5000; i-- > 0;) comb.push_back({static_cast<double>(i), i % 2 ? 0.0 : 5000.0, 0});
+  for (int i = 0; i < 5000; ++i) {
+    stairs.push_back({static_cast<double>(i), static_cast<double>(i), 0});
+    stairs.push_back({static_cast<double>(i + 1), static_cast<double>(i), 0});
+  }
+  stairs.push_back({0, 5000, 0});
+  expect_tiling(circle);
+  expect_tiling(comb);
+  expect_tiling(rotated(comb));
+  expect_tiling(stairs);
+  expect_tiling(rotated(stairs));
+}
+
+// A square with 40 × 40 square holes, each joined to the one before it by a bridge that runs there and back.
+TEST(Triangulate, ManyHolesWithBridges) {
+  constexpr int kRows = 40;
+  Polygon polygon = {{-1, -1, 0}, {kRows, -1, 0}, {kRows, kRows, 0}, {-1, kRows, 0}};
+  for (int row = kRows; row-- > 0;) {
+    const double y = row;
+    polygon.push_back({-1, y, 0});
+    Polygon way_back;
+    for (int column = 0; column < kRows; ++column) {
+      const double x = column;
+      polygon.insert(polygon.end(), {{x, y, 0}, {x + 0.25, y + 0.25, 0}, {x + 0.5, y, 0}});
+      way_back.insert(way_back.end(), {{x, y, 0}, {x + 0.25, y - 0.25, 0}, {x + 0.5, y, 0}});
+    }
+    way_back.pop_back();  // the path turns back at the last hole's far corner
+    polygon.insert(polygon.end(), way_back.rbegin(), way_back.rend());
+    polygon.push_back({-1, y, 0});
+  }
+  ASSERT_GT(polygon.size(), 8192u);
+  expect_tiling(polygon);
+  expect_tiling(rotated(polygon));
+}
+
 TEST(Triangulate, PolygonsWithoutAreaOrThatCrossThemselvesGiveTrianglesToo) {
-  Triangulator triangulator;
+  io::Triangulator triangulator;
   EXPECT_EQ(triangulator.triangulate(Polygon(6, Vec3{1, 2, 3})).size(), 4u);
   EXPECT_EQ(triangulator.triangulate(Polygon{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u);
   Polygon pentagram;
   for (int i = 0; i < 5; ++i) pentagram.push_back({std::cos(2.0 * i), std::sin(2.0 * i), 0});
   EXPECT_EQ(triangulator.triangulate(pentagram).size(), 3u);
+
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  constexpr std::size_t kMany = 10000;
+  Polygon tangle, line, three_places, huge;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    tangle.push_back({coordinate(random), coordinate(random), coordinate(random)});
+    line.push_back({coordinate(random), 0, 0});
+    three_places.push_back(tangle[i % 3]);
+    huge.push_back(1.7e308 * tangle[i]);
+  }
+  for (const Polygon& polygon :
+       {tangle, line, three_places, huge, rotated(line), Polygon(kMany, Vec3{1, 2, 3})})
+    EXPECT_EQ(triangulator.triangulate(polygon).size(), kMany - 2);
 }
 
 }  // namespace

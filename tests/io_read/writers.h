@@ -42,8 +42,8 @@ std::string stl_binary(const Mesh& mesh);
 std::string ply_text(const Mesh& mesh);
 std::string ply_binary(const Mesh& mesh, std::endian order);
 std::string tds(const Mesh& mesh);
-/// `nodes`: the JSON list of nodes, with mesh 0; `buffer`: how the buffer is told, its bytes come from
-/// gltf_buffer.
+/// `nodes`: the JSON list of nodes, which use mesh 0; `buffer_uri`: the members that say where the buffer is.
+/// Its bytes are those of gltf_buffer.
 std::string gltf_json(const Mesh& mesh, const std::string& nodes, const std::string& buffer_uri);
 std::string gltf_buffer(const Mesh& mesh);
 std::string glb(std::string json, std::string buffer);

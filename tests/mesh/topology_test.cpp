@@ -22,7 +22,7 @@ std::vector<Triangle> random_soup(std::mt19937& random, std::uint32_t vertices, 
   return soup;
 }
 
-TEST(mesh::Topology, AgreesWithBruteForceOnRandomSoups) {
+TEST(Topology, AgreesWithBruteForceOnRandomSoups) {
   std::mt19937 random(1);
   for (int round = 0; round < 300; ++round) {
     const std::uint32_t vertices = 3 + round % 12;
@@ -60,7 +60,7 @@ TEST(mesh::Topology, AgreesWithBruteForceOnRandomSoups) {
   }
 }
 
-TEST(mesh::Topology, VertexFacesAgreeWithBruteForce) {
+TEST(Topology, VertexFacesAgreeWithBruteForce) {
   std::mt19937 random(2);
   for (int round = 0; round < 100; ++round) {
     const std::vector<Triangle> soup = random_soup(random, 9, 25);

@@ -153,7 +153,7 @@ TEST(TrianglePair, ExtremeCoordinates) {
   }
 }
 
-TEST(mesh::Orientation, IsExactWhereRoundingIsNot) {
+TEST(Orientation, IsExactWhereRoundingIsNot) {
   // Four points of a plane, and one of them off by the smallest number there is.
   const double third = 1.0 / 3, tiny = std::numeric_limits<double>::denorm_min();
   const Vec3 a{0, 0, 0}, b{third, 0.1, 0}, c{0.7, third, 0};
@@ -166,7 +166,7 @@ TEST(mesh::Orientation, IsExactWhereRoundingIsNot) {
 
 // Points almost on a line and almost in a plane. Whatever corner comes first, and at any power of two:
 // rounding and underflow would have their say.
-TEST(mesh::Orientation, AgreesWithItself) {
+TEST(Orientation, AgreesWithItself) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> at(0.5, 1);
   const double small = std::ldexp(1, -350);

@@ -9,23 +9,30 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <memory>
 
+#include "engine/cpu/ablation.h"
 #include "engine/cpu/site_lists-inl.h"
+#include "engine/cpu/work_counts.h"
 
 #ifndef SDM_DESCENT_ONCE
 #define SDM_DESCENT_ONCE
 namespace sdm::cpu {
 namespace {
 
-// A shared traversal pays off if the group has at least this many points per leaf of O2's tree within range,
-// or at most kFewPoints points; otherwise its parts use traversals of their own. (Measured.)
+// A list for a group is worth its traversal where the group has so many points for each leaf of O2's tree
+// within reach, or is as small as kFewPoints; else its parts fare better with traversals of their own.
+// (Measured.)
 constexpr std::size_t kPointsPerLeaf = 14, kFewPoints = 64;
 // So many sites are evaluated for all packets of a ball, rather than filtered any further: more where there
 // are only four packets. (Measured.)
 constexpr std::size_t few_sites(int level) {
+  if (!uses(Idea::short_lists)) return 0;
   return level == 1 ? 8 : 3;
 }
+// The highest level whose groups get a traversal of their own.
+constexpr int kHighestGroups = !uses(Idea::groups)         ? 0
+                               : !uses(Idea::large_groups) ? 1
+                                                           : PointGroup::kLevels - 1;
 
 }  // namespace
 }  // namespace sdm::cpu
@@ -80,15 +87,18 @@ class Search {
 
   // Finds the winners of a ball's points by a traversal for them all, or for each of the balls below.
   void start(int level, size_t index) {
+    if constexpr (kHighestGroups < PointGroup::kLevels - 1)
+      if (level > kHighestGroups)
+        return for_children(level, index, [&](size_t child) { start(level - 1, child); });
     const Ball& ball = s_.points.balls[level][index];
     SiteLists& lists = s_.lists[level];
     lists.clear();
-    ++s_.counts.groups;
+    count_work(&WorkCounts::groups);
     Nearest nearest = within_limit(ball);
-    if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the previous group is nearby
+    if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the group before lies near
       nearest = last_, nearest.squared = squared_distance(ball, last_.point);
     improve_in_tree(nearest, ball.centre);
-    if (nearest.found) last_ = nearest;
+    if (uses(Idea::last_nearest) && nearest.found) last_ = nearest;
     const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
     const size_t points = PointGroup::points_at(level);
     const size_t most_leaves =
@@ -132,7 +142,7 @@ class Search {
         improve_by_centres(nearest, entry.child & ~hierarchy::WideTree::kLeafBit, p);
         continue;
       }
-      ++s_.counts.nodes;
+      count_work(&WorkCounts::nodes);
       const hierarchy::WideTree::Node& node = tree_.nodes[entry.child];
       alignas(64) float squared[hierarchy::WideTree::kWidth];
       uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
@@ -181,7 +191,7 @@ class Search {
     while (!open.empty()) {
       const hierarchy::WideTree::Node& node = tree_.nodes[open.back()];
       open.pop_back();
-      ++s_.counts.nodes;
+      count_work(&WorkCounts::nodes);
       uint32_t leaves = 0;
       const uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
         const Block d;
@@ -199,13 +209,14 @@ class Search {
 
   // The sites of the leaves found that matter: first by bounds on all that a face owns, then one by one.
   void collect(const CandidateBound& reach, SiteLists& lists) {
-    s_.counts.leaves += s_.leaves.size();
+    count_work(&WorkCounts::leaves, s_.leaves.size());
     s_.owners.clear();
     for (const uint32_t child : s_.leaves) {
       const uint32_t leaf = child & ~hierarchy::WideTree::kLeafBit, first = regions_.leaves[leaf];
       uint32_t places[SiteBlock::kWidth];
       for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
       append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {
+               if constexpr (!uses(Idea::face_bounds)) return hn::FirstN(Block(), SiteBlock::kWidth - lane);
                return may_be_closest(Block(), regions_.bounds[leaf], lane, reach);
              }));
     }
@@ -233,7 +244,7 @@ class Search {
     gather(
         s_.vertices, r.vertices,
         [&](uint32_t i) { return SiteId::of(SiteType::vertex, r.vertices[i].vertex); }, all.vertices);
-    s_.counts.tree_sites += all.size();
+    count_work(&WorkCounts::gathered, all.size());
     keep(all, reach, lists);
   }
 
@@ -263,7 +274,7 @@ class Search {
     improve(nearest, from.faces, ball.centre);
     improve(nearest, from.edges, ball.centre);
     improve(nearest, from.vertices, ball.centre);
-    s_.counts.list_blocks += from.faces.used + from.edges.used + from.vertices.used;
+    count_work(&WorkCounts::list_blocks, from.faces.used + from.edges.used + from.vertices.used);
     const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
     keep(from, reach, to);
   }
@@ -274,7 +285,7 @@ class Search {
     std::fill_n(winners, PointGroup::kPacket, lists.size() == 0 ? kNone : SiteId::kUnsettled);
     alignas(64) float best[PointGroup::kPacket];
     std::fill_n(best, PointGroup::kPacket, std::numeric_limits<float>::infinity());
-    s_.counts.evaluations += lists.size();
+    count_work(&WorkCounts::evaluations, lists.size());
     // Of equals the first wins: at the end of an edge its vertex, at the border of a face its edge.
     offer(lists.vertices, first, best, winners);
     offer(lists.edges, first, best, winners);
@@ -327,16 +338,6 @@ HWY_EXPORT(FindWinners);
 void find_winners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,
                   Descent& descent) {
   HWY_DYNAMIC_DISPATCH(FindWinners)(tree, regions, limit, descent);
-}
-
-DescentCounts count_work(const sites::SitesData& sites, std::span<const Vec3> points) {
-  const auto descent = std::make_unique<Descent>();
-  for (std::size_t first = 0; first < points.size(); first += PointGroup::kMostPoints) {
-    descent->points.place(points.subspan(first, std::min(PointGroup::kMostPoints, points.size() - first)),
-                          sites.frame);
-    find_winners(sites.wide, sites.regions, 1e18f, *descent);
-  }
-  return descent->counts;
 }
 
 }  // namespace sdm::cpu

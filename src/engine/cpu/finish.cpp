@@ -10,6 +10,8 @@
 
 #include "core/vec.h"
 #include "core/vec_lanes-inl.h"
+#include "engine/cpu/ablation.h"
+#include "engine/engine.h"
 #include "engine/reference/reference_engine.h"
 #include "sites/closest_on_face.h"
 
@@ -19,9 +21,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace core::HWY_NAMESPACE;
 
 constexpr size_t kPacket = sites::ClosestPacket::kSize;
-static_assert(kPacket == PointGroup::kPacket);  // selected sites come in whole packets
+static_assert(kPacket == PointGroup::kPacket);  // winners come in whole packets
 
-// Queries and their results.
+// Queries, and what is found for them.
 struct Packet {
   sites::ClosestPacket& found;
   alignas(64) double query[3][kPacket];
@@ -116,7 +118,7 @@ uint32_t on_edge(const sites::SitesData& sites, uint32_t edge, Packet& p, uint32
 // Where no edge of the vertex comes closer.
 uint32_t on_vertex(const sites::SitesData& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
   const Vec3& point = sites.mesh.positions[vertex];
-  // In a closed, consistently oriented mesh every neighbour follows the vertex in exactly one face.
+  // In a closed mesh whose faces all run alike every neighbour follows the vertex in one face.
   const int last = sites.alike ? 1 : 2;
   return for_lanes(p, lanes, [&](const Vec3v& query, Vec3v& from) HWY_ATTR {
     const Doubles d;
@@ -155,7 +157,7 @@ HWY_INLINE uint32_t lanes_of(const uint32_t* winners, uint32_t winner) {
   return bits;
 }
 
-// The selected sites of whole packets.
+// What winners say of sites, for whole packets.
 HWY_INLINE void name_sites(const uint32_t* winners, sites::ClosestPacket& found) {
   static_assert(static_cast<int>(SiteType::none) == 255);
   const hn::CappedTag<uint32_t, 8> d;
@@ -183,7 +185,8 @@ void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const
     pending &= ~lanes;
     uint32_t open = lanes;
     if (site.packed == kNone) continue;
-    if (site.packed != SiteId::kUnsettled) open &= ~on_site(sites, site, p, lanes);
+    if (uses(Idea::packed_finish) && site.packed != SiteId::kUnsettled)
+      open &= ~on_site(sites, site, p, lanes);
     for (; open != 0; open &= open - 1) {
       const auto i = static_cast<size_t>(std::countr_zero(open));
       found.set(i, queries[i],

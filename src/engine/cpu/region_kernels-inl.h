@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/cpu/ablation.h"
 #include "engine/cpu/point_group.h"
 #include "engine/cpu/site_lists.h"
 
@@ -72,21 +73,26 @@ struct CandidateBound {
   HWY_INLINE hn::Mask<D> holds(D d, hn::Vec<D> squared_to_b, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) const {
     const auto a_to_b = square_norm(d, hn::Sub(hn::Set(d, from_a[0]), x), hn::Sub(hn::Set(d, from_a[1]), y),
                                     hn::Sub(hn::Set(d, from_a[2]), z));
-    const auto bound = hn::MulAdd(hn::Set(d, 2 * radius), hn::Sqrt(a_to_b), hn::Set(d, squared));
+    auto bound = hn::MulAdd(hn::Set(d, 2 * radius), hn::Sqrt(a_to_b), hn::Set(d, squared));
+    if constexpr (!uses(Idea::convexity)) {
+      const float squared_to_a = from_a[0] * from_a[0] + from_a[1] * from_a[1] + from_a[2] * from_a[2];
+      const float farthest = std::sqrt(squared_to_a) + 2 * radius;
+      bound = hn::Set(d, farthest * farthest + squared - squared_to_a);
+    }
     return hn::Le(squared_to_b, hn::Min(bound, hn::Set(d, squared_limit)));
   }
 };
 
-// plane·(p, −1) for a block of planes and one point.
-HWY_INLINE BlockVec height(Block d, const float (&plane)[4][SiteBlock::kWidth], size_t i, const float* p) {
+// plane·(p, −1) for a block of planes, four rows, and one point.
+HWY_INLINE BlockVec height(Block d, const SiteBlock::Row* plane, size_t i, const float* p) {
   BlockVec h = hn::MulSub(hn::Load(d, plane[0] + i), hn::Set(d, p[0]), hn::Load(d, plane[3] + i));
   h = hn::MulAdd(hn::Load(d, plane[1] + i), hn::Set(d, p[1]), h);
   return hn::MulAdd(hn::Load(d, plane[2] + i), hn::Set(d, p[2]), h);
 }
 
 // plane·(p, −1) for one plane and many points.
-HWY_INLINE PointVec height(Points d, const float (&plane)[4][SiteBlock::kWidth], uint32_t lane, PointVec x,
-                           PointVec y, PointVec z) {
+HWY_INLINE PointVec height(Points d, const SiteBlock::Row* plane, uint32_t lane, PointVec x, PointVec y,
+                           PointVec z) {
   PointVec h = hn::MulSub(hn::Set(d, plane[0][lane]), x, hn::Set(d, plane[3][lane]));
   h = hn::MulAdd(hn::Set(d, plane[1][lane]), y, h);
   return hn::MulAdd(hn::Set(d, plane[2][lane]), z, h);
@@ -111,8 +117,8 @@ HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, si
   // Beside the disc, but for what cancels in the difference of squares.
   const BlockVec beside =
       hn::Sqrt(hn::Max(hn::NegMulAdd(squared, hn::Set(d, 1e-6f), hn::Sub(squared, h2)), hn::Zero(d)));
-  const BlockVec most = hn::MulAdd(hn::Load(d, bounds.slope + i), hn::Add(hn::Abs(h), reach_radius),
-                                   hn::Add(radius, reach_radius));
+  const BlockVec slope = uses(Idea::cones) ? hn::Load(d, bounds.slope + i) : hn::Set(d, sites::FaceBounds::kOpen);
+  const BlockVec most = hn::MulAdd(slope, hn::Add(hn::Abs(h), reach_radius), hn::Add(radius, reach_radius));
   // c − b = h normal + s (r − h normal), and the convex piece is the disc.
   const BlockVec beyond = hn::Max(hn::Sub(beside, radius), hn::Zero(d));
   const BlockVec s = hn::Div(beyond, hn::Max(beside, hn::Set(d, 1e-30f)));
@@ -126,72 +132,81 @@ HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, si
 
 HWY_INLINE BlockMask may_be_closest(Block d, const FaceBlock& block, size_t i, const CandidateBound& reach) {
   const BlockVec inner = hn::Set(d, -reach.radius);
-  BlockMask pass = hn::Ge(height(d, block.wall[0], i, reach.centre), inner);
-  pass = hn::And(pass, hn::Ge(height(d, block.wall[1], i, reach.centre), inner));
-  pass = hn::And(pass, hn::Ge(height(d, block.wall[2], i, reach.centre), inner));
+  const SiteBlock::Row* plane = block.row + FaceBlock::kPlane;
+  BlockMask pass = hn::Ge(height(d, block.row + FaceBlock::wall(0), i, reach.centre), inner);
+  pass = hn::And(pass, hn::Ge(height(d, block.row + FaceBlock::wall(1), i, reach.centre), inner));
+  pass = hn::And(pass, hn::Ge(height(d, block.row + FaceBlock::wall(2), i, reach.centre), inner));
   // The convex piece is the face's whole plane.
-  const BlockVec h = height(d, block.plane, i, reach.centre);
-  return hn::And(pass, reach.holds(d, hn::Mul(h, h), hn::Mul(h, hn::Load(d, block.plane[0] + i)),
-                                   hn::Mul(h, hn::Load(d, block.plane[1] + i)),
-                                   hn::Mul(h, hn::Load(d, block.plane[2] + i))));
+  const BlockVec h = height(d, plane, i, reach.centre);
+  const auto from = [&](int k) HWY_ATTR { return hn::Mul(h, hn::Load(d, plane[k] + i)); };
+  const BlockMask near = reach.holds(d, hn::Mul(h, h), from(0), from(1), from(2));
+  return uses(Idea::regions) ? hn::And(pass, near) : near;
 }
 
 HWY_INLINE BlockVec squared(Block d, const FaceBlock& block, size_t i, const float* p) {
-  const BlockVec h = height(d, block.plane, i, p);
-  const BlockVec inner = hn::Min(hn::Min(height(d, block.wall[0], i, p), height(d, block.wall[1], i, p)),
-                                 height(d, block.wall[2], i, p));
+  const BlockVec h = height(d, block.row + FaceBlock::kPlane, i, p);
+  const BlockVec inner = hn::Min(hn::Min(height(d, block.row + FaceBlock::wall(0), i, p),
+                                         height(d, block.row + FaceBlock::wall(1), i, p)),
+                                 height(d, block.row + FaceBlock::wall(2), i, p));
   return hn::IfThenElse(hn::Ge(inner, hn::Zero(d)), hn::Mul(h, h), hn::Inf(d));
 }
 
 HWY_INLINE PointVec squared(Points d, const FaceBlock& block, uint32_t lane, PointVec x, PointVec y,
                             PointVec z) {
-  const PointVec h = height(d, block.plane, lane, x, y, z);
-  const PointVec inner =
-      hn::Min(hn::Min(height(d, block.wall[0], lane, x, y, z), height(d, block.wall[1], lane, x, y, z)),
-              height(d, block.wall[2], lane, x, y, z));
+  const PointVec h = height(d, block.row + FaceBlock::kPlane, lane, x, y, z);
+  const PointVec inner = hn::Min(hn::Min(height(d, block.row + FaceBlock::wall(0), lane, x, y, z),
+                                         height(d, block.row + FaceBlock::wall(1), lane, x, y, z)),
+                                 height(d, block.row + FaceBlock::wall(2), lane, x, y, z));
   return hn::IfThenElse(hn::Ge(inner, hn::Zero(d)), hn::Mul(h, h), hn::Inf(d));
 }
 
 inline void closest(const FaceBlock& block, size_t lane, const float* p, float (&out)[3]) {
-  float h = -block.plane[3][lane];
-  for (int k = 0; k < 3; ++k) h += block.plane[k][lane] * p[k];
-  for (int k = 0; k < 3; ++k) out[k] = p[k] - h * block.plane[k][lane];
+  float h = -block.row[FaceBlock::kPlane + 3][lane];
+  for (int k = 0; k < 3; ++k) h += block.row[FaceBlock::kPlane + k][lane] * p[k];
+  for (int k = 0; k < 3; ++k) out[k] = p[k] - h * block.row[FaceBlock::kPlane + k][lane];
 }
 
 HWY_INLINE BlockMask may_be_closest(Block d, const EdgeBlock& block, size_t i, const CandidateBound& reach) {
   BlockVec r[3], t = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
-    r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.start[k] + i));
-    t = hn::MulAdd(r[k], hn::Load(d, block.direction[k] + i), t);
+    r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.row[EdgeBlock::kStart + k] + i));
+    t = hn::MulAdd(r[k], hn::Load(d, block.row[EdgeBlock::kDirection + k] + i), t);
   }
-  const BlockVec radius = hn::Set(d, reach.radius), length = hn::Load(d, block.length + i);
+  const BlockVec radius = hn::Set(d, reach.radius), length = hn::Load(d, block.row[EdgeBlock::kLength] + i);
   BlockMask pass = hn::And(hn::Ge(t, hn::Neg(radius)), hn::Le(t, hn::Add(length, radius)));
-  for (const auto& wall : block.wall) pass = hn::And(pass, hn::Le(height(d, wall, i, reach.centre), radius));
+  for (size_t k = 0; k < 2; ++k)
+    pass = hn::And(pass, hn::Le(height(d, block.row + EdgeBlock::wall(k), i, reach.centre), radius));
   const BlockVec s = hn::Min(hn::Max(t, hn::Zero(d)), length);
-  for (int k = 0; k < 3; ++k) r[k] = hn::NegMulAdd(s, hn::Load(d, block.direction[k] + i), r[k]);
-  return hn::And(pass, reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]));
+  for (int k = 0; k < 3; ++k)
+    r[k] = hn::NegMulAdd(s, hn::Load(d, block.row[EdgeBlock::kDirection + k] + i), r[k]);
+  const BlockMask near = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
+  return uses(Idea::regions) ? hn::And(pass, near) : near;
 }
 
 HWY_INLINE BlockVec squared(Block d, const EdgeBlock& block, size_t i, const float* p) {
   BlockVec r[3], t = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
-    r[k] = hn::Sub(hn::Set(d, p[k]), hn::Load(d, block.start[k] + i));
-    t = hn::MulAdd(r[k], hn::Load(d, block.direction[k] + i), t);
+    r[k] = hn::Sub(hn::Set(d, p[k]), hn::Load(d, block.row[EdgeBlock::kStart + k] + i));
+    t = hn::MulAdd(r[k], hn::Load(d, block.row[EdgeBlock::kDirection + k] + i), t);
   }
-  const auto between = hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::Load(d, block.length + i)));
-  for (int k = 0; k < 3; ++k) r[k] = hn::NegMulAdd(t, hn::Load(d, block.direction[k] + i), r[k]);
+  const auto between =
+      hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::Load(d, block.row[EdgeBlock::kLength] + i)));
+  for (int k = 0; k < 3; ++k)
+    r[k] = hn::NegMulAdd(t, hn::Load(d, block.row[EdgeBlock::kDirection + k] + i), r[k]);
   return hn::IfThenElse(between, square_norm(d, r[0], r[1], r[2]), hn::Inf(d));
 }
 
 HWY_INLINE PointVec squared(Points d, const EdgeBlock& block, uint32_t lane, PointVec x, PointVec y,
                             PointVec z) {
-  const PointVec ux = hn::Set(d, block.direction[0][lane]), uy = hn::Set(d, block.direction[1][lane]),
-                 uz = hn::Set(d, block.direction[2][lane]);
-  x = hn::Sub(x, hn::Set(d, block.start[0][lane]));
-  y = hn::Sub(y, hn::Set(d, block.start[1][lane]));
-  z = hn::Sub(z, hn::Set(d, block.start[2][lane]));
+  const PointVec ux = hn::Set(d, block.row[EdgeBlock::kDirection][lane]),
+                 uy = hn::Set(d, block.row[EdgeBlock::kDirection + 1][lane]),
+                 uz = hn::Set(d, block.row[EdgeBlock::kDirection + 2][lane]);
+  x = hn::Sub(x, hn::Set(d, block.row[EdgeBlock::kStart][lane]));
+  y = hn::Sub(y, hn::Set(d, block.row[EdgeBlock::kStart + 1][lane]));
+  z = hn::Sub(z, hn::Set(d, block.row[EdgeBlock::kStart + 2][lane]));
   PointVec t = hn::MulAdd(z, uz, hn::MulAdd(y, uy, hn::Mul(x, ux)));
-  const auto between = hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::Set(d, block.length[lane])));
+  const auto between =
+      hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::Set(d, block.row[EdgeBlock::kLength][lane])));
   const PointVec s =
       square_norm(d, hn::NegMulAdd(t, ux, x), hn::NegMulAdd(t, uy, y), hn::NegMulAdd(t, uz, z));
   return hn::IfThenElse(between, s, hn::Inf(d));
@@ -199,40 +214,44 @@ HWY_INLINE PointVec squared(Points d, const EdgeBlock& block, uint32_t lane, Poi
 
 inline void closest(const EdgeBlock& block, size_t lane, const float* p, float (&out)[3]) {
   float t = 0;
-  for (int k = 0; k < 3; ++k) t += (p[k] - block.start[k][lane]) * block.direction[k][lane];
-  t = std::min(std::max(t, 0.0f), block.length[lane]);
-  for (int k = 0; k < 3; ++k) out[k] = block.start[k][lane] + t * block.direction[k][lane];
+  for (int k = 0; k < 3; ++k)
+    t += (p[k] - block.row[EdgeBlock::kStart + k][lane]) * block.row[EdgeBlock::kDirection + k][lane];
+  t = std::min(std::max(t, 0.0f), block.row[EdgeBlock::kLength][lane]);
+  for (int k = 0; k < 3; ++k)
+    out[k] = block.row[EdgeBlock::kStart + k][lane] + t * block.row[EdgeBlock::kDirection + k][lane];
 }
 
 HWY_INLINE BlockMask may_be_closest(Block d, const VertexBlock& block, size_t i,
                                     const CandidateBound& reach) {
   BlockVec r[3];
-  for (int k = 0; k < 3; ++k) r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.point[k] + i));
+  for (int k = 0; k < 3; ++k)
+    r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.row[VertexBlock::kPoint + k] + i));
   BlockMask pass = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
-  for (const auto& ray : block.ray) {
-    BlockVec along = hn::Mul(r[0], hn::Load(d, ray[0] + i));
-    along = hn::MulAdd(r[1], hn::Load(d, ray[1] + i), along);
-    along = hn::MulAdd(r[2], hn::Load(d, ray[2] + i), along);
+  for (size_t ray = 0; uses(Idea::regions) && ray < sites::VertexRegion::kRays; ++ray) {
+    const SiteBlock::Row* direction = block.row + VertexBlock::ray(ray);
+    BlockVec along = hn::Mul(r[0], hn::Load(d, direction[0] + i));
+    along = hn::MulAdd(r[1], hn::Load(d, direction[1] + i), along);
+    along = hn::MulAdd(r[2], hn::Load(d, direction[2] + i), along);
     pass = hn::And(pass, hn::Le(along, hn::Set(d, reach.radius)));
   }
   return pass;
 }
 
 HWY_INLINE BlockVec squared(Block d, const VertexBlock& block, size_t i, const float* p) {
-  return square_norm(d, hn::Sub(hn::Set(d, p[0]), hn::Load(d, block.point[0] + i)),
-                     hn::Sub(hn::Set(d, p[1]), hn::Load(d, block.point[1] + i)),
-                     hn::Sub(hn::Set(d, p[2]), hn::Load(d, block.point[2] + i)));
+  return square_norm(d, hn::Sub(hn::Set(d, p[0]), hn::Load(d, block.row[VertexBlock::kPoint] + i)),
+                     hn::Sub(hn::Set(d, p[1]), hn::Load(d, block.row[VertexBlock::kPoint + 1] + i)),
+                     hn::Sub(hn::Set(d, p[2]), hn::Load(d, block.row[VertexBlock::kPoint + 2] + i)));
 }
 
 HWY_INLINE PointVec squared(Points d, const VertexBlock& block, uint32_t lane, PointVec x, PointVec y,
                             PointVec z) {
-  return square_norm(d, hn::Sub(x, hn::Set(d, block.point[0][lane])),
-                     hn::Sub(y, hn::Set(d, block.point[1][lane])),
-                     hn::Sub(z, hn::Set(d, block.point[2][lane])));
+  return square_norm(d, hn::Sub(x, hn::Set(d, block.row[VertexBlock::kPoint][lane])),
+                     hn::Sub(y, hn::Set(d, block.row[VertexBlock::kPoint + 1][lane])),
+                     hn::Sub(z, hn::Set(d, block.row[VertexBlock::kPoint + 2][lane])));
 }
 
 inline void closest(const VertexBlock& block, size_t lane, const float*, float (&out)[3]) {
-  for (int k = 0; k < 3; ++k) out[k] = block.point[k][lane];
+  for (int k = 0; k < 3; ++k) out[k] = block.row[VertexBlock::kPoint + k][lane];
 }
 
 }  // namespace sdm::cpu::HWY_NAMESPACE

@@ -12,6 +12,8 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstring>
 #include <span>
 
 #include "engine/cpu/region_kernels-inl.h"
@@ -30,28 +32,6 @@ constexpr std::array<std::uint64_t, 256> kPositions = [] {
       if (mask >> bit & 1) table[mask] |= std::uint64_t{bit} << (8 * count++);
   return table;
 }();
-
-// A block's rows, one after the other, as its regions have them.
-template <class Block>
-struct Rows;
-template <>
-struct Rows<FaceBlock> {
-  static constexpr std::size_t kCount = 16;
-  static auto* first(auto& block) { return block.plane[0]; }
-  static const float* of(const sites::FaceRegion& region) { return region.plane; }
-};
-template <>
-struct Rows<EdgeBlock> {
-  static constexpr std::size_t kCount = 15;
-  static auto* first(auto& block) { return block.start[0]; }
-  static const float* of(const sites::EdgeRegion& region) { return region.start; }
-};
-template <>
-struct Rows<VertexBlock> {
-  static constexpr std::size_t kCount = 3 + 3 * sites::VertexRegion::kRays;
-  static auto* first(auto& block) { return block.point[0]; }
-  static const float* of(const sites::VertexRegion& region) { return region.point; }
-};
 
 }  // namespace
 }  // namespace sdm::cpu
@@ -94,24 +74,33 @@ HWY_INLINE void append(std::vector<uint32_t>& to, const uint32_t* numbers, uint3
   }
 }
 
-// Rows `row` to `row + 3` of a block from the same places of eight regions.
-HWY_INLINE void transpose_four(const float* const (&regions)[SiteBlock::kWidth], size_t row, float* to) {
-  constexpr size_t kWidth = SiteBlock::kWidth;
+// Sets four rows of a block, from `row` on, to the same numbers of eight regions.
+template <class Some>
+HWY_INLINE void transpose_four(const typename Some::Region* const (&regions)[SiteBlock::kWidth], size_t row,
+                               Some& block) {
+  SiteBlock::Row* to = block.row + row;
+  // A load may cross from one member of a region to the next: it reads the representation of the whole.
+  const auto numbers = [&](size_t lane) {
+    return reinterpret_cast<const std::byte*>(regions[lane]) + row * sizeof(float);
+  };
 #if HWY_TARGET == HWY_SCALAR
-  for (size_t lane = 0; lane < kWidth; ++lane)
-    for (size_t k = row; k < row + 4; ++k) to[kWidth * k + lane] = regions[lane][k];
+  for (size_t lane = 0; lane < SiteBlock::kWidth; ++lane) {
+    float four[4];
+    std::memcpy(four, numbers(lane), sizeof four);
+    for (size_t k = 0; k < 4; ++k) to[k][lane] = four[k];
+  }
 #else
   const hn::Full128<float> d;
-  for (size_t lane = 0; lane < kWidth; lane += 4) {
-    const auto a = hn::LoadU(d, regions[lane] + row), b = hn::LoadU(d, regions[lane + 1] + row),
-               c = hn::LoadU(d, regions[lane + 2] + row), e = hn::LoadU(d, regions[lane + 3] + row);
+  const auto load = [&](size_t lane)
+                        HWY_ATTR { return hn::LoadU(d, reinterpret_cast<const float*>(numbers(lane))); };
+  for (size_t lane = 0; lane < SiteBlock::kWidth; lane += 4) {
+    const auto a = load(lane), b = load(lane + 1), c = load(lane + 2), e = load(lane + 3);
     const auto ab_lower = hn::InterleaveLower(d, a, b), ce_lower = hn::InterleaveLower(d, c, e),
                ab_upper = hn::InterleaveUpper(d, a, b), ce_upper = hn::InterleaveUpper(d, c, e);
-    float* out = to + kWidth * row + lane;
-    hn::StoreU(hn::ConcatLowerLower(d, ce_lower, ab_lower), d, out);
-    hn::StoreU(hn::ConcatUpperUpper(d, ce_lower, ab_lower), d, out + kWidth);
-    hn::StoreU(hn::ConcatLowerLower(d, ce_upper, ab_upper), d, out + 2 * kWidth);
-    hn::StoreU(hn::ConcatUpperUpper(d, ce_upper, ab_upper), d, out + 3 * kWidth);
+    hn::StoreU(hn::ConcatLowerLower(d, ce_lower, ab_lower), d, to[0] + lane);
+    hn::StoreU(hn::ConcatUpperUpper(d, ce_lower, ab_lower), d, to[1] + lane);
+    hn::StoreU(hn::ConcatLowerLower(d, ce_upper, ab_upper), d, to[2] + lane);
+    hn::StoreU(hn::ConcatUpperUpper(d, ce_upper, ab_upper), d, to[3] + lane);
   }
 #endif
 }
@@ -121,21 +110,22 @@ template <class Some, class Id>
 void gather(std::span<const uint32_t> places, const std::vector<typename Some::Region>& regions, const Id& id,
             SiteList<Some>& list) {
   constexpr size_t kWidth = SiteBlock::kWidth, kAhead = 4 * kWidth;
-  constexpr size_t kTransposed = 16;  // where a region has fifteen numbers, also what follows them
   list.used = (places.size() + kWidth - 1) / kWidth;
   if (list.used > list.blocks.size()) list.blocks.resize(2 * list.used);
   for (size_t i = 0; i < std::min(kAhead, places.size()); ++i) hwy::Prefetch(&regions[places[i]]);
   for (size_t b = 0; b < list.used; ++b) {
     Some& block = list.blocks[b];
-    const float* from[kWidth];
+    const typename Some::Region* from[kWidth];
     block.count = static_cast<uint32_t>(std::min(kWidth, places.size() - kWidth * b));
     for (size_t lane = 0; lane < kWidth; ++lane) {
       const size_t i = kWidth * b + lane;
       if (i + kAhead < places.size()) hwy::Prefetch(&regions[places[i + kAhead]]);
-      const uint32_t place = places[std::min(i, places.size() - 1)];
-      from[lane] = Rows<Some>::of(regions[place]);
+      from[lane] = &regions[places[std::min(i, places.size() - 1)]];
     }
-    for (size_t row = 0; row < kTransposed; row += 4) transpose_four(from, row, Rows<Some>::first(block));
+    // Where there are fifteen rows, the last four overlap the four before.
+    static_assert(Some::kRows == 15 || Some::kRows == 16);
+    for (size_t row = 0; row < Some::kRows; row += 4)
+      transpose_four(from, std::min(row, Some::kRows - 4), block);
     for (size_t lane = 0; lane < block.count; ++lane) block.id[lane] = id(places[kWidth * b + lane]).packed;
   }
 }
@@ -143,7 +133,6 @@ void gather(std::span<const uint32_t> places, const std::vector<typename Some::R
 // Appends the sites of a block whose bits are set: they fill the list's last block, and then another.
 template <class Some>
 void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
-  using R = Rows<Some>;
   constexpr uint32_t kWidth = SiteBlock::kWidth;
   if (list.used + 1 >= list.blocks.size()) list.blocks.resize(2 * list.blocks.size() + 2);
   if (list.used == 0 || list.blocks[list.used - 1].count == kWidth) list.blocks[list.used++].count = 0;
@@ -154,14 +143,12 @@ void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
     next.count = total - kWidth;
     ++list.used;
   }
-  const float* from = R::first(block);
-  float *to = R::first(last), *overflow = R::first(next);
   if constexpr (hn::MaxLanes(Block()) < kWidth) {
     for (uint32_t at = filled; bits != 0; bits &= bits - 1, ++at) {
       const int lane = std::countr_zero(bits);
-      float* out = at < kWidth ? to + at : overflow + (at - kWidth);
-      for (uint32_t row = 0; row < R::kCount; ++row) out[kWidth * row] = from[kWidth * row + lane];
-      (at < kWidth ? last.id[at] : next.id[at - kWidth]) = block.id[lane];
+      Some& to = at < kWidth ? last : next;
+      for (size_t row = 0; row < Some::kRows; ++row) to.row[row][at % kWidth] = block.row[row][lane];
+      to.id[at % kWidth] = block.id[lane];
     }
   } else {
     // One permutation moves the sites to the lanes from `filled` on, and those that are too many to the
@@ -174,8 +161,7 @@ void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
       hn::StoreU(hn::IfThenElse(hn::FirstN(tag, filled), hn::LoadU(tag, out), moved), tag, out);
       if (total > kWidth) hn::StoreU(moved, tag, out_next);
     };
-    for (uint32_t row = 0; row < R::kCount; ++row)
-      move(d, from + kWidth * row, to + kWidth * row, overflow + kWidth * row);
+    for (size_t row = 0; row < Some::kRows; ++row) move(d, block.row[row], last.row[row], next.row[row]);
     move(du, block.id, last.id, next.id);
   }
 }

@@ -3,13 +3,14 @@
 
 #include <sdm/sites.h>
 
+#include <cstddef>
 #include <vector>
 
 #include "sites/regions.h"
 
 namespace sdm::cpu {
 
-/// A site of O2, or none: no site within the limit, or (unsettled) single precision could not decide.
+/// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could tell.
 struct SiteId {
   static constexpr std::uint32_t kUnsettled = kNone - 1, kSiteMask = 0x3FFFFFFF;
 
@@ -24,31 +25,46 @@ struct SiteId {
   [[nodiscard]] std::uint32_t site() const { return packed & kSiteMask; }
 };
 
-/// Eight regions of mesh/regions.h, a lane each: rows in the order of the region's numbers, then the site.
+/// Up to eight sites, a lane each.
 struct SiteBlock {
   static constexpr std::uint32_t kWidth = 8;
+  using Row = float[kWidth];  ///< the same number of each site
   std::uint32_t count = 0;
 };
-struct FaceBlock : SiteBlock {
-  using Region = sites::FaceRegion;
-  alignas(32) float plane[4][kWidth];
-  alignas(32) float wall[3][4][kWidth];
+
+/// The regions of eight sites, transposed: row[r][lane] is number r of a region of mesh/regions.h.
+template <class RegionType, std::size_t rows>
+struct RegionBlock : SiteBlock {
+  using Region = RegionType;
+  static constexpr std::size_t kRows = rows;
+  alignas(32) Row row[kRows];
   alignas(32) std::uint32_t id[kWidth];  ///< SiteId::packed
 };
-struct EdgeBlock : SiteBlock {
-  using Region = sites::EdgeRegion;
-  alignas(32) float start[3][kWidth];
-  alignas(32) float direction[3][kWidth];
-  alignas(32) float length[kWidth];
-  alignas(32) float wall[2][4][kWidth];
-  alignas(32) std::uint32_t id[kWidth];
+
+// Each names its rows: a vector has three, one for each coordinate, and a plane four.
+
+struct FaceBlock : RegionBlock<sites::FaceRegion, 16> {
+  static constexpr std::size_t kPlane = 0;
+  static constexpr std::size_t wall(std::size_t k) { return 4 + 4 * k; }
 };
-struct VertexBlock : SiteBlock {
-  using Region = sites::VertexRegion;
-  alignas(32) float point[3][kWidth];
-  alignas(32) float ray[sites::VertexRegion::kRays][3][kWidth];
-  alignas(32) std::uint32_t id[kWidth];
+struct EdgeBlock : RegionBlock<sites::EdgeRegion, 15> {
+  static constexpr std::size_t kStart = 0, kDirection = 3, kLength = 6;
+  static constexpr std::size_t wall(std::size_t k) { return 7 + 4 * k; }
 };
+struct VertexBlock : RegionBlock<sites::VertexRegion, 3 + 3 * sites::VertexRegion::kRays> {
+  static constexpr std::size_t kPoint = 0;
+  static constexpr std::size_t ray(std::size_t k) { return 3 + 3 * k; }
+};
+
+// The order is that of the members.
+static_assert(offsetof(sites::FaceRegion, plane) == FaceBlock::kPlane * sizeof(float) &&
+              offsetof(sites::FaceRegion, wall) == FaceBlock::wall(0) * sizeof(float));
+static_assert(offsetof(sites::EdgeRegion, start) == EdgeBlock::kStart * sizeof(float) &&
+              offsetof(sites::EdgeRegion, direction) == EdgeBlock::kDirection * sizeof(float) &&
+              offsetof(sites::EdgeRegion, length) == EdgeBlock::kLength * sizeof(float) &&
+              offsetof(sites::EdgeRegion, wall) == EdgeBlock::wall(0) * sizeof(float));
+static_assert(offsetof(sites::VertexRegion, point) == VertexBlock::kPoint * sizeof(float) &&
+              offsetof(sites::VertexRegion, ray) == VertexBlock::ray(0) * sizeof(float));
 
 /// All blocks are full but the last one.
 template <class Block>

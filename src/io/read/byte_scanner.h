@@ -1,4 +1,4 @@
-// Numbers in a sequence of bytes.
+// Numbers in binary data.
 #pragma once
 
 #include <sdm/error.h>
@@ -9,9 +9,9 @@
 #include <cstring>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::io {
 
-/// A number stored at `bytes`, in the byte order told.
+/// Returns the number stored at `bytes` in the given byte order.
 template <typename T>
 [[nodiscard]] T load(const char* bytes, std::endian order = std::endian::little) {
   std::array<char, sizeof(T)> raw;
@@ -20,16 +20,16 @@ template <typename T>
   return std::bit_cast<T>(raw);
 }
 
-/// A position in a sequence of bytes that must not be overrun.
+/// Reads binary data from front to back, and never past their end.
 class ByteScanner {
  public:
   explicit ByteScanner(std::string_view bytes, std::endian order = std::endian::little)
       : bytes_(bytes), order_(order) {}
 
   [[nodiscard]] std::size_t remaining() const { return bytes_.size(); }
-  /// Takes the next `count` bytes. Throws sdm::Error where the data end before.
+  /// Takes the next `count` bytes. Throws sdm::Error if fewer are left.
   std::string_view take(std::size_t count) {
-    if (count > bytes_.size()) throw Error("the data end too early; the file is truncated or damaged");
+    if (count > bytes_.size()) throw Error("unexpected end of data; the file is truncated or damaged");
     const std::string_view taken = bytes_.substr(0, count);
     bytes_.remove_prefix(count);
     return taken;
@@ -44,4 +44,4 @@ class ByteScanner {
   std::endian order_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,5 +1,6 @@
 #include "io/read/file_bytes.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <cerrno>
@@ -8,10 +9,10 @@
 
 #include "core/memory.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
-// Every format takes at least a fifth as many bytes as the mesh, and what it is made from, in memory.
+// In every format, the mesh and what it is built from take at most five times as much memory as the file.
 constexpr std::size_t kMemoryPerByte = 5;
 
 }  // namespace
@@ -21,12 +22,12 @@ FileBytes read_bytes(const std::filesystem::path& file) {
   const auto type = std::filesystem::status(file, error).type();
   if (type == std::filesystem::file_type::not_found) throw Error("there is no such file");
   if (type == std::filesystem::file_type::directory) throw Error("this is a folder, not a mesh file");
-  if (error) throw Error("cannot be read: " + error.message());
+  if (error) throw Error(fmt::format("cannot be read: {}", error.message()));
   if (type != std::filesystem::file_type::regular) throw Error("this is not a regular file");
 
   const auto close = [](std::FILE* stream) { std::fclose(stream); };
   const std::unique_ptr<std::FILE, decltype(close)> stream(std::fopen(file.c_str(), "rb"), close);
-  if (!stream) throw Error(std::string("cannot be opened: ") + std::strerror(errno));
+  if (!stream) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
 
   FileBytes bytes;
   bytes.size = std::filesystem::file_size(file);
@@ -35,9 +36,10 @@ FileBytes read_bytes(const std::filesystem::path& file) {
                  "reading it");
   bytes.data = std::make_unique_for_overwrite<char[]>(bytes.size);
   if (std::fread(bytes.data.get(), 1, bytes.size, stream.get()) != bytes.size)
-    throw Error(std::string("cannot be read: ") +
-                (std::ferror(stream.get()) ? std::strerror(errno) : "it shrinks"));
+    throw Error(fmt::format("cannot be read: {}", std::ferror(stream.get())
+                                                      ? std::strerror(errno)
+                                                      : "it became shorter while it was being read"));
   return bytes;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

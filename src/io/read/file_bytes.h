@@ -1,4 +1,4 @@
-// A whole file in memory.
+// A file in memory.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 #include <memory>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::io {
 
 struct FileBytes {
   std::unique_ptr<char[]> data;
@@ -15,8 +15,8 @@ struct FileBytes {
   [[nodiscard]] std::string_view view() const { return {data.get(), size}; }
 };
 
-/// Reads a regular file, after checking that there is memory for it and for a mesh made of it. Throws
-/// sdm::Error that names the fault, not the file.
+/// Reads a regular file after checking that there is enough memory for it and for the mesh made from it.
+/// Throws sdm::Error; the message does not name the file.
 [[nodiscard]] FileBytes read_bytes(const std::filesystem::path& file);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,4 +1,5 @@
-// Sequences of one mesh file a frame.
+// Sequences of mesh files, one for each frame.
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include "io/read/numbered_files.h"
 #include "io/read/read_polygons.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +42,7 @@ class FileFrames : public FrameSource {
   explicit FileFrames(NumberedFiles files) : files_(std::move(files)) {}
 
   PolygonMesh take_polygons() override {
-    PolygonMesh polygons = naming(polygons_name(), [&] { return read_file(files_.file(0)); });
+    PolygonMesh polygons = with_error_prefix(polygons_name(), [&] { return read_file(files_.file(0)); });
     vertices_ = polygons.positions.size();
     corners_ = polygons.corners;
     ends_ = polygons.ends;
@@ -53,7 +54,7 @@ class FileFrames : public FrameSource {
 
   std::string name(std::size_t frame) const override {
     const fs::path file = files_.file(frame);
-    return file.empty() ? "number " + std::to_string(files_.number(frame)) : file.filename().string();
+    return file.empty() ? fmt::format("number {}", files_.number(frame)) : file.filename().string();
   }
 
   void read(std::size_t frame, std::vector<Vec3>& positions) override {
@@ -68,8 +69,8 @@ class FileFrames : public FrameSource {
   void require_same_faces(const PolygonMesh& polygons) const {
     const auto require_count = [](std::size_t count, std::size_t expected, const char* things) {
       if (count != expected)
-        throw Error("has " + std::to_string(count) + ' ' + things + ", and the first frame has " +
-                    std::to_string(expected) + "; all frames need the same");
+        throw Error(fmt::format("has {} {}, and the first frame has {}; all frames need the same number",
+                                count, things, expected));
     };
     require_count(polygons.positions.size(), vertices_, "vertices");
     require_count(polygons.ends.size(), ends_.size(), "faces");
@@ -78,8 +79,8 @@ class FileFrames : public FrameSource {
       const auto first = static_cast<std::ptrdiff_t>(begin), last = static_cast<std::ptrdiff_t>(ends_[f]);
       if (polygons.ends[f] != ends_[f] ||
           !std::equal(corners_.begin() + first, corners_.begin() + last, polygons.corners.begin() + first))
-        throw Error("face " + std::to_string(f) +
-                    " has other vertices than in the first frame; all frames must have the same faces");
+        throw Error(fmt::format(
+            "face {} has other vertices than in the first frame; all frames need the same faces", f));
     }
   }
 
@@ -102,4 +103,4 @@ std::unique_ptr<FrameSource> single_file(const fs::path& file) {
   return std::make_unique<SingleFile>(file);
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,4 +1,5 @@
-// One reader for each format. All throw sdm::Error that names the fault and its place, not the file.
+// One reader for each format. All throw sdm::Error; the message gives the fault and its position, but not the
+// name of the file.
 #pragma once
 
 #include <filesystem>
@@ -6,31 +7,32 @@
 
 #include "io/read/polygon_mesh.h"
 
-namespace sdm {
+namespace sdm::io {
 
-/// Wavefront OBJ: v, vt and f statements (polygons, indices from 1 or relative); all others are skipped.
+/// Reads Wavefront OBJ: v, vt and f statements (polygons; indices are relative or count from 1). All other
+/// statements are skipped.
 [[nodiscard]] PolygonMesh read_obj(std::string_view text);
 
-/// PLY, text or binary of either byte order: any element and property may be there; vertex (x, y, z, and
-/// texture coordinates), face (vertex_indices, and texcoord) and tristrips are read.
+/// Reads PLY, as text or binary of either byte order: the elements vertex (x, y, z, texture coordinates),
+/// face (vertex_indices, texcoord) and tristrips. All other elements and properties are skipped.
 [[nodiscard]] PolygonMesh read_ply(std::string_view bytes);
 
-/// STL, text or binary. Normals and attributes are skipped.
+/// Read STL, as text or binary. Normals and attributes are skipped.
 [[nodiscard]] PolygonMesh read_stl_text(std::string_view text);
 [[nodiscard]] PolygonMesh read_stl_binary(std::string_view bytes);
-/// Whether the triangle count in the header of a binary STL matches the file size.
+/// Returns whether the data begin with the header of a binary STL file, and have the size that it implies.
 [[nodiscard]] bool is_stl_binary(std::string_view bytes);
 
-/// Geomview OFF as text, with any of the prefixes ST, C and N.
+/// Reads Geomview OFF as text, with any of the prefixes ST, C and N.
 [[nodiscard]] PolygonMesh read_off(std::string_view text);
-/// Whether `word` is the header of any kind of OFF.
+/// Returns whether `word` is the header of any variant of OFF.
 [[nodiscard]] bool is_off_header(std::string_view word);
 
-/// glTF 2.0, as JSON or GLB: the triangles of all meshes of the default scene, in its coordinates. External
-/// buffers are resolved relative to `file`.
+/// Reads glTF 2.0, as JSON or GLB: the triangles of all meshes of the default scene, in scene coordinates.
+/// External buffers are looked up relative to `file`.
 [[nodiscard]] PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file);
 
-/// Autodesk 3DS: all meshes. They are stored in the coordinates of the scene; its axes are kept.
+/// Reads Autodesk 3DS: all meshes, in the coordinates of the scene, as they are stored.
 [[nodiscard]] PolygonMesh read_3ds(std::string_view bytes);
 
-}  // namespace sdm
+}  // namespace sdm::io

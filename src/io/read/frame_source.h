@@ -1,4 +1,4 @@
-// The source of a sequence's frames: one implementation per input form.
+// Sources of the frames of a sequence, one implementation for each kind of input.
 #pragma once
 
 #include <filesystem>
@@ -9,35 +9,35 @@
 
 #include "io/read/polygon_mesh.h"
 
-namespace sdm {
+namespace sdm::io {
 
-/// All throw sdm::Error that names the fault, not the frame.
+/// All functions throw sdm::Error; the message does not name the frame.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  /// The polygons of all frames over the vertices of the file; taken once, with positions that tell which of
-  /// these are one vertex.
+  /// Returns the polygons, which all frames share, with the positions of the first frame: vertices that
+  /// coincide in it are welded. Called once.
   [[nodiscard]] virtual PolygonMesh take_polygons() = 0;
-  /// The file that they come from, where it is not the input itself.
+  /// Returns the name of the file that they come from; empty if it is the input itself.
   [[nodiscard]] virtual std::string polygons_name() const { return {}; }
   [[nodiscard]] virtual std::size_t count() const = 0;
   [[nodiscard]] virtual std::string name(std::size_t frame) const = 0;
-  /// The positions of all vertices of the file, unchecked but for their number.
+  /// Reads the positions of all vertices in the file. Only their number is checked.
   virtual void read(std::size_t frame, std::vector<Vec3>& positions) = 0;
 };
 
-/// Mesh files that a pattern, a folder or a name stands for.
+/// Mesh files in a folder, mesh files whose names match a pattern, or one mesh file.
 [[nodiscard]] std::unique_ptr<FrameSource> numbered_files_in(const std::filesystem::path& folder);
 [[nodiscard]] std::unique_ptr<FrameSource> numbered_files_like(const std::filesystem::path& pattern);
 [[nodiscard]] std::unique_ptr<FrameSource> single_file(const std::filesystem::path& file);
 
-/// The positions of a mesh file's vertices in an NPY file.
+/// The vertices of a mesh file, moved to the positions in an NPY file.
 [[nodiscard]] std::unique_ptr<FrameSource> npy_frames(const std::filesystem::path& mesh,
                                                       const std::filesystem::path& npy);
 
-/// Morph targets that a glTF file animates; null where it has no animation.
+/// Animated morph targets of a glTF file; null if it has no animation.
 [[nodiscard]] std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes,
                                                        const std::filesystem::path& file, double rate);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,5 +1,6 @@
 #include "io/read/gltf_document.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/types.h>
 
@@ -10,7 +11,7 @@
 #include "core/memory.h"
 #include "io/read/byte_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using nlohmann::json;
@@ -20,13 +21,13 @@ struct Chunks {
   std::optional<std::string_view> binary;
 };
 
-// GLB: magic, version, length; then chunks of a length, a kind, and data.
+// GLB: magic, version and length, then chunks, each with its length, type and data.
 Chunks split(std::string_view bytes) {
   if (!bytes.starts_with("glTF")) return {bytes, std::nullopt};
   ByteScanner in(bytes);
   in.take(4);
   if (const auto version = in.number<std::uint32_t>(); version != 2)
-    throw Error("glTF version " + std::to_string(version) + " is not supported, only version 2");
+    throw Error(fmt::format("glTF version {} is not supported, only version 2", version));
   if (in.number<std::uint32_t>() > bytes.size()) throw Error("the GLB file is truncated");
   Chunks chunks;
   while (in.remaining() >= 8) {
@@ -45,7 +46,7 @@ FileBytes decode_base64(std::string_view text) {
     if (c >= '0' && c <= '9') return c - '0' + 52;
     if (c == '+' || c == '-') return 62;
     if (c == '/' || c == '_') return 63;
-    throw Error("a buffer within the glTF file is not base64");
+    throw Error("an embedded buffer is not valid base64");
   };
   while (text.ends_with('=')) text.remove_suffix(1);
   FileBytes bytes{std::make_unique_for_overwrite<char[]>(text.size() * 3 / 4 + 1), text.size() * 3 / 4};
@@ -57,7 +58,7 @@ FileBytes decode_base64(std::string_view text) {
   return bytes;
 }
 
-// Decodes percent escapes such as %20.
+// Decodes %20 and the like.
 std::string decode_percent(std::string_view uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -76,13 +77,13 @@ std::string decode_percent(std::string_view uri) {
 FileBytes read_uri(const std::string& uri, const std::filesystem::path& folder) {
   if (uri.starts_with("data:")) {
     const std::size_t comma = uri.find(";base64,");
-    if (comma == std::string::npos) throw Error("a buffer within the glTF file is not base64");
+    if (comma == std::string::npos) throw Error("an embedded buffer is not base64");
     return decode_base64(std::string_view(uri).substr(comma + 8));
   }
   try {
     return read_bytes(folder / decode_percent(uri));
   } catch (const Error& fault) {
-    throw Error("its buffer '" + decode_percent(uri) + "': " + fault.what());
+    throw Error(fmt::format("buffer '{}': {}", decode_percent(uri), fault.what()));
   }
 }
 
@@ -91,10 +92,10 @@ std::size_t column_count(const std::string& type) {
       {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
   for (const auto& [name, columns] : types)
     if (type == name) return columns;
-  throw Error("an accessor of type " + type.substr(0, 32) + " where numbers or vectors are needed");
+  throw Error(fmt::format("an accessor has type {} where numbers or vectors are needed", type.substr(0, 32)));
 }
 
-// Calls visit with a zero of the type that glTF's code means.
+// Calls visit with a zero of the type that has this code in glTF.
 template <typename Visit>
 auto with_component_type(std::size_t code, const Visit& visit) {
   switch (code) {
@@ -111,14 +112,14 @@ auto with_component_type(std::size_t code, const Visit& visit) {
     case 5126:
       return visit(float{});
     default:
-      throw Error("component type " + std::to_string(code) + " is not one of glTF's");
+      throw Error(fmt::format("component type {} does not exist in glTF", code));
   }
 }
 
-// Checked, for converting other numbers, or too large ones, would be undefined.
+// Converting negative or fractional numbers, or too large ones, would be undefined.
 std::size_t checked(const json& value, const char* name) {
   if (!value.is_number_unsigned())
-    throw Error(std::string(name) + " must be a whole number that is not negative");
+    throw Error(fmt::format("{} must be a whole number that is not negative", name));
   return value.get<std::size_t>();
 }
 
@@ -144,17 +145,16 @@ GltfDocument::GltfDocument(std::string_view bytes, const std::filesystem::path& 
   try {
     root_ = json::parse(chunks.json);
   } catch (const json::parse_error& fault) {
-    throw Error("its JSON is invalid at byte " + std::to_string(fault.byte) +
-                "; the file is truncated or damaged");
+    throw Error(fmt::format("invalid JSON at byte {}; the file is truncated or damaged", fault.byte));
   }
   if (!root_.is_object() || !root_.contains("asset"))
-    throw Error("this is JSON, but not glTF: it has no asset object object");
+    throw Error("this is JSON but not glTF: the member asset is missing");
   if (root_["asset"].at("version").get<std::string>().substr(0, 2) != "2.")
     throw Error("only glTF version 2 is supported");
   for (const json& extension : root_.value("extensionsRequired", json::array()))
     if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression")
-      throw Error("is compressed by " + extension.get<std::string>() +
-                  ", which is not supported; save it without compression");
+      throw Error(fmt::format("compressed with {}, which is not supported; save it uncompressed",
+                              extension.get<std::string>()));
   load_buffers(chunks.binary, folder);
 }
 
@@ -169,16 +169,15 @@ void GltfDocument::load_buffers(std::optional<std::string_view> binary_chunk,
     }
     const std::size_t length = whole_number(buffer, "byteLength");
     if (length > buffers_.back().size())
-      throw Error("buffer " + std::to_string(buffers_.size() - 1) + " promises " + std::to_string(length) +
-                  " bytes and has " + std::to_string(buffers_.back().size()) +
-                  "; it is truncated or missing");
+      throw Error(fmt::format("buffer {} should have {} bytes but has {}; it is truncated or missing",
+                              buffers_.size() - 1, length, buffers_.back().size()));
   }
 }
 
 const json& GltfDocument::item(const char* list, std::size_t index) const {
   const auto items = root_.find(list);
   if (items == root_.end() || !items->is_array() || index >= items->size())
-    throw Error("refers to item " + std::to_string(index) + " of " + list + ", which is not there");
+    throw Error(fmt::format("item {} of {} is referred to but does not exist", index, list));
   return (*items)[index];
 }
 
@@ -187,7 +186,7 @@ std::vector<double> GltfDocument::rows_of(const json& place, std::size_t compone
   const json& view = item("bufferViews", whole_number(place, "bufferView"));
   const std::size_t buffer = whole_number(view, "buffer");
   if (buffer >= buffers_.size())
-    throw Error("refers to buffer " + std::to_string(buffer) + ", which is not there");
+    throw Error(fmt::format("buffer {} is referred to but does not exist", buffer));
   const std::size_t view_begin = whole_number(view, "byteOffset", 0),
                     view_length = whole_number(view, "byteLength");
   if (view_begin > buffers_[buffer].size() || view_length > buffers_[buffer].size() - view_begin)
@@ -200,7 +199,7 @@ std::vector<double> GltfDocument::rows_of(const json& place, std::size_t compone
     using Component = decltype(zero);
     const std::size_t row_bytes = columns * sizeof(Component),
                       stride = whole_number(view, "byteStride", row_bytes);
-    // The first row must fit, and each further one takes `stride` more bytes.
+    // The first row must fit, and each of the others `stride` bytes further.
     if (rows > 0 && (begin > bytes.size() || row_bytes > bytes.size() - begin || stride == 0 ||
                      rows - 1 > (bytes.size() - begin - row_bytes) / stride))
       throw Error("an accessor extends beyond its buffer view");
@@ -209,7 +208,7 @@ std::vector<double> GltfDocument::rows_of(const json& place, std::size_t compone
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t c = 0; c < columns; ++c) {
         const double value = load<Component>(bytes.data() + begin + r * stride + c * sizeof(Component));
-        // The lowest signed integer stands for −1 too.
+        // The least signed integer represents −1 too.
         values.push_back(
             divide ? std::max(value / static_cast<double>(std::numeric_limits<Component>::max()), -1.0)
                    : value);
@@ -226,8 +225,8 @@ GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
   const bool normalized = accessor.value("normalized", false);
   if (accessor.contains("bufferView") || !accessor.contains("sparse")) {
     numbers.values = rows_of(accessor, component_type, normalized, rows, numbers.columns);
-  } else {  // zeros, which take no bytes of the file
-    if (rows >= kNone) throw Error("an accessor promises more than 2^32 rows");
+  } else {  // zeros, which take no space in the file
+    if (rows >= kNone) throw Error("an accessor has more than 2^32 rows");
     require_memory(rows * numbers.columns * sizeof(double), "an accessor");
     numbers.values.resize(rows * numbers.columns);
   }
@@ -241,7 +240,7 @@ GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
         rows_of(sparse.at("values"), component_type, normalized, count, numbers.columns);
     for (std::size_t i = 0; i < count; ++i) {
       if (!(indices[i] >= 0 && indices[i] < static_cast<double>(rows)))
-        throw Error("a sparse accessor replaces a row that it does not have");
+        throw Error("a sparse accessor replaces a row beyond its last one");
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * numbers.columns), numbers.columns,
                   numbers.values.begin() +
                       static_cast<std::ptrdiff_t>(static_cast<std::size_t>(indices[i]) * numbers.columns));
@@ -251,9 +250,9 @@ GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
 }
 
 void throw_gltf_fault(const json::exception& fault) {
-  // The library's messages begin with a code in brackets.
+  // The messages begin with a code in brackets.
   const std::string text = fault.what();
-  throw Error("this is not valid glTF: " + text.substr(std::min(text.size(), text.find("] ") + 2)));
+  throw Error(fmt::format("invalid glTF: {}", text.substr(std::min(text.size(), text.find("] ") + 2))));
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

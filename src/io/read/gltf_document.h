@@ -1,4 +1,4 @@
-// A glTF file taken apart: its JSON and its buffers.
+// The JSON and the buffers of a glTF file.
 #pragma once
 
 #include <array>
@@ -11,15 +11,16 @@
 
 #include "io/read/file_bytes.h"
 
-namespace sdm {
+namespace sdm::io {
 
-/// A member that is an index, a count or a size. Throws sdm::Error where it is not a whole number.
+/// Returns a member that is an index, a count or a size. Throws sdm::Error if it is not a non-negative
+/// integer.
 [[nodiscard]] std::size_t whole_number(const nlohmann::json& object, const char* name);
 [[nodiscard]] std::size_t whole_number(const nlohmann::json& object, const char* name, std::size_t otherwise);
-/// A member that is a list of them; empty where there is none.
+/// Returns a member that is a list of such numbers; empty if there is no such member.
 [[nodiscard]] std::vector<std::size_t> whole_numbers(const nlohmann::json& object, const char* name);
 
-/// The numbers of an accessor, row by row: three a row for VEC3.
+/// The elements of an accessor as rows of numbers: a VEC3 is a row of three.
 struct GltfNumbers {
   std::size_t columns = 0;
   std::vector<double> values;
@@ -28,36 +29,36 @@ struct GltfNumbers {
   [[nodiscard]] const double* row(std::size_t r) const { return values.data() + r * columns; }
 };
 
-/// Throws sdm::Error for a member that is missing or of the wrong type.
+/// Rethrows the fault, a member that is missing or of the wrong type, as sdm::Error.
 [[noreturn]] void throw_gltf_fault(const nlohmann::json::exception& fault);
 
-/// Everything is checked against the bytes that are there. Faults throw sdm::Error, or
-/// nlohmann::json::exception where a member is missing or of the wrong type.
+/// All sizes and offsets are checked against the data. Faults throw sdm::Error, or nlohmann::json::exception
+/// for a member that is missing or of the wrong type.
 class GltfDocument {
  public:
-  /// From JSON or GLB; `folder` is where buffers outside of it are looked for.
+  /// Parses JSON or GLB and loads the buffers; those in other files are looked up in `folder`.
   GltfDocument(std::string_view bytes, const std::filesystem::path& folder);
 
   [[nodiscard]] const nlohmann::json& root() const { return root_; }
-  /// The item of a list at the top; throws where there is none.
+  /// Returns an item of a top-level list. Throws if there is none.
   [[nodiscard]] const nlohmann::json& item(const char* list, std::size_t index) const;
-  /// The rows that an accessor promises.
+  /// Returns the number of rows that an accessor declares.
   [[nodiscard]] std::size_t count(std::size_t accessor) const {
     return whole_number(item("accessors", accessor), "count");
   }
-  /// The numbers of an accessor, sparse or not; integers are divided by their largest value where it says
-  /// `normalized`.
+  /// Returns the numbers of an accessor, sparse or not. Normalized integers are divided by the largest value
+  /// of their type.
   [[nodiscard]] GltfNumbers numbers(std::size_t accessor) const;
 
  private:
-  /// Rows that stand in a buffer view, which `place` tells with an offset.
+  /// Returns rows of a buffer view. `place` has the index of the view and the offset in it.
   [[nodiscard]] std::vector<double> rows_of(const nlohmann::json& place, std::size_t component_type,
                                             bool normalized, std::size_t rows, std::size_t columns) const;
   void load_buffers(std::optional<std::string_view> binary_chunk, const std::filesystem::path& folder);
 
   nlohmann::json root_;
-  std::vector<FileBytes> files_;  // that the buffers stand in
+  std::vector<FileBytes> files_;  // the memory of buffers_, except for that of the binary chunk
   std::vector<std::string_view> buffers_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,10 +1,10 @@
-// Sequences of morph targets that a glTF file animates.
+// Sequences from animated morph targets of a glTF file.
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include "core/memory.h"
@@ -12,16 +12,16 @@
 #include "io/read/gltf_scene.h"
 #include "io/read/gltf_weights.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using nlohmann::json;
 
-// The vertices of a primitive of an animated node: position = rest + Σ weight · displacement, which the
-// linear part of the node's transform has turned already.
+// The vertices of a primitive of an animated node: position = rest + Σ weight · displacement. The linear part
+// of the node's transform is applied to displacements beforehand.
 struct MorphedPart {
   std::size_t first_vertex, track;
-  std::vector<std::vector<Vec3>> displacements;  // a target each; empty for one that moves nothing
+  std::vector<std::vector<Vec3>> displacements;  // by target; empty for one without positions
 };
 
 std::size_t target_count(const GltfDocument& document, std::size_t mesh) {
@@ -31,7 +31,7 @@ std::size_t target_count(const GltfDocument& document, std::size_t mesh) {
   return count;
 }
 
-// The channels of the first animation that has weights, by node.
+// The samplers of the first animation that changes only weights, by node.
 std::map<std::size_t, const json*> weight_samplers(const json& animations) {
   std::map<std::size_t, const json*> samplers;
   for (const json& animation : animations) {
@@ -50,7 +50,7 @@ std::map<std::size_t, const json*> weight_samplers(const json& animations) {
   }
   if (samplers.empty())
     throw Error(
-        "its animation moves nodes, and only weights of morph targets are read; save the motion as "
+        "the animation moves nodes, but only the weights of morph targets are read; save the motion as "
         "numbered meshes");
   return samplers;
 }
@@ -64,10 +64,10 @@ std::vector<std::vector<Vec3>> displacements_of(const GltfDocument& document, co
     if (!target.contains("POSITION")) continue;
     const std::size_t accessor = whole_number(target, "POSITION");
     if (document.count(accessor) != vertices)
-      throw Error("a morph target has more or fewer vertices than its mesh");
+      throw Error("a morph target and its mesh differ in their number of vertices");
     require_memory(2 * vertices * sizeof(Vec3), "the morph targets");
     const GltfNumbers numbers = document.numbers(accessor);
-    if (numbers.columns != 3) throw Error("the positions of a morph target are not vectors of three");
+    if (numbers.columns != 3) throw Error("the positions of a morph target are not of type VEC3");
     displacements.reserve(vertices);
     for (std::size_t v = 0; v < vertices; ++v) {
       const double* d = numbers.row(v);
@@ -95,7 +95,7 @@ class GltfFrames : public FrameSource {
         first_vertex += document.count(whole_number(primitive["attributes"], "POSITION"));
       }
     }
-    if (parts_.empty()) throw Error("its animation has no effect on the scene");
+    if (parts_.empty()) throw Error("the animation does not change any mesh of the scene");
     choose_times(rate);
   }
 
@@ -107,9 +107,7 @@ class GltfFrames : public FrameSource {
   std::size_t count() const override { return count_; }
 
   std::string name(std::size_t frame) const override {
-    std::ostringstream text;
-    text << file_name_ << " at " << time(frame) << " s";
-    return text.str();
+    return fmt::format("{} at {:g} s", file_name_, time(frame));
   }
 
   void read(std::size_t frame, std::vector<Vec3>& positions) override {
@@ -124,7 +122,7 @@ class GltfFrames : public FrameSource {
   }
 
  private:
-  // At the keys of all tracks, or in equal steps from the first to the last of them.
+  // The frames are at the keys of all tracks, or in equal steps from the first key to the last.
   void choose_times(double rate) {
     for (const WeightTrack& track : tracks_)
       key_times_.insert(key_times_.end(), track.times().begin(), track.times().end());
@@ -135,7 +133,7 @@ class GltfFrames : public FrameSource {
     interval_ = 1 / rate;
     constexpr double kRounding = 1e-6;  // of a step
     const double steps = std::floor((key_times_.back() - key_times_.front()) * rate + kRounding);
-    if (!(steps < 1e9)) throw Error("has more than a billion frames at that rate; choose a lower one");
+    if (!(steps < 1e9)) throw Error("has more than a billion frames at this rate; choose a lower one");
     count_ = static_cast<std::size_t>(steps) + 1;
   }
 
@@ -146,7 +144,7 @@ class GltfFrames : public FrameSource {
   std::string file_name_;
   PolygonMesh polygons_;
   std::vector<Vec3> rest_;
-  std::vector<WeightTrack> tracks_;  // of nodes
+  std::vector<WeightTrack> tracks_;  // one for each animated node
   std::vector<MorphedPart> parts_;
   std::vector<double> key_times_, weights_;
   double interval_ = 0;
@@ -166,4 +164,4 @@ std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes, const std::file
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

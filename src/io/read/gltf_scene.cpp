@@ -1,15 +1,16 @@
 #include "io/read/gltf_scene.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <utility>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using nlohmann::json;
 
-// translation · rotation · scale, or a matrix of columns.
+// translation · rotation · scale, or a matrix by columns.
 GltfTransform node_transform(const json& node) {
   GltfTransform t;
   if (node.contains("matrix")) {
@@ -28,7 +29,7 @@ GltfTransform node_transform(const json& node) {
   return t;
 }
 
-// The nodes at the top: of the default scene, else of the first, else all that are no one's child.
+// The root nodes of the default scene, else of the first scene, else all nodes without a parent.
 std::vector<std::size_t> roots(const GltfDocument& document) {
   const json& root = document.root();
   if (root.contains("scenes") && !root["scenes"].empty())
@@ -46,7 +47,7 @@ std::vector<std::size_t> roots(const GltfDocument& document) {
 
 }  // namespace
 
-// A node that is met twice would make a cycle or a tree that grows without bound: glTF forbids it.
+// A node with two parents could form a cycle, or a tree of exponential size; glTF forbids it.
 std::vector<GltfInstance> gltf_instances(const GltfDocument& document) {
   std::vector<GltfInstance> result;
   std::vector<std::pair<std::size_t, GltfTransform>> stack;
@@ -59,7 +60,7 @@ std::vector<GltfInstance> gltf_instances(const GltfDocument& document) {
     const auto [index, to_parent] = stack.back();
     stack.pop_back();
     const json& node = document.item("nodes", index);
-    if (met[index]) throw Error("node " + std::to_string(index) + " has two parents, which glTF forbids");
+    if (met[index]) throw Error(fmt::format("node {} has two parents, which glTF forbids", index));
     met[index] = true;
     const GltfTransform to_scene = to_parent * node_transform(node);
     if (node.contains("mesh")) result.push_back({index, whole_number(node, "mesh"), to_scene});
@@ -77,4 +78,4 @@ std::size_t gltf_mode(const json& primitive) {
   return whole_number(primitive, "mode", kTriangles);
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,4 +1,4 @@
-// The visible meshes of a glTF file and their transforms.
+// The meshes in the scene of a glTF file.
 #pragma once
 
 #include <sdm/types.h>
@@ -9,9 +9,9 @@
 #include "io/read/gltf_document.h"
 #include "io/read/polygon_mesh.h"
 
-namespace sdm {
+namespace sdm::io {
 
-/// x → linear · x + offset, the columns of the linear part one after the other.
+/// x → linear · x + offset. `linear` holds columns.
 struct GltfTransform {
   std::array<Vec3, 3> linear{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 offset{};
@@ -26,22 +26,23 @@ struct GltfTransform {
   [[nodiscard]] bool mirrors() const { return dot(cross(linear[0], linear[1]), linear[2]) < 0; }
 };
 
-/// A node's mesh in its place.
+/// The mesh of a node, and its transform.
 struct GltfInstance {
   std::size_t node, mesh;
   GltfTransform to_scene;
 };
 
-/// All meshes of the default scene, in the order of the node tree.
+/// Returns all meshes of the default scene, in depth-first order of the nodes.
 [[nodiscard]] std::vector<GltfInstance> gltf_instances(const GltfDocument& document);
 
-/// Whether a primitive has a surface: points and lines have none.
+/// Returns whether a primitive consists of triangles, not points or lines.
 [[nodiscard]] bool has_triangles(const nlohmann::json& primitive);
 
 enum GltfMode : std::size_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 [[nodiscard]] std::size_t gltf_mode(const nlohmann::json& primitive);
 
-/// All triangles of the scene: the vertices of each primitive that has them, in the order of gltf_instances.
+/// Returns all triangles of the scene. The vertices of primitives follow each other in the order of
+/// gltf_instances.
 [[nodiscard]] PolygonMesh read_gltf_scene(const GltfDocument& document);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,33 +1,34 @@
 #include "io/read/gltf_weights.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-namespace sdm {
+namespace sdm::io {
 
 WeightTrack::WeightTrack(const GltfDocument& document, const nlohmann::json& sampler, std::size_t targets)
     : targets_(targets) {
   const std::string name = sampler.value("interpolation", "LINEAR");
   if (name != "STEP" && name != "LINEAR" && name != "CUBICSPLINE")
-    throw Error("its animation has an unknown interpolation; STEP, LINEAR and CUBICSPLINE are supported");
+    throw Error("the interpolation of the animation is none of STEP, LINEAR and CUBICSPLINE");
   interpolation_ = name == "STEP"     ? Interpolation::step
                    : name == "LINEAR" ? Interpolation::linear
                                       : Interpolation::cubic;
   times_ = document.numbers(whole_number(sampler, "input")).values;
   values_ = document.numbers(whole_number(sampler, "output")).values;
-  if (times_.empty()) throw Error("its animation has no keys");
+  if (times_.empty()) throw Error("the animation has no keys");
   for (std::size_t k = 0; k < times_.size(); ++k)
     if (!std::isfinite(times_[k]) || (k > 0 && times_[k] <= times_[k - 1]))
-      throw Error("the times of its animation do not increase at key " + std::to_string(k));
+      throw Error(fmt::format("the times of the animation do not increase at key {}", k));
   const std::size_t numbers_per_key = interpolation_ == Interpolation::cubic ? 3 : 1;
   if (targets_ == 0 || values_.size() % numbers_per_key != 0 ||
       values_.size() / numbers_per_key % targets_ != 0 ||
       values_.size() / numbers_per_key / targets_ != times_.size())
-    throw Error("its animation has " + std::to_string(values_.size()) + " weights for " +
-                std::to_string(times_.size()) + " keys of " + std::to_string(targets_) + " targets");
+    throw Error(fmt::format("the animation has {} weights for {} keys of {} targets", values_.size(),
+                            times_.size(), targets_));
 }
 
 const double* WeightTrack::key(std::size_t k, int part) const {
@@ -57,4 +58,4 @@ void WeightTrack::sample(double time, std::span<double> weights) const {
                  span * (t3 - t2) * in[i];
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

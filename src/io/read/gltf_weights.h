@@ -6,24 +6,25 @@
 
 #include "io/read/gltf_document.h"
 
-namespace sdm {
+namespace sdm::io {
 
-/// The sampler of an animation's channel, for a node with so many targets.
+/// The weights of one node over time.
 class WeightTrack {
  public:
-  /// Throws sdm::Error where times do not increase, or values do not match them.
+  /// From the sampler of an animation, for a node with `targets` targets. Throws sdm::Error if times do not
+  /// increase, or the number of values does not match them.
   WeightTrack(const GltfDocument& document, const nlohmann::json& sampler, std::size_t targets);
 
-  /// When its keys are: at least one, finite, increasing.
+  /// Returns the times of the keys: at least one, finite, increasing.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] std::size_t targets() const { return targets_; }
-  /// The weight of each target; before the first key and after the last one, that key's.
+  /// Computes the weight of each target. They are constant before the first key and after the last.
   void sample(double time, std::span<double> weights) const;
 
  private:
   enum class Interpolation { step, linear, cubic };
 
-  /// Of key k: its in-tangents (-1), values (0) or out-tangents (1).
+  /// Returns the in-tangents (-1), values (0) or out-tangents (1) of key k.
   [[nodiscard]] const double* key(std::size_t k, int part = 0) const;
 
   Interpolation interpolation_;
@@ -31,4 +32,4 @@ class WeightTrack {
   std::vector<double> times_, values_;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/sequence.h>
 
@@ -10,17 +11,17 @@
 #include "io/read/read_polygons.h"
 #include "mesh/validate.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The place of the + in mesh.obj+motion.npy, or npos.
+// The position of the + in mesh.obj+motion.npy, or npos.
 std::size_t place_of_plus(const std::string& input) {
   return input.ends_with(".npy") || input.ends_with(".NPY") ? input.rfind('+') : std::string::npos;
 }
 
-// Found from where sdm runs, else from the mesh's folder.
+// Looked up in the working directory, else in the folder of the mesh.
 fs::path npy_file(const fs::path& mesh, const fs::path& npy) {
   std::error_code ignored;
   return fs::exists(npy, ignored) ? npy : mesh.parent_path() / npy;
@@ -29,14 +30,15 @@ fs::path npy_file(const fs::path& mesh, const fs::path& npy) {
 std::unique_ptr<FrameSource> open_file(const fs::path& file, double rate) {
   const FileBytes contents = read_bytes(file);
   if (contents.view().starts_with("\x93NUMPY"))
-    throw Error("contains positions without triangles; add the mesh that they belong to, as in mesh.obj+" +
-                file.filename().string());
+    throw Error(
+        fmt::format("holds positions without triangles; add the mesh that they belong to, as in mesh.obj+{}",
+                    file.filename().string()));
   if (format_of(contents.view(), file) == MeshFormat::gltf)
     if (auto frames = gltf_frames(contents.view(), file, rate)) return frames;
   return single_file(file);
 }
 
-// A file or folder that is there is meant, whatever characters its name has.
+// Existing files and folders take precedence over patterns, whatever characters their names have.
 std::unique_ptr<FrameSource> open_source(const std::string& input, double rate) {
   std::error_code ignored;
   if (fs::is_directory(input, ignored)) return numbered_files_in(input);
@@ -49,13 +51,16 @@ std::unique_ptr<FrameSource> open_source(const std::string& input, double rate) 
 }
 
 }  // namespace
+}  // namespace sdm::io
+
+namespace sdm {
 
 struct MeshSequence::Impl {
   std::string input;
-  std::unique_ptr<FrameSource> source;
+  std::unique_ptr<io::FrameSource> source;
   Mesh mesh;                              // the first frame
-  std::vector<std::uint32_t> renumbered;  // the vertex of mesh for each vertex of the files, or kNone
-  double weld_tolerance = 0;              // rounding of what was one vertex
+  std::vector<std::uint32_t> renumbered;  // the vertex of mesh for each vertex in the files, or kNone
+  double weld_tolerance = 0;              // how far vertices may move apart that are welded
   std::vector<Vec3> file_positions, positions;
 
   void open(double rate);
@@ -63,12 +68,12 @@ struct MeshSequence::Impl {
 };
 
 void MeshSequence::Impl::open(double rate) {
-  source = open_source(input, rate);
-  const PolygonMesh polygons = source->take_polygons();
-  mesh = naming(source->polygons_name(), [&] { return to_mesh(polygons, renumbered); });
+  source = io::open_source(input, rate);
+  const io::PolygonMesh polygons = source->take_polygons();
+  mesh = io::with_error_prefix(source->polygons_name(), [&] { return io::to_mesh(polygons, renumbered); });
   constexpr double kRounding = 1e-6;
   weld_tolerance = kRounding * diagonal(bounds(mesh));
-  naming(source->count() > 1 ? source->name(0) : "", [&] {
+  io::with_error_prefix(source->count() > 1 ? source->name(0) : "", [&] {
     read(0);
     mesh.positions = positions;
     validate(mesh);
@@ -78,18 +83,19 @@ void MeshSequence::Impl::open(double rate) {
 void MeshSequence::Impl::read(std::size_t frame) {
   source->read(frame, file_positions);
   positions.resize(mesh.positions.size());
-  std::size_t found = 0;  // vertices are numbered in the order in which the files have them
+  std::size_t found = 0;  // vertices are numbered in the order of the files
   for (std::size_t v = 0; v < file_positions.size(); ++v) {
     const std::uint32_t vertex = renumbered[v];
     if (vertex == kNone) continue;
-    if (!finite(file_positions[v]))
-      throw Error("vertex " + std::to_string(v) + " has a NaN or infinite coordinate");
+    if (!finite(file_positions[v])) throw Error(fmt::format("vertex {} has a NaN or infinite coordinate", v));
     if (vertex == found)
       positions[found++] = file_positions[v];
     else if (norm(file_positions[v] - positions[vertex]) > weld_tolerance)
-      throw Error("vertex " + std::to_string(v) +
-                  " separates from another one that coincides with it in the first frame; such vertices must "
-                  "stay together");
+      throw Error(
+          fmt::format("vertex {} has moved away from one that it coincides with in the first frame; such "
+                      "vertices must stay "
+                      "together",
+                      v));
   }
   mesh::validate_positions(positions);
 }
@@ -97,9 +103,10 @@ void MeshSequence::Impl::read(std::size_t frame) {
 MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& options)
     : impl_(std::make_unique<Impl>()) {
   if (!(options.rate >= 0) || !std::isfinite(options.rate))
-    throw Error("the rate of a sequence must be a number of frames a second, or 0 for one at every key");
+    throw Error(
+        "the rate of a sequence must be a number of frames per second, or 0 for one frame at every key");
   impl_->input = input;
-  naming(input, [&] { impl_->open(options.rate); });
+  io::with_error_prefix(input, [&] { impl_->open(options.rate); });
 }
 MeshSequence::~MeshSequence() = default;
 MeshSequence::MeshSequence(MeshSequence&&) noexcept = default;
@@ -119,11 +126,11 @@ std::string MeshSequence::frame_name(std::size_t frame) const {
 
 std::span<const Vec3> MeshSequence::positions(std::size_t frame) {
   if (frame >= frame_count())
-    throw Error(impl_->input + ": there is no frame " + std::to_string(frame) + ", only " +
-                std::to_string(frame_count()));
+    throw Error(
+        fmt::format("{}: there is no frame {}; the sequence has {}", impl_->input, frame, frame_count()));
   if (frame_count() == 1) return impl_->mesh.positions;
-  naming(impl_->input + ": frame " + std::to_string(frame) + " (" + frame_name(frame) + ")",
-         [&] { impl_->read(frame); });
+  io::with_error_prefix(fmt::format("{}: frame {} ({})", impl_->input, frame, frame_name(frame)),
+                        [&] { impl_->read(frame); });
   return impl_->positions;
 }
 

@@ -1,5 +1,6 @@
-// Sequences of positions in an NPY file, of the vertices of a mesh file.
+// Sequences of positions in an NPY file, for the vertices of a mesh file.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,12 +18,12 @@
 #include "io/read/npy_header.h"
 #include "io/read/read_polygons.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A regular file that is read here and there.
+// A regular file, read at any position.
 class RandomAccessFile {
  public:
   explicit RandomAccessFile(const fs::path& file)
@@ -31,7 +32,7 @@ class RandomAccessFile {
     if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) {
       const int fault = errno;
       if (descriptor_ >= 0) close(descriptor_);
-      throw Error("cannot be opened: " + std::generic_category().message(fault));
+      throw Error(fmt::format("cannot be opened: {}", std::generic_category().message(fault)));
     }
     if (!S_ISREG(status.st_mode)) {
       close(descriptor_);
@@ -49,7 +50,8 @@ class RandomAccessFile {
       const ssize_t got = pread(descriptor_, bytes, count, static_cast<off_t>(begin));
       if (got < 0 && errno == EINTR) continue;
       if (got <= 0)
-        throw Error("cannot be read: " + (got == 0 ? "it shrinks" : std::generic_category().message(errno)));
+        throw Error(fmt::format("cannot be read: {}", got == 0 ? "it became shorter while it was being read"
+                                                               : std::generic_category().message(errno)));
       bytes += got, begin += static_cast<std::uint64_t>(got), count -= static_cast<std::size_t>(got);
     }
   }
@@ -65,9 +67,9 @@ class NpyFrames : public FrameSource {
       : mesh_name_(std::move(mesh)), npy_name_(std::move(npy)), file_(npy_name_), header_(read_header()) {}
 
   PolygonMesh take_polygons() override {
-    PolygonMesh polygons =
-        naming(polygons_name(), [&] { return read_polygons(read_bytes(mesh_name_).view(), mesh_name_); });
-    naming(npy_name_.string(), [&] { check_shape(polygons.positions.size()); });
+    PolygonMesh polygons = with_error_prefix(
+        polygons_name(), [&] { return read_polygons(read_bytes(mesh_name_).view(), mesh_name_); });
+    with_error_prefix(npy_name_.string(), [&] { check_shape(polygons.positions.size()); });
     require_memory(header_.shape[1] * 3 * header_.number_bytes, "a frame");
     bytes_.resize(header_.shape[1] * 3 * header_.number_bytes);
     return polygons;
@@ -77,7 +79,7 @@ class NpyFrames : public FrameSource {
   std::size_t count() const override { return header_.shape[0]; }
 
   std::string name(std::size_t frame) const override {
-    return "frame " + std::to_string(frame) + " of " + npy_name_.filename().string();
+    return fmt::format("frame {} of {}", frame, npy_name_.filename().string());
   }
 
   void read(std::size_t frame, std::vector<Vec3>& positions) override {
@@ -103,25 +105,25 @@ class NpyFrames : public FrameSource {
 
   void check_shape(std::size_t vertices) const {
     const std::vector<std::uint64_t>& shape = header_.shape;
-    std::string text;
-    for (const std::uint64_t n : shape) text += (text.empty() ? "" : ", ") + std::to_string(n);
     if (shape.size() != 3 || shape[2] != 3)
-      throw Error("has the shape (" + text + "); frames of positions have (T, V, 3)");
+      throw Error(fmt::format("has the shape ({}); positions must have the shape (frames, vertices, 3)",
+                              fmt::join(shape, ", ")));
     if (shape[0] == 0 || shape[1] == 0)
-      throw Error("has the shape (" + text + "), which contains no positions");
+      throw Error(fmt::format("has the shape ({}), which holds no positions", fmt::join(shape, ", ")));
     if (shape[1] != vertices)
-      throw Error("has " + std::to_string(shape[1]) + " vertices a frame, and " +
-                  mesh_name_.filename().string() + " lists " + std::to_string(vertices));
-    // The file's own size bounds the number of frames, so that nothing below can overflow.
+      throw Error(fmt::format("has {} vertices per frame, but {} has {}", shape[1],
+                              mesh_name_.filename().string(), vertices));
+    // The size of the file bounds the number of frames, so nothing below can overflow.
     const std::uint64_t frame_bytes = std::uint64_t{vertices} * 3 * header_.number_bytes;
     const std::uint64_t data = file_.size() - header_.data_begin;
     if (data % frame_bytes != 0 || data / frame_bytes != shape[0])
-      throw Error("has " + std::to_string(data) + " bytes of numbers, which are not the " +
-                  std::to_string(shape[0]) + " frames of " + std::to_string(frame_bytes) +
-                  " bytes declared by its header; it is truncated or damaged");
+      throw Error(
+          fmt::format("has {} bytes of numbers, but the header declares {} frames of {} bytes; it is "
+                      "truncated or damaged",
+                      data, shape[0], frame_bytes));
   }
 
-  // In Fortran order number (t, v, k) stands at place t + T·(v + V·k).
+  // In Fortran order, element (t, v, k) has the index t + T·(v + V·k).
   void read_strided(std::size_t frame) {
     const std::uint64_t frames = header_.shape[0], vertices = header_.shape[1], size = header_.number_bytes;
     for (std::uint64_t k = 0; k < 3; ++k)
@@ -139,7 +141,7 @@ class NpyFrames : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> npy_frames(const fs::path& mesh, const fs::path& npy) {
-  return naming(npy.string(), [&] { return std::make_unique<NpyFrames>(mesh, npy); });
+  return with_error_prefix(npy.string(), [&] { return std::make_unique<NpyFrames>(mesh, npy); });
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,5 +1,6 @@
 #include "io/read/npy_header.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
@@ -8,15 +9,14 @@
 
 #include "io/read/byte_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 [[noreturn]] void fail() {
-  throw Error("its header is invalid; the file is damaged");
+  throw Error("the header is not as NumPy writes it; the file is damaged");
 }
 
-// The Python dictionary of a header, as far as NumPy uses it: strings, True or False, tuples of whole
-// numbers.
+// A Python dictionary, limited to what NumPy writes: strings, True or False, tuples of whole numbers.
 class Dictionary {
  public:
   explicit Dictionary(std::string_view text) : rest_(text) {}
@@ -36,7 +36,7 @@ class Dictionary {
     const std::size_t end = rest_.find(rest_[0], 1);
     if (end == std::string_view::npos) fail();
     const std::string_view text = rest_.substr(1, end - 1);
-    if (std::ranges::any_of(text, [](char c) { return c < ' '; })) fail();  // it may stand in a message
+    if (std::ranges::any_of(text, [](char c) { return c < ' '; })) fail();  // it may appear in a message
     rest_.remove_prefix(end + 1);
     return text;
   }
@@ -77,8 +77,9 @@ void set_type(NpyHeader& header, std::string_view type) {
   } else if (type == "<f8" || type == ">f8") {
     header.number_bytes = 8;
   } else {
-    throw Error("holds numbers of type '" + std::string(type.substr(0, 16)) +
-                "', not float32 or float64; convert them with astype(numpy.float32)");
+    throw Error(fmt::format(
+        "holds numbers of type '{}', not float32 or float64; convert them with astype(numpy.float32)",
+        type.substr(0, 16)));
   }
   header.order = type[0] == '<' ? std::endian::little : std::endian::big;
 }
@@ -92,7 +93,7 @@ NpyHeader parse_npy_header(std::string_view bytes) {
   const auto version = in.number<std::uint8_t>();
   in.take(1);
   if (version < 1 || version > 3)
-    throw Error("NPY version " + std::to_string(version) + " is not supported, only 1 to 3");
+    throw Error(fmt::format("NPY version {} is not supported, only 1 to 3", version));
   const std::size_t length = version == 1 ? in.number<std::uint16_t>() : in.number<std::uint32_t>();
   Dictionary text(in.take(length));
 
@@ -105,7 +106,7 @@ NpyHeader parse_npy_header(std::string_view bytes) {
     text.expect(":");
     if (key == "descr") {
       if (text.accept("["))
-        throw Error("contains records, not plain numbers; save an array of float32 or float64");
+        throw Error("holds records, not plain numbers; save an array of float32 or float64");
       set_type(header, text.string());
       keys |= 1;
     } else if (key == "fortran_order") {
@@ -128,4 +129,4 @@ NpyHeader parse_npy_header(std::string_view bytes) {
   return header;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

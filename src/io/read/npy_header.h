@@ -6,22 +6,22 @@
 #include <string_view>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
-/// An array of floating-point numbers.
+/// The layout of an array of floating-point numbers.
 struct NpyHeader {
   std::size_t number_bytes = 0;  ///< 4 or 8
   std::endian order = std::endian::little;
-  bool fortran_order = false;  ///< the first index runs fastest, else the last one
+  bool fortran_order = false;  ///< the first index varies fastest, else the last
   std::vector<std::uint64_t> shape;
-  std::size_t data_begin = 0;  ///< in the file
+  std::size_t data_begin = 0;  ///< byte offset in the file
 };
 
-/// No header that NumPy writes for numbers is longer.
+/// An upper bound on the headers that NumPy writes for arrays of numbers.
 inline constexpr std::size_t kMaxNpyHeader = 65536;
 
-/// From the first bytes of a file, kMaxNpyHeader or all that there are. Throws sdm::Error where they are no
-/// such header, or that of an array of anything but float32 and float64.
+/// Parses the first kMaxNpyHeader bytes of a file, or all if it is shorter. Throws sdm::Error if they are not
+/// an NPY header, or the array is not of type float32 or float64.
 [[nodiscard]] NpyHeader parse_npy_header(std::string_view bytes);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,5 +1,6 @@
 #include "io/read/numbered_files.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
@@ -9,19 +10,19 @@
 #include <optional>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A name in three parts.
+// A name, split at its number.
 struct Name {
   std::string_view before, digits, after;
 };
 
 constexpr std::string_view kDigits = "0123456789";
 
-// Of a name whose stem ends in digits.
+// Splits a name whose stem ends in digits.
 std::optional<Name> split_at_number(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   if (dot == std::string_view::npos || dot == 0) return std::nullopt;
@@ -31,10 +32,10 @@ std::optional<Name> split_at_number(std::string_view name) {
   return Name{name.substr(0, begin), name.substr(begin, dot - begin), name.substr(dot)};
 }
 
-// A parsed pattern: the text around the number, and the minimum number of its digits.
+// A pattern, split at its number.
 struct Pattern {
   std::string before, after;
-  std::optional<std::size_t> width;  // none: * matches any digits
+  std::optional<std::size_t> width;  // the least number of digits; none for *, which matches any
 };
 
 Pattern parse_pattern(const std::string& text) {
@@ -48,15 +49,15 @@ Pattern parse_pattern(const std::string& text) {
       end += 2;
     }
     if (end == text.size() || text[end++] != 'd')
-      throw Error("% in a pattern must be followed by d, or by a width and d, as in walk_%04d.ply");
+      throw Error("in a pattern, % must be followed by d, or by a width and d, as in walk_%04d.ply");
   }
   pattern.after = text.substr(end);
   if (pattern.after.find_first_of("%*") != std::string::npos)
-    throw Error("a pattern must contain exactly one number, as in walk_%04d.ply or walk_*.ply");
+    throw Error("a pattern must have only one number, as in walk_%04d.ply or walk_*.ply");
   return pattern;
 }
 
-// The number's digits, where the name is as printf would make it.
+// Returns the digits of the number if the name is as printf would print it.
 std::optional<std::string_view> match(const Pattern& pattern, std::string_view name) {
   const std::size_t around = pattern.before.size() + pattern.after.size();
   if (name.size() <= around || !name.starts_with(pattern.before) || !name.ends_with(pattern.after))
@@ -73,7 +74,7 @@ std::uint64_t to_number(std::string_view digits, const std::string& name) {
   std::uint64_t number = 0;
   if (std::from_chars(digits.data(), digits.data() + digits.size(), number).ec != std::errc{} ||
       number > UINT64_MAX / 2)
-    throw Error("the number of " + name + " is too large; number the files from 0");
+    throw Error(fmt::format("the number in {} is too large; number the files from 0", name));
   return number;
 }
 
@@ -85,7 +86,7 @@ void for_each_file(const fs::path& folder, const Visit& visit) {
     std::error_code ignored;
     if (entry->is_regular_file(ignored)) visit(entry->path());
   }
-  if (error) throw Error("the folder " + folder.string() + " cannot be read: " + error.message());
+  if (error) throw Error(fmt::format("the folder {} cannot be read: {}", folder.string(), error.message()));
 }
 
 bool is_mesh_extension(std::string_view extension) {
@@ -104,13 +105,13 @@ NumberedFiles NumberedFiles::like(const fs::path& pattern) {
     const std::string name = path.filename().string();
     if (const auto digits = match(parsed, name)) files.push_back({to_number(*digits, name), path});
   });
-  if (files.empty()) throw Error("no file matches");
+  if (files.empty()) throw Error("no file matches the pattern");
   return NumberedFiles(std::move(files));
 }
 
 NumberedFiles NumberedFiles::in(const fs::path& folder) {
   std::vector<File> files;
-  std::string model;  // the name that the others must be like
+  std::string model;  // a name that the others must match
   for_each_file(folder, [&](const fs::path& path) {
     const std::string name = path.filename().string();
     const auto parts = split_at_number(name);
@@ -118,9 +119,9 @@ NumberedFiles NumberedFiles::in(const fs::path& folder) {
     if (model.empty()) model = name;
     const auto expected = split_at_number(model);
     if (parts->before != expected->before || parts->after != expected->after)
-      throw Error("holds several sequences, as " + std::min(name, model) + " and " + std::max(name, model) +
-                  " tell; choose one by a pattern such as " + std::string(expected->before) + "*" +
-                  std::string(expected->after));
+      throw Error(
+          fmt::format("holds several sequences, as {} and {} show; choose one with a pattern such as {}*{}",
+                      std::min(name, model), std::max(name, model), expected->before, expected->after));
     files.push_back({to_number(parts->digits, name), path});
   });
   if (files.empty())
@@ -135,15 +136,16 @@ NumberedFiles::NumberedFiles(std::vector<File> files) : files_(std::move(files))
     if (files_[i].number == files_[i - 1].number) {
       const auto names =
           std::minmax({files_[i - 1].path.filename().string(), files_[i].path.filename().string()});
-      throw Error(names.first + " and " + names.second + " have the same number; remove one of them");
+      throw Error(
+          fmt::format("{} and {} have the same number; remove one of them", names.first, names.second));
     }
     step = std::gcd(step, files_[i].number - files_[i - 1].number);
   }
   step_ = std::max<std::uint64_t>(step, 1);
   if (count() - files_.size() > files_.size())
-    throw Error("of the numbers from " + std::to_string(files_.front().number) + " to " +
-                std::to_string(files_.back().number) + " only " + std::to_string(files_.size()) +
-                " exist; number the files consecutively");
+    throw Error(
+        fmt::format("of the numbers from {} to {}, only {} have a file; number the files consecutively",
+                    files_.front().number, files_.back().number, files_.size()));
 }
 
 std::size_t NumberedFiles::count() const {
@@ -155,4 +157,4 @@ fs::path NumberedFiles::file(std::size_t index) const {
   return found != files_.end() && found->number == number(index) ? found->path : fs::path();
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

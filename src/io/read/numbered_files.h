@@ -1,4 +1,4 @@
-// Files whose names differ in a number.
+// Files whose names differ only in a number.
 #pragma once
 
 #include <cstdint>
@@ -6,22 +6,22 @@
 #include <string>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
-/// Names of files that are alike but for a number, which goes up in equal steps; some may be missing.
+/// Files whose names differ only in a number, which increases in equal steps. Some may be missing.
 class NumberedFiles {
  public:
-  /// Those in the folder that match `pattern`, its last part: one %d or %04d, as printf prints it, or * for
-  /// digits. Throws sdm::Error for another pattern, where there is no such file or more are missing than
-  /// there are, and for two files of one number.
+  /// Finds the files in a folder whose names match the last component of `pattern`, which has one %d or %04d,
+  /// as in printf, or one * for any digits. Throws sdm::Error for any other pattern, if there is no such
+  /// file, if more files are missing than exist, and if two have the same number.
   [[nodiscard]] static NumberedFiles like(const std::filesystem::path& pattern);
-  /// Those in the folder with the extension of a mesh file, whose names end in a number. Throws sdm::Error as
-  /// above, and where they are not alike.
+  /// Finds the files in a folder that have the extension of a mesh file and a name that ends in a number.
+  /// Throws sdm::Error as above, and if their names differ otherwise.
   [[nodiscard]] static NumberedFiles in(const std::filesystem::path& folder);
 
-  /// Missing ones included.
+  /// Returns the number of files, including missing ones.
   [[nodiscard]] std::size_t count() const;
-  /// Empty where it is missing.
+  /// Returns the path of a file; empty if it is missing.
   [[nodiscard]] std::filesystem::path file(std::size_t index) const;
   [[nodiscard]] std::uint64_t number(std::size_t index) const { return files_[0].number + index * step_; }
 
@@ -32,8 +32,8 @@ class NumberedFiles {
   };
   explicit NumberedFiles(std::vector<File> files);
 
-  std::vector<File> files_;  // by number
+  std::vector<File> files_;  // in order of their numbers
   std::uint64_t step_ = 1;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,10 +1,11 @@
 #include "io/read/ply_header.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using Type = PlyHeader::Type;
@@ -29,7 +30,7 @@ Type parse_type(TextScanner& in) {
   if (in.more_on_line())
     for (const Spelling& spelling : spellings)
       if (in.accept(spelling.name)) return spelling.type;
-  in.fail_at_word("a PLY type is expected");
+  in.fail_at_word("expected a PLY type");
 }
 
 PlyHeader::Encoding parse_encoding(TextScanner& in) {
@@ -38,13 +39,13 @@ PlyHeader::Encoding parse_encoding(TextScanner& in) {
     if (in.accept("binary_little_endian")) return PlyHeader::Encoding::little_endian;
     if (in.accept("binary_big_endian")) return PlyHeader::Encoding::big_endian;
   }
-  in.fail_at_word("ascii, binary_little_endian or binary_big_endian is expected");
+  in.fail_at_word("expected ascii, binary_little_endian or binary_big_endian");
 }
 
 PlyHeader::Element parse_element(TextScanner& in) {
   PlyHeader::Element element{parse_word(in), 0, {}};
   const std::int64_t count = in.integer();
-  if (count < 0) in.fail("the count of element " + element.name + " is negative");
+  if (count < 0) in.fail(fmt::format("the count of element {} is negative", element.name));
   element.count = static_cast<std::size_t>(count);
   return element;
 }
@@ -88,7 +89,7 @@ PlyHeader parse_ply_header(std::string_view bytes) {
   TextScanner in(bytes);
   PlyHeader header;
   bool has_format = false;
-  if (!in.accept("ply")) in.fail("a PLY file begins with 'ply'");
+  if (!in.accept("ply")) in.fail("a PLY file must begin with 'ply'");
   for (in.skip_line(); !in.at_end(); in.skip_line()) {
     if (!in.more_on_line()) continue;
     if (in.accept("format")) {
@@ -97,18 +98,18 @@ PlyHeader parse_ply_header(std::string_view bytes) {
     } else if (in.accept("element")) {
       header.elements.push_back(parse_element(in));
     } else if (in.accept("property")) {
-      if (header.elements.empty()) in.fail("a property comes before the first element");
+      if (header.elements.empty()) in.fail("a property precedes the first element");
       header.elements.back().properties.push_back(parse_property(in));
     } else if (in.accept("end_header")) {
-      if (!has_format) in.fail("the PLY header has no format line");
+      if (!has_format) in.fail("the PLY header has no format");
       in.skip_line();
       header.size = bytes.size() - in.remaining();
       return header;
     } else if (!in.accept("comment") && !in.accept("obj_info")) {
-      in.fail_at_word("an element, a property or end_header is needed in the PLY header");
+      in.fail_at_word("expected element, property or end_header in the PLY header");
     }
   }
   in.fail("the PLY header has no end; the file is truncated");
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,4 +1,4 @@
-// The header of a PLY file: which elements follow, and their properties.
+// The header of a PLY file, which declares elements and their properties.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
 struct PlyHeader {
   enum class Encoding { text, little_endian, big_endian };
@@ -22,19 +22,19 @@ struct PlyHeader {
     std::size_t count;
     std::vector<Property> properties;
 
-    /// The place of the first of these properties that is there.
+    /// Returns the index of the first of these properties that exists.
     [[nodiscard]] std::optional<std::size_t> find(std::initializer_list<std::string_view> names) const;
   };
 
   Encoding encoding = Encoding::text;
   std::vector<Element> elements;
-  std::size_t size = 0;  ///< bytes of the header; the data follow
+  std::size_t size = 0;  ///< in bytes; the data follow
 };
 
-/// Bytes that a number takes in a binary file.
+/// Returns the size of a number in a binary file, in bytes.
 [[nodiscard]] std::size_t size_of(PlyHeader::Type type);
 
-/// Throws sdm::Error for anything that is no PLY header.
+/// Parses the header at the start of a file. Throws sdm::Error if it is invalid.
 [[nodiscard]] PlyHeader parse_ply_header(std::string_view bytes);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,5 +1,6 @@
 #include "io/read/polygon_mesh.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
@@ -10,20 +11,21 @@
 #include "core/vec.h"
 #include "io/read/triangulate.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 void check_indices(const PolygonMesh& polygons) {
   if (polygons.ends.empty()) {
     if (polygons.positions.empty()) throw Error("there are no triangles");
-    throw Error("there are no triangles, only a point cloud of " + std::to_string(polygons.positions.size()) +
-                " points; make a mesh of them first");
+    throw Error(
+        fmt::format("there are no triangles, only a cloud of {} points; reconstruct a mesh from them first",
+                    polygons.positions.size()));
   }
   for (std::size_t c = 0; c < polygons.corners.size(); ++c) {
     if (polygons.corners[c] < polygons.positions.size()) continue;
     const auto face = std::upper_bound(polygons.ends.begin(), polygons.ends.end(), c) - polygons.ends.begin();
-    throw Error("index out of range: face " + std::to_string(face) + " refers to vertex " +
-                std::to_string(polygons.corners[c]) + " of " + std::to_string(polygons.positions.size()));
+    throw Error(fmt::format("index out of range: face {} refers to vertex {} of {}", face,
+                            polygons.corners[c], polygons.positions.size()));
   }
 }
 
@@ -32,8 +34,7 @@ std::uint64_t mix(std::uint64_t h) {
   return h ^ h >> 32;
 }
 
-// Differs from run to run, so that no file can be made to collide; what the table finds does not depend on
-// it.
+// Random, so that no file can be crafted to collide in the hash table. Results do not depend on it.
 std::uint64_t hash_seed() {
   static const std::uint64_t seed = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
   return seed;
@@ -45,8 +46,8 @@ class PositionTable {
   PositionTable(std::size_t capacity, const std::vector<Vec3>& positions)
       : positions_(positions), slots_(std::bit_ceil(capacity + capacity / 2 + 1), kNone) {}
 
-  /// The index of an equal position that was inserted before; else inserts `index`, which positions has by
-  /// then.
+  /// Returns the index of an equal position that was inserted before. Otherwise inserts and returns `index`;
+  /// the caller then appends p to `positions`.
   std::uint32_t find_or_insert(const Vec3& p, std::uint32_t index) {
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t slot = hash(p) & mask;; slot = (slot + 1) & mask) {
@@ -67,7 +68,7 @@ class PositionTable {
   std::uint64_t seed_ = hash_seed();
 };
 
-// Fills mesh.positions; returns the new index of each old vertex, kNone for those of no face.
+// Fills mesh.positions. Returns the new index of each old vertex, kNone for those without a face.
 std::vector<std::uint32_t> weld(const PolygonMesh& polygons, Mesh& mesh) {
   std::vector<std::uint32_t> renumbered(polygons.positions.size(), kNone);
   for (const std::uint32_t v : polygons.corners) renumbered[v] = 0;
@@ -78,7 +79,7 @@ std::vector<std::uint32_t> weld(const PolygonMesh& polygons, Mesh& mesh) {
   for (std::size_t v = 0; v < renumbered.size(); ++v) {
     if (renumbered[v] == kNone) continue;
     if (!finite(polygons.positions[v]))
-      throw Error("vertex " + std::to_string(v) + " has a NaN or infinite coordinate");
+      throw Error(fmt::format("vertex {} has a NaN or infinite coordinate", v));
     const auto next = static_cast<std::uint32_t>(mesh.positions.size());
     renumbered[v] = table.find_or_insert(polygons.positions[v], next);
     if (renumbered[v] == next) mesh.positions.push_back(polygons.positions[v]);
@@ -93,8 +94,9 @@ bool all_corners_have_uvs(const PolygonMesh& polygons) {
   });
 }
 
-// The corners of one polygon, as places in PolygonMesh::corners. Of neighbours on one vertex only the first
-// stays, as long as three remain: many exporters write triangles as quads with a corner twice.
+// Collects the corners of one polygon, as indices into PolygonMesh::corners. Of consecutive corners on the
+// same vertex only the first is kept, as long as three remain: many exporters write triangles as quads with a
+// repeated corner.
 void gather(const std::vector<std::uint32_t>& corners, const std::vector<std::uint32_t>& renumbered,
             std::uint32_t begin, std::uint32_t end, std::vector<std::uint32_t>& places) {
   places.clear();
@@ -147,9 +149,6 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
     if (end - begin == 3) {
       add_triangle(begin, begin + 1, begin + 2);
     } else {
-      if (end - begin > Triangulator::kMaxCorners)
-        throw Error("a face has " + std::to_string(end - begin) + " corners, more than " +
-                    std::to_string(Triangulator::kMaxCorners) + "; triangulate it first");
       gather(polygons.corners, renumbered, begin, end, places);
       points.clear();
       for (const std::uint32_t place : places)
@@ -162,4 +161,4 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
   return mesh;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,4 +1,4 @@
-// The output of the readers, and its conversion to a mesh.
+// The polygons of a file, and their conversion to a mesh.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -6,27 +6,27 @@
 #include <cstdint>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
-/// Polygons over shared vertices, as stored in a file; unchecked.
+/// Polygons over shared vertices, as a file has them; nothing is checked.
 struct PolygonMesh {
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;
   std::vector<std::uint32_t> corners;     ///< the vertex of each corner, polygon after polygon
-  std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; empty, or one a corner
+  std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; may be empty
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
 
-  /// Ends the polygon of the corners that came since the last one; fewer than three are dropped.
+  /// Makes a polygon of the corners since the last one. Fewer than three are dropped.
   void end_polygon();
 };
 
-/// Welds vertices whose positions are bit-identical (−0 equals 0), drops those of no face, and triangulates.
-/// Texture coordinates are kept where every corner has finite ones. Throws sdm::Error for an index out of
-/// range and where there is no face.
+/// Welds vertices whose positions are bit-identical (−0 equals 0), drops vertices without a face, and
+/// triangulates. Texture coordinates are kept if every corner has finite ones. Throws sdm::Error if an index
+/// is out of range, a coordinate is not finite, or there are no faces.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons);
 
-/// The same, and returns the new index of each vertex: its number in the mesh, where vertices keep the order
-/// in which they are met first, or kNone for one that was dropped.
+/// As above. Also returns the index in the mesh of each vertex, or kNone if it was dropped. Vertices of the
+/// mesh are in the order in which the file first has them.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered);
 
-}  // namespace sdm
+}  // namespace sdm::io

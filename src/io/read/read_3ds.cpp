@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <vector>
@@ -5,10 +6,10 @@
 #include "io/read/byte_scanner.h"
 #include "io/read/formats.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
-// A file is a tree of chunks: a kind, a length that counts these six bytes too, then data and chunks.
+// A file is a tree of chunks. Each has a type, a length that includes these six bytes, data, and chunks.
 enum ChunkKind : std::uint16_t {
   kMain = 0x4D4D,
   kEditor = 0x3D3D,
@@ -29,8 +30,7 @@ Chunk next_chunk(ByteScanner& in) {
   const auto kind = in.number<std::uint16_t>();
   const auto length = in.number<std::uint32_t>();
   if (length < kChunkHeaderBytes || length - kChunkHeaderBytes > in.remaining())
-    throw Error("a chunk of " + std::to_string(length) +
-                " bytes does not fit in; the file is truncated or damaged");
+    throw Error(fmt::format("a chunk of {} bytes does not fit; the file is truncated or damaged", length));
   return {kind, ByteScanner(in.take(length - kChunkHeaderBytes))};
 }
 
@@ -63,9 +63,9 @@ void read_triangle_mesh(ByteScanner in, PolygonMesh& mesh) {
   const std::size_t vertices = mesh.positions.size() - first_vertex;
   for (std::size_t c = first_corner; c < mesh.corners.size(); ++c)
     if (mesh.corners[c] - first_vertex >= vertices)
-      throw Error("index out of range: a face refers to vertex " +
-                  std::to_string(mesh.corners[c] - first_vertex) + " of " + std::to_string(vertices));
-  // One a vertex, or none; meshes without leave the corners of the whole without.
+      throw Error(fmt::format("index out of range: a face refers to vertex {} of {}",
+                              mesh.corners[c] - first_vertex, vertices));
+  // Texture coordinates are used if every vertex has them.
   if (uvs.size() == vertices) {
     for (std::size_t c = first_corner; c < mesh.corners.size(); ++c)
       mesh.corner_uvs.push_back(static_cast<std::uint32_t>(mesh.uvs.size() + mesh.corners[c] - first_vertex));
@@ -89,7 +89,7 @@ void read_object(ByteScanner in, PolygonMesh& mesh) {
 PolygonMesh read_3ds(std::string_view bytes) {
   ByteScanner in(bytes);
   Chunk main = next_chunk(in);
-  if (main.kind != kMain) throw Error("a 3DS file begins with a main chunk");
+  if (main.kind != kMain) throw Error("a 3DS file must begin with a main chunk");
   PolygonMesh mesh;
   while (main.data.remaining() > 0) {
     Chunk chunk = next_chunk(main.data);
@@ -102,4 +102,4 @@ PolygonMesh read_3ds(std::string_view bytes) {
   return mesh;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

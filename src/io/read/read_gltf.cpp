@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <utility>
@@ -6,12 +7,12 @@
 #include "io/read/formats.h"
 #include "io/read/gltf_scene.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using nlohmann::json;
 
-// The places in the list of indices of the i-th triangle's corners.
+// Returns where the corners of the i-th triangle are in the list of indices.
 std::array<std::size_t, 3> corner_places(std::size_t mode, std::size_t i) {
   if (mode == kStrip) return i % 2 == 0 ? std::array{i, i + 1, i + 2} : std::array{i + 1, i, i + 2};
   if (mode == kFan) return {0, i + 1, i + 2};
@@ -22,7 +23,7 @@ void add_primitive(const GltfDocument& document, const json& primitive, const Gl
                    PolygonMesh& mesh) {
   const json& attributes = primitive.at("attributes");
   const GltfNumbers positions = document.numbers(whole_number(attributes, "POSITION"));
-  if (positions.columns != 3) throw Error("the positions of a mesh are not vectors of three");
+  if (positions.columns != 3) throw Error("the positions of a mesh are not of type VEC3");
   const std::size_t first_vertex = mesh.positions.size();
   for (std::size_t v = 0; v < positions.rows(); ++v) {
     const double* p = positions.row(v);
@@ -34,7 +35,7 @@ void add_primitive(const GltfDocument& document, const json& primitive, const Gl
   if (has_uvs) {
     const GltfNumbers uvs = document.numbers(whole_number(attributes, "TEXCOORD_0"));
     has_uvs = uvs.columns == 2 && uvs.rows() == positions.rows();
-    // glTF's v runs down from the upper left.
+    // In glTF, v points down.
     for (std::size_t v = 0; has_uvs && v < uvs.rows(); ++v)
       mesh.uvs.push_back({uvs.row(v)[0], 1 - uvs.row(v)[1]});
   }
@@ -50,8 +51,8 @@ void add_primitive(const GltfDocument& document, const json& primitive, const Gl
     for (const std::size_t place : places) {
       const double index = primitive.contains("indices") ? indices.values[place] : static_cast<double>(place);
       if (!(index >= 0 && index < static_cast<double>(positions.rows())))
-        throw Error("index out of range: a triangle refers to a vertex beyond the " +
-                    std::to_string(positions.rows()) + " of its mesh");
+        throw Error(
+            fmt::format("index out of range: a triangle refers to vertex {} of {}", index, positions.rows()));
       const auto v = static_cast<std::size_t>(index);
       mesh.corners.push_back(static_cast<std::uint32_t>(first_vertex + v));
       mesh.corner_uvs.push_back(has_uvs ? static_cast<std::uint32_t>(first_uv + v) : kNone);
@@ -60,7 +61,7 @@ void add_primitive(const GltfDocument& document, const json& primitive, const Gl
   }
 }
 
-// Many nodes may show one mesh: a small file can ask for a large scene.
+// Many nodes may have the same mesh, so a small file can expand to a large scene.
 void check_memory(const GltfDocument& document, const std::vector<GltfInstance>& scene) {
   constexpr std::size_t bytes_per_item = 128;
   std::size_t items = 0;
@@ -97,4 +98,4 @@ PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file)
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -6,8 +6,8 @@
 namespace sdm {
 
 Mesh read_mesh(const std::filesystem::path& file) {
-  return naming(file.string(), [&] {
-    Mesh mesh = to_mesh(read_polygons(read_bytes(file).view(), file));
+  return io::with_error_prefix(file.string(), [&] {
+    Mesh mesh = io::to_mesh(io::read_polygons(io::read_bytes(file).view(), file));
     validate(mesh);
     return mesh;
   });

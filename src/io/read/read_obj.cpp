@@ -1,23 +1,26 @@
+#include <fmt/format.h>
+
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
-// The highest index that a face uses, and where: faces may come before what they refer to, so it is checked
-// at the end.
+// The highest index in any face, and where it is. Faces may precede the items that they refer to, so it is
+// checked at the end.
 struct HighestIndex {
   std::uint32_t index = 0;
   const char* at = nullptr;
 };
 
-// Reads an index: from 1, or negative from the last of the `count` items so far. The result counts from 0.
+// Reads an index: positive ones count from 1, negative ones back from the last of the `count` items so far.
+// The result counts from 0.
 std::uint32_t parse_index(TextScanner& in, std::size_t count, HighestIndex& highest) {
   const char* at = in.position();
   const std::int64_t i = in.integer();
   const std::int64_t index = i > 0 ? i - 1 : static_cast<std::int64_t>(count) + i;
   if (i == 0 || index < 0 || index >= kNone)
-    in.fail_at(at, "index out of range: a face refers to item " + std::to_string(i));
+    in.fail_at(at, fmt::format("index out of range: a face refers to item {}", i));
   const auto result = static_cast<std::uint32_t>(index);
   if (!highest.at || result > highest.index) highest = {result, at};
   return result;
@@ -67,11 +70,10 @@ class ObjReader {
     }
     mesh_.end_polygon();
   }
-  void check(const HighestIndex& highest, std::size_t count, const std::string& item) const {
+  void check(const HighestIndex& highest, std::size_t count, std::string_view item) const {
     if (highest.at && highest.index >= count)
-      in_.fail_at(highest.at, "index out of range: a face refers to " + item + " " +
-                                  std::to_string(std::size_t{highest.index} + 1) + " of " +
-                                  std::to_string(count));
+      in_.fail_at(highest.at, fmt::format("index out of range: a face refers to {} {} of {}", item,
+                                          std::size_t{highest.index} + 1, count));
   }
 
   TextScanner in_;
@@ -85,4 +87,4 @@ PolygonMesh read_obj(std::string_view text) {
   return ObjReader(text).read();
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,12 +1,13 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
-// Which prefixes a header has; in the order of Geomview they are [ST][C][N][4][n]OFF.
+// The prefixes of a header, in the order of Geomview: [ST][C][N][4][n]OFF.
 struct Header {
   bool is_off = false, uvs = false, colours = false, normals = false, four = false, any_dimension = false;
 };
@@ -54,18 +55,20 @@ PolygonMesh read_off(std::string_view text) {
   if (in.next_word()) {
     TextScanner ahead = in;
     header = parse_header(ahead.word());
-    if (header.is_off) in = ahead;  // without one, the counts come first
+    if (header.is_off) in = ahead;  // the header is optional
   }
-  if (header.four || header.any_dimension) throw Error("only three-dimensional OFF is supported");
+  if (header.four || header.any_dimension) throw Error("OFF is supported in three dimensions only");
   if (header.is_off && in.more_on_line() && in.accept("BINARY"))
     throw Error("binary OFF is not supported; save it as text");
 
   const std::size_t vertices = parse_count(in), faces = parse_count(in);
-  in.skip_line();  // the count of edges, if any, says nothing
+  in.skip_line();  // the count of edges, if any, is not reliable
   // A vertex takes at least the 6 bytes "0 0 0\n", a face the 2 bytes "0\n"; the last newline may be missing.
   if (vertices > in.remaining() || faces > in.remaining() || 6 * vertices + 2 * faces > in.remaining() + 1)
-    throw Error("the header declares " + std::to_string(vertices) + " vertices and " + std::to_string(faces) +
-                " faces, more than the file can hold; it is truncated or damaged");
+    throw Error(
+        fmt::format("the header declares {} vertices and {} faces, more than the file can hold; it is "
+                    "truncated or damaged",
+                    vertices, faces));
 
   PolygonMesh mesh;
   mesh.positions.reserve(vertices);
@@ -78,16 +81,14 @@ PolygonMesh read_off(std::string_view text) {
   mesh.ends.reserve(faces);
   mesh.corners.reserve(3 * faces);
   for (std::size_t f = 0; f < faces; ++f, in.skip_line()) {
-    if (!in.next_word())
-      in.fail("the text ends before face " + std::to_string(f) + "; the file is truncated");
+    if (!in.next_word()) in.fail(fmt::format("the text ends before face {}; the file is truncated", f));
     const std::int64_t corners = in.integer();
     for (std::int64_t k = 0; k < corners; ++k) {
       if (!in.next_word()) in.fail("the text ends within a face; the file is truncated");
       const char* at = in.position();
       const std::int64_t v = in.integer();
       if (v < 0 || static_cast<std::size_t>(v) >= vertices)
-        in.fail_at(at, "index out of range: a face refers to vertex " + std::to_string(v) + " of " +
-                           std::to_string(vertices));
+        in.fail_at(at, fmt::format("index out of range: a face refers to vertex {} of {}", v, vertices));
       mesh.corners.push_back(static_cast<std::uint32_t>(v));
     }
     mesh.end_polygon();
@@ -96,4 +97,4 @@ PolygonMesh read_off(std::string_view text) {
   return mesh;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

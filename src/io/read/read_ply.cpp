@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <cmath>
@@ -7,14 +8,14 @@
 #include "io/read/ply_header.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 using Type = PlyHeader::Type;
 using Element = PlyHeader::Element;
 using Property = PlyHeader::Property;
 
-// The two sources of numbers. All types of PLY fit a double without loss.
+// The two sources of numbers. A double represents all PLY types without loss.
 class TextSource {
  public:
   explicit TextSource(std::string_view text) : in_(text) {}
@@ -78,7 +79,7 @@ class PlyReader {
         for (std::size_t row = 0; row < element.count; ++row) read_row(element);
     }
     if (mesh_.corner_uvs.size() != mesh_.corners.size()) {
-      // Not every face has its own: those of the vertices, if they have any.
+      // Unless all faces have their own, those of the vertices are used, if any.
       mesh_.uvs = std::move(vertex_uvs_);
       mesh_.corner_uvs = mesh_.uvs.empty() ? std::vector<std::uint32_t>{} : mesh_.corners;
     }
@@ -91,11 +92,13 @@ class PlyReader {
     for (const Property& p : element.properties)
       row_bytes += Source::least_bytes(p.count_type.value_or(p.type));
     if (element.count > in_.remaining() / row_bytes)
-      throw Error("the header declares " + std::to_string(element.count) + " rows of element " +
-                  element.name + ", more than the file can hold; it is truncated or damaged");
+      throw Error(
+          fmt::format("the header declares {} rows of element {}, more than the file can hold; it is "
+                      "truncated or damaged",
+                      element.count, element.name));
   }
 
-  // Reads a row into scalars_ and lists_, by the places of its properties.
+  // Reads a row into scalars_ and lists_, both indexed by property.
   void read_row(const Element& element) {
     scalars_.resize(element.properties.size());
     lists_.resize(element.properties.size());
@@ -117,7 +120,7 @@ class PlyReader {
     for (int k = 0; k < 3; ++k) {
       const auto found = element.find({names[k]});
       if (!found || element.properties[*found].count_type)
-        throw Error("the vertices of the PLY file have no " + std::string(names[k]));
+        throw Error(fmt::format("the vertices of the PLY file have no {}", names[k]));
       place[k] = *found;
     }
     const auto u = element.find({"s", "u", "texture_u", "texture_s"});
@@ -130,12 +133,11 @@ class PlyReader {
     }
   }
 
-  // An index that stands in element `name` as any type of number.
+  // Converts an index, which may have any type in the file.
   [[nodiscard]] std::uint32_t index(double value, const Element& element, std::size_t row) const {
     if (value >= 0 && value < kNone && std::trunc(value) == value) return static_cast<std::uint32_t>(value);
-    std::string text = std::to_string(value);
-    throw Error("index out of range: row " + std::to_string(row) + " of element " + element.name +
-                " refers to vertex " + text.substr(0, text.find('.')));
+    throw Error(fmt::format("index out of range: row {} of element {} refers to vertex {}", row, element.name,
+                            value));
   }
 
   void read_faces(const Element& element) {
@@ -158,7 +160,7 @@ class PlyReader {
     }
   }
 
-  // A list contains several strips separated by −1; every other triangle of a strip is flipped.
+  // A list holds strips, separated by −1. Every other triangle of a strip is flipped.
   void read_strips(const Element& element) {
     const std::size_t indices = list_place(element, {"vertex_indices", "vertex_index"});
     for (std::size_t row = 0; row < element.count; ++row) {
@@ -172,9 +174,9 @@ class PlyReader {
         strip.push_back(index(value, element, row));
         const std::size_t n = strip.size();
         if (n < 3) continue;
-        const bool turned = n % 2 == 0;
+        const bool flipped = n % 2 == 0;
         mesh_.corners.insert(mesh_.corners.end(),
-                             {strip[n - 3 + turned], strip[n - 2 - turned], strip[n - 1]});
+                             {strip[n - 3 + flipped], strip[n - 2 - flipped], strip[n - 1]});
         mesh_.end_polygon();
       }
     }
@@ -183,7 +185,7 @@ class PlyReader {
   static std::size_t list_place(const Element& element, std::initializer_list<std::string_view> names) {
     const auto place = element.find(names);
     if (!place || !element.properties[*place].count_type)
-      throw Error("element " + element.name + " of the PLY file has no list vertex_indices");
+      throw Error(fmt::format("element {} of the PLY file has no list vertex_indices", element.name));
     return *place;
   }
 
@@ -211,4 +213,4 @@ PolygonMesh read_ply(std::string_view bytes) {
   return PlyReader(header, BinarySource(data, std::endian::big)).read();
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -7,7 +7,7 @@
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Whether the first bytes are text: no control characters except whitespace.
@@ -62,7 +62,7 @@ PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& f
   bytes = without_byte_order_mark(bytes);
   const MeshFormat format = format_of(bytes, file);
   if (!is_text(bytes) && (format == MeshFormat::obj || format == MeshFormat::off))
-    throw Error("contains binary data where text is expected; it is damaged or has another format");
+    throw Error("holds binary data where text is expected; it is damaged or has another format");
   switch (format) {
     case MeshFormat::obj:
       return read_obj(bytes);
@@ -84,4 +84,4 @@ PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& f
   throw Error("unknown format; OBJ, PLY, STL, OFF, glTF, GLB and 3DS are supported");
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,4 +1,4 @@
-// Any mesh file's polygons.
+// The polygons of a mesh file of any format.
 #pragma once
 
 #include <sdm/error.h>
@@ -10,20 +10,20 @@
 
 #include "io/read/polygon_mesh.h"
 
-namespace sdm {
+namespace sdm::io {
 
 enum class MeshFormat { unknown, obj, ply, stl_text, stl_binary, off, gltf, tds };
 
-/// Detected by content, otherwise by the file extension.
+/// Determines the format from the contents, else from the extension of the file name.
 [[nodiscard]] MeshFormat format_of(std::string_view bytes, const std::filesystem::path& file);
 
-/// Reads the contents of a mesh file. Throws sdm::Error that names the fault, not the file.
+/// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.
 [[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file);
 
-/// Calls `read`; an sdm::Error of it, or want of memory, becomes one that begins with `name`, if that is
-/// not empty.
+/// Calls `read`. If it throws sdm::Error or runs out of memory, throws an sdm::Error whose message begins
+/// with `name`, unless that is empty.
 template <typename Read>
-auto naming(const std::string& name, const Read& read) {
+auto with_error_prefix(const std::string& name, const Read& read) {
   const std::string prefix = name.empty() ? "" : name + ": ";
   try {
     return read();
@@ -34,4 +34,4 @@ auto naming(const std::string& name, const Read& read) {
   }
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

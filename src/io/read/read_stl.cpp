@@ -1,20 +1,21 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include "io/read/byte_scanner.h"
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
-// Binary: 80 bytes of anything, a count, and for each triangle a normal, three corners, and an attribute.
+// Binary: a comment of 80 bytes, a count, and for each triangle a normal, three corners, and an attribute.
 constexpr std::size_t kHeaderBytes = 84, kTriangleBytes = 50, kNormalBytes = 12;
 
 std::uint32_t triangle_count(std::string_view bytes) {
   return load<std::uint32_t>(bytes.data() + 80);
 }
 
-// Some programs write keywords in capitals.
+// Some programs write keywords in upper case.
 bool same_keyword(std::string_view word, std::string_view lower_case) {
   return std::equal(word.begin(), word.end(), lower_case.begin(), lower_case.end(),
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
@@ -29,12 +30,14 @@ bool is_stl_binary(std::string_view bytes) {
 
 PolygonMesh read_stl_binary(std::string_view bytes) {
   if (bytes.size() < kHeaderBytes)
-    throw Error("has " + std::to_string(bytes.size()) +
-                " bytes, fewer than the header of a binary STL; it is truncated");
+    throw Error(
+        fmt::format("has {} bytes, fewer than the header of a binary STL; it is truncated", bytes.size()));
   const std::size_t count = triangle_count(bytes);
   if (bytes.size() < kHeaderBytes + kTriangleBytes * count)
-    throw Error("the header declares " + std::to_string(count) + " triangles, more than the file of " +
-                std::to_string(bytes.size()) + " bytes can contain; it is truncated or not an STL file");
+    throw Error(
+        fmt::format("the header declares {} triangles, more than the file of {} bytes can hold; it is "
+                    "truncated or not STL",
+                    count, bytes.size()));
 
   PolygonMesh mesh;
   mesh.positions.reserve(3 * count);
@@ -59,7 +62,7 @@ PolygonMesh read_stl_text(std::string_view text) {
     if (!in.more_on_line()) continue;
     const std::string_view word = in.word();
     if (same_keyword(word, "vertex")) {
-      if (!in_loop) in.fail("a vertex outside of a loop");
+      if (!in_loop) in.fail("a vertex outside a loop");
       const double x = in.number(), y = in.number(), z = in.number();
       mesh.corners.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
       mesh.positions.push_back({x, y, z});
@@ -78,4 +81,4 @@ PolygonMesh read_stl_text(std::string_view text) {
   return mesh;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,23 +1,23 @@
 #include "io/read/text_scanner.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
 
-namespace sdm {
+namespace sdm::io {
 
-void TextScanner::fail_at(const char* position, const std::string& fault) const {
-  throw Error("line " + std::to_string(1 + std::count(begin_, position, newline_)) + ": " + fault);
+void TextScanner::fail_at(const char* position, std::string_view fault) const {
+  throw Error(fmt::format("line {}: {}", 1 + std::count(begin_, position, newline_), fault));
 }
 
-void TextScanner::fail_at_word(const std::string& fault) {
+void TextScanner::fail_at_word(std::string_view fault) {
   const char* start = at_;
   std::string found(in_word() ? word().substr(0, 32) : std::string_view());
   for (char& c : found)
     if (c < ' ' || c > '~') c = '?';
-  if (!found.empty()) found = ", not '" + found + "'";
-  if (at_end()) found += "; the file ends here and may be truncated";
-  fail_at(start, fault + found);
+  fail_at(start, fmt::format("{}{}{}", fault, found.empty() ? "" : fmt::format(", not '{}'", found),
+                             at_end() ? "; the text ends here, so the file may be truncated" : ""));
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

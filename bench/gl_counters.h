@@ -1,0 +1,15 @@
+// Relations that the counters of the gl engine must satisfy.
+#pragma once
+
+#include <sdm/map.h>
+
+#include <string>
+#include <vector>
+
+namespace sdm::bench {
+
+/// The relations of <sdm/gl.h> that the map's report violates, as text.
+[[nodiscard]] std::vector<std::string> violated_relations(const Surface& surface, const DistanceMap& map,
+                                                          const GlOptions& options);
+
+}  // namespace sdm::bench

@@ -1,0 +1,62 @@
+// The program around benchmark cases: arguments, tables, JSON and the exit status. A case verifies results
+// first and then measures them; those that are compared take turns in one run (timing.h), so that ratios do
+// not depend on how fast the machine is at the moment.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace sdm::bench {
+
+/// A measured number; its key ends in the unit, if it has one.
+struct Figure {
+  std::string key;
+  double value;
+};
+
+/// A line of a case's results.
+struct Row {
+  std::string name{};  ///< empty if the case has one row only
+  std::vector<Figure> figures{};
+};
+
+struct Outcome {
+  bool verified = false;         ///< whether the results were right; if not, figures may be missing
+  std::vector<Row> rows{};       ///< printed, and written as JSON
+  std::vector<Figure> counts{};  ///< of the work that was measured; written as JSON only
+};
+
+/// How a case is run.
+struct Trial {
+  int repetitions;   ///< at least 1
+  unsigned threads;  ///< that the library may use; 0: one per core
+};
+
+struct Case {
+  std::string name, description;
+  std::function<Outcome(const Trial&)> run;
+  int repetitions = 9;   ///< by default
+  unsigned threads = 1;  ///< by default
+};
+
+struct Program {
+  std::string name, description;
+  std::string repetition;  ///< what a repetition is, in the plural
+  std::vector<Case> cases;
+  std::function<void(CLI::App&)> add_options{};  ///< for options of its own
+};
+
+/// Parses the arguments --list, --filter REGEX, --repetitions N, --threads N and --json FILE, runs the cases
+/// chosen, and prints a Markdown table of their figures. The JSON file appears when all cases have run:
+///   {"program": ..., "machine": {"cpu": ..., "cores": ..., "compiler": ...},
+///    "cases": {NAME: {"verified": ..., "repetitions": ..., "threads": ..., FIGURE: ..., ROW: {FIGURE:
+///    ...}}}}
+/// Returns the exit status: 0; 1 if a result is wrong or something fails; 2 if the arguments are wrong.
+[[nodiscard]] int run_program(int argc, char** argv, const Program& program) noexcept;
+
+}  // namespace sdm::bench
