@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 Picture to_picture(cairo_surface_t* surface) {
@@ -58,4 +58,4 @@ Picture Canvas::picture(const std::string& what) {
   return to_picture(surface_.get());
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -8,7 +8,7 @@
 
 #include "io/write/picture.h"
 
-namespace sdm {
+namespace sdm::io {
 
 /// White paper. Lengths are in the units of its size; `zoom` pixels make one.
 class Canvas {
@@ -31,4 +31,4 @@ class Canvas {
 
 inline constexpr Rgb kInk{28, 30, 34}, kLineColor{60, 62, 66};
 
-}  // namespace sdm
+}  // namespace sdm::io

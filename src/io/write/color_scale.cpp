@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Ten equal steps of Matplotlib's viridis, and ColorBrewer's RdBu reversed with a pure white middle.
@@ -139,4 +139,4 @@ Rgb direction_color(const Vec3f& vector) {
   return {channel(vector[0]), channel(vector[1]), channel(vector[2])};
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-namespace sdm {
+namespace sdm::io {
 
 struct Rgb {
   std::uint8_t r = 0, g = 0, b = 0;
@@ -36,4 +36,4 @@ struct ColorScale {
 /// The unit vector along `vector`, (x, y, z) → (r, g, b) by (1 + x)/2; kNoValue where it is NaN.
 [[nodiscard]] Rgb direction_color(const Vec3f& vector);
 
-}  // namespace sdm
+}  // namespace sdm::io

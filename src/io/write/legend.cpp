@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Lengths at 1024 texels; everything is drawn in these and scaled.
@@ -87,4 +87,4 @@ Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32
   return canvas.picture("the legend");
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

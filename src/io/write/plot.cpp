@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 
@@ -11,6 +12,9 @@
 #include "io/write/ticks.h"
 
 namespace sdm {
+
+using namespace io;
+
 namespace {
 
 constexpr double kWidth = 900, kPanel = 220, kLeft = 90, kRight = 24, kTop = 40, kFoot = 26, kAxis = 40;
@@ -126,8 +130,8 @@ void write_plot_png(const std::filesystem::path& file, const std::string& axis,
   for (const PlotPanel& panel : panels)
     for (const Curve& curve : panel.curves)
       if (curve.values.size() != places.size())
-        throw Error("cannot plot '" + curve.name + "': it has " + std::to_string(curve.values.size()) +
-                    " values for " + std::to_string(places.size()) + " places");
+        throw Error(fmt::format("cannot plot '{}': it has {} values for {} places", curve.name,
+                                curve.values.size(), places.size()));
   const double height = kPanel * static_cast<double>(panels.size()) + kAxis;
   Canvas canvas(kWidth, height, kZoom);
   for (std::size_t i = 0; i < panels.size(); ++i)

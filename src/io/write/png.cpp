@@ -6,7 +6,7 @@
 #include <csetjmp>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 static_assert(sizeof(Rgb) == 3, "rows of Rgb are handed to libpng as bytes");
@@ -57,4 +57,4 @@ void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
     throw Error("libpng failed to encode an image; see its message above");
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

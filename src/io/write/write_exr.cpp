@@ -22,6 +22,9 @@
 #include <vector>
 
 namespace sdm {
+
+using namespace io;
+
 namespace {
 
 class ExrStream : public Imf::OStream {

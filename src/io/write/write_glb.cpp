@@ -21,6 +21,9 @@
 #include <vector>
 
 namespace sdm {
+
+using namespace io;
+
 namespace {
 
 /// Vertices as glTF has them: one for each place in the atlas that a vertex of the mesh appears at.
@@ -125,7 +128,7 @@ Placement placement(const Mesh& mesh, const std::string& units) {
   const Box box = bounds(mesh);
   if (norm(centre(box)) > 8 * diagonal(box)) result.origin = centre(box);
   if (!(diagonal(box) < std::numeric_limits<float>::max() / 8))
-    throw Error("coordinates are too large for glTF's single precision; scale the meshes (fit)");
+    throw Error("coordinates are too large for glTF's single precision; scale the mesh down");
   return result;
 }
 
