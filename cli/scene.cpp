@@ -39,7 +39,7 @@ struct SceneCommand {
   bool quiet = false;
 };
 
-/// A body's frames, written as they come.
+/// Writes the frames of a body.
 class Recorder {
  public:
   Recorder(const Scene::Body& body, const fs::path& folder, bool numbered) : folder_(folder / body.name) {
@@ -66,7 +66,7 @@ class Recorder {
   void commit() {
     if (writer_) writer_->commit();
   }
-  /// As MeshSequence takes it, relative to the folder of the scene.
+  /// The input of MeshSequence, relative to the folder of the scene.
   [[nodiscard]] const std::string& sequence() const { return sequence_; }
 
  private:
@@ -152,7 +152,7 @@ void add_scene_command(CLI::App& app) {
       ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N")
       ->capture_default_str();
-  scene->add_flag("--quiet", command->quiet, "Print nothing but errors");
+  scene->add_flag("--quiet", command->quiet, "Print only errors");
   scene->footer(
       "The files can be used as sequences. They are bit-identical every time.\n\n"
       "Example:\n  sdm scene letters -o letters");

@@ -123,7 +123,7 @@ void add_self_command(CLI::App& app) {
   self->footer(
       "Each face excludes a neighbourhood; distances are measured to all other faces.\n"
       "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb and report.json.\n\n"
-      "Example, walls nearer than the way around them:\n"
+      "Example, walls that are closer than along the surface:\n"
       "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
   const auto command = std::make_shared<SelfCommand>();
   SelfCommand& c = *command;

@@ -29,7 +29,7 @@ struct SequenceCommand {
   bool keep_going = false, no_temporal = false;
 };
 
-/// A body of the sequence: its file or files, and where it stands.
+/// A body: its sequence of meshes, and its placement.
 class Body {
  public:
   Body(const std::string& input, const std::string& steps, double rate)
@@ -45,7 +45,7 @@ class Body {
     sdm::scenes::place(mesh, steps_);
     return mesh;
   }
-  /// Of a body that moves.
+  /// The placed positions of a frame; requires a body that moves.
   [[nodiscard]] std::span<const sdm::Vec3> positions(std::size_t frame) {
     const std::span<const sdm::Vec3> read = sequence_.positions(frame);
     placed_.assign(read.begin(), read.end());

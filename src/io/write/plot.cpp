@@ -30,7 +30,7 @@ struct Range {
     for (const double v : values)
       if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
   }
-  // Something to draw in, even without values or with one value only.
+  // Makes the range nonempty, also without values or with a single one.
   void widen() {
     if (!(lo <= hi)) lo = 0, hi = 1;
     const double least = std::max(1e-9 * std::max(std::abs(lo), std::abs(hi)), 1e-30);
@@ -40,7 +40,7 @@ struct Range {
   [[nodiscard]] double part(double v) const { return (v - lo) / (hi - lo); }
 };
 
-// A panel's frame, from its left top corner.
+// The axes of a panel, relative to its top left corner.
 struct Frame {
   double top;
   Range x, y;

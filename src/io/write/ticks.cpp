@@ -26,7 +26,7 @@ std::vector<double> ticks(double lo, double hi, int count) {
       break;
     }
   std::vector<double> result;
-  // Counted, not added up: values far from zero may not change by a step.
+  // Multiplied instead of accumulated: far from zero, adding a step may not change a value.
   const double first = std::ceil(lo / step - 1e-9);
   for (int i = 0; i <= 2 * count; ++i) {
     const double value = (first + i) * step;
