@@ -37,16 +37,18 @@ struct Side {
   Surface surface;
   Sites sites;
   DistanceMap map{};
+  std::optional<GlReport> report{};  ///< of the gl engine
 
   Side(std::string its_name, const Mesh& mesh)
       : name(std::move(its_name)), surface(mesh, {.resolution = kResolution}), sites(mesh) {}
 
   /// Unsigned, as in the paper. Returns the time in milliseconds, without that of opening the device.
-  double measure(const Sites& to, EngineKind engine) {
+  double measure(const Sites& to, const std::shared_ptr<const Engine>& engine) {
     const auto start = std::chrono::steady_clock::now();
     map = compute_map(surface, to, {.engine = engine, .sign = SignMethod::none});
     const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-    return time.count() - (map.raster ? map.raster->time_ms.context : 0);
+    report = gl_report(*engine);
+    return time.count() - (report ? report->time_ms.context : 0);
   }
 };
 
@@ -139,7 +141,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  const EngineKind engine = engine_name == "gl" ? EngineKind::gl : EngineKind::cpu;
+  const std::shared_ptr<const Engine> engine = make_engine(engine_name);
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
   if (fault) throw Error("cannot make the folder " + folder.string() + ": " + fault.message());
@@ -150,7 +152,7 @@ int run(int argc, char** argv) {
     const double ms = on->measure(to->sites, engine);
     std::printf("%zu triangles to %zu: %zu texels in %.1f ms on %s\n", on->surface.mesh().triangles.size(),
                 to->surface.mesh().triangles.size(), on->surface.sample_texels().size(), ms,
-                on->map.raster ? on->map.raster->device.name.c_str() : "the processor");
+                on->report ? on->report->device.name.c_str() : "the processor");
   }
 
   const ColorScale scale = common_scale(figure, box);

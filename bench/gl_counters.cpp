@@ -2,9 +2,8 @@
 
 namespace sdm::bench {
 
-std::vector<std::string> violated_relations(const Surface& surface, const DistanceMap& map,
+std::vector<std::string> violated_relations(const Surface& surface, const DistanceMap& map, const GlReport& r,
                                             const GlOptions& options) {
-  const GlReport& r = map.raster.value();
   const bool stencil = options.clip == GlClip::stencil;
   const std::uint64_t values_in_use = r.stencil_misses - r.stencil_evictions;
   std::vector<std::string> violated;

@@ -1,6 +1,7 @@
 // Relations that the counters of the gl engine must satisfy.
 #pragma once
 
+#include <sdm/gl.h>
 #include <sdm/map.h>
 
 #include <string>
@@ -10,6 +11,6 @@ namespace sdm::bench {
 
 /// The relations of <sdm/gl.h> that the map's report violates, as text.
 [[nodiscard]] std::vector<std::string> violated_relations(const Surface& surface, const DistanceMap& map,
-                                                          const GlOptions& options);
+                                                          const GlReport& report, const GlOptions& options);
 
 }  // namespace sdm::bench

@@ -46,7 +46,7 @@ bool MapTask::agrees() {
   std::size_t wrong = 0;
   double worst = 0;
   for (std::size_t i = 0; i < queries_.size(); ++i) {
-    const double error = std::abs(map_.distance[surface_->samples()[i]] - queries_[i].distance);
+    const double error = std::abs(map_.distance[surface_->sample_texels()[i]] - queries_[i].distance);
     wrong += !(error <= tolerance);
     worst = std::fmax(worst, error);
   }

@@ -55,38 +55,43 @@ Row row(std::string name, const GlReport& r, double ms, double ms_with_bounds) {
   return result;
 }
 
-Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, GlOptions raster) {
+Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, GlOptions options) {
   const Surface surface(o1, {.resolution = 256});
   const Sites sites(o2);
-  const auto map_by = [&](bool bounds) {
-    raster.bound_culling = bounds;
-    return compute_map(surface, sites,
-                       {.engine = EngineKind::gl, .sign = SignMethod::none, .raster = raster});
+  options.bound_culling = true;
+  const auto with_bounds = make_gl_engine(options);
+  options.bound_culling = false;
+  const auto without_bounds = make_gl_engine(options);
+  const auto map_by = [&](const std::shared_ptr<const Engine>& engine) {
+    return compute_map(surface, sites, {.engine = engine, .sign = SignMethod::none});
   };
   bool verified = true;
   const auto check = [&](bool good, const std::string& what) {
     if (!good) std::fprintf(stderr, "%s\n", what.c_str());
     verified &= good;
   };
-  const DistanceMap with = map_by(true), without = map_by(false);
-  std::fprintf(stderr, "on %s\n", with.raster->device.name.c_str());
+  const DistanceMap with = map_by(with_bounds), without = map_by(without_bounds);
+  const GlReport report_with = gl_report(*with_bounds).value(),
+                 report_without = gl_report(*without_bounds).value();
+  std::fprintf(stderr, "on %s\n", report_with.device.name.c_str());
   check(agree(surface, sites, with, compute_map(surface, sites, {.sign = SignMethod::none})),
         "distances differ from those of the cpu engine");
   check(same_bits(with.distance, without.distance), "distances depend on culling");
   for (const bool bounds : {true, false}) {
-    raster.bound_culling = bounds;
-    for (const std::string& relation : violated_relations(surface, bounds ? with : without, raster))
+    options.bound_culling = bounds;
+    for (const std::string& relation :
+         violated_relations(surface, bounds ? with : without, bounds ? report_with : report_without, options))
       check(false, "counters violate " + relation);
   }
   if (!verified) return {};
 
-  const std::array contenders{Contender{[&] { (void)map_by(true); }, trial.threads},
-                              Contender{[&] { (void)map_by(false); }, trial.threads}};
+  const std::array contenders{Contender{[&] { (void)map_by(with_bounds); }, trial.threads},
+                              Contender{[&] { (void)map_by(without_bounds); }, trial.threads}};
   const auto times = take_turns(contenders, trial.repetitions, 0);
   const double ms = median(times[0]);
   return {.verified = true,
-          .rows = {row("with bounds", *with.raster, ms, ms),
-                   row("without", *without.raster, median(times[1]), ms)}};
+          .rows = {row("with bounds", report_with, ms, ms),
+                   row("without", report_without, median(times[1]), ms)}};
 }
 
 std::vector<Case> cases(const std::string& device) {

@@ -54,7 +54,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
-  outcome.raster = map.raster;
+  outcome.raster = sdm::gl_report(*command.map.engine);
 
   progress.step("export");
   Stopwatch export_watch;
@@ -62,11 +62,11 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
       [&] { write_map_files(folder, *surface, map, at_vertices, command.picture); },
       [&] {
         outcome.distance = sdm::statistics(*surface, map);
-        outcome.error_bound = surface->sampling_bound();
+        outcome.error_bound = sdm::SamplingBound(*surface).value();
       },
   });
   if (command.picture.tolerance) {
-    const double accuracy = sdm::engine_accuracy(command.map.engine, on.mesh, to.mesh);
+    const double accuracy = sdm::engine_accuracy(command.engine, on.mesh, to.mesh);
     outcome.tolerance = sdm::check_tolerance(*surface, map, at_vertices, outcome.error_bound + accuracy,
                                              *command.picture.tolerance);
   }
@@ -83,7 +83,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   report["units"] = command.picture.units;
   report["atlas"] = to_json(*surface);
   report["precision"] = command.precision ? nlohmann::ordered_json(*command.precision) : nullptr;
-  report["engine"] = name(command.map.engine);
+  report["engine"] = command.engine.name;
   report["max_distance"] = command.map.max_distance;  // null: no limit
   report.update(to_json(outcome));
   write_text(folder / "report.json", to_text(report));
@@ -99,8 +99,12 @@ int run(MapCommand command) {
   command.atlas.progress = command.map.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
-  if (command.map.engine == sdm::EngineKind::gl)  // fails before the long work
-    (void)sdm::gl_device(command.map.raster, command.atlas.resolution);
+  if (command.engine.name == "gl") {
+    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // fails before the long work
+    command.map.engine = sdm::make_gl_engine(command.gl);
+  } else {
+    command.map.engine = sdm::make_engine(command.engine.name);
+  }
 
   progress.step("import");
   Stopwatch import;

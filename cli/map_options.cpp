@@ -3,6 +3,20 @@
 #include "common_options.h"
 #include "option_checks.h"
 
+namespace {
+
+void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
+  std::string help;
+  std::vector<std::pair<std::string, sdm::EngineInfo>> choices;
+  for (const sdm::EngineInfo& info : sdm::engines()) {
+    choices.emplace_back(info.name, info);
+    help += (help.empty() ? "" : "; ") + choices.back().first + ": " + std::string(info.summary);
+  }
+  add_choice<sdm::EngineInfo>(app, "--engine", engine, help, choices);
+}
+
+}  // namespace
+
 void add_options(CLI::App& app, MapCommand& c) {
   const auto positive = number("a positive number", [](double x) { return x > 0; });
   app.add_option("O1", c.o1, "The mesh on which distances are measured (OBJ, PLY, STL, OFF, glTF, 3DS)")
@@ -33,26 +47,20 @@ void add_options(CLI::App& app, MapCommand& c) {
                                {"none", sdm::SignMethod::none},
                                {"pseudonormal", sdm::SignMethod::pseudonormal},
                                {"winding", sdm::SignMethod::winding}});
-  add_choice<sdm::EngineKind>(
-      app, "--engine", c.map.engine,
-      "cpu: fast; reference: plain, to verify the others; gl: the paper's, using OpenGL",
-      {{"cpu", sdm::EngineKind::cpu},
-       {"reference", sdm::EngineKind::reference},
-       {"gl", sdm::EngineKind::gl}});
-  app.add_option("--gl-device", c.map.raster.device,
+  add_engine_option(app, c.engine);
+  app.add_option("--gl-device", c.gl.device,
                  "gl: the device, by its number in `sdm devices` or a part of its name")
       ->type_name("NAME");
   add_choice<sdm::GlClip>(
-      app, "--clip", c.map.raster.clip,
+      app, "--clip", c.gl.clip,
       "gl: how polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil cache",
       {{"planes", sdm::GlClip::planes}, {"stencil", sdm::GlClip::stencil}});
-  app.add_option("--stencil-values", c.map.raster.stencil_values,
-                 "gl, --clip stencil: the number of stencil values")
+  app.add_option("--stencil-values", c.gl.stencil_values, "gl, --clip stencil: the number of stencil values")
       ->check(whole_number(1, 255))
       ->type_name("K")
       ->capture_default_str();
   app.add_flag_callback(
-      "--no-bound-culling", [&c] { c.map.raster.bound_culling = false; },
+      "--no-bound-culling", [&c] { c.gl.bound_culling = false; },
       "gl: do not cull sites by upper bounds on the distance; the map is unchanged");
   app.add_option("--tolerance", c.picture.tolerance,
                  "Colour bands, and exit code 3 if any distance exceeds D, inside or outside")
@@ -69,8 +77,8 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which texels have no value");
   for (const char* option : {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling"})
-    if (app.count(option) > 0 && c.map.engine != sdm::EngineKind::gl)
+    if (app.count(option) > 0 && c.engine.name != "gl")
       throw CLI::ValidationError(option, "needs --engine gl");
-  if (app.count("--stencil-values") > 0 && c.map.raster.clip != sdm::GlClip::stencil)
+  if (app.count("--stencil-values") > 0 && c.gl.clip != sdm::GlClip::stencil)
     throw CLI::ValidationError("--stencil-values", "needs --clip stencil");
 }

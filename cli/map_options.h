@@ -14,7 +14,9 @@ struct MapCommand {
   std::string o1, o2, transform_o1, transform_o2;
   std::filesystem::path out;
   sdm::AtlasOptions atlas;
-  sdm::MapOptions map;
+  sdm::MapOptions map;  ///< without its engine, which is made from the next two
+  sdm::EngineInfo engine = sdm::engines().front();
+  sdm::GlOptions gl;
   sdm::PictureOptions picture;
   std::vector<double> range;
   std::optional<double> precision;

@@ -81,17 +81,6 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   return input;
 }
 
-const char* name(sdm::EngineKind engine) {
-  switch (engine) {
-    case sdm::EngineKind::reference:
-      return "reference";
-    case sdm::EngineKind::gl:
-      return "gl";
-    default:
-      return "cpu";
-  }
-}
-
 Json to_json(const Input& input) {
   return {{"file", input.file},
           {"transform", input.transform},

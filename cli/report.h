@@ -37,8 +37,6 @@ struct Outcome {
   Times time;
 };
 
-[[nodiscard]] const char* name(sdm::EngineKind engine);
-
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Surface& surface);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::DistanceStatistics& distance);

@@ -81,7 +81,10 @@ class Run {
         lines_(out_.staging() / "frames.jsonl", std::ios::binary) {
     command_.pair.options.atlas.progress = progress_.callback();
     query_.emplace(o1_.first(), o2_.first(), command_.pair.options);
-    for (int b = 0; b < 2; ++b) errors_.emplace_back(query_->surface(b));
+    for (int b = 0; b < 2; ++b) {
+      bounds_.emplace_back(query_->surface(b));
+      errors_.emplace_back(query_->surface(b), bounds_.back());
+    }
   }
 
   /// Writes the results of all frames, or of those before the first bad one, which is then reported by
@@ -132,8 +135,9 @@ class Run {
     frame.patches = contacts.empty() ? 0 : contacts.back().patch + 1;
     frame.time.query = watch.lap();
     for (int b = 0; b < 2; ++b) {
-      frame.error_bound[b] = query_->surface(b).sampling_bound();
-      frame.relative_error[b] = errors_[b].of(query_->surface(b));
+      bounds_[b].refit(query_->surface(b));
+      frame.error_bound[b] = bounds_[b].value();
+      frame.relative_error[b] = errors_[b].of(bounds_[b]);
     }
     frame.time.error = watch.lap();
     const bool write = command_.maps_every > 0 && index % static_cast<std::size_t>(command_.maps_every) == 0;
@@ -211,7 +215,8 @@ class Run {
   std::size_t count_;
   std::ofstream lines_;
   std::optional<sdm::ProximityQuery> query_;
-  std::vector<sdm::RelativeError> errors_;  // of each body
+  std::vector<sdm::SamplingBound> bounds_;  // of each body
+  std::vector<sdm::RelativeError> errors_;  // likewise
   std::vector<Frame> frames_;
   std::vector<BadFrame> bad_;
   bool stopped_ = false;

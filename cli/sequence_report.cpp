@@ -120,15 +120,15 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
   text += '\n';
   if (frames.empty()) return text;
   const auto least = std::ranges::min_element(frames, {}, [](const Frame& f) { return f.separation.value; });
-  text += fmt::format("  separation at least {}{}, in frame {} ({})\n", number(least->separation.value),
-                      unit, least->index, name(least->separation.kind));
+  text += fmt::format("  separation at least {}{}, in frame {} ({})\n", number(least->separation.value), unit,
+                      least->index, name(least->separation.kind));
   const auto colliding = std::ranges::count_if(frames, [](const Frame& f) { return f.colliding.value; });
   text += fmt::format("  colliding  in {} frames\n", colliding);
   const auto deepest =
       std::ranges::max_element(frames, {}, [](const Frame& f) { return f.depth ? f.depth->value : -1; });
   if (deepest->depth && deepest->depth->value > 0)
-    text += fmt::format("  depth      at most {}{}, in frame {} ({})\n", number(deepest->depth->value),
-                        unit, deepest->index, name(deepest->depth->kind));
+    text += fmt::format("  depth      at most {}{}, in frame {} ({})\n", number(deepest->depth->value), unit,
+                        deepest->index, name(deepest->depth->kind));
   const auto relative = [](const Frame& f) { return std::max(f.relative_error[0], f.relative_error[1]); };
   text += fmt::format("  error      up to {} times that of the first frame\n",
                       number(relative(*std::ranges::max_element(frames, {}, relative))));

@@ -14,3 +14,18 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/sdm-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/sdm-config.cmake ${PROJECT_BINARY_DIR}/sdm-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sdm)
+
+# The same for pkg-config: sdm, and sdm-io for files.
+cmake_path(SET lib_folder NORMALIZE "/${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+cmake_path(RELATIVE_PATH lib_folder BASE_DIRECTORY / OUTPUT_VARIABLE lib_folder)
+string(REGEX REPLACE "[^/]+" ".." SDM_PC_PREFIX "${lib_folder}")
+set(SDM_PC_GL "")
+if(SDM_BUILD_GL)
+  set(SDM_PC_GL " epoxy")
+endif()
+configure_file(cmake/sdm.pc.in ${PROJECT_BINARY_DIR}/sdm.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/sdm.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+if(SDM_BUILD_IO)
+  configure_file(cmake/sdm-io.pc.in ${PROJECT_BINARY_DIR}/sdm-io.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/sdm-io.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endif()

@@ -10,8 +10,8 @@
 namespace sdm {
 
 /// Closest points of O2 to any points, in any order, by the same engines. `distance` in the result is
-/// unsigned; options.sign is not used. Throws sdm::Error for a coordinate that is NaN or beyond 1e37;
-/// Cancelled.
+/// unsigned; options.sign is not used. Throws sdm::Error for a coordinate that is NaN or beyond 1e37, for a
+/// max_distance that is not positive, or for an engine that computes maps only; Cancelled.
 [[nodiscard]] std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
                                                        const MapOptions& options = {});
 

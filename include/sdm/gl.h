@@ -1,7 +1,11 @@
 /// The gl engine: surface distance maps by rasterisation on OpenGL (Sud et al. 2006): options and report.
 #pragma once
 
+#include <sdm/engine.h>
+
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -87,5 +91,13 @@ struct GlReport {
     double finish = 0;     ///< winners in double precision, sign
   } time_ms;
 };
+
+/// The gl engine with these options. The device is opened by the first map; at any time a process draws one
+/// map. Throws sdm::Error for stencil_values out of range, or where sdm was built without OpenGL.
+[[nodiscard]] std::shared_ptr<const Engine> make_gl_engine(const GlOptions& options);
+
+/// The report of the last map that a gl engine completed; none if it has completed no map, or for another
+/// engine.
+[[nodiscard]] std::optional<GlReport> gl_report(const Engine& engine);
 
 }  // namespace sdm

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <sdm/engine.h>
-#include <sdm/gl.h>
 #include <sdm/progress.h>
 #include <sdm/sign.h>
 #include <sdm/sites.h>
@@ -10,7 +9,7 @@
 
 #include <cstdint>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,11 +17,10 @@
 namespace sdm {
 
 struct MapOptions {
-  EngineKind engine = EngineKind::cpu;
+  std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
   SignMethod sign = SignMethod::automatic;
   /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
   double max_distance = std::numeric_limits<double>::infinity();
-  GlOptions raster{};  ///< for EngineKind::gl
   Progress progress{};
 };
 
@@ -36,12 +34,12 @@ struct DistanceMap {
   std::vector<SiteType> site_type;
   SignUsed sign;
   std::size_t beyond_max_distance = 0;  ///< owned texels without a value
-  std::optional<GlReport> raster;       ///< of EngineKind::gl
 };
 
 /// Computes the map. Distance and vector are those of a site found exactly (cpu: to 1e-6 of the diagonal of
 /// both meshes; gl: to 2e-6; reference: to double rounding), evaluated in double and stored in float. Throws
-/// sdm::Error for a sign method that O2 does not allow, or for want of memory; Cancelled.
+/// sdm::Error for a sign method that O2 does not allow, for a max_distance that is not positive, if the
+/// engine fails, or for want of memory; Cancelled.
 [[nodiscard]] DistanceMap compute_map(const Surface& surface, const Sites& sites,
                                       const MapOptions& options = {});
 

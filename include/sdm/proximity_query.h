@@ -55,7 +55,7 @@ struct ProximityOptions {
 ///
 /// A closed, orientable body is a solid; any other body is a surface without an inside. Distances are
 /// measured at those samples of both bodies' atlases that can affect a result. By the covering
-/// radii R of the samples (Surface::sample_radii) and because distances are 1-Lipschitz, they bound the
+/// radii R of the samples (SamplingBound::sample_radii) and because distances are 1-Lipschitz, they bound the
 /// distance everywhere:
 ///     min (d − R) ≤ separation ≤ min d,    max (−d) ≤ penetration depth ≤ max (R − d).
 class ProximityQuery {

@@ -10,7 +10,7 @@
 
 namespace sdm {
 namespace sites {
-struct SitesData;
+class SitesData;
 }
 
 enum class SiteType : std::uint8_t { vertex = 0, edge = 1, face = 2, none = 0xFF };

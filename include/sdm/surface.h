@@ -7,10 +7,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace sdm {
 namespace surface {
-struct SurfaceData;
+class SurfaceData;
 }
 
 /// O1: a mesh whose faces are laid out, without overlap, in a square texture.
@@ -43,9 +44,8 @@ class Surface {
   [[nodiscard]] std::span<const std::uint32_t> texel_faces() const;
   /// The indices of all owned texels, in an order in which neighbours are near each other on the surface.
   [[nodiscard]] std::span<const std::uint32_t> sample_texels() const;
-  /// texel_point of each of them; valid until the next refit. Computed at the first call, and after a refit
-  /// again. Cost: linear in samples, all cores.
-  [[nodiscard]] std::span<const Vec3> sample_points() const;
+  /// texel_point of each of them. Cost: computed at each call, linear in samples, all cores.
+  [[nodiscard]] std::vector<Vec3> sample_points() const;
   /// The surface point of an owned texel's centre: M⁻¹ of its face.
   [[nodiscard]] Vec3 texel_point(std::uint32_t texel) const;
 
@@ -65,22 +65,6 @@ class Surface {
   /// `uv`: the scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for
   /// `charts`. Refers to the mesh that the atlas was laid out for, before any refit.
   [[nodiscard]] double max_stretch() const;
-  /// Bounds the distance from any surface point to its nearest sample. Every point p of it, on faces without
-  /// texel or area too, has a sample s_i with |p − s_i| ≤ sample_radii()[i]: no point is farther from its
-  /// nearest sample than the largest of them, the sampling bound. As distances are 1-Lipschitz,
-  ///
-  ///     min over i of d_i − r_i  ≤  d(p)  ≤  max over i of d_i + r_i
-  ///
-  /// for the distances d_i at the samples; p may be any point where d has a value, and d may have signs.
-  /// Bounded: rounded upwards, never too small. Computed at the first call, and after a refit again, which
-  /// costs far less: linear in faces, samples and texels along edges, all cores. Throws sdm::Error when there
-  /// is no memory for it.
-  [[nodiscard]] double sampling_bound() const;
-  /// r_i of each sample; 0 if no surface point is assigned to it. Valid until the next refit.
-  [[nodiscard]] std::span<const float> sample_radii() const;
-  /// For each face a radius within which every one of its points has a sample, which may lie on another face.
-  /// Valid until the next refit.
-  [[nodiscard]] std::span<const float> face_radii() const;
 
  private:
   friend const surface::SurfaceData& internals(const Surface&);

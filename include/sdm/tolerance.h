@@ -1,6 +1,7 @@
 /// Checks of a map against a tolerance, and the bounds that certify them.
 #pragma once
 
+#include <sdm/engine.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
@@ -25,15 +26,15 @@ struct ToleranceVerdict {
 
 /// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value.
 /// `error_bound`: how much |distance| at any point of the surface can exceed the largest at samples and
-/// vertices: sampling_bound() plus engine_accuracy().
+/// vertices: SamplingBound::value() plus engine_accuracy().
 /// Throws sdm::Error if the map or the distances belong to another surface. Cost: linear in texels and faces.
 [[nodiscard]] ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
                                                std::span<const float> vertex_distances, double error_bound,
                                                double tolerance);
 
 /// Upper bound on the error of any distance that the engine computes from points of `on` to `to`, in units of
-/// the meshes, including the rounding to float: 1e-6 of the diagonal of the bounds of both meshes, for gl
-/// 2e-6. Cost: linear.
-[[nodiscard]] double engine_accuracy(EngineKind engine, const Mesh& on, const Mesh& to);
+/// the meshes, including the rounding to float: EngineInfo::relative_error times the diagonal of the bounding
+/// box of both meshes. Cost: linear.
+[[nodiscard]] double engine_accuracy(const EngineInfo& engine, const Mesh& on, const Mesh& to);
 
 }  // namespace sdm

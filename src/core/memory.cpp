@@ -1,53 +1,11 @@
 #include "core/memory.h"
 
-#include <sdm/error.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <fstream>
-#include <limits>
 #include <sstream>
 #include <string>
 
+#include "core/platform.h"
+
 namespace sdm::core {
-namespace {
-
-// MemAvailable counts page cache that can be dropped, which _SC_AVPHYS_PAGES does not.
-std::size_t machine_memory() {
-  std::ifstream meminfo("/proc/meminfo");
-  for (std::string key; meminfo >> key;) {
-    std::size_t kib = 0;
-    if (key == "MemAvailable:" && meminfo >> kib) return kib * 1024;
-    meminfo.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
-
-// A container's limit less what it uses.
-std::size_t cgroup_memory() {
-  std::size_t limit = 0, used = 0;
-  std::ifstream max("/sys/fs/cgroup/memory.max"), current("/sys/fs/cgroup/memory.current");
-  if (max >> limit && current >> used) return limit > used ? limit - used : 0;
-  return std::numeric_limits<std::size_t>::max();
-}
-
-// What RLIMIT_AS leaves of the address space.
-std::size_t address_space() {
-  rlimit limit{};
-  std::size_t used_pages = 0;
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-    return std::numeric_limits<std::size_t>::max();
-  std::ifstream("/proc/self/statm") >> used_pages;
-  const std::size_t used = used_pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
-}
-
-}  // namespace
-
-std::size_t available_memory() {
-  return std::min({machine_memory(), cgroup_memory(), address_space()});
-}
 
 void require_memory(std::size_t bytes, std::string_view purpose) {
   const std::size_t available = available_memory();
@@ -57,6 +15,10 @@ void require_memory(std::size_t bytes, std::string_view purpose) {
   message << purpose << " needs " << static_cast<double>(bytes) / 1e9 << " GB of memory and "
           << static_cast<double>(available) / 1e9 << " GB are available";
   throw Error(message.str());
+}
+
+Error out_of_memory(std::string_view purpose) {
+  return Error(std::string(purpose) + ": not enough memory");
 }
 
 }  // namespace sdm::core

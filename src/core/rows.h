@@ -1,4 +1,4 @@
-// Lists of various lengths, one after the other in one array.
+// Rows of varying length, stored one after the other in one array.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace sdm::core {
 
-/// Row i is items[offsets[i]] ... items[offsets[i + 1]].
-template <class Item>
+/// Row i is items[offsets[i]] to before items[offsets[i + 1]].
+template <class Item, class Offset = std::uint32_t>
 struct CompressedRows {
-  std::vector<std::uint32_t> offsets;
+  std::vector<Offset> offsets;  ///< of each row, and the end of the last
   std::vector<Item> items;
 
   [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
@@ -26,10 +26,10 @@ struct CompressedRows {
 
 /// Sorts items into rows by counting: visit(put) calls put(row, item) for each, and is run twice. Items of a
 /// row keep their order.
-template <class Item, class Visit>
-CompressedRows<Item> make_rows(std::size_t count, const Visit& visit) {
+template <class Item, class Offset = std::uint32_t, class Visit>
+CompressedRows<Item, Offset> make_rows(std::size_t count, const Visit& visit) {
   // offsets[i + 2] counts row i, offsets[i + 1] then runs from its begin to its end, where row i + 1 begins.
-  CompressedRows<Item> rows{std::vector<std::uint32_t>(count + 2, 0), {}};
+  CompressedRows<Item, Offset> rows{std::vector<Offset>(count + 2, 0), {}};
   visit([&](std::size_t row, const Item&) { ++rows.offsets[row + 2]; });
   std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
   rows.items.resize(rows.offsets.back());

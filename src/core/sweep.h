@@ -1,4 +1,4 @@
-// Which boxes are near each other: sweep and prune.
+// Pairs of boxes that are near each other, by sweep and prune.
 #pragma once
 
 #include <sdm/types.h>
@@ -10,23 +10,50 @@
 
 namespace sdm::core {
 
-/// The distance of two boxes, rounded down; 0 if they overlap.
-[[nodiscard]] double box_distance(const Box& a, const Box& b);
-
-/// Finds near boxes, again and again in the same memory.
+/// Finds pairs of near boxes; its memory is kept from one search to the next.
 class Sweep {
  public:
   using Pair = std::array<std::uint32_t, 2>;
 
+  /// Calls visit(a, b), once for each pair whose boxes are no farther apart than `reach` along the axis on
+  /// which the boxes spread most. Cost: O(n log n) and those pairs.
+  template <class Visit>
+  void for_each_candidate(std::span<const Box> boxes, double reach, const Visit& visit);
+
   /// All pairs {a, b}, a < b, of boxes whose distance is at most `reach`, in lexicographic order; valid until
-  /// the next call. Cost: O(n log n) and the pairs that are near along the axis on which the boxes spread
-  /// most.
+  /// the next call. Cost: as above.
   std::span<const Pair> near_pairs(std::span<const Box> boxes, double reach);
 
  private:
+  /// Sorts the boxes by where they begin along that axis, and returns it.
+  int sort(std::span<const Box> boxes);
+
+  /// By more than differences, squares, their sum and its root round.
+  static constexpr double kRoundedDown = 1 - 1e-15;
+
   std::vector<std::uint32_t> order_, open_;
   std::vector<Pair> pairs_;
+
+  friend double box_distance(const Box& a, const Box& b);
 };
+
+/// The distance of two boxes, rounded down; 0 where they overlap.
+[[nodiscard]] double box_distance(const Box& a, const Box& b);
+
+template <class Visit>
+void Sweep::for_each_candidate(std::span<const Box> boxes, double reach, const Visit& visit) {
+  if (boxes.empty()) return;
+  const int axis = sort(boxes);
+  open_.clear();
+  for (const std::uint32_t b : order_) {
+    // Boxes to come begin no earlier: what ends too early for this one is too far from all of them.
+    std::erase_if(open_, [&](std::uint32_t o) {
+      return kRoundedDown * (boxes[b].lo[axis] - boxes[o].hi[axis]) > reach;
+    });
+    for (const std::uint32_t o : open_) visit(o, b);
+    open_.push_back(b);
+  }
+}
 
 }  // namespace sdm::core
 

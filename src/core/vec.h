@@ -77,6 +77,17 @@ inline bool contains(const Box& box, const Vec3& p) {
     if (!(box.lo[k] <= p[k] && p[k] <= box.hi[k])) return false;
   return true;
 }
+inline bool overlap(const Box& a, const Box& b) {
+  for (int k = 0; k < 3; ++k)
+    if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
+  return true;
+}
+/// How far two boxes are apart along each axis; 0 where they overlap.
+inline Vec3 gap(const Box& a, const Box& b) {
+  Vec3 gap;
+  for (int k = 0; k < 3; ++k) gap[k] = std::max({a.lo[k] - b.hi[k], b.lo[k] - a.hi[k], 0.0});
+  return gap;
+}
 inline Vec3 centre(const Box& box) {
   return 0.5 * (box.lo + box.hi);
 }

@@ -1,26 +1,54 @@
-// The one interface of the engines: closest sites for points that come in an order where neighbours are near
-// each other.
+// The one interface of the engines: the closest site of each sample of a surface, or of each of any points.
 #pragma once
 
-#include <sdm/map.h>
+#include <sdm/engine.h>
+#include <sdm/progress.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
 
 #include <functional>
+#include <limits>
 #include <span>
 
 #include "sites/closest_packet.h"
-#include "sites/sites_data.h"
 
-namespace sdm::engine {
+namespace sdm {
+namespace engine {
 
 /// Receives closest points as they are found: those of the points from index `first`.
 using ClosestSink = std::function<void(std::size_t first, const sites::ClosestPacket& closest)>;
 
-/// Finds, for each point, the closest point of O2 within max_distance; type `none` where there is none. One
-/// thread; called for batches of points from several threads at once.
-using ClosestSearch = void (*)(const sites::SitesData& sites, std::span<const Vec3> points,
-                               double max_distance, const ClosestSink& deliver);
+/// Receives the closest points of the samples from index `first`, which are at `points`.
+using SampleSink =
+    std::function<void(std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest)>;
 
-/// The search of an engine.
-ClosestSearch search_of(EngineKind engine);
+struct EngineOptions {
+  double max_distance = std::numeric_limits<double>::infinity();  ///< > 0
+  Progress progress{};
+};
 
-}  // namespace sdm::engine
+}  // namespace engine
+
+class Engine {
+ public:
+  Engine() = default;
+  virtual ~Engine() = default;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  [[nodiscard]] virtual const EngineInfo& info() const = 0;
+
+  /// Delivers the closest point of every sample, once, from several threads at the same time; type `none`
+  /// where nothing is within max_distance. Calls closest_points for blocks of samples, unless overridden.
+  /// Throws sdm::Error if the engine fails; Cancelled.
+  virtual void map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
+                   const engine::SampleSink& sink) const;
+
+  /// Delivers the closest point of every point, in their order and on the calling thread. Called for blocks
+  /// of neighbouring points (see engine/blocks.h) from several threads. Throws sdm::Error if the engine
+  /// computes maps only.
+  virtual void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
+                              const engine::ClosestSink& sink) const = 0;
+};
+
+}  // namespace sdm

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "hierarchy/traverse.h"
 
 namespace sdm::hierarchy {
 namespace {
@@ -46,23 +47,22 @@ AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> 
 }
 
 void refit_leaves(AabbTree& tree, std::span<const FloatBox> leaf_boxes) {
+  auto& nodes = tree.nodes;
   std::size_t leaf = leaf_boxes.size();
-  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
-    AabbTree::Node& node = tree.nodes[i];
-    node.box = node.leaf() ? leaf_boxes[--leaf] : unite(tree.nodes[i + 1].box, tree.nodes[node.right].box);
-  }
+  for_each_bottom_up(
+      tree, [&](std::uint32_t i) { nodes[i].box = leaf_boxes[--leaf]; },
+      [&](std::uint32_t i, std::uint32_t left, std::uint32_t right) {
+        nodes[i].box = unite(nodes[left].box, nodes[right].box);
+      });
 }
 
 void refit(AabbTree& tree, std::span<const Box> boxes) {
-  std::vector<std::uint32_t> leaves;
-  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i)
-    if (tree.nodes[i].leaf()) leaves.push_back(i);
+  const std::vector<std::uint32_t> leaves = leaf_nodes(tree);
   std::vector<FloatBox> leaf_boxes(leaves.size());
   parallel_for(leaves.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
-      const AabbTree::Node& node = tree.nodes[leaves[leaf]];
       Box box;
-      for (std::uint32_t k = node.first; k < node.first + node.count; ++k) extend(box, boxes[tree.items[k]]);
+      for (const std::uint32_t item : tree.items_of(leaves[leaf])) extend(box, boxes[item]);
       leaf_boxes[leaf] = FloatBox::around(box);
     }
   });

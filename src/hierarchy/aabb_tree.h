@@ -1,4 +1,4 @@
-// A binary tree of axis-aligned boxes over any items that have boxes: build, refit.
+// A binary tree of axis-aligned boxes over any items that have boxes: build, refit. See traverse.h.
 #pragma once
 
 #include <sdm/types.h>
@@ -28,6 +28,18 @@ inline FloatBox unite(const FloatBox& a, const FloatBox& b) {
   return box;
 }
 
+/// How far two boxes, or a box and a point, are apart along each axis: 0 where they overlap.
+inline Vec3 gap(const FloatBox& a, const FloatBox& b) {
+  Vec3 gap;
+  for (int k = 0; k < 3; ++k) gap[k] = std::max({0.0, double{a.lo[k]} - b.hi[k], double{b.lo[k]} - a.hi[k]});
+  return gap;
+}
+inline Vec3 gap(const FloatBox& box, const Vec3& p) {
+  Vec3 gap;
+  for (int k = 0; k < 3; ++k) gap[k] = std::max({box.lo[k] - p[k], p[k] - box.hi[k], 0.0});
+  return gap;
+}
+
 /// Nodes in depth-first order: the left child of node i is i + 1, every child comes after its parent.
 struct AabbTree {
   struct Node {
@@ -40,6 +52,11 @@ struct AabbTree {
   };
   std::vector<Node> nodes;           ///< empty when there are no items
   std::vector<std::uint32_t> items;  ///< indices into the boxes given, leaf after leaf
+
+  [[nodiscard]] const FloatBox& box(std::uint32_t node) const { return nodes[node].box; }
+  [[nodiscard]] std::span<const std::uint32_t> items_of(std::uint32_t leaf) const {
+    return {items.data() + nodes[leaf].first, nodes[leaf].count};
+  }
 };
 
 /// Builds by the surface area heuristic over bins, with at most `leaf_size` items a leaf. Items are those of

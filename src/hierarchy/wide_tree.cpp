@@ -50,9 +50,11 @@ class Collapser {
     wide_.nodes[index].count = count;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t node = open[i];
-      const std::uint32_t child = tree_.nodes[node].leaf() ? leaf_number_[node] | WideTree::kLeafBit
-                                                           : add({node + 1, tree_.nodes[node].right}, 2);
+      const bool leaf = tree_.nodes[node].leaf();
+      const std::uint32_t child =
+          leaf ? WideTree::leaf(leaf_number_[node]) : add({node + 1, tree_.nodes[node].right}, 2);
       wide_.nodes[index].child[i] = child;
+      wide_.nodes[index].leaves |= (leaf ? 1u : 0u) << i;
       wide_.nodes[index].source[i] = node;
     }
     return index;

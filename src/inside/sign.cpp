@@ -1,16 +1,19 @@
 #include <sdm/error.h>
 #include <sdm/sign.h>
 
+#include <new>
 #include <string>
 
+#include "core/memory.h"
 #include "core/parallel.h"
-#include "inside/inside_test.h"
+#include "inside/inside.h"
 
 namespace sdm {
 namespace {
 
 // The reason why O2 has no inside, as a clause; empty if it has one.
 std::string open_reason(const sites::SitesData& sites) {
+  if (sites.is_solid()) return {};
   std::size_t boundary = 0, nonmanifold = 0;
   for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
     boundary += sites.topology.edge_faces(e).size() == 1;
@@ -19,8 +22,7 @@ std::string open_reason(const sites::SitesData& sites) {
   if (boundary > 0) return "O2 is open (" + std::to_string(boundary) + " boundary edges)";
   if (nonmanifold > 0)
     return "O2 is not manifold (" + std::to_string(nonmanifold) + " edges of more than two faces)";
-  if (!sites.orientation.orientable) return "O2 is not orientable";
-  return {};
+  return "O2 is not orientable";
 }
 
 }  // namespace
@@ -47,7 +49,7 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
 }
 
 std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3> queries,
-                                       std::span<const ClosestPoint> closest, SignMethod method) {
+                                       std::span<const ClosestPoint> closest, SignMethod method) try {
   if (queries.size() != closest.size()) throw Error("inside_flags() needs one closest point for each query");
   const inside::InsideTest test(internals(sites), choose_sign(sites, method).method);
   std::vector<std::uint8_t> result(queries.size());
@@ -55,6 +57,8 @@ std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3>
     for (std::size_t i = begin; i < end; ++i) result[i] = test(queries[i], closest[i]);
   });
   return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("inside or outside of points");
 }
 
 }  // namespace sdm

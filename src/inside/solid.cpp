@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/predicates.h"
+#include "hierarchy/traverse.h"
 
 namespace sdm::inside {
 namespace {
@@ -60,40 +61,33 @@ std::optional<int> crossing(const Vec3& p, const Vec3& q, const std::array<Vec3,
 
 }  // namespace
 
-std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p, const Vec3& q,
-                           std::vector<std::uint32_t>& stack) {
-  int turns = 0;
-  stack.assign(1, 0);
-  while (!stack.empty()) {
-    const std::uint32_t index = stack.back();
-    const hierarchy::AabbTree::Node& node = sites.tree.nodes[index];
-    stack.pop_back();
-    if (!segment_meets(posed(node.box, sites.frame, pose), p, q - p)) continue;
-    if (!node.leaf()) {
-      stack.push_back(index + 1);
-      stack.push_back(node.right);
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const std::uint32_t face = sites.tree.items[i];
-      const auto [a, b, c] = sites.mesh.triangles[face];
-      const auto& at = sites.mesh.positions;
-      const std::optional<int> sign = crossing(p, q, {pose(at[a]), pose(at[b]), pose(at[c])});
-      if (!sign) return std::nullopt;
-      turns += sites.inverted[face] ? -*sign : *sign;
-    }
-  }
+std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p, const Vec3& q) {
+  std::optional<int> turns = 0;
+  traverse(
+      sites.tree, whole(sites.tree),
+      [&](hierarchy::Subtree below) {
+        return turns && segment_meets(posed(sites.tree.box(below.root), sites.frame, pose), p, q - p);
+      },
+      [&](std::uint32_t leaf) {
+        for (const std::uint32_t face : sites.tree.items_of(leaf)) {
+          const auto [a, b, c] = sites.mesh.triangles[face];
+          const auto& at = sites.mesh.positions;
+          const std::optional<int> sign = crossing(p, q, {pose(at[a]), pose(at[b]), pose(at[c])});
+          if (!sign) return turns.reset();
+          *turns += sites.inverted[face] ? -*sign : *sign;
+        }
+      });
   return turns;
 }
 
-bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point,
-              std::vector<std::uint32_t>& stack) {
-  const Box box = posed(solid.tree.nodes[0].box, solid.frame, pose);
+bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point) {
+  const Box box = posed(solid.tree.box(0), solid.frame, pose);
   if (!sdm::contains(box, point)) return false;
   const double length = 2 * diagonal(box);
   // Segments along (1, t, t²) that intersect an edge are skipped. Those that meet the same edge lie in one
   // plane, and no plane through the point holds more than two of them: this ends.
   for (double t = 0.0137035999;; t += 0.0072973525)
-    if (const auto turns = winding(solid, pose, point, point + length * Vec3{1, t, t * t}, stack))
+    if (const auto turns = winding(solid, pose, point, point + length * Vec3{1, t, t * t}))
       return *turns != 0;
 }
 

@@ -1,29 +1,21 @@
 // Meshes as the solids that they bound.
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "core/affine.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {
 
-/// Whether a mesh bounds a solid: it is closed and orientable.
-[[nodiscard]] inline bool is_solid(const sites::SitesData& sites) {
-  return sites.closed && sites.orientation.orientable;
-}
-
 /// The winding number of a closed mesh moved by `pose`, with outward-oriented faces, around p, from the
 /// crossings of the segment to a point q outside the mesh. Empty if the segment intersects an edge. Exact if
 /// p does not lie on the surface. Cost: O(log n) and the faces that the segment meets.
 [[nodiscard]] std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p,
-                                         const Vec3& q, std::vector<std::uint32_t>& stack);
+                                         const Vec3& q);
 
 /// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its faces
 /// wind around the point. Exact. Cost: that of `winding`, most often once.
-[[nodiscard]] bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point,
-                            std::vector<std::uint32_t>& stack);
+[[nodiscard]] bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
 
 }  // namespace sdm::inside

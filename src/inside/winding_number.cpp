@@ -1,9 +1,12 @@
 #include "inside/winding_number.h"
 
 #include <algorithm>
+#include <functional>
 #include <numbers>
+#include <optional>
 
 #include "core/vec.h"
+#include "hierarchy/traverse.h"
 #include "inside/solid_angle.h"
 
 namespace sdm::inside {
@@ -23,25 +26,13 @@ std::array<Vec3, 3> corners(const sites::SitesData& sites, std::uint32_t face) {
 
 WindingNumber::WindingNumber(const sites::SitesData& sites)
     : sites_(sites), dipoles_(sites.tree.nodes.size()) {
-  const auto& nodes = sites.tree.nodes;
-  for (std::size_t i = nodes.size(); i-- > 0;) {  // children before parents
-    Dipole& d = dipoles_[i];
-    const auto add = [&d](const Vec3& centre, const Vec3& moment, double area) {
-      d.centre += area * centre;
-      d.moment += moment;
-      d.area += area;
-    };
-    if (nodes[i].leaf()) {
-      for (std::uint32_t k = nodes[i].first; k < nodes[i].first + nodes[i].count; ++k) {
-        const auto [a, b, c] = corners(sites, sites.tree.items[k]);
-        const Vec3 moment = 0.5 * cross(b - a, c - a);
-        add((1.0 / 3) * (a + b + c), moment, norm(moment));
-      }
-    } else {
-      for (const Dipole& child : {dipoles_[i + 1], dipoles_[nodes[i].right]})
-        add(child.centre, child.moment, child.area);
-    }
-    const hierarchy::FloatBox& box = nodes[i].box;
+  const auto add = [](Dipole& d, const Vec3& centre, const Vec3& moment, double area) {
+    d.centre += area * centre;
+    d.moment += moment;
+    d.area += area;
+  };
+  // `d` has the sums of what is below a node whose box this is.
+  const auto finish = [&](Dipole& d, const hierarchy::FloatBox& box) {
     const Vec3 lo{box.lo[0], box.lo[1], box.lo[2]}, hi{box.hi[0], box.hi[1], box.hi[2]};
     const Vec3 middle = sites.frame.origin + (0.5 / sites.frame.scale) * (lo + hi);
     d.centre = d.area > 0 ? (1 / d.area) * d.centre : middle;
@@ -49,26 +40,44 @@ WindingNumber::WindingNumber(const sites::SitesData& sites)
     for (int k = 0; k < 3; ++k)
       farthest[k] = 0.5 / sites.frame.scale * (hi[k] - lo[k]) + std::abs(d.centre[k] - middle[k]);
     d.radius = norm(farthest);
-  }
+  };
+  for_each_bottom_up(
+      sites.tree,
+      [&](std::uint32_t leaf) {
+        for (const std::uint32_t face : sites.tree.items_of(leaf)) {
+          const auto [a, b, c] = corners(sites, face);
+          const Vec3 moment = 0.5 * cross(b - a, c - a);
+          add(dipoles_[leaf], (1.0 / 3) * (a + b + c), moment, norm(moment));
+        }
+        finish(dipoles_[leaf], sites.tree.box(leaf));
+      },
+      [&](std::uint32_t node, std::uint32_t left, std::uint32_t right) {
+        for (const Dipole& child : {dipoles_[left], dipoles_[right]})
+          add(dipoles_[node], child.centre, child.moment, child.area);
+        finish(dipoles_[node], sites.tree.box(node));
+      });
 }
 
 double WindingNumber::operator()(const Vec3& q) const {
-  return at(0, q) / (4 * std::numbers::pi);
-}
-
-double WindingNumber::at(std::uint32_t index, const Vec3& q) const {
-  const Dipole& d = dipoles_[index];
-  const Vec3 r = d.centre - q;
-  const double distance = norm(r);
-  if (distance > kFar * d.radius) return dot(d.moment, r) / (distance * distance * distance);
-  const hierarchy::AabbTree::Node& node = sites_.tree.nodes[index];
-  if (!node.leaf()) return at(index + 1, q) + at(node.right, q);
-  double sum = 0;
-  for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
-    const auto [a, b, c] = corners(sites_, sites_.tree.items[k]);
-    sum += solid_angle(a - q, b - q, c - q);
-  }
-  return sum;
+  const double angle = reduce(
+      sites_.tree, 0,
+      [&](std::uint32_t node) -> std::optional<double> {
+        const Dipole& d = dipoles_[node];
+        const Vec3 r = d.centre - q;
+        const double distance = norm(r);
+        if (!(distance > kFar * d.radius)) return std::nullopt;
+        return dot(d.moment, r) / (distance * distance * distance);
+      },
+      [&](std::uint32_t leaf) {
+        double sum = 0;
+        for (const std::uint32_t face : sites_.tree.items_of(leaf)) {
+          const auto [a, b, c] = corners(sites_, face);
+          sum += solid_angle(a - q, b - q, c - q);
+        }
+        return sum;
+      },
+      std::plus<>());
+  return angle / (4 * std::numbers::pi);
 }
 
 }  // namespace sdm::inside

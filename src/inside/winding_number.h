@@ -24,7 +24,6 @@ class WindingNumber {
     double area = 0;
     double radius = 0;  ///< about the centre, of everything below
   };
-  [[nodiscard]] double at(std::uint32_t node, const Vec3& q) const;
 
   const sites::SitesData& sites_;
   std::vector<Dipole> dipoles_;  ///< of each node of the tree

@@ -32,7 +32,6 @@ void clear(DistanceMap& map, const Surface& surface) {
   map.vector.resize(faces.size());
   map.site.resize(faces.size());
   map.site_type.resize(faces.size());
-  map.raster.reset();
 
   constexpr std::size_t kGrain = 1 << 16;
   parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {

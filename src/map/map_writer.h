@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "engine/engine.h"
+#include "sites/closest_packet.h"
 
 namespace sdm::map {
 

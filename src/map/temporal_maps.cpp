@@ -2,6 +2,7 @@
 #include <sdm/temporal_maps.h>
 
 #include <cmath>
+#include <new>
 #include <string>
 
 #include "core/memory.h"
@@ -9,9 +10,8 @@
 
 namespace sdm {
 
-void TemporalMaps::add(const DistanceMap& map) {
+void TemporalMaps::add(const DistanceMap& map) try {
   if (maps_ == 0) {
-    require_memory(map.distance.size() * (2 * sizeof(float) + sizeof(double)), "maps over time");
     resolution_ = map.resolution;
     least_ = largest_ = map.distance;
     sum_.assign(map.distance.begin(), map.distance.end());
@@ -30,13 +30,17 @@ void TemporalMaps::add(const DistanceMap& map) {
     });
   }
   ++maps_;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("maps over time");
 }
 
-std::vector<float> TemporalMaps::mean() const {
+std::vector<float> TemporalMaps::mean() const try {
   std::vector<float> mean(sum_.size());
   for (std::size_t i = 0; i < sum_.size(); ++i)
     mean[i] = static_cast<float>(sum_[i] / static_cast<double>(maps_));
   return mean;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("maps over time");
 }
 
 }  // namespace sdm

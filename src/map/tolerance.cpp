@@ -31,10 +31,10 @@ ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
   return verdict;
 }
 
-double engine_accuracy(EngineKind engine, const Mesh& on, const Mesh& to) {
+double engine_accuracy(const EngineInfo& engine, const Mesh& on, const Mesh& to) {
   Box box = bounds(on);
   extend(box, bounds(to));
-  return (engine == EngineKind::gl ? 2e-6 : 1e-6) * diagonal(box);
+  return engine.relative_error * diagonal(box);
 }
 
 }  // namespace sdm

@@ -8,7 +8,7 @@
 namespace sdm {
 
 std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, MapOptions options) {
-  if (options.engine == EngineKind::gl) options.engine = EngineKind::cpu;
+  if (options.engine && engine_info(*options.engine).maps_only) options.engine = nullptr;
   const SignMethod sign = choose_sign(sites, options.sign).method;
   const std::vector<ClosestPoint> closest = closest_points(sites, mesh.positions, options);
   std::vector<std::uint8_t> inside(closest.size(), 0);

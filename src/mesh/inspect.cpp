@@ -1,31 +1,15 @@
 #include <sdm/mesh.h>
 
 #include <algorithm>
-#include <numeric>
+#include <new>
 
+#include "core/disjoint_sets.h"
+#include "core/memory.h"
 #include "core/vec.h"
 #include "mesh/topology.h"
 
 namespace sdm {
 namespace {
-
-// Disjoint sets of vertices, with path halving.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 void count_components(const Mesh& mesh, MeshInfo& info) {
   DisjointSets sets(mesh.positions.size());
@@ -99,14 +83,14 @@ void measure(const Mesh& mesh, const mesh::Topology& topology, const mesh::Orien
     const Vec3 n = cross(b - a, c - a);
     info.degenerate_faces += n == Vec3{};
     info.area += 0.5 * norm(n);
-    if (!topology.ignored(f)) six_volumes += (orientation.turned[f] ? -1 : 1) * dot(a, n);
+    if (!topology.ignored(f)) six_volumes += (orientation.flipped[f] ? -1 : 1) * dot(a, n);
   }
   if (info.closed && info.orientable) info.volume = std::abs(six_volumes) / 6;
 }
 
 }  // namespace
 
-MeshInfo inspect(const Mesh& mesh) {
+MeshInfo inspect(const Mesh& mesh) try {
   MeshInfo info;
   info.vertices = mesh.positions.size();
   info.triangles = mesh.triangles.size();
@@ -124,14 +108,17 @@ MeshInfo inspect(const Mesh& mesh) {
 
   const mesh::Orientation orientation = orient(mesh.triangles, topology);
   info.orientable = orientation.orientable;
-  info.oriented = orientation.orientable && std::all_of(orientation.turned.begin(), orientation.turned.end(),
-                                                        [](auto t) { return t == 0; });
+  info.oriented =
+      orientation.orientable &&
+      std::all_of(orientation.flipped.begin(), orientation.flipped.end(), [](auto t) { return t == 0; });
 
   count_components(mesh, info);
   count_nonmanifold_vertices(mesh, topology, info);
   info.manifold = info.nonmanifold_edges == 0 && info.nonmanifold_vertices == 0;
   measure(mesh, topology, orientation, info);
   return info;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("mesh statistics");
 }
 
 }  // namespace sdm

@@ -15,14 +15,13 @@ namespace sdm::mesh {
 struct Topology {
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< (smaller, larger) vertex, lexicographic order
   std::vector<std::array<std::uint32_t, 3>>
-      face_edges;                           ///< edges (v0 v1), (v1 v2), (v2 v0); kNone if ignored
-  std::vector<std::uint32_t> edge_offsets;  ///< faces of edge e: incident[edge_offsets[e] ... e + 1]
-  std::vector<std::uint32_t> incident;      ///< in increasing order for each edge
+      face_edges;                          ///< edges (v0 v1), (v1 v2), (v2 v0); kNone if ignored
+  CompressedRows<std::uint32_t> incident;  ///< faces of each edge, in increasing order
   std::size_t duplicate_faces = 0;
   std::size_t collapsed_faces = 0;  ///< faces with repeated corners
 
   [[nodiscard]] std::span<const std::uint32_t> edge_faces(std::size_t edge) const {
-    return {incident.data() + edge_offsets[edge], incident.data() + edge_offsets[edge + 1]};
+    return incident.of(edge);
   }
   /// Whether every edge has exactly two faces.
   [[nodiscard]] bool closed() const;
@@ -36,7 +35,7 @@ struct Topology {
 /// flipping the fewer faces of each component of such neighbours; `orientable` is false when no choice
 /// satisfies all of them. Ignored faces stay.
 struct Orientation {
-  std::vector<std::uint8_t> turned;
+  std::vector<std::uint8_t> flipped;      ///< 1 for each face to flip
   std::vector<std::uint32_t> component;   ///< of each face, over two-face edges; kNone if ignored
   std::vector<std::uint32_t> first_face;  ///< of each component
   bool orientable = true;

@@ -2,8 +2,10 @@
 #include <sdm/proximity_query.h>
 
 #include <cmath>
+#include <new>
 #include <string>
 
+#include "core/memory.h"
 #include "mesh/validate.h"
 #include "proximity/sampled/body.h"
 #include "proximity/sampled/pair_answers.h"
@@ -32,13 +34,16 @@ const ProximityOptions& checked(const ProximityOptions& options) {
 
 }  // namespace
 
-ProximityQuery::ProximityQuery(Mesh o1, Mesh o2, const ProximityOptions& options)
-    : impl_(std::make_unique<Impl>(o1, o2, checked(options))) {}
+ProximityQuery::ProximityQuery(Mesh o1, Mesh o2, const ProximityOptions& options) try
+    : impl_(std::make_unique<Impl>(o1, o2, checked(options))) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query");
+}
 ProximityQuery::~ProximityQuery() = default;
 ProximityQuery::ProximityQuery(ProximityQuery&&) noexcept = default;
 ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;
 
-void ProximityQuery::update(std::span<const Vec3> o1, std::span<const Vec3> o2) {
+void ProximityQuery::update(std::span<const Vec3> o1, std::span<const Vec3> o2) try {
   const std::array positions{o1, o2};
   for (int b = 0; b < 2; ++b)
     if (!positions[b].empty())
@@ -46,19 +51,29 @@ void ProximityQuery::update(std::span<const Vec3> o1, std::span<const Vec3> o2) 
   for (int b = 0; b < 2; ++b)
     if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
   impl_->answers.begin(impl_->bodies[0], impl_->bodies[1]);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query");
 }
 
-const BoundedLength& ProximityQuery::separation() {
+const BoundedLength& ProximityQuery::separation() try {
   return impl_->answers.separation();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query");
 }
-BoundedBool ProximityQuery::colliding() {
+BoundedBool ProximityQuery::colliding() try {
   return impl_->answers.colliding();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query");
 }
-const std::optional<BoundedLength>& ProximityQuery::penetration_depth() {
+const std::optional<BoundedLength>& ProximityQuery::penetration_depth() try {
   return impl_->answers.penetration_depth();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query");
 }
-std::span<const Contact> ProximityQuery::contacts() {
+std::span<const Contact> ProximityQuery::contacts() try {
   return impl_->answers.contacts();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query");
 }
 
 const Surface& ProximityQuery::surface(int body) const {

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "hierarchy/traverse.h"
 #include "sites/cone_rays.h"
 #include "sites/regions.h"
 
@@ -28,9 +29,9 @@ bool encloses(const RegionSource& s, const Regions& regions, std::size_t owner) 
 }
 
 // Assigns sites in the order of the faces and builds the topology indexed by region.
-class HandOut {
+class SiteOrder {
  public:
-  explicit HandOut(const RegionSource& source)
+  explicit SiteOrder(const RegionSource& source)
       : s_(source),
         edge_place_(source.topology.edges.size(), kNone),
         vertex_place_(source.positions.size(), kNone) {
@@ -86,7 +87,7 @@ class HandOut {
   }
 
   const RegionSource& s_;
-  std::vector<std::uint32_t> edge_place_, vertex_place_;  // kNone: not handed out yet
+  std::vector<std::uint32_t> edge_place_, vertex_place_;  // kNone: not assigned yet
   std::vector<std::uint32_t> edges_, vertices_;
 };
 
@@ -95,7 +96,7 @@ class HandOut {
 Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
   Regions regions;
   SitePlaces& places = regions.places;
-  HandOut sites(s);
+  SiteOrder sites(s);
   const std::size_t faces = tree.items.size();
   parallel_invoke(
       [&] {
@@ -105,8 +106,7 @@ Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
       },
       [&] {
         sites.run(tree.items, regions.owners, places);
-        for (const hierarchy::AabbTree::Node& node : tree.nodes)
-          if (node.leaf()) regions.leaves.push_back(node.first);
+        for (const std::uint32_t leaf : leaf_nodes(tree)) regions.leaves.push_back(tree.nodes[leaf].first);
         regions.leaves.push_back(static_cast<std::uint32_t>(faces));
         regions.leaves.shrink_to_fit();
       });

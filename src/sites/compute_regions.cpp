@@ -93,17 +93,17 @@ HWY_INLINE Vec3v enclosing_centre(const Vec3v (&side)[3], const Vec (&squared)[3
   return mul(hn::Div(hn::Set(d, 1.0), total), sub_mul(mul(weight[1], side[0]), weight[2], side[2]));
 }
 
-void ComputeLeaf(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                 std::span<const uint8_t> inverted, std::span<FaceShape> shapes, size_t leaf) {
+void ComputeLeaf(Regions& regions, const Placement& placement, std::span<FaceShape> shapes, size_t leaf) {
   const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
   Vec3Lanes corners[3], normals, angles;
   for (uint32_t lane = 0; lane < count; ++lane)
-    for (int k = 0; k < 3; ++k) corners[k].set(lane, placed[regions.places.corners[first + lane][k]]);
+    for (int k = 0; k < 3; ++k)
+      corners[k].set(lane, placement.vertices[regions.places.corners[first + lane][k]]);
   FaceBounds& bounds = regions.bounds[leaf];
   FourLanes plane, wall[3];
   alignas(64) double height[kLanes], proportion[kLanes];
   const Doubles d;
-  const ToUnit unit(frame);
+  const ToUnit unit(placement.frame);
   for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
     const Vec3v corner[3] = {corners[0].load(i), corners[1].load(i), corners[2].load(i)};
     const Vec3v side[3] = {unit.between(corner[0], corner[1]), unit.between(corner[1], corner[2]),
@@ -147,7 +147,7 @@ void ComputeLeaf(Regions& regions, const UnitFrame& frame, std::span<const Vec3>
     plane.get(lane, region.plane);
     for (int k = 0; k < 3; ++k) wall[k].get(lane, region.wall[k]);
     FaceShape& shape = shapes[first + lane];
-    const double sign = inverted[regions.owners[first + lane].face] ? -1 : 1;
+    const double sign = placement.inverted[regions.owners[first + lane].face] ? -1 : 1;
     for (int k = 0; k < 3; ++k) {
       shape.normal[k] = sign * normals.at[k][lane];
       shape.angle[k] = angles.at[k][lane];
@@ -157,22 +157,22 @@ void ComputeLeaf(Regions& regions, const UnitFrame& frame, std::span<const Vec3>
   }
 }
 
-void ComputeFaces(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                  std::span<const uint8_t> inverted, std::span<FaceShape> shapes, size_t begin, size_t end) {
-  for (size_t leaf = begin; leaf < end; ++leaf) ComputeLeaf(regions, frame, placed, inverted, shapes, leaf);
+void ComputeFaces(Regions& regions, const Placement& placement, std::span<FaceShape> shapes, size_t begin,
+                  size_t end) {
+  for (size_t leaf = begin; leaf < end; ++leaf) ComputeLeaf(regions, placement, shapes, leaf);
 }
 
-void ComputeEdges(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, size_t begin,
-                  size_t end) {
+void ComputeEdges(Regions& regions, const Placement& placement, size_t begin, size_t end) {
   // So much thicker that faces which are thin by their own measure are thin by this one, too.
   constexpr double kHardlyThicker = 1.000001 * kThin;
   const Doubles d;
-  const ToUnit unit(frame);
+  const ToUnit unit(placement.frame);
   for (size_t first = begin; first < end; first += kLanes) {
     const size_t count = std::min(kLanes, end - first);
     Vec3Lanes points[4];
     for (size_t lane = 0; lane < count; ++lane)
-      for (int j = 0; j < 4; ++j) points[j].set(lane, placed[regions.places.edges[first + lane].corners[j]]);
+      for (int j = 0; j < 4; ++j)
+        points[j].set(lane, placement.vertices[regions.places.edges[first + lane].corners[j]]);
 
     FourLanes starts, directions, wall[2];
     for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
@@ -204,17 +204,17 @@ void ComputeEdges(Regions& regions, const UnitFrame& frame, std::span<const Vec3
   }
 }
 
-void ComputeVertices(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, size_t begin,
-                     size_t end) {
+void ComputeVertices(Regions& regions, const Placement& placement, size_t begin, size_t end) {
   constexpr int kRays = VertexRegion::kRays;
   const Doubles d;
-  const ToUnit unit(frame);
+  const ToUnit unit(placement.frame);
   for (size_t first = begin; first < end; first += kLanes) {
     const size_t count = std::min(kLanes, end - first);
     Vec3Lanes points, ends[kRays];
     for (size_t lane = 0; lane < count; ++lane) {
-      points.set(lane, placed[first + lane]);
-      for (int k = 0; k < kRays; ++k) ends[k].set(lane, placed[regions.places.neighbours[first + lane][k]]);
+      points.set(lane, placement.vertices[first + lane]);
+      for (int k = 0; k < kRays; ++k)
+        ends[k].set(lane, placement.vertices[regions.places.neighbours[first + lane][k]]);
     }
     FourLanes point, ray[kRays];
     for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
@@ -241,18 +241,15 @@ HWY_EXPORT(ComputeFaces);
 HWY_EXPORT(ComputeEdges);
 HWY_EXPORT(ComputeVertices);
 
-void compute_faces(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                   std::span<const std::uint8_t> inverted, std::span<FaceShape> shapes, std::size_t begin,
-                   std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(ComputeFaces)(regions, frame, placed, inverted, shapes, begin, end);
+void compute_faces(Regions& regions, const Placement& placement, std::span<FaceShape> shapes,
+                   std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(ComputeFaces)(regions, placement, shapes, begin, end);
 }
-void compute_edges(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, std::size_t begin,
-                   std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(ComputeEdges)(regions, frame, placed, begin, end);
+void compute_edges(Regions& regions, const Placement& placement, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(ComputeEdges)(regions, placement, begin, end);
 }
-void compute_vertices(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                      std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(ComputeVertices)(regions, frame, placed, begin, end);
+void compute_vertices(Regions& regions, const Placement& placement, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(ComputeVertices)(regions, placement, begin, end);
 }
 
 }  // namespace sdm::sites

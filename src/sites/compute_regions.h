@@ -10,16 +10,13 @@ namespace sdm::sites {
 // Each selects the best vector instructions of the machine at run time.
 
 /// The faces of the leaves from `begin` to `end`: their regions and shapes, and the discs of their bounds.
-void compute_faces(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                   std::span<const std::uint8_t> inverted, std::span<FaceShape> shapes, std::size_t begin,
-                   std::size_t end);
+void compute_faces(Regions& regions, const Placement& placement, std::span<FaceShape> shapes,
+                   std::size_t begin, std::size_t end);
 
 /// The regions of the edges from `begin` to `end`.
-void compute_edges(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed, std::size_t begin,
-                   std::size_t end);
+void compute_edges(Regions& regions, const Placement& placement, std::size_t begin, std::size_t end);
 
 /// The regions of the vertices from `begin` to `end`.
-void compute_vertices(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                      std::size_t begin, std::size_t end);
+void compute_vertices(Regions& regions, const Placement& placement, std::size_t begin, std::size_t end);
 
 }  // namespace sdm::sites

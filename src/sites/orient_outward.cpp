@@ -5,7 +5,6 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
-#include "inside/crossings/ray_parity.h"
 
 namespace sdm::sites {
 namespace {
@@ -15,14 +14,14 @@ constexpr std::size_t kGrain = 4096;
 struct Shell {
   std::uint32_t component;
   std::span<const std::uint32_t> faces;
-  bool inward = false;  ///< as turned by the orientation, the faces enclose a negative volume
+  bool inward = false;  ///< as flipped by the orientation, the faces enclose a negative volume
 };
 
 // Six times the volume; a corner of the shell as origin keeps the digits of small shells. Summed in parts
 // that do not depend on the number of threads.
-double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Triangle> triangles,
-              std::span<const std::uint8_t> turned) {
-  const Vec3& origin = p[triangles[shell.faces.front()][0]];
+double volume(const Shell& shell, const inside::FaceTree& faces, std::span<const std::uint8_t> flipped) {
+  const std::span<const Vec3> p = faces.positions;
+  const Vec3& origin = p[faces.triangles[shell.faces.front()][0]];
   thread_local std::vector<double> parts_of_this_thread;  // one that waits for a loop takes up no other shell
   std::vector<double>& parts = parts_of_this_thread;
   parts.assign((shell.faces.size() + kGrain - 1) / kGrain, 0);
@@ -30,9 +29,9 @@ double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Trian
     for (std::size_t i = begin; i < end; ++i)
       for (const std::uint32_t f :
            shell.faces.subspan(i * kGrain).first(std::min(kGrain, shell.faces.size() - i * kGrain))) {
-        const Triangle& t = triangles[f];
+        const Triangle& t = faces.triangles[f];
         const double v = dot(p[t[0]] - origin, cross(p[t[1]] - origin, p[t[2]] - origin));
-        parts[i] += turned[f] ? -v : v;
+        parts[i] += flipped[f] ? -v : v;
       }
   });
   return std::accumulate(parts.begin(), parts.end(), 0.0);
@@ -40,21 +39,17 @@ double volume(const Shell& shell, std::span<const Vec3> p, std::span<const Trian
 
 // Whether the shell lies inside an odd number of others. Shells that touch or overlap others lie partly
 // inside at most: a few points just outside faces far apart must all agree.
-bool hollow(const Shell& shell, std::span<const Vec3> positions, const UnitFrame& frame,
-            std::span<const Triangle> triangles, const mesh::Orientation& orientation,
-            const hierarchy::AabbTree& tree) {
+bool hollow(const Shell& shell, const inside::FaceTree& faces, const mesh::Orientation& orientation) {
   constexpr std::size_t kPoints = 5;
   constexpr double kOff = 1e-7;  // in the unit frame
   for (std::size_t i = 0; i < kPoints; ++i) {
     const std::uint32_t f = shell.faces[i * shell.faces.size() / kPoints];
-    const auto corner = [&](int k) { return frame.to_unit(positions[triangles[f][k]]); };
+    const auto corner = [&](int k) { return faces.frame.to_unit(faces.positions[faces.triangles[f][k]]); };
     const Vec3 a = corner(0), b = corner(1), c = corner(2);
     const Vec3 normal = normalized(cross(b - a, c - a));
-    const bool inward = shell.inward != static_cast<bool>(orientation.turned[f]);
+    const bool inward = shell.inward != static_cast<bool>(orientation.flipped[f]);
     const Vec3 point = (1.0 / 3) * (a + b + c) + (inward ? -kOff : kOff) * normal;
-    if (!inside::odd_crossings(positions, frame, triangles, tree, point, orientation.component,
-                               shell.component))
-      return false;
+    if (!inside::odd_crossings(faces, point, orientation.component, shell.component)) return false;
   }
   return true;
 }
@@ -68,17 +63,14 @@ Shells find_shells(const mesh::Orientation& orientation) {
   });
 }
 
-void orient_outward(std::span<const Vec3> positions, const UnitFrame& frame,
-                    std::span<const Triangle> triangles, const mesh::Orientation& orientation,
-                    const Shells& shells, const hierarchy::AabbTree& tree,
+void orient_outward(const inside::FaceTree& faces, const mesh::Orientation& orientation, const Shells& shells,
                     std::vector<std::uint8_t>& inverted) {
-  inverted = orientation.turned;
+  inverted = orientation.flipped;
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       Shell shell{static_cast<std::uint32_t>(s), shells.of(s)};
-      shell.inward = volume(shell, positions, triangles, orientation.turned) < 0;
-      const bool is_hollow =
-          shells.size() > 1 && hollow(shell, positions, frame, triangles, orientation, tree);
+      shell.inward = volume(shell, faces, orientation.flipped) < 0;
+      const bool is_hollow = shells.size() > 1 && hollow(shell, faces, orientation);
       if (shell.inward != is_hollow)
         for (std::uint32_t f : shell.faces) inverted[f] ^= 1;
     }

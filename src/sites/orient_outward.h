@@ -1,12 +1,9 @@
 // Which side of a closed mesh is out.
 #pragma once
 
-#include <sdm/types.h>
-
-#include <span>
 #include <vector>
 
-#include "hierarchy/aabb_tree.h"
+#include "inside/crossings/ray_parity.h"
 #include "mesh/topology.h"
 
 namespace sdm::sites {
@@ -18,11 +15,9 @@ using Shells = CompressedRows<std::uint32_t>;
 /// For a closed, orientable mesh: sets `inverted` for the faces that run clockwise seen from outside. A shell
 /// bounds a solid if it lies inside an even number of the others, and a cavity if inside an
 /// odd number: a point is inside when a ray from it meets the mesh an odd number of times. Shells that touch
-/// or overlap each other bound solid. `tree` holds the faces, in the unit frame. Cost: linear, all cores, and
+/// or overlap each other bound solid. Cost: linear, all cores, and
 /// a few rays for each shell where there are several.
-void orient_outward(std::span<const Vec3> positions, const UnitFrame& frame,
-                    std::span<const Triangle> triangles, const mesh::Orientation& orientation,
-                    const Shells& shells, const hierarchy::AabbTree& tree,
+void orient_outward(const inside::FaceTree& faces, const mesh::Orientation& orientation, const Shells& shells,
                     std::vector<std::uint8_t>& inverted);
 
 }  // namespace sdm::sites

@@ -4,9 +4,11 @@
 
 namespace sdm::sites {
 
-Vec3 edge_pseudonormal(const Pseudonormals& normals, const mesh::Topology& topology, std::uint32_t edge) {
+Vec3 pseudonormal(const Pseudonormals& normals, const mesh::Topology& topology, const ClosestPoint& closest) {
+  if (closest.type == SiteType::vertex) return normals.vertex[closest.site];
+  if (closest.type != SiteType::edge) return normals.face[closest.face];
   Vec3 sum{};
-  for (std::uint32_t f : topology.edge_faces(edge)) sum += normals.face[f];
+  for (const std::uint32_t f : topology.edge_faces(closest.site)) sum += normals.face[f];
   return sum;
 }
 

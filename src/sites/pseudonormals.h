@@ -3,7 +3,7 @@
 // is outside where (q − c)·n > 0.
 #pragma once
 
-#include <sdm/types.h>
+#include <sdm/sites.h>
 
 #include <span>
 #include <vector>
@@ -17,8 +17,8 @@ struct Pseudonormals {
   std::vector<Vec3> vertex;  ///< sum of its faces' normals, weighted by their angles at it
 };
 
-/// The pseudonormal of an edge: the sum of its faces' normals.
-[[nodiscard]] Vec3 edge_pseudonormal(const Pseudonormals& normals, const mesh::Topology& topology,
-                                     std::uint32_t edge);
+/// The pseudonormal of the site of a closest point; of an edge, the sum of its faces' normals.
+[[nodiscard]] Vec3 pseudonormal(const Pseudonormals& normals, const mesh::Topology& topology,
+                                const ClosestPoint& closest);
 
 }  // namespace sdm::sites

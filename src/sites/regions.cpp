@@ -72,12 +72,11 @@ void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<c
   });
 }
 
-void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-           std::span<const std::uint8_t> inverted, Pseudonormals& normals, std::vector<std::uint8_t>& sliver,
-           std::vector<FaceShape>& shapes) {
+void refit(Regions& regions, const Placement& placement, Pseudonormals& normals,
+           std::vector<std::uint8_t>& sliver, std::vector<FaceShape>& shapes) {
   shapes.resize(regions.faces.size());
   parallel_for(regions.bounds.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
-    compute_faces(regions, frame, placed, inverted, shapes, begin, end);
+    compute_faces(regions, placement, shapes, begin, end);
     for (std::uint32_t i = regions.leaves[begin]; i < regions.leaves[end]; ++i) {
       const std::uint32_t face = regions.owners[i].face;
       normals.face[face] = shapes[i].normal;
@@ -87,8 +86,8 @@ void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> place
   parallel_for(regions.bounds.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
     const Regions::Owner &first = regions.owners[regions.leaves[begin]],
                          &last = regions.owners[regions.leaves[end]];
-    compute_edges(regions, frame, placed, first.edges, last.edges);
-    compute_vertices(regions, frame, placed, first.vertices, last.vertices);
+    compute_edges(regions, placement, first.edges, last.edges);
+    compute_vertices(regions, placement, first.vertices, last.vertices);
     for (std::size_t leaf = begin; leaf < end; ++leaf) look_around(regions, leaf, shapes, normals);
   });
 }

@@ -119,11 +119,17 @@ struct FaceShape {
   bool sliver;  ///< too thin for a normal that could be trusted
 };
 
-/// Computes the regions in this frame, and what signs need: pseudonormals, outward if `inverted` tells which
-/// faces run clockwise seen from outside, and which faces are slivers, too thin for normals that could be
-/// trusted. `shapes` are computed on the way, of each owner. Cost: linear, all cores.
-void refit(Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-           std::span<const std::uint8_t> inverted, Pseudonormals& normals, std::vector<std::uint8_t>& sliver,
-           std::vector<FaceShape>& shapes);
+/// The vertices as they lie now, and what they mean to the faces.
+struct Placement {
+  const UnitFrame& frame;                  ///< in which regions are computed
+  std::span<const Vec3> vertices;          ///< see place()
+  std::span<const std::uint8_t> inverted;  ///< of each face of the mesh: clockwise as seen from outside
+};
+
+/// Computes the regions, and what signs need: pseudonormals, outward as far as `inverted` is right, and which
+/// faces are slivers, too thin for normals that could be trusted. `shapes` are computed on the way, of each
+/// owner. Cost: linear, all cores.
+void refit(Regions& regions, const Placement& placement, Pseudonormals& normals,
+           std::vector<std::uint8_t>& sliver, std::vector<FaceShape>& shapes);
 
 }  // namespace sdm::sites

@@ -7,6 +7,7 @@
 
 #include "hierarchy/aabb_tree.h"
 #include "hierarchy/wide_tree.h"
+#include "inside/crossings/ray_parity.h"
 #include "mesh/topology.h"
 #include "sites/orient_outward.h"
 #include "sites/pseudonormals.h"
@@ -14,12 +15,34 @@
 
 namespace sdm::sites {
 
-struct SitesData {
+/// The sites of a mesh under a tree over its faces. Only Sites changes it: all others have it as const.
+class SitesData {
+ public:
+  /// As Sites'.
+  explicit SitesData(Mesh mesh);
+  void refit(std::span<const Vec3> positions);
+
+  /// Whether the mesh bounds a solid, and so has an inside.
+  [[nodiscard]] bool is_solid() const { return closed && orientation.orientable; }
+  /// A face that the site belongs to.
+  [[nodiscard]] std::uint32_t face_of(SiteType type, std::uint32_t site) const {
+    switch (type) {
+      case SiteType::vertex:
+        return vertex_faces.of(site)[0];
+      case SiteType::edge:
+        return topology.edge_faces(site)[0];
+      default:
+        return site;
+    }
+  }
+  /// Valid as long as this.
+  [[nodiscard]] inside::FaceTree face_tree() const { return {mesh.positions, mesh.triangles, frame, tree}; }
+
   Mesh mesh;
   mesh::Topology topology;
   mesh::VertexFaces vertex_faces;
   bool closed = false;
-  bool alike = false;  ///< closed and consistently oriented
+  bool consistently_oriented = false;  ///< closed, and neighbouring faces run the same way round
   mesh::Orientation orientation;
   Shells shells;  ///< if closed and orientable
   std::vector<std::uint8_t>
@@ -32,25 +55,19 @@ struct SitesData {
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a normal that could be trusted
 
+ private:
   /// Intermediate data of a refit, whose memory the next one reuses.
   struct Refit {
     std::vector<Vec3> placed;
     std::vector<hierarchy::FloatBox> boxes;
     std::vector<FaceShape> shapes;
   };
-  Refit last_refit;
 
-  /// A face that the site belongs to.
-  [[nodiscard]] std::uint32_t face_of(SiteType type, std::uint32_t site) const {
-    switch (type) {
-      case SiteType::vertex:
-        return vertex_faces.of(site)[0];
-      case SiteType::edge:
-        return topology.edge_faces(site)[0];
-      default:
-        return site;
-    }
-  }
+  [[nodiscard]] std::vector<hierarchy::FloatBox> face_boxes() const;
+  void set_inverted();
+  void compute_regions(Refit& refit);  ///< whose `placed` are the present positions
+
+  Refit last_refit_;
 };
 
 }  // namespace sdm::sites

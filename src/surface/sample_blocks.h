@@ -6,18 +6,18 @@
 
 namespace sdm::surface {
 
-inline constexpr std::size_t kRunLength = 256;  // a compact piece of the surface: see core/spatial_order.h
+inline constexpr std::size_t kBlockSize = 256;  // a compact piece of the surface: see core/spatial_order.h
 
-/// The samples of a run: [first, end).
+/// The samples of a block: [first, end).
 struct SampleBlock {
   std::size_t first, end;
-  SampleBlock(std::size_t run, std::size_t samples)
-      : first(run * kRunLength), end(std::min(samples, first + kRunLength)) {}
+  SampleBlock(std::size_t block, std::size_t samples)
+      : first(block * kBlockSize), end(std::min(samples, first + kBlockSize)) {}
   [[nodiscard]] std::size_t size() const { return end - first; }
 };
 
-/// Runs that follow each other: [first, end).
-struct RunRange {
+/// Blocks that follow each other: [first, end).
+struct BlockRange {
   std::size_t first, end;
   /// The sample in their middle.
   [[nodiscard]] std::size_t middle(std::size_t samples) const {
@@ -25,8 +25,8 @@ struct RunRange {
   }
 };
 
-[[nodiscard]] inline std::size_t run_count(std::size_t samples) {
-  return (samples + kRunLength - 1) / kRunLength;
+[[nodiscard]] inline std::size_t block_count(std::size_t samples) {
+  return (samples + kBlockSize - 1) / kBlockSize;
 }
 
 }  // namespace sdm::surface

@@ -3,45 +3,54 @@
 
 #include <sdm/surface.h>
 
-#include <mutex>
-#include <optional>
+#include <vector>
 
 #include "atlas/layout.h"
-#include "surface/sampling_bound/coverage.h"
-#include "surface/tiles.h"
+#include "core/vec.h"
 
 namespace sdm::surface {
 
-struct SurfaceData {
+/// Names a surface from its layout to its end, whatever moves it. Caches of what refits keep refer to it
+/// weakly.
+struct Identity {};
+
+/// A mesh and its layout in the atlas. Only Surface changes it: all others have it as const.
+class SurfaceData {
+ public:
+  /// As Surface's.
+  SurfaceData(Mesh mesh, const AtlasOptions& options);
+  void refit(std::span<const Vec3> positions);
+
+  /// M⁻¹ of the face.
+  [[nodiscard]] Vec3 to_surface(std::uint32_t face, const Vec2& uv) const {
+    const atlas::FaceMap& map = maps[face];
+    const Vec2 d = uv - map.origin;
+    return mesh.positions[mesh.triangles[face][0]] + d[0] * map.edges[0] + d[1] * map.edges[1];
+  }
+  /// Of the centre of a texel that the face owns.
+  [[nodiscard]] Vec3 texel_point(std::uint32_t face, std::uint32_t texel) const {
+    return to_surface(face, {texel % resolution + 0.5, texel / resolution + 0.5});
+  }
+  /// Sets `points` to those of the samples from `first` on.
+  void place_samples(std::size_t first, std::span<Vec3> points) const;
+  /// As Surface's.
+  [[nodiscard]] std::vector<Vec3> sample_points() const;
+
   Mesh mesh;
-  AtlasKind kind = AtlasKind::charts;
-  std::uint32_t resolution = 0;
+  AtlasKind kind;
+  std::uint32_t resolution;
   std::size_t chart_count = 0;
   double max_stretch = 1;
   std::vector<atlas::FaceMap> maps;
   std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
   std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order are scattered over texel_faces
+  std::shared_ptr<const Identity> identity = std::make_shared<Identity>();
 
-  /// Computed on first use, by the first thread that needs it.
-  struct Lazy {
-    std::once_flag tiled, cut;
-    Tiles tiles;                       ///< once `tiled`: see tiles_of
-    std::optional<Coverage> coverage;  ///< once `cut`: see coverage_of
-
-    /// Of the present positions; made anew when vertices move.
-    struct Present {
-      std::once_flag placed, measured;
-    };
-    std::optional<Present> present{std::in_place};
-    std::vector<Vec3> sample_points;  ///< once `placed`
-    Coverage::Radii radii;            ///< once `measured`: see radii_of
-  };
-  mutable Lazy lazy;
+ private:
+  void order_samples();  ///< in space
+  void find_sample_faces();
 };
-
-/// Sets `points` to those of the samples from `first` on.
-void place_samples(const SurfaceData& surface, std::size_t first, std::span<Vec3> points);
 
 }  // namespace sdm::surface
 

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/vec.h"
-#include "surface/surface_data.h"
 
 namespace sdm::surface {
 namespace {
@@ -64,38 +61,16 @@ void cut(const Surface& surface, Tiles& tiles) {
   tiles.offsets.push_back(static_cast<std::uint32_t>(tiles.texels.size()));
 }
 
-hierarchy::AabbTree build_tree(const Surface& surface, const Tiles& tiles) {
-  const UnitFrame frame = UnitFrame::of(bounds(surface.mesh()));
-  std::vector<Box> boxes(tiles.count());
-  parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t tile = begin; tile < end; ++tile)
-      for (const std::uint32_t texel : tiles.of(static_cast<std::uint32_t>(tile)))
-        extend(boxes[tile], frame.to_unit(surface.texel_point(texel)));
-  });
-  std::vector<std::uint32_t> items(tiles.count());
-  std::iota(items.begin(), items.end(), 0u);
-  return hierarchy::build_aabb_tree(boxes, std::move(items), 1);
-}
-
 }  // namespace
 
-const Tiles& tiles_of(const Surface& surface) {
-  SurfaceData::Lazy& lazy = internals(surface).lazy;
-  std::call_once(lazy.tiled, [&] {
-    // Texels and the tile of each; tiles with boxes and nodes while the tree is built, a few a face and more
-    // where faces are large.
-    constexpr std::size_t kBytesPerTexel = 8, kBytesPerTile = 300;
-    const std::size_t texels = surface.sample_texels().size();
-    const std::size_t most_tiles =
-        std::min(texels, 4 * surface.mesh().triangles.size() + texels / Tiles::kSide);
-    require_memory(kBytesPerTexel * texels + kBytesPerTile * most_tiles, "the tiles of the atlas");
-    Tiles tiles;
-    sort_by_face(surface, tiles);
-    cut(surface, tiles);
-    tiles.tree = build_tree(surface, tiles);
-    lazy.tiles = std::move(tiles);
-  });
-  return lazy.tiles;
+Tiles::Tiles(const Surface& surface) {
+  // Texels and the tile of each; tiles, a few a face and more where faces are large.
+  constexpr std::size_t kBytesPerTexel = 8, kBytesPerTile = 16;
+  const std::size_t samples = surface.sample_texels().size();
+  const std::size_t most_tiles = std::min(samples, 4 * surface.mesh().triangles.size() + samples / kSide);
+  require_memory(kBytesPerTexel * samples + kBytesPerTile * most_tiles, "the tiles of the atlas");
+  sort_by_face(surface, *this);
+  cut(surface, *this);
 }
 
 }  // namespace sdm::surface

@@ -10,9 +10,13 @@
 #include <random>
 #include <thread>
 
+#include "core/disjoint_sets.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/platform.h"
+#include "core/rows.h"
 #include "core/spatial_order.h"
+#include "core/sweep.h"
 #include "core/vec.h"
 
 namespace sdm {
@@ -118,6 +122,98 @@ TEST(Memory, RefusesWhatTheMachineDoesNotHave) {
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("an absurd map needs 1.15e+09 GB"));
   }
+}
+
+TEST(Memory, NamesWhatThereIsNotEnoughMemoryFor) {
+  const Error error = out_of_memory("a map of 64² texels");
+  EXPECT_STREQ(error.what(), "a map of 64² texels: not enough memory");
+}
+
+// Against labels that are rewritten at every union.
+TEST(DisjointSets, AreTheComponentsWhateverTheOrderOfTheUnions) {
+  std::mt19937 random(11);
+  for (const std::uint32_t count : {1u, 2u, 50u, 2000u}) {
+    std::uniform_int_distribution<std::uint32_t> any(0, count - 1);
+    std::vector<std::array<std::uint32_t, 2>> pairs(count / 2);
+    for (auto& [a, b] : pairs) a = any(random), b = any(random);
+    std::vector<std::uint32_t> smallest(count);
+    std::iota(smallest.begin(), smallest.end(), 0u);
+    for (const auto& [a, b] : pairs) {
+      const auto [to, from] = std::minmax({smallest[a], smallest[b]});
+      std::ranges::replace(smallest, from, to);
+    }
+    DisjointSets sets(7);
+    sets.unite(0, 6);
+    for (int order = 0; order < 3; ++order) {
+      std::ranges::shuffle(pairs, random);
+      sets.reset(count);
+      for (const auto& [a, b] : pairs) sets.unite(a, b);
+      for (std::uint32_t x = 0; x < count; ++x) ASSERT_EQ(sets.find(x), smallest[x]);
+    }
+  }
+}
+
+TEST(CompressedRows, KeepTheOrderWithinARow) {
+  std::mt19937 random(12);
+  std::uniform_int_distribution<std::size_t> any(0, 99);
+  std::vector<std::vector<int>> expected(100);
+  std::vector<std::size_t> row_of(1000);
+  for (int i = 0; i < 1000; ++i) {
+    row_of[i] = any(random) / 2 * 2;  // every other row stays empty
+    expected[row_of[i]].push_back(i);
+  }
+  const auto check = [&](const auto& rows) {
+    ASSERT_EQ(rows.size(), expected.size());
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      EXPECT_THAT(rows.of(r), testing::ElementsAreArray(expected[r]));
+  };
+  const auto visit = [&](const auto& put) {
+    for (int i = 0; i < 1000; ++i) put(row_of[i], i);
+  };
+  check(make_rows<int>(100, visit));
+  check(make_rows<int, std::size_t>(100, visit));
+  EXPECT_EQ(make_rows<int>(0, [](const auto&) {}).size(), 0u);
+}
+
+TEST(Sweep, OffersEveryPairThatIsNearOnceAndNoPairTwice) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> u(-1, 1);
+  Sweep sweep;
+  for (const double reach : {0.0, 0.1, 5.0}) {
+    std::vector<Box> boxes(200);
+    for (Box& box : boxes) {
+      const Vec3 p{u(random), 3 * u(random), u(random)};
+      extend(box, p);
+      extend(box, p + 0.1 * Vec3{u(random), u(random), u(random)});
+    }
+    std::vector<int> offered(boxes.size() * boxes.size(), 0);
+    sweep.for_each_candidate(boxes, reach, [&](std::uint32_t a, std::uint32_t b) {
+      ++offered[std::min(a, b) * boxes.size() + std::max(a, b)];
+    });
+    for (std::size_t a = 0; a < boxes.size(); ++a)
+      for (std::size_t b = 0; b < boxes.size(); ++b) {
+        const int times = offered[a * boxes.size() + b];
+        if (a >= b) {
+          EXPECT_EQ(times, 0);
+        } else if (box_distance(boxes[a], boxes[b]) <= reach) {
+          EXPECT_EQ(times, 1);
+        } else {
+          EXPECT_LE(times, 1);
+        }
+      }
+  }
+  sweep.for_each_candidate({}, 1, [](std::uint32_t, std::uint32_t) { FAIL(); });
+}
+
+TEST(BoxDistance, IsTheLeastDistanceOfPointsOfTheBoxes) {
+  const Box a{{0, 0, 0}, {1, 1, 1}};
+  EXPECT_EQ(gap(a, Box{{1, 1, 1}, {2, 2, 2}}), (Vec3{0, 0, 0}));
+  EXPECT_EQ(gap(a, Box{{3, -4, 0.2}, {4, -3, 0.4}}), (Vec3{2, 3, 0}));
+  EXPECT_TRUE(overlap(a, {{1, 1, 1}, {2, 2, 2}}));
+  EXPECT_FALSE(overlap(a, {{0, 0, std::nextafter(1.0, 2.0)}, {2, 2, 2}}));
+  const double distance = box_distance(a, {{4, 5, 0}, {6, 7, 1}});
+  EXPECT_LE(distance, 5);
+  EXPECT_GT(distance, 5 - 1e-13);
 }
 
 TEST(SpatialOrder, IsAPermutationThatKeepsNeighboursTogether) {

@@ -139,7 +139,7 @@ TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
     const test::UseSimdTarget target(targets[seed % targets.size()]);
     const double limit = seed % 4 == 0 ? 0.1 * extent : std::numeric_limits<double>::infinity();
     const auto found = closest_points(sites, queries, {.max_distance = limit});
-    const auto expected = closest_points(sites, queries, {.engine = EngineKind::reference});
+    const auto expected = closest_points(sites, queries, {.engine = make_engine("reference")});
     Box scene = bounds(mesh);
     for (const Vec3& q : queries) extend(scene, q);
     const double tolerance = 1e-6 * diagonal(scene);

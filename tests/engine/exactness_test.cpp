@@ -57,7 +57,7 @@ void expect_agreement(const Mesh& o1, const Mesh& o2, std::uint32_t resolution) 
   for (const test::EngineOnTarget& engine : test::engines_on_targets()) {
     SCOPED_TRACE(testing::PrintToString(engine));
     const test::UseSimdTarget target(engine.target);
-    const DistanceMap map = compute_map(surface, sites, {.engine = engine.engine});
+    const DistanceMap map = compute_map(surface, sites, {.engine = make_engine(engine.name)});
     test::expect_map(surface, sites, map, expected, tolerance);
     if (!reference) reference = map;
     test::Disagreements from_reference(tolerance);
@@ -65,9 +65,9 @@ void expect_agreement(const Mesh& o1, const Mesh& o2, std::uint32_t resolution) 
       from_reference.compare(t, map.distance[t], reference->distance[t]);
     EXPECT_TRUE(from_reference.none());
   }
-  for (const EngineKind engine : test::kEngines) {
-    SCOPED_TRACE(test::name(engine));
-    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = engine}), expected,
+  for (const std::string& engine : test::engine_names()) {
+    SCOPED_TRACE(engine);
+    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = make_engine(engine)}), expected,
                                 tolerance);
   }
 }

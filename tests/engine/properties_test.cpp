@@ -6,13 +6,13 @@
 namespace sdm {
 namespace {
 
-class Properties : public testing::TestWithParam<EngineKind> {
+class Properties : public testing::TestWithParam<std::string> {
  protected:
   [[nodiscard]] DistanceMap map(const Surface& surface, const Sites& sites) const {
-    return compute_map(surface, sites, {.engine = GetParam()});
+    return compute_map(surface, sites, {.engine = make_engine(GetParam())});
   }
 };
-INSTANTIATE_TEST_SUITE_P(Engines, Properties, testing::ValuesIn(test::kEngines), test::engine_name);
+INSTANTIATE_TEST_SUITE_P(Engines, Properties, testing::ValuesIn(test::engine_names()), test::engine_name);
 
 TEST_P(Properties, RigidMotionOfBothLeavesDistances) {
   const char* motion = "rotate:20:-130:77,translate:0.3:-0.4:0.25";
@@ -20,8 +20,8 @@ TEST_P(Properties, RigidMotionOfBothLeavesDistances) {
   const Sites here(o2), there(test::placed(o2, motion));
   std::mt19937 random(1);
   const std::vector<Vec3> points = test::random_surface_points(o1, 20000, random);
-  const auto before = closest_points(here, points, {.engine = GetParam()});
-  const auto after = closest_points(there, test::placed(points, motion), {.engine = GetParam()});
+  const auto before = closest_points(here, points, {.engine = make_engine(GetParam())});
+  const auto after = closest_points(there, test::placed(points, motion), {.engine = make_engine(GetParam())});
   test::Disagreements distances(1e-6 * test::scene_diagonal(o1, o2));
   for (std::size_t i = 0; i < points.size(); ++i) distances.compare(i, after[i].distance, before[i].distance);
   EXPECT_TRUE(distances.none());
@@ -35,7 +35,7 @@ TEST_P(Properties, AMapComputedInPlaceIsAsIfNew) {
   DistanceMap reused;
   for (const Surface* surface : {&large, &small, &large})
     for (const double limit : {0.05, std::numeric_limits<double>::infinity()}) {
-      const MapOptions options{.engine = GetParam(), .max_distance = limit};
+      const MapOptions options{.engine = make_engine(GetParam()), .max_distance = limit};
       compute_map(*surface, sites, options, reused);
       const DistanceMap fresh = compute_map(*surface, sites, options);
       EXPECT_EQ(reused.resolution, fresh.resolution);
@@ -118,7 +118,7 @@ TEST_P(Properties, UnionIsTheMinimum) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Mesh a = test::load("elephant-with-holes.off", "fit,translate:0.3:0:0");
   const Mesh b = test::load("knot2.off", "fit,translate:-0.3:0.2:0");
-  const MapOptions options{.engine = GetParam(), .sign = SignMethod::none};
+  const MapOptions options{.engine = make_engine(GetParam()), .sign = SignMethod::none};
   const DistanceMap to_a = compute_map(surface, Sites(a), options),
                     to_b = compute_map(surface, Sites(b), options),
                     to_both = compute_map(surface, Sites(test::joined(a, b)), options);
@@ -138,7 +138,7 @@ TEST_P(Properties, MaxDistanceCutsAndCounts) {
   const Sites sites(test::load("elephant.off", "fit,translate:0.5:0:0"));
   const DistanceMap all = map(surface, sites);
   const double limit = 0.3, tolerance = 1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh());
-  const DistanceMap near = compute_map(surface, sites, {.engine = GetParam(), .max_distance = limit});
+  const DistanceMap near = compute_map(surface, sites, {.engine = make_engine(GetParam()), .max_distance = limit});
   std::size_t beyond = 0, wrong = 0;
   test::Disagreements distances(tolerance);
   for (const std::uint32_t t : surface.sample_texels()) {
@@ -158,10 +158,10 @@ TEST_P(Properties, MaxDistanceCutsAndCounts) {
   EXPECT_GT(beyond, surface.sample_texels().size() / 10);
   EXPECT_LT(beyond, surface.sample_texels().size());
 
-  const DistanceMap nothing = compute_map(surface, sites, {.engine = GetParam(), .max_distance = 1e-9});
+  const DistanceMap nothing = compute_map(surface, sites, {.engine = make_engine(GetParam()), .max_distance = 1e-9});
   EXPECT_EQ(nothing.beyond_max_distance, surface.sample_texels().size());
   const std::vector<Vec3> far{{100, 0, 0}};
-  const ClosestPoint none = closest_points(sites, far, {.engine = GetParam(), .max_distance = 1.0})[0];
+  const ClosestPoint none = closest_points(sites, far, {.engine = make_engine(GetParam()), .max_distance = 1.0})[0];
   EXPECT_EQ(none.type, SiteType::none);
   EXPECT_EQ(none.site, kNone);
 }
@@ -170,7 +170,7 @@ TEST_P(Properties, MapEqualsClosestPoints) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 64});
   const Sites sites(test::load("elephant-with-holes.off", "fit"));
   const DistanceMap texels = map(surface, sites);
-  const auto closest = closest_points(sites, test::sample_points(surface), {.engine = GetParam()});
+  const auto closest = closest_points(sites, test::sample_points(surface), {.engine = make_engine(GetParam())});
   test::Disagreements distances(1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh()));
   for (std::size_t i = 0; i < closest.size(); ++i)
     distances.compare(i, texels.distance[surface.sample_texels()[i]], closest[i].distance);
@@ -199,10 +199,10 @@ TEST_P(Properties, ProgressCancels) {
     last = std::max(last, fraction);
     return true;
   };
-  (void)compute_map(surface, sites, {.engine = GetParam(), .progress = watch});
+  (void)compute_map(surface, sites, {.engine = make_engine(GetParam()), .progress = watch});
   EXPECT_GT(last, 0);
   const auto stop = [](std::string_view, double) { return false; };
-  EXPECT_THROW((void)compute_map(surface, sites, {.engine = GetParam(), .progress = stop}), Cancelled);
+  EXPECT_THROW((void)compute_map(surface, sites, {.engine = make_engine(GetParam()), .progress = stop}), Cancelled);
 }
 
 }  // namespace

@@ -7,13 +7,13 @@
 namespace sdm {
 namespace {
 
-class Regions : public testing::TestWithParam<EngineKind> {
+class Regions : public testing::TestWithParam<std::string> {
  protected:
   [[nodiscard]] ClosestPoint closest(const Sites& sites, const Vec3& query) const {
-    return closest_points(sites, std::vector{query}, {.engine = GetParam()})[0];
+    return closest_points(sites, std::vector{query}, {.engine = make_engine(GetParam())})[0];
   }
 };
-INSTANTIATE_TEST_SUITE_P(Engines, Regions, testing::ValuesIn(test::kEngines), test::engine_name);
+INSTANTIATE_TEST_SUITE_P(Engines, Regions, testing::ValuesIn(test::engine_names()), test::engine_name);
 
 constexpr Box kUnit{{-1, -1, -1}, {1, 1, 1}};
 
@@ -87,7 +87,7 @@ TEST_P(Regions, OfFacesWithoutArea) {
     std::vector<double> expected;
     for (const Vec3& q : queries)
       expected.push_back(oracle::distance(q, mesh.positions[0], mesh.positions[2]));
-    const auto found = closest_points(sites, queries, {.engine = GetParam()});
+    const auto found = closest_points(sites, queries, {.engine = make_engine(GetParam())});
     test::expect_closest_points(sites, queries, found, expected, 1e-6 * 60);
     for (const ClosestPoint& c : found) EXPECT_EQ(c.face, 0u);
   }
@@ -104,8 +104,8 @@ TEST_P(Regions, CollapsedAndDuplicateFacesAddNothing) {
   std::mt19937 random(4);
   std::vector<Vec3> queries;
   for (int i = 0; i < 1000; ++i) queries.push_back(test::random_point({{-3, -3, -3}, {3, 3, 3}}, random));
-  const auto expected = closest_points(clean, queries, {.engine = GetParam()});
-  const auto found = closest_points(sites, queries, {.engine = GetParam()});
+  const auto expected = closest_points(clean, queries, {.engine = make_engine(GetParam())});
+  const auto found = closest_points(sites, queries, {.engine = make_engine(GetParam())});
   for (std::size_t i = 0; i < queries.size(); ++i) {
     EXPECT_NEAR(found[i].distance, expected[i].distance, 1e-6);
     EXPECT_LT(found[i].face, 12u);

@@ -2,6 +2,7 @@
 #include "core/vec.h"
 #include "engine/support.h"
 
+#include <sdm/sampling_bound.h>
 #include <sdm/sites.h>
 
 namespace sdm {
@@ -49,7 +50,7 @@ double measured(const Surface& surface, std::size_t count) {
 
 /// The bound must hold, and be no more than `slack` times what is seen.
 void expect_bound(const Surface& surface, double slack, std::size_t points = 200000) {
-  const double seen = measured(surface, points), bound = surface.sampling_bound();
+  const double seen = measured(surface, points), bound = SamplingBound(surface).value();
   EXPECT_LE(seen, bound);
   EXPECT_LE(bound, slack * seen);
 }
@@ -97,22 +98,23 @@ TEST(SamplingBound, PartsWithoutSamples) {
     farthest = std::max(farthest, nearest);
   }
   EXPECT_GT(farthest, 3.5);
-  EXPECT_LE(farthest, surface.sampling_bound());
-  EXPECT_LE(surface.sampling_bound(), 1.1 * farthest);
+  const SamplingBound bound(surface);
+  EXPECT_LE(farthest, bound.value());
+  EXPECT_LE(bound.value(), 1.1 * farthest);
 }
 
 TEST(SamplingBound, HalvesWithTheResolution) {
   const Mesh mesh = test::load("head.off", "fit");
-  const double coarse = Surface(mesh, {.resolution = 256}).sampling_bound(),
-               fine = Surface(mesh, {.resolution = 1024}).sampling_bound();
+  const double coarse = SamplingBound(Surface(mesh, {.resolution = 256})).value(),
+               fine = SamplingBound(Surface(mesh, {.resolution = 1024})).value();
   EXPECT_NEAR(coarse / fine, 4, 1.5);
 }
 
 TEST(SamplingBound, ThreadsDoNotMatter) {
   const Mesh mesh = test::load("head.off", "fit");
-  const double many = Surface(mesh, {.resolution = 256}).sampling_bound();
+  const double many = SamplingBound(Surface(mesh, {.resolution = 256})).value();
   const ThreadLimit one(1);
-  EXPECT_EQ(Surface(mesh, {.resolution = 256}).sampling_bound(), many);
+  EXPECT_EQ(SamplingBound(Surface(mesh, {.resolution = 256})).value(), many);
 }
 
 }  // namespace

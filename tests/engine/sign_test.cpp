@@ -18,9 +18,9 @@ void expect_signs(const Mesh& o1, const Mesh& o2, SignMethod method = SignMethod
   const double least = 1e-5 * test::scene_diagonal(o1, o2);
   const oracle::CgalInside cgal(o2);
   const std::vector<double> inside = test::evaluate(cgal, test::sample_points(surface));
-  for (const EngineKind engine : test::kEngines) {
-    SCOPED_TRACE(test::name(engine));
-    const DistanceMap map = compute_map(surface, sites, {.engine = engine, .sign = method});
+  for (const std::string& engine : test::engine_names()) {
+    SCOPED_TRACE(engine);
+    const DistanceMap map = compute_map(surface, sites, {.engine = make_engine(engine), .sign = method});
     EXPECT_EQ(map.sign.method, method == SignMethod::automatic ? SignMethod::pseudonormal : method);
     std::size_t counts[2] = {0, 0}, wrong = 0;
     for (std::size_t i = 0; i < inside.size(); ++i) {
@@ -100,9 +100,9 @@ TEST(Sign, InwardAndLocallyTurnedFaces) {
 // How many of the points are found inside, by the sign's method, with either engine.
 std::size_t count_inside(const Sites& sites, const std::vector<Vec3>& points) {
   std::size_t count = 0;
-  for (const EngineKind engine : test::kEngines)
+  for (const std::string& engine : test::engine_names())
     for (const std::uint8_t in : inside_flags(
-             sites, points, closest_points(sites, points, {.engine = engine}), SignMethod::pseudonormal))
+             sites, points, closest_points(sites, points, {.engine = make_engine(engine)}), SignMethod::pseudonormal))
       count += in;
   return count;
 }

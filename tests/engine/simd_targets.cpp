@@ -32,18 +32,20 @@ UseSimdTarget::~UseSimdTarget() {
 }
 
 std::vector<EngineOnTarget> engines_on_targets() {
-  std::vector<EngineOnTarget> engines{{EngineKind::reference, simd_targets().front()}};
-  for (const SimdTarget target : simd_targets()) engines.push_back({EngineKind::cpu, target});
-  return engines;
+  std::vector<EngineOnTarget> result;
+  for (const std::string& engine : engine_names())
+    if (engine != "cpu") result.push_back({engine, simd_targets().front()});
+  for (const SimdTarget target : simd_targets()) result.push_back({"cpu", target});
+  return result;
 }
 
 std::string engine_on_target_name(const testing::TestParamInfo<EngineOnTarget>& parameter) {
   const auto& [engine, target] = parameter.param;
-  return engine == EngineKind::cpu ? name(engine) + "_" + name(target) : name(engine);
+  return engine == "cpu" ? engine + "_" + name(target) : engine;
 }
 
 void PrintTo(const EngineOnTarget& engine, std::ostream* out) {
-  *out << name(engine.engine) << ' ' << name(engine.target);
+  *out << engine.name << ' ' << name(engine.target);
 }
 
 }  // namespace sdm::test

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sdm/map.h>
+#include <sdm/engine.h>
 
 #include <cstdint>
 #include <string>
@@ -24,9 +24,9 @@ class UseSimdTarget {
   UseSimdTarget& operator=(const UseSimdTarget&) = delete;
 };
 
-/// The reference engine, and the cpu engine on every set.
+/// The cpu engine on every set, and each other engine.
 struct EngineOnTarget {
-  EngineKind engine;
+  std::string name;
   SimdTarget target;
 };
 void PrintTo(const EngineOnTarget& engine, std::ostream* out);

@@ -123,11 +123,15 @@ double scene_diagonal(const Mesh& o1, const Mesh& o2) {
   return diagonal(box);
 }
 
-std::string name(EngineKind engine) {
-  return engine == EngineKind::cpu ? "cpu" : "reference";
+std::vector<std::string> engine_names() {
+  std::vector<std::string> names;
+  for (const EngineInfo& info : engines())
+    if (!info.maps_only) names.emplace_back(info.name);
+  return names;
 }
-std::string engine_name(const testing::TestParamInfo<EngineKind>& parameter) {
-  return name(parameter.param);
+
+std::string engine_name(const testing::TestParamInfo<std::string>& parameter) {
+  return parameter.param;
 }
 
 void Disagreements::compare(std::size_t index, double actual, double expected) {

@@ -30,9 +30,9 @@ namespace sdm::test {
 [[nodiscard]] std::vector<Vec3> sample_points(const Surface& surface);
 [[nodiscard]] double scene_diagonal(const Mesh& o1, const Mesh& o2);
 
-inline constexpr EngineKind kEngines[] = {EngineKind::cpu, EngineKind::reference};
-[[nodiscard]] std::string name(EngineKind engine);
-[[nodiscard]] std::string engine_name(const testing::TestParamInfo<EngineKind>& parameter);
+/// Those of engines() that find closest points of any points.
+[[nodiscard]] std::vector<std::string> engine_names();
+[[nodiscard]] std::string engine_name(const testing::TestParamInfo<std::string>& parameter);
 
 /// Counts disagreements and keeps the worst, for one message per map.
 class Disagreements {

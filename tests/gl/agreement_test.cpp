@@ -78,18 +78,17 @@ TEST_P(Agreement, EveryTexelWithTheReference) {
   const double tolerance = 1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh());
   ASSERT_GT(surface.sample_texels().size(), 40u);
 
-  const DistanceMap reference = compute_map(surface, sites, {.engine = EngineKind::reference});
+  const DistanceMap reference = compute_map(surface, sites, {.engine = make_engine("reference")});
   std::vector<double> expected;
   for (const std::uint32_t t : surface.sample_texels()) expected.push_back(std::abs(reference.distance[t]));
   for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
     SCOPED_TRACE(clip == GlClip::planes ? "planes" : "stencil");
     const GlOptions options{.clip = clip};
-    const DistanceMap map = test::gl_map(surface, sites, options);
+    const test::GlMap map = test::gl_map(surface, sites, options);
     test::expect_map(surface, sites, map, expected, tolerance);
     expect_closest_sites(surface, sites, map, expected, tolerance);
     expect_signs(surface, map, reference, tolerance, scene.both_signs);
-    ASSERT_TRUE(map.raster);
-    test::expect_laws(*map.raster, surface, sites, options);
+    test::expect_laws(map.report, surface, sites, options);
   }
 }
 
@@ -111,12 +110,12 @@ TEST(Agreement, WithinAMaximumDistance) {
   const Surface surface(scene.o1(), scene.atlas);
   const Sites sites(scene.o2());
   const double tolerance = 1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh());
-  const DistanceMap all = compute_map(surface, sites, {.engine = EngineKind::reference});
+  const DistanceMap all = compute_map(surface, sites, {.engine = make_engine("reference")});
   for (const GlClip clip : {GlClip::planes, GlClip::stencil})
     for (const double limit : {0.02, 0.2, 1e-9}) {
       SCOPED_TRACE(limit);
-      const DistanceMap near = compute_map(
-          surface, sites, {.engine = EngineKind::gl, .max_distance = limit, .raster = {.clip = clip}});
+      const auto engine = make_gl_engine({.clip = clip});
+      const DistanceMap near = compute_map(surface, sites, {.engine = engine, .max_distance = limit});
       Disagreements distances(tolerance);
       std::size_t beyond = 0, wrong = 0;
       for (const std::uint32_t t : surface.sample_texels()) {
@@ -136,7 +135,7 @@ TEST(Agreement, WithinAMaximumDistance) {
       if (limit > 1e-3) {
         EXPECT_LT(beyond, surface.sample_texels().size());
       }
-      const GlReport& r = near.raster.value();
+      const GlReport r = gl_report(*engine).value();
       EXPECT_EQ(r.pairs, r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons);
       EXPECT_GE(r.fragments, r.texels - beyond);
     }

@@ -1,7 +1,7 @@
 // Contexts: on which device, current on which thread, and what goes wrong. These tests need a device; where
 // there is no graphics card, Mesa's llvmpipe is one, and so without any they fail.
 #define EGL_NO_X11
-#include "engine/gl/context.h"
+#include "engine/gl/device/context.h"
 
 #include <epoxy/egl.h>
 #include <gmock/gmock.h>

@@ -23,23 +23,23 @@ TEST_P(Counters, BoundsSaveWorkAndChangeNoBit) {
   const Pair pair(GetParam());
   for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
     const GlOptions with{.clip = clip}, without{.clip = clip, .bound_culling = false};
-    const DistanceMap culled = gl_map(pair.surface, pair.sites, with);
-    const DistanceMap all = gl_map(pair.surface, pair.sites, without);
+    const test::GlMap culled = gl_map(pair.surface, pair.sites, with);
+    const test::GlMap all = gl_map(pair.surface, pair.sites, without);
     EXPECT_TRUE(test::identical(culled, all));
-    test::expect_laws(*culled.raster, pair.surface, pair.sites, with);
-    test::expect_laws(*all.raster, pair.surface, pair.sites, without);
-    EXPECT_EQ(culled.raster->pairs, all.raster->pairs);
-    EXPECT_GT(culled.raster->culled_by_bound, 0u);
-    EXPECT_LE(culled.raster->polygons, all.raster->polygons);
-    EXPECT_LE(culled.raster->fragments, all.raster->fragments);
+    test::expect_laws(culled.report, pair.surface, pair.sites, with);
+    test::expect_laws(all.report, pair.surface, pair.sites, without);
+    EXPECT_EQ(culled.report.pairs, all.report.pairs);
+    EXPECT_GT(culled.report.culled_by_bound, 0u);
+    EXPECT_LE(culled.report.polygons, all.report.polygons);
+    EXPECT_LE(culled.report.fragments, all.report.fragments);
   }
 }
 
 // Both draw the same distances; of sites that tie to rounding, either may win.
 TEST_P(Counters, StencilAndPlanesFindTheSameDistances) {
   const Pair pair(GetParam());
-  const DistanceMap planes = gl_map(pair.surface, pair.sites, {.clip = GlClip::planes});
-  const DistanceMap stencil = gl_map(pair.surface, pair.sites, {.clip = GlClip::stencil});
+  const test::GlMap planes = gl_map(pair.surface, pair.sites, {.clip = GlClip::planes});
+  const test::GlMap stencil = gl_map(pair.surface, pair.sites, {.clip = GlClip::stencil});
   test::Disagreements distances(2e-6 * test::scene_diagonal(pair.surface.mesh(), pair.sites.mesh()));
   for (const std::uint32_t t : pair.surface.sample_texels())
     distances.compare(t, stencil.distance[t], planes.distance[t]);
@@ -51,18 +51,18 @@ TEST(Stencil, FewerValuesMissMoreAndChangeNoBit) {
   for (const char* name : {"CoplanarContact", "Needles", "OnOneTriangle", "TinyBesideLarge"}) {
     SCOPED_TRACE(name);
     const Pair pair(name);
-    std::optional<DistanceMap> fewer;
+    std::optional<test::GlMap> fewer;
     for (const int values : {1, 2, 7, 255}) {
       SCOPED_TRACE(values);
       const GlOptions options{.clip = GlClip::stencil, .stencil_values = values};
-      DistanceMap map = gl_map(pair.surface, pair.sites, options);
-      test::expect_laws(*map.raster, pair.surface, pair.sites, options);
+      test::GlMap map = gl_map(pair.surface, pair.sites, options);
+      test::expect_laws(map.report, pair.surface, pair.sites, options);
       if (fewer) {
         EXPECT_TRUE(test::identical(*fewer, map));
-        EXPECT_EQ(map.raster->stencil_lookups, fewer->raster->stencil_lookups);
-        EXPECT_LE(map.raster->stencil_misses, fewer->raster->stencil_misses);
-        EXPECT_EQ(map.raster->polygons, fewer->raster->polygons);
-        EXPECT_EQ(map.raster->fragments, fewer->raster->fragments);
+        EXPECT_EQ(map.report.stencil_lookups, fewer->report.stencil_lookups);
+        EXPECT_LE(map.report.stencil_misses, fewer->report.stencil_misses);
+        EXPECT_EQ(map.report.polygons, fewer->report.polygons);
+        EXPECT_EQ(map.report.fragments, fewer->report.fragments);
       }
       fewer = std::move(map);
     }
@@ -73,7 +73,7 @@ TEST(Stencil, FewerValuesMissMoreAndChangeNoBit) {
 TEST(Stencil, EvictsOnlyWhenFull) {
   const Pair many("BoxAroundFigure");  // 12 faces
   const auto report = [](const Pair& pair, int values) {
-    return *gl_map(pair.surface, pair.sites, {.clip = GlClip::stencil, .stencil_values = values}).raster;
+    return gl_map(pair.surface, pair.sites, {.clip = GlClip::stencil, .stencil_values = values}).report;
   };
   EXPECT_EQ(report(many, 12).stencil_evictions, 0u);
   EXPECT_EQ(report(many, 12).stencil_misses, 12u);
@@ -84,14 +84,14 @@ TEST(Stencil, EvictsOnlyWhenFull) {
 TEST_P(Counters, DoNotDependOnThreadsOrRepetition) {
   const Pair pair(GetParam());
   for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
-    const DistanceMap first = gl_map(pair.surface, pair.sites, {.clip = clip});
-    const DistanceMap second = gl_map(pair.surface, pair.sites, {.clip = clip});
+    const test::GlMap first = gl_map(pair.surface, pair.sites, {.clip = clip});
+    const test::GlMap second = gl_map(pair.surface, pair.sites, {.clip = clip});
     EXPECT_TRUE(test::identical(first, second));
-    test::expect_same_counts(*first.raster, *second.raster);
+    test::expect_same_counts(first.report, second.report);
     const ThreadLimit one(1);
-    const DistanceMap alone = gl_map(pair.surface, pair.sites, {.clip = clip});
+    const test::GlMap alone = gl_map(pair.surface, pair.sites, {.clip = clip});
     EXPECT_TRUE(test::identical(first, alone));
-    test::expect_same_counts(*first.raster, *alone.raster);
+    test::expect_same_counts(first.report, alone.report);
   }
 }
 
@@ -100,7 +100,7 @@ TEST_P(Counters, DoNotDependOnThreadsOrRepetition) {
 TEST(Fragments, OfOneTriangleCoverEachTexelOnce) {
   const Pair pair("OneTriangle");
   for (const bool bounds : {true, false}) {
-    const GlReport r = *gl_map(pair.surface, pair.sites, {.bound_culling = bounds}).raster;
+    const GlReport r = gl_map(pair.surface, pair.sites, {.bound_culling = bounds}).report;
     EXPECT_EQ(r.sites, 7u);
     EXPECT_EQ(r.sites_dropped, 0u);
     EXPECT_LT(static_cast<double>(r.fragments), 1.02 * static_cast<double>(r.texels));
@@ -110,7 +110,7 @@ TEST(Fragments, OfOneTriangleCoverEachTexelOnce) {
 // Of a box's edges the six diagonals of its sides lie between coplanar faces: nothing is closest to them.
 TEST(Sites, BetweenCoplanarFacesAreDropped) {
   const Pair pair("FigureInBox");
-  const GlReport r = *gl_map(pair.surface, pair.sites).raster;
+  const GlReport r = gl_map(pair.surface, pair.sites).report;
   EXPECT_EQ(r.sites, 12u + 18u + 8u);
   EXPECT_EQ(r.sites_dropped, 6u);
 }
@@ -118,7 +118,7 @@ TEST(Sites, BetweenCoplanarFacesAreDropped) {
 // The pairs grow as the product of both meshes, the work must not.
 TEST(Bounds, LeaveFewPolygonsOfLargeMeshes) {
   const Pair pair("Apart");
-  const GlReport r = *gl_map(pair.surface, pair.sites).raster;
+  const GlReport r = gl_map(pair.surface, pair.sites).report;
   EXPECT_GT(r.pairs, 1000000000u);
   EXPECT_LT(static_cast<double>(r.polygons), 1e-3 * static_cast<double>(r.pairs));
 }

@@ -145,7 +145,8 @@ TEST(ConvexPolygon, KeepsExactlyWhatTheHalfPlaneHolds) {
 
 TEST(Blocks, PartTheTree) {
   const Surface surface(test::load("cow.off", "fit"), {.resolution = 128});
-  const DomainTree tree(surface, surface::tiles_of(surface), UnitFrame{});
+  const TileTree tiles(surface);
+  const DomainTree tree(surface, tiles, UnitFrame{});
   for (const std::uint32_t size : {1u, 7u, 255u, 1000000u}) {
     std::uint32_t leaves = 0, end = 0;
     for (const DomainBlock& block : cut_into_blocks(tree, size)) {
@@ -154,7 +155,7 @@ TEST(Blocks, PartTheTree) {
       EXPECT_LE(tree.leaves.count(block.node, block.end), size);
       leaves += tree.leaves.count(block.node, block.end);
     }
-    EXPECT_EQ(leaves, surface::tiles_of(surface).count());
+    EXPECT_EQ(leaves, tiles.tiles.count());
   }
 }
 

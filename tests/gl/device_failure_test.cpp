@@ -6,6 +6,7 @@
 #include "engine/support.h"
 #include "gl/error_of.h"
 #include "gl/replaced.h"
+#include "gl/support.h"
 
 namespace sdm {
 namespace {
@@ -15,9 +16,7 @@ using ::testing::HasSubstr;
 
 class DeviceFailure : public testing::TestWithParam<GlClip> {
  protected:
-  [[nodiscard]] DistanceMap map() const {
-    return compute_map(surface_, sites_, {.engine = EngineKind::gl, .raster = {.clip = GetParam()}});
-  }
+  [[nodiscard]] test::GlMap map() const { return test::gl_map(surface_, sites_, {.clip = GetParam()}); }
   void SetUp() override { expected_ = map().distance; }
   void TearDown() override {
     const std::vector<float> after = map().distance;
@@ -75,8 +74,8 @@ TEST_P(DeviceFailure, WrongDepthsAreNotedAndDoNoHarm) {
                          if (format == GL_DEPTH_COMPONENT)
                            std::memset(out, 0, static_cast<std::size_t>(size));
                        }));
-  const DistanceMap found = map();
-  EXPECT_GT(found.raster->unconfirmed, surface_.sample_texels().size() / 2);
+  const test::GlMap found = map();
+  EXPECT_GT(found.report.unconfirmed, surface_.sample_texels().size() / 2);
   test::Disagreements distances(1e-6);
   for (const std::uint32_t t : surface_.sample_texels()) distances.compare(t, found.distance[t], expected_[t]);
   EXPECT_TRUE(distances.none());

@@ -15,13 +15,13 @@ TEST(GlEngine, RigidMotionOfBothLeavesDistances) {
   const Mesh o2 = test::load("elephant.off", "fit");
   const AtlasOptions atlas{.kind = AtlasKind::uv, .resolution = 256};
   const Surface here(o1, atlas);
-  const DistanceMap before = gl_map(here, Sites(o2));
+  const test::GlMap before = gl_map(here, Sites(o2));
   for (const char* motion :
        {"translate:3:-2:1", "rotate:20:-130:77,translate:0.3:-0.4:0.25", "rotate:90:0:0"}) {
     SCOPED_TRACE(motion);
     const Surface there(test::placed(o1, motion), atlas);
     ASSERT_TRUE(std::ranges::equal(here.texel_faces(), there.texel_faces()));
-    const DistanceMap after = gl_map(there, Sites(test::placed(o2, motion)));
+    const test::GlMap after = gl_map(there, Sites(test::placed(o2, motion)));
     test::Disagreements distances(1e-6 * test::scene_diagonal(o1, o2));
     for (const std::uint32_t t : here.sample_texels())
       distances.compare(t, after.distance[t], before.distance[t]);
@@ -32,7 +32,7 @@ TEST(GlEngine, RigidMotionOfBothLeavesDistances) {
 TEST(GlEngine, OneLipschitzBetweenNeighbouringTexels) {
   const test::Scene& scene = test::scene("Penetrating");
   const Surface surface(scene.o1(), scene.atlas);
-  const DistanceMap map = gl_map(surface, Sites(scene.o2()));
+  const test::GlMap map = gl_map(surface, Sites(scene.o2()));
   const std::uint32_t n = surface.resolution();
   std::size_t pairs = 0, steeper = 0;
   for (std::uint32_t t = 0; t + n < n * n; ++t)
@@ -57,7 +57,7 @@ TEST(GlEngine, RefitEqualsRebuild) {
   Sites refitted(rest);
   (void)gl_map(surface, refitted);  // whatever the engine keeps must follow
   refitted.refit(twisted.positions);
-  const DistanceMap a = gl_map(surface, refitted), b = gl_map(surface, Sites(twisted));
+  const test::GlMap a = gl_map(surface, refitted), b = gl_map(surface, Sites(twisted));
   test::Disagreements distances(1e-6 * test::scene_diagonal(surface.mesh(), twisted));
   for (const std::uint32_t t : surface.sample_texels()) distances.compare(t, a.distance[t], b.distance[t]);
   EXPECT_TRUE(distances.none());
@@ -67,11 +67,11 @@ TEST(GlEngine, MapsOfAnySizeFollowEachOther) {
   const Sites sites(test::load("elephant.off", "fit"));
   const Surface small(test::load("head.off", "fit"), {.resolution = 64});
   const Surface large(test::cube(0.4), {.resolution = 512});
-  const DistanceMap first_small = gl_map(small, sites), first_large = gl_map(large, sites);
+  const test::GlMap first_small = gl_map(small, sites), first_large = gl_map(large, sites);
   for (const GlClip clip : {GlClip::stencil, GlClip::planes})
     for (int i = 0; i < 2; ++i) {
-      const DistanceMap again_small = gl_map(small, sites, {.clip = clip});
-      const DistanceMap again_large = gl_map(large, sites, {.clip = clip});
+      const test::GlMap again_small = gl_map(small, sites, {.clip = clip});
+      const test::GlMap again_large = gl_map(large, sites, {.clip = clip});
       EXPECT_TRUE(test::identical(first_small, again_small));
       EXPECT_TRUE(test::identical(first_large, again_large));
     }
@@ -81,13 +81,13 @@ TEST(GlEngine, ThreadsMayAskAtOnce) {
   const Sites elephant(test::load("elephant.off", "fit")), box(test::cube(0.3));
   const Surface head(test::load("head.off", "fit"), {.resolution = 128});
   const Surface ball(test::sphere(2), {.resolution = 64});
-  const DistanceMap head_alone = gl_map(head, elephant), ball_alone = gl_map(ball, box);
+  const test::GlMap head_alone = gl_map(head, elephant), ball_alone = gl_map(ball, box);
   const auto repeat = [](const Surface& surface, const Sites& sites, const DistanceMap& expected,
                          GlClip clip) {
     for (int i = 0; i < 5; ++i) {
-      const DistanceMap map = gl_map(surface, sites, {.clip = clip});
+      const test::GlMap map = gl_map(surface, sites, {.clip = clip});
       EXPECT_TRUE(test::identical(map, expected));
-      EXPECT_EQ(map.raster->texels, surface.sample_texels().size());
+      EXPECT_EQ(map.report.texels, surface.sample_texels().size());
     }
   };
   std::thread first([&] { repeat(head, elephant, head_alone, GlClip::planes); });
@@ -113,7 +113,7 @@ TEST(GlEngine, ProgressIsReportedFromOneThreadAtATime) {
     --within;
     return true;
   };
-  MapOptions options{.engine = EngineKind::gl};
+  MapOptions options{.engine = make_engine("gl")};
   options.progress = watch;
   (void)compute_map(surface, sites, options);
   EXPECT_GT(calls, 2);
@@ -124,12 +124,11 @@ TEST(GlEngine, CancelsAtAnyCallAndMapsAgain) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Sites sites(test::load("elephant.off", "fit"));
   for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
-    const DistanceMap whole = gl_map(surface, sites, {.clip = clip});
+    const test::GlMap whole = gl_map(surface, sites, {.clip = clip});
     const auto stop_at = [&](int last) {  // the number of calls; negative `last` never stops
       int calls = 0;
       const auto watch = [&](std::string_view, double) { return ++calls != last; };
-      MapOptions options{.engine = EngineKind::gl};
-      options.raster.clip = clip;
+      MapOptions options{.engine = make_gl_engine({.clip = clip})};
       options.progress = watch;
       if (last < 0)
         (void)compute_map(surface, sites, options);
@@ -140,17 +139,23 @@ TEST(GlEngine, CancelsAtAnyCallAndMapsAgain) {
     const int calls = stop_at(-1);
     for (const int last : {1, 2, calls / 4, calls / 2}) {
       stop_at(last);
-      const DistanceMap map = gl_map(surface, sites, {.clip = clip});
+      const test::GlMap map = gl_map(surface, sites, {.clip = clip});
       EXPECT_TRUE(test::identical(map, whole));
-      test::expect_same_counts(*map.raster, *whole.raster);
+      test::expect_same_counts(map.report, whole.report);
     }
   }
 }
 
-TEST(GlEngine, OtherEnginesReportNoRaster) {
-  const Surface surface(test::cube(), {.resolution = 16});
-  EXPECT_FALSE(compute_map(surface, Sites(test::sphere(1))).raster.has_value());
-  EXPECT_TRUE(gl_map(surface, Sites(test::sphere(1))).raster.has_value());
+TEST(GlEngine, ReportsItsLastMap) {
+  const Surface small(test::cube(), {.resolution = 16}), large(test::cube(), {.resolution = 32});
+  const Sites sites(test::sphere(1));
+  const auto gl = make_engine("gl"), cpu = make_engine("cpu");
+  EXPECT_FALSE(gl_report(*gl)) << "no map yet";
+  for (const Surface* surface : {&small, &large}) {
+    for (const auto& engine : {gl, cpu}) (void)compute_map(*surface, sites, {.engine = engine});
+    EXPECT_EQ(gl_report(*gl).value().texels, surface->sample_texels().size());
+    EXPECT_FALSE(gl_report(*cpu)) << "of another engine";
+  }
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 // Errors of the gl engine and their messages.
 #include <gmock/gmock.h>
 
-#include "core/memory.h"
-#include "engine/gl/gl_engine.h"
+#include "core/platform.h"
 #include "gl/error_of.h"
 #include "gl/support.h"
 
@@ -45,13 +44,13 @@ TEST_F(Refusal, BeforeThereIsASurface) {
 
 TEST_F(Refusal, OfClosestPoints) {
   const std::vector<Vec3> query{{0, 0, 0}};
-  EXPECT_THAT(error_of([&] { return closest_points(sites, query, {.engine = EngineKind::gl}); }),
+  EXPECT_THAT(error_of([&] { return closest_points(sites, query, {.engine = make_engine("gl")}); }),
               AllOf(HasSubstr("gl"), HasSubstr("maps"), HasSubstr("cpu")));
 }
 
 TEST_F(Refusal, OfAMaximumDistanceThatIsNone) {
   for (const double limit : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW((void)compute_map(surface, sites, {.engine = EngineKind::gl, .max_distance = limit}), Error);
+    EXPECT_THROW((void)compute_map(surface, sites, {.engine = make_engine("gl"), .max_distance = limit}), Error);
 }
 
 TEST_F(Refusal, OfAMapLargerThanTheDevicesTextures) {
@@ -62,9 +61,8 @@ TEST_F(Refusal, OfAMapLargerThanTheDevicesTextures) {
                   .triangles = {{0, 1, 2}},
                   .corner_uvs = {{{{0, 0}, {1e-3, 0}, {0, 1e-3}}}}};
   const Surface large(mesh, {.kind = AtlasKind::uv, .resolution = 16385});
-  GlReport report;
-  const std::string message =
-      error_of([&] { return gl_winners(large, sites, {.engine = EngineKind::gl}, report); });
+  const auto drop = [](std::size_t, std::span<const Vec3>, const sites::ClosestPacket&) {};
+  const std::string message = error_of([&] { make_engine("gl")->map(large, sites, {}, drop); });
   if (message.empty()) GTEST_SKIP() << "this device allows it";
   EXPECT_THAT(message, AllOf(HasSubstr("16385"), HasSubstr("16384"), HasSubstr("resolution")));
   EXPECT_EQ(error({}), "") << "the next map works";
@@ -75,7 +73,7 @@ TEST_F(Refusal, OfNoDeviceThatIsListed) {
   ASSERT_FALSE(devices.empty());
   EXPECT_TRUE(std::ranges::is_sorted(devices, {}, &GlDevice::software)) << "hardware first";
   const auto used = [&](const std::string& device) {
-    return test::gl_map(surface, sites, {.device = device}).raster->device.name;
+    return test::gl_map(surface, sites, {.device = device}).report.device.name;
   };
   EXPECT_EQ(used(""), devices[0].name);
   for (std::size_t i = 0; i < devices.size(); ++i) EXPECT_EQ(used(std::to_string(i)), devices[i].name);

@@ -1,10 +1,10 @@
 // Shader programs, and the error if a driver rejects one.
-#include "engine/gl/program.h"
+#include "engine/gl/device/program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "engine/gl/context.h"
+#include "engine/gl/device/context.h"
 #include "engine/gl/shaders.h"
 #include "gl/error_of.h"
 

@@ -32,8 +32,11 @@ std::size_t count_owners(const Surface& surface) {
 
 }  // namespace
 
-DistanceMap gl_map(const Surface& surface, const Sites& sites, const GlOptions& raster) {
-  return compute_map(surface, sites, {.engine = EngineKind::gl, .raster = raster});
+GlMap gl_map(const Surface& surface, const Sites& sites, const GlOptions& options) {
+  const auto engine = make_gl_engine(options);
+  GlMap map{compute_map(surface, sites, {.engine = engine})};
+  map.report = gl_report(*engine).value();
+  return map;
 }
 
 testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b) {

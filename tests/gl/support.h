@@ -5,8 +5,12 @@
 
 namespace sdm::test {
 
-[[nodiscard]] DistanceMap gl_map(const Surface& surface, const Sites& sites,
-                                 const GlOptions& raster = {});
+struct GlMap : DistanceMap {
+  GlReport report{};
+};
+
+[[nodiscard]] GlMap gl_map(const Surface& surface, const Sites& sites,
+                                 const GlOptions& options = {});
 
 /// Whether two maps have the very same bits in every value.
 [[nodiscard]] testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b);

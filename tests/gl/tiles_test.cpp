@@ -30,17 +30,18 @@ TEST(Tiles, PartTheOwnedTexels) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
-    const surface::Tiles& tiles = surface::tiles_of(surface);
+    const TileTree tile_tree(surface);
+    const surface::Tiles& tiles = tile_tree.tiles;
     std::vector<std::uint32_t> all(tiles.texels),
         owned(surface.sample_texels().begin(), surface.sample_texels().end());
     std::ranges::sort(all);
     std::ranges::sort(owned);
     EXPECT_EQ(all, owned);
     std::set<std::uint32_t> leaves;
-    for (const hierarchy::AabbTree::Node& node : tiles.tree.nodes)
+    for (const hierarchy::AabbTree::Node& node : tile_tree.tree.nodes)
       if (node.leaf()) {
         EXPECT_EQ(node.count, 1u);
-        leaves.insert(tiles.tree.items[node.first]);
+        leaves.insert(tile_tree.tree.items[node.first]);
       }
     EXPECT_EQ(leaves.size(), tiles.count());
     for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
@@ -61,7 +62,7 @@ TEST(Tiles, DomainsHoldTheirSamples) {
     for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
       SCOPED_TRACE(scene.name);
       const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
-      const surface::Tiles& tiles = surface::tiles_of(surface);
+      const surface::Tiles tiles(surface);
       const UnitFrame frame = UnitFrame::of(bounds(scene.o2));
       for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
         const PlanarDomain domain = face_domain(surface, tiles, tile, frame, clip);
@@ -91,10 +92,11 @@ TEST(Tiles, BoundsHoldForEverySample) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 128});
     const Sites sites(scene.o2);
-    const surface::Tiles& tiles = surface::tiles_of(surface);
-    DomainTree tree(surface, tiles, internals(sites).frame);
+    const TileTree tile_tree(surface);
+    const surface::Tiles& tiles = tile_tree.tiles;
+    DomainTree tree(surface, tile_tree, internals(sites).frame);
     set_bounds(tree, internals(sites), 0, 1e9);
-    for (std::uint32_t i = 0; i < tree.node_count(); ++i) {
+    for (std::uint32_t i = 0; i < tree.tree.nodes.size(); ++i) {
       const hierarchy::AabbTree::Node& node = tree.tree.nodes[i];
       if (!node.leaf()) {
         EXPECT_EQ(tree.bound[i], std::max(tree.bound[i + 1], tree.bound[node.right]));
@@ -104,11 +106,28 @@ TEST(Tiles, BoundsHoldForEverySample) {
       for (const std::uint32_t texel : tiles.of(tree.tree.items[node.first]))
         points.push_back(surface.texel_point(texel));
       double farthest = 0;
-      for (const ClosestPoint& c : closest_points(sites, points, {.engine = EngineKind::reference}))
+      for (const ClosestPoint& c : closest_points(sites, points, {.engine = make_engine("reference")}))
         farthest = std::max(farthest, internals(sites).frame.scale * c.distance);
       EXPECT_LE(farthest, tree.bound[i]);
     }
   }
+}
+
+TEST(TileTreeCache, FollowsSurfaces) {
+  TileTreeCache cache;
+  Surface cow(test::load("cow.off", "fit"), {.resolution = 128});
+  const std::uint32_t tiles = cache.of(cow).tiles.count();
+  const TileTree* kept = &cache.of(cow);
+  cow.refit(test::load("cow.off", "fit,scale:2").positions);
+  Surface moved = std::move(cow);
+  EXPECT_EQ(&cache.of(moved), kept);
+  const Surface pig(test::load("pig.off", "fit"), {.resolution = 128});
+  EXPECT_EQ(cache.of(pig).tiles.count(), TileTree(pig).tiles.count());
+  EXPECT_EQ(&cache.of(moved), kept);
+  // Where another surface takes the place of one that is gone.
+  moved = Surface(test::load("pig.off", "fit"), {.resolution = 256});
+  EXPECT_EQ(cache.of(moved).tiles.count(), TileTree(moved).tiles.count());
+  EXPECT_NE(cache.of(moved).tiles.count(), tiles);
 }
 
 }  // namespace

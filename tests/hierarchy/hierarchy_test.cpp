@@ -1,11 +1,16 @@
 #include <gmock/gmock.h>
 #include <sdm/threads.h>
 
+#include <functional>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
 
 #include "core/vec.h"
 #include "hierarchy/aabb_tree.h"
+#include "hierarchy/traverse.h"
+#include "hierarchy/traverse_wide.h"
 #include "hierarchy/wide_tree.h"
 
 namespace sdm {
@@ -130,8 +135,10 @@ TEST(WideTree, ReachesEveryLeafOnceWithItsBox) {
           EXPECT_EQ(node.lo[k][i], box.lo[k]);
           EXPECT_EQ(node.hi[k][i], box.hi[k]);
         }
-        if (node.child[i] & hierarchy::WideTree::kLeafBit) {
-          const std::uint32_t leaf = node.child[i] & ~WideTree::kLeafBit;
+        const bool is_leaf = hierarchy::WideTree::is_leaf(node.child[i]);
+        EXPECT_EQ((node.leaves >> i & 1) == 1, is_leaf);
+        if (is_leaf) {
+          const std::uint32_t leaf = hierarchy::WideTree::leaf_number(node.child[i]);
           EXPECT_EQ(leaves.at(leaf), node.source[i]);
           ++reached[leaf];
         } else {
@@ -142,6 +149,164 @@ TEST(WideTree, ReachesEveryLeafOnceWithItsBox) {
     EXPECT_THAT(reached, testing::Each(1));
     EXPECT_EQ(entered[0], 0);
     EXPECT_TRUE(std::all_of(entered.begin() + 1, entered.end(), [](int n) { return n == 1; }));
+  }
+}
+
+double squared_distance(const hierarchy::FloatBox& box, const Vec3& p) {
+  return squared_norm(gap(box, p));
+}
+
+// Leaves whose boxes a predicate accepts, by looking at all of them.
+template <class Accept>
+std::vector<std::uint32_t> accepted_leaves(const hierarchy::AabbTree& tree, const Accept& accept) {
+  std::vector<std::uint32_t> leaves;
+  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i)
+    if (tree.nodes[i].leaf() && accept(tree.box(i))) leaves.push_back(i);
+  return leaves;
+}
+
+struct Traversal : testing::TestWithParam<std::size_t> {
+  std::vector<Box> boxes = random_boxes(GetParam(), 7);
+  hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, all(boxes.size()), 3);
+  std::mt19937 random{8};
+
+  Vec3 point() {
+    std::uniform_real_distribution<double> u(-1.5, 1.5);
+    return {u(random), u(random), u(random)};
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Traversal, testing::Values(0, 1, 4, 60, 3000));
+
+TEST_P(Traversal, DepthFirstVisitsTheAcceptedLeavesInOrder) {
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 p = point();
+    const auto accept = [&](const hierarchy::FloatBox& box) { return squared_distance(box, p) < 0.1 * i; };
+    std::vector<std::uint32_t> visited;
+    traverse(
+        tree, whole(tree), [&](hierarchy::Subtree below) { return accept(tree.box(below.root)); },
+        [&](std::uint32_t leaf) { visited.push_back(leaf); });
+    EXPECT_EQ(visited, accepted_leaves(tree, accept));
+  }
+}
+
+TEST_P(Traversal, SubtreesHoldTheLeavesThatTheirNumbersName) {
+  const hierarchy::LeafOrder order(tree);
+  const std::vector<std::uint32_t> leaves = leaf_nodes(tree);
+  EXPECT_EQ(leaves, accepted_leaves(tree, [](const hierarchy::FloatBox&) { return true; }));
+  traverse(
+      tree, whole(tree),
+      [&](hierarchy::Subtree below) {
+        std::vector<std::uint32_t> inside;
+        traverse(
+            tree, below, [](hierarchy::Subtree) { return true; },
+            [&](std::uint32_t leaf) { inside.push_back(leaf); });
+        EXPECT_EQ(inside.size(), order.count(below));
+        const std::uint32_t first = order.before[below.root];
+        EXPECT_TRUE(std::equal(inside.begin(), inside.end(), leaves.begin() + first));
+        return true;
+      },
+      [](std::uint32_t) {});
+}
+
+TEST_P(Traversal, BestFirstVisitsByTheirDistance) {
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 p = point();
+    const double limit = 0.2 * i;
+    const auto bound = [&](const hierarchy::FloatBox& box) { return squared_distance(box, p); };
+    std::vector<std::uint32_t> visited;
+    traverse_best_first(
+        tree, bound, [&](double least) { return least <= limit; },
+        [&](std::uint32_t leaf) { visited.push_back(leaf); });
+    EXPECT_TRUE(
+        std::ranges::is_sorted(visited, {}, [&](std::uint32_t leaf) { return bound(tree.box(leaf)); }));
+    std::ranges::sort(visited);
+    EXPECT_EQ(visited, accepted_leaves(tree, [&](const auto& box) { return bound(box) <= limit; }));
+  }
+}
+
+// With a limit that shrinks to the nearest box found so far, each order finds the nearest.
+TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
+  const hierarchy::WideTree wide = hierarchy::collapse(tree);
+  const std::vector<std::uint32_t> leaves = leaf_nodes(tree);
+  std::vector<hierarchy::OpenChild<double>> stack;
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 p = point();
+    const auto bound = [&](const hierarchy::FloatBox& box) { return squared_distance(box, p); };
+    double expected = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t leaf : leaves) expected = std::min(expected, bound(tree.box(leaf)));
+
+    double nearer_first = std::numeric_limits<double>::infinity(), best_first = nearer_first,
+           wide_first = nearer_first;
+    traverse_nearer_first(
+        tree, bound, [&](double least) { return least < nearer_first; },
+        [&](std::uint32_t leaf) {
+          EXPECT_LT(bound(tree.box(leaf)), nearer_first);
+          nearer_first = bound(tree.box(leaf));
+        });
+    EXPECT_EQ(nearer_first, expected);
+    int visits = 0;
+    traverse_best_first(
+        tree, bound, [&](double least) { return least < best_first; },
+        [&](std::uint32_t leaf) { best_first = bound(tree.box(leaf)), ++visits; });
+    EXPECT_EQ(best_first, expected);
+    EXPECT_EQ(visits, leaves.empty() ? 0 : 1);
+    if (leaves.empty()) continue;
+    traverse_nearest_child_first(
+        wide, stack,
+        [&](const hierarchy::WideTree::Node& node, double(&squared)[hierarchy::WideTree::kWidth]) {
+          squared_distances(node, {p, p}, squared);
+          std::uint32_t near = 0;
+          for (std::uint32_t c = 0; c < node.count; ++c) near |= (squared[c] < wide_first ? 1u : 0u) << c;
+          return near;
+        },
+        [&](double squared) { return squared < wide_first; },
+        [&](std::uint32_t leaf) { wide_first = bound(tree.box(leaves.at(leaf))); });
+    EXPECT_EQ(wide_first, expected);
+  }
+}
+
+TEST_P(Traversal, BottomUpSeesChildrenBeforeTheirParents) {
+  std::vector<std::size_t> below(tree.nodes.size(), 0);  // items
+  for_each_bottom_up(
+      tree, [&](std::uint32_t leaf) { below[leaf] = tree.items_of(leaf).size(); },
+      [&](std::uint32_t node, std::uint32_t left, std::uint32_t right) {
+        EXPECT_GT(below[left], 0u);
+        EXPECT_GT(below[right], 0u);
+        below[node] = below[left] + below[right];
+      });
+  EXPECT_EQ(tree.nodes.empty() ? 0 : below[0], boxes.size());
+}
+
+TEST_P(Traversal, ReduceTakesSummariesInPlaceOfSubtrees) {
+  if (tree.nodes.empty()) return;
+  const hierarchy::LeafOrder order(tree);
+  std::vector<std::uint32_t> end(tree.nodes.size());
+  traverse(
+      tree, whole(tree),
+      [&](hierarchy::Subtree below) {
+        end[below.root] = below.end;
+        return true;
+      },
+      [](std::uint32_t) {});
+  for (const std::uint32_t largest : {0u, 1u, 5u, 100u, 100000u}) {
+    std::size_t summaries = 0, leaves = 0;
+    const std::uint32_t counted = reduce(
+        tree, 0,
+        [&](std::uint32_t node) -> std::optional<std::uint32_t> {
+          const std::uint32_t count = order.count(node, end[node]);
+          if (count > largest) return std::nullopt;
+          ++summaries;
+          return count;
+        },
+        [&](std::uint32_t) {
+          ++leaves;
+          return 1u;
+        },
+        std::plus<>());
+    EXPECT_EQ(counted, leaf_nodes(tree).size());
+    EXPECT_EQ(leaves, largest == 0 ? counted : 0);
+    EXPECT_EQ(summaries > 0, largest > 0);
   }
 }
 

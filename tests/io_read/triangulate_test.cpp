@@ -1,4 +1,4 @@
-#include "io/read/triangulate.h"
+#include "io/read/polygons/triangulate.h"
 
 #include <gtest/gtest.h>
 

@@ -39,10 +39,10 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 void expect_same(const sites::SitesData& a, const sites::SitesData& b) {
   EXPECT_TRUE(same_bits(a.topology.edges, b.topology.edges));
   EXPECT_TRUE(same_bits(a.topology.face_edges, b.topology.face_edges));
-  EXPECT_TRUE(same_bits(a.topology.edge_offsets, b.topology.edge_offsets));
-  EXPECT_TRUE(same_bits(a.topology.incident, b.topology.incident));
+  EXPECT_TRUE(same_bits(a.topology.incident.offsets, b.topology.incident.offsets));
+  EXPECT_TRUE(same_bits(a.topology.incident.items, b.topology.incident.items));
   EXPECT_TRUE(same_bits(a.vertex_faces.items, b.vertex_faces.items));
-  EXPECT_TRUE(same_bits(a.orientation.turned, b.orientation.turned));
+  EXPECT_TRUE(same_bits(a.orientation.flipped, b.orientation.flipped));
   EXPECT_TRUE(same_bits(a.orientation.component, b.orientation.component));
   EXPECT_TRUE(same_bits(a.inverted, b.inverted));
   EXPECT_TRUE(same_bits(a.tree.nodes, b.tree.nodes));

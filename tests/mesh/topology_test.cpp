@@ -124,7 +124,7 @@ TEST(Orient, FindsATurningExactlyWhenThereIsOne) {
     }
     ASSERT_EQ(orientation.orientable, exists);
     if (exists) {
-      ASSERT_TRUE(satisfied(soup, topology, orientation.turned));
+      ASSERT_TRUE(satisfied(soup, topology, orientation.flipped));
     }
     exists ? ++orientable : ++not_orientable;
   }
@@ -155,14 +155,14 @@ TEST(Orient, ComponentsAreJoinedByTwoFaceEdgesAndTurnTheFewerFaces) {
     for (std::uint32_t f = 0; f < soup.size(); ++f) {
       if (topology.ignored(f)) {
         ASSERT_EQ(orientation.component[f], kNone);
-        ASSERT_EQ(orientation.turned[f], 0);
+        ASSERT_EQ(orientation.flipped[f], 0);
         continue;
       }
       ASSERT_EQ(orientation.component[f], orientation.component[lowest[f]]);
       if (lowest[f] == f) {
         ASSERT_EQ(orientation.component[f], components++);
       }
-      more_kept[orientation.component[f]] += orientation.turned[f] ? -1 : 1;
+      more_kept[orientation.component[f]] += orientation.flipped[f] ? -1 : 1;
     }
     ASSERT_EQ(orientation.first_face.size(), components);
     for (const int kept : more_kept) ASSERT_GE(kept, 0);
@@ -178,7 +178,7 @@ TEST(Orient, TurnsBackWhatWasTurned) {
   const mesh::Orientation orientation =
       orient(mesh.triangles, mesh::build_topology(mesh.positions.size(), mesh.triangles));
   EXPECT_TRUE(orientation.orientable);
-  EXPECT_EQ(orientation.turned, turned);
+  EXPECT_EQ(orientation.flipped, turned);
 }
 
 }  // namespace

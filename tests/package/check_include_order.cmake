@@ -15,6 +15,7 @@ set(order
   engine
   engine/reference
   engine/cpu
+  engine/gl/device
   engine/gl
   engine/table
   map
@@ -23,7 +24,10 @@ set(order
   proximity/bodies
   proximity/self
   proximity
+  io/read/polygons
   io/read
+  io/read/frames
+  io/read/gltf
   io/write)
 
 file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/*.h ${SOURCE_DIR}/src/*.cpp)
@@ -51,6 +55,17 @@ foreach(file ${files})
       list(APPEND arrows_${key} "${included}")
     endif()
   endforeach()
+endforeach()
+
+# A folder stays small: at most 15 units, a source with its header, beside its subfolders.
+foreach(folder ${order})
+  file(GLOB units ${SOURCE_DIR}/src/${folder}/*.h ${SOURCE_DIR}/src/${folder}/*.cpp)
+  list(TRANSFORM units REPLACE "\\.[a-z]+$" "")
+  list(REMOVE_DUPLICATES units)
+  list(LENGTH units count)
+  if(count GREATER 15)
+    message(SEND_ERROR "src/${folder} has ${count} units, more than 15: divide it")
+  endif()
 endforeach()
 
 foreach(folder ${order})

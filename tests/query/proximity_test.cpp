@@ -110,10 +110,11 @@ TEST(Proximity, AgreesWithWholeMaps) {
     for (int b = 0; b < 2; ++b) {
       const Surface& surface = query.surface(b);
       const DistanceMap map = compute_map(surface, query.sites(1 - b));
+      const SamplingBound bound(surface);
       for (std::size_t i = 0; i < surface.sample_texels().size(); ++i) {
         const double d = map.distance[surface.sample_texels()[i]];
         least = std::min(least, std::abs(d));
-        lower = std::min(lower, std::abs(d) - surface.sample_radii()[i]);
+        lower = std::min(lower, std::abs(d) - bound.sample_radii()[i]);
         if (map.sign.method != SignMethod::none) deepest = std::max(deepest, -d);
       }
     }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+
+#include "core/rows.h"
 
 namespace sdm::atlas {
 namespace {
@@ -73,10 +74,8 @@ class Buckets {
     fill(boxes);
   }
 
-  [[nodiscard]] std::size_t cells() const { return offsets_.size() - 1; }
-  [[nodiscard]] std::span<const std::uint32_t> list(std::size_t cell) const {
-    return {entries_.data() + offsets_[cell], entries_.data() + offsets_[cell + 1]};
-  }
+  [[nodiscard]] std::size_t cells() const { return lists_.size(); }
+  [[nodiscard]] std::span<const std::uint32_t> list(std::size_t cell) const { return lists_.of(cell); }
   [[nodiscard]] std::size_t cell_of(std::int32_t x, std::int32_t y) const {
     return static_cast<std::size_t>(row(y) * columns_ + column(x));
   }
@@ -90,25 +89,19 @@ class Buckets {
   }
 
   void fill(std::span<const Rectangle> boxes) {
-    offsets_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
-    const auto for_each_cell = [&](const Rectangle& b, auto&& visit) {
-      for (std::int64_t y = row(b.lo[1]); y <= row(b.hi[1]); ++y)
-        for (std::int64_t x = column(b.lo[0]); x <= column(b.hi[0]); ++x)
-          visit(static_cast<std::size_t>(y * columns_ + x));
-    };
-    for (const Rectangle& b : boxes) for_each_cell(b, [&](std::size_t cell) { ++offsets_[cell + 1]; });
-    for (std::size_t c = 1; c < offsets_.size(); ++c) offsets_[c] += offsets_[c - 1];
-    entries_.resize(offsets_.back());
-    std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
-    for (std::uint32_t i = 0; i < boxes.size(); ++i)
-      for_each_cell(boxes[i], [&](std::size_t cell) { entries_[next[cell]++] = i; });
+    const auto cells = static_cast<std::size_t>(columns_ * rows_);
+    lists_ = make_rows<std::uint32_t, std::size_t>(cells, [&](const auto& put) {
+      for (std::uint32_t i = 0; i < boxes.size(); ++i)
+        for (std::int64_t y = row(boxes[i].lo[1]); y <= row(boxes[i].hi[1]); ++y)
+          for (std::int64_t x = column(boxes[i].lo[0]); x <= column(boxes[i].hi[0]); ++x)
+            put(static_cast<std::size_t>(y * columns_ + x), i);
+    });
   }
 
   GridPoint origin_{};
   double cell_ = 1;
   std::int64_t columns_ = 1, rows_ = 1;
-  std::vector<std::size_t> offsets_;
-  std::vector<std::uint32_t> entries_;
+  CompressedRows<std::uint32_t, std::size_t> lists_;  // of each cell
 };
 
 }  // namespace

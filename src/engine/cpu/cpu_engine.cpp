@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "engine/blocks.h"
 #include "engine/cpu/cpu_engine.h"
 #include "engine/cpu/descent.h"
 #include "engine/cpu/finish.h"
@@ -18,7 +19,8 @@ float unit_limit(const UnitFrame& frame, double max_distance) {
 }  // namespace
 
 void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
-                const engine::ClosestSink& deliver) {
+                const ClosestSink& sink) {
+  static_assert(PointGroup::kMostPoints >= engine::kLargestBlock, "each block is one group");
   thread_local const auto descent = std::make_unique<Descent>();
   const float limit = unit_limit(sites.frame, max_distance);
   for (std::size_t begin = 0; begin < points.size(); begin += PointGroup::kMostPoints) {
@@ -30,7 +32,7 @@ void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, dou
       for (std::size_t i = 0; i < queries.size(); ++i)
         if (PointGroup::far_away(sites.frame.to_unit(queries[i]))) descent->winners[i] = SiteId::kUnsettled;
     finish(sites, {descent->winners, queries.size()}, queries, max_distance,
-           [&](std::size_t first, const sites::ClosestPacket& closest) { deliver(begin + first, closest); });
+           [&](std::size_t first, const sites::ClosestPacket& closest) { sink(begin + first, closest); });
   }
 }
 

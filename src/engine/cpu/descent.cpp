@@ -130,36 +130,21 @@ class Search {
     for (size_t child = first; child < end; ++child) visit(child);
   }
 
-  // Best first: the centre of a face that is closest to p.
+  // The centre of a face that is closest to p.
   void improve_in_tree(Nearest& nearest, const float* p) {
-    auto& stack = s_.stack;
-    stack.assign(1, {0, 0});
-    while (!stack.empty()) {
-      const Descent::Entry entry = stack.back();
-      stack.pop_back();
-      if (!(entry.squared < nearest.squared)) continue;
-      if (entry.child & hierarchy::WideTree::kLeafBit) {
-        improve_by_centres(nearest, entry.child & ~hierarchy::WideTree::kLeafBit, p);
-        continue;
-      }
-      count_work(&WorkCounts::nodes);
-      const hierarchy::WideTree::Node& node = tree_.nodes[entry.child];
-      alignas(64) float squared[hierarchy::WideTree::kWidth];
-      uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
-        const Block d;
-        const FromBoxes from(d, node, i, p);
-        hn::Store(from.squared, d, squared + i);
-        return hn::Lt(from.squared, hn::Set(d, nearest.squared));
-      });
-      const auto base = static_cast<std::ptrdiff_t>(stack.size());
-      for (; near != 0; near &= near - 1) {  // the nearest on top
-        const int slot = std::countr_zero(near);
-        const Descent::Entry child{node.child[slot], squared[slot]};
-        auto at = stack.end();
-        while (at != stack.begin() + base && (at - 1)->squared < child.squared) --at;
-        stack.insert(at, child);
-      }
-    }
+    hierarchy::traverse_nearest_child_first(
+        tree_, s_.stack,
+        [&](const hierarchy::WideTree::Node& node, float* squared) HWY_ATTR {
+          count_work(&WorkCounts::nodes);
+          return select(node.count, [&](size_t i) HWY_ATTR {
+            const Block d;
+            const FromBoxes from(d, node, i, p);
+            hn::Store(from.squared, d, squared + i);
+            return hn::Lt(from.squared, hn::Set(d, nearest.squared));
+          });
+        },
+        [&](float squared) { return squared < nearest.squared; },
+        [&](uint32_t leaf) HWY_ATTR { improve_by_centres(nearest, leaf, p); });
   }
 
   void improve_by_centres(Nearest& nearest, uint32_t leaf, const float* p) const {
@@ -192,16 +177,13 @@ class Search {
       const hierarchy::WideTree::Node& node = tree_.nodes[open.back()];
       open.pop_back();
       count_work(&WorkCounts::nodes);
-      uint32_t leaves = 0;
       const uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
         const Block d;
         const FromBoxes from(d, node, i, reach.centre);
         return reach.holds(d, from.squared, from.x, from.y, from.z);
       });
-      for (uint32_t slot = 0; slot < hierarchy::WideTree::kWidth; ++slot)
-        leaves |= (node.child[slot] >> 31) << slot;
-      append(s_.leaves, node.child, near & leaves);
-      append(open, node.child, near & ~leaves);
+      append(s_.leaves, node.child, near & node.leaves);
+      append(open, node.child, near & ~node.leaves);
       if (s_.leaves.size() > most) return false;
     }
     return true;
@@ -212,7 +194,7 @@ class Search {
     count_work(&WorkCounts::leaves, s_.leaves.size());
     s_.owners.clear();
     for (const uint32_t child : s_.leaves) {
-      const uint32_t leaf = child & ~hierarchy::WideTree::kLeafBit, first = regions_.leaves[leaf];
+      const uint32_t leaf = hierarchy::WideTree::leaf_number(child), first = regions_.leaves[leaf];
       uint32_t places[SiteBlock::kWidth];
       for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
       append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {

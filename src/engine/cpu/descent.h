@@ -6,6 +6,7 @@
 
 #include "engine/cpu/point_group.h"
 #include "engine/cpu/site_lists.h"
+#include "hierarchy/traverse_wide.h"
 #include "sites/sites_data.h"
 
 namespace sdm::cpu {
@@ -15,11 +16,7 @@ struct Descent {
   PointGroup points;
   std::uint32_t winners[PointGroup::kMostPoints];  ///< SiteId::packed of each point's closest site
 
-  struct Entry {
-    std::uint32_t child;  ///< of a wide node
-    float squared;        ///< distance of its box
-  };
-  std::vector<Entry> stack;
+  std::vector<hierarchy::OpenChild<float>> stack;
   std::vector<std::uint32_t> open, leaves, owners, edges, vertices;
   SiteLists gathered, lists[PointGroup::kLevels];
 };

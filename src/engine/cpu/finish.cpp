@@ -118,8 +118,8 @@ uint32_t on_edge(const sites::SitesData& sites, uint32_t edge, Packet& p, uint32
 // Where no edge of the vertex comes closer.
 uint32_t on_vertex(const sites::SitesData& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
   const Vec3& point = sites.mesh.positions[vertex];
-  // In a closed mesh whose faces all run alike every neighbour follows the vertex in one face.
-  const int last = sites.alike ? 1 : 2;
+  // In a closed, consistently oriented mesh every neighbour follows the vertex in exactly one face.
+  const int last = sites.consistently_oriented ? 1 : 2;
   return for_lanes(p, lanes, [&](const Vec3v& query, Vec3v& from) HWY_ATTR {
     const Doubles d;
     from = sub(query, splat(point));

@@ -19,20 +19,18 @@ Box box_of(const PlanarDomain& domain) {
 }
 
 void raise_to_root(DomainTree& tree) {
-  for (std::uint32_t i = tree.node_count(); i-- > 0;)
-    if (const hierarchy::AabbTree::Node& node = tree.tree.nodes[i]; !node.leaf())
-      tree.bound[i] = std::max(tree.bound[i + 1], tree.bound[node.right]);
+  for_each_bottom_up(
+      tree.tree, [](std::uint32_t) {},
+      [&](std::uint32_t node, std::uint32_t left, std::uint32_t right) {
+        tree.bound[node] = std::max(tree.bound[left], tree.bound[right]);
+      });
 }
 
 }  // namespace
 
-LeafOrder::LeafOrder(const hierarchy::AabbTree& tree) : before(tree.nodes.size() + 1, 0) {
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i)
-    before[i + 1] = before[i] + (tree.nodes[i].leaf() ? 1 : 0);
-}
-
-DomainTree::DomainTree(const Surface& surface, const surface::Tiles& tiles, const UnitFrame& frame)
-    : tree(tiles.tree), leaves(tree), bound(tree.nodes.size()) {
+DomainTree::DomainTree(const Surface& surface, const TileTree& tile_tree, const UnitFrame& frame)
+    : tree(tile_tree.tree), leaves(tree), bound(tree.nodes.size()) {
+  const surface::Tiles& tiles = tile_tree.tiles;
   std::vector<Box> boxes(tiles.count());
   parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -46,15 +44,12 @@ void set_bounds(DomainTree& tree, double bound) {
 }
 
 void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, double largest) {
-  std::vector<std::uint32_t> nodes;
-  for (std::uint32_t i = 0; i < tree.node_count(); ++i)
-    if (tree.tree.nodes[i].leaf()) nodes.push_back(i);
-
+  const std::vector<std::uint32_t> nodes = leaf_nodes(tree.tree);
   const UnitFrame& frame = sites.frame;
   parallel_for(nodes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Vec3> middles;
     for (std::size_t i = begin; i < end; ++i) {
-      const hierarchy::FloatBox& box = tree.tree.nodes[nodes[i]].box;
+      const hierarchy::FloatBox& box = tree.tree.box(nodes[i]);
       Vec3 middle;
       for (int k = 0; k < 3; ++k)
         middle[k] = 0.5 * (double{box.lo[k]} + box.hi[k]) / frame.scale + frame.origin[k];
@@ -63,7 +58,7 @@ void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, d
     const auto bound = [&](std::size_t first, const sites::ClosestPacket& closest) {
       for (std::size_t i = 0; i < closest.count; ++i) {
         const std::uint32_t node = nodes[begin + first + i];
-        const hierarchy::FloatBox& box = tree.tree.nodes[node].box;
+        const hierarchy::FloatBox& box = tree.tree.box(node);
         const Vec3 p = frame.to_unit(closest.get(i, middles[first + i]).point);
         Vec3 farthest;
         for (int k = 0; k < 3; ++k)

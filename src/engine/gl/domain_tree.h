@@ -6,33 +6,22 @@
 #include <vector>
 
 #include "engine/gl/face_domains.h"
-#include "hierarchy/aabb_tree.h"
+#include "engine/gl/tile_tree.h"
+#include "hierarchy/traverse.h"
 #include "sites/sites_data.h"
 
 namespace sdm::gl {
 
-/// Positions of an AABB tree's leaves in their order, so that a subtree is a range of them.
-struct LeafOrder {
-  std::vector<std::uint32_t> before;  ///< leaves in front of each node, and of the end
-
-  explicit LeafOrder(const hierarchy::AabbTree& tree);
-  /// Leaves below a node whose subtree ends in front of node `end`.
-  [[nodiscard]] std::uint32_t count(std::uint32_t node, std::uint32_t end) const {
-    return before[end] - before[node];
-  }
-};
-
 /// A leaf is one domain. All in the unit frame of O2.
 struct DomainTree {
   hierarchy::AabbTree tree;
-  LeafOrder leaves;
+  hierarchy::LeafOrder leaves;
   std::vector<double> bound;  ///< of each node: no sample of its domains is farther from O2
 
   /// Refits the boxes to the current domains. Cost: linear.
-  DomainTree(const Surface& surface, const surface::Tiles& tiles, const UnitFrame& frame);
+  DomainTree(const Surface& surface, const TileTree& tiles, const UnitFrame& frame);
 
-  [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(tree.nodes.size()); }
-  [[nodiscard]] const hierarchy::AabbTree::Node& root() const { return tree.nodes[0]; }
+  [[nodiscard]] const hierarchy::FloatBox& bounds() const { return tree.box(0); }
 };
 
 /// Sets the bound of every node to `bound`.

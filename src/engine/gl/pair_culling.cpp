@@ -5,19 +5,10 @@
 namespace sdm::gl {
 namespace {
 
-double squared_distance(const hierarchy::FloatBox& a, const hierarchy::FloatBox& b) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double gap = std::max({0.0, double{a.lo[k]} - b.hi[k], double{b.lo[k]} - a.hi[k]});
-    sum += gap * gap;
-  }
-  return sum;
-}
-
 bool beyond(const hierarchy::FloatBox& site, const DomainTree& tree, std::uint32_t node, PairCounts& counts) {
   ++counts.bound_tests;
   const double bound = tree.bound[node];
-  return squared_distance(site, tree.tree.nodes[node].box) > bound * bound;
+  return squared_norm(gap(site, tree.tree.box(node))) > bound * bound;
 }
 
 // Descends the block's subtree with one site.
@@ -34,28 +25,30 @@ class Descent {
         box_(hierarchy::FloatBox::around(region.box())),
         oriented_(oriented_box(region, reach, scale.slack)) {}
 
-  void visit(std::uint32_t node, std::uint32_t end) {
-    if (beyond(box_, tree_, node, counts_)) {
-      counts_.culled_by_bound += tree_.leaves.count(node, end);
-      return;
+  void run() {
+    traverse(
+        tree_.tree, {block_.node, block_.end}, [&](hierarchy::Subtree below) { return enter(below); },
+        [&](std::uint32_t leaf) { draw(leaf); });
+  }
+
+ private:
+  bool enter(hierarchy::Subtree below) {
+    if (beyond(box_, tree_, below.root, counts_)) {
+      counts_.culled_by_bound += tree_.leaves.count(below);
+      return false;
     }
     ++counts_.obb_tests;
-    const hierarchy::AabbTree::Node& n = tree_.tree.nodes[node];
-    if (!may_meet(oriented_, n.box)) {
-      counts_.culled_by_obb += tree_.leaves.count(node, end);
-      return;
-    }
-    if (!n.leaf()) {
-      visit(node + 1, n.right);
-      visit(n.right, end);
-      return;
-    }
-    const std::uint32_t position = tree_.leaves.count(block_.node, node);
+    if (may_meet(oriented_, tree_.tree.box(below.root))) return true;
+    counts_.culled_by_obb += tree_.leaves.count(below);
+    return false;
+  }
+
+  void draw(std::uint32_t leaf) {
+    const std::uint32_t position = tree_.leaves.count(block_.node, leaf);
     const bool drawn = add_polygon(batch_, region_, block_.domains[position], scale_);
     ++(drawn ? counts_.polygons : counts_.clipped_away);
   }
 
- private:
   const DomainTree& tree_;
   const DomainBlock& block_;
   const SiteRegion& region_;
@@ -90,37 +83,32 @@ PairCounts& PairCounts::operator+=(const PairCounts& other) {
 
 std::vector<DomainBlock> cut_into_blocks(const DomainTree& tree, std::uint32_t size) {
   std::vector<DomainBlock> blocks;
-  const auto cut = [&](auto&& self, std::uint32_t node, std::uint32_t end) -> void {
-    if (tree.leaves.count(node, end) <= size) {
-      blocks.push_back({node, end, {}});
-      return;
-    }
-    const std::uint32_t right = tree.tree.nodes[node].right;
-    self(self, node + 1, right);
-    self(self, right, end);
-  };
-  cut(cut, 0, tree.node_count());
+  traverse(
+      tree.tree, whole(tree.tree),
+      [&](hierarchy::Subtree below) {
+        const bool small = tree.leaves.count(below) <= size;
+        if (small) blocks.push_back({below.root, below.end, {}});
+        return !small;
+      },
+      [](std::uint32_t) {});
   return blocks;
 }
 
 std::vector<std::uint32_t> leaves_within_bound(const SiteIndex& index, const DomainTree& tree,
                                                const DomainBlock& block, PairCounts& counts) {
   std::vector<std::uint32_t> leaves;
-  const auto& nodes = index.sites.tree.nodes;
+  const hierarchy::AabbTree& site_tree = index.sites.tree;
   const std::uint64_t domains = tree.leaves.count(block.node, block.end);
-  const auto walk = [&](auto&& self, std::uint32_t node, std::uint32_t end) -> void {
-    if (beyond(nodes[node].box, tree, block.node, counts)) {
-      const std::uint64_t sites =
-          index.before[index.leaves.before[end]] - index.before[index.leaves.before[node]];
-      counts.culled_by_bound += sites * domains;
-    } else if (nodes[node].leaf()) {
-      leaves.push_back(index.leaves.before[node]);
-    } else {
-      self(self, node + 1, nodes[node].right);
-      self(self, nodes[node].right, end);
-    }
-  };
-  walk(walk, 0, static_cast<std::uint32_t>(nodes.size()));
+  traverse(
+      site_tree, whole(site_tree),
+      [&](hierarchy::Subtree below) {
+        if (!beyond(site_tree.box(below.root), tree, block.node, counts)) return true;
+        const std::uint64_t sites =
+            index.before[index.leaves.before[below.end]] - index.before[index.leaves.before[below.root]];
+        counts.culled_by_bound += sites * domains;
+        return false;
+      },
+      [&](std::uint32_t leaf) { leaves.push_back(index.leaves.before[leaf]); });
   return leaves;
 }
 
@@ -129,7 +117,7 @@ void draw_leaf(const SiteIndex& index, std::uint32_t leaf, const DomainTree& tre
   for_each_site(index.sites.regions, leaf, [&](const auto& site, std::size_t at) {
     if (!has_interior(site)) return;
     const SiteRegion region = region_of(index.sites, site, at);
-    Descent(tree, block, region, reach, scale, batch, counts).visit(block.node, block.end);
+    Descent(tree, block, region, reach, scale, batch, counts).run();
   });
 }
 

@@ -14,7 +14,7 @@ namespace sdm::gl {
 /// O2's sites by the leaves of its tree, without those whose region has no interior.
 struct SiteIndex {
   const sites::SitesData& sites;
-  LeafOrder leaves;
+  hierarchy::LeafOrder leaves;
   std::vector<std::uint64_t> before;  ///< sites kept in front of each leaf, and of the end
   std::uint64_t dropped = 0;
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/memory.h"
-#include "engine/gl/gl_objects.h"
-#include "engine/gl/program.h"
+#include "engine/gl/device/gl_objects.h"
+#include "engine/gl/device/program.h"
 #include "engine/gl/shaders.h"
 #include "engine/gl/stencil_cache.h"
 

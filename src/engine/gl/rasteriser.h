@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "engine/gl/context.h"
+#include "engine/gl/device/context.h"
 #include "engine/gl/raster_polygon.h"
 
 namespace sdm::gl {

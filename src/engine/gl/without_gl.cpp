@@ -1,7 +1,6 @@
-// Stands for the gl engine where sdm is built without OpenGL.
+// Replaces the gl engine where sdm is built without OpenGL.
 #include <sdm/error.h>
-
-#include "engine/gl/gl_engine.h"
+#include <sdm/gl.h>
 
 namespace sdm {
 namespace {
@@ -21,8 +20,12 @@ GlDevice gl_device(const GlOptions&, std::uint32_t) {
   refuse();
 }
 
-RasterWinners gl_winners(const Surface&, const Sites&, const MapOptions&, GlReport&) {
+std::shared_ptr<const Engine> make_gl_engine(const GlOptions&) {
   refuse();
+}
+
+std::optional<GlReport> gl_report(const Engine&) {
+  return std::nullopt;
 }
 
 }  // namespace sdm

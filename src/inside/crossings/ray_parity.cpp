@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/vec.h"
+#include "hierarchy/traverse.h"
 
 namespace sdm::inside {
 namespace {
@@ -59,28 +60,20 @@ bool meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& 
   return along / sum > 0;
 }
 
-// Whether the ray meets an odd number of those faces below a node that are counted.
-template <class Counts>
-bool odd_below(std::uint32_t index, const hierarchy::AabbTree& tree, const Vec3& origin,
-               const Counts& counts) {
-  const hierarchy::AabbTree::Node& node = tree.nodes[index];
-  if (!meets(node.box, origin)) return false;
-  if (!node.leaf())
-    return odd_below(index + 1, tree, origin, counts) != odd_below(node.right, tree, origin, counts);
-  bool odd = false;
-  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) odd ^= counts(tree.items[i]);
-  return odd;
-}
-
 }  // namespace
 
-bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
-                   std::span<const Triangle> triangles, const hierarchy::AabbTree& tree, const Vec3& origin,
-                   std::span<const std::uint32_t> component, std::uint32_t left_out) {
-  return odd_below(0, tree, origin, [&](std::uint32_t face) {
-    return (left_out == kNone || component[face] != left_out) &&
-           meets(triangles[face], positions, frame, origin);
-  });
+bool odd_crossings(const FaceTree& faces, const Vec3& origin, std::span<const std::uint32_t> component,
+                   std::uint32_t left_out) {
+  bool odd = false;
+  traverse(
+      faces.tree, whole(faces.tree),
+      [&](hierarchy::Subtree below) { return meets(faces.tree.box(below.root), origin); },
+      [&](std::uint32_t leaf) {
+        for (const std::uint32_t face : faces.tree.items_of(leaf))
+          odd ^= (left_out == kNone || component[face] != left_out) &&
+                 meets(faces.triangles[face], faces.positions, faces.frame, origin);
+      });
+  return odd;
 }
 
 }  // namespace sdm::inside

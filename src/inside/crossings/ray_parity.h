@@ -10,12 +10,19 @@
 
 namespace sdm::inside {
 
+/// Faces of a mesh under a tree.
+struct FaceTree {
+  std::span<const Vec3> positions;
+  std::span<const Triangle> triangles;
+  const UnitFrame& frame;
+  const hierarchy::AabbTree& tree;  ///< in the frame
+};
+
 /// Whether a ray from `origin`, a point in the unit frame, meets the faces of the tree an odd number of
 /// times, leaving out the faces of one component (kNone: none). Not defined on the mesh itself. Allocates
 /// nothing. Cost: O(log n) and the faces met.
-[[nodiscard]] bool odd_crossings(std::span<const Vec3> positions, const UnitFrame& frame,
-                                 std::span<const Triangle> triangles, const hierarchy::AabbTree& tree,
-                                 const Vec3& origin, std::span<const std::uint32_t> component = {},
+[[nodiscard]] bool odd_crossings(const FaceTree& faces, const Vec3& origin,
+                                 std::span<const std::uint32_t> component = {},
                                  std::uint32_t left_out = kNone);
 
 }  // namespace sdm::inside

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "io/read/polygon_mesh.h"
+#include "io/read/polygons/polygon_mesh.h"
 
 namespace sdm::io {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/read/polygon_mesh.h"
+#include "io/read/polygons/polygon_mesh.h"
 
 namespace sdm::io {
 

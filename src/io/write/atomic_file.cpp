@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <string>
 #include <system_error>
 #include <utility>
+
+#include "core/platform.h"
 
 namespace sdm::io {
 namespace {
@@ -24,7 +25,8 @@ std::string reason(int error) {
 // Unique among the files that all processes of this machine write at the same time.
 std::filesystem::path temporary_beside(const std::filesystem::path& file) {
   static std::atomic<unsigned> count{0};
-  return file.parent_path() / fmt::format(".{}.{}.{}.part", file.filename().string(), getpid(), count++);
+  return file.parent_path() /
+         fmt::format(".{}.{}.{}.part", file.filename().string(), process_number(), count++);
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ void Canvas::text(double x, double baseline, const std::string& text, double siz
 
 Picture Canvas::picture(const std::string& what) {
   if (const cairo_status_t status = cairo_status(cairo()); status != CAIRO_STATUS_SUCCESS)
-    throw Error("cannot draw " + what + ": " + cairo_status_to_string(status) + "; check the text of the units");
+    throw Error("cannot draw " + what + ": " + cairo_status_to_string(status) +
+                "; check the text of the units");
   return to_picture(surface_.get());
 }
 

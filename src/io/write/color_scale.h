@@ -30,7 +30,8 @@ struct ColorScale {
 /// Throws sdm::Error unless the range is finite and increasing and the tolerance finite and ≥ 0.
 [[nodiscard]] ColorScale color_scale(const DistanceMap& map, const PictureOptions& options);
 
-/// A pseudorandom colour for each site: pale for faces, strong for edges, dark for vertices; kNoValue for none.
+/// A pseudorandom colour for each site: pale for faces, strong for edges, dark for vertices; kNoValue for
+/// none.
 [[nodiscard]] Rgb site_color(SiteType type, std::uint32_t site);
 
 /// The unit vector along `vector`, (x, y, z) → (r, g, b) by (1 + x)/2; kNoValue where it is NaN.

@@ -5,7 +5,9 @@
 #include <sdm/io.h>
 
 #include <array>
+#include <new>
 
+#include "core/memory.h"
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
 
@@ -23,7 +25,7 @@ std::string io::npy_header(std::string_view type, std::span<const std::uint64_t>
 }
 
 void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
-               std::span<const std::uint32_t> values) {
+               std::span<const std::uint32_t> values) try {
   if (values.size() != std::size_t{resolution} * resolution)
     throw Error(fmt::format("cannot write {}: there are {} values for {}² texels", file.string(),
                             values.size(), resolution));
@@ -34,6 +36,8 @@ void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
   for (const std::uint32_t value : values) io::append_little_endian(bytes, value);
   out.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
 }  // namespace sdm

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 
+#include "core/memory.h"
 #include "io/write/atomic_file.h"
 #include "io/write/canvas.h"
 #include "io/write/png.h"
@@ -126,7 +128,7 @@ void draw_panel(Canvas& canvas, double top, std::span<const double> places, cons
 }  // namespace
 
 void write_plot_png(const std::filesystem::path& file, const std::string& axis,
-                    std::span<const double> places, std::span<const PlotPanel> panels) {
+                    std::span<const double> places, std::span<const PlotPanel> panels) try {
   for (const PlotPanel& panel : panels)
     for (const Curve& curve : panel.curves)
       if (curve.values.size() != places.size())
@@ -146,6 +148,8 @@ void write_plot_png(const std::filesystem::path& file, const std::string& axis,
     std::copy_n(&picture.pixels[std::size_t{y} * picture.width], picture.width, pixels.begin());
   });
   out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
 }  // namespace sdm

@@ -1,3 +1,4 @@
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "io/write/atomic_file.h"
 #include "io/write/gutter.h"
@@ -17,6 +18,7 @@
 #include <cstddef>
 #include <exception>
 #include <limits>
+#include <new>
 #include <span>
 #include <string>
 #include <vector>
@@ -117,7 +119,7 @@ struct TemporalTexel {
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
+void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) try {
   constexpr std::size_t kVector = offsetof(MapTexel, vector);
   const Channel channels[] = {{"distance.D", Imf::FLOAT, offsetof(MapTexel, distance)},
                               {"vector.X", Imf::FLOAT, kVector},
@@ -135,9 +137,11 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
             map.site[source],     type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
             owners[source],       covered ? 1.f : 0.f};
   });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
-void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps) {
+void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps) try {
   if (maps.resolution() != surface.resolution())
     throw Error("cannot write " + file.string() + ": the maps belong to another surface");
   const Channel channels[] = {{"min.D", Imf::FLOAT, offsetof(TemporalTexel, least)},
@@ -150,6 +154,8 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
         if (source == kNone) return {};
         return {maps.least()[source], mean[source], maps.largest()[source], covered ? 1.f : 0.f};
       });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
 }  // namespace sdm

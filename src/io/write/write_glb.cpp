@@ -1,3 +1,4 @@
+#include "core/memory.h"
 #include "core/vec.h"
 #include "io/write/atomic_file.h"
 #include "io/write/color_scale.h"
@@ -15,6 +16,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <new>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -244,7 +246,7 @@ void add_scene(GlbModel& glb, const Placement& place) {
 }  // namespace
 
 void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-               std::span<const float> vertex_distances, const PictureOptions& options) {
+               std::span<const float> vertex_distances, const PictureOptions& options) try {
   const Mesh& mesh = surface.mesh();
   if (vertex_distances.size() != mesh.positions.size())
     throw Error("cannot write " + file.string() +
@@ -268,6 +270,8 @@ void write_glb(const std::filesystem::path& file, const Surface& surface, const 
   add_scene(glb, place);
   tinygltf::TinyGLTF().WriteGltfSceneToStream(&glb.model, out.stream(), false, true);
   out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
 }  // namespace sdm

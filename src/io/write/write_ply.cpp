@@ -1,8 +1,10 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
 
+#include <new>
 #include <string>
 
+#include "core/memory.h"
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
 
@@ -10,7 +12,7 @@ namespace sdm {
 
 using namespace io;
 
-void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
+void write_ply(const std::filesystem::path& file, const Mesh& mesh) try {
   AtomicFile out(file);
   out.stream() << "ply\nformat binary_little_endian 1.0\nelement vertex " << mesh.positions.size()
                << "\nproperty double x\nproperty double y\nproperty double z\nelement face "
@@ -24,6 +26,8 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   }
   out.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
 }  // namespace sdm

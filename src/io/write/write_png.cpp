@@ -1,3 +1,4 @@
+#include "core/memory.h"
 #include "io/write/atomic_file.h"
 #include "io/write/color_scale.h"
 #include "io/write/legend.h"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace sdm {
 
@@ -43,7 +45,7 @@ void write_map_png(const std::filesystem::path& file, const Surface& surface, Co
 }  // namespace
 
 void write_distance_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-                        const PictureOptions& options) {
+                        const PictureOptions& options) try {
   const ColorScale scale = color_scale(map, options);
   const std::uint32_t n = surface.resolution();
   const Picture legend = draw_legend(scale, legend_text(map, scale, options.units), n);
@@ -63,17 +65,25 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
                 std::copy_n(&legend.pixels[std::size_t{y} * legend.width], legend.width, legend_row.begin());
             });
   out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
-void write_voronoi_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
+void write_voronoi_png(const std::filesystem::path& file, const Surface& surface,
+                       const DistanceMap& map) try {
   write_map_png(file, surface,
                 [&](std::size_t texel) { return site_color(map.site_type[texel], map.site[texel]); });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
-void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) {
+void write_direction_png(const std::filesystem::path& file, const Surface& surface,
+                         const DistanceMap& map) try {
   write_map_png(file, surface, [&](std::size_t texel) {
     return map.site_type[texel] == SiteType::none ? kNoValue : direction_color(map.vector[texel]);
   });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 
 }  // namespace sdm

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <functional>
 #include <mutex>
+#include <new>
 #include <string>
 #include <utility>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/sweep.h"
 #include "mesh/validate.h"
@@ -114,8 +116,11 @@ struct MultiBodyQuery::Impl {
   }
 };
 
-MultiBodyQuery::MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options)
-    : impl_(std::make_unique<Impl>(meshes, checked(options))) {}
+MultiBodyQuery::MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options) try
+    : impl_(std::make_unique<Impl>(meshes, checked(options))) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a query of many bodies");
+}
 MultiBodyQuery::~MultiBodyQuery() = default;
 MultiBodyQuery::MultiBodyQuery(MultiBodyQuery&&) noexcept = default;
 MultiBodyQuery& MultiBodyQuery::operator=(MultiBodyQuery&&) noexcept = default;
@@ -124,13 +129,15 @@ std::size_t MultiBodyQuery::size() const {
   return impl_->bodies.size();
 }
 
-void MultiBodyQuery::update(std::size_t body, std::span<const Vec3> positions) {
+void MultiBodyQuery::update(std::size_t body, std::span<const Vec3> positions) try {
   impl_->check(impl_->checked(body), positions);
   impl_->found = false;
   impl_->bodies[body].refit(positions);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a query of many bodies");
 }
 
-void MultiBodyQuery::update(std::span<const std::span<const Vec3>> positions) {
+void MultiBodyQuery::update(std::span<const std::span<const Vec3>> positions) try {
   if (positions.size() != size())
     throw Error("there are " + std::to_string(size()) + " bodies, but positions for " +
                 std::to_string(positions.size()) + " were given; give one entry per body");
@@ -142,12 +149,16 @@ void MultiBodyQuery::update(std::span<const std::span<const Vec3>> positions) {
       if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
   };
   parallel_for(size(), 1, refit);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a query of many bodies");
 }
 
-std::span<const PairProximity> MultiBodyQuery::pairs() {
+std::span<const PairProximity> MultiBodyQuery::pairs() try {
   if (!impl_->found) impl_->find_pairs();
   impl_->found = true;
   return impl_->pairs;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a query of many bodies");
 }
 
 std::size_t MultiBodyQuery::candidate_pairs() const {
@@ -160,8 +171,10 @@ NearestMap MultiBodyQuery::nearest_map(std::size_t body) const {
   return nearest;
 }
 
-void MultiBodyQuery::nearest_map(std::size_t body, NearestMap& nearest) const {
+void MultiBodyQuery::nearest_map(std::size_t body, NearestMap& nearest) const try {
   bodies::map_nearest(impl_->bodies, impl_->checked(body), impl_->options.max_distance, nearest);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map of the nearest bodies");
 }
 
 const Surface& MultiBodyQuery::surface(std::size_t body) const {

@@ -17,10 +17,10 @@
 namespace sdm::bodies {
 namespace {
 
-// Finds the nearest bodies for the samples of a run, again and again.
-class RunSearch {
+// Finds the nearest bodies for the samples of a block, again and again.
+class BlockSearch {
  public:
-  RunSearch(std::span<const sampled::Body> bodies, std::size_t on, double max_distance)
+  BlockSearch(std::span<const sampled::Body> bodies, std::size_t on, double max_distance)
       : bodies_(bodies), on_(on), max_distance_(max_distance) {}
 
   void find(std::span<const Vec3> points) {
@@ -77,9 +77,9 @@ class RunSearch {
   std::size_t on_;
   double max_distance_;
   std::vector<std::pair<double, std::uint32_t>> order_;  // boxes' distances from the samples, and bodies
-  std::array<ClosestPoint, surface::kRunLength> closest_;
-  std::array<std::uint32_t, surface::kRunLength> body_, asked_;
-  std::array<Vec3, surface::kRunLength> at_;  // of those asked for
+  std::array<ClosestPoint, surface::kBlockSize> closest_;
+  std::array<std::uint32_t, surface::kBlockSize> body_, asked_;
+  std::array<Vec3, surface::kBlockSize> at_;  // of those asked for
 };
 
 SignUsed signs_of_others(std::span<const sampled::Body> bodies, std::size_t on) {
@@ -101,14 +101,14 @@ void map_nearest(std::span<const sampled::Body> bodies, std::size_t on, double m
   nearest.body.assign(surface.texel_faces().size(), kNone);
   std::atomic<std::size_t> beyond{0};
   constexpr std::size_t kGrain = 4;
-  parallel_for(surface::run_count(texels.size()), kGrain, [&](std::size_t begin, std::size_t end) {
-    RunSearch search(bodies, on, max_distance);
-    std::array<Vec3, surface::kRunLength> places;
+  parallel_for(surface::block_count(texels.size()), kGrain, [&](std::size_t begin, std::size_t end) {
+    BlockSearch search(bodies, on, max_distance);
+    std::array<Vec3, surface::kBlockSize> places;
     sites::ClosestPacket packet;
-    for (std::size_t r = begin; r < end; ++r) {
-      const surface::SampleBlock run(r, texels.size());
-      const std::span points = std::span(places).first(run.size());
-      surface::place_samples(internals(surface), run.first, points);
+    for (std::size_t b = begin; b < end; ++b) {
+      const surface::SampleBlock block(b, texels.size());
+      const std::span points = std::span(places).first(block.size());
+      internals(surface).place_samples(block.first, points);
       search.find(points);
       for (std::size_t i = 0; i < points.size(); i += packet.count) {
         packet.count = std::min(sites::ClosestPacket::kSize, points.size() - i);
@@ -118,9 +118,9 @@ void map_nearest(std::span<const sampled::Body> bodies, std::size_t on, double m
           const std::uint32_t body = search.body(i + k);
           packet.set(k, points[i + k], c);
           if (body != kNone && bodies[body].inside()(points[i + k], c)) inside |= 1u << k;
-          nearest.body[texels[run.first + i + k]] = body;
+          nearest.body[texels[block.first + i + k]] = body;
         }
-        beyond += writer.store(run.first + i, packet, inside);
+        beyond += writer.store(block.first + i, packet, inside);
       }
     }
   });

@@ -54,7 +54,7 @@ class PairSearch {
   }
 
   CentredBox box_of(const Entry& entry, int side) const {
-    return CentredBox(sites_[side]->tree.nodes[entry.place[side].source].box);
+    return CentredBox(sites_[side]->tree.box(entry.place[side].source));
   }
 
   // Pairs the children of the larger node with the other node.

@@ -22,8 +22,8 @@ struct PairWorkspace {
   struct Place {
     std::uint32_t child = 0, source = 0;
 
-    [[nodiscard]] bool leaf() const { return (child & hierarchy::WideTree::kLeafBit) != 0; }
-    [[nodiscard]] std::uint32_t leaf_number() const { return child & ~hierarchy::WideTree::kLeafBit; }
+    [[nodiscard]] bool leaf() const { return hierarchy::WideTree::is_leaf(child); }
+    [[nodiscard]] std::uint32_t leaf_number() const { return hierarchy::WideTree::leaf_number(child); }
   };
   struct Entry {
     std::array<Place, 2> place;  ///< in the trees of O1 and O2; at first both roots
@@ -54,8 +54,7 @@ struct PairWorkspace {
 
   std::vector<Entry> overlapping;  ///< a stack
   Heap apart;
-  std::vector<std::uint32_t> nodes;  ///< for `contains`
-  PairSearchCounts counts;           ///< summed over searches
+  PairSearchCounts counts;  ///< summed over searches
 };
 
 /// The closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic where few

@@ -2,6 +2,7 @@
 // does.
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "core/vec.h"
 #include "proximity/exact/triangle_pair.h"
@@ -68,16 +69,17 @@ PointPair closest(const Sides& a, const Sides& b) {
   return best;
 }
 
+Box box_of(const Corners& triangle) {
+  Box box;
+  for (int k = 0; k < 3; ++k)
+    std::tie(box.lo[k], box.hi[k]) = std::minmax({triangle[0][k], triangle[1][k], triangle[2][k]});
+  return box;
+}
+
 }  // namespace
 
 double squared_box_distance(const Corners& a, const Corners& b) {
-  Vec3 gap;
-  for (int k = 0; k < 3; ++k) {
-    const auto [lo1, hi1] = std::minmax({a[0][k], a[1][k], a[2][k]});
-    const auto [lo2, hi2] = std::minmax({b[0][k], b[1][k], b[2][k]});
-    gap[k] = std::max({lo1 - hi2, lo2 - hi1, 0.0});
-  }
-  return squared_norm(gap);
+  return squared_norm(gap(box_of(a), box_of(b)));
 }
 
 PointPair closest_points(const Corners& a, const Corners& b) {

@@ -1,11 +1,8 @@
 #include "proximity/sampled/body.h"
 
-#include <sdm/map.h>
-
 namespace sdm::sampled {
 
-Body::Body(const Mesh& mesh, const AtlasOptions& atlas)
-    : surface_(mesh, atlas), sites_(mesh), sign_(choose_sign(sites_, SignMethod::automatic).method) {
+Body::Body(const Mesh& mesh, const AtlasOptions& atlas) : surface_(mesh, atlas), sites_(mesh) {
   follow_positions();
 }
 
@@ -15,9 +12,13 @@ void Body::refit(std::span<const Vec3> positions) {
   follow_positions();
 }
 
+void Body::require_pieces() const {
+  std::call_once(pieces_->built, [this] { pieces_->assignment.emplace(surface_); });
+}
+
 void Body::follow_positions() {
   box_ = bounds(sites_.mesh());
-  inside_.emplace(internals(sites_), sign_);
+  inside_.emplace(internals(sites_), solid() ? SignMethod::pseudonormal : SignMethod::none);
 }
 
 }  // namespace sdm::sampled

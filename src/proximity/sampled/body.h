@@ -4,10 +4,13 @@
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 
-#include "inside/inside_test.h"
+#include "inside/inside.h"
+#include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm::sampled {
 
@@ -23,18 +26,29 @@ class Body {
   [[nodiscard]] const Sites& sites() const { return sites_; }
   /// Around all faces.
   [[nodiscard]] const Box& box() const { return box_; }
-  /// Whether it is closed and orientable: only then it has an inside.
-  [[nodiscard]] bool solid() const { return sign_ != SignMethod::none; }
+  /// Whether it has an inside.
+  [[nodiscard]] bool solid() const { return internals(sites_).is_solid(); }
   [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
+
+  /// Builds pieces() for the present shape, the first time only: queries that the triangles alone answer need
+  /// none. Safe from many threads. Throws sdm::Error if there is not enough memory.
+  void require_pieces() const;
+  /// The pieces of the surface; after require_pieces().
+  [[nodiscard]] const surface::PieceAssignment& pieces() const { return *pieces_->assignment; }
 
  private:
   void follow_positions();
 
   Surface surface_;
   Sites sites_;
-  SignMethod sign_;
   Box box_;
   std::optional<inside::InsideTest> inside_;
+
+  struct Pieces {
+    std::once_flag built;
+    std::optional<surface::PieceAssignment> assignment;
+  };
+  std::unique_ptr<Pieces> pieces_ = std::make_unique<Pieces>();
 };
 
 }  // namespace sdm::sampled

@@ -6,6 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/disjoint_sets.h"
+#include "core/sweep.h"
+
 namespace sdm::sampled {
 
 /// Sorts contacts, again and again in the same memory.
@@ -16,12 +19,10 @@ class ContactPatches {
   std::span<const Contact> sort(std::span<Contact> contacts, std::span<const Box> boxes);
 
  private:
-  void find_patches(std::span<const Box> boxes);
-  std::uint32_t root(std::uint32_t contact);
-  void join(std::uint32_t a, std::uint32_t b);
-
   std::vector<Contact> sorted_;
-  std::vector<std::uint32_t> parent_, order_, open_;
+  std::vector<std::uint32_t> order_;
+  DisjointSets patches_;
+  Sweep sweep_;
 };
 
 }  // namespace sdm::sampled

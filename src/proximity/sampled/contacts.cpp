@@ -12,12 +12,10 @@
 namespace sdm::sampled {
 namespace {
 
-// The contact of a sample of body `body`, as Contact defines it.
-Contact contact_of(int body, const Vec3& sample, const Vec3& vector, double depth, const Vec3& other_normal,
-                   double length) {
+// The contact of a sample of body `body`, as Contact defines it; `outwards` is the direction in which the
+// other body pushes this one.
+Contact contact_of(int body, const Vec3& sample, const Vec3& vector, double depth, const Vec3& outwards) {
   Contact c{.point1 = sample, .point2 = sample + vector, .depth = depth};
-  Vec3 outwards = other_normal;  // of the other body, which pushes this one
-  if (std::abs(depth) > length) outwards = (1 / depth) * vector;
   if (body == 1) std::swap(c.point1, c.point2);
   c.normal = body == 0 ? outwards : -outwards;
   return c;
@@ -40,14 +38,14 @@ void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
   const Surface& surface = body.surface;
   const std::span<const float> distances = body.distances.distances(), radii = body.distances.radii();
   parts_.clear();
-  for (std::size_t r = 0; r < surface::run_count(distances.size()); ++r) {
-    const surface::SampleBlock run(r, distances.size());
-    const auto first_of_run = static_cast<std::ptrdiff_t>(parts_.size());
-    for (std::size_t i = run.first; i < run.end; ++i) {
+  for (std::size_t b = 0; b < surface::block_count(distances.size()); ++b) {
+    const surface::SampleBlock block(b, distances.size());
+    const auto first_of_block = static_cast<std::ptrdiff_t>(parts_.size());
+    for (std::size_t i = block.first; i < block.end; ++i) {
       if (!(distances[i] <= margin)) continue;
       const std::uint32_t face = internals(surface).sample_faces[body.distances.sample(i)];
       const std::uint32_t chart = surface.face_charts()[face];
-      auto part = std::find_if(parts_.begin() + first_of_run, parts_.end(),
+      auto part = std::find_if(parts_.begin() + first_of_block, parts_.end(),
                                [&](const Part& p) { return p.chart == chart; });
       if (part == parts_.end()) part = parts_.insert(part, {chart, i, {}});
       if (distances[i] < distances[part->deepest]) part->deepest = i;
@@ -73,9 +71,9 @@ void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int 
       const bool inside = on.distances.distances()[parts_[first + i].deepest] < 0;
       const std::uint32_t face = sites.face_of(closest.type[i], closest.site[i]);
       if (!inside) extend(boxes_[contacts_.size()], points_[first + i] + vector);  // across the gap
-      contacts_.push_back(contact_of(body, points_[first + i], vector,
-                                     inside ? closest.distance[i] : -closest.distance[i],
-                                     sites.normals.face[face], length));
+      const double depth = inside ? closest.distance[i] : -closest.distance[i];
+      const Vec3 outwards = std::abs(depth) > length ? (1 / depth) * vector : sites.normals.face[face];
+      contacts_.push_back(contact_of(body, points_[first + i], vector, depth, outwards));
     }
   };
   cpu::cpu_search(sites, points_, std::numeric_limits<double>::infinity(), std::ref(add));

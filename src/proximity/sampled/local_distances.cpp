@@ -29,29 +29,29 @@ void find_distances(const Body& body, std::span<const Vec3> points, const Take& 
 
 void LocalDistances::start(const Body& on, const Body& to) {
   on_ = &on, to_ = &to;
-  probes_.assign(1, {.runs = {0, surface::run_count(on.surface().sample_texels().size())}});
+  on.require_pieces();
+  probes_.assign(1, {.blocks = {0, surface::block_count(on.surface().sample_texels().size())}});
   least_probed_ = std::numeric_limits<double>::infinity();
 }
 
-void LocalDistances::probe(std::size_t runs_per_probe) {
+void LocalDistances::probe(std::size_t blocks_per_probe) {
   denser_.clear();
-  for (const auto& [runs, distance, spread] : probes_)
-    for (std::size_t first = runs.first; first < runs.end; first += runs_per_probe)
-      denser_.push_back({.runs = {first, std::min(first + runs_per_probe, runs.end)}});
+  for (const auto& [blocks, distance, radius] : probes_)
+    for (std::size_t first = blocks.first; first < blocks.end; first += blocks_per_probe)
+      denser_.push_back({.blocks = {first, std::min(first + blocks_per_probe, blocks.end)}});
   std::swap(probes_, denser_);
 
   const Surface& surface = on_->surface();
-  const surface::Coverage& coverage = surface::coverage_of(surface);
+  const surface::PieceAssignment& pieces = on_->pieces();
   probe_points_.resize(probes_.size());
   constexpr std::size_t kGrain = 32;
   const auto probe_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Probe& probe = probes_[i];
       Vec3& point = probe_points_[i];
-      surface::place_samples(internals(surface), probe.runs.middle(surface.sample_texels().size()),
-                             {&point, 1});
-      probe.spread = runs_per_probe == 1 ? coverage.spread(surface, probe.runs.first, point)
-                                         : coverage.face_spread(surface, probe.runs, point);
+      internals(surface).place_samples(probe.blocks.middle(surface.sample_texels().size()), {&point, 1});
+      probe.radius = blocks_per_probe == 1 ? pieces.radius_about(surface, probe.blocks.first, point)
+                                           : pieces.face_radius_about(surface, probe.blocks, point);
     }
     find_distances(*to_, std::span(probe_points_).subspan(begin, end - begin),
                    [&](std::size_t i, double distance) { probes_[begin + i].distance = distance; });
@@ -67,31 +67,32 @@ void LocalDistances::keep(double reach) {
 void LocalDistances::measure() {
   const std::size_t samples = on_->surface().sample_texels().size();
   std::size_t count = 0;
-  for (const Probe& probe : probes_) count += surface::SampleBlock(probe.runs.first, samples).size();
+  for (const Probe& probe : probes_) count += surface::SampleBlock(probe.blocks.first, samples).size();
   points_.resize(count), radii_.resize(count), distances_.resize(count);
   constexpr std::size_t kGrain = 16;
   const auto measure = [&](std::size_t begin, std::size_t end) {
-    while (begin < end) {  // runs that follow each other share a search
+    while (begin < end) {  // blocks that follow each other share a search
       std::size_t next = begin + 1;
-      while (next < end && probes_[next].runs.first == probes_[next - 1].runs.end) ++next;
-      measure_runs(begin, next);
+      while (next < end && probes_[next].blocks.first == probes_[next - 1].blocks.end) ++next;
+      measure_blocks(begin, next);
       begin = next;
     }
   };
   parallel_for(probes_.size(), kGrain, measure);
 }
 
-void LocalDistances::measure_runs(std::size_t begin, std::size_t end) {
+void LocalDistances::measure_blocks(std::size_t begin, std::size_t end) {
   const Surface& surface = on_->surface();
-  const surface::Coverage& coverage = surface::coverage_of(surface);
-  const std::size_t first = begin * surface::kRunLength,
-                    last = std::min(end * surface::kRunLength, points_.size());
+  const surface::PieceAssignment& pieces = on_->pieces();
+  const std::size_t first = begin * surface::kBlockSize,
+                    last = std::min(end * surface::kBlockSize, points_.size());
   const std::span points = std::span(points_).subspan(first, last - first);
-  surface::place_samples(internals(surface), probes_[begin].runs.first * surface::kRunLength, points);
+  internals(surface).place_samples(probes_[begin].blocks.first * surface::kBlockSize, points);
   for (std::size_t i = begin; i < end; ++i) {
-    const surface::SampleBlock run(i, points_.size());
-    coverage.measure_run(surface, probes_[i].runs.first, std::span(points_).subspan(run.first, run.size()),
-                         std::span(radii_).subspan(run.first, run.size()));
+    const surface::SampleBlock block(i, points_.size());
+    pieces.measure_block(surface, probes_[i].blocks.first,
+                         std::span(points_).subspan(block.first, block.size()),
+                         std::span(radii_).subspan(block.first, block.size()));
   }
   find_distances(*to_, points, [&](std::size_t i, double distance) {
     distances_[first + i] = static_cast<float>(distance);
@@ -99,7 +100,7 @@ void LocalDistances::measure_runs(std::size_t begin, std::size_t end) {
 }
 
 std::size_t LocalDistances::sample(std::size_t i) const {
-  return probes_[i / surface::kRunLength].runs.first * surface::kRunLength + i % surface::kRunLength;
+  return probes_[i / surface::kBlockSize].blocks.first * surface::kBlockSize + i % surface::kBlockSize;
 }
 
 }  // namespace sdm::sampled

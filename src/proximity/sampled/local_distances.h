@@ -11,27 +11,27 @@
 namespace sdm::sampled {
 
 /// The samples are probed at a few of them: each bounds the distances of those around it, which are
-/// 1-Lipschitz. What can still be within reach is probed more densely, down to single runs, and of the runs
-/// that remain all samples are measured. A distance to the inside of a solid is negative. Culled samples are
-/// never evaluated, so they cost almost nothing.
+/// 1-Lipschitz. What can still be within reach is probed more densely, down to single blocks, and of the
+/// blocks that remain all samples are measured. A distance to the inside of a solid is negative. Culled
+/// samples are never evaluated, so they cost almost nothing.
 class LocalDistances {
  public:
-  /// One probe for so many runs, at one density after the other. (Measured.)
-  static constexpr std::array<std::size_t, 2> kRunsPerProbe{8, 1};
+  /// One probe for so many blocks, at one density after the other. (Measured.)
+  static constexpr std::array<std::size_t, 2> kBlocksPerProbe{8, 1};
 
   /// Starts with all samples of `on`. The bodies must stay until these are measured.
   void start(const Body& on, const Body& to);
   /// Probes the remaining blocks, on all cores.
-  void probe(std::size_t runs_per_probe);
+  void probe(std::size_t blocks_per_probe);
   /// The least of the |distances| probed so far.
   [[nodiscard]] double least_probed() const { return least_probed_; }
   /// Keeps blocks that may be nearer than `reach` or inside.
   void keep(double reach);
-  /// Measures all samples that are left, on all cores; they were last probed run by run.
+  /// Measures all samples that are left, on all cores; they were last probed block by block.
   void measure();
 
-  // The samples measured, run by run, in increasing order: their points, covering radii (see
-  // Surface::sample_radii) and distances.
+  // The samples measured, block by block, in increasing order: their points, covering radii (see
+  // SamplingBound::sample_radii) and distances.
   [[nodiscard]] std::span<const Vec3> points() const { return points_; }
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
   [[nodiscard]] std::span<const float> distances() const { return distances_; }
@@ -40,13 +40,13 @@ class LocalDistances {
 
  private:
   struct Probe {
-    surface::RunRange runs;
+    surface::BlockRange blocks;
     double distance = 0;
-    double spread = 0;  ///< no sample of the runs, and no point that one covers, is farther from the probe
-    /// No sample of the runs, and no point that it covers, is nearer.
-    [[nodiscard]] double least() const { return distance - spread; }
+    double radius = 0;  ///< of a ball about the probe that contains the blocks' samples and their pieces
+    /// No sample of the blocks, and no point of its pieces, is nearer.
+    [[nodiscard]] double least() const { return distance - radius; }
   };
-  void measure_runs(std::size_t begin, std::size_t end);
+  void measure_blocks(std::size_t begin, std::size_t end);
 
   const Body *on_ = nullptr, *to_ = nullptr;
   std::vector<Probe> probes_, denser_;

@@ -60,8 +60,8 @@ std::size_t PairAnswers::samples_used() const {
 void PairAnswers::measure() {
   if (std::exchange(measured_, true)) return;
   for (int b = 0; b < 2; ++b) distances_[b].start(*bodies_[b], *bodies_[1 - b]);
-  for (const std::size_t runs_per_probe : LocalDistances::kRunsPerProbe) {
-    for (LocalDistances& distances : distances_) distances.probe(runs_per_probe);
+  for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe) {
+    for (LocalDistances& distances : distances_) distances.probe(blocks_per_probe);
     // Samples nearer than this affect contacts, depth and, unless it is computed from the triangles,
     // separation.
     double reach = options_.contact_margin;
@@ -113,8 +113,7 @@ BoundedLength PairAnswers::exact_separation() {
 }
 
 BoundedBool PairAnswers::exact_collision() {
-  return {closest_triangles().intersecting || exact::one_contains_part_of_other(meshes(), workspace_),
-          Certainty::exact};
+  return {closest_triangles().intersecting || exact::one_contains_part_of_other(meshes()), Certainty::exact};
 }
 
 BoundedLength PairAnswers::bounded_separation() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -87,7 +88,7 @@ class Neighbours {
 
 }  // namespace
 
-Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress& progress) {
+Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress& progress) try {
   validate(rest);
   check(rule);
   const std::size_t count = rest.triangles.size();
@@ -118,6 +119,8 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress
       throw Cancelled();
   }
   if (rule.geodesic) keep_mutual();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the excluded neighbourhoods of all faces");
 }
 
 // Straight distances from f do not lead the same way as those from g.

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <new>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "map/map_writer.h"
@@ -44,14 +46,14 @@ bool store(const ClosestPoint& closest, const Vec3& p, std::uint32_t texel, Dist
 }  // namespace
 
 DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const Exclusion& exclusion,
-                             const SelfMapOptions& options) {
+                             const SelfMapOptions& options) try {
   check(sites, exclusion, options);
   if (surface.mesh().triangles.size() != exclusion.faces())
     throw Error("surface and sites belong to different meshes: their numbers of faces differ");
   DistanceMap map;
   map::clear(map, surface);
   map.sign.reason = "the distance of a surface to itself has no sign";
-  const surface::Tiles& tiles = surface::tiles_of(surface);
+  const surface::Tiles tiles(surface);
   std::atomic<std::size_t> none{0};
   parallel_for(tiles.count(), kGrain, options.progress, "map", [&](std::size_t begin, std::size_t end) {
     self::SelfSearch search(internals(sites), exclusion);
@@ -70,10 +72,12 @@ DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const E
   });
   map.beyond_max_distance = none;
   return map;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the map of a surface to itself");
 }
 
 std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusion& exclusion,
-                                              const SelfMapOptions& options) {
+                                              const SelfMapOptions& options) try {
   check(sites, exclusion, options);
   const Mesh& mesh = sites.mesh();
   const mesh::Topology& topology = internals(sites).topology;
@@ -98,6 +102,8 @@ std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusio
       at_vertex = std::fmin(at_vertex, at_corners[f][k]);  // of NaN and a number the number
     }
   return least;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("self-distances at vertices");
 }
 
 }  // namespace sdm

@@ -5,8 +5,10 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <new>
 #include <utility>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "proximity/sampled/contact_patches.h"
@@ -99,20 +101,24 @@ struct SelfProximityQuery::Impl {
   }
 };
 
-SelfProximityQuery::SelfProximityQuery(Mesh rest, const SelfProximityOptions& options) {
+SelfProximityQuery::SelfProximityQuery(Mesh rest, const SelfProximityOptions& options) try {
   check_max_distance(options.max_distance);
   impl_ = std::make_unique<Impl>(std::move(rest), options);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query of a mesh with itself");
 }
 SelfProximityQuery::~SelfProximityQuery() = default;
 SelfProximityQuery::SelfProximityQuery(SelfProximityQuery&&) noexcept = default;
 SelfProximityQuery& SelfProximityQuery::operator=(SelfProximityQuery&&) noexcept = default;
 
-void SelfProximityQuery::update(std::span<const Vec3> positions) {
+void SelfProximityQuery::update(std::span<const Vec3> positions) try {
   impl_->sites.refit(positions);
   impl_->closest.reset();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query of a mesh with itself");
 }
 
-std::optional<BoundedLength> SelfProximityQuery::separation() {
+std::optional<BoundedLength> SelfProximityQuery::separation() try {
   if (!impl_->closest) impl_->closest = impl_->find_closest();
   const self::FacePair& c = *impl_->closest;
   if (c.face1 == kNone) return {};
@@ -121,13 +127,17 @@ std::optional<BoundedLength> SelfProximityQuery::separation() {
                        .lower = c.distance,
                        .upper = c.distance,
                        .witness = std::array{c.point1, c.point2}};
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query of a mesh with itself");
 }
 
-std::span<const Contact> SelfProximityQuery::contacts(double margin) {
+std::span<const Contact> SelfProximityQuery::contacts(double margin) try {
   if (!(margin >= 0 && std::isfinite(margin)))
     throw Error("a contact margin of " + std::to_string(margin) + " is out of range; use 0 or more");
   impl_->find_contacts(margin);
   return impl_->patches.sort(impl_->contacts, impl_->boxes);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a proximity query of a mesh with itself");
 }
 
 const Sites& SelfProximityQuery::sites() const {

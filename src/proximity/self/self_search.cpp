@@ -6,17 +6,14 @@
 #include <utility>
 
 #include "core/vec.h"
+#include "hierarchy/traverse_wide.h"
 #include "proximity/exact/triangle_pair.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::self {
 
 struct SelfSearch::Scratch {
-  struct Entry {
-    std::uint32_t child;  ///< of a wide node
-    double squared;       ///< distance of its box in the unit frame
-  };
-  std::vector<Entry> stack;
+  std::vector<hierarchy::OpenChild<double>> stack;
   std::vector<std::pair<double, std::uint32_t>> candidates;  ///< by their distance from the ball's centre
   std::vector<std::uint8_t> excluded;                        ///< of each face; all 0 between searches
 
@@ -29,17 +26,6 @@ struct SelfSearch::Scratch {
 namespace {
 
 constexpr double kAbove = 1 + 1e-12;  // by more than squares are rounded: equals must be compared
-
-// Squared distances of a box to those of a node's children; both in the unit frame.
-void find_distances(const hierarchy::WideTree::Node& node, const Box& box,
-                    double (&squared)[hierarchy::WideTree::kWidth]) {
-  for (int i = 0; i < hierarchy::WideTree::kWidth; ++i) squared[i] = 0;
-  for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < hierarchy::WideTree::kWidth; ++i) {
-      const double gap = std::max({node.lo[k][i] - box.hi[k], box.lo[k] - node.hi[k][i], 0.0});
-      squared[i] += gap * gap;
-    }
-}
 
 exact::Corners corners(const Mesh& mesh, std::uint32_t face) {
   const Triangle& t = mesh.triangles[face];
@@ -77,34 +63,24 @@ template <class Visit>
 void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) const {
   const UnitFrame& frame = sites_.frame;
   const Box unit{frame.to_unit(box.lo), frame.to_unit(box.hi)};
-  const auto too_far = [&](double squared) {
+  const auto within = [&](double squared) {
     // Coordinates of the unit frame are rounded by 1e-16.
     const double most = (1 + 1e-9) * frame.scale * limit + 1e-15;
-    return squared > most * most;
+    return !(squared > most * most);
   };
-  auto& stack = scratch_.stack;
-  stack.assign(1, {0, 0});
-  while (!stack.empty()) {
-    const auto [child, squared] = stack.back();
-    stack.pop_back();
-    if (too_far(squared)) continue;
-    if ((child & hierarchy::WideTree::kLeafBit) != 0) {
-      const std::uint32_t leaf = child & ~hierarchy::WideTree::kLeafBit;
-      for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
-        if (const std::uint32_t face = sites_.tree.items[i]; scratch_.excluded[face] == 0) visit(face);
-      continue;
-    }
-    const hierarchy::WideTree::Node& node = sites_.wide.nodes[child];
-    double distances[hierarchy::WideTree::kWidth];
-    find_distances(node, unit, distances);
-    const auto base = static_cast<std::ptrdiff_t>(stack.size());
-    for (std::uint32_t i = 0; i < node.count; ++i) {
-      if (too_far(distances[i])) continue;
-      auto at = stack.end();  // the nearest on top
-      while (at != stack.begin() + base && (at - 1)->squared < distances[i]) --at;
-      stack.insert(at, {node.child[i], distances[i]});
-    }
-  }
+  hierarchy::traverse_nearest_child_first(
+      sites_.wide, scratch_.stack,
+      [&](const hierarchy::WideTree::Node& node, double(&squared)[hierarchy::WideTree::kWidth]) {
+        squared_distances(node, unit, squared);
+        std::uint32_t near = 0;
+        for (std::uint32_t i = 0; i < node.count; ++i) near |= (within(squared[i]) ? 1u : 0u) << i;
+        return near;
+      },
+      within,
+      [&](std::uint32_t leaf) {
+        for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
+          if (const std::uint32_t face = sites_.tree.items[i]; scratch_.excluded[face] == 0) visit(face);
+      });
 }
 
 // A face g that is closest to a point q of the ball is so near its centre c: with d_c = min d(c, ·),

@@ -9,9 +9,9 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/vec.h"
-#include "surface/sampling_bound/coverage.h"
 #include "surface/sampling_bound/cut_faces.h"
 #include "surface/sampling_bound/near_samples.h"
+#include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/polygon.h"
 #include "surface/surface_data.h"
 
@@ -86,23 +86,23 @@ class Cutter {
   }
 
   FacePieces operator()() {
-    constexpr std::size_t kFacesPerBlock = 64;
+    constexpr std::size_t kFacesPerGroup = 64;
     // Chart by chart, so that lookups are local.
     const std::span<const std::uint32_t> charts = surface_.face_charts();
     std::vector<std::uint32_t> order(charts.size());
     std::iota(order.begin(), order.end(), 0u);
     std::ranges::stable_sort(order, {}, [&](std::uint32_t face) { return charts[face]; });
-    std::vector<std::vector<FacePiece>>& blocks = result_.blocks;
-    blocks.resize((order.size() + kFacesPerBlock - 1) / kFacesPerBlock);
-    parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin * kFacesPerBlock; i < std::min(end * kFacesPerBlock, order.size()); ++i)
-        cut(order[i], blocks[i / kFacesPerBlock]);
+    std::vector<std::vector<FacePiece>>& groups = result_.face_groups;
+    groups.resize((order.size() + kFacesPerGroup - 1) / kFacesPerGroup);
+    parallel_for(groups.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin * kFacesPerGroup; i < std::min(end * kFacesPerGroup, order.size()); ++i)
+        cut(order[i], groups[i / kFacesPerGroup]);
     });
     return std::move(result_);
   }
 
  private:
-  using Block = std::vector<FacePiece>;
+  using Pieces = std::vector<FacePiece>;
 
   struct Face {
     std::uint32_t index;
@@ -110,21 +110,21 @@ class Cutter {
     double enough;  ///< a distance of pieces to their samples that need not be improved
   };
 
-  void cut(std::uint32_t index, Block& block) {
+  void cut(std::uint32_t index, Pieces& pieces) {
     const std::array<Vec3, 3> vertices = vertices_of(surface_.mesh(), index);
     const double radius = owns_texel_[index] ? half_diagonal(surface_.texel_edges(index)) : typical_;
     const Face face{index, vertices, kNearEnough * radius};
-    surface_.face_charts()[index] == kNone ? add_face_without_area(block, face) : add_face(block, face);
+    surface_.face_charts()[index] == kNone ? add_face_without_area(pieces, face) : add_face(pieces, face);
   }
 
-  void add_face_without_area(Block& block, const Face& face) {
+  void add_face_without_area(Pieces& pieces, const Face& face) {
     for_each_square(unfolded(face.vertices, typical_), [&](double, double, SquareCorners, const auto& part) {
       if (const Polygon polygon = part(); !polygon.empty())
-        store(block, face, polygon, near_samples_.nearest_texel(Outline(face.vertices, polygon)));
+        store(pieces, face, polygon, near_samples_.nearest_texel(Outline(face.vertices, polygon)));
     });
   }
 
-  void add_face(Block& block, const Face& face) {
+  void add_face(Pieces& pieces, const Face& face) {
     const auto visit = [&](double x, double y, SquareCorners corners, const auto& part) {
       const std::uint32_t texel = near_samples_.texel_at(x, y);
       const bool owned = texel != kNone && surface_.texel_faces()[texel] == face.index;
@@ -133,37 +133,38 @@ class Cutter {
       if (polygon.empty()) return;
       if (owned) {
         result_.whole_square[sample_of_[texel]] = 0;
-        store(block, face, polygon, texel);
+        store(pieces, face, polygon, texel);
       } else {
-        add_piece(block, face, x, y, polygon, 0);
+        add_piece(pieces, face, {x, y}, polygon, 0);
       }
     };
     for_each_square(internals(surface_).corners[face.index], visit);
   }
 
-  /// A piece in the square at (x, y), which its face does not own. If it is far from every sample because it
-  /// is large, it is halved.
-  void add_piece(Block& block, const Face& face, double x, double y, const Polygon& polygon, int cuts) {
+  /// A piece in the square with this upper left corner, which its face does not own. If it is far from every
+  /// sample because it is large, it is halved.
+  void add_piece(Pieces& pieces, const Face& face, const Vec2& square, const Polygon& polygon, int cuts) {
     constexpr int kMostCuts = 4;
     constexpr std::size_t kMostCorners = 8;  // of which a cut makes 12 at most
     const Outline outline(face.vertices, polygon);
-    const auto [texel, distance] = near_samples_.choose(face.index, x, y, outline, face.enough);
+    const auto [texel, distance] =
+        near_samples_.choose(face.index, square[0], square[1], outline, face.enough);
     const bool large = 4 * outline.farthest_from(outline.middle()) > distance;
     if (distance <= face.enough || !large || cuts == kMostCuts || polygon.corners().size() > kMostCorners)
-      return store(block, face, polygon, texel);
+      return store(pieces, face, polygon, texel);
     const auto [left, right] = polygon.range(0);
     const auto [top, bottom] = polygon.range(1);
     const bool wide = right - left > bottom - top;
     const double middle = wide ? 0.5 * (left + right) : 0.5 * (top + bottom);
     for (const double side : {1.0, -1.0})
       if (const Polygon half = polygon.clipped(wide ? 0 : 1, middle, side); !half.empty())
-        add_piece(block, face, x, y, half, cuts + 1);
+        add_piece(pieces, face, square, half, cuts + 1);
   }
 
-  void store(Block& block, const Face& face, const Polygon& polygon, std::uint32_t texel) const {
+  void store(Pieces& pieces, const Face& face, const Polygon& polygon, std::uint32_t texel) const {
     const auto corners = polygon.corners();
     for (std::size_t first = 0; first < corners.size(); first += 4) {
-      Piece& piece = block.emplace_back(face.index).piece;
+      Piece& piece = pieces.emplace_back(face.index).piece;
       piece.sample = sample_of_[texel];
       for (std::size_t k = 0; k < 4; ++k)
         for (int i = 0; i < 2; ++i)

@@ -16,7 +16,7 @@ struct FacePiece {
 
 struct FacePieces {
   /// Of a few faces each, that are near each other. Samples count from the first of all.
-  std::vector<std::vector<FacePiece>> blocks;
+  std::vector<std::vector<FacePiece>> face_groups;
   /// Of each sample, whether its face has an end of either diagonal of its square, none of which is among the
   /// pieces then.
   std::vector<std::uint8_t> whole_square;

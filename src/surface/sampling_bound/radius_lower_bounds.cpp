@@ -3,8 +3,8 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "surface/sample_blocks.h"
-#include "surface/sampling_bound/coverage.h"
 #include "surface/sampling_bound/face_frame.h"
+#include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/sample_tree.h"
 #include "surface/surface_data.h"
 
@@ -40,9 +40,9 @@ std::array<double, 2> middle_corner(const std::array<Vec2, 3>& triangle) {
 
 }  // namespace
 
-std::vector<double> Coverage::radius_lower_bounds(const Surface& surface) const {
-  const std::span<const Vec3> points = surface.sample_points();
-  const SampleTree tree(surface, 16 * surface.sampling_bound());
+std::vector<double> PieceAssignment::radius_lower_bounds(const Surface& surface, double bound) const {
+  const SampleTree tree(surface, 16 * bound);
+  const std::span<const Vec3> points = tree.points();
   std::vector<double> radii(surface.mesh().triangles.size());
   parallel_for(radii.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
@@ -56,18 +56,18 @@ std::vector<double> Coverage::radius_lower_bounds(const Surface& surface) const 
       radii[f] = std::max(0.0, farthest.distance() - frame.rounding());
     }
   });
-  parallel_for(run_ends_.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r)
-      for_each_patch(r, [&](const Patch& patch, auto, std::span<const Piece> pieces) {
-        const FaceFrame frame(surface.mesh(), patch.face);
-        const std::atomic_ref<double> known(radii[patch.face]);
+  parallel_for(block_ends_.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b)
+      for_each_face(b, [&](const FaceInBlock& part, auto, std::span<const Piece> pieces) {
+        const FaceFrame frame(surface.mesh(), part.face);
+        const std::atomic_ref<double> known(radii[part.face]);
         Farthest farthest(points, tree, known.load(std::memory_order_relaxed));
         for (const auto& [sample, weights] : pieces)
           for (int k = 0; k < 4; ++k) {
             const Vec3 corner = frame.at(weights[0][k], weights[1][k]);
-            farthest.look_at(corner, norm(corner - points[r * kRunLength + sample]));
+            farthest.look_at(corner, norm(corner - points[b * kBlockSize + sample]));
           }
-        atomic_max(radii[patch.face], farthest.distance() - frame.rounding());
+        atomic_max(radii[part.face], farthest.distance() - frame.rounding());
       });
   });
   return radii;

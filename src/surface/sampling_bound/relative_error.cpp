@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "surface/sampling_bound/coverage.h"
+#include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm {
 namespace {
@@ -22,16 +22,16 @@ void check_faces(std::size_t count, std::size_t expected) {
 
 }  // namespace
 
-RelativeError::RelativeError(const Surface& first_shape)
-    : first_(surface::coverage_of(first_shape).radius_lower_bounds(first_shape)),
+RelativeError::RelativeError(const Surface& first_shape, const SamplingBound& bound)
+    : first_(internals(bound).radius_lower_bounds(first_shape, bound.value())),
       largest_(*std::ranges::max_element(first_)) {}
 
-double RelativeError::of(const Surface& now) const {
+double RelativeError::of(const SamplingBound& now) const {
   check_faces(now.face_radii().size(), first_.size());
-  return ratio(now.sampling_bound(), largest_);
+  return ratio(now.value(), largest_);
 }
 
-void RelativeError::of_faces(const Surface& now, std::span<double> errors) const {
+void RelativeError::of_faces(const SamplingBound& now, std::span<double> errors) const {
   check_faces(now.face_radii().size(), first_.size());
   check_faces(errors.size(), first_.size());
   std::ranges::transform(now.face_radii(), first_, errors.begin(), ratio);

@@ -28,7 +28,7 @@ double stepped(double resolution) {
 /// About how many times the resolution it takes; above 1 if and only if it does not suffice.
 double needed_factor(const Mesh& mesh, AtlasOptions options, double resolution, double precision) try {
   options.resolution = static_cast<std::uint32_t>(resolution);
-  return Surface(mesh, options).sampling_bound() / precision;
+  return SamplingBound(Surface(mesh, options)).value() / precision;
 } catch (const atlas::TooSmall& error) {
   return static_cast<double>(error.enough()) / resolution;
 }

@@ -5,18 +5,13 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "hierarchy/traverse.h"
 
 namespace sdm::surface {
 
 struct SampleTree::Run {
   std::size_t first;
   Box box;  // in the unit frame
-};
-
-struct SampleTree::Nearest {
-  Vec3 query, unit_query;
-  std::uint32_t sample = 0;
-  double squared_distance = std::numeric_limits<double>::infinity();
 };
 
 SampleTree::SampleTree(const Surface& surface, double radius)
@@ -56,36 +51,22 @@ std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end,
 }
 
 std::uint32_t SampleTree::nearest(const Vec3& query) const {
-  Nearest found{query, frame_.to_unit(query)};
-  descend(0, found);
-  return found.sample;
-}
-
-double SampleTree::squared_distance(std::uint32_t node, const Nearest& found) const {
-  const hierarchy::FloatBox& box = tree_.nodes[node].box;
-  Vec3 gap;
-  for (int k = 0; k < 3; ++k)
-    gap[k] = std::max({box.lo[k] - found.unit_query[k], 0.0, found.unit_query[k] - box.hi[k]}) / frame_.scale;
-  return squared_norm(gap);
-}
-
-void SampleTree::descend(std::uint32_t index, Nearest& found) const {
-  const hierarchy::AabbTree::Node& node = tree_.nodes[index];
-  if (node.leaf()) {
-    const std::uint32_t run = tree_.items[node.first];
-    for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
-      const double d = squared_norm(points_[i] - found.query);
-      if (d < found.squared_distance)
-        found.sample = static_cast<std::uint32_t>(i), found.squared_distance = d;
-    }
-    return;
-  }
-  const std::array<std::uint32_t, 2> children{index + 1, node.right};
-  const std::array<double, 2> distances{squared_distance(children[0], found),
-                                        squared_distance(children[1], found)};
-  const int near = distances[0] <= distances[1] ? 0 : 1;
-  for (const int k : {near, 1 - near})
-    if (distances[k] < found.squared_distance) descend(children[k], found);
+  const Vec3 unit_query = frame_.to_unit(query);
+  std::uint32_t sample = 0;
+  double least = std::numeric_limits<double>::infinity();  // squared
+  hierarchy::traverse_nearer_first(
+      tree_,
+      [&](const hierarchy::FloatBox& box) {
+        return squared_norm((1 / frame_.scale) * gap(box, unit_query));  // exact: the scale is a power of two
+      },
+      [&](double squared_distance) { return squared_distance < least; },
+      [&](std::uint32_t leaf) {
+        const std::uint32_t run = tree_.items_of(leaf)[0];
+        for (std::size_t i = first_[run]; i < first_[run + 1]; ++i)
+          if (const double d = squared_norm(points_[i] - query); d < least)
+            sample = static_cast<std::uint32_t>(i), least = d;
+      });
+  return sample;
 }
 
 }  // namespace sdm::surface

@@ -18,17 +18,17 @@ class SampleTree {
   /// is cut. Cost: linear in samples, all cores.
   SampleTree(const Surface& surface, double radius);
 
-  /// The nearest sample, by its place in samples(). Cost: O(log n) for queries near the surface.
+  /// Of all samples.
+  [[nodiscard]] std::span<const Vec3> points() const { return points_; }
+
+  /// The nearest sample, by its place in sample_texels(). Cost: O(log n) for queries near the surface.
   [[nodiscard]] std::uint32_t nearest(const Vec3& query) const;
 
  private:
   struct Run;
-  struct Nearest;
   [[nodiscard]] std::vector<Run> cut(std::size_t begin, std::size_t end, double radius) const;
-  [[nodiscard]] double squared_distance(std::uint32_t node, const Nearest& found) const;
-  void descend(std::uint32_t index, Nearest& found) const;
 
-  std::span<const Vec3> points_;
+  std::vector<Vec3> points_;
   UnitFrame frame_;
   std::vector<std::size_t> first_;  ///< sample of each run, and the end of the last run
   hierarchy::AabbTree tree_;        ///< over runs, one a leaf

@@ -25,11 +25,11 @@ int main() {
                        .corner_uvs = {}};
   const sdm::Surface surface(mesh, {.resolution = 64});
   const sdm::Sites sites(mesh);
-  const sdm::DistanceMap map = sdm::compute_map(surface, sites, {.engine = sdm::EngineKind::cpu});
+  const sdm::DistanceMap map = sdm::compute_map(surface, sites, {.engine = sdm::make_engine("cpu")});
   for (const auto texel : surface.sample_texels())
     if (!(map.distance[texel] < 1e-6)) return 1;
   if (!is_refused([] { (void)sdm::gl_devices(); })) return 2;
-  if (!is_refused([&] { (void)sdm::compute_map(surface, sites, {.engine = sdm::EngineKind::gl}); })) return 3;
+  if (!is_refused([] { (void)sdm::make_engine("gl"); })) return 3;
   std::puts("as it should be");
   return 0;
 }

@@ -1,0 +1,79 @@
+#include "core/platform.h"
+
+#include <limits>
+
+#ifdef __linux__
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#else
+#include <random>
+#endif
+
+namespace sdm::core {
+
+#ifdef __linux__
+
+namespace {
+
+// MemAvailable counts page cache that can be dropped, which _SC_AVPHYS_PAGES does not.
+std::size_t machine_memory() {
+  std::ifstream meminfo("/proc/meminfo");
+  for (std::string key; meminfo >> key;) {
+    std::size_t kib = 0;
+    if (key == "MemAvailable:" && meminfo >> kib) return kib * 1024;
+    meminfo.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+// A container's limit less what it uses.
+std::size_t cgroup_memory() {
+  std::size_t limit = 0, used = 0;
+  std::ifstream max("/sys/fs/cgroup/memory.max"), current("/sys/fs/cgroup/memory.current");
+  if (max >> limit && current >> used) return limit > used ? limit - used : 0;
+  return std::numeric_limits<std::size_t>::max();
+}
+
+// What RLIMIT_AS leaves of the address space.
+std::size_t address_space() {
+  rlimit limit{};
+  std::size_t used_pages = 0;
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return std::numeric_limits<std::size_t>::max();
+  std::ifstream("/proc/self/statm") >> used_pages;
+  const std::size_t used = used_pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
+}
+
+}  // namespace
+
+std::size_t available_memory() {
+  return std::min({machine_memory(), cgroup_memory(), address_space()});
+}
+
+std::uint64_t process_number() {
+  return static_cast<std::uint64_t>(getpid());
+}
+
+#else
+
+std::size_t available_memory() {
+  return std::numeric_limits<std::size_t>::max();
+}
+
+// 64 random bits, drawn once.
+std::uint64_t process_number() {
+  static const std::uint64_t number = [] {
+    std::random_device random;
+    return std::uint64_t{random()} << 32 | random();
+  }();
+  return number;
+}
+
+#endif
+
+}  // namespace sdm::core

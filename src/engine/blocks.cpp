@@ -1,0 +1,32 @@
+#include "engine/blocks.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/parallel.h"
+#include "surface/surface_data.h"
+
+namespace sdm::engine {
+
+void for_each_block(std::size_t count, const Progress& progress, std::string_view step,
+                    const std::function<void(std::size_t, std::size_t)>& body) {
+  constexpr std::size_t kEnough = 32, kSmallestBlock = 16, kFan = 4;
+  std::size_t size = kLargestBlock;
+  while (size > kSmallestBlock && count < kEnough * size) size /= kFan;
+  parallel_for((count + size - 1) / size, 1, progress, step, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(size * i, std::min(count, size * (i + 1)));
+  });
+}
+
+void for_each_sample_block(const Surface& surface, const Progress& progress, std::string_view step,
+                           const std::function<void(std::size_t, std::span<const Vec3>)>& body) {
+  for_each_block(surface.sample_texels().size(), progress, step, [&](std::size_t begin, std::size_t end) {
+    // A block's points stay in the cache; those of all samples would not.
+    thread_local std::vector<Vec3> points;
+    points.resize(end - begin);
+    internals(surface).place_samples(begin, points);
+    body(begin, points);
+  });
+}
+
+}  // namespace sdm::engine

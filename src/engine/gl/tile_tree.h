@@ -1,0 +1,32 @@
+// The tiles of a surface under an AABB tree, and where they are kept from map to map.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "hierarchy/aabb_tree.h"
+#include "surface/surface_data.h"
+#include "surface/tiles.h"
+
+namespace sdm::gl {
+
+struct TileTree {
+  /// Throws sdm::Error if there is not enough memory. Cost: O(n log n) in tiles, linear in texels, all cores.
+  explicit TileTree(const Surface& surface);
+
+  surface::Tiles tiles;
+  hierarchy::AabbTree tree;  ///< one tile a leaf; its boxes are those of the shape it was built for
+};
+
+/// The trees of surfaces that are mapped again and again, as in a sequence: building one takes longer than
+/// drawing a map of a small mesh. Entries of surfaces that no longer exist are dropped at the next call.
+class TileTreeCache {
+ public:
+  /// Builds the tree at the first call for a surface. Valid until the next call.
+  [[nodiscard]] const TileTree& of(const Surface& surface);
+
+ private:
+  std::map<std::weak_ptr<const surface::Identity>, TileTree, std::owner_less<>> trees_;
+};
+
+}  // namespace sdm::gl

@@ -1,0 +1,127 @@
+// Traversals of the binary tree. The layout of its nodes is known to this folder only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "hierarchy/aabb_tree.h"
+
+namespace sdm::hierarchy {
+
+/// A node and all nodes below it: those from `root` to before `end`. Its leaves are consecutive.
+struct Subtree {
+  std::uint32_t root = 0, end = 0;
+};
+
+[[nodiscard]] inline Subtree whole(const AabbTree& tree) {
+  return {0, static_cast<std::uint32_t>(tree.nodes.size())};
+}
+
+/// Depth first, the left child first: enter(Subtree) returns whether to go on below a node; visit(node) is
+/// called for the leaves entered, in their order.
+template <class Enter, class Visit>
+void traverse(const AabbTree& tree, Subtree subtree, const Enter& enter, const Visit& visit) {
+  if (subtree.root == subtree.end || !enter(subtree)) return;
+  const AabbTree::Node& node = tree.nodes[subtree.root];
+  if (node.leaf()) return visit(subtree.root);
+  traverse(tree, {subtree.root + 1, node.right}, enter, visit);
+  traverse(tree, {node.right, subtree.end}, enter, visit);
+}
+
+/// Depth first, of two children the nearer one first, of equally near ones the left. lower_bound(box) bounds
+/// the distance of what a box contains; a node is entered if within(its bound) holds at that time, so that
+/// the limit may shrink as leaves are visited.
+template <class LowerBound, class Within, class Visit>
+void traverse_nearer_first(const AabbTree& tree, const LowerBound& lower_bound, const Within& within,
+                           const Visit& visit) {
+  const auto descend = [&](const auto& self, std::uint32_t index) -> void {
+    const AabbTree::Node& node = tree.nodes[index];
+    if (node.leaf()) return visit(index);
+    const std::array<std::uint32_t, 2> children{index + 1, node.right};
+    const std::array bounds{lower_bound(tree.nodes[children[0]].box),
+                            lower_bound(tree.nodes[children[1]].box)};
+    const int nearer = bounds[0] <= bounds[1] ? 0 : 1;
+    for (const int k : {nearer, 1 - nearer})
+      if (within(bounds[k])) self(self, children[k]);
+  };
+  if (!tree.nodes.empty() && within(lower_bound(tree.nodes[0].box))) descend(descend, 0);
+}
+
+/// Best first: visits leaves in the order of their lower bounds, until that of the next node is not
+/// within(bound). Enters no more nodes than any other order, at the cost of a priority queue.
+template <class LowerBound, class Within, class Visit>
+void traverse_best_first(const AabbTree& tree, const LowerBound& lower_bound, const Within& within,
+                         const Visit& visit) {
+  struct Open {
+    double bound;
+    std::uint32_t node;
+    bool operator<(const Open& other) const { return bound > other.bound; }  // the least on top
+  };
+  if (tree.nodes.empty()) return;
+  std::priority_queue<Open> open;
+  open.push({lower_bound(tree.nodes[0].box), 0});
+  while (!open.empty() && within(open.top().bound)) {
+    const std::uint32_t index = open.top().node;
+    const AabbTree::Node& node = tree.nodes[index];
+    open.pop();
+    if (node.leaf()) {
+      visit(index);
+    } else {
+      for (const std::uint32_t child : {index + 1, node.right})
+        open.push({lower_bound(tree.nodes[child].box), child});
+    }
+  }
+}
+
+/// Computes a value from the root down: summary(node) is the value of all below a node, if that is known
+/// without them; else leaf(node), or merge(left value, right value).
+template <class Summary, class Leaf, class Merge>
+auto reduce(const AabbTree& tree, std::uint32_t index, const Summary& summary, const Leaf& leaf,
+            const Merge& merge) -> typename decltype(summary(index))::value_type {
+  if (const auto known = summary(index)) return *known;
+  const AabbTree::Node& node = tree.nodes[index];
+  if (node.leaf()) return leaf(index);
+  auto left = reduce(tree, index + 1, summary, leaf, merge);
+  auto right = reduce(tree, node.right, summary, leaf, merge);
+  return merge(std::move(left), std::move(right));
+}
+
+/// Children before their parents, the last leaf first: calls leaf(node) or inner(node, left, right).
+template <class Leaf, class Inner>
+void for_each_bottom_up(const AabbTree& tree, const Leaf& leaf, const Inner& inner) {
+  for (auto i = static_cast<std::uint32_t>(tree.nodes.size()); i-- > 0;) {
+    const AabbTree::Node& node = tree.nodes[i];
+    if (node.leaf())
+      leaf(i);
+    else
+      inner(i, i + 1, node.right);
+  }
+}
+
+/// The nodes that are leaves, in their order.
+[[nodiscard]] inline std::vector<std::uint32_t> leaf_nodes(const AabbTree& tree) {
+  std::vector<std::uint32_t> leaves;
+  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i)
+    if (tree.nodes[i].leaf()) leaves.push_back(i);
+  return leaves;
+}
+
+/// Numbers of leaves, which are consecutive in every subtree.
+struct LeafOrder {
+  std::vector<std::uint32_t> before;  ///< leaves in front of each node, and of the end
+
+  explicit LeafOrder(const AabbTree& tree) : before(tree.nodes.size() + 1, 0) {
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+      before[i + 1] = before[i] + (tree.nodes[i].leaf() ? 1 : 0);
+  }
+  [[nodiscard]] std::uint32_t count(std::uint32_t node, std::uint32_t end) const {
+    return before[end] - before[node];
+  }
+  [[nodiscard]] std::uint32_t count(Subtree subtree) const { return count(subtree.root, subtree.end); }
+};
+
+}  // namespace sdm::hierarchy

@@ -1,0 +1,52 @@
+// Traversal of the wide tree.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "hierarchy/wide_tree.h"
+
+namespace sdm::hierarchy {
+
+/// A child of a wide node, still to be visited.
+template <class Distance>
+struct OpenChild {
+  std::uint32_t child;
+  Distance squared;  ///< distance of its box
+};
+
+/// Depth first, the nearest child first. near(node, squared) sets the squared distances of a node's children
+/// and returns a bit for each that is within reach; within(squared) is tested again when a child's turn
+/// comes; visit(leaf) is called with the leaf's number. `stack` is scratch memory.
+///
+/// Always inlined: a caller compiled for other vector instructions has the whole loop compiled for them.
+template <class Distance, class Near, class Within, class Visit>
+[[gnu::always_inline]] inline void traverse_nearest_child_first(const WideTree& tree,
+                                                                std::vector<OpenChild<Distance>>& stack,
+                                                                const Near& near, const Within& within,
+                                                                const Visit& visit) {
+  stack.assign(1, {0, 0});
+  while (!stack.empty()) {
+    const OpenChild<Distance> entry = stack.back();
+    stack.pop_back();
+    if (!within(entry.squared)) continue;
+    if (WideTree::is_leaf(entry.child)) {
+      visit(WideTree::leaf_number(entry.child));
+      continue;
+    }
+    const WideTree::Node& node = tree.nodes[entry.child];
+    alignas(64) Distance squared[WideTree::kWidth];
+    std::uint32_t open = near(node, squared);
+    const auto base = static_cast<std::ptrdiff_t>(stack.size());
+    for (; open != 0; open &= open - 1) {  // the nearest on top
+      const int slot = std::countr_zero(open);
+      const OpenChild<Distance> child{node.child[slot], squared[slot]};
+      auto at = stack.end();
+      while (at != stack.begin() + base && (at - 1)->squared < child.squared) --at;
+      stack.insert(at, child);
+    }
+  }
+}
+
+}  // namespace sdm::hierarchy

@@ -1,0 +1,164 @@
+#include "io/read/polygons/polygon_mesh.h"
+
+#include <fmt/format.h>
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <bit>
+#include <random>
+#include <string>
+
+#include "core/vec.h"
+#include "io/read/polygons/triangulate.h"
+
+namespace sdm::io {
+namespace {
+
+void check_indices(const PolygonMesh& polygons) {
+  if (polygons.ends.empty()) {
+    if (polygons.positions.empty()) throw Error("there are no triangles");
+    throw Error(
+        fmt::format("there are no triangles, only a cloud of {} points; reconstruct a mesh from them first",
+                    polygons.positions.size()));
+  }
+  for (std::size_t c = 0; c < polygons.corners.size(); ++c) {
+    if (polygons.corners[c] < polygons.positions.size()) continue;
+    const auto face = std::upper_bound(polygons.ends.begin(), polygons.ends.end(), c) - polygons.ends.begin();
+    throw Error(fmt::format("index out of range: face {} refers to vertex {} of {}", face,
+                            polygons.corners[c], polygons.positions.size()));
+  }
+}
+
+std::uint64_t mix(std::uint64_t h) {
+  h = (h ^ h >> 32) * 0xD6E8FEB86659FD93u;
+  return h ^ h >> 32;
+}
+
+// Random, so that no file can be crafted to collide in the hash table. Results do not depend on it.
+std::uint64_t hash_seed() {
+  static const std::uint64_t seed = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
+  return seed;
+}
+
+// An open hash table of positions.
+class PositionTable {
+ public:
+  PositionTable(std::size_t capacity, const std::vector<Vec3>& positions)
+      : positions_(positions), slots_(std::bit_ceil(capacity + capacity / 2 + 1), kNone) {}
+
+  /// Returns the index of an equal position that was inserted before. Otherwise inserts and returns `index`;
+  /// the caller then appends p to `positions`.
+  std::uint32_t find_or_insert(const Vec3& p, std::uint32_t index) {
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t slot = hash(p) & mask;; slot = (slot + 1) & mask) {
+      if (slots_[slot] == kNone) return slots_[slot] = index;
+      if (positions_[slots_[slot]] == p) return slots_[slot];
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t hash(const Vec3& p) const {
+    std::uint64_t h = seed_;
+    for (const double x : p) h = mix(h ^ std::bit_cast<std::uint64_t>(x + 0.0));  // −0 + 0 = 0
+    return h;
+  }
+
+  const std::vector<Vec3>& positions_;
+  std::vector<std::uint32_t> slots_;
+  std::uint64_t seed_ = hash_seed();
+};
+
+// Fills mesh.positions. Returns the new index of each old vertex, kNone for those without a face.
+std::vector<std::uint32_t> weld(const PolygonMesh& polygons, Mesh& mesh) {
+  std::vector<std::uint32_t> renumbered(polygons.positions.size(), kNone);
+  for (const std::uint32_t v : polygons.corners) renumbered[v] = 0;
+  const auto used = polygons.positions.size() -
+                    static_cast<std::size_t>(std::count(renumbered.begin(), renumbered.end(), kNone));
+  mesh.positions.reserve(used);
+  PositionTable table(used, mesh.positions);
+  for (std::size_t v = 0; v < renumbered.size(); ++v) {
+    if (renumbered[v] == kNone) continue;
+    if (!finite(polygons.positions[v]))
+      throw Error(fmt::format("vertex {} has a NaN or infinite coordinate", v));
+    const auto next = static_cast<std::uint32_t>(mesh.positions.size());
+    renumbered[v] = table.find_or_insert(polygons.positions[v], next);
+    if (renumbered[v] == next) mesh.positions.push_back(polygons.positions[v]);
+  }
+  return renumbered;
+}
+
+bool all_corners_have_uvs(const PolygonMesh& polygons) {
+  if (polygons.corner_uvs.empty()) return false;
+  return std::all_of(polygons.corner_uvs.begin(), polygons.corner_uvs.end(), [&](std::uint32_t i) {
+    return i < polygons.uvs.size() && std::isfinite(polygons.uvs[i][0]) && std::isfinite(polygons.uvs[i][1]);
+  });
+}
+
+// Collects the corners of one polygon, as indices into PolygonMesh::corners. Of consecutive corners on the
+// same vertex only the first is kept, as long as three remain: many exporters write triangles as quads with a
+// repeated corner.
+void gather(const std::vector<std::uint32_t>& corners, const std::vector<std::uint32_t>& renumbered,
+            std::uint32_t begin, std::uint32_t end, std::vector<std::uint32_t>& places) {
+  places.clear();
+  const auto same = [&](std::uint32_t a, std::uint32_t b) {
+    return renumbered[corners[a]] == renumbered[corners[b]];
+  };
+  for (std::uint32_t c = begin; c < end; ++c)
+    if (places.empty() || !same(c, places.back()) || places.size() + (end - c) <= 3) places.push_back(c);
+  while (places.size() > 3 && same(places.front(), places.back())) places.pop_back();
+}
+
+}  // namespace
+
+void PolygonMesh::end_polygon() {
+  const std::size_t begin = ends.empty() ? 0 : ends.back();
+  if (corners.size() >= kNone) throw Error("there are more than 2^32 corners of faces");
+  if (corners.size() - begin >= 3) {
+    ends.push_back(static_cast<std::uint32_t>(corners.size()));
+  } else {
+    corners.resize(begin);
+    if (corner_uvs.size() > begin) corner_uvs.resize(begin);
+  }
+}
+
+Mesh to_mesh(const PolygonMesh& polygons) {
+  std::vector<std::uint32_t> renumbered;
+  return to_mesh(polygons, renumbered);
+}
+
+Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered) {
+  check_indices(polygons);
+  Mesh mesh;
+  renumbered = weld(polygons, mesh);
+  const bool with_uvs = all_corners_have_uvs(polygons);
+  const std::size_t triangle_count = polygons.corners.size() - 2 * polygons.ends.size();
+  mesh.triangles.reserve(triangle_count);
+  if (with_uvs) mesh.corner_uvs.reserve(triangle_count);
+
+  Triangulator triangulator;
+  std::vector<std::uint32_t> places;
+  std::vector<Vec3> points;
+  const auto add_triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const auto vertex = [&](std::uint32_t place) { return renumbered[polygons.corners[place]]; };
+    mesh.triangles.push_back({vertex(a), vertex(b), vertex(c)});
+    const auto uv = [&](std::uint32_t place) { return polygons.uvs[polygons.corner_uvs[place]]; };
+    if (with_uvs) mesh.corner_uvs.push_back({uv(a), uv(b), uv(c)});
+  };
+  std::uint32_t begin = 0;
+  for (const std::uint32_t end : polygons.ends) {
+    if (end - begin == 3) {
+      add_triangle(begin, begin + 1, begin + 2);
+    } else {
+      gather(polygons.corners, renumbered, begin, end, places);
+      points.clear();
+      for (const std::uint32_t place : places)
+        points.push_back(mesh.positions[renumbered[polygons.corners[place]]]);
+      for (const auto& t : triangulator.triangulate(points))
+        add_triangle(places[t[0]], places[t[1]], places[t[2]]);
+    }
+    begin = end;
+  }
+  return mesh;
+}
+
+}  // namespace sdm::io

@@ -1,0 +1,105 @@
+#include "sites/sites_data.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+#include "mesh/validate.h"
+
+namespace sdm::sites {
+namespace {
+
+constexpr std::uint32_t kLeafFaces = FaceBounds::kWidth;
+constexpr std::size_t kGrain = 4096;
+
+// What a triangle soup takes while its sites are built; meshes take half of it.
+void require_memory_for(const Mesh& mesh) {
+  constexpr std::size_t kBytesPerFace = 900, kBytesPerVertex = 60;
+  require_memory(kBytesPerFace * mesh.triangles.size() + kBytesPerVertex * mesh.positions.size(), "O2");
+}
+
+std::vector<std::uint32_t> faces_with_sites(const mesh::Topology& topology) {
+  std::vector<std::uint32_t> faces;
+  faces.reserve(topology.face_edges.size());
+  for (std::size_t f = 0; f < topology.face_edges.size(); ++f)
+    if (!topology.ignored(f)) faces.push_back(static_cast<std::uint32_t>(f));
+  return faces;
+}
+
+}  // namespace
+
+SitesData::SitesData(Mesh given) {
+  validate(given);
+  require_memory_for(given);
+  mesh = std::move(given);
+  const std::vector<Triangle>& triangles = mesh.triangles;
+  frame = UnitFrame::of(bounds(mesh));
+  topology = mesh::build_topology(mesh.positions.size(), triangles);
+  parallel_invoke(
+      [&] {
+        vertex_faces = mesh::vertex_faces(mesh.positions.size(), triangles, topology);
+        orientation = mesh::orient(triangles, topology);
+        closed = topology.closed();
+        if (is_solid()) shells = find_shells(orientation);
+        consistently_oriented = is_solid() && std::ranges::count(orientation.flipped, 1) == 0;
+      },
+      [&] {
+        tree = hierarchy::build_aabb_tree(face_boxes(), faces_with_sites(topology), kLeafFaces);
+        wide = hierarchy::collapse(tree);
+      });
+  regions = build_regions(
+      {mesh.positions, triangles, topology, vertex_faces, orientation.orientable, frame.scale}, tree);
+  normals = {std::vector<Vec3>(triangles.size()), std::vector<Vec3>(mesh.positions.size())};
+  sliver.resize(triangles.size());
+  Refit refit;  // of a mesh that stays nothing is kept
+  place(regions, mesh.positions, refit.placed);
+  compute_regions(refit);
+}
+
+void SitesData::refit(std::span<const Vec3> positions) {
+  mesh::validate_positions(positions, mesh.positions.size());
+  std::ranges::copy(positions, mesh.positions.begin());
+  frame = UnitFrame::of(bounds(mesh));
+  Refit& refit = last_refit_;
+  place(regions, mesh.positions, refit.placed);
+  find_leaf_boxes(regions, frame, refit.placed, refit.boxes);
+  hierarchy::refit_leaves(tree, refit.boxes);
+  hierarchy::refit(wide, tree);
+  compute_regions(refit);
+}
+
+// The boxes of faces are those of their vertices, each rounded outwards.
+std::vector<hierarchy::FloatBox> SitesData::face_boxes() const {
+  std::vector<hierarchy::FloatBox> corners(mesh.positions.size()), boxes(mesh.triangles.size());
+  parallel_for(corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const Vec3 p = frame.to_unit(mesh.positions[v]);
+      corners[v] = hierarchy::FloatBox::around({p, p});
+    }
+  });
+  parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto [a, b, c] = mesh.triangles[f];
+      boxes[f] = unite(unite(corners[a], corners[b]), corners[c]);
+    }
+  });
+  return boxes;
+}
+
+void SitesData::set_inverted() {
+  if (is_solid())
+    orient_outward(face_tree(), orientation, shells, inverted);
+  else if (orientation.orientable)
+    inverted = orientation.flipped;
+  else
+    inverted.assign(mesh.triangles.size(), 0);
+}
+
+void SitesData::compute_regions(Refit& refit) {
+  set_inverted();
+  sites::refit(regions, {frame, refit.placed, inverted}, normals, sliver, refit.shapes);
+}
+
+}  // namespace sdm::sites

@@ -1,0 +1,145 @@
+#include "surface/sampling_bound/piece_assignment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/atomic_max.h"
+#include "core/parallel.h"
+#include "core/vec.h"
+#include "surface/sample_blocks.h"
+#include "surface/sampling_bound/face_frame.h"
+#include "surface/surface_data.h"
+
+namespace sdm::surface {
+namespace {
+
+/// A float that is not less.
+float rounded_up(double x) {
+  return static_cast<float>(x * (1 + 0x1p-23));
+}
+
+}  // namespace
+
+double half_diagonal(const std::array<Vec3, 2>& texel_edges) {
+  const auto& [du, dv] = texel_edges;
+  return 0.5 * std::sqrt(std::max(squared_norm(du + dv), squared_norm(du - dv)));
+}
+
+namespace {
+
+// How far whole squares of texels reach on the face, plus what M⁻¹, which places the samples, moves the
+// face's own corners by rounding.
+double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame& frame) {
+  const atlas::FaceMap& map = internals(surface).maps[face];
+  const auto& [du, dv] = map.edges;
+  double mismatch = 0;
+  for (int k = 0; k < 2; ++k) {
+    const Vec2 d = internals(surface).corners[face][k + 1] - map.origin;
+    mismatch = std::max(mismatch, norm(d[0] * du + d[1] * dv - frame.edges[k]));
+  }
+  return half_diagonal(map.edges) + mismatch + frame.rounding();
+}
+
+}  // namespace
+
+// Calls take_face(face, how far any of its points here is from its sample).
+template <class Take>
+void PieceAssignment::measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
+                                    std::span<float> radii, const Take& take_face) const {
+  std::ranges::fill(radii, 0.0f);
+  for_each_face(block, [&](const FaceInBlock& part, auto squares, std::span<const Piece> pieces) {
+    const FaceFrame frame(surface.mesh(), part.face);
+    float largest = 0;
+    if (!squares.empty()) {
+      largest = rounded_up(square_radius(surface, part.face, frame));
+      for (const std::uint8_t sample : squares) radii[sample] = std::max(radii[sample], largest);
+    }
+    const double rounding = frame.rounding();
+    for (std::array<double, 64> squared; !pieces.empty();) {
+      const auto some = pieces.first(std::min(squared.size(), pieces.size()));
+      measure_pieces(some, frame.origin, frame.edges, points, squared);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const float radius = rounded_up(std::sqrt(squared[i]) + rounding);
+        radii[some[i].sample] = std::max(radii[some[i].sample], radius);
+        largest = std::max(largest, radius);
+      }
+      pieces = pieces.subspan(some.size());
+    }
+    take_face(part.face, largest);
+  });
+}
+
+void PieceAssignment::measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
+                                    std::span<float> radii) const {
+  measure_block(surface, block, points, radii, [](std::uint32_t, float) {});
+}
+
+void PieceAssignment::measure(const Surface& surface, Radii& radii) const {
+  const std::size_t samples = surface.sample_texels().size();
+  radii.faces.assign(surface.mesh().triangles.size(), 0);
+  radii.samples.resize(samples);
+  const auto take_face = [&](std::uint32_t face, float largest) { atomic_max(radii.faces[face], largest); };
+  parallel_for(block_count(samples), 16, [&](std::size_t begin, std::size_t end) {
+    std::array<Vec3, kBlockSize> places;
+    for (std::size_t b = begin; b < end; ++b) {
+      const SampleBlock block(b, samples);
+      const std::span points = std::span(places).first(block.size());
+      internals(surface).place_samples(block.first, points);
+      measure_block(surface, b, points, std::span(radii.samples).subspan(block.first, block.size()),
+                    take_face);
+    }
+  });
+  radii.largest = *std::ranges::max_element(radii.faces);
+}
+
+// A face maps the rectangle around its texels, and the one around its weights, to parallelograms, which are
+// farthest from p at a corner.
+double PieceAssignment::radius_about(const Surface& surface, std::size_t block, const Vec3& p) const {
+  double farthest = 0;
+  for_each_face(block, [&](const FaceInBlock& part, auto squares, std::span<const Piece> pieces) {
+    const FaceFrame frame(surface.mesh(), part.face);
+    const auto reach = [&](const auto& low, const auto& high, const auto& point_at) {
+      double squared = 0;
+      for (const auto a : {low[0], high[0]})
+        for (const auto b : {low[1], high[1]}) squared = std::max(squared, squared_norm(point_at(a, b) - p));
+      return std::sqrt(squared);
+    };
+    if (part.low_texel[0] <= part.high_texel[0]) {
+      const double square = squares.empty() ? 0 : square_radius(surface, part.face, frame);
+      farthest = std::max(farthest, square + reach(part.low_texel, part.high_texel, [&](auto x, auto y) {
+                                      return surface.to_surface(part.face, {x + 0.5, y + 0.5});
+                                    }));
+    }
+    if (!pieces.empty())
+      farthest = std::max(farthest, frame.rounding() + reach(part.low_weights, part.high_weights,
+                                                             [&](auto a, auto b) { return frame.at(a, b); }));
+  });
+  return farthest;
+}
+
+// Pieces lie within their face, and samples within the triangle that M⁻¹ makes of the face's corners in the
+// atlas: a little off the face, by rounding.
+double PieceAssignment::face_radius_about(const Surface& surface, BlockRange blocks, const Vec3& p) const {
+  const SurfaceData& s = internals(surface);
+  double squared = 0;
+  std::uint32_t last = kNone;
+  const std::size_t first = blocks.first == 0 ? 0 : block_ends_[blocks.first - 1];
+  for (std::size_t i = first; i < block_ends_[blocks.end - 1]; ++i) {
+    const std::uint32_t face = faces_in_blocks_[i].face;
+    if (std::exchange(last, face) == face) continue;
+    const Triangle& corners = s.mesh.triangles[face];
+    for (const std::uint32_t v : corners) squared = std::max(squared, squared_norm(s.mesh.positions[v] - p));
+    const auto& [origin, edges] = s.maps[face];
+    const Vec3 from = s.mesh.positions[corners[0]] - p;
+    for (int k = 1; k < 3; ++k) {
+      const Vec2 d = s.corners[face][k] - origin;
+      squared = std::max(squared, squared_norm(from + d[0] * edges[0] + d[1] * edges[1]));
+    }
+  }
+  // Edges are at most twice as long as `farthest`: see FaceFrame::rounding.
+  const double farthest = std::sqrt(squared), largest = std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
+  return farthest + 0x1p-22 * farthest + 1e-13 * (farthest + largest);
+}
+
+}  // namespace sdm::surface

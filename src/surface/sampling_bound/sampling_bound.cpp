@@ -1,0 +1,52 @@
+#include <sdm/error.h>
+#include <sdm/sampling_bound.h>
+
+#include <string>
+
+#include "surface/sampling_bound/piece_assignment.h"
+
+namespace sdm {
+namespace {
+
+void check_count(std::size_t count, std::size_t expected, const char* items) {
+  if (count != expected)
+    throw Error("the sampling bound of a surface of " + std::to_string(expected) + ' ' + items +
+                " cannot be refitted to one of " + std::to_string(count) +
+                "; refit it to the surface that it was built from");
+}
+
+}  // namespace
+
+struct SamplingBound::Impl {
+  surface::PieceAssignment pieces;
+  surface::PieceAssignment::Radii radii;
+
+  explicit Impl(const Surface& surface) : pieces(surface) { pieces.measure(surface, radii); }
+};
+
+SamplingBound::SamplingBound(const Surface& surface) : impl_(std::make_unique<Impl>(surface)) {}
+SamplingBound::~SamplingBound() = default;
+SamplingBound::SamplingBound(SamplingBound&&) noexcept = default;
+SamplingBound& SamplingBound::operator=(SamplingBound&&) noexcept = default;
+
+void SamplingBound::refit(const Surface& surface) {
+  check_count(surface.mesh().triangles.size(), face_radii().size(), "faces");
+  check_count(surface.sample_texels().size(), sample_radii().size(), "samples");
+  impl_->pieces.measure(surface, impl_->radii);
+}
+
+double SamplingBound::value() const {
+  return impl_->radii.largest;
+}
+std::span<const float> SamplingBound::sample_radii() const {
+  return impl_->radii.samples;
+}
+std::span<const float> SamplingBound::face_radii() const {
+  return impl_->radii.faces;
+}
+
+const surface::PieceAssignment& internals(const SamplingBound& bound) {
+  return bound.impl_->pieces;
+}
+
+}  // namespace sdm

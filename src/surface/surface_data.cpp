@@ -1,0 +1,102 @@
+#include "surface/surface_data.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "atlas/packing/too_small.h"
+#include "atlas/texel_owners.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/spatial_order.h"
+#include "mesh/validate.h"
+
+namespace sdm::surface {
+namespace {
+
+constexpr std::uint32_t kMinResolution = 16, kMaxResolution = 32768;
+
+void check(const Mesh& mesh, const AtlasOptions& options) {
+  validate(mesh);
+  const std::uint32_t n = options.resolution;
+  if (n < kMinResolution || n > kMaxResolution)
+    throw Error("an atlas resolution of " + std::to_string(n) + " is out of range; use 16 to 32768",
+                Remedy::resolution);
+  if (!(options.max_stretch > 1))
+    throw Error("a maximum stretch of " + std::to_string(options.max_stretch) +
+                " is out of range; use more than 1");
+  if (options.gutter > n / 4)
+    throw Error("a gutter of " + std::to_string(options.gutter) + " texels is too wide for an atlas of " +
+                std::to_string(n) + "² texels; use a quarter of that at most");
+  // The texel table, its order and its points, and the chart and layout data of each face.
+  constexpr std::size_t kBytesPerTexel = 64, kBytesPerFace = 600;
+  require_memory(kBytesPerTexel * n * n + kBytesPerFace * mesh.triangles.size(), "the atlas");
+}
+
+}  // namespace
+
+SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
+    : kind(options.kind), resolution(options.resolution) {
+  check(laid_out, options);
+  atlas::Layout layout =
+      kind == AtlasKind::uv ? atlas::uv_layout(laid_out, options) : atlas::chart_layout(laid_out, options);
+  face_charts.assign(laid_out.triangles.size(), kNone);
+  for (std::uint32_t c = 0; c < layout.charts.size(); ++c)
+    for (const std::uint32_t f : layout.charts[c]) face_charts[f] = c;
+  texel_faces = atlas::rasterise(layout, kind, resolution);
+  samples = atlas::owned_texels(texel_faces);
+  if (samples.empty())
+    throw atlas::TooSmall(
+        "no face of the mesh is large enough in the texture to own a texel; use a larger resolution",
+        2 * resolution);
+  mesh = std::move(laid_out);
+  chart_count = layout.charts.size();
+  max_stretch = layout.max_stretch;
+  maps = std::move(layout.maps);
+  corners = std::move(layout.corners);
+  order_samples();
+}
+
+void SurfaceData::refit(std::span<const Vec3> positions) {
+  std::vector<Vec3>& current = mesh.positions;
+  mesh::validate_positions(positions, current.size());
+  parallel_for(mesh.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const Triangle& t = mesh.triangles[f];
+      const bool moved = std::ranges::any_of(t, [&](std::uint32_t v) { return positions[v] != current[v]; });
+      if (moved && face_charts[f] != kNone) maps[f].edges = atlas::affine_edges(corners[f], positions, t);
+    }
+  });
+  std::ranges::copy(positions, current.begin());
+}
+
+void SurfaceData::place_samples(std::size_t first, std::span<Vec3> points) const {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = texel_point(sample_faces[first + i], samples[first + i]);
+}
+
+std::vector<Vec3> SurfaceData::sample_points() const {
+  std::vector<Vec3> points(samples.size());
+  parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    place_samples(begin, std::span(points).subspan(begin, end - begin));
+  });
+  return points;
+}
+
+void SurfaceData::order_samples() {
+  find_sample_faces();
+  std::vector<std::uint32_t> order = spatial_order(sample_points());
+  for (std::uint32_t& index : order) index = samples[index];
+  samples = std::move(order);
+  find_sample_faces();
+}
+
+void SurfaceData::find_sample_faces() {
+  sample_faces.resize(samples.size());
+  std::ranges::transform(samples, sample_faces.begin(),
+                         [&](std::uint32_t texel) { return texel_faces[texel]; });
+}
+
+}  // namespace sdm::surface
