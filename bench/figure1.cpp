@@ -25,6 +25,8 @@
 namespace sdm::bench {
 namespace {
 
+using namespace io;
+
 constexpr std::uint32_t kResolution = 256;
 constexpr std::uint32_t kPanelWidth = 315, kPanelHeight = 504, kSubsamples = 2;
 constexpr Rgb kPaper{255, 255, 255};

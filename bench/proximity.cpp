@@ -4,7 +4,6 @@
 //
 //   build/dev/bench/proximity [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 #include <sdm/threads.h>
-#include <sdm/transform.h>
 
 #include <algorithm>
 #include <array>

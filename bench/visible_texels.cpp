@@ -12,6 +12,8 @@
 namespace sdm::bench {
 namespace {
 
+using namespace io;
+
 Vec3 atlas::face_normal(const Mesh& mesh, const Triangle& face) {
   const Vec3& a = mesh.positions[face[0]];
   return normalized(cross(mesh.positions[face[1]] - a, mesh.positions[face[2]] - a));

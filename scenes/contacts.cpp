@@ -1,6 +1,6 @@
 #include "scenes/contacts.h"
 
-#include <sdm/map.h>
+#include <sdm/closest_points.h>
 
 #include "core/vec.h"
 

@@ -83,4 +83,10 @@ class MultiBodyQuery {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The distance of each vertex of a body to the nearest of the other bodies, signed as in nearest_map; NaN
+/// where none is within max_distance. Throws sdm::Error for a body that does not exist. Cost: closest_points
+/// to each other body.
+[[nodiscard]] std::vector<float> nearest_distances_at_vertices(const MultiBodyQuery& bodies, std::size_t body,
+                                                               double max_distance);
+
 }  // namespace sdm

@@ -19,6 +19,8 @@
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 #include <sdm/threads.h>
+#include <sdm/tolerance.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>
 #include <sdm/version.h>
+#include <sdm/vertex_distances.h>

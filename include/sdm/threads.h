@@ -1,7 +1,9 @@
 /// The number of threads that the library may use.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <vector>
 
 namespace sdm {
 
@@ -17,5 +19,9 @@ class ThreadLimit {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Runs independent tasks, concurrently if the limit allows. If one throws, tasks that were not begun are
+/// skipped, and its exception is rethrown once no task is running.
+void run_concurrently(const std::vector<std::function<void()>>& tasks);
 
 }  // namespace sdm

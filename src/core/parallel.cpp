@@ -99,4 +99,10 @@ ThreadLimit::ThreadLimit(unsigned count)
                       count > 0 ? count : static_cast<std::size_t>(tbb::info::default_concurrency())}}) {}
 ThreadLimit::~ThreadLimit() = default;
 
+void run_concurrently(const std::vector<std::function<void()>>& tasks) {
+  parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) tasks[i]();
+  });
+}
+
 }  // namespace sdm

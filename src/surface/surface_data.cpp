@@ -22,7 +22,8 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
   validate(mesh);
   const std::uint32_t n = options.resolution;
   if (n < kMinResolution || n > kMaxResolution)
-    throw Error("an atlas resolution of " + std::to_string(n) + " is out of range; use 16 to 32768");
+    throw Error("an atlas resolution of " + std::to_string(n) + " is out of range; use 16 to 32768",
+                Remedy::resolution);
   if (!(options.max_stretch > 1))
     throw Error("a maximum stretch of " + std::to_string(options.max_stretch) +
                 " is out of range; use more than 1");

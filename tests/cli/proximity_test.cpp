@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <sdm/proximity_query.h>
 #include <sdm/sampling_bound.h>
-#include <sdm/transform.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 
 #include "run.h"
 #include "samples.h"
+#include "scenes/placement.h"
 
 namespace sdm::test {
 namespace {
@@ -66,7 +66,7 @@ TEST_F(ProximityCommand, AsksTheTrianglesThemselves) {
     ASSERT_EQ(run.code, 0) << run.err;
     const Json json = Json::parse(run.out);
     Mesh second = read_mesh(o2);
-    transform(second, parse_transform(placement));
+    scenes::place(second, scenes::parse_placement(placement));
     ProximityQuery query(read_mesh(o1), second, {.atlas = {.resolution = 64}, .exact = true});
     EXPECT_EQ(json["separation"]["kind"], "exact");
     EXPECT_EQ(json["separation"]["value"], query.separation().value);

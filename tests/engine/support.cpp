@@ -7,6 +7,7 @@
 
 #include "core/vec.h"
 #include "engine/oracle.h"
+#include "scenes/placement.h"
 
 namespace sdm::test {
 
@@ -15,7 +16,7 @@ Mesh load(const std::string& name, std::string_view steps) {
 }
 
 Mesh placed(Mesh mesh, std::string_view steps) {
-  transform(mesh, parse_transform(steps));
+  scenes::place(mesh, scenes::parse_placement(steps));
   return mesh;
 }
 

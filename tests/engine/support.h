@@ -9,7 +9,7 @@
 
 namespace sdm::test {
 
-/// A mesh of the test folder, placed by the steps of parse_transform.
+/// A mesh of the test folder, placed by the steps of scenes::parse_placement.
 [[nodiscard]] Mesh load(const std::string& name, std::string_view steps = "");
 [[nodiscard]] Mesh placed(Mesh mesh, std::string_view steps);
 /// The same points, moved by the same steps; `fit` has no meaning for them.

@@ -11,6 +11,8 @@
 namespace sdm {
 namespace {
 
+using namespace io;
+
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 DistanceMap map_with(std::vector<float> distances, SignMethod sign) {

@@ -13,6 +13,8 @@
 namespace sdm::test {
 namespace {
 
+using namespace io;
+
 tinygltf::Model read_glb(const std::filesystem::path& file) {
   tinygltf::Model model;
   std::string errors, warnings;

@@ -11,6 +11,8 @@
 namespace sdm {
 namespace {
 
+using namespace io;
+
 TEST(Ticks, AreRoundNumbersWithinTheRange) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> exponent(-12, 12), offset(-3, 3);

@@ -12,6 +12,8 @@
 
 namespace sdm::test {
 
+using io::Rgb;
+
 struct Pixels {
   std::uint32_t width = 0, height = 0;
   std::vector<Rgb> colors;

@@ -8,11 +8,11 @@
 #include <ostream>
 #include <span>
 
-namespace sdm {
+namespace sdm::io {
 
-/// Writes `height` rows that `row(y, pixels)` fills. Compresses for speed. Failures of the stream are left to
-/// its state.
+/// Writes `height` rows that `row(y, pixels)` fills. Compresses for speed. Does not check the
+/// stream, whose state records failures.
 void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
                const std::function<void(std::uint32_t y, std::span<Rgb> pixels)>& row);
 
-}  // namespace sdm
+}  // namespace sdm::io

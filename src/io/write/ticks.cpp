@@ -1,10 +1,20 @@
 #include "io/write/ticks.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-namespace sdm {
+namespace sdm::io {
+namespace {
+
+// Replaces a leading hyphen by the minus sign.
+std::string with_minus_sign(std::string number) {
+  if (number.starts_with('-')) number.replace(0, 1, "\u2212");
+  return number;
+}
+
+}  // namespace
 
 std::vector<double> ticks(double lo, double hi, int count) {
   const double rough = (hi - lo) / count;
@@ -16,7 +26,7 @@ std::vector<double> ticks(double lo, double hi, int count) {
       break;
     }
   std::vector<double> result;
-  // Counted, not added up: values far from zero may not change by a step.
+  // Multiplied instead of accumulated: far from zero, adding a step may not change a value.
   const double first = std::ceil(lo / step - 1e-9);
   for (int i = 0; i <= 2 * count; ++i) {
     const double value = (first + i) * step;
@@ -27,19 +37,17 @@ std::vector<double> ticks(double lo, double hi, int count) {
 }
 
 std::string tick_label(double value, double step) {
-  char text[64];
   const double size = std::max(std::abs(value), step);
-  if (size >= 1e6 || size < 1e-4) {
-    const int digits =
-        std::clamp(static_cast<int>(std::floor(std::log10(size)) - std::floor(std::log10(step))), 0, 15);
-    std::snprintf(text, sizeof text, "%.*e", digits, value);
-  } else {
-    std::snprintf(text, sizeof text, "%.*f",
-                  std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 15), value);
-  }
-  std::string result = text;
-  if (const auto minus = result.find('-'); minus == 0) result.replace(0, 1, "\u2212");
-  return result;
+  if (size >= 1e6 || size < 1e-4)
+    return with_minus_sign(fmt::format(
+        "{:.{}e}", value,
+        std::clamp(static_cast<int>(std::floor(std::log10(size)) - std::floor(std::log10(step))), 0, 15)));
+  return with_minus_sign(fmt::format(
+      "{:.{}f}", value, std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 15)));
 }
 
-}  // namespace sdm
+std::string value_label(double value) {
+  return with_minus_sign(fmt::format("{:.4g}", value));
+}
+
+}  // namespace sdm::io

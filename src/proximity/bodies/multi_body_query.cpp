@@ -32,7 +32,7 @@ void on_behalf_of(std::size_t body, const Work& work) {
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& error) {
-    throw Error("body " + std::to_string(body) + ": " + error.what());
+    throw Error("body " + std::to_string(body) + ": " + error.what(), error.remedy());
   }
 }
 
