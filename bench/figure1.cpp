@@ -16,9 +16,9 @@
 #include <functional>
 
 #include "io/write/atomic_file.h"
-#include "io/write/color_scale.h"
-#include "io/write/legend.h"
-#include "io/write/png.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/pictures/legend.h"
+#include "io/write/pictures/png.h"
 #include "scenes.h"
 #include "visible_texels.h"
 

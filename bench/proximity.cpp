@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "fcl_pair.h"
 #include "harness.h"
 #include "poses.h"

@@ -4,8 +4,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "embree_mesh.h"
 #include "io/write/gutter.h"
 

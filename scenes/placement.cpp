@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

@@ -1,6 +1,8 @@
 /// The exceptions that the public functions throw. Kernels never throw.
 #pragma once
 
+#include <sdm/api.h>
+
 #include <stdexcept>
 #include <string>
 
@@ -10,7 +12,7 @@ namespace sdm {
 enum class Remedy { none, atlas_kind, resolution, sign_method };
 
 /// Invalid input or a missing resource: one sentence that names the object, the fault and the remedy.
-class Error : public std::runtime_error {
+class SDM_API Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, Remedy remedy = Remedy::none)
       : std::runtime_error(message), remedy_(remedy) {}
@@ -22,7 +24,7 @@ class Error : public std::runtime_error {
 };
 
 /// A progress callback requested cancellation; there is no result.
-class Cancelled : public Error {
+class SDM_API Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled") {}
 };

@@ -1,6 +1,8 @@
 /// The number of threads that the library may use.
 #pragma once
 
+#include <sdm/api.h>
+
 #include <functional>
 #include <memory>
 #include <vector>
@@ -8,7 +10,7 @@
 namespace sdm {
 
 /// While it lives, every function of the library uses at most `count` threads (0: all cores).
-class ThreadLimit {
+class SDM_API ThreadLimit {
  public:
   explicit ThreadLimit(unsigned count);
   ~ThreadLimit();
@@ -22,6 +24,6 @@ class ThreadLimit {
 
 /// Runs independent tasks, concurrently if the limit allows. If one throws, tasks that were not begun are
 /// skipped, and its exception is rethrown once no task is running.
-void run_concurrently(const std::vector<std::function<void()>>& tasks);
+SDM_API void run_concurrently(const std::vector<std::function<void()>>& tasks);
 
 }  // namespace sdm

@@ -1,6 +1,7 @@
 /// Checks of a map against a tolerance, and the bounds that certify them.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/engine.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
@@ -28,13 +29,13 @@ struct ToleranceVerdict {
 /// `error_bound`: how much |distance| at any point of the surface can exceed the largest at samples and
 /// vertices: SamplingBound::value() plus engine_accuracy().
 /// Throws sdm::Error if the map or the distances belong to another surface. Cost: linear in texels and faces.
-[[nodiscard]] ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
-                                               std::span<const float> vertex_distances, double error_bound,
-                                               double tolerance);
+[[nodiscard]] SDM_API ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
+                                                       std::span<const float> vertex_distances,
+                                                       double error_bound, double tolerance);
 
 /// Upper bound on the error of any distance that the engine computes from points of `on` to `to`, in units of
 /// the meshes, including the rounding to float: EngineInfo::relative_error times the diagonal of the bounding
 /// box of both meshes. Cost: linear.
-[[nodiscard]] double engine_accuracy(const EngineInfo& engine, const Mesh& on, const Mesh& to);
+[[nodiscard]] SDM_API double engine_accuracy(const EngineInfo& engine, const Mesh& on, const Mesh& to);
 
 }  // namespace sdm

@@ -1,6 +1,7 @@
 /// Affine transforms of meshes and points.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/mesh.h>
 
 #include <array>
@@ -29,12 +30,12 @@ struct Transform {
 
 /// Scales uniformly and translates so that the longest side of the bounds becomes 1, centred at the origin.
 /// Throws sdm::Error unless the bounds have a positive extent. Cost: linear.
-[[nodiscard]] Transform fit_to_unit(const Mesh& mesh);
+[[nodiscard]] SDM_API Transform fit_to_unit(const Mesh& mesh);
 
 /// Maps all positions; a reflection also flips the faces, so that their outside stays outside. Throws
 /// sdm::Error, and changes nothing, if a coordinate becomes infinite or NaN. Cost: linear.
-void transform(Mesh& mesh, const Transform& map);
+SDM_API void transform(Mesh& mesh, const Transform& map);
 /// The same for points alone.
-void transform(std::span<Vec3> points, const Transform& map);
+SDM_API void transform(std::span<Vec3> points, const Transform& map);
 
 }  // namespace sdm

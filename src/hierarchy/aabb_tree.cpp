@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "hierarchy/traverse.h"
 
 namespace sdm::hierarchy {

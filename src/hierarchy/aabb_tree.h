@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/unit_frame.h"
+#include "core/geometry/unit_frame.h"
 
 namespace sdm::hierarchy {
 

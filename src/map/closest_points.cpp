@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/spatial_order.h"
+#include "core/geometry/spatial_order.h"
 #include "engine/blocks.h"
 #include "map/engine_of.h"
 #include "sites/sites_data.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm {
 namespace {

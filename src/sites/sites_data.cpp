@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "mesh/validate.h"
 
 namespace sdm::sites {

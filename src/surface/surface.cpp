@@ -3,8 +3,8 @@
 #include <new>
 #include <utility>
 
+#include "core/geometry/vec.h"
 #include "core/memory.h"
-#include "core/vec.h"
 #include "surface/surface_data.h"
 
 namespace sdm {

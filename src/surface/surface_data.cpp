@@ -8,9 +8,9 @@
 
 #include "atlas/packing/too_small.h"
 #include "atlas/texel_owners.h"
+#include "core/geometry/spatial_order.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/spatial_order.h"
 #include "mesh/validate.h"
 
 namespace sdm::surface {

@@ -11,7 +11,7 @@
 
 #include "atlas/meshes.h"
 #include "core/parallel.h"
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "surface/sample_blocks.h"
 #include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/sample_tree.h"

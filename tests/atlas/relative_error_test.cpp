@@ -6,7 +6,7 @@
 #include <random>
 
 #include "atlas/meshes.h"
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "surface/sampling_bound/sample_tree.h"
 
 namespace sdm {

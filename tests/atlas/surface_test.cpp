@@ -8,7 +8,7 @@
 
 #include "atlas/invariants.h"
 #include "atlas/meshes.h"
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm {
 namespace {

@@ -1,7 +1,7 @@
 // The parts of the cpu engine, which the exactness tests see only as a whole.
 #include <memory>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/cpu/finish.h"
 #include "engine/engine.h"
 #include "engine/simd_targets.h"

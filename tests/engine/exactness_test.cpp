@@ -2,7 +2,7 @@
 // tree.
 #include <optional>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/oracle.h"
 #include "engine/simd_targets.h"
 #include "engine/support.h"

@@ -1,5 +1,5 @@
 // Inputs that break careless engines: ties everywhere, contact, extreme scales, slivers, soup.
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/oracle.h"
 #include "engine/simd_targets.h"
 #include "engine/support.h"

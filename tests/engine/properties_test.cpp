@@ -1,5 +1,5 @@
 // Properties of distance maps of any meshes.
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/oracle.h"
 #include "engine/support.h"
 

@@ -1,6 +1,6 @@
 // Every region of point and triangle: three vertices, three edges, the interior on both sides, and triangles
 // without area.
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/oracle.h"
 #include "engine/support.h"
 

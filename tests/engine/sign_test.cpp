@@ -1,7 +1,7 @@
 // The sign at every texel against CGAL's Side_of_triangle_mesh.
 #include <numbers>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/oracle.h"
 #include "engine/support.h"
 #include "mesh/shapes.h"

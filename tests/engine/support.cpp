@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/oracle.h"
 #include "scenes/placement.h"
 

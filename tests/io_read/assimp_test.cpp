@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "io_read/writers.h"
 #include "mesh/shapes.h"
 

@@ -1,4 +1,4 @@
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>

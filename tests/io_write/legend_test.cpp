@@ -1,6 +1,6 @@
-#include "io/write/legend.h"
+#include "io/write/pictures/legend.h"
 
-#include "io/write/ticks.h"
+#include "io/write/pictures/ticks.h"
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>

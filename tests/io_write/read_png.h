@@ -1,7 +1,7 @@
 // PNG files back into pixels.
 #pragma once
 
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

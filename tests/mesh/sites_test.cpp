@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "mesh/shapes.h"
 #include "sites/sites_data.h"
 

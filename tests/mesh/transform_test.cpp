@@ -2,7 +2,7 @@
 #include <sdm/error.h>
 #include <sdm/transform.h>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "mesh/shapes.h"
 
 namespace sdm {

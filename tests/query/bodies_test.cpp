@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "core/sweep.h"
-#include "core/vec.h"
+#include "core/geometry/sweep.h"
+#include "core/geometry/vec.h"
 #include "engine/support.h"
 #include "fcl_pair.h"
 #include "proximity/exact/mesh_pair.h"

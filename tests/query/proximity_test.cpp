@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/support.h"
 #include "mesh/shapes.h"
 #include "query/allocations.h"

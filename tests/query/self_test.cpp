@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/oracle.h"
 #include "engine/support.h"
 #include "mesh/shapes.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/predicates.h"
-#include "core/vec.h"
+#include "core/geometry/predicates.h"
+#include "core/geometry/vec.h"
 #include "query/pair_oracle.h"
 
 namespace sdm {

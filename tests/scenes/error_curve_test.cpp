@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/parallel.h"
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "scenes/scene.h"
 
 namespace sdm::scenes {

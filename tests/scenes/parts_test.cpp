@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "mesh/shapes.h"
 #include "scenes/box_mesh.h"
 #include "scenes/contacts.h"

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <sdm/error.h>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "mesh/shapes.h"
 #include "scenes/placement.h"
 

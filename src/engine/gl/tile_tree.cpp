@@ -3,8 +3,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 
 namespace sdm::gl {
 namespace {

@@ -1,9 +1,9 @@
+#include "core/geometry/vec.h"
 #include "core/memory.h"
-#include "core/vec.h"
 #include "io/write/atomic_file.h"
-#include "io/write/color_scale.h"
 #include "io/write/gutter.h"
-#include "io/write/png.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/pictures/png.h"
 
 #include <sdm/error.h>
 #include <sdm/io.h>

@@ -1,9 +1,9 @@
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
-#include "io/write/color_scale.h"
-#include "io/write/legend.h"
-#include "io/write/png.h"
-#include "io/write/ticks.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/pictures/legend.h"
+#include "io/write/pictures/png.h"
+#include "io/write/pictures/ticks.h"
 
 #include <sdm/io.h>
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "core/geometry/sweep.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/sweep.h"
 #include "mesh/validate.h"
 #include "proximity/bodies/nearest_body.h"
 #include "proximity/sampled/body.h"

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "surface/sampling_bound/cut_faces.h"
 #include "surface/sampling_bound/near_samples.h"
 #include "surface/sampling_bound/piece_assignment.h"

@@ -1,11 +1,11 @@
-#include "core/spatial_order.h"
+#include "core/geometry/spatial_order.h"
 
 #include <algorithm>
 #include <bit>
 #include <utility>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 
 namespace sdm::core {
 namespace {

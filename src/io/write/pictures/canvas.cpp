@@ -1,4 +1,4 @@
-#include "io/write/canvas.h"
+#include "io/write/pictures/canvas.h"
 
 #include <sdm/error.h>
 

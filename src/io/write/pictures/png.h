@@ -1,7 +1,7 @@
 // 8-bit RGB images as PNG, row by row.
 #pragma once
 
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,8 +1,8 @@
 // The legend beside a map: colour bar, ticks, range, units.
 #pragma once
 
-#include "io/write/color_scale.h"
-#include "io/write/picture.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/pictures/picture.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
-#include "io/write/legend.h"
+#include "io/write/pictures/legend.h"
 
-#include "io/write/canvas.h"
-#include "io/write/ticks.h"
+#include "io/write/pictures/canvas.h"
+#include "io/write/pictures/ticks.h"
 
 #include <algorithm>
 #include <cmath>

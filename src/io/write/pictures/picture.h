@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 namespace sdm::io {
 

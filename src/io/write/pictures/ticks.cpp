@@ -1,4 +1,4 @@
-#include "io/write/ticks.h"
+#include "io/write/pictures/ticks.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "io/write/png.h"
+#include "io/write/pictures/png.h"
 
 #include <png.h>
 #include <sdm/error.h>

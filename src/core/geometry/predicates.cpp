@@ -1,10 +1,10 @@
-#include "core/predicates.h"
+#include "core/geometry/predicates.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <limits>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::core {
 namespace {

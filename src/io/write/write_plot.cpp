@@ -9,9 +9,9 @@
 
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
-#include "io/write/canvas.h"
-#include "io/write/png.h"
-#include "io/write/ticks.h"
+#include "io/write/pictures/canvas.h"
+#include "io/write/pictures/png.h"
+#include "io/write/pictures/ticks.h"
 
 namespace sdm {
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "io/write/picture.h"
+#include "io/write/pictures/picture.h"
 
 namespace sdm::io {
 
