@@ -11,7 +11,7 @@ namespace sdm {
 
 /// An affine map as a 4×4 matrix M in row-major order, for column vectors: p ↦ M (p, 1). The last row is
 /// (0, 0, 0, 1). The identity by default.
-struct Transform {
+struct SDM_API Transform {
   std::array<std::array<double, 4>, 4> rows{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
 
   /// Adds an offset.
@@ -25,7 +25,7 @@ struct Transform {
   /// Of the linear part; negative for a reflection.
   [[nodiscard]] double determinant() const;
   /// (a * b)(p) = a(b(p)) up to rounding.
-  friend Transform operator*(const Transform& a, const Transform& b);
+  friend SDM_API Transform operator*(const Transform& a, const Transform& b);
 };
 
 /// Scales uniformly and translates so that the longest side of the bounds becomes 1, centred at the origin.
