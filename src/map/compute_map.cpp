@@ -17,7 +17,8 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
   return map;
 }
 
-void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options, DistanceMap& map) try {
+void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,
+                 DistanceMap& map) try {
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
   const SignUsed sign = choose_sign(sites, options.sign);
   const inside::InsideTest is_inside(internals(sites), sign.method);
