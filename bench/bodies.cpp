@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/vec.h"
 #include "core/stopwatch.h"
-#include "core/vec.h"
 #include "fcl_crowd.h"
 #include "harness.h"
 #include "timing.h"

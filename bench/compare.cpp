@@ -18,6 +18,7 @@
 #include "refine_mesh.h"
 #include "scenes.h"
 #include "scenes/letters.h"
+#include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
 #include "timing.h"
 
@@ -65,7 +66,7 @@ Outcome bunny_to_armadillo(const Trial& trial, std::uint32_t resolution, const c
 /// The paper's E and G, which overlap in part.
 std::array<Mesh, 2> letter_meshes() {
   std::array result{scenes::letter_e(), scenes::letter_g()};
-  transform(result[1], parse_transform("rotate:10:30:5,translate:0.35:0.1:0.1"));
+  scenes::place(result[1], scenes::parse_placement("rotate:10:30:5,translate:0.35:0.1:0.1"));
   return result;
 }
 

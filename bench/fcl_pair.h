@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "core/affine.h"
+#include "core/geometry/affine.h"
 
 namespace sdm::bench {
 

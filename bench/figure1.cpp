@@ -16,14 +16,16 @@
 #include <functional>
 
 #include "io/write/atomic_file.h"
-#include "io/write/color_scale.h"
-#include "io/write/legend.h"
-#include "io/write/png.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/pictures/legend.h"
+#include "io/write/pictures/png.h"
 #include "scenes.h"
 #include "visible_texels.h"
 
 namespace sdm::bench {
 namespace {
+
+using namespace io;
 
 constexpr std::uint32_t kResolution = 256;
 constexpr std::uint32_t kPanelWidth = 315, kPanelHeight = 504, kSubsamples = 2;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/cpu/point_group.h"
 
 namespace sdm::bench {

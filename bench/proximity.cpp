@@ -4,7 +4,6 @@
 //
 //   build/dev/bench/proximity [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 #include <sdm/threads.h>
-#include <sdm/transform.h>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "fcl_pair.h"
 #include "harness.h"
 #include "poses.h"

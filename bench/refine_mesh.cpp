@@ -4,7 +4,7 @@
 #include <map>
 #include <random>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::bench {
 namespace {

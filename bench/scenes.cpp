@@ -1,18 +1,18 @@
 #include "scenes.h"
 
 #include <sdm/io.h>
-#include <sdm/transform.h>
 
 #include <string>
 
 #include "scenes/box_mesh.h"
+#include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
 
 namespace sdm::bench {
 
 Mesh load(std::string_view name, std::string_view steps) {
   Mesh mesh = read_mesh(std::string(SDM_BENCH_MESHES) + "/" + std::string(name));
-  transform(mesh, parse_transform(steps));
+  scenes::place(mesh, scenes::parse_placement(steps));
   return mesh;
 }
 

@@ -7,7 +7,7 @@
 
 namespace sdm::bench {
 
-/// Reads a mesh of the benchmarks by its file name, and transforms it by the steps of parse_transform.
+/// Reads a mesh of the benchmarks by its file name, and applies the steps of scenes::parse_placement.
 [[nodiscard]] Mesh load(std::string_view name, std::string_view steps = "");
 
 /// The figure of the paper's Figure 1: a standing man, 1 high, z up; CGAL's man.off reduced to 17,200

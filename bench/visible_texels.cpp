@@ -4,13 +4,15 @@
 #include <limits>
 #include <numbers>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "embree_mesh.h"
 #include "io/write/gutter.h"
 
 namespace sdm::bench {
 namespace {
+
+using namespace io;
 
 Vec3 atlas::face_normal(const Mesh& mesh, const Triangle& face) {
   const Vec3& a = mesh.positions[face[0]];

@@ -3,7 +3,6 @@
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -11,12 +10,13 @@
 
 #include "bodies_report.h"
 #include "common_options.h"
-#include "core/stopwatch.h"
+#include "format.h"
 #include "map_files.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "report.h"
+#include "stopwatch.h"
 
 namespace {
 
@@ -29,30 +29,14 @@ struct BodiesCommand {
   bool json = false, quiet = false;
 };
 
-/// The distance of each vertex of a body to the nearest of the others, signed as its map is.
-std::vector<float> nearest_vertex_distances(const sdm::MultiBodyQuery& bodies, std::size_t on,
-                                            double max_distance) {
-  const sdm::Mesh& mesh = bodies.surface(on).mesh();
-  std::vector<float> nearest(mesh.positions.size(), std::nanf(""));
-  for (std::size_t to = 0; to < bodies.size(); ++to) {
-    if (to == on) continue;
-    const sdm::SignMethod sign = sdm::choose_sign(bodies.sites(to), sdm::SignMethod::automatic).method;
-    const std::vector<float> distances =
-        vertex_distances(mesh, bodies.sites(to), sign, {.max_distance = max_distance});
-    for (std::size_t v = 0; v < nearest.size(); ++v)
-      if (std::isnan(nearest[v]) || std::abs(distances[v]) < std::abs(nearest[v])) nearest[v] = distances[v];
-  }
-  return nearest;
-}
-
-/// All maps, each in the folder of its body's number.
+/// Writes the map of each body to the folder named by its number.
 void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies, OutputFolder& out) {
   sdm::NearestMap nearest;
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     bodies.nearest_map(body, nearest);
-    const std::filesystem::path folder = out.staging(std::to_string(body));
+    const std::filesystem::path folder = out.staging(fmt::to_string(body));
     write_map_files(folder, bodies.surface(body), nearest.map,
-                    nearest_vertex_distances(bodies, body, command.options.max_distance),
+                    sdm::nearest_distances_at_vertices(bodies, body, command.options.max_distance),
                     {.units = command.units});
     sdm::write_npy(folder / "body.npy", nearest.map.resolution, nearest.body);
   }
@@ -76,12 +60,15 @@ nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector
 std::string summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
   std::string text;
   for (std::size_t body = 0; body < bodies.size(); ++body)
-    text += "  " + std::to_string(body) + "  " + command.files[body] + "\n";
+    text += fmt::format("  {}  {}\n", body, command.files[body]);
   text += "\n" + table(bodies.pairs());
-  if (!command.units.empty()) text += "\n  lengths in " + command.units + "\n";
+  if (!command.units.empty()) text += fmt::format("\n  lengths in {}\n", command.units);
   if (!command.out.empty())
-    text += "\n  results   " + command.out.string() + "/: report.json and, of each body, N/: map.exr " +
-            "distance.png voronoi.png direction.png model.glb body.npy\n";
+    text += fmt::format(
+        "\n  results   {}/: report.json and, of each body, N/: map.exr distance.png voronoi.png "
+        "direction.png "
+        "model.glb body.npy\n",
+        command.out.string());
   return text;
 }
 
@@ -93,11 +80,11 @@ void run(BodiesCommand command) {
   command.options.atlas.progress = progress.callback();
 
   progress.step("import");
-  sdm::Stopwatch watch;
+  Stopwatch watch;
   std::vector<Input> inputs;
   std::vector<sdm::Mesh> meshes;
   for (const std::string& file : command.files) {
-    inputs.push_back(load_input("body " + std::to_string(inputs.size()), file, ""));
+    inputs.push_back(load_input(fmt::format("body {}", inputs.size()), file, ""));
     meshes.push_back(inputs.back().mesh);
   }
   const double import_ms = watch.lap();
@@ -107,17 +94,13 @@ void run(BodiesCommand command) {
   nlohmann::ordered_json report = report_of(command, inputs, bodies);
   report["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", watch.lap()}};
 
-  if (out) try {
+  if (out)
+    out->fill([&] {
       progress.step("maps");
       write_maps(command, bodies, *out);
       report["time_ms"]["maps"] = watch.lap();
       write_text(out->staging() / "report.json", to_text(report));
-      out->commit();
-    } catch (const sdm::Cancelled&) {
-      throw;
-    } catch (const sdm::Error& error) {
-      throw sdm::Error(out->publicly(error.what()));
-    }
+    });
   if (command.json) {
     std::cout << to_text(report);
   } else if (!command.quiet) {
@@ -146,10 +129,11 @@ void add_bodies_command(CLI::App& app) {
   CLI::App* bodies = app.add_subcommand(
       "bodies", "Compute separation, collision and penetration depth of all near pairs of many meshes");
   bodies->footer(
-      "MultiBodyQuery are numbered from 0 as they are given. With -o, each has a folder of that number: its "
-      "map as "
-      "`sdm map` writes it, to the nearest of the other bodies, and body.npy, which body that is.\n\n"
-      "Example, all pairs that are nearer than 5:\n"
+      "Bodies are numbered from 0 in the given order. With -o, each has a folder named by its number, with "
+      "its\n"
+      "map to the nearest of the other bodies, in the files of `sdm map`, and body.npy, the index of that "
+      "body.\n\n"
+      "Example, all pairs closer than 5:\n"
       "  sdm bodies part1.stl part2.stl housing.stl --max-distance 5");
   const auto command = std::make_shared<BodiesCommand>();
   add_options(*bodies, *command);

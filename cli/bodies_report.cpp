@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "format.h"
 #include "proximity_report.h"
-#include "report.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -15,13 +15,13 @@ using Row = std::array<std::string, 5>;
 
 std::string words(const sdm::BoundedLength& length) {
   if (length.kind == sdm::Certainty::bounded)
-    return number(length.value) + " (" + number(length.lower) + " to " + number(length.upper) + ")";
-  return number(length.value) + " (" + name(length.kind) + ")";
+    return fmt::format("{} ({} to {})", number(length.value), number(length.lower), number(length.upper));
+  return fmt::format("{} ({})", number(length.value), name(length.kind));
 }
 
 Row row(const sdm::PairProximity& pair) {
-  return {std::to_string(pair.first), std::to_string(pair.second),
-          (pair.colliding.value ? "yes (" : "no (") + std::string(name(pair.colliding.kind)) + ")",
+  return {fmt::to_string(pair.first), fmt::to_string(pair.second),
+          fmt::format("{} ({})", pair.colliding.value ? "yes" : "no", name(pair.colliding.kind)),
           words(pair.separation), pair.penetration_depth ? words(*pair.penetration_depth) : "none: no solid"};
 }
 
@@ -43,9 +43,8 @@ std::string table(std::span<const sdm::PairProximity> pairs) {
     for (std::size_t c = 0; c < cells.size(); ++c) widths[c] = std::max(widths[c], cells[c].size());
   std::string text;
   for (const Row& cells : rows) {
-    for (std::size_t c = 0; c + 1 < cells.size(); ++c)
-      text += "  " + cells[c] + std::string(widths[c] - cells[c].size(), ' ');
-    text += "  " + cells.back() + "\n";
+    for (std::size_t c = 0; c + 1 < cells.size(); ++c) text += fmt::format("  {:<{}}", cells[c], widths[c]);
+    text += fmt::format("  {}\n", cells.back());
   }
   return text;
 }

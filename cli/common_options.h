@@ -1,4 +1,4 @@
-// Options that commands share.
+// Options of several commands.
 #pragma once
 
 #include <sdm/io.h>
@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-// Each sets its targets, which must outlive the parsing.
+// Parsing sets the given targets, which must outlive it.
 
 /// Returns -o, which is required.
 CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder);
 void add_transform_option(CLI::App& app, const std::string& name, const std::string& mesh,
                           std::string& steps);
-/// Returns --resolution; `maps` are those that it is of.
+/// Returns --resolution; `maps` names the maps in the help text.
 CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
                                    const std::string& maps = "the map");
 /// `mesh` names the mesh that is parametrised.

@@ -4,12 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "format.h"
 
 namespace {
 
@@ -27,8 +28,8 @@ void print_table(std::ostream& out, const std::vector<sdm::GlDevice>& devices) {
   std::size_t width = 0;
   for (const sdm::GlDevice& device : devices) width = std::max(width, device.name.size());
   for (std::size_t i = 0; i < devices.size(); ++i)
-    out << i << "  " << std::left << std::setw(static_cast<int>(width)) << devices[i].name << "  "
-        << (devices[i].software ? "software" : "hardware") << "  " << devices[i].driver << '\n';
+    out << fmt::format("{}  {:<{}}  {}  {}\n", i, devices[i].name, width,
+                       devices[i].software ? "software" : "hardware", devices[i].driver);
 }
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <sdm/mesh.h>
 
 #include <CLI/CLI.hpp>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
+
+#include "format.h"
 
 namespace {
 
@@ -44,37 +44,35 @@ std::string text(bool value) {
   return value ? "yes" : "no";
 }
 std::string text(double value) {
-  std::ostringstream out;
-  out << std::setprecision(9) << value;
-  return out.str();
+  return number(value, 9);
 }
 std::string text(const sdm::Vec3& value) {
-  return text(value[0]) + "  " + text(value[1]) + "  " + text(value[2]);
+  return fmt::format("{}  {}  {}", text(value[0]), text(value[1]), text(value[2]));
 }
 
 void print_table(std::ostream& out, const std::string& file, const sdm::MeshInfo& info) {
   const auto row = [&](const char* name, const std::string& value) {
-    out << std::left << std::setw(18) << name << value << '\n';
+    out << fmt::format("{:<18}{}\n", name, value);
   };
   const sdm::Vec3 &lo = info.bounds.lo, &hi = info.bounds.hi;
   row("file", file);
-  row("vertices", std::to_string(info.vertices));
-  row("edges", std::to_string(info.edges));
-  row("triangles", std::to_string(info.triangles));
+  row("vertices", fmt::to_string(info.vertices));
+  row("edges", fmt::to_string(info.edges));
+  row("triangles", fmt::to_string(info.triangles));
   row("lowest corner", text(lo));
   row("highest corner", text(hi));
   row("size", text(sdm::Vec3{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}));
-  row("components", std::to_string(info.components));
+  row("components", fmt::to_string(info.components));
   row("closed", info.closed ? "yes"
-                            : "no, " + std::to_string(info.boundary_edges) + " boundary and " +
-                                  std::to_string(info.nonmanifold_edges) + " non-manifold edges");
+                            : fmt::format("no, {} boundary and {} non-manifold edges", info.boundary_edges,
+                                          info.nonmanifold_edges));
   row("orientable", text(info.orientable));
   row("oriented", text(info.oriented));
   row("manifold", info.manifold ? "yes"
-                                : "no, " + std::to_string(info.nonmanifold_edges) + " edges and " +
-                                      std::to_string(info.nonmanifold_vertices) + " vertices are not");
-  row("degenerate faces", std::to_string(info.degenerate_faces));
-  row("duplicate faces", std::to_string(info.duplicate_faces));
+                                : fmt::format("no, {} edges and {} vertices are not", info.nonmanifold_edges,
+                                              info.nonmanifold_vertices));
+  row("degenerate faces", fmt::to_string(info.degenerate_faces));
+  row("duplicate faces", fmt::to_string(info.duplicate_faces));
   row("uvs", text(info.has_uvs));
   row("area", text(info.area));
   row("volume", info.closed && info.orientable ? text(info.volume) : "none, not closed and orientable");

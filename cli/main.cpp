@@ -16,11 +16,27 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
 
 namespace {
 
 void flush_output() {
   if (!std::cout.flush()) throw sdm::Error("cannot write to the standard output; the disk may be full");
+}
+
+/// The option of the command that remedies the error, for its message.
+std::string advice(sdm::Remedy remedy) {
+  switch (remedy) {
+    case sdm::Remedy::none:
+      break;
+    case sdm::Remedy::atlas_kind:
+      return " (--atlas charts)";
+    case sdm::Remedy::resolution:
+      return " (--resolution)";
+    case sdm::Remedy::sign_method:
+      return " (--sign)";
+  }
+  return {};
 }
 
 }  // namespace
@@ -55,6 +71,8 @@ int main(int argc, char** argv) {
     ProgressLine::end_by_interrupt();
   } catch (const std::bad_alloc&) {
     std::cerr << "sdm: error: not enough memory; choose a lower --resolution or smaller meshes\n";
+  } catch (const sdm::Error& error) {
+    std::cerr << "sdm: error: " << error.what() << advice(error.remedy()) << '\n';
   } catch (const std::exception& error) {
     std::cerr << "sdm: error: " << error.what() << '\n';
   }

@@ -1,12 +1,12 @@
 #include "map.h"
 
-#include "core/parallel.h"
-#include "core/stopwatch.h"
+#include "format.h"
 #include "map_files.h"
 #include "map_options.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "report.h"
+#include "stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,80 +18,58 @@
 
 namespace {
 
-Tolerance judge(double tolerance, const sdm::Surface& surface, const sdm::DistanceMap& map,
-                const std::vector<float>& at_vertices, double error_bound) {
-  double largest = map.beyond_max_distance > 0 ? std::numeric_limits<double>::infinity() : 0;
-  for (const auto texel : surface.sample_texels())
-    largest = std::fmax(largest, std::abs(map.distance[texel]));
-  for (const auto& triangle : surface.mesh().triangles)
-    for (const auto vertex : triangle) {
-      const double d = std::abs(at_vertices[vertex]);
-      largest = std::isnan(d) ? std::numeric_limits<double>::infinity() : std::max(largest, d);
-    }
-  Tolerance result{tolerance, sdm::area_fraction_beyond(surface, map, tolerance), largest <= tolerance, true};
-  // Distances are 1-Lipschitz: within the bound of a sample they change by no more than the bound.
-  if (result.within) result.certified = largest + error_bound <= tolerance;
-  return result;
-}
-
 struct Result {
   Outcome outcome;
   nlohmann::ordered_json report;
 };
 
-/// A bound on the error of a value of the map.
-double engine_error(const sdm::EngineInfo& engine, const Input& on, const Input& to) {
-  double squared = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double lo = std::min(on.info.bounds.lo[k], to.info.bounds.lo[k]);
-    const double hi = std::max(on.info.bounds.hi[k], to.info.bounds.hi[k]);
-    squared += (hi - lo) * (hi - lo);
-  }
-  return engine.relative_error * std::sqrt(squared);
-}
-
 /// Computes the map on `on` of the distances to `to`, and writes all its files into `folder`.
 Result measure(const MapCommand& command, const Input& on, const Input& to, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
-  sdm::Stopwatch total;
+  Stopwatch total;
   Result result;
   Outcome& outcome = result.outcome;
   outcome.time.import = import_ms;
 
   std::unique_ptr<sdm::Surface> surface;
   std::unique_ptr<sdm::Sites> sites;
-  sdm::parallel_invoke(
+  sdm::run_concurrently({
       [&] {
-        sdm::Stopwatch watch;
+        Stopwatch watch;
         sdm::AtlasOptions options = command.atlas;
         if (command.precision) options.resolution = sdm::resolution_for(on.mesh, options, *command.precision);
         surface = std::make_unique<sdm::Surface>(on.mesh, options);
         outcome.time.atlas = watch.lap();
       },
       [&] {
-        sdm::Stopwatch watch;
+        Stopwatch watch;
         sites = std::make_unique<sdm::Sites>(to.mesh);
         outcome.time.sites = watch.lap();
-      });
+      },
+  });
 
-  sdm::Stopwatch map_watch;
+  Stopwatch map_watch;
   const sdm::DistanceMap map = sdm::compute_map(*surface, *sites, command.map);
-  const auto at_vertices = vertex_distances(on.mesh, *sites, map.sign.method, command.map);
+  const auto at_vertices = sdm::distances_at_vertices(on.mesh, *sites, command.map);
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
   outcome.raster = sdm::gl_report(*command.map.engine);
 
   progress.step("export");
-  sdm::Stopwatch export_watch;
-  sdm::parallel_invoke([&] { write_map_files(folder, *surface, map, at_vertices, command.picture); },
-                       [&] {
-                         outcome.distance = sdm::statistics(*surface, map);
-                         outcome.error_bound = sdm::SamplingBound(*surface).value();
-                       });
-  if (command.picture.tolerance)
-    outcome.tolerance = judge(*command.picture.tolerance, *surface, map, at_vertices,
-                              outcome.error_bound + engine_error(command.engine, on, to));
+  Stopwatch export_watch;
+  sdm::run_concurrently({
+      [&] { write_map_files(folder, *surface, map, at_vertices, command.picture); },
+      [&] {
+        outcome.distance = sdm::statistics(*surface, map);
+        outcome.error_bound = sdm::SamplingBound(*surface).value();
+      },
+  });
+  if (command.picture.tolerance) {
+    const double accuracy = sdm::engine_accuracy(command.engine, on.mesh, to.mesh);
+    outcome.tolerance = sdm::check_tolerance(*surface, map, at_vertices, outcome.error_bound + accuracy,
+                                             *command.picture.tolerance);
+  }
   outcome.time.output = export_watch.lap();
   outcome.time.total = import_ms + total.lap();
 
@@ -114,7 +92,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
 
 /// The exit code.
 int run(MapCommand command) {
-  sdm::Stopwatch total;
+  Stopwatch total;
   const sdm::ThreadLimit limit(command.threads);
   OutputFolder out(command.out);
   ProgressLine progress(command.quiet);
@@ -122,29 +100,24 @@ int run(MapCommand command) {
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
   if (command.engine.name == "gl") {
-    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // before hours of work, if it cannot be
+    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // fails before the long work
     command.map.engine = sdm::make_gl_engine(command.gl);
   } else {
     command.map.engine = sdm::make_engine(command.engine.name);
   }
 
   progress.step("import");
-  sdm::Stopwatch import;
+  Stopwatch import;
   Input o1, o2;
-  sdm::parallel_invoke([&] { o1 = load_input("o1", command.o1, command.transform_o1); },
-                       [&] { o2 = load_input("o2", command.o2, command.transform_o2); });
+  sdm::run_concurrently({[&] { o1 = load_input("o1", command.o1, command.transform_o1); },
+                         [&] { o2 = load_input("o2", command.o2, command.transform_o2); }});
   const double import_ms = import.lap();
 
   std::vector<Result> results;
-  try {
+  out.fill([&] {
     results.push_back(measure(command, o1, o2, import_ms, out.staging(command.both ? "o1" : ""), progress));
     if (command.both) results.push_back(measure(command, o2, o1, import_ms, out.staging("o2"), progress));
-    out.commit();
-  } catch (const sdm::Cancelled&) {
-    throw;
-  } catch (const sdm::Error& error) {
-    throw sdm::Error(out.publicly(error.what()));
-  }
+  });
 
   if (command.json) {
     std::cout << to_text(command.both
@@ -153,9 +126,10 @@ int run(MapCommand command) {
   } else if (!command.quiet) {
     std::cout << summary(o1, o2, results[0].outcome, command.picture.units);
     if (command.both) std::cout << summary(o2, o1, results[1].outcome, command.picture.units);
-    const std::string folder = command.out.string() + (command.both ? "/{o1,o2}" : "");
-    std::cout << "  time      " << std::round(total.lap()) / 1000 << " s\n  results   " << folder
-              << "/: map.exr distance.png voronoi.png direction.png model.glb report.json\n";
+    std::cout << fmt::format(
+        "  time      {} s\n  results   {}{}/: map.exr distance.png voronoi.png direction.png model.glb "
+        "report.json\n",
+        number(std::round(total.lap()) / 1000, 6), command.out.string(), command.both ? "/{o1,o2}" : "");
   }
   const bool within = std::ranges::all_of(
       results, [](const Result& r) { return !r.outcome.tolerance || r.outcome.tolerance->within; });

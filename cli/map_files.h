@@ -6,14 +6,9 @@
 
 #include <filesystem>
 #include <span>
-#include <vector>
 
-/// The distance of each vertex to `sites`, negative inside as told by `sign`; NaN beyond the maximum
-/// distance.
-[[nodiscard]] std::vector<float> vertex_distances(const sdm::Mesh& mesh, const sdm::Sites& sites,
-                                                  sdm::SignMethod sign, sdm::MapOptions options);
-
-/// map.exr, model.glb, distance.png, direction.png and voronoi.png, at the same time.
+/// Writes map.exr, model.glb, distance.png, direction.png and voronoi.png, concurrently. `at_vertices`: the
+/// distance at each vertex of the surface's mesh.
 void write_map_files(const std::filesystem::path& folder, const sdm::Surface& surface,
                      const sdm::DistanceMap& map, std::span<const float> at_vertices,
                      const sdm::PictureOptions& picture);

@@ -27,5 +27,5 @@ struct MapCommand {
 /// The options set `command`, which must outlive the parsing.
 void add_options(CLI::App& app, MapCommand& command);
 
-/// Throws CLI::ValidationError for options that do not go together.
+/// Throws CLI::ValidationError for options that contradict each other.
 void check_combination(const CLI::App& app, const MapCommand& command);

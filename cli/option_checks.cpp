@@ -1,12 +1,14 @@
 #include "option_checks.h"
 
 #include <sdm/error.h>
-#include <sdm/transform.h>
 
 #include <cmath>
 
+#include "format.h"
+#include "scenes/placement.h"
+
 std::string check_transform(const std::string& text) try {
-  (void)sdm::parse_transform(text);
+  (void)sdm::scenes::parse_placement(text);
   return {};
 } catch (const sdm::Error& error) {
   return error.what();
@@ -28,8 +30,7 @@ CLI::Validator whole_number(int lowest, int highest) {
         int value = 0;
         const bool good = CLI::detail::lexical_cast(text, value) && lowest <= value && value <= highest;
         return good ? std::string()
-                    : text + " is not a whole number from " + std::to_string(lowest) + " to " +
-                          std::to_string(highest);
+                    : fmt::format("{} is not a whole number from {} to {}", text, lowest, highest);
       },
       "");
 }

@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-/// Checks steps for sdm::parse_transform; returns the fault, or an empty string.
+/// Checks steps for sdm::scenes::parse_placement; returns the fault, or an empty string.
 [[nodiscard]] std::string check_transform(const std::string& text);
 
-/// A finite number that is accepted.
+/// Requires a finite number for which `accepts` holds.
 [[nodiscard]] CLI::Validator number(const std::string& description, bool (*accepts)(double));
 [[nodiscard]] CLI::Validator whole_number(int lowest, int highest);
 
-/// An option that takes one of some words; the first is the default.
+/// An option with a fixed set of values; the first one is the default.
 template <class Enum>
 void add_choice(CLI::App& app, const std::string& name, Enum& target, const std::string& description,
                 const std::vector<std::pair<std::string, Enum>>& choices) {

@@ -1,9 +1,12 @@
 #include "output_folder.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <unistd.h>
 
+#include <exception>
 #include <fstream>
+#include <new>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -14,7 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void fail(const fs::path& path, const std::string& fault) {
-  throw sdm::Error("cannot write to " + path.string() + ": " + fault + "; choose another folder with -o");
+  throw sdm::Error(
+      fmt::format("cannot write to {}: {}; choose another folder with -o", path.string(), fault));
 }
 
 void create_folder(const fs::path& path) {
@@ -31,8 +35,7 @@ fs::path without_trailing_slash(fs::path path) {
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& folder)
-    : folder_(without_trailing_slash(folder)),
-      staging_(folder_ / (".sdm-" + std::to_string(getpid()) + ".part")) {
+    : folder_(without_trailing_slash(folder)), staging_(folder_ / fmt::format(".sdm-{}.part", getpid())) {
   std::error_code ignored;
   existing_ = folder_;
   while (!fs::exists(existing_, ignored) && existing_.has_relative_path())
@@ -59,13 +62,28 @@ void OutputFolder::remove_traces() {
   for (fs::path made = folder_; made != existing_; made = made.parent_path()) fs::remove(made, ignored);
 }
 
+void OutputFolder::fill(const std::function<void()>& work) {
+  try {
+    work();
+    commit();
+  } catch (const sdm::Cancelled&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const sdm::Error& error) {
+    throw sdm::Error(with_final_path(error.what()), error.remedy());
+  } catch (const std::exception& error) {
+    throw sdm::Error(with_final_path(error.what()));
+  }
+}
+
 fs::path OutputFolder::staging(const fs::path& subfolder) {
   const fs::path path = staging_ / subfolder;
   create_folder(path);
   return path;
 }
 
-std::string OutputFolder::publicly(std::string message) const {
+std::string OutputFolder::with_final_path(std::string message) const {
   const std::string hidden = fs::path::preferred_separator + staging_.filename().string();
   for (std::size_t at; (at = message.find(hidden)) != std::string::npos;) message.erase(at, hidden.size());
   return message;
@@ -91,6 +109,10 @@ void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);
   out << text;
   out.close();
-  if (!out)
-    throw sdm::Error("cannot write " + file.filename().string() + ": the disk may be full; free space on it");
+  if (!out) throw_write_failure(file);
+}
+
+void throw_write_failure(const fs::path& file) {
+  throw sdm::Error(fmt::format("cannot write {}: the disk may be full; free space or choose another folder",
+                               file.string()));
 }

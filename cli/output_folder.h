@@ -2,10 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
-/// Results are first written to a hidden folder inside; commit() moves them to their places. Without it
-/// nothing remains: no file, and no folder that was not there before.
+/// Files are first written to a hidden staging folder inside the output folder and moved to their places at
+/// the end. After a failure no file remains, and no folder that did not exist before.
 class OutputFolder {
  public:
   /// Throws sdm::Error when `folder` is a file, or cannot be created or written to.
@@ -14,19 +15,23 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Where to write what commit() moves to `folder`/`subfolder`.
+  /// Calls `work`, which writes its files below staging(), then moves them to the output folder, replacing
+  /// those of an earlier run. Errors name the final path of a file instead of its staged one. Throws what
+  /// `work` throws, and sdm::Error if a folder has the name of an output file.
+  void fill(const std::function<void()>& work);
+  /// The staged form of `folder`/`subfolder`, which is created.
   [[nodiscard]] std::filesystem::path staging(const std::filesystem::path& subfolder = {});
-  /// A message about the staging folder, in terms of the folder of the results.
-  [[nodiscard]] std::string publicly(std::string message) const;
-  /// Replaces files of an earlier run. Throws sdm::Error when a result's place is taken by a folder.
-  void commit();
 
  private:
+  [[nodiscard]] std::string with_final_path(std::string message) const;
+  void commit();
   void remove_traces();
 
   std::filesystem::path folder_, staging_;
-  std::filesystem::path existing_;  ///< the closest ancestor of folder_, or itself, that was there before
+  std::filesystem::path existing_;  ///< the closest ancestor of folder_, or itself, that existed before
 };
 
-/// Throws sdm::Error where not all of the text could be written.
+/// Throws sdm::Error if not all of the text could be written.
 void write_text(const std::filesystem::path& file, const std::string& text);
+/// Throws sdm::Error about the file: the disk may be full.
+[[noreturn]] void throw_write_failure(const std::filesystem::path& file);

@@ -14,5 +14,5 @@ struct PairCommand {
   bool json = false, quiet = false;
 };
 
-/// The options set `command`, which must outlive the parsing. `bodies` says what O1 and O2 are.
+/// The options set `command`, which must outlive the parsing. `bodies` describes O1 and O2 in the help text.
 void add_options(CLI::App& app, PairCommand& command, const std::array<std::string, 2>& bodies);

@@ -1,5 +1,6 @@
 #include "progress_line.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <unistd.h>
 
@@ -44,8 +45,7 @@ void ProgressLine::step(std::string_view name) {
 
 bool ProgressLine::show(std::string_view step, double fraction) {
   if (visible_) {
-    std::string line(step);
-    line.append(" ").append(std::to_string(static_cast<int>(100 * fraction))).append(" %");
+    const std::string line = fmt::format("{} {} %", step, static_cast<int>(100 * fraction));
     if (line != shown_) std::cerr << "\r\033[K" << (shown_ = line) << std::flush;
   }
   return interrupted_by == 0;

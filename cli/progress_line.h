@@ -16,12 +16,12 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Refers to this object.
+  /// The callback refers to this object.
   [[nodiscard]] sdm::Progress callback();
   /// Throws sdm::Cancelled after an interrupt.
   void step(std::string_view name);
-  /// Once all is tidied up after an interrupt: ends the program by that very signal, so that a shell ends its
-  /// loop too.
+  /// After an interrupt and the cleanup that follows it: ends the program by that signal, so that the loop
+  /// of a shell script ends too.
   static void end_by_interrupt();
 
  private:

@@ -6,12 +6,11 @@
 #include <iostream>
 #include <memory>
 
-#include "core/parallel.h"
-#include "core/stopwatch.h"
 #include "pair_options.h"
 #include "progress_line.h"
 #include "proximity_report.h"
 #include "report.h"
+#include "stopwatch.h"
 
 namespace {
 
@@ -21,12 +20,12 @@ void run(PairCommand command) {
   command.options.atlas.progress = progress.callback();
 
   progress.step("import");
-  sdm::Stopwatch watch;
+  Stopwatch watch;
   Input o1, o2;
-  sdm::parallel_invoke([&] { o1 = load_input("o1", command.o1, command.transform_o1); },
-                       [&] { o2 = load_input("o2", command.o2, command.transform_o2); });
+  sdm::run_concurrently({[&] { o1 = load_input("o1", command.o1, command.transform_o1); },
+                         [&] { o2 = load_input("o2", command.o2, command.transform_o2); }});
   const double import_ms = watch.lap();
-  sdm::Query query(o1.mesh, o2.mesh, command.options);
+  sdm::ProximityQuery query(o1.mesh, o2.mesh, command.options);
   const double build_ms = watch.lap();
   progress.step("queries");
   nlohmann::ordered_json answers = to_json(query);

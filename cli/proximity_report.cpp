@@ -1,6 +1,6 @@
 #include "proximity_report.h"
 
-#include "report.h"
+#include "format.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -31,7 +31,7 @@ Json to_json(const sdm::BoundedBool& decision) {
 namespace {
 
 // Why there is no depth.
-std::string no_solid(const sdm::Query& query) {
+std::string no_solid(const sdm::ProximityQuery& query) {
   const auto reason = [&](int body) {
     std::string text = sdm::choose_sign(query.sites(body), sdm::SignMethod::automatic).reason;
     if (body == 0) text.replace(text.find("O2"), 2, "O1");
@@ -45,26 +45,25 @@ std::size_t patch_count(std::span<const sdm::Contact> contacts) {
 }
 
 std::string point(const sdm::Vec3& p) {
-  std::string text = number(p[0]);
-  for (const double x : {p[1], p[2]}) text.append(" ").append(number(x));
-  return text.insert(0, 1, '(').append(")");
+  return fmt::format("({} {} {})", number(p[0]), number(p[1]), number(p[2]));
 }
 
 std::string words(const sdm::BoundedLength& length, const std::string& unit) {
-  std::string text = number(length.value) + unit;
-  if (length.kind == sdm::Certainty::bounded)
-    text += "   between " + number(length.lower) + " and " + number(length.upper);
-  return text + " (" + name(length.kind) + ")\n";
+  const std::string bounds =
+      length.kind == sdm::Certainty::bounded
+          ? fmt::format("   between {} and {}", number(length.lower), number(length.upper))
+          : std::string();
+  return fmt::format("{}{}{} ({})\n", number(length.value), unit, bounds, name(length.kind));
 }
 
 std::string between(const sdm::BoundedLength& length) {
   if (!length.witness) return {};
-  return "            from " + point((*length.witness)[0]) + " to " + point((*length.witness)[1]) + "\n";
+  return fmt::format("            from {} to {}\n", point((*length.witness)[0]), point((*length.witness)[1]));
 }
 
 }  // namespace
 
-Json to_json(sdm::Query& query) {
+Json to_json(sdm::ProximityQuery& query) {
   Json json;
   json["separation"] = to_json(query.separation());
   json["colliding"] = to_json(query.colliding());
@@ -80,26 +79,21 @@ Json to_json(sdm::Query& query) {
   return json;
 }
 
-std::string summary(sdm::Query& query, const std::string& units) {
-  const std::string unit = units.empty() ? "" : " " + units;
+std::string summary(sdm::ProximityQuery& query, const std::string& units) {
+  const std::string unit = unit_suffix(units);
   const sdm::BoundedBool colliding = query.colliding();
   std::string text =
-      std::string("  colliding  ") + (colliding.value ? "yes (" : "no (") + name(colliding.kind) + ")\n";
-  text += "  separation " + words(query.separation(), unit);
-  text += between(query.separation());
-  if (const auto& depth = query.penetration_depth()) {
-    text += "  depth      " + words(*depth, unit);
-    text += between(*depth);
-  } else {
-    text += "  depth      none: " + no_solid(query) + "\n";
-  }
+      fmt::format("  colliding  {} ({})\n", colliding.value ? "yes" : "no", name(colliding.kind));
+  text += "  separation " + words(query.separation(), unit) + between(query.separation());
+  if (const auto& depth = query.penetration_depth())
+    text += "  depth      " + words(*depth, unit) + between(*depth);
+  else
+    text += fmt::format("  depth      none: {}\n", no_solid(query));
   const std::span<const sdm::Contact> contacts = query.contacts();
-  text += "  contacts   " + std::to_string(contacts.size());
-  if (!contacts.empty()) {
-    const sdm::Contact& deepest = contacts.front();
-    text += " in " + std::to_string(patch_count(contacts)) +
-            (patch_count(contacts) == 1 ? " patch" : " patches") + "; the deepest, " + number(deepest.depth) +
-            unit + ", pushes O1 along " + point(deepest.normal);
-  }
-  return text + "\n";
+  if (contacts.empty()) return text + "  contacts   0\n";
+  const std::size_t patches = patch_count(contacts);
+  const sdm::Contact& deepest = contacts.front();
+  return text + fmt::format("  contacts   {} in {} {}; the deepest, {}{}, pushes O1 along {}\n",
+                            contacts.size(), patches, patches == 1 ? "patch" : "patches",
+                            number(deepest.depth), unit, point(deepest.normal));
 }

@@ -11,8 +11,8 @@
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedBool& decision);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Contact& contact);
 
-/// All answers of the query, which are computed if need be.
-[[nodiscard]] nlohmann::ordered_json to_json(sdm::Query& query);
+/// All results of the query, computed if necessary.
+[[nodiscard]] nlohmann::ordered_json to_json(sdm::ProximityQuery& query);
 
-/// Some lines for a reader in a hurry.
-[[nodiscard]] std::string summary(sdm::Query& query, const std::string& units);
+/// A few lines of text.
+[[nodiscard]] std::string summary(sdm::ProximityQuery& query, const std::string& units);

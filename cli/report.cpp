@@ -1,7 +1,9 @@
 #include "report.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "format.h"
+#include "scenes/placement.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -72,15 +74,9 @@ Json to_json(const sdm::GlReport& r) {
 
 }  // namespace
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value);
-  return text;
-}
-
 Input load_input(const std::string& role, const std::string& file, const std::string& transform) {
   Input input{role, file, transform, sdm::read_mesh(file), {}};
-  sdm::transform(input.mesh, sdm::parse_transform(transform));
+  sdm::scenes::place(input.mesh, sdm::scenes::parse_placement(transform));
   input.info = sdm::inspect(input.mesh);
   return input;
 }
@@ -118,7 +114,7 @@ Json to_json(const Outcome& outcome) {
   json["error_bound"] = outcome.error_bound;
   json["error_bound_kind"] = "bounded";
   if (outcome.tolerance)
-    json["tolerance"] = {{"value", outcome.tolerance->value},
+    json["tolerance"] = {{"value", outcome.tolerance->tolerance},
                          {"exceeded_area_fraction", outcome.tolerance->exceeded_area_fraction},
                          {"within", outcome.tolerance->within},
                          {"certified", outcome.tolerance->certified}};
@@ -135,33 +131,34 @@ std::string to_text(const Json& json) {
 
 std::string summary(const Input& on, const Input& to, const Outcome& outcome, const std::string& units) {
   const sdm::DistanceStatistics& d = outcome.distance;
-  const std::string unit = units.empty() ? "" : " " + units;
-  std::string text = on.file + " -> " + to.file + "\n";
+  const std::string unit = unit_suffix(units);
+  std::string text = fmt::format("{} -> {}\n", on.file, to.file);
+  const auto add = [&]<class... Values>(fmt::format_string<Values...> line, Values&&... values) {
+    fmt::format_to(std::back_inserter(text), line, std::forward<Values>(values)...);
+  };
   if (d.texels == 0) {
-    text += "  distance  no texel is within the maximum distance\n";
+    add("  distance  no texel is within the maximum distance\n");
   } else {
-    text += "  distance  min " + number(d.min) + "   mean " + number(d.mean) + "   max " + number(d.max) +
-            unit + "\n";
+    add("  distance  min {}   mean {}   max {}{}\n", number(d.min), number(d.mean), number(d.max), unit);
     if (outcome.sign.method != sdm::SignMethod::none)
-      text += "            " +
-              number(100.0 * static_cast<double>(d.negative_texels) / static_cast<double>(d.texels)) +
-              " % of the texels are inside (negative)\n";
+      add("            {} % of the texels are inside (negative)\n",
+          number(100.0 * static_cast<double>(d.negative_texels) / static_cast<double>(d.texels)));
   }
-  if (outcome.sign.method == sdm::SignMethod::none)
-    text += "            unsigned: " + outcome.sign.reason + "\n";
+  if (outcome.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", outcome.sign.reason);
   if (outcome.beyond_max_distance > 0)
-    text += "            " + std::to_string(outcome.beyond_max_distance) +
-            " texels are farther than --max-distance\n";
-  text += "  error     at most " + number(outcome.error_bound) + unit +
-          ", everywhere between the texels (whose values are exact)\n";
-  if (outcome.tolerance)
-    text += std::string("  tolerance ") + (outcome.tolerance->within ? "kept" : "exceeded on ") +
-            (outcome.tolerance->within
-                 ? ""
-                 : number(100 * outcome.tolerance->exceeded_area_fraction) + " % of the area") +
-            (outcome.tolerance->certified ? "\n" : " at the samples, not certified between them\n");
+    add("            {} texels are farther than --max-distance\n", outcome.beyond_max_distance);
+  add("  error     at most {}{}, everywhere between the texels (whose values are exact)\n",
+      number(outcome.error_bound), unit);
+  if (const auto& verdict = outcome.tolerance) {
+    if (!verdict->within)
+      add("  tolerance exceeded on {} % of the area\n", number(100 * verdict->exceeded_area_fraction));
+    else if (verdict->certified)
+      add("  tolerance kept\n");
+    else
+      add("  tolerance kept at the samples, not certified between them\n");
+  }
   if (outcome.raster)
-    text += "  raster    " + outcome.raster->device.name + ", " + std::to_string(outcome.raster->polygons) +
-            " polygons, overdraw " + number(overdraw(*outcome.raster)) + "\n";
+    add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,
+        number(overdraw(*outcome.raster)));
   return text;
 }

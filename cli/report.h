@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-/// A mesh of the command line, placed.
+/// A mesh of the command line, after its transform.
 struct Input {
   std::string role;  ///< "o1", "o2", or "mesh" if it is the only one
   std::string file, transform;
@@ -17,16 +17,9 @@ struct Input {
   sdm::MeshInfo info;
 };
 
-/// Reads a mesh, and places it.
+/// Reads a mesh and applies its transform.
 [[nodiscard]] Input load_input(const std::string& role, const std::string& file,
                                const std::string& transform);
-
-struct Tolerance {
-  double value = 0;
-  double exceeded_area_fraction = 0;
-  bool within = true;     ///< of every texel and every vertex
-  bool certified = true;  ///< `within` holds for every point of the surface
-};
 
 /// Wall-clock milliseconds. Overlapping steps are each counted in full.
 struct Times {
@@ -39,23 +32,19 @@ struct Outcome {
   sdm::SignUsed sign;
   std::size_t beyond_max_distance = 0;
   double error_bound = 0;
-  std::optional<Tolerance> tolerance;
+  std::optional<sdm::ToleranceVerdict> tolerance;
   std::optional<sdm::GlReport> raster;
   Times time;
 };
 
-/// Throughout, `on` is the mesh that carries the map and `to` the other one.
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Surface& surface);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::DistanceStatistics& distance);
 [[nodiscard]] nlohmann::ordered_json to_json(const Outcome& outcome);
 
-/// With five digits.
-[[nodiscard]] std::string number(double value);
-
-/// JSON text; file names that are not UTF-8 lose the bytes at fault.
+/// JSON text; invalid bytes of file names that are not UTF-8 are left out.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);
 
-/// Some lines for a reader in a hurry.
+/// A few lines of text. `on` carries the map of the distances to `to`.
 [[nodiscard]] std::string summary(const Input& on, const Input& to, const Outcome& outcome,
                                   const std::string& units);

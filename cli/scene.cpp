@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include "common_options.h"
+#include "format.h"
 #include "output_folder.h"
 #include "progress_line.h"
 
@@ -9,7 +10,6 @@
 #include <sdm/sequence.h>
 #include <sdm/threads.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -39,7 +39,7 @@ struct SceneCommand {
   bool quiet = false;
 };
 
-/// A body's frames, written as they come.
+/// Writes the frames of a body.
 class Recorder {
  public:
   Recorder(const Scene::Body& body, const fs::path& folder, bool numbered) : folder_(folder / body.name) {
@@ -61,14 +61,12 @@ class Recorder {
   void add(const sdm::Mesh& mesh, int frame) {
     if (writer_) writer_->add(mesh.positions);
     if (!numbered_) return;
-    char name[32];
-    std::snprintf(name, sizeof name, "%05d.ply", frame);
-    sdm::write_ply(folder_ / name, mesh);
+    sdm::write_ply(folder_ / fmt::format("{:05}.ply", frame), mesh);
   }
   void commit() {
     if (writer_) writer_->commit();
   }
-  /// As MeshSequence takes it, relative to the folder of the scene.
+  /// The input of MeshSequence, relative to the folder of the scene.
   [[nodiscard]] const std::string& sequence() const { return sequence_; }
 
  private:
@@ -101,7 +99,7 @@ void run(const SceneCommand& command) {
   ProgressLine progress(command.quiet);
   const sdm::Progress report = progress.callback();
   nlohmann::ordered_json description;
-  try {
+  out.fill([&] {
     progress.step("meshes");
     Scene scene(kKinds.at(command.kind), {.mesh = command.mesh});
     std::vector<Recorder> recorders;
@@ -115,12 +113,7 @@ void run(const SceneCommand& command) {
     for (Recorder& recorder : recorders) recorder.commit();
     description = describe(command, scene, recorders);
     write_text(out.staging() / "scene.json", description.dump(2) + '\n');
-    out.commit();
-  } catch (const sdm::Cancelled&) {
-    throw;
-  } catch (const sdm::Error& error) {
-    throw sdm::Error(out.publicly(error.what()));
-  }
+  });
   if (command.quiet) return;
   std::cout << command.frames << " frames of " << description["time_step"].get<double>() << " s in "
             << command.out.string() << "/, described by scene.json:\n";
@@ -147,7 +140,7 @@ void add_scene_command(CLI::App& app) {
       ->capture_default_str();
   scene
       ->add_option("--format", command->format,
-                   "MultiBodyQuery that move: NAME.ply and NAME.npy, or NAME/00000.ply and so on")
+                   "Moving bodies: NAME.ply and NAME.npy, or NAME/00000.ply and so on")
       ->check(CLI::IsMember({"npy", "ply"}).description(""))
       ->type_name("npy|ply")
       ->capture_default_str();
@@ -159,7 +152,7 @@ void add_scene_command(CLI::App& app) {
       ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N")
       ->capture_default_str();
-  scene->add_flag("--quiet", command->quiet, "Print nothing but errors");
+  scene->add_flag("--quiet", command->quiet, "Print only errors");
   scene->footer(
       "The files can be used as sequences. They are bit-identical every time.\n\n"
       "Example:\n  sdm scene letters -o letters");

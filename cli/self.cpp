@@ -1,14 +1,14 @@
 #include "self.h"
 
 #include "common_options.h"
-#include "core/parallel.h"
-#include "core/stopwatch.h"
+#include "format.h"
 #include "map_files.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "proximity_report.h"
 #include "report.h"
+#include "stopwatch.h"
 
 #include <cmath>
 #include <iostream>
@@ -32,7 +32,7 @@ struct SelfCommand {
 /// Writes all files into `folder`, and returns the report.
 Json measure(const SelfCommand& command, const Input& input, double import_ms,
              const std::filesystem::path& folder, ProgressLine& progress) {
-  sdm::Stopwatch total, watch;
+  Stopwatch total, watch;
   const sdm::Surface surface(input.mesh, command.atlas);
   const double atlas_ms = watch.lap();
   progress.step("sites");
@@ -47,8 +47,8 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
 
   progress.step("export");
   sdm::DistanceStatistics distance;
-  sdm::parallel_invoke([&] { write_map_files(folder, surface, map, at_vertices, command.picture); },
-                       [&] { distance = sdm::statistics(surface, map); });
+  sdm::run_concurrently({[&] { write_map_files(folder, surface, map, at_vertices, command.picture); },
+                         [&] { distance = sdm::statistics(surface, map); }});
   const double export_ms = watch.lap();
 
   Json report;
@@ -71,26 +71,27 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
 }
 
 std::string summary(const SelfCommand& command, const Json& report) {
-  const std::string unit = command.picture.units.empty() ? "" : " " + command.picture.units;
-  std::string text = command.file + " -> itself\n";
+  const std::string unit = unit_suffix(command.picture.units);
+  std::string text = fmt::format("{} -> itself\n", command.file);
   const Json &d = report["distance"], &separation = report["separation"];
   const auto number_of = [](const Json& value) { return number(value.get<double>()); };
   if (separation.is_null())
     text += "  separation  none: all faces in range are excluded\n";
   else
-    text += "  separation  " + number_of(separation["value"]) + unit + " (exact)\n";
+    text += fmt::format("  separation  {}{} (exact)\n", number_of(separation["value"]), unit);
   if (report["texels_with_value"] == 0)
     text += "  distance    no texel has anything in range\n";
   else
-    text += "  distance    min " + number_of(d["min"]) + "   mean " + number_of(d["mean"]) + "   max " +
-            number_of(d["max"]) + unit + " (of the texels)\n";
+    text += fmt::format("  distance    min {}   mean {}   max {}{} (of the texels)\n", number_of(d["min"]),
+                        number_of(d["mean"]), number_of(d["max"]), unit);
   if (report["texels_without_value"] != 0)
-    text += "              " + report["texels_without_value"].dump() + " texels have nothing in range\n";
+    text +=
+        fmt::format("              {} texels have nothing in range\n", report["texels_without_value"].dump());
   return text;
 }
 
 void run(SelfCommand command) {
-  sdm::Stopwatch total;
+  Stopwatch total;
   const sdm::ThreadLimit limit(command.threads);
   OutputFolder out(command.out);
   ProgressLine progress(command.quiet);
@@ -98,25 +99,20 @@ void run(SelfCommand command) {
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
   progress.step("import");
-  sdm::Stopwatch import;
+  Stopwatch import;
   const Input input = load_input("mesh", command.file, command.transform);
   const double import_ms = import.lap();
   Json report;
-  try {
-    report = measure(command, input, import_ms, out.staging(), progress);
-    out.commit();
-  } catch (const sdm::Cancelled&) {
-    throw;
-  } catch (const sdm::Error& error) {
-    throw sdm::Error(out.publicly(error.what()));
-  }
+  out.fill([&] { report = measure(command, input, import_ms, out.staging(), progress); });
 
   if (command.json)
     std::cout << to_text(report);
   else if (!command.quiet)
-    std::cout << summary(command, report) << "  time        " << std::round(total.lap()) / 1000
-              << " s\n  results     " << command.out.string()
-              << "/: map.exr distance.png voronoi.png direction.png model.glb report.json\n";
+    std::cout << summary(command, report)
+              << fmt::format(
+                     "  time        {} s\n  results     {}/: map.exr distance.png voronoi.png direction.png "
+                     "model.glb report.json\n",
+                     number(std::round(total.lap()) / 1000, 6), command.out.string());
 }
 
 }  // namespace
@@ -127,7 +123,7 @@ void add_self_command(CLI::App& app) {
   self->footer(
       "Each face excludes a neighbourhood; distances are measured to all other faces.\n"
       "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb and report.json.\n\n"
-      "Example, walls nearer than the way around them:\n"
+      "Example, walls that are closer than along the surface:\n"
       "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
   const auto command = std::make_shared<SelfCommand>();
   SelfCommand& c = *command;

@@ -4,19 +4,20 @@
 #include <sdm/sdm.h>
 #include <sdm/sequence.h>
 
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
 
 #include "common_options.h"
-#include "core/stopwatch.h"
+#include "format.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "pair_options.h"
 #include "progress_line.h"
+#include "scenes/placement.h"
 #include "sequence_report.h"
+#include "stopwatch.h"
 
 namespace {
 
@@ -28,49 +29,43 @@ struct SequenceCommand {
   bool keep_going = false, no_temporal = false;
 };
 
-/// A body of the sequence: its file or files, and where it stands.
+/// A body: its sequence of meshes, and its placement.
 class Body {
  public:
   Body(const std::string& input, const std::string& steps, double rate)
       : input_(input),
         sequence_(input, {.rate = rate}),
-        steps_(sdm::without_fit(sequence_.mesh(), sdm::parse_transform(steps))) {}
+        steps_(sdm::scenes::without_fit(sequence_.mesh(), sdm::scenes::parse_placement(steps))) {}
 
   [[nodiscard]] const std::string& input() const { return input_; }
   [[nodiscard]] std::size_t frames() const { return sequence_.frame_count(); }
   [[nodiscard]] bool still() const { return frames() == 1; }
   [[nodiscard]] sdm::Mesh first() const {
     sdm::Mesh mesh = sequence_.mesh();
-    sdm::transform(mesh, steps_);
+    sdm::scenes::place(mesh, steps_);
     return mesh;
   }
-  /// Of a body that moves.
+  /// The placed positions of a frame; requires a body that moves.
   [[nodiscard]] std::span<const sdm::Vec3> positions(std::size_t frame) {
     const std::span<const sdm::Vec3> read = sequence_.positions(frame);
     placed_.assign(read.begin(), read.end());
-    sdm::transform(placed_, steps_);
+    sdm::scenes::place(placed_, steps_);
     return placed_;
   }
 
  private:
   std::string input_;
   sdm::MeshSequence sequence_;
-  std::vector<sdm::TransformStep> steps_;
+  std::vector<sdm::scenes::PlacementStep> steps_;
   std::vector<sdm::Vec3> placed_;
 };
 
 std::size_t common_frames(const Body& a, const Body& b) {
   if (a.still()) return b.frames();
   if (b.still() || a.frames() == b.frames()) return a.frames();
-  throw sdm::Error(a.input() + " has " + std::to_string(a.frames()) + " frames and " + b.input() + " has " +
-                   std::to_string(b.frames()) +
-                   "; give two sequences of the same length, or one mesh at rest");
-}
-
-std::string four_digits(std::size_t frame) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%04zu", frame);
-  return text;
+  throw sdm::Error(fmt::format(
+      "{} has {} frames and {} has {}; give two sequences of the same length, or one mesh at rest", a.input(),
+      a.frames(), b.input(), b.frames()));
 }
 
 /// Processes the frames of one command.
@@ -92,29 +87,30 @@ class Run {
     }
   }
 
-  /// The exit code.
-  int operator()() {
-    sdm::Stopwatch watch;
-    double seconds = 0;
-    for (std::size_t i = 0; i < count_ && !stopped_; ++i) {
-      progress_.step(status(i, seconds));
-      use(i);
-      seconds += watch.lap() / 1000;
-    }
-    finish();
+  /// Writes the results of all frames, or of those before the first bad one, which is then reported by
+  /// sdm::Error.
+  void operator()() {
+    out_.fill([&] {
+      Stopwatch watch;
+      double seconds = 0;
+      for (std::size_t i = 0; i < count_ && !stopped_; ++i) {
+        progress_.step(status(i, seconds));
+        use(i);
+        seconds += watch.lap() / 1000;
+      }
+      write_results();
+    });
+    if (!command_.pair.json && !command_.pair.quiet) print_summary();
     if (stopped_)
-      throw sdm::Error(bad_.back().fault + "; " + std::to_string(frames_.size()) + " earlier frames are in " +
-                       command_.out.string() + " (--keep-going skips bad frames)");
-    return 0;
+      throw sdm::Error(fmt::format("{}; {} earlier frames are in {} (--keep-going skips bad frames)",
+                                   bad_.back().fault, frames_.size(), command_.out.string()));
   }
 
  private:
   [[nodiscard]] std::string status(std::size_t frame, double seconds) const {
-    std::string text = "frame " + std::to_string(frame + 1) + " of " + std::to_string(count_);
+    const std::string text = fmt::format("frame {} of {}", frame + 1, count_);
     if (frame == 0) return text;
-    char rate[32];
-    std::snprintf(rate, sizeof rate, ", %.1f a second", static_cast<double>(frame) / seconds);
-    return text + rate;
+    return fmt::format("{}, {:.1f} per second", text, static_cast<double>(frame) / seconds);
   }
 
   void use(std::size_t index) {
@@ -130,7 +126,7 @@ class Run {
       stopped_ = !command_.keep_going;
       return;
     }
-    sdm::Stopwatch watch;
+    Stopwatch watch;
     frame.separation = query_->separation();
     frame.colliding = query_->colliding();
     frame.depth = query_->penetration_depth();
@@ -156,7 +152,7 @@ class Run {
 
   // Both bodies are read before one of them is moved.
   void move(Frame& frame) {
-    sdm::Stopwatch watch;
+    Stopwatch watch;
     std::span<const sdm::Vec3> p1, p2;
     if (!o1_.still()) p1 = o1_.positions(frame.index);
     if (!o2_.still()) p2 = o2_.positions(frame.index);
@@ -164,15 +160,15 @@ class Run {
     try {
       query_->update(p1, p2);
     } catch (const sdm::Error& error) {
-      throw sdm::Error("frame " + std::to_string(frame.index) + ": " + error.what());
+      throw sdm::Error(fmt::format("frame {}: {}", frame.index, error.what()), error.remedy());
     }
     frame.time.update = watch.lap();
   }
 
   void write_map(std::size_t index) {
     const std::filesystem::path folder = out_.staging("maps");
-    sdm::write_exr(folder / (four_digits(index) + ".exr"), query_->surface(0), map_);
-    sdm::write_distance_png(folder / (four_digits(index) + ".png"), query_->surface(0), map_,
+    sdm::write_exr(folder / fmt::format("{:04}.exr", index), query_->surface(0), map_);
+    sdm::write_distance_png(folder / fmt::format("{:04}.png", index), query_->surface(0), map_,
                             {.units = command_.pair.units});
   }
 
@@ -182,21 +178,22 @@ class Run {
     if (command_.pair.json) std::cout << text << std::flush;
   }
 
-  void finish() {
+  void write_results() {
     progress_.step("export");
     const std::filesystem::path folder = out_.staging();
     lines_.close();
-    if (!lines_) throw sdm::Error("cannot write frames.jsonl: the disk may be full; free space on it");
+    if (!lines_) throw_write_failure(folder / "frames.jsonl");
     write_text(folder / "frames.csv", to_csv(frames_));
     if (!frames_.empty()) write_plot(folder / "plot.png", frames_, command_.pair.units);
     if (temporal_.maps() > 0) write_temporal(folder);
-    out_.commit();
-    if (!command_.pair.json && !command_.pair.quiet)
-      std::cout << o1_.input() << ", " << o2_.input() << "\n"
-                << summary(frames_, bad_, command_.pair.units) << "  results    " << command_.out.string()
-                << "/: frames.jsonl frames.csv" << (frames_.empty() ? "" : " plot.png")
-                << (temporal_.maps() > 0 ? " temporal.exr min.png mean.png max.png" : "")
-                << (command_.maps_every > 0 ? " maps/" : "") << "\n";
+  }
+
+  void print_summary() const {
+    std::cout << fmt::format("{}, {}\n{}  results    {}/: frames.jsonl frames.csv{}{}{}\n", o1_.input(),
+                             o2_.input(), summary(frames_, bad_, command_.pair.units), command_.out.string(),
+                             frames_.empty() ? "" : " plot.png",
+                             temporal_.maps() > 0 ? " temporal.exr min.png mean.png max.png" : "",
+                             command_.maps_every > 0 ? " maps/" : "");
   }
 
   void write_temporal(const std::filesystem::path& folder) {
@@ -217,7 +214,7 @@ class Run {
   Body o1_, o2_;
   std::size_t count_;
   std::ofstream lines_;
-  std::optional<sdm::Query> query_;
+  std::optional<sdm::ProximityQuery> query_;
   std::vector<sdm::SamplingBound> bounds_;  // of each body
   std::vector<sdm::RelativeError> errors_;  // likewise
   std::vector<Frame> frames_;
@@ -233,12 +230,10 @@ void add_sequence_command(CLI::App& app) {
   CLI::App* sequence = app.add_subcommand(
       "sequence", "Compute proximity, error bounds and maps of two deforming bodies, frame by frame");
   sequence->footer(
-      "A sequence is a folder of numbered mesh files, a pattern such as walk_%04d.ply, mesh.obj+motion.npy "
-      "with\n"
-      "positions (T, V, 3), or a glTF file with morph targets; any other mesh file is a body at rest.\n"
-      "Writes frames.jsonl, frames.csv, plot.png, and, for O1, the minimum, mean and maximum distance over "
-      "time:\n"
-      "temporal.exr, min.png, mean.png, max.png.\n\n"
+      "A sequence is a folder of numbered mesh files, a pattern such as walk_%04d.ply, mesh.obj+motion.npy\n"
+      "with positions (T, V, 3), or a glTF file with morph targets; any other mesh file is a body at rest.\n"
+      "Writes frames.jsonl, frames.csv, plot.png, and, for O1, the minimum, mean and maximum distance over\n"
+      "time: temporal.exr, min.png, mean.png, max.png.\n\n"
       "Example:\n"
       "  sdm scene letters -o letters\n"
       "  sdm sequence letters/E.ply+letters/E.npy letters/G.ply+letters/G.npy -o out");
@@ -257,6 +252,6 @@ void add_sequence_command(CLI::App& app) {
                      "Do not compute maps over time; faster, because frames then need no complete map");
   sequence->callback([command] {
     const sdm::ThreadLimit limit(command->pair.threads);
-    if (const int code = Run(*command)(); code != 0) throw CLI::RuntimeError(code);
+    Run (*command)();
   });
 }

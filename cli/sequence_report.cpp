@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
-#include <sstream>
 
+#include "format.h"
 #include "proximity_report.h"
-#include "report.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -16,15 +16,12 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// As precise as a float.
+// As precise as a float; empty for NaN.
 std::string cell(double value) {
-  std::ostringstream text;
-  text.precision(9);
-  text << value;
-  return text.str();
+  return std::isnan(value) ? std::string() : number(value, 9);
 }
 
-// Of the frames used, and gaps between them.
+// One value per frame, NaN for skipped frames.
 template <class Value>
 std::vector<double> curve(const std::vector<Frame>& frames, std::size_t count, const Value& value) {
   std::vector<double> values(count, kNaN);
@@ -68,28 +65,26 @@ Json to_json(const BadFrame& frame) {
 
 std::string to_csv(const std::vector<Frame>& frames) {
   std::string text =
-      "frame,separation,separation_lower,separation_upper,colliding,colliding_kind,penetration_depth,depth_"
-      "lower,"
-      "depth_upper,contacts,patches,error_bound_o1,error_bound_o2,relative_error_o1,relative_error_o2,read_"
-      "ms,"
-      "update_ms,query_ms,error_ms,map_ms,write_ms,total_ms\n";
+      "frame,separation,separation_lower,separation_upper,colliding,colliding_kind,penetration_depth,"
+      "depth_lower,depth_upper,contacts,patches,error_bound_o1,error_bound_o2,relative_error_o1,"
+      "relative_error_o2,read_ms,update_ms,query_ms,error_ms,map_ms,write_ms,total_ms\n";
   for (const Frame& f : frames) {
-    std::vector<std::string> cells{std::to_string(f.index)};
-    for (const double v : {f.separation.value, f.separation.lower, f.separation.upper})
-      cells.push_back(cell(v));
+    std::vector<std::string> cells{fmt::to_string(f.index)};
+    const auto add = [&](std::initializer_list<double> values) {
+      for (const double v : values) cells.push_back(cell(v));
+    };
+    add({f.separation.value, f.separation.lower, f.separation.upper});
     cells.push_back(f.colliding.value ? "1" : "0");
     cells.push_back(name(f.colliding.kind));
-    for (const double v :
-         f.depth ? std::array{f.depth->value, f.depth->lower, f.depth->upper} : std::array{kNaN, kNaN, kNaN})
-      cells.push_back(std::isnan(v) ? "" : cell(v));
-    cells.push_back(std::to_string(f.contacts));
-    cells.push_back(std::to_string(f.patches));
-    for (const double v :
-         {f.error_bound[0], f.error_bound[1], f.relative_error[0], f.relative_error[1], f.time.read,
-          f.time.update, f.time.query, f.time.error, f.time.map, f.time.write, f.time.total()})
-      cells.push_back(cell(v));
-    for (std::size_t i = 0; i < cells.size(); ++i) text += (i > 0 ? "," : "") + cells[i];
-    text += '\n';
+    if (f.depth)
+      add({f.depth->value, f.depth->lower, f.depth->upper});
+    else
+      add({kNaN, kNaN, kNaN});
+    cells.push_back(fmt::to_string(f.contacts));
+    cells.push_back(fmt::to_string(f.patches));
+    add({f.error_bound[0], f.error_bound[1], f.relative_error[0], f.relative_error[1]});
+    add({f.time.read, f.time.update, f.time.query, f.time.error, f.time.map, f.time.write, f.time.total()});
+    text += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return text;
 }
@@ -100,7 +95,7 @@ void write_plot(const std::filesystem::path& file, const std::vector<Frame>& fra
   std::vector<double> places(count);
   for (std::size_t i = 0; i < count; ++i) places[i] = static_cast<double>(frames.front().index + i);
   const auto over = [&](auto value) { return curve(frames, count, value); };
-  const std::string in = units.empty() ? "" : " (" + units + ")";
+  const std::string in = units.empty() ? std::string() : fmt::format(" ({})", units);
   const std::vector<sdm::PlotPanel> panels{
       {"Separation" + in,
        {{"value", over([](const Frame& f) { return f.separation.value; })},
@@ -119,30 +114,30 @@ void write_plot(const std::filesystem::path& file, const std::vector<Frame>& fra
 
 std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame>& bad,
                     const std::string& units) {
-  const std::string unit = units.empty() ? "" : " " + units;
-  std::string text = "  frames     " + std::to_string(frames.size());
-  if (!bad.empty()) text += ", and " + std::to_string(bad.size()) + " that could not be used";
+  const std::string unit = unit_suffix(units);
+  std::string text = fmt::format("  frames     {}", frames.size());
+  if (!bad.empty()) text += fmt::format(", and {} that could not be used", bad.size());
   text += '\n';
   if (frames.empty()) return text;
   const auto least = std::ranges::min_element(frames, {}, [](const Frame& f) { return f.separation.value; });
-  text += "  separation " + number(least->separation.value) + unit + " at the least, in frame " +
-          std::to_string(least->index) + " (" + name(least->separation.kind) + ")\n";
+  text += fmt::format("  separation at least {}{}, in frame {} ({})\n", number(least->separation.value), unit,
+                      least->index, name(least->separation.kind));
   const auto colliding = std::ranges::count_if(frames, [](const Frame& f) { return f.colliding.value; });
-  text += "  colliding  in " + std::to_string(colliding) + " frames\n";
+  text += fmt::format("  colliding  in {} frames\n", colliding);
   const auto deepest =
       std::ranges::max_element(frames, {}, [](const Frame& f) { return f.depth ? f.depth->value : -1; });
   if (deepest->depth && deepest->depth->value > 0)
-    text += "  depth      " + number(deepest->depth->value) + unit + " at the most, in frame " +
-            std::to_string(deepest->index) + " (" + name(deepest->depth->kind) + ")\n";
+    text += fmt::format("  depth      at most {}{}, in frame {} ({})\n", number(deepest->depth->value), unit,
+                        deepest->index, name(deepest->depth->kind));
   const auto relative = [](const Frame& f) { return std::max(f.relative_error[0], f.relative_error[1]); };
-  text += "  error      up to " + number(relative(*std::ranges::max_element(frames, {}, relative))) +
-          " times that of the first frame\n";
-  const auto ms = [&](auto value) { return number(std::round(100 * median(frames, value)) / 100); };
-  text += "  a frame    " + ms([](const Frame& f) { return f.time.total(); }) + " ms (median): read " +
-          ms([](const Frame& f) { return f.time.read; }) + ", update " +
-          ms([](const Frame& f) { return f.time.update; }) + ", queries " +
-          ms([](const Frame& f) { return f.time.query; }) + ", error " +
-          ms([](const Frame& f) { return f.time.error; }) + ", map " +
-          ms([](const Frame& f) { return f.time.map; }) + "\n";
-  return text;
+  text += fmt::format("  error      up to {} times that of the first frame\n",
+                      number(relative(*std::ranges::max_element(frames, {}, relative))));
+  const auto ms = [&](double FrameTimes::*step) {
+    return number(std::round(100 * median(frames, [=](const Frame& f) { return f.time.*step; })) / 100);
+  };
+  const double total = median(frames, [](const Frame& f) { return f.time.total(); });
+  return text + fmt::format("  per frame  {} ms (median): read {}, update {}, queries {}, error {}, map {}\n",
+                            number(std::round(100 * total) / 100), ms(&FrameTimes::read),
+                            ms(&FrameTimes::update), ms(&FrameTimes::query), ms(&FrameTimes::error),
+                            ms(&FrameTimes::map));
 }

@@ -42,6 +42,6 @@ struct BadFrame {
 /// plot.png: separation, depth, relative error and time over frames; gaps for bad ones.
 void write_plot(const std::filesystem::path& file, const std::vector<Frame>& frames,
                 const std::string& units);
-/// Some lines for a reader in a hurry.
+/// A few lines of text.
 [[nodiscard]] std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame>& bad,
                                   const std::string& units);

@@ -1,8 +1,8 @@
 #include "scenes/contacts.h"
 
-#include <sdm/map.h>
+#include <sdm/closest_points.h>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

@@ -1,7 +1,7 @@
 // The scene of the cloth.
 #include <map>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "scenes/box_mesh.h"
 #include "scenes/cloth.h"
 #include "scenes/rotation.h"

@@ -1,7 +1,7 @@
 // The scene of the figure in its box: a man, 1 high, who walks on the spot, facing −y.
 #include <numbers>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "scenes/box_mesh.h"
 #include "scenes/level_set.h"
 #include "scenes/reduce_mesh.h"

@@ -1,9 +1,9 @@
 // The scenes of two soft bodies.
 #include <sdm/error.h>
 #include <sdm/io.h>
-#include <sdm/transform.h>
 
 #include "scenes/letters.h"
+#include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
 #include "scenes/soft_pair.h"
 
@@ -26,7 +26,7 @@ std::unique_ptr<Simulation> collide(std::vector<Scene::Body>& bodies, const Soft
 }
 
 Mesh placed(Mesh mesh, const char* steps) {
-  transform(mesh, parse_transform(steps));
+  place(mesh, parse_placement(steps));
   return mesh;
 }
 

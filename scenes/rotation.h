@@ -1,7 +1,7 @@
 // Rotations in three dimensions.
 #pragma once
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::scenes {
 

@@ -1,6 +1,8 @@
 /// The engines, which find closest points.
 #pragma once
 
+#include <sdm/api.h>
+
 #include <memory>
 #include <span>
 #include <string_view>
@@ -21,13 +23,13 @@ struct EngineInfo {
 };
 
 /// All engines, the default one (cpu) first.
-[[nodiscard]] std::span<const EngineInfo> engines();
+[[nodiscard]] SDM_API std::span<const EngineInfo> engines();
 
 /// The engine of this name, with its default options. Throws sdm::Error for an unknown name, or for an engine
 /// that this build does not contain.
-[[nodiscard]] std::shared_ptr<const Engine> make_engine(std::string_view name);
+[[nodiscard]] SDM_API std::shared_ptr<const Engine> make_engine(std::string_view name);
 
 /// The row of engines() for this engine.
-[[nodiscard]] const EngineInfo& engine_info(const Engine& engine);
+[[nodiscard]] SDM_API const EngineInfo& engine_info(const Engine& engine);
 
 }  // namespace sdm

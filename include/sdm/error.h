@@ -1,18 +1,30 @@
 /// The exceptions that the public functions throw. Kernels never throw.
 #pragma once
 
+#include <sdm/api.h>
+
 #include <stdexcept>
+#include <string>
 
 namespace sdm {
 
+/// The option that remedies an error, for programs whose users set it by another name.
+enum class Remedy { none, atlas_kind, resolution, sign_method };
+
 /// Invalid input or a missing resource: one sentence that names the object, the fault and the remedy.
-class Error : public std::runtime_error {
+class SDM_API Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(const std::string& message, Remedy remedy = Remedy::none)
+      : std::runtime_error(message), remedy_(remedy) {}
+
+  [[nodiscard]] Remedy remedy() const { return remedy_; }
+
+ private:
+  Remedy remedy_;
 };
 
 /// A progress callback requested cancellation; there is no result.
-class Cancelled : public Error {
+class SDM_API Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled") {}
 };

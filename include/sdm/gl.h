@@ -1,6 +1,7 @@
 /// The gl engine: surface distance maps by rasterisation on OpenGL (Sud et al. 2006): options and report.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/engine.h>
 
 #include <cstdint>
@@ -21,7 +22,7 @@ struct GlDevice {
 /// All devices that can run the gl engine, in order of preference: hardware first. Needs
 /// neither a window nor a display server. Throws sdm::Error where there is none, or where sdm was built
 /// without OpenGL (SDM_BUILD_GL).
-[[nodiscard]] std::vector<GlDevice> gl_devices();
+[[nodiscard]] SDM_API std::vector<GlDevice> gl_devices();
 
 /// How the polygons of sites are clipped to the faces of O1.
 enum class GlClip {
@@ -42,7 +43,7 @@ struct GlOptions {
 
 /// Returns the device for maps of `resolution`² texels. Throws sdm::Error if there is none or its images are
 /// smaller, before a surface is built.
-[[nodiscard]] GlDevice gl_device(const GlOptions& options, std::uint32_t resolution);
+[[nodiscard]] SDM_API GlDevice gl_device(const GlOptions& options, std::uint32_t resolution);
 
 /// Counters and times of the gl engine. Counts are exact and do not depend on the number of threads; a pair
 /// is a site of O2 and a tile of O1, the texels of one face in a square of 16². Each pair has exactly one
@@ -94,10 +95,10 @@ struct GlReport {
 
 /// The gl engine with these options. The device is opened by the first map; at any time a process draws one
 /// map. Throws sdm::Error for stencil_values out of range, or where sdm was built without OpenGL.
-[[nodiscard]] std::shared_ptr<const Engine> make_gl_engine(const GlOptions& options);
+[[nodiscard]] SDM_API std::shared_ptr<const Engine> make_gl_engine(const GlOptions& options);
 
 /// The report of the last map that a gl engine completed; none if it has completed no map, or for another
 /// engine.
-[[nodiscard]] std::optional<GlReport> gl_report(const Engine& engine);
+[[nodiscard]] SDM_API std::optional<GlReport> gl_report(const Engine& engine);
 
 }  // namespace sdm

@@ -1,6 +1,7 @@
 /// Reading meshes and writing maps. Every function throws sdm::Error that names the file and the fault.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
@@ -17,10 +18,10 @@ namespace sdm {
 /// Reads OBJ, PLY, STL, OFF, glTF/GLB or 3DS, told apart by content first, then by extension. Polygons are
 /// triangulated; node transforms applied; all meshes of the file become one. Vertices used by faces keep
 /// their order; bit-identical positions are welded. The result is valid in the sense of validate().
-[[nodiscard]] Mesh read_mesh(const std::filesystem::path& file);
+[[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
 
 /// Binary PLY of the positions, in double precision, and triangles; read_mesh returns them to the bit.
-void write_ply(const std::filesystem::path& file, const Mesh& mesh);
+SDM_API void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 
 /// Colour scales for images of maps.
 enum class Colormap {
@@ -41,22 +42,24 @@ struct PictureOptions {
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A.
 /// Gutters are dilated; coverage.A is the true coverage. Invalid: NaN and 0xFFFFFFFF; of self maps with
 /// nothing in range +∞, 0 and 0xFFFFFFFF.
-void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
+SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
 /// The same for maps over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
-void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
+SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
 
 /// A number a texel, such as NearestMap::body, as NPY of shape (resolution, resolution), uint32, row 0 at the
 /// top. Throws sdm::Error, too, where there are not resolution² numbers.
-void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
-               std::span<const std::uint32_t> values);
+SDM_API void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
+                       std::span<const std::uint32_t> values);
 
 /// distance.png: the distance in colours, with a legend of range and units.
-void write_distance_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-                        const PictureOptions& options = {});
+SDM_API void write_distance_png(const std::filesystem::path& file, const Surface& surface,
+                                const DistanceMap& map, const PictureOptions& options = {});
 /// voronoi.png: a colour for each closest site.
-void write_voronoi_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
+SDM_API void write_voronoi_png(const std::filesystem::path& file, const Surface& surface,
+                               const DistanceMap& map);
 /// direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
-void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
+SDM_API void write_direction_png(const std::filesystem::path& file, const Surface& surface,
+                                 const DistanceMap& map);
 
 /// A curve of a plot: one value per position on the axis; NaN leaves a gap.
 struct Curve {
@@ -70,14 +73,14 @@ struct PlotPanel {
 };
 /// plot.png: panels below each other over one axis, `places`, which has a name. Throws sdm::Error, too, where
 /// a curve has not one value a place.
-void write_plot_png(const std::filesystem::path& file, const std::string& axis,
-                    std::span<const double> places, std::span<const PlotPanel> panels);
+SDM_API void write_plot_png(const std::filesystem::path& file, const std::string& axis,
+                            std::span<const double> places, std::span<const PlotPanel> panels);
 
 /// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex, opens
 /// coloured in any viewer. `vertex_distances`: one for each vertex of surface.mesh(), not finite where there
 /// is none: as glTF knows no such number, the faces of such vertices form a primitive without `_DISTANCE`.
 /// Units m, cm, mm, um, in, ft scale the node to metres; none or others leave it.
-void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-               std::span<const float> vertex_distances, const PictureOptions& options = {});
+SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                       std::span<const float> vertex_distances, const PictureOptions& options = {});
 
 }  // namespace sdm

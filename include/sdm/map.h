@@ -1,6 +1,7 @@
 /// The surface distance map: at every texel of O1's atlas, the distance to O2.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/engine.h>
 #include <sdm/progress.h>
 #include <sdm/sign.h>
@@ -40,11 +41,12 @@ struct DistanceMap {
 /// both meshes; gl: to 2e-6; reference: to double rounding), evaluated in double and stored in float. Throws
 /// sdm::Error for a sign method that O2 does not allow, for a max_distance that is not positive, if the
 /// engine fails, or for want of memory; Cancelled.
-[[nodiscard]] DistanceMap compute_map(const Surface& surface, const Sites& sites,
-                                      const MapOptions& options = {});
+[[nodiscard]] SDM_API DistanceMap compute_map(const Surface& surface, const Sites& sites,
+                                              const MapOptions& options = {});
 
 /// Writes into `map`, reusing its memory where possible: for sequences of frames. If it
 /// throws, the map's values are unspecified.
-void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options, DistanceMap& map);
+SDM_API void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,
+                         DistanceMap& map);
 
 }  // namespace sdm

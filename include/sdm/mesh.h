@@ -1,6 +1,7 @@
 /// Triangle meshes: any triangle soup, open or closed, manifold or not.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/types.h>
 
 #include <cstddef>
@@ -20,10 +21,10 @@ struct Mesh {
 /// Throws sdm::Error unless the mesh can be used: every index in range, every coordinate finite and at most
 /// 1e37 in magnitude, the mesh larger than 1e-30, at most 2^30 triangles, at least one of them with an area,
 /// and texture coordinates finite and for all triangles or none. Cost: linear.
-void validate(const Mesh& mesh);
+SDM_API void validate(const Mesh& mesh);
 
 /// Bounds of all positions that a triangle refers to. Cost: linear.
-[[nodiscard]] Box bounds(const Mesh& mesh);
+[[nodiscard]] SDM_API Box bounds(const Mesh& mesh);
 
 /// Counts and topology of a mesh, as printed by `sdm info`.
 struct MeshInfo {
@@ -47,6 +48,6 @@ struct MeshInfo {
 
 /// Counts and classifies. Duplicate faces, and degenerate faces with repeated corners, do not count as
 /// incident to edges. Cost: O(n log n).
-[[nodiscard]] MeshInfo inspect(const Mesh& mesh);
+[[nodiscard]] SDM_API MeshInfo inspect(const Mesh& mesh);
 
 }  // namespace sdm

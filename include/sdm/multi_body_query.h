@@ -1,6 +1,7 @@
 /// Proximity of many bodies: all pairs, and the map of each body to all others.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/map.h>
 #include <sdm/proximity_query.h>
 
@@ -40,7 +41,7 @@ struct NearestMap {
 };
 
 /// Bodies that deform, each against all others: for simulation loops.
-class MultiBodyQuery {
+class SDM_API MultiBodyQuery {
  public:
   /// Throws sdm::Error as Surface and Sites do, and then names the body, and for a maximum distance that is
   /// not greater than 0. Any number of bodies is allowed, including 0. Cost: all atlases and sites.
@@ -82,5 +83,11 @@ class MultiBodyQuery {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The distance of each vertex of a body to the nearest of the other bodies, signed as in nearest_map; NaN
+/// where none is within max_distance. Throws sdm::Error for a body that does not exist. Cost: closest_points
+/// to each other body.
+[[nodiscard]] SDM_API std::vector<float> nearest_distances_at_vertices(const MultiBodyQuery& bodies,
+                                                                       std::size_t body, double max_distance);
 
 }  // namespace sdm

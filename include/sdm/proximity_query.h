@@ -1,6 +1,7 @@
 /// Proximity of two bodies: separation, collision, penetration depth and contacts, each with its bounds.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/map.h>
 
 #include <array>
@@ -58,7 +59,7 @@ struct ProximityOptions {
 /// radii R of the samples (SamplingBound::sample_radii) and because distances are 1-Lipschitz, they bound the
 /// distance everywhere:
 ///     min (d − R) ≤ separation ≤ min d,    max (−d) ≤ penetration depth ≤ max (R − d).
-class ProximityQuery {
+class SDM_API ProximityQuery {
  public:
   /// Throws sdm::Error as Surface and Sites do, and for a margin that is negative or not finite. Cost: both
   /// bodies' atlases and sites.

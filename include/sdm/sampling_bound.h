@@ -2,6 +2,7 @@
 /// requires.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/surface.h>
 
 #include <memory>
@@ -22,7 +23,7 @@ class PieceAssignment;
 ///
 /// for the distances d_i at the samples; p may be any point where d has a value, and d may have signs.
 /// Bounded: rounded upwards, never too small.
-class SamplingBound {
+class SDM_API SamplingBound {
  public:
   /// Cuts the surface into pieces, assigns each to a sample that is near it now, and measures the radii.
   /// Throws sdm::Error if there is not enough memory. Cost: linear in texels and in pieces, about one for
@@ -61,7 +62,7 @@ class SamplingBound {
 /// and r_f, e_f the same for the points p of a face f; the nearest sample may lie on any face. Bounded: both
 /// are never below the true value, so that e(0) comes out as a little more than 1. As distances are
 /// 1-Lipschitz, e is how much the error of a map grows between its samples.
-class RelativeError {
+class SDM_API RelativeError {
  public:
   /// Computes a lower bound on r(0) of the surface as it is now, whose bound this is. Throws sdm::Error if
   /// there is not enough memory. Cost: some nearest samples a face, all cores.
@@ -87,6 +88,6 @@ class RelativeError {
 /// by 16 or an eighth does not suffice. Throws sdm::Error when the precision is not a positive number, when
 /// 32768 texels a side are not enough for it, and as Surface does. Cost: two to six layouts, as the bound is
 /// about proportional to 1 / resolution.
-[[nodiscard]] std::uint32_t resolution_for(const Mesh& mesh, AtlasOptions options, double precision);
+[[nodiscard]] SDM_API std::uint32_t resolution_for(const Mesh& mesh, AtlasOptions options, double precision);
 
 }  // namespace sdm

@@ -1,6 +1,7 @@
 /// All of sdm except reading and writing files, which is in <sdm/io.h>.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/atlas.h>
 #include <sdm/closest_points.h>
 #include <sdm/engine.h>
@@ -19,6 +20,8 @@
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 #include <sdm/threads.h>
+#include <sdm/tolerance.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>
 #include <sdm/version.h>
+#include <sdm/vertex_distances.h>

@@ -1,6 +1,7 @@
 /// Proximity of a mesh to itself: maps, separation and contacts of a surface that may fold.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/map.h>
 #include <sdm/proximity_query.h>
 
@@ -28,11 +29,11 @@ struct ExclusionRule {
 /// from f to g, all of them less than L from f in a straight line at rest; and as well from g to f. So no
 /// point that remains is nearer than L along the surface at rest: the way to it would be such a chain. It is
 /// conservative: it excludes more where the surface folds back within L at rest.
-class Exclusion {
+class SDM_API Exclusion {
  public:
-  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and when there is
-  /// no memory for all neighbourhoods; Cancelled. Cost: the sum of their sizes, with L that many distances of
-  /// triangles; all cores.
+  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and if there is
+  /// not enough memory for all neighbourhoods; Cancelled. Cost: the sum of their sizes, with L that many
+  /// distances of triangles; all cores.
   explicit Exclusion(const Mesh& rest, const ExclusionRule& rule = {}, const Progress& progress = {});
 
   [[nodiscard]] std::size_t faces() const { return offsets_.size() - 1; }
@@ -63,13 +64,15 @@ struct SelfMapOptions {
 /// `surface` and `sites` are built from the same mesh and positions, `exclusion` from the same mesh at rest;
 /// throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, and for want of
 /// memory; Cancelled. Cost: one search per texel that skips excluded faces; all cores.
-[[nodiscard]] DistanceMap compute_self_map(const Surface& surface, const Sites& sites,
-                                           const Exclusion& exclusion, const SelfMapOptions& options = {});
+[[nodiscard]] SDM_API DistanceMap compute_self_map(const Surface& surface, const Sites& sites,
+                                                   const Exclusion& exclusion,
+                                                   const SelfMapOptions& options = {});
 
 /// The same at the vertices: of each, the least over its faces; +∞ with nothing in range, NaN at a vertex
 /// without faces. Faces that Sites ignores do not count.
-[[nodiscard]] std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusion& exclusion,
-                                                            const SelfMapOptions& options = {});
+[[nodiscard]] SDM_API std::vector<float> self_distances_at_vertices(const Sites& sites,
+                                                                    const Exclusion& exclusion,
+                                                                    const SelfMapOptions& options = {});
 
 struct SelfProximityOptions {
   ExclusionRule exclusion{};
@@ -80,7 +83,7 @@ struct SelfProximityOptions {
 
 /// The proximity of a deforming mesh to itself: for simulation loops. Results are computed from the
 /// triangles, not from samples, so they need no bounds.
-class SelfProximityQuery {
+class SDM_API SelfProximityQuery {
  public:
   /// Throws sdm::Error as Sites and Exclusion do, and for a maximum distance out of range.
   explicit SelfProximityQuery(Mesh rest, const SelfProximityOptions& options = {});

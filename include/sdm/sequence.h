@@ -2,6 +2,7 @@
 /// names the file, the frame and the fault.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/mesh.h>
 
 #include <filesystem>
@@ -30,7 +31,7 @@ struct SequenceOptions {
 ///
 /// Polygons are triangulated, vertices welded and unused ones dropped as in read_mesh, all as the first frame
 /// (of NPY: the mesh file) has it. Holds one frame in memory at a time, of glTF all morph targets.
-class MeshSequence {
+class SDM_API MeshSequence {
  public:
   /// Lists the frames and reads the first. Throws where there is none, or it is unusable (see validate).
   explicit MeshSequence(const std::string& input, const SequenceOptions& options = {});
@@ -58,7 +59,7 @@ class MeshSequence {
 
 /// Writes positions frame by frame to an NPY file of shape (T, V, 3), float32, that appears whole at commit()
 /// or not at all. Together with a mesh file (see write_ply) it is what MeshSequence reads.
-class SequenceWriter {
+class SDM_API SequenceWriter {
  public:
   /// Throws when the file cannot be written.
   SequenceWriter(const std::filesystem::path& file, std::size_t vertices);

@@ -1,6 +1,7 @@
 /// Inside or outside of O2: the sign of a distance.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/sites.h>
 
 #include <cstdint>
@@ -27,13 +28,14 @@ struct SignUsed {
 
 /// The sign method that compute_map uses for `asked`, with its reason. Throws sdm::Error where O2 does not
 /// allow it.
-[[nodiscard]] SignUsed choose_sign(const Sites& sites, SignMethod asked);
+[[nodiscard]] SDM_API SignUsed choose_sign(const Sites& sites, SignMethod asked);
 
 /// For each closest point: whether its query lies inside O2 (1) or not (0), by `method` (pseudonormal or
 /// winding, else none is). `closest` comes from closest_points with the same sites; where it has no site, the
 /// answer of pseudonormal is 0. Throws sdm::Error for a method that O2 does not allow.
-[[nodiscard]] std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3> queries,
-                                                     std::span<const ClosestPoint> closest,
-                                                     SignMethod method);
+[[nodiscard]] SDM_API std::vector<std::uint8_t> inside_flags(const Sites& sites,
+                                                             std::span<const Vec3> queries,
+                                                             std::span<const ClosestPoint> closest,
+                                                             SignMethod method);
 
 }  // namespace sdm

@@ -1,6 +1,7 @@
 /// What distances are measured to (O2): the open faces, open edges and vertices of a mesh.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/mesh.h>
 
 #include <array>
@@ -28,9 +29,10 @@ struct ClosestPoint {
 ///
 /// Vertices and faces are numbered as in the mesh, edges as in edges(). Duplicate faces, and degenerate faces
 /// with repeated corners, are ignored; other faces without area contribute their edges and vertices.
-class Sites {
+class SDM_API Sites {
  public:
-  /// Throws sdm::Error when the mesh is unusable (see validate). Cost: O(n log n), all cores.
+  /// Throws sdm::Error when the mesh is unusable (see validate) or there is not enough memory. Cost:
+  /// O(n log n), all cores.
   explicit Sites(Mesh mesh);
   ~Sites();
   Sites(Sites&&) noexcept;

@@ -1,6 +1,7 @@
 /// Statistics of a map.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/map.h>
 #include <sdm/surface.h>
 
@@ -20,10 +21,11 @@ struct DistanceStatistics {
 
 /// Over `map.distance` as it is, signed or not. Throws sdm::Error if the map does not belong to this surface.
 /// Cost: O(n log n) in texels.
-[[nodiscard]] DistanceStatistics statistics(const Surface& surface, const DistanceMap& map);
+[[nodiscard]] SDM_API DistanceStatistics statistics(const Surface& surface, const DistanceMap& map);
 
 /// The share of the area, in [0, 1], whose |distance| is above `limit`; texels beyond the map's maximum
 /// distance count as above. 0 for a map without texels. Cost: O(n) in texels.
-[[nodiscard]] double area_fraction_beyond(const Surface& surface, const DistanceMap& map, double limit);
+[[nodiscard]] SDM_API double area_fraction_beyond(const Surface& surface, const DistanceMap& map,
+                                                  double limit);
 
 }  // namespace sdm

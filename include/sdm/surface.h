@@ -1,6 +1,7 @@
 /// The surface on which distances are measured (O1): a mesh with a texture atlas.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/atlas.h>
 #include <sdm/mesh.h>
 
@@ -20,10 +21,10 @@ class SurfaceData;
 /// so that texel (x, y) has its centre at (x + 0.5, y + 0.5) and the index y * resolution + x. Every face has
 /// an affine map M from its plane to the atlas; a texel belongs to the face that its centre lies in, at most
 /// one.
-class Surface {
+class SDM_API Surface {
  public:
   /// Lays out the atlas. Throws sdm::Error when the mesh is unusable (see validate), when the resolution is
-  /// out of range or too small for the charts, when there is no memory for it, and for AtlasKind::uv when
+  /// out of range or too small for the charts, if there is not enough memory, and for AtlasKind::uv when
   /// coordinates are missing or faces overlap (the message names two of them). Faces without area belong to
   /// no chart. Cost: O(n log n) for charts, then packing.
   explicit Surface(Mesh mesh, const AtlasOptions& options = {});

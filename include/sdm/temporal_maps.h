@@ -1,6 +1,7 @@
 /// Statistics over time of the maps of one surface.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/map.h>
 
 #include <cstddef>
@@ -12,7 +13,7 @@ namespace sdm {
 /// For every texel of a fixed atlas: the minimum, maximum and mean distance over the added maps. NaN where a
 /// texel has no owner, or was beyond the maximum distance in one of the maps; of self maps, whose +∞ says so,
 /// the least is of the other maps.
-class TemporalMaps {
+class SDM_API TemporalMaps {
  public:
   /// Throws sdm::Error when the map has another resolution than those before. Cost: O(n) in texels, all
   /// cores.

@@ -1,12 +1,16 @@
 /// The number of threads that the library may use.
 #pragma once
 
+#include <sdm/api.h>
+
+#include <functional>
 #include <memory>
+#include <vector>
 
 namespace sdm {
 
 /// While it lives, every function of the library uses at most `count` threads (0: all cores).
-class ThreadLimit {
+class SDM_API ThreadLimit {
  public:
   explicit ThreadLimit(unsigned count);
   ~ThreadLimit();
@@ -17,5 +21,9 @@ class ThreadLimit {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Runs independent tasks, concurrently if the limit allows. If one throws, tasks that were not begun are
+/// skipped, and its exception is rethrown once no task is running.
+SDM_API void run_concurrently(const std::vector<std::function<void()>>& tasks);
 
 }  // namespace sdm

@@ -1,37 +1,41 @@
-/// Transforms as lists of steps, such as "fit,rotate:0:90:0,translate:0.8:0:0".
+/// Affine transforms of meshes and points.
 #pragma once
 
+#include <sdm/api.h>
 #include <sdm/mesh.h>
 
+#include <array>
 #include <span>
-#include <string_view>
-#include <vector>
 
 namespace sdm {
 
-/// One step of a placement.
-struct TransformStep {
-  enum class Kind {
-    fit,        ///< scale and move so that the longest side of the bounds is 1, centred at the origin
-    scale,      ///< multiply by value[0], about the origin
-    rotate,     ///< rotate by value degrees about the X, then Y, then Z axis, right-handed
-    translate,  ///< add value
-  };
-  Kind kind;
-  Vec3 value{};
+/// An affine map as a 4×4 matrix M in row-major order, for column vectors: p ↦ M (p, 1). The last row is
+/// (0, 0, 0, 1). The identity by default.
+struct SDM_API Transform {
+  std::array<std::array<double, 4>, 4> rows{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+
+  /// Adds an offset.
+  [[nodiscard]] static Transform translation(const Vec3& offset);
+  /// Multiplies by a factor, about the origin.
+  [[nodiscard]] static Transform scaling(double factor);
+  /// Rotates about the X, then the Y, then the Z axis, right-handed. Multiples of 90° are exact.
+  [[nodiscard]] static Transform rotation(const Vec3& degrees);
+
+  [[nodiscard]] Vec3 operator()(const Vec3& p) const;
+  /// Of the linear part; negative for a reflection.
+  [[nodiscard]] double determinant() const;
+  /// (a * b)(p) = a(b(p)) up to rounding.
+  friend SDM_API Transform operator*(const Transform& a, const Transform& b);
 };
 
-/// Reads steps separated by commas: fit, scale:S, rotate:X:Y:Z, translate:X:Y:Z. The empty text is no step.
-/// Throws sdm::Error that names the step at fault.
-[[nodiscard]] std::vector<TransformStep> parse_transform(std::string_view text);
+/// Scales uniformly and translates so that the longest side of the bounds becomes 1, centred at the origin.
+/// Throws sdm::Error unless the bounds have a positive extent. Cost: linear.
+[[nodiscard]] SDM_API Transform fit_to_unit(const Mesh& mesh);
 
-/// Applies the steps in order. Throws sdm::Error if a coordinate becomes infinite. Cost: linear.
-void transform(Mesh& mesh, const std::vector<TransformStep>& steps);
-/// The same for points alone. Throws sdm::Error for `fit` too, which needs a mesh.
-void transform(std::span<Vec3> points, const std::vector<TransformStep>& steps);
-
-/// Returns the steps with each `fit` replaced by its translation and scale for this mesh, so that all frames
-/// of a sequence are placed like the first. Throws as transform does.
-[[nodiscard]] std::vector<TransformStep> without_fit(Mesh mesh, const std::vector<TransformStep>& steps);
+/// Maps all positions; a reflection also flips the faces, so that their outside stays outside. Throws
+/// sdm::Error, and changes nothing, if a coordinate becomes infinite or NaN. Cost: linear.
+SDM_API void transform(Mesh& mesh, const Transform& map);
+/// The same for points alone.
+SDM_API void transform(std::span<Vec3> points, const Transform& map);
 
 }  // namespace sdm

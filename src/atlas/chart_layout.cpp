@@ -7,8 +7,8 @@
 #include "atlas/charts/split.h"
 #include "atlas/layout.h"
 #include "atlas/packing/pack.h"
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -8,7 +8,7 @@
 #include "atlas/charts/face_geometry.h"
 #include "atlas/charts/overlap.h"
 #include "atlas/layout.h"
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {
@@ -19,7 +19,8 @@ constexpr double kTexelSlack = 1.0 / 1024;
 constexpr double kLeastArea = 1e-12;  // square texels; below it the map back to the surface loses its meaning
 
 [[noreturn]] void fail(const std::string& fault) {
-  throw Error("the mesh's texture coordinates do not form an atlas: " + fault + "; use --atlas charts");
+  throw Error("the mesh's texture coordinates do not form an atlas: " + fault + "; use an atlas of charts",
+              Remedy::atlas_kind);
 }
 
 void place_corners(const Mesh& mesh, const FaceGeometry& faces, std::uint32_t resolution, Layout& layout) {

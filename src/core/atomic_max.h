@@ -1,4 +1,4 @@
-// A maximum that several threads raise: whichever comes first, the result is the same.
+// The maximum of values from several threads; it does not depend on their order.
 #pragma once
 
 #include <atomic>

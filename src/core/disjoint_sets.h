@@ -8,18 +8,18 @@
 
 namespace sdm::core {
 
-/// A partition of the numbers 0 … count − 1. Its sets, and their representatives, do not depend on the order
-/// in which they are united. Cost: amortised logarithmic a call, by path halving.
+/// A partition of 0 ... count − 1. The sets and their representatives do not depend on the order of the
+/// unions. Cost: amortised logarithmic per call, by path halving.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count = 0) { reset(count); }
 
-  /// Puts each number into a set of its own. Allocates nothing where there were as many before.
+  /// Makes each number a set of its own. Keeps its memory.
   void reset(std::size_t count) {
     parent_.resize(count);
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
-  /// The representative of the set that x is in: its smallest member.
+  /// The representative of the set that contains x: its smallest member.
   [[nodiscard]] std::uint32_t find(std::uint32_t x) {
     while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
     return x;

@@ -21,9 +21,9 @@ unsigned thread_count() {
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
-// Isolated contexts: otherwise an exception would cancel every loop that runs below a sibling of its thrower,
-// and that sibling would go on with ranges its loops silently left out. Isolated tasks: a thread that waits
-// for a loop must not take up other work, which might want a lock that the thread holds.
+// Contexts are isolated: otherwise an exception in one task would also cancel the loops nested in its
+// siblings, which would then continue although part of their ranges was skipped. Tasks are isolated: a thread
+// that waits for a loop must not start unrelated work, which might need a lock that the thread holds.
 
 void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& body) {
   tbb::task_group_context context(tbb::task_group_context::isolated);
@@ -50,10 +50,10 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
     if (cancelled.load(std::memory_order_relaxed)) return;
     body(begin, end);
     done += end - begin;
-    // Who finds another thread reporting goes on working: the next report tells its share too.
+    // A thread that finds another one reporting continues: the next report includes its share.
     if (std::unique_lock lock(reporting, std::try_to_lock); lock.owns_lock()) report();
   });
-  // The last to end may have been such a one.
+  // The last thread to finish may have been one of those.
   if (!cancelled && reported < count) report();
   if (cancelled) throw Cancelled();
 }
@@ -98,5 +98,11 @@ ThreadLimit::ThreadLimit(unsigned count)
     : impl_(new Impl{{tbb::global_control::max_allowed_parallelism,
                       count > 0 ? count : static_cast<std::size_t>(tbb::info::default_concurrency())}}) {}
 ThreadLimit::~ThreadLimit() = default;
+
+void run_concurrently(const std::vector<std::function<void()>>& tasks) {
+  parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) tasks[i]();
+  });
+}
 
 }  // namespace sdm

@@ -1,5 +1,4 @@
-// The one way to use several cores. Bodies must not depend on how the range is cut or on the number of
-// threads.
+// Parallel loops and tasks. Results must not depend on how a range is divided or on the number of threads.
 #pragma once
 
 #include <sdm/progress.h>
@@ -9,19 +8,19 @@
 
 namespace sdm::core {
 
-/// Calls body(begin, end) for disjoint ranges that cover [0, count), of about `grain` or less, on all cores
-/// allowed. With a progress callback, reports the fraction done, 1 at the end, and throws Cancelled when it
-/// says so.
+/// Calls body(begin, end) for disjoint ranges of at most about `grain` that cover [0, count), on all cores
+/// allowed. With a progress callback, reports the fraction done, 1 at the end, and throws Cancelled if the
+/// callback returns false.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body);
 void parallel_for(std::size_t count, std::size_t grain, const Progress& progress, std::string_view step,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Runs both, at the same time where a core is free. An exception of one comes out after the other is done or
-/// was not begun; it never cuts loops within the other short.
+/// Runs both, concurrently if a core is free. An exception from one is rethrown once the other has finished
+/// or will not start; it does not cancel loops inside the other.
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
 
-/// Work that adds to itself.
+/// Tasks that may add further tasks.
 class Tasks {
  public:
   virtual void add(std::function<void()> task) = 0;
@@ -30,12 +29,12 @@ class Tasks {
   ~Tasks() = default;
 };
 
-/// Runs first(tasks) and all that is added to the tasks, at the same time where cores are free; unlike nested
-/// calls of parallel_invoke, without threads that wait for one branch while there is work in another. An
-/// exception comes out after those that were begun are done.
+/// Runs first(tasks) and all tasks added, concurrently as cores are free. Unlike nested parallel_invoke, no
+/// thread waits for one branch while there is work in another. An exception is rethrown once all tasks that
+/// were started have finished.
 void parallel_tasks(const std::function<void(Tasks& tasks)>& first);
 
-/// Threads that parallel_for uses now.
+/// The number of threads that parallel_for uses at present.
 [[nodiscard]] unsigned thread_count();
 
 using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
@@ -43,7 +42,7 @@ void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& bod
 
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
-  run_parallel_for(count, grain, std::cref(body));  // a reference takes no memory, as a copy would
+  run_parallel_for(count, grain, std::cref(body));  // a copy would allocate
 }
 
 }  // namespace sdm::core

@@ -30,7 +30,7 @@ std::size_t machine_memory() {
   return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// A container's limit less what it uses.
+// The limit of the container minus its usage.
 std::size_t cgroup_memory() {
   std::size_t limit = 0, used = 0;
   std::ifstream max("/sys/fs/cgroup/memory.max"), current("/sys/fs/cgroup/memory.current");
@@ -38,7 +38,7 @@ std::size_t cgroup_memory() {
   return std::numeric_limits<std::size_t>::max();
 }
 
-// What RLIMIT_AS leaves of the address space.
+// RLIMIT_AS minus the address space in use.
 std::size_t address_space() {
   rlimit limit{};
   std::size_t used_pages = 0;

@@ -1,4 +1,4 @@
-// What differs between operating systems. Nothing else in the library's core calls one directly.
+// Calls to the operating system. The rest of the computing library is portable C++.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,11 @@
 
 namespace sdm::core {
 
-/// Bytes that a new allocation may take: what the machine has available, or a lower limit set on the process
-/// or its container. The largest number where the system has no way to find out that is known here.
+/// Bytes that can still be allocated: what the machine has available, or a lower limit of the process or its
+/// container. The largest std::size_t on systems other than Linux.
 [[nodiscard]] std::size_t available_memory();
 
-/// A number that no other process running on this machine has.
+/// A number that no other process on this machine has at the same time.
 [[nodiscard]] std::uint64_t process_number();
 
 }  // namespace sdm::core

@@ -24,8 +24,8 @@ struct CompressedRows {
   }
 };
 
-/// Sorts items into rows by counting: visit(put) calls put(row, item) for each, and is run twice. Items of a
-/// row keep their order.
+/// Sorts items into rows by counting: visit(put) calls put(row, item) for each, and is called twice. Items
+/// of a row keep their order.
 template <class Item, class Offset = std::uint32_t, class Visit>
 CompressedRows<Item, Offset> make_rows(std::size_t count, const Visit& visit) {
   // offsets[i + 2] counts row i, offsets[i + 1] then runs from its begin to its end, where row i + 1 begins.

@@ -7,8 +7,8 @@
 
 namespace sdm::core {
 
-/// A permutation of 0 ... count − 1 that begins with 0: multiples, modulo count, of a number without common
-/// divisor, near the golden section of count.
+/// A permutation of 0 ... count − 1 that begins with 0: the multiples, modulo count, of a number coprime to
+/// it, near its golden section.
 inline std::vector<std::uint32_t> scattered_order(std::size_t count) {
   auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(count)) | 1;
   while (std::gcd(step, count) != 1) ++step;

@@ -1,4 +1,4 @@
-// Wall-clock time of steps that follow each other.
+// Wall-clock time of consecutive steps.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@ namespace sdm::core {
 
 class Stopwatch {
  public:
-  /// Milliseconds since it was made or last asked.
+  /// Milliseconds since construction or the previous call.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();

@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "hierarchy/traverse.h"
 
 namespace sdm::hierarchy {
@@ -21,8 +21,8 @@ std::vector<FloatBox> to_float(std::span<const Box> boxes) {
   return rounded;
 }
 
-// The next number above or below x: std::nextafter for finite x, inline. Of one sign they follow each other
-// as integers do, by their magnitudes.
+// The next float above or below x: std::nextafter for finite x, inline. The bits of floats of one sign are
+// ordered as integers are, by magnitude.
 float next(float x, bool above) {
   const auto bits = std::bit_cast<std::int32_t>(x);
   return std::bit_cast<float>(bits + ((bits < 0) == above ? -1 : 1));

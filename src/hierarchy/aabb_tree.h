@@ -1,4 +1,4 @@
-// A binary tree of axis-aligned boxes over any items that have boxes: build, refit. See traverse.h.
+// A binary tree of axis-aligned boxes: building and refitting. traverse.h has its traversals.
 #pragma once
 
 #include <sdm/types.h>
@@ -7,18 +7,18 @@
 #include <span>
 #include <vector>
 
-#include "core/unit_frame.h"
+#include "core/geometry/unit_frame.h"
 
 namespace sdm::hierarchy {
 
-/// A box in single precision, rounded outwards: it contains the box it was made from.
+/// A box in single precision, rounded outwards: it contains the box that it is made from.
 struct FloatBox {
   std::array<float, 3> lo, hi;
 
   static FloatBox around(const Box& box);
 };
 
-/// The smallest box that contains both.
+/// The union of two boxes.
 inline FloatBox unite(const FloatBox& a, const FloatBox& b) {
   FloatBox box;
   for (int k = 0; k < 3; ++k) {
@@ -28,7 +28,7 @@ inline FloatBox unite(const FloatBox& a, const FloatBox& b) {
   return box;
 }
 
-/// How far two boxes, or a box and a point, are apart along each axis: 0 where they overlap.
+/// The distance of two boxes, or of a box and a point, along each axis; 0 where they overlap.
 inline Vec3 gap(const FloatBox& a, const FloatBox& b) {
   Vec3 gap;
   for (int k = 0; k < 3; ++k) gap[k] = std::max({0.0, double{a.lo[k]} - b.hi[k], double{b.lo[k]} - a.hi[k]});
@@ -40,18 +40,18 @@ inline Vec3 gap(const FloatBox& box, const Vec3& p) {
   return gap;
 }
 
-/// Nodes in depth-first order: the left child of node i is i + 1, every child comes after its parent.
+/// Nodes are in depth-first order: the left child of node i is i + 1.
 struct AabbTree {
   struct Node {
     FloatBox box;
     std::uint32_t right = 0;  ///< inner node: its right child
-    std::uint32_t first = 0;  ///< leaf: items[first ... first + count]
+    std::uint32_t first = 0;  ///< leaf: its first item, in `items`
     std::uint32_t count = 0;  ///< 0 for an inner node
 
     [[nodiscard]] bool leaf() const { return count > 0; }
   };
   std::vector<Node> nodes;           ///< empty when there are no items
-  std::vector<std::uint32_t> items;  ///< indices into the boxes given, leaf after leaf
+  std::vector<std::uint32_t> items;  ///< indices of boxes, leaf after leaf
 
   [[nodiscard]] const FloatBox& box(std::uint32_t node) const { return nodes[node].box; }
   [[nodiscard]] std::span<const std::uint32_t> items_of(std::uint32_t leaf) const {
@@ -59,17 +59,17 @@ struct AabbTree {
   }
 };
 
-/// Builds by the surface area heuristic over bins, with at most `leaf_size` items a leaf. Items are those of
-/// `indices`; boxes are in the unit frame. The result does not depend on the number of threads. Cost: O(n log
-/// n), all cores.
+/// Builds a tree of the boxes that `indices` selects, with at most `leaf_size` in a leaf, by the binned
+/// surface area heuristic. Boxes are in the unit frame. The result does not depend on the number of threads.
+/// Cost: O(n log n), all cores.
 [[nodiscard]] AabbTree build_aabb_tree(std::span<const FloatBox> boxes, std::vector<std::uint32_t> indices,
                                        std::uint32_t leaf_size);
 [[nodiscard]] AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> indices,
                                        std::uint32_t leaf_size);
 
-/// Brings all boxes up to date, bottom-up, keeping the tree. Cost: linear, all cores.
+/// Recomputes all boxes from those of the items; the tree keeps its structure. Cost: linear, all cores.
 void refit(AabbTree& tree, std::span<const Box> boxes);
-/// The same from the boxes of the leaves, in their order.
+/// The same, from the boxes of the leaves in their order. Cost: linear.
 void refit_leaves(AabbTree& tree, std::span<const FloatBox> leaf_boxes);
 
 }  // namespace sdm::hierarchy

@@ -19,8 +19,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr uint32_t kParallelItems = 2048;  // a subtree of fewer is built by one thread
 
-// A box as its extents against and along each axis, −lo and hi, so that a union is a maximum.
-// The fourth lanes are spare.
+// A box as −lo and hi, so that a union is a maximum.
+// The fourth lane of each is spare.
 struct Bounds {
   alignas(32) float reach[2][4];
 
@@ -47,14 +47,14 @@ uint32_t index_of(const Bounds& item) {
   return std::bit_cast<uint32_t>(item.reach[0][3]);
 }
 
-// Cuts the range of the items' centres along each axis into bins. Centres are doubled.
+// Divides the range of the items' centres along each axis into bins. Centres are doubled.
 struct Binning {
   static constexpr int kBins = 8;
 
   alignas(16) float first[4], per_length[4] = {};
 
   explicit Binning(const Bounds& centres) {
-    constexpr float kLeastExtent = 1e-30f;  // keeps the quotient finite; if less all are in the first bin
+    constexpr float kLeastExtent = 1e-30f;  // keeps the quotient finite; below, all are in the first bin
     for (int k = 0; k < 4; ++k) first[k] = -centres.reach[0][k];
     for (int k = 0; k < 3; ++k)
       if (centres.extent(k) > kLeastExtent) per_length[k] = kBins / centres.extent(k);
@@ -96,9 +96,9 @@ class Builder {
   }
 
  private:
-  // Builds over the items from `begin` to `end` of items_[level % 2]. A subtree of n items has at most 2n − 1
-  // nodes: giving each that many slots lets threads work without talking, and copy() closes the gaps
-  // afterwards.
+  // Builds the subtree of the items from `begin` to `end` of items_[level % 2]. A subtree of n items has at
+  // most 2n − 1 nodes: with that many slots reserved for each, threads need no synchronisation, and copy()
+  // closes the gaps afterwards.
   void build(Tasks& tasks, uint32_t slot, uint32_t begin, uint32_t end, int level) {
     const Bounds* items = items_[level % 2].get();
     Bounds box, centres;
@@ -145,7 +145,7 @@ class Builder {
     const auto [axis, bin] = best_cut(items + begin, end - begin, binning);
     const uint32_t half = begin + (end - begin) / 2;
     // Without branches, which would be mispredicted every other time: each item is written to both ends of
-    // the gap between the sides, and the gap gives way on the side that is meant.
+    // the gap between the two sides, and the gap shrinks at the end where the item belongs.
     Bounds* moved = items_[1 - level % 2].get();
     uint32_t left = begin, right = end;
     for (uint32_t i = begin; i < end; ++i) {
@@ -186,7 +186,7 @@ class Builder {
     Cut best{-1, 0};
     float least = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
-      float left_cost[kBins];  // of what is before each bin
+      float left_cost[kBins];  // of all bins before each
       Bounds side = Bounds::none();
       uint32_t side_count = 0;
       for (int b = 1; b < kBins; ++b) {
@@ -223,7 +223,7 @@ class Builder {
 
   std::vector<uint32_t>& indices_;
   uint32_t leaf_size_;
-  std::unique_ptr<Bounds[]> items_[2];  // of alternate levels, in the order of the tree as far as it is built
+  std::unique_ptr<Bounds[]> items_[2];  // of alternate levels, in the order of the tree built so far
   std::vector<AabbTree::Node> nodes_;
 };
 

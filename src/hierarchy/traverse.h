@@ -1,4 +1,4 @@
-// Traversals of the binary tree. The layout of its nodes is known to this folder only.
+// Traversals of the binary tree. No other folder depends on the layout of its nodes.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace sdm::hierarchy {
 
-/// A node and all nodes below it: those from `root` to before `end`. Its leaves are consecutive.
+/// A node and its descendants: nodes `root` to `end` − 1. The leaves of a subtree are consecutive.
 struct Subtree {
   std::uint32_t root = 0, end = 0;
 };
@@ -21,8 +21,8 @@ struct Subtree {
   return {0, static_cast<std::uint32_t>(tree.nodes.size())};
 }
 
-/// Depth first, the left child first: enter(Subtree) returns whether to go on below a node; visit(node) is
-/// called for the leaves entered, in their order.
+/// Depth first, the left child first. enter(Subtree) returns whether to descend into a node; visit(node) is
+/// called for each leaf entered, in their order.
 template <class Enter, class Visit>
 void traverse(const AabbTree& tree, Subtree subtree, const Enter& enter, const Visit& visit) {
   if (subtree.root == subtree.end || !enter(subtree)) return;
@@ -32,9 +32,9 @@ void traverse(const AabbTree& tree, Subtree subtree, const Enter& enter, const V
   traverse(tree, {node.right, subtree.end}, enter, visit);
 }
 
-/// Depth first, of two children the nearer one first, of equally near ones the left. lower_bound(box) bounds
-/// the distance of what a box contains; a node is entered if within(its bound) holds at that time, so that
-/// the limit may shrink as leaves are visited.
+/// Depth first, the nearer child first; the left one if both are equally near. lower_bound(box) is a lower
+/// bound on the distance of anything in the box. A node is entered if within(its bound) holds at that time,
+/// so the limit may shrink as leaves are visited.
 template <class LowerBound, class Within, class Visit>
 void traverse_nearer_first(const AabbTree& tree, const LowerBound& lower_bound, const Within& within,
                            const Visit& visit) {
@@ -51,8 +51,8 @@ void traverse_nearer_first(const AabbTree& tree, const LowerBound& lower_bound, 
   if (!tree.nodes.empty() && within(lower_bound(tree.nodes[0].box))) descend(descend, 0);
 }
 
-/// Best first: visits leaves in the order of their lower bounds, until that of the next node is not
-/// within(bound). Enters no more nodes than any other order, at the cost of a priority queue.
+/// Best first: visits leaves by increasing lower bound, until within(bound) fails for the next node. Enters
+/// the fewest nodes of any order, at the cost of a priority queue.
 template <class LowerBound, class Within, class Visit>
 void traverse_best_first(const AabbTree& tree, const LowerBound& lower_bound, const Within& within,
                          const Visit& visit) {
@@ -77,8 +77,8 @@ void traverse_best_first(const AabbTree& tree, const LowerBound& lower_bound, co
   }
 }
 
-/// Computes a value from the root down: summary(node) is the value of all below a node, if that is known
-/// without them; else leaf(node), or merge(left value, right value).
+/// The value of a subtree: summary(node), an optional, if it has a value; else leaf(node) or
+/// merge(left value, right value).
 template <class Summary, class Leaf, class Merge>
 auto reduce(const AabbTree& tree, std::uint32_t index, const Summary& summary, const Leaf& leaf,
             const Merge& merge) -> typename decltype(summary(index))::value_type {
@@ -90,7 +90,8 @@ auto reduce(const AabbTree& tree, std::uint32_t index, const Summary& summary, c
   return merge(std::move(left), std::move(right));
 }
 
-/// Children before their parents, the last leaf first: calls leaf(node) or inner(node, left, right).
+/// Calls leaf(node) or inner(node, left, right) for all nodes, children before parents and the last leaf
+/// first.
 template <class Leaf, class Inner>
 void for_each_bottom_up(const AabbTree& tree, const Leaf& leaf, const Inner& inner) {
   for (auto i = static_cast<std::uint32_t>(tree.nodes.size()); i-- > 0;) {
@@ -102,7 +103,7 @@ void for_each_bottom_up(const AabbTree& tree, const Leaf& leaf, const Inner& inn
   }
 }
 
-/// The nodes that are leaves, in their order.
+/// The nodes that are leaves, in order.
 [[nodiscard]] inline std::vector<std::uint32_t> leaf_nodes(const AabbTree& tree) {
   std::vector<std::uint32_t> leaves;
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i)
@@ -110,9 +111,9 @@ void for_each_bottom_up(const AabbTree& tree, const Leaf& leaf, const Inner& inn
   return leaves;
 }
 
-/// Numbers of leaves, which are consecutive in every subtree.
+/// Numbers the leaves, so that a subtree is a range of them.
 struct LeafOrder {
-  std::vector<std::uint32_t> before;  ///< leaves in front of each node, and of the end
+  std::vector<std::uint32_t> before;  ///< number of leaves before each node, and before the end
 
   explicit LeafOrder(const AabbTree& tree) : before(tree.nodes.size() + 1, 0) {
     for (std::size_t i = 0; i < tree.nodes.size(); ++i)

@@ -9,18 +9,18 @@
 
 namespace sdm::hierarchy {
 
-/// A child of a wide node, still to be visited.
+/// A child of a wide node that is still to be visited.
 template <class Distance>
 struct OpenChild {
   std::uint32_t child;
-  Distance squared;  ///< distance of its box
+  Distance squared;  ///< distance to its box
 };
 
 /// Depth first, the nearest child first. near(node, squared) sets the squared distances of a node's children
-/// and returns a bit for each that is within reach; within(squared) is tested again when a child's turn
-/// comes; visit(leaf) is called with the leaf's number. `stack` is scratch memory.
+/// and returns a bit mask of those within reach; within(squared) is tested again before a child is visited;
+/// visit(leaf) receives the number of a leaf. `stack` is scratch memory.
 ///
-/// Always inlined: a caller compiled for other vector instructions has the whole loop compiled for them.
+/// Always inlined, so that the loop is compiled for the vector instructions of its caller.
 template <class Distance, class Near, class Within, class Visit>
 [[gnu::always_inline]] inline void traverse_nearest_child_first(const WideTree& tree,
                                                                 std::vector<OpenChild<Distance>>& stack,

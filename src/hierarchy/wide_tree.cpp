@@ -27,10 +27,10 @@ class Collapser {
   }
 
  private:
-  // Makes a node of the expansion of one or two binary nodes and returns its index.
+  // Adds the node that one or two binary nodes expand to, and returns its index.
   std::uint32_t add(std::array<std::uint32_t, 2> nodes, std::uint32_t count) {
     std::uint32_t open[WideTree::kWidth] = {nodes[0], nodes[1]};
-    float area[WideTree::kWidth];  // of those that can be opened; else -1
+    float area[WideTree::kWidth];  // -1 for leaves
     const auto measure = [&](std::uint32_t i) {
       const AabbTree::Node& node = tree_.nodes[open[i]];
       area[i] = node.leaf() ? -1 : half_area(node.box);

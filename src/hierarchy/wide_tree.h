@@ -1,4 +1,4 @@
-// An AABB tree collapsed to eight children a node, so that vector instructions test them together.
+// An AABB tree collapsed to eight children per node, which vector instructions test together.
 #pragma once
 
 #include <sdm/types.h>
@@ -13,17 +13,17 @@ namespace sdm::hierarchy {
 struct WideTree {
   static constexpr int kWidth = 8;
 
-  /// A child is another wide node, by its index, or a leaf of the binary tree, by its number in their order.
+  /// A child is the index of another wide node, or the number of a leaf of the binary tree, in their order.
   [[nodiscard]] static constexpr bool is_leaf(std::uint32_t child) { return (child & kLeafBit) != 0; }
   [[nodiscard]] static constexpr std::uint32_t leaf_number(std::uint32_t child) { return child & ~kLeafBit; }
   [[nodiscard]] static constexpr std::uint32_t leaf(std::uint32_t number) { return number | kLeafBit; }
 
   struct Node {
-    alignas(32) float lo[3][kWidth] = {};  ///< of lanes not in use 0: vector loads read them
+    alignas(32) float lo[3][kWidth] = {};  ///< 0 in unused lanes: vector loads read them
     alignas(32) float hi[3][kWidth] = {};
     std::uint32_t child[kWidth] = {};
-    std::uint32_t source[kWidth] = {};  ///< the binary node of each child
-    std::uint32_t count = 0;            ///< children in use: the first ones
+    std::uint32_t source[kWidth] = {};  ///< node of the binary tree for each child
+    std::uint32_t count = 0;            ///< children in use, which come first
     std::uint32_t leaves = 0;           ///< a bit for each child that is a leaf
   };
   std::vector<Node> nodes;  ///< the root is nodes[0]; empty for an empty tree
@@ -32,7 +32,7 @@ struct WideTree {
   static constexpr std::uint32_t kLeafBit = 0x80000000u;
 };
 
-/// Squared distances of a box to those of a node's children.
+/// Squared distances of a box to the boxes of a node's children.
 inline void squared_distances(const WideTree::Node& node, const Box& box,
                               double (&squared)[WideTree::kWidth]) {
   for (int i = 0; i < WideTree::kWidth; ++i) squared[i] = 0;
@@ -43,10 +43,11 @@ inline void squared_distances(const WideTree::Node& node, const Box& box,
     }
 }
 
-/// Opens the child of largest area until a node is full. Cost: linear.
+/// Collapses a tree: a node's child of largest area is replaced by its children until there are eight. Cost:
+/// linear.
 [[nodiscard]] WideTree collapse(const AabbTree& tree);
 
-/// Copies the boxes of the refitted binary tree. Cost: linear.
+/// Takes over the boxes of the binary tree after a refit. Cost: linear.
 void refit(WideTree& wide, const AabbTree& tree);
 
 }  // namespace sdm::hierarchy

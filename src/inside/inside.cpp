@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "inside/crossings/ray_parity.h"
 
 namespace sdm::inside {

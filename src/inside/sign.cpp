@@ -38,7 +38,8 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
     case SignMethod::pseudonormal:
       if (!open.empty())
         throw Error("distances cannot be signed by pseudonormals: " + open +
-                    "; use sign none, or winding for an estimate");
+                        "; use sign none, or winding for an estimate",
+                    Remedy::sign_method);
       return {SignMethod::pseudonormal, "requested; O2 is closed and orientable"};
     case SignMethod::automatic:
       break;

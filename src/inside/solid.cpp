@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/predicates.h"
+#include "core/geometry/predicates.h"
 #include "hierarchy/traverse.h"
 
 namespace sdm::inside {

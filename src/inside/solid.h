@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/affine.h"
+#include "core/geometry/affine.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {

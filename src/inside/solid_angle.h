@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::inside {
 

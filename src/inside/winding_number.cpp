@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "hierarchy/traverse.h"
 #include "inside/solid_angle.h"
 

@@ -2,9 +2,11 @@
 #include <sdm/error.h>
 
 #include <cmath>
+#include <new>
 #include <string>
 
-#include "core/spatial_order.h"
+#include "core/geometry/spatial_order.h"
+#include "core/memory.h"
 #include "engine/blocks.h"
 #include "map/engine_of.h"
 #include "sites/sites_data.h"
@@ -12,7 +14,7 @@
 namespace sdm {
 
 std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
-                                         const MapOptions& options) {
+                                         const MapOptions& options) try {
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
   constexpr double kMaxCoordinate = 1e37;  // as for meshes
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -34,6 +36,8 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
             });
       });
   return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("closest points");
 }
 
 }  // namespace sdm

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <atomic>
+#include <new>
 
+#include "core/memory.h"
 #include "inside/inside.h"
 #include "map/engine_of.h"
 #include "map/map_writer.h"
@@ -15,7 +17,8 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
   return map;
 }
 
-void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options, DistanceMap& map) {
+void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,
+                 DistanceMap& map) try {
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
   const SignUsed sign = choose_sign(sites, options.sign);
   const inside::InsideTest is_inside(internals(sites), sign.method);
@@ -34,6 +37,8 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
               });
   map.beyond_max_distance = 0;
   for (const Counter& counter : beyond) map.beyond_max_distance += counter.count;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map");
 }
 
 }  // namespace sdm

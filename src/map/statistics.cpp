@@ -1,7 +1,7 @@
 #include <sdm/error.h>
 #include <sdm/statistics.h>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <new>
 
 #include "core/disjoint_sets.h"
+#include "core/geometry/vec.h"
 #include "core/memory.h"
-#include "core/vec.h"
 #include "mesh/topology.h"
 
 namespace sdm {

@@ -4,8 +4,8 @@
 #include <mutex>
 #include <string>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "mesh/validate.h"
 
 namespace sdm {

@@ -1,160 +1,88 @@
 #include <sdm/error.h>
 #include <sdm/transform.h>
 
-#include <charconv>
+#include <algorithm>
+#include <cmath>
 #include <numbers>
-#include <string>
+#include <utility>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm {
 namespace {
 
-[[noreturn]] void fail(std::string_view step, const std::string& fault) {
-  throw Error("transform step '" + std::string(step) + "' " + fault +
-              "; steps are fit, scale:S, rotate:X:Y:Z and translate:X:Y:Z");
-}
-
-// The numbers after the name of a step, each behind a colon.
-std::vector<double> parse_values(std::string_view step, std::string_view text) {
-  std::vector<double> values;
-  while (!text.empty()) {
-    text.remove_prefix(1);
-    const std::string_view number = text.substr(0, text.find(':'));
-    const char* end = number.data() + number.size();
-    double value = 0;
-    const auto [stop, error] = std::from_chars(number.data(), end, value);
-    if (error != std::errc{} || stop != end || !std::isfinite(value))
-      fail(step, "has '" + std::string(number) + "' where a number is needed");
-    values.push_back(value);
-    text.remove_prefix(number.size());
-  }
-  return values;
-}
-
-TransformStep parse_step(std::string_view step) {
-  using Kind = TransformStep::Kind;
-  struct Form {
-    std::string_view name;
-    Kind kind;
-    std::size_t values;
-  };
-  constexpr Form forms[] = {{"fit", Kind::fit, 0},
-                            {"scale", Kind::scale, 1},
-                            {"rotate", Kind::rotate, 3},
-                            {"translate", Kind::translate, 3}};
-  const std::string_view name = step.substr(0, step.find(':'));
-  for (const Form& form : forms) {
-    if (form.name != name) continue;
-    const std::vector<double> values = parse_values(step, step.substr(name.size()));
-    if (values.size() != form.values)
-      fail(step, "has " + std::to_string(values.size()) + " numbers, not " + std::to_string(form.values));
-    TransformStep result{form.kind, {}};
-    std::copy(values.begin(), values.end(), result.value.begin());
-    if (form.kind == Kind::scale && result.value[0] == 0) fail(step, "would flatten the mesh to a point");
-    return result;
-  }
-  fail(step, "is not known");
-}
-
-// Turns by `degrees` about an axis, counter-clockwise seen from its tip. Multiples of 90° are exact.
-void rotate(std::span<Vec3> points, int axis, double degrees) {
-  const double turn = std::remainder(degrees, 360);
-  const double radians = turn * (std::numbers::pi / 180);
+// Counter-clockwise about the axis, seen from its tip.
+Transform rotation_about(int axis, double degrees) {
+  const double turn = std::remainder(degrees, 360), radians = turn * (std::numbers::pi / 180);
   const double s = std::abs(turn) == 180 ? 0 : std::sin(radians);
   const double c = std::abs(turn) == 90 ? 0 : std::cos(radians);
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-  for (Vec3& p : points) {
-    const double x = p[i], y = p[j];
-    p[i] = c * x - s * y;
-    p[j] = s * x + c * y;
-  }
-}
-
-// A reflection: flip the faces, so that their outside stays outside.
-void turn_faces(Mesh& mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  for (auto& uv : mesh.corner_uvs) std::swap(uv[1], uv[2]);
-}
-
-struct Fit {
-  Vec3 centre;
-  double longest;
-};
-
-Fit fit_of(const Mesh& mesh) {
-  const Box box = bounds(mesh);
-  const Vec3 size = box.hi - box.lo;
-  const double longest = std::max({size[0], size[1], size[2]});
-  if (!(longest > 0)) throw Error("transform step 'fit' requires a mesh with positive extent");
-  return {centre(box), longest};
-}
-
-void apply(std::span<Vec3> points, const TransformStep& step) {
-  switch (step.kind) {
-    case TransformStep::Kind::fit:
-      throw Error("transform step 'fit' needs a mesh");
-    case TransformStep::Kind::scale:
-      for (Vec3& p : points) p = step.value[0] * p;
-      break;
-    case TransformStep::Kind::rotate:
-      for (int axis = 0; axis < 3; ++axis) rotate(points, axis, step.value[axis]);
-      break;
-    case TransformStep::Kind::translate:
-      for (Vec3& p : points) p += step.value;
-      break;
-  }
-  for (const Vec3& p : points)
-    if (!finite(p)) throw Error("the transform produces an infinite coordinate; use smaller values");
+  Transform map;
+  map.rows[i][i] = map.rows[j][j] = c;
+  map.rows[i][j] = -s;
+  map.rows[j][i] = s;
+  return map;
 }
 
 }  // namespace
 
-std::vector<TransformStep> parse_transform(std::string_view text) {
-  std::vector<TransformStep> steps;
-  while (!text.empty()) {
-    const std::size_t comma = text.find(',');
-    steps.push_back(parse_step(text.substr(0, comma)));
-    if (comma == std::string_view::npos) break;
-    text.remove_prefix(comma + 1);
-    if (text.empty()) fail(text, "is empty");
-  }
-  return steps;
+Transform Transform::translation(const Vec3& offset) {
+  Transform map;
+  for (int k = 0; k < 3; ++k) map.rows[k][3] = offset[k];
+  return map;
 }
 
-void transform(Mesh& mesh, const std::vector<TransformStep>& steps) {
-  for (const TransformStep& step : steps) {
-    if (step.kind == TransformStep::Kind::fit) {
-      const Fit fit = fit_of(mesh);
-      for (Vec3& p : mesh.positions) {
-        const Vec3 q = p - fit.centre;
-        p = {q[0] / fit.longest, q[1] / fit.longest, q[2] / fit.longest};
-      }
-      continue;
-    }
-    apply(mesh.positions, step);
-    if (step.kind == TransformStep::Kind::scale && step.value[0] < 0) turn_faces(mesh);
-  }
+Transform Transform::scaling(double factor) {
+  Transform map;
+  for (int k = 0; k < 3; ++k) map.rows[k][k] = factor;
+  return map;
 }
 
-void transform(std::span<Vec3> points, const std::vector<TransformStep>& steps) {
-  for (const TransformStep& step : steps) apply(points, step);
+Transform Transform::rotation(const Vec3& degrees) {
+  return rotation_about(2, degrees[2]) * rotation_about(1, degrees[1]) * rotation_about(0, degrees[0]);
 }
 
-std::vector<TransformStep> without_fit(Mesh mesh, const std::vector<TransformStep>& steps) {
-  std::vector<TransformStep> result;
-  for (const TransformStep& step : steps) {
-    const std::size_t first = result.size();
-    if (step.kind == TransformStep::Kind::fit) {
-      const Fit fit = fit_of(mesh);
-      result.push_back({TransformStep::Kind::translate, -fit.centre});
-      result.push_back({TransformStep::Kind::scale, {1 / fit.longest, 0, 0}});
-    } else {
-      result.push_back(step);
-    }
-    for (std::size_t i = first; i < result.size(); ++i) apply(mesh.positions, result[i]);
-  }
+Vec3 Transform::operator()(const Vec3& p) const {
+  Vec3 result;
+  for (int k = 0; k < 3; ++k)
+    result[k] = rows[k][0] * p[0] + rows[k][1] * p[1] + rows[k][2] * p[2] + rows[k][3];
   return result;
+}
+
+double Transform::determinant() const {
+  const auto row = [&](int k) { return Vec3{rows[k][0], rows[k][1], rows[k][2]}; };
+  return dot(row(0), cross(row(1), row(2)));
+}
+
+Transform operator*(const Transform& a, const Transform& b) {
+  Transform product;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      product.rows[i][j] = 0;
+      for (int k = 0; k < 4; ++k) product.rows[i][j] += a.rows[i][k] * b.rows[k][j];
+    }
+  return product;
+}
+
+Transform fit_to_unit(const Mesh& mesh) {
+  const Box box = bounds(mesh);
+  const Vec3 size = box.hi - box.lo;
+  const double longest = std::max({size[0], size[1], size[2]});
+  if (!(longest > 0)) throw Error("fit_to_unit() requires a mesh with positive extent");
+  return Transform::scaling(1 / longest) * Transform::translation(-centre(box));
+}
+
+void transform(std::span<Vec3> points, const Transform& map) {
+  for (const Vec3& p : points)
+    if (!finite(map(p))) throw Error("the transform produces an infinite coordinate; use smaller values");
+  for (Vec3& p : points) p = map(p);
+}
+
+void transform(Mesh& mesh, const Transform& map) {
+  transform(std::span(mesh.positions), map);
+  if (!(map.determinant() < 0)) return;
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  for (auto& uv : mesh.corner_uvs) std::swap(uv[1], uv[2]);
 }
 
 }  // namespace sdm

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::sites {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <sdm/sites.h>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::sites {
 

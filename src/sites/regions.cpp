@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "sites/compute_regions.h"
 
 namespace sdm::sites {

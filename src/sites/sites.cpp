@@ -1,19 +1,26 @@
 #include <sdm/sites.h>
 
+#include <new>
 #include <utility>
 
+#include "core/memory.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
 
-Sites::Sites(Mesh mesh) : data_(std::make_unique<sites::SitesData>(std::move(mesh))) {}
+Sites::Sites(Mesh mesh) try : data_(std::make_unique<sites::SitesData>(std::move(mesh))) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the sites of a mesh");
+}
 
 Sites::~Sites() = default;
 Sites::Sites(Sites&&) noexcept = default;
 Sites& Sites::operator=(Sites&&) noexcept = default;
 
-void Sites::refit(std::span<const Vec3> positions) {
+void Sites::refit(std::span<const Vec3> positions) try {
   data_->refit(positions);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the sites of a mesh");
 }
 
 const Mesh& Sites::mesh() const {

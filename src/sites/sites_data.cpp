@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/memory.h"
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "mesh/validate.h"
 
 namespace sdm::sites {
@@ -13,12 +12,6 @@ namespace {
 
 constexpr std::uint32_t kLeafFaces = FaceBounds::kWidth;
 constexpr std::size_t kGrain = 4096;
-
-// What a triangle soup takes while its sites are built; meshes take half of it.
-void require_memory_for(const Mesh& mesh) {
-  constexpr std::size_t kBytesPerFace = 900, kBytesPerVertex = 60;
-  require_memory(kBytesPerFace * mesh.triangles.size() + kBytesPerVertex * mesh.positions.size(), "O2");
-}
 
 std::vector<std::uint32_t> faces_with_sites(const mesh::Topology& topology) {
   std::vector<std::uint32_t> faces;
@@ -32,7 +25,6 @@ std::vector<std::uint32_t> faces_with_sites(const mesh::Topology& topology) {
 
 SitesData::SitesData(Mesh given) {
   validate(given);
-  require_memory_for(given);
   mesh = std::move(given);
   const std::vector<Triangle>& triangles = mesh.triangles;
   frame = UnitFrame::of(bounds(mesh));

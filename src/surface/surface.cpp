@@ -1,17 +1,24 @@
 #include <sdm/surface.h>
 
+#include <new>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
+#include "core/memory.h"
 #include "surface/surface_data.h"
 
 namespace sdm {
 
-Surface::Surface(Mesh mesh, const AtlasOptions& options)
-    : data_(std::make_unique<surface::SurfaceData>(std::move(mesh), options)) {}
+Surface::Surface(Mesh mesh, const AtlasOptions& options) try
+    : data_(std::make_unique<surface::SurfaceData>(std::move(mesh), options)) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the atlas");
+}
 
-void Surface::refit(std::span<const Vec3> positions) {
+void Surface::refit(std::span<const Vec3> positions) try {
   data_->refit(positions);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the atlas");
 }
 
 Surface::~Surface() = default;
@@ -33,8 +40,10 @@ std::span<const std::uint32_t> Surface::texel_faces() const {
 std::span<const std::uint32_t> Surface::sample_texels() const {
   return data_->samples;
 }
-std::vector<Vec3> Surface::sample_points() const {
+std::vector<Vec3> Surface::sample_points() const try {
   return data_->sample_points();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the samples of the atlas");
 }
 std::size_t Surface::chart_count() const {
   return data_->chart_count;

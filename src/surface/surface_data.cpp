@@ -8,9 +8,9 @@
 
 #include "atlas/packing/too_small.h"
 #include "atlas/texel_owners.h"
+#include "core/geometry/spatial_order.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/spatial_order.h"
 #include "mesh/validate.h"
 
 namespace sdm::surface {
@@ -22,7 +22,8 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
   validate(mesh);
   const std::uint32_t n = options.resolution;
   if (n < kMinResolution || n > kMaxResolution)
-    throw Error("an atlas resolution of " + std::to_string(n) + " is out of range; use 16 to 32768");
+    throw Error("an atlas resolution of " + std::to_string(n) + " is out of range; use 16 to 32768",
+                Remedy::resolution);
   if (!(options.max_stretch > 1))
     throw Error("a maximum stretch of " + std::to_string(options.max_stretch) +
                 " is out of range; use more than 1");

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "atlas/layout.h"
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::surface {
 

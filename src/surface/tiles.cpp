@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 
 namespace sdm::surface {
@@ -64,11 +63,6 @@ void cut(const Surface& surface, Tiles& tiles) {
 }  // namespace
 
 Tiles::Tiles(const Surface& surface) {
-  // Texels and the tile of each; tiles, a few a face and more where faces are large.
-  constexpr std::size_t kBytesPerTexel = 8, kBytesPerTile = 16;
-  const std::size_t samples = surface.sample_texels().size();
-  const std::size_t most_tiles = std::min(samples, 4 * surface.mesh().triangles.size() + samples / kSide);
-  require_memory(kBytesPerTexel * samples + kBytesPerTile * most_tiles, "the tiles of the atlas");
   sort_by_face(surface, *this);
   cut(surface, *this);
 }

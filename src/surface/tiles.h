@@ -11,8 +11,7 @@ namespace sdm::surface {
 struct Tiles {
   static constexpr std::uint32_t kSide = 16;
 
-  /// Throws sdm::Error if there is not enough memory. Cost: linear in texels, and their sorting in faces of
-  /// more than one tile; all cores.
+  /// Cost: linear in texels, and their sorting in faces of more than one tile; all cores.
   explicit Tiles(const Surface& surface);
 
   std::vector<std::uint32_t> texels;        ///< owned texels, face after face, tile after tile

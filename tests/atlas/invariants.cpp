@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::test {
 namespace {

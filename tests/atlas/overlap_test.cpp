@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm {
 namespace {

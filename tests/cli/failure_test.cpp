@@ -11,6 +11,7 @@ namespace sdm::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 struct Failure : ::testing::Test, TwoTori {
@@ -55,6 +56,30 @@ TEST_F(Failure, BadInputIsNamed) {
 TEST_F(Failure, AFullDiskLeavesNoTrace) {
   for (const std::uint64_t bytes : {0, 500, 4000, 30000})
     expect_failure(run_sdm(map({"--both"}), {.file_size = bytes}), "cannot write");
+}
+
+TEST_F(Failure, AFullDiskLeavesNoTraceOfAnyCommand) {
+  const std::string moving = folder / "moving";
+  std::filesystem::create_directory(moving);
+  for (int i = 0; i < 3; ++i)
+    write_obj(std::filesystem::path(moving) / (std::to_string(i) + ".obj"), ring(12, 1, {0.1 * i, 0, 0}));
+  before = names_in(folder.path());
+  const std::vector<std::vector<std::string>> commands{
+      {"self", o1, "--resolution", "64"},
+      {"bodies", o1, o2, "--resolution", "64"},
+      {"sequence", moving, o2, "--resolution", "64", "--maps", "1"},
+      {"sequence", moving, o2, "--resolution", "64", "--no-temporal"},
+      {"scene", "letters", "--frames", "2"},
+      {"scene", "letters", "--frames", "2", "--format", "ply"}};
+  for (std::vector<std::string> command : commands) {
+    SCOPED_TRACE(command[0]);
+    command.insert(command.end(), {"-o", out});
+    for (const std::uint64_t bytes : {0, 500}) {
+      const Outcome run = run_sdm(command, {.file_size = bytes});
+      expect_failure(run, "cannot write " + out + "/");  // the final path, not that of the staged file
+      EXPECT_THAT(run.err, Not(HasSubstr(".part")));
+    }
+  }
 }
 
 TEST_F(Failure, AFullDiskLeavesEarlierResultsAlone) {
@@ -105,10 +130,12 @@ TEST_F(Failure, OptionsThatTheMeshesDoNotAllow) {
   // Often, because the atlas fails while O2 is being prepared on the other cores.
   for (int repeat = 0; repeat < 10; ++repeat)
     expect_failure(run_sdm(map({"--atlas", "uv"})), "texture coordinates");
+  expect_failure(run_sdm(map({"--atlas", "uv"})), "--atlas charts");
   Mesh open = ring(16);
   open.triangles.resize(100);
   write_obj(o2, open);
   expect_failure(run_sdm(map({"--sign", "pseudonormal"})), "O2 is open");
+  expect_failure(run_sdm(map({"--sign", "pseudonormal"})), "(--sign)");
 }
 
 TEST_F(Failure, AnInterruptedRunLeavesNoTrace) {

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 #include <sdm/proximity_query.h>
 #include <sdm/sampling_bound.h>
-#include <sdm/transform.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "scenes/placement.h"
 #include "support/run_sdm.h"
 #include "cli/samples.h"
 
@@ -66,7 +66,7 @@ TEST_F(ProximityCommand, AsksTheTrianglesThemselves) {
     ASSERT_EQ(run.code, 0) << run.err;
     const Json json = Json::parse(run.out);
     Mesh second = read_mesh(o2);
-    transform(second, parse_transform(placement));
+    scenes::place(second, scenes::parse_placement(placement));
     ProximityQuery query(read_mesh(o1), second, {.atlas = {.resolution = 64}, .exact = true});
     EXPECT_EQ(json["separation"]["kind"], "exact");
     EXPECT_EQ(json["separation"]["value"], query.separation().value);

@@ -15,9 +15,9 @@
 #include "core/parallel.h"
 #include "core/platform.h"
 #include "core/rows.h"
-#include "core/spatial_order.h"
-#include "core/sweep.h"
-#include "core/vec.h"
+#include "core/geometry/spatial_order.h"
+#include "core/geometry/sweep.h"
+#include "core/geometry/vec.h"
 
 namespace sdm {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/cpu/finish.h"
 #include "engine/engine.h"
 #include "sites/sites_data.h"

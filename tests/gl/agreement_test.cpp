@@ -1,5 +1,5 @@
 // Every texel of every map by rasterisation against the reference engine.
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "gl/support.h"
 #include "support/oracle.h"
 

@@ -2,7 +2,7 @@
 #include <atomic>
 #include <thread>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "gl/support.h"
 
 namespace sdm {

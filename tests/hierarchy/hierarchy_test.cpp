@@ -7,7 +7,7 @@
 #include <optional>
 #include <random>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "hierarchy/aabb_tree.h"
 #include "hierarchy/traverse.h"
 #include "hierarchy/traverse_wide.h"

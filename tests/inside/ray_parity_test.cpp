@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>
@@ -10,6 +10,8 @@
 
 namespace sdm {
 namespace {
+
+using namespace io;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 

@@ -1,4 +1,4 @@
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,6 +17,8 @@
 
 namespace sdm::test {
 namespace {
+
+using namespace io;
 
 tinygltf::Model read_glb(const std::filesystem::path& file) {
   tinygltf::Model model;

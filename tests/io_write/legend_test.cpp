@@ -1,6 +1,6 @@
-#include "io/write/legend.h"
+#include "io/write/pictures/legend.h"
 
-#include "io/write/ticks.h"
+#include "io/write/pictures/ticks.h"
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>
@@ -10,6 +10,8 @@
 
 namespace sdm {
 namespace {
+
+using namespace io;
 
 TEST(Ticks, AreRoundNumbersWithinTheRange) {
   std::mt19937 random(7);

@@ -1,7 +1,7 @@
 // PNG files back into pixels.
 #pragma once
 
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -11,6 +11,8 @@
 #include <vector>
 
 namespace sdm::test {
+
+using io::Rgb;
 
 struct Pixels {
   std::uint32_t width = 0, height = 0;

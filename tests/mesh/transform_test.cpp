@@ -2,10 +2,7 @@
 #include <sdm/error.h>
 #include <sdm/transform.h>
 
-#include <cmath>
-#include <vector>
-
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm {
@@ -14,129 +11,71 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-// Where steps take a point.
-Vec3 moved(const Vec3& p, const char* steps) {
-  Mesh mesh{{p}, {}, {}};
-  transform(mesh, parse_transform(steps));
-  return mesh.positions[0];
-}
-
 void expect_near(const Vec3& a, const Vec3& b) {
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 1e-15);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 1e-14);
 }
 
-TEST(Transform, Translate) {
-  EXPECT_EQ(moved({1, 2, 3}, "translate:0.5:-1:1e2"), (Vec3{1.5, 1, 103}));
+double volume(const Mesh& mesh) {
+  double six = 0;
+  for (const Triangle& t : mesh.triangles)
+    six += dot(mesh.positions[t[0]], cross(mesh.positions[t[1]], mesh.positions[t[2]]));
+  return six / 6;
 }
 
-TEST(Transform, ScaleIsAboutTheOrigin) {
-  EXPECT_EQ(moved({1, -2, 3}, "scale:2"), (Vec3{2, -4, 6}));
+TEST(Transform, ElementaryMaps) {
+  const Vec3 p{1, -2, 3};
+  EXPECT_EQ(Transform()(p), p);
+  EXPECT_EQ(Transform::translation({0.5, -1, 100})(p), (Vec3{1.5, -3, 103}));
+  EXPECT_EQ(Transform::scaling(2)(p), (Vec3{2, -4, 6}));
+  EXPECT_EQ(Transform::scaling(-2).determinant(), -8);
 }
 
-TEST(Transform, RotationsAreRightHanded) {
-  EXPECT_EQ(moved({0, 1, 0}, "rotate:90:0:0"), (Vec3{0, 0, 1}));
-  EXPECT_EQ(moved({0, 0, 1}, "rotate:0:90:0"), (Vec3{1, 0, 0}));
-  EXPECT_EQ(moved({1, 0, 0}, "rotate:0:0:90"), (Vec3{0, 1, 0}));
-  EXPECT_EQ(moved({1, 0, 0}, "rotate:0:0:-270"), (Vec3{0, 1, 0}));
-  EXPECT_EQ(moved({1, 2, 3}, "rotate:0:0:180"), (Vec3{-1, -2, 3}));
-  expect_near(moved({1, 0, 0}, "rotate:0:0:30"), {std::sqrt(3) / 2, 0.5, 0});
+TEST(Transform, RotationsAreRightHandedAndExactForRightAngles) {
+  EXPECT_EQ(Transform::rotation({90, 0, 0})(Vec3{0, 1, 0}), (Vec3{0, 0, 1}));
+  EXPECT_EQ(Transform::rotation({0, 90, 0})(Vec3{0, 0, 1}), (Vec3{1, 0, 0}));
+  EXPECT_EQ(Transform::rotation({0, 0, -270})(Vec3{1, 0, 0}), (Vec3{0, 1, 0}));
+  EXPECT_EQ(Transform::rotation({90, 90, 0})(Vec3{0, 1, 0}), (Vec3{1, 0, 0}));  // y → z → x
+  expect_near(Transform::rotation({0, 0, 30})(Vec3{1, 0, 0}), {std::sqrt(3) / 2, 0.5, 0});
 }
 
-TEST(Transform, RotatesAboutXThenYThenZ) {
-  const Vec3 p{1, 2, 3};
-  expect_near(moved(p, "rotate:10:20:30"), moved(p, "rotate:10:0:0,rotate:0:20:0,rotate:0:0:30"));
-  EXPECT_EQ(moved({0, 1, 0}, "rotate:90:90:0"), (Vec3{1, 0, 0}));  // y → z → x
-}
-
-TEST(Transform, StepsAreAppliedInOrder) {
-  EXPECT_EQ(moved({1, 0, 0}, "scale:2,translate:1:0:0"), (Vec3{3, 0, 0}));
-  EXPECT_EQ(moved({1, 0, 0}, "translate:1:0:0,scale:2"), (Vec3{4, 0, 0}));
-  EXPECT_EQ(moved({1, 0, 0}, ""), (Vec3{1, 0, 0}));
+TEST(Transform, ProductsApplyTheRightFactorFirst) {
+  const Transform a = Transform::rotation({10, 20, 30}), b = Transform::translation({1, 2, 3}),
+                  c = Transform::scaling(3);
+  const Vec3 p{0.3, -0.7, 2};
+  expect_near((a * b * c)(p), a(b(c(p))));
+  EXPECT_NEAR((a * c).determinant(), 27, 1e-13);
+  EXPECT_EQ((a * b).rows[3], (std::array<double, 4>{0, 0, 0, 1}));
 }
 
 TEST(Transform, FitMakesTheLongestSideOneAndCentresIt) {
   Mesh mesh = test::torus(16, 12);
   for (Vec3& p : mesh.positions) p = {7 * p[0] + 5, 3 * p[1] - 8, p[2] + 40};
   mesh.positions.push_back({1e6, 1e6, 1e6});  // of no face
-  transform(mesh, parse_transform("fit"));
+  transform(mesh, fit_to_unit(mesh));
   const Box box = bounds(mesh);
   expect_near(centre(box), {0, 0, 0});
-  EXPECT_NEAR(box.hi[0] - box.lo[0], 1, 1e-15);
+  EXPECT_NEAR(box.hi[0] - box.lo[0], 1, 1e-14);
   EXPECT_LT(box.hi[1] - box.lo[1], 1);
 }
 
-TEST(Transform, MirrorImagesKeepTheirOrientation) {
-  Mesh mesh = test::torus(16, 12);
-  const auto outward_volume = [](const Mesh& m) {
-    double six = 0;
-    for (const Triangle& t : m.triangles)
-      six += dot(m.positions[t[0]], cross(m.positions[t[1]], m.positions[t[2]]));
-    return six / 6;
-  };
-  const double volume = outward_volume(mesh);
-  transform(mesh, parse_transform("scale:-2"));
-  EXPECT_NEAR(outward_volume(mesh), 8 * volume, 1e-12 * volume);
-}
-
-TEST(Transform, RejectsOverflow) {
-  Mesh mesh = test::tetrahedron();
-  EXPECT_THROW(transform(mesh, parse_transform("scale:1e300,scale:1e300")), Error);
-}
-
 TEST(Transform, FitNeedsAnExtent) {
-  Mesh mesh{{{1, 1, 1}}, {{0, 0, 0}}, {}};
-  EXPECT_THAT([&] { transform(mesh, parse_transform("fit")); }, ThrowsMessage<Error>(HasSubstr("extent")));
+  const Mesh mesh{{{1, 1, 1}}, {{0, 0, 0}}, {}};
+  EXPECT_THAT([&] { static_cast<void>(fit_to_unit(mesh)); }, ThrowsMessage<Error>(HasSubstr("extent")));
 }
 
-TEST(ParseTransform, ReadsAllSteps) {
-  const auto steps = parse_transform("fit,scale:2,rotate:1:2:3,translate:0.8:-0:0");
-  ASSERT_EQ(steps.size(), 4u);
-  EXPECT_EQ(steps[0].kind, TransformStep::Kind::fit);
-  EXPECT_EQ(steps[1].value[0], 2);
-  EXPECT_EQ(steps[2].value, (Vec3{1, 2, 3}));
-  EXPECT_EQ(steps[3].kind, TransformStep::Kind::translate);
+TEST(Transform, ReflectionsKeepTheOrientation) {
+  Mesh mesh = test::torus(16, 12);
+  const double before = volume(mesh);
+  transform(mesh, Transform::scaling(-2));
+  EXPECT_NEAR(volume(mesh), 8 * before, 1e-12 * before);
 }
 
-// Frames of a sequence are placed as the first, wherever they are.
-TEST(Transform, WithoutFitMovesOtherPointsTheSameWay) {
+TEST(Transform, RejectedOverflowChangesNothing) {
   Mesh mesh = test::tetrahedron();
-  transform(mesh, parse_transform("scale:3,translate:7:8:9"));
-  const auto steps = parse_transform("rotate:10:20:30,fit,scale:-2,fit,translate:1:2:3");
-  const auto resolved = without_fit(mesh, steps);
-  for (const TransformStep& step : resolved) EXPECT_NE(step.kind, TransformStep::Kind::fit);
-  Mesh expected = mesh;
-  transform(expected, steps);
-  std::vector<Vec3> points = mesh.positions;
-  points.push_back(0.5 * (points[1] + points[2]));
-  transform(points, resolved);
-  for (std::size_t i = 0; i < 4; ++i) expect_near(points[i], expected.positions[i]);
-  expect_near(points[4], 0.5 * (expected.positions[1] + expected.positions[2]));
-  // A mesh's faces turn with a mirror image all the same.
-  Mesh again = mesh;
-  transform(again, resolved);
-  EXPECT_EQ(again.triangles, expected.triangles);
-  EXPECT_THROW(transform(points, parse_transform("fit")), Error);
-}
-
-TEST(ParseTransform, ErrorNamesTheInvalidStep) {
-  const auto expect_refused = [](const char* text, const char* step) {
-    EXPECT_THAT([&] { static_cast<void>(parse_transform(text)); }, ThrowsMessage<Error>(HasSubstr(step)))
-        << text;
-  };
-  expect_refused("fit,shear:1", "'shear:1'");
-  expect_refused("scale", "'scale'");
-  expect_refused("scale:", "'scale:'");
-  expect_refused("scale:0", "'scale:0'");
-  expect_refused("scale:2x", "'2x'");
-  expect_refused("scale:nan", "'nan'");
-  expect_refused("scale:inf", "'inf'");
-  expect_refused("scale:1:2", "'scale:1:2'");
-  expect_refused("rotate:1:2", "'rotate:1:2'");
-  expect_refused("translate:1:2:3:", "'translate:1:2:3:'");
-  expect_refused("fit:1", "'fit:1'");
-  expect_refused("fit,", "''");
-  expect_refused(",fit", "''");
-  expect_refused(" fit", "' fit'");
+  mesh.positions[3] = {0, 0, 1e200};
+  const std::vector<Vec3> before = mesh.positions;
+  EXPECT_THROW(transform(mesh, Transform::scaling(-1e200)), Error);
+  EXPECT_EQ(mesh.positions, before);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 # circle nor an arrow that points up. Prints the graph: for each folder the folders that it includes.
 set(order
   core
+  core/geometry
   hierarchy
   mesh
   atlas/charts
@@ -28,6 +29,7 @@ set(order
   io/read
   io/read/frames
   io/read/gltf
+  io/write/pictures
   io/write)
 
 file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/*.h ${SOURCE_DIR}/src/*.cpp)

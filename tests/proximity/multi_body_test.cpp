@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "core/sweep.h"
-#include "core/vec.h"
+#include "core/geometry/sweep.h"
+#include "core/geometry/vec.h"
 #include "fcl_pair.h"
 #include "proximity/exact/mesh_pair.h"
 #include "support/allocations.h"

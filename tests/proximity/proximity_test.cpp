@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "sites/sites_data.h"
 #include "support/allocations.h"
 #include "support/meshes.h"

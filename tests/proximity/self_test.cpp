@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
@@ -19,6 +19,8 @@
 
 namespace sdm::test {
 namespace {
+
+using exact::Corners;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 

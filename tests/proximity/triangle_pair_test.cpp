@@ -6,11 +6,11 @@
 #include <cmath>
 #include <random>
 
-#include "core/predicates.h"
-#include "core/vec.h"
+#include "core/geometry/predicates.h"
+#include "core/geometry/vec.h"
 #include "support/pair_oracle.h"
 
-namespace sdm {
+namespace sdm::exact {
 namespace {
 
 Vec3 grid_point(std::mt19937& random, int side) {
@@ -186,4 +186,4 @@ TEST(Orientation, IsConsistentUnderPermutationAndScaling) {
 }
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::exact

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/parallel.h"
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "scenes/scene.h"
 #include "support/meshes.h"
 #include "support/oracle.h"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

@@ -5,7 +5,7 @@
 #include <sdm/map.h>
 #include <sdm/threads.h>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "scenes/scene.h"
 #include "support/meshes.h"
 

@@ -1,7 +1,8 @@
 #include "support/meshes.h"
 
 #include <sdm/io.h>
-#include <sdm/sdm.h>
+
+#include "scenes/placement.h"
 
 namespace sdm::test {
 
@@ -14,7 +15,7 @@ Mesh load(const std::string& name, std::string_view steps) {
 }
 
 Mesh placed(Mesh mesh, std::string_view steps) {
-  transform(mesh, parse_transform(steps));
+  scenes::place(mesh, scenes::parse_placement(steps));
   return mesh;
 }
 

@@ -15,7 +15,7 @@
 
 #include <algorithm>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::oracle {
 namespace {

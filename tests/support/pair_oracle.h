@@ -9,6 +9,8 @@
 
 namespace sdm::oracle {
 
+using exact::Corners;
+
 /// The distance of two triangles, degenerate ones included: exact, but for the last rounding.
 [[nodiscard]] double distance(const Corners& a, const Corners& b);
 [[nodiscard]] bool intersect(const Corners& a, const Corners& b);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::test {
 

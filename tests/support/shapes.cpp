@@ -4,7 +4,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "support/points.h"
 
 namespace sdm::test {
@@ -112,6 +112,11 @@ Mesh wedge(double half_angle) {
 
 Mesh single_triangle() {
   return {.positions = {{0, 0, 0}, {1, 0, 0.2}, {0.3, 0.8, 0}}, .triangles = {{0, 1, 2}}, .corner_uvs = {}};
+}
+
+Mesh square(double side, double height) {
+  const double h = side / 2;
+  return {{{-h, -h, height}, {h, -h, height}, {h, h, height}, {-h, h, height}}, {{0, 1, 2}, {0, 2, 3}}, {}};
 }
 
 Mesh band(std::uint32_t n, bool crossed) {

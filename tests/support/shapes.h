@@ -26,6 +26,8 @@ namespace sdm::test {
 // Open meshes.
 
 [[nodiscard]] Mesh single_triangle();
+/// Parallel to the plane z = 0, centred on the z axis at this height.
+[[nodiscard]] Mesh square(double side, double height);
 /// A band of n quads whose ends are joined, `crossed` (Möbius) or not; 2n triangles.
 [[nodiscard]] Mesh band(std::uint32_t n, bool crossed);
 /// A flat ring that rises slowly: seen from above it covers itself `turns` times.

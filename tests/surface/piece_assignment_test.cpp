@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 #include "surface/sample_blocks.h"

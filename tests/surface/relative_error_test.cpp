@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 #include "surface/sampling_bound/sample_tree.h"

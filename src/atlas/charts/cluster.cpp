@@ -5,9 +5,9 @@
 #include <queue>
 
 #include "atlas/charts/normal_cone.h"
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "core/scattered_order.h"
-#include "core/vec.h"
 
 namespace sdm::atlas {
 namespace {

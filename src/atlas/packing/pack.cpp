@@ -10,9 +10,9 @@
 #include "atlas/packing/bitmap_bin.h"
 #include "atlas/packing/footprint.h"
 #include "atlas/packing/too_small.h"
+#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 
 namespace sdm::atlas {
 namespace {

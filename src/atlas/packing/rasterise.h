@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::atlas {
 

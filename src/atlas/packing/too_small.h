@@ -11,7 +11,8 @@ namespace sdm::atlas {
 /// A resolution at which the atlas cannot be laid out; a larger one may do.
 class TooSmall : public Error {
  public:
-  TooSmall(const std::string& message, std::uint64_t enough) : Error(message), enough_(enough) {}
+  TooSmall(const std::string& message, std::uint64_t enough)
+      : Error(message, Remedy::resolution), enough_(enough) {}
   /// About the least resolution that would do.
   [[nodiscard]] std::uint64_t enough() const { return enough_; }
 

@@ -8,8 +8,8 @@
 
 #include <bit>
 
-#include "core/vec.h"
-#include "core/vec_lanes-inl.h"
+#include "core/geometry/vec.h"
+#include "core/geometry/vec_lanes-inl.h"
 #include "engine/cpu/ablation.h"
 #include "engine/engine.h"
 #include "engine/reference/reference_engine.h"

@@ -117,7 +117,8 @@ HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, si
   // Beside the disc, but for what cancels in the difference of squares.
   const BlockVec beside =
       hn::Sqrt(hn::Max(hn::NegMulAdd(squared, hn::Set(d, 1e-6f), hn::Sub(squared, h2)), hn::Zero(d)));
-  const BlockVec slope = uses(Idea::cones) ? hn::Load(d, bounds.slope + i) : hn::Set(d, sites::FaceBounds::kOpen);
+  const BlockVec slope =
+      uses(Idea::cones) ? hn::Load(d, bounds.slope + i) : hn::Set(d, sites::FaceBounds::kOpen);
   const BlockVec most = hn::MulAdd(slope, hn::Add(hn::Abs(h), reach_radius), hn::Add(radius, reach_radius));
   // c − b = h normal + s (r − h normal), and the convex piece is the disc.
   const BlockVec beyond = hn::Max(hn::Sub(beside, radius), hn::Zero(d));

@@ -4,7 +4,7 @@
 
 #include <sdm/types.h>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/gl/convex_polygon.h"
 
 namespace sdm::gl {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::gl {

@@ -3,9 +3,8 @@
 #include <numeric>
 #include <utility>
 
-#include "core/memory.h"
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 
 namespace sdm::gl {
 namespace {
@@ -13,9 +12,6 @@ namespace {
 constexpr std::size_t kGrain = 512;  // tiles
 
 hierarchy::AabbTree build_tree(const Surface& surface, const surface::Tiles& tiles) {
-  // Boxes, and nodes while the tree is built.
-  constexpr std::size_t kBytesPerTile = 300;
-  require_memory(kBytesPerTile * tiles.count(), "the tiles of the atlas");
   const UnitFrame frame = UnitFrame::of(bounds(surface.mesh()));
   std::vector<Box> boxes(tiles.count());
   parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -11,7 +11,7 @@
 namespace sdm::gl {
 
 struct TileTree {
-  /// Throws sdm::Error if there is not enough memory. Cost: O(n log n) in tiles, linear in texels, all cores.
+  /// Cost: O(n log n) in tiles, linear in texels, all cores.
   explicit TileTree(const Surface& surface);
 
   surface::Tiles tiles;

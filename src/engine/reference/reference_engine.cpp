@@ -1,7 +1,7 @@
 // The reference engine: one query at a time, plain enough to be believed.
 #include <algorithm>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/reference/reference_engine.h"
 #include "hierarchy/traverse.h"
 #include "sites/closest_on_face.h"

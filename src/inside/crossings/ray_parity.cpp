@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "hierarchy/traverse.h"
 
 namespace sdm::inside {

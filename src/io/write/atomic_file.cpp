@@ -1,29 +1,32 @@
 #include "io/write/atomic_file.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <atomic>
 #include <cerrno>
-#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "core/platform.h"
 
-namespace sdm {
+namespace sdm::io {
 namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& fault, const char* remedy) {
+  throw Error(fmt::format("cannot write {}: {}; {}", file.string(), fault, remedy));
+}
 
 std::string reason(int error) {
   return error != 0 ? std::generic_category().message(error) : "write error";
 }
 
-// Distinct for every file that this machine's processes write at the same time.
+// Unique among the files that all processes of this machine write at the same time.
 std::filesystem::path temporary_beside(const std::filesystem::path& file) {
   static std::atomic<unsigned> count{0};
-  std::ostringstream name;
-  name << '.' << file.filename().string() << '.' << process_number() << '.' << count++ << ".part";
-  return file.parent_path() / name.str();
+  return file.parent_path() /
+         fmt::format(".{}.{}.{}.part", file.filename().string(), process_number(), count++);
 }
 
 }  // namespace
@@ -32,12 +35,10 @@ AtomicFile::AtomicFile(std::filesystem::path file)
     : file_(std::move(file)), temporary_(temporary_beside(file_)) {
   std::error_code ignored;
   if (exists(file_, ignored) && !is_regular_file(file_, ignored))
-    throw Error("cannot write " + file_.string() + ": that name exists and is not a file; choose another");
+    fail(file_, "that name exists and is not a file", "choose another");
   errno = 0;
   stream_.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!stream_)
-    throw Error("cannot write " + file_.string() + ": " + reason(errno) +
-                "; choose a folder that can be written to");
+  if (!stream_) fail(file_, reason(errno), "choose a folder that can be written to");
 }
 
 AtomicFile::~AtomicFile() {
@@ -48,9 +49,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::check() const {
-  if (!stream_)
-    throw Error("cannot write " + file_.string() + ": " + reason(errno) +
-                "; free space or choose another folder");
+  if (!stream_) fail(file_, reason(errno), "free space or choose another folder");
 }
 
 void AtomicFile::commit() {
@@ -60,9 +59,8 @@ void AtomicFile::commit() {
   check();
   std::error_code error;
   rename(temporary_, file_, error);
-  if (error)
-    throw Error("cannot write " + file_.string() + ": " + error.message() + "; choose another folder");
+  if (error) fail(file_, error.message(), "choose another folder");
   committed_ = true;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,23 +1,24 @@
-// Files that appear under their name whole, or not at all.
+// Files that appear under their final name only when complete.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 
-namespace sdm {
+namespace sdm::io {
 
 /// Writes to a temporary file next to `file`; commit() renames it, otherwise it is removed.
 class AtomicFile {
  public:
-  /// Throws sdm::Error when the folder cannot be written to, or `file` is there and no plain file.
+  /// Throws sdm::Error if the folder cannot be written to, or if `file` exists and is not a regular file.
+  /// All errors name `file`, never the temporary file.
   explicit AtomicFile(std::filesystem::path file);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   [[nodiscard]] std::ostream& stream() { return stream_; }
-  /// Throws sdm::Error when anything written so far was refused, as by a full disk.
+  /// Throws sdm::Error if a write has failed, for example because the disk is full.
   void check() const;
   /// Throws as check() does.
   void commit();
@@ -28,4 +29,4 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // All steps within a disc, the shortest first; of equally long ones, those along rows first.
@@ -35,4 +35,4 @@ std::uint32_t gutter_source(std::uint32_t resolution, std::span<const std::uint3
   return kNone;
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-namespace sdm {
+namespace sdm::io {
 
 /// How far, in texels, values reach beyond the charts: bilinear filtering needs 1, the rest serves smaller
 /// mip levels.
@@ -18,4 +18,4 @@ inline constexpr int kGutter = 4;
 [[nodiscard]] std::uint32_t gutter_source(std::uint32_t resolution, std::span<const std::uint32_t> owners,
                                           std::uint32_t x, std::uint32_t y);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -6,7 +6,7 @@
 #include <bit>
 #include <string>
 
-namespace sdm {
+namespace sdm::io {
 
 template <typename T>
 void append_little_endian(std::string& bytes, T value) {
@@ -15,4 +15,4 @@ void append_little_endian(std::string& bytes, T value) {
   bytes.append(raw.data(), raw.size());
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,5 +1,6 @@
 #include "io/write/npy.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 
@@ -12,12 +13,10 @@
 
 namespace sdm {
 
-std::string npy_header(std::string_view type, std::span<const std::uint64_t> shape) {
+std::string io::npy_header(std::string_view type, std::span<const std::uint64_t> shape) {
   constexpr std::size_t kHeaderSize = 128;
-  std::string dictionary = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (";
-  for (const std::uint64_t& length : shape)
-    dictionary += std::to_string(length) + (&length == &shape.back() ? "" : ", ");
-  dictionary += "), }";
+  std::string dictionary =
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, fmt::join(shape, ", "));
   std::string header = "\x93NUMPY";
   header += {'\1', '\0'};
   append_little_endian(header, static_cast<std::uint16_t>(kHeaderSize - header.size() - 2));
@@ -28,13 +27,13 @@ std::string npy_header(std::string_view type, std::span<const std::uint64_t> sha
 void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
                std::span<const std::uint32_t> values) try {
   if (values.size() != std::size_t{resolution} * resolution)
-    throw Error("cannot write " + file.filename().string() + ": there are " + std::to_string(values.size()) +
-                " values for " + std::to_string(resolution) + "² texels");
-  AtomicFile out(file);
-  out.stream() << npy_header("<u4", std::array<std::uint64_t, 2>{resolution, resolution});
+    throw Error(fmt::format("cannot write {}: there are {} values for {}² texels", file.string(),
+                            values.size(), resolution));
+  io::AtomicFile out(file);
+  out.stream() << io::npy_header("<u4", std::array<std::uint64_t, 2>{resolution, resolution});
   std::string bytes;
   bytes.reserve(values.size_bytes());
-  for (const std::uint32_t value : values) append_little_endian(bytes, value);
+  for (const std::uint32_t value : values) io::append_little_endian(bytes, value);
   out.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.commit();
 } catch (const std::bad_alloc&) {

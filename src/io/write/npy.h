@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-namespace sdm {
+namespace sdm::io {
 
 /// NPY version 1.0 (NumPy's NEP 1) for numbers of `type`, such as "<f4", the last index running fastest.
 /// Padded to 128 bytes whatever the shape, which has three indices at most.
 [[nodiscard]] std::string npy_header(std::string_view type, std::span<const std::uint64_t> shape);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/sequence.h>
 
@@ -11,6 +12,8 @@
 #include "io/write/npy.h"
 
 namespace sdm {
+
+using namespace io;
 
 struct SequenceWriter::Impl {
   AtomicFile out;
@@ -34,14 +37,14 @@ SequenceWriter& SequenceWriter::operator=(SequenceWriter&&) noexcept = default;
 
 void SequenceWriter::add(std::span<const Vec3> positions) {
   if (positions.size() != impl_->vertices)
-    throw Error("frame " + std::to_string(impl_->frames) + " has " + std::to_string(positions.size()) +
-                " positions for " + std::to_string(impl_->vertices) + " vertices");
+    throw Error(fmt::format("frame {} has {} positions for {} vertices", impl_->frames, positions.size(),
+                            impl_->vertices));
   impl_->bytes.clear();
   for (std::size_t v = 0; v < positions.size(); ++v)
     for (const double x : positions[v]) {
       if (!(std::abs(x) <= std::numeric_limits<float>::max()))
-        throw Error("frame " + std::to_string(impl_->frames) + ": vertex " + std::to_string(v) +
-                    " has a coordinate beyond the range of float");
+        throw Error(fmt::format("frame {}: vertex {} has a coordinate that float32 cannot represent",
+                                impl_->frames, v));
       append_little_endian(impl_->bytes, static_cast<float>(x));
     }
   impl_->out.stream().write(impl_->bytes.data(), static_cast<std::streamsize>(impl_->bytes.size()));

@@ -24,6 +24,9 @@
 #include <vector>
 
 namespace sdm {
+
+using namespace io;
+
 namespace {
 
 class ExrStream : public Imf::OStream {
@@ -41,7 +44,7 @@ class ExrStream : public Imf::OStream {
   AtomicFile& file_;
 };
 
-// A channel of a texel, which is a structure whose members all have four bytes and so interleave without
+// A channel of the texels, which are structures whose members all have four bytes and therefore no
 // padding.
 struct Channel {
   const char* name;
@@ -69,7 +72,7 @@ void write_texels(const std::filesystem::path& file, const Surface& surface,
   // Blocks of rows bound the memory; they are multiples of the 16 rows that are compressed together.
   constexpr std::uint32_t kRows = 256;
   std::vector<Texel> texels(std::size_t{n} * std::min(kRows, n));
-  // OpenEXR has no threads of its own until someone asks for them.
+  // OpenEXR creates no threads by default.
   if (Imf::globalThreadCount() == 0) Imf::setGlobalThreadCount(static_cast<int>(thread_count()));
   AtomicFile out(file);
   ExrStream stream(out, file.string());
@@ -95,7 +98,7 @@ void write_texels(const std::filesystem::path& file, const Surface& surface,
       exr.writePixels(static_cast<int>(rows));
     }
   } catch (const std::exception&) {
-    out.check();  // OpenEXR wraps the stream's error in its own words
+    out.check();  // OpenEXR replaces the message of the stream's error
     throw;
   }
   out.commit();

@@ -1,9 +1,9 @@
+#include "core/geometry/vec.h"
 #include "core/memory.h"
-#include "core/vec.h"
 #include "io/write/atomic_file.h"
-#include "io/write/color_scale.h"
 #include "io/write/gutter.h"
-#include "io/write/png.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/pictures/png.h"
 
 #include <sdm/error.h>
 #include <sdm/io.h>
@@ -23,18 +23,21 @@
 #include <vector>
 
 namespace sdm {
+
+using namespace io;
+
 namespace {
 
-/// Vertices as glTF has them: one for each place in the atlas that a vertex of the mesh appears at.
+/// Vertices of the glTF mesh: one for each position that a vertex of the mesh has in the atlas.
 struct SplitVertices {
   std::vector<std::uint32_t> vertex;     ///< of the mesh
   std::vector<std::array<float, 2>> uv;  ///< in [0, 1], v down: the atlas over its resolution
   std::vector<Triangle> triangles;
 };
 
-// Places closer than this, in texels, are one: two charts are never that close, rounding stays well below.
+// Positions closer than this, in texels, are equal: charts are farther apart, rounding errors far smaller.
 constexpr double kSamePlace = 1.0 / 64;
-// How many places of a vertex are looked through: a vertex of a million single-face charts must not take
+// The number of positions searched for each vertex: a vertex of a million single-face charts must not take
 // 10^12 steps.
 constexpr int kMostSplits = 64;
 
@@ -54,7 +57,7 @@ SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint
     Triangle& triangle = result.triangles.emplace_back();
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint32_t vertex = mesh.triangles[face][corner];
-      // A face without area, or hardly any, is not seen: any place will do.
+      // A face with no or hardly any area is invisible: any position will do.
       Vec2 place = charts[face] == kNone ? Vec2{} : surface.to_atlas(face, mesh.positions[vertex]);
       if (!std::isfinite(place[0]) || !std::isfinite(place[1])) place = {};
       std::uint32_t split = first[vertex];
@@ -112,8 +115,8 @@ struct GlbModel {
   }
 };
 
-/// glTF has single precision: positions are stored relative to an origin near the mesh where they lie far
-/// from (0, 0, 0).
+/// glTF has single precision: positions far from (0, 0, 0) are stored relative to an origin near the
+/// mesh.
 struct Placement {
   Vec3 origin{};
   double scale = 1;  ///< metres per unit
@@ -127,7 +130,7 @@ Placement placement(const Mesh& mesh, const std::string& units) {
   const Box box = bounds(mesh);
   if (norm(centre(box)) > 8 * diagonal(box)) result.origin = centre(box);
   if (!(diagonal(box) < std::numeric_limits<float>::max() / 8))
-    throw Error("coordinates are too large for glTF's single precision; scale the meshes (fit)");
+    throw Error("coordinates are too large for glTF's single precision; scale the mesh down");
   return result;
 }
 
@@ -205,7 +208,7 @@ void add_material(GlbModel& glb, const std::string& png) {
   image.bufferView = glb.add_view(png.data(), png.size(), 0);
   image.mimeType = "image/png";
   model.images.push_back(image);
-  // No mip levels: they would mix charts that are neighbours in the atlas only.
+  // No mip levels: they would mix charts that are neighbours only in the atlas.
   tinygltf::Sampler sampler;
   sampler.minFilter = sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
   sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -218,7 +221,7 @@ void add_material(GlbModel& glb, const std::string& png) {
   material.name = "distance";
   material.doubleSided = true;
   material.pbrMetallicRoughness.baseColorTexture.index = 0;
-  material.pbrMetallicRoughness.metallicFactor = 0;  // where a viewer knows no unlit materials
+  material.pbrMetallicRoughness.metallicFactor = 0;  // for viewers that do not support unlit materials
   material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object{});
   model.materials.push_back(material);
   model.extensionsUsed.push_back("KHR_materials_unlit");

@@ -10,6 +10,8 @@
 
 namespace sdm {
 
+using namespace io;
+
 void write_ply(const std::filesystem::path& file, const Mesh& mesh) try {
   AtomicFile out(file);
   out.stream() << "ply\nformat binary_little_endian 1.0\nelement vertex " << mesh.positions.size()

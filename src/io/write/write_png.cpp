@@ -1,34 +1,29 @@
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
-#include "io/write/color_scale.h"
-#include "io/write/legend.h"
-#include "io/write/png.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/pictures/legend.h"
+#include "io/write/pictures/png.h"
+#include "io/write/pictures/ticks.h"
 
 #include <sdm/io.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <new>
 
 namespace sdm {
-namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  std::string result = text;
-  if (result[0] == '-') result.replace(0, 1, "\u2212");
-  return result;
-}
+using namespace io;
+
+namespace {
 
 LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const std::string& units) {
   LegendText text{"Distance", units, {}, map.beyond_max_distance > 0};
   float least = std::numeric_limits<float>::infinity(), most = -least;
   for (const float d : map.distance)
     if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
-  if (least <= most) text.notes = {"min  " + number(least), "max  " + number(most)};
-  if (scale.tolerance) text.notes.push_back("green: within \u00b1" + number(*scale.tolerance));
+  if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
+  if (scale.tolerance) text.notes.push_back("green: within \u00b1" + value_label(*scale.tolerance));
   text.notes.push_back(map.sign.method == SignMethod::none ? "unsigned" : "negative: inside");
   return text;
 }

@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "core/geometry/sweep.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/sweep.h"
 #include "mesh/validate.h"
 #include "proximity/bodies/nearest_body.h"
 #include "proximity/sampled/body.h"
@@ -32,7 +32,7 @@ void on_behalf_of(std::size_t body, const Work& work) {
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& error) {
-    throw Error("body " + std::to_string(body) + ": " + error.what());
+    throw Error("body " + std::to_string(body) + ": " + error.what(), error.remedy());
   }
 }
 

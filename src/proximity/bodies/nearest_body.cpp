@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "core/geometry/sweep.h"
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/sweep.h"
-#include "core/vec.h"
 #include "engine/cpu/cpu_engine.h"
 #include "map/map_writer.h"
 #include "surface/sample_blocks.h"

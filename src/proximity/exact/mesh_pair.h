@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "core/affine.h"
+#include "core/geometry/affine.h"
 #include "proximity/exact/triangle_pair.h"
 #include "sites/sites_data.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <tuple>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "proximity/exact/triangle_pair.h"
 
 namespace sdm::exact {

@@ -1,6 +1,6 @@
 // Intersection of triangles by the signs of orientations only, which are exact.
-#include "core/predicates.h"
-#include "core/vec.h"
+#include "core/geometry/predicates.h"
+#include "core/geometry/vec.h"
 #include "proximity/exact/triangle_pair.h"
 
 namespace sdm::exact {

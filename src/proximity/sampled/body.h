@@ -31,7 +31,7 @@ class Body {
   [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
 
   /// Builds pieces() for the present shape, the first time only: queries that the triangles alone answer need
-  /// none. Safe from many threads. Throws sdm::Error if there is not enough memory.
+  /// none. Safe from many threads.
   void require_pieces() const;
   /// The pieces of the surface; after require_pieces().
   [[nodiscard]] const surface::PieceAssignment& pieces() const { return *pieces_->assignment; }

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::sampled {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
-#include "core/sweep.h"
+#include "core/geometry/sweep.h"
 
 namespace sdm::sampled {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/cpu/cpu_engine.h"
 #include "sites/sites_data.h"
 #include "surface/sample_blocks.h"

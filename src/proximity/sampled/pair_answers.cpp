@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "engine/cpu/cpu_engine.h"
 #include "proximity/exact/collision.h"
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <new>
 
+#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rows.h"
-#include "core/vec.h"
 #include "proximity/exact/triangle_pair.h"
 
 namespace sdm {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <new>
 
+#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "map/map_writer.h"
 #include "proximity/self/self_search.h"
 #include "surface/tiles.h"

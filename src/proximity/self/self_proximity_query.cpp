@@ -8,9 +8,9 @@
 #include <new>
 #include <utility>
 
+#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "proximity/sampled/contact_patches.h"
 #include "proximity/self/self_search.h"
 

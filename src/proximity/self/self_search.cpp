@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "hierarchy/traverse_wide.h"
 #include "proximity/exact/triangle_pair.h"
 #include "sites/closest_on_face.h"

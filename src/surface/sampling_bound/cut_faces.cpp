@@ -6,9 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "core/memory.h"
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "surface/sampling_bound/cut_faces.h"
 #include "surface/sampling_bound/near_samples.h"
 #include "surface/sampling_bound/piece_assignment.h"
@@ -53,28 +52,10 @@ std::array<Vec2, 3> unfolded(const std::array<Vec3, 3>& vertices, double piece_l
   return triangle;
 }
 
-/// About the most that the pieces take, twice, and a table of the texels: an edge crosses |Δu| + |Δv|
-/// squares.
-std::size_t bytes_needed(const Surface& surface, double typical) {
-  double pieces = 0;
-  for (std::size_t f = 0; f < surface.mesh().triangles.size(); ++f) {
-    const std::array<Vec2, 3> t = surface.face_charts()[f] == kNone
-                                      ? unfolded(vertices_of(surface.mesh(), f), typical)
-                                      : internals(surface).corners[f];
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 edge = t[(k + 1) % 3] - t[k];
-      pieces += 1 + std::abs(edge[0]) + std::abs(edge[1]);
-    }
-  }
-  return static_cast<std::size_t>(pieces) * (sizeof(Piece) + sizeof(FacePiece)) +
-         surface.texel_faces().size() * sizeof(std::uint32_t);
-}
-
 class Cutter {
  public:
   explicit Cutter(const Surface& surface)
       : surface_(surface), typical_(typical_radius(surface)), near_samples_(surface, typical_) {
-    require_memory(bytes_needed(surface, typical_), "the error bound of the atlas");
     const std::span<const std::uint32_t> samples = surface.sample_texels(), owners = surface.texel_faces();
     owns_texel_.assign(surface.mesh().triangles.size(), 0);
     sample_of_.resize(owners.size());

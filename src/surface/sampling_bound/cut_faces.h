@@ -22,8 +22,8 @@ struct FacePieces {
   std::vector<std::uint8_t> whole_square;
 };
 
-/// Cuts the faces along the squares of the texels, and assigns each piece to a sample that is near it. Throws
-/// sdm::Error when there is no memory for it. Cost: linear in texels and pieces, all cores.
+/// Cuts the faces along the squares of the texels, and assigns each piece to a sample that is near it. Cost:
+/// linear in texels and pieces, all cores.
 [[nodiscard]] FacePieces cut_faces(const Surface& surface);
 
 }  // namespace sdm::surface

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/atomic_max.h"
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "surface/sample_blocks.h"
 #include "surface/sampling_bound/face_frame.h"
 #include "surface/surface_data.h"

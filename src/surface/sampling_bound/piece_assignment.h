@@ -24,8 +24,7 @@ namespace sdm::surface {
 /// for every second square crossed by an edge of a face, and one for every square along chart borders.
 class PieceAssignment {
  public:
-  /// Assigns each piece to a sample that is near now. Throws sdm::Error when there is no memory for it. Cost:
-  /// linear in texels and pieces, all cores.
+  /// Assigns each piece to a sample that is near now. Cost: linear in texels and pieces, all cores.
   explicit PieceAssignment(const Surface& surface);
 
   struct Radii {

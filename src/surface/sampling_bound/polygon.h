@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::surface {
 

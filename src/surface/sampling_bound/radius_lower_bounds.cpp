@@ -1,7 +1,7 @@
 // The radii from below: points of the surface with their true distance to the nearest sample.
 #include "core/atomic_max.h"
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "surface/sample_blocks.h"
 #include "surface/sampling_bound/face_frame.h"
 #include "surface/sampling_bound/piece_assignment.h"

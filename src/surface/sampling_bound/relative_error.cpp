@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <string>
 
+#include "core/memory.h"
 #include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm {
@@ -22,9 +24,12 @@ void check_faces(std::size_t count, std::size_t expected) {
 
 }  // namespace
 
-RelativeError::RelativeError(const Surface& first_shape, const SamplingBound& bound)
+RelativeError::RelativeError(const Surface& first_shape, const SamplingBound& bound) try
     : first_(internals(bound).radius_lower_bounds(first_shape, bound.value())),
-      largest_(*std::ranges::max_element(first_)) {}
+      largest_(*std::ranges::max_element(first_)) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the sampling bound of the atlas");
+}
 
 double RelativeError::of(const SamplingBound& now) const {
   check_faces(now.face_radii().size(), first_.size());

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 #include "hierarchy/traverse.h"
 
 namespace sdm::surface {

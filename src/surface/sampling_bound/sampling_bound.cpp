@@ -1,8 +1,10 @@
 #include <sdm/error.h>
 #include <sdm/sampling_bound.h>
 
+#include <new>
 #include <string>
 
+#include "core/memory.h"
 #include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm {
@@ -24,7 +26,10 @@ struct SamplingBound::Impl {
   explicit Impl(const Surface& surface) : pieces(surface) { pieces.measure(surface, radii); }
 };
 
-SamplingBound::SamplingBound(const Surface& surface) : impl_(std::make_unique<Impl>(surface)) {}
+SamplingBound::SamplingBound(const Surface& surface) try : impl_(std::make_unique<Impl>(surface)) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the sampling bound of the atlas");
+}
 SamplingBound::~SamplingBound() = default;
 SamplingBound::SamplingBound(SamplingBound&&) noexcept = default;
 SamplingBound& SamplingBound::operator=(SamplingBound&&) noexcept = default;

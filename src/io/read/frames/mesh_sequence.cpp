@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "io/read/file_bytes.h"
 #include "io/read/frames/frame_source.h"
 #include "io/read/read_polygons.h"

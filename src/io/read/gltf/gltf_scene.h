@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "io/read/gltf/gltf_document.h"
 #include "io/read/polygons/polygon_mesh.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <ranges>
 
-#include "core/spatial_order.h"
+#include "core/geometry/spatial_order.h"
 
 namespace sdm::io {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 #include "io/read/polygons/triangulate.h"
 
 namespace sdm::io {

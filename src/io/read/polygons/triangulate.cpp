@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::io {
 namespace {

@@ -1,7 +1,7 @@
 // The pose of a mesh: an affine map of its points.
 #pragma once
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::core {
 

@@ -1,11 +1,11 @@
-#include "core/spatial_order.h"
+#include "core/geometry/spatial_order.h"
 
 #include <algorithm>
 #include <bit>
 #include <utility>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "core/vec.h"
 
 namespace sdm::core {
 namespace {
@@ -29,13 +29,13 @@ std::size_t longest_side(std::span<const Item> items) {
   return static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
 }
 
-// Halves hold 16·2^k items, but for the last, so that all packets are full but the last.
+// All halves but the last hold 16·2^k items, so that all packets but the last are full.
 void order(std::span<Item> items) {
   if (items.size() <= kPacket) return;
   const std::size_t half = kPacket * std::bit_floor((items.size() - 1) / kPacket);
   std::ranges::nth_element(items, items.begin() + static_cast<std::ptrdiff_t>(half), {},
                            [axis = longest_side(items)](const Item& item) {
-                             return std::pair(item.point[axis], item.index);  // whatever the algorithm does
+                             return std::pair(item.point[axis], item.index);  // unique, so the order is too
                            });
   const auto first = [=] { order(items.first(half)); };
   const auto second = [=] { order(items.subspan(half)); };

@@ -1,10 +1,10 @@
-#include "io/write/canvas.h"
+#include "io/write/pictures/canvas.h"
 
 #include <sdm/error.h>
 
 #include <cmath>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 Picture to_picture(cairo_surface_t* surface) {
@@ -54,8 +54,9 @@ void Canvas::text(double x, double baseline, const std::string& text, double siz
 
 Picture Canvas::picture(const std::string& what) {
   if (const cairo_status_t status = cairo_status(cairo()); status != CAIRO_STATUS_SUCCESS)
-    throw Error("cannot draw " + what + ": " + cairo_status_to_string(status) + "; check the units' text");
+    throw Error("cannot draw " + what + ": " + cairo_status_to_string(status) +
+                "; check the text of the units");
   return to_picture(surface_.get());
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,18 +1,18 @@
 // 8-bit RGB images as PNG, row by row.
 #pragma once
 
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 #include <cstdint>
 #include <functional>
 #include <ostream>
 #include <span>
 
-namespace sdm {
+namespace sdm::io {
 
-/// Writes `height` rows that `row(y, pixels)` fills. Compresses for speed. Failures of the stream are left to
-/// its state.
+/// Writes `height` rows that `row(y, pixels)` fills. Compresses for speed. Does not check the
+/// stream, whose state records failures.
 void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
                const std::function<void(std::uint32_t y, std::span<Rgb> pixels)>& row);
 
-}  // namespace sdm
+}  // namespace sdm::io

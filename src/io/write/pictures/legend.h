@@ -1,14 +1,14 @@
 // The legend beside a map: colour bar, ticks, range, units.
 #pragma once
 
-#include "io/write/color_scale.h"
-#include "io/write/picture.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/pictures/picture.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 
 struct LegendText {
   std::string title, units;
@@ -19,4 +19,4 @@ struct LegendText {
 /// Draws a legend for a map of `resolution` rows; it may be lower or, for small maps, higher than that.
 [[nodiscard]] Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32_t resolution);
 
-}  // namespace sdm
+}  // namespace sdm::io

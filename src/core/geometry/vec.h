@@ -1,4 +1,4 @@
-// Arithmetic on the public vector types, and on boxes of them.
+// Arithmetic on vectors and boxes.
 #pragma once
 
 #include <sdm/types.h>
@@ -56,7 +56,7 @@ inline bool finite(const Vec3& a) {
   return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
 }
 
-/// a / |a|, or the zero vector where a has no direction.
+/// a / |a|, or the zero vector if a is zero.
 inline Vec3 normalized(const Vec3& a) {
   const double length = norm(a);
   return length > 0 ? (1 / length) * a : Vec3{};
@@ -82,7 +82,7 @@ inline bool overlap(const Box& a, const Box& b) {
     if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
   return true;
 }
-/// How far two boxes are apart along each axis; 0 where they overlap.
+/// The distance of two boxes along each axis; 0 where they overlap.
 inline Vec3 gap(const Box& a, const Box& b) {
   Vec3 gap;
   for (int k = 0; k < 3; ++k) gap[k] = std::max({a.lo[k] - b.hi[k], b.lo[k] - a.hi[k], 0.0});

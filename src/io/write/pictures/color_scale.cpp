@@ -1,4 +1,4 @@
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
 #include <sdm/error.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Ten equal steps of Matplotlib's viridis, and ColorBrewer's RdBu reversed with a pure white middle.
@@ -48,7 +48,7 @@ Rgb gradient(std::span<const Rgb> colors, double t) {
   return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
 
-// How far `x` is on the way from `from` to `to`.
+// The position of `x` between `from` (0) and `to` (1).
 double fraction(double x, double from, double to) {
   return to > from ? (x - from) / (to - from) : 1;
 }
@@ -139,4 +139,4 @@ Rgb direction_color(const Vec3f& vector) {
   return {channel(vector[0]), channel(vector[1]), channel(vector[2])};
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,12 +1,12 @@
-#include "io/write/legend.h"
+#include "io/write/pictures/legend.h"
 
-#include "io/write/canvas.h"
-#include "io/write/ticks.h"
+#include "io/write/pictures/canvas.h"
+#include "io/write/pictures/ticks.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 // Lengths at 1024 texels; everything is drawn in these and scaled.
@@ -14,7 +14,7 @@ constexpr double kWidth = 232, kMargin = 24, kBarWidth = 30, kBarTop = 84, kMaxH
 constexpr double kMinHeight = 460;
 constexpr double kTitleSize = 19, kTextSize = 15, kLine = 23;
 
-// Long units shrink rather than leave the picture.
+// Long text is shrunk to fit the picture.
 void write_text(Canvas& canvas, double x, double baseline, const std::string& text, double size,
                 bool bold = false) {
   canvas.text(x, baseline, text, size, kWidth - x - kMargin / 2, bold);
@@ -26,8 +26,8 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom
     return bottom - (d - scale.lo) / (scale.hi - scale.lo) * (bottom - top);
   };
   constexpr int kSteps = 4096;  // finer than any pixel of the bar
-  // Without smoothing every pixel has the colour of one step, not one that is mixed with the paper. Each step
-  // reaches above itself, where the next one covers it, so that rounding leaves no seams.
+  // Without smoothing, every pixel has the colour of one step, unmixed with the background. Each step extends
+  // below the next one, which covers it, so that rounding leaves no seams.
   cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
   for (int i = 0; i < kSteps; ++i) {
     const double foot = bottom - i * (bottom - top) / kSteps, head = std::max(top, foot - 3);
@@ -87,4 +87,4 @@ Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32
   return canvas.picture("the legend");
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

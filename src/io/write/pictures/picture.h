@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "io/write/color_scale.h"
+#include "io/write/pictures/color_scale.h"
 
-namespace sdm {
+namespace sdm::io {
 
 struct Picture {
   std::uint32_t width = 0, height = 0;
   std::vector<Rgb> pixels;
 };
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-namespace sdm {
+namespace sdm::io {
 
 struct Rgb {
   std::uint8_t r = 0, g = 0, b = 0;
@@ -20,7 +20,7 @@ inline constexpr Rgb kNoValue{128, 130, 134};     ///< owned, but beyond the max
 /// From distances to colours, continuous but for the edges of the tolerance bands.
 struct ColorScale {
   Colormap map = Colormap::viridis;   ///< never automatic
-  double lo = 0, hi = 1;              ///< lo < hi; colours stay the same beyond
+  double lo = 0, hi = 1;              ///< lo < hi; colours are constant beyond
   std::optional<double> tolerance{};  ///< bands in place of the map
 
   [[nodiscard]] Rgb operator()(double distance) const;
@@ -30,10 +30,11 @@ struct ColorScale {
 /// Throws sdm::Error unless the range is finite and increasing and the tolerance finite and ≥ 0.
 [[nodiscard]] ColorScale color_scale(const DistanceMap& map, const PictureOptions& options);
 
-/// A colour of its own for each site: pale for faces, strong for edges, dark for vertices; kNoValue for none.
+/// A pseudorandom colour for each site: pale for faces, strong for edges, dark for vertices; kNoValue for
+/// none.
 [[nodiscard]] Rgb site_color(SiteType type, std::uint32_t site);
 
 /// The unit vector along `vector`, (x, y, z) → (r, g, b) by (1 + x)/2; kNoValue where it is NaN.
 [[nodiscard]] Rgb direction_color(const Vec3f& vector);
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,9 +1,9 @@
-#include "core/unit_frame.h"
+#include "core/geometry/unit_frame.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::core {
 

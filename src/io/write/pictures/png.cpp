@@ -1,4 +1,4 @@
-#include "io/write/png.h"
+#include "io/write/pictures/png.h"
 
 #include <png.h>
 #include <sdm/error.h>
@@ -6,7 +6,7 @@
 #include <csetjmp>
 #include <vector>
 
-namespace sdm {
+namespace sdm::io {
 namespace {
 
 static_assert(sizeof(Rgb) == 3, "rows of Rgb are handed to libpng as bytes");
@@ -27,7 +27,7 @@ void write_bytes(png_structp png, png_bytep bytes, size_t count) {
 }
 void flush(png_structp) {}
 
-// False when libpng gives up. It then jumps here, past C code only: this function holds nothing to destroy.
+// Returns false if libpng fails: it then jumps back into this function, which must own nothing to destroy.
 bool encode(const PngWriter& writer, std::uint32_t width, std::uint32_t height, std::vector<Rgb>& pixels,
             const std::function<void(std::uint32_t, std::span<Rgb>)>& row) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
@@ -57,4 +57,4 @@ void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
     throw Error("libpng failed to encode an image; see its message above");
 }
 
-}  // namespace sdm
+}  // namespace sdm::io

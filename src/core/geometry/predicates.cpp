@@ -1,10 +1,10 @@
-#include "core/predicates.h"
+#include "core/geometry/predicates.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <limits>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::core {
 namespace {
@@ -21,7 +21,7 @@ int sign(double x) {
 }
 
 // Differences of coordinates as integers, in a unit that divides them all: of any two doubles they have at
-// most 2100 bits, and a product of three three times as many. No memory is taken.
+// most 2100 bits, and a product of three has three times as many. Nothing is allocated.
 using boost::multiprecision::cpp_int_backend;
 using Integer =
     boost::multiprecision::number<cpp_int_backend<6400, 6400, boost::multiprecision::signed_magnitude,

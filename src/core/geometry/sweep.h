@@ -15,8 +15,8 @@ class Sweep {
  public:
   using Pair = std::array<std::uint32_t, 2>;
 
-  /// Calls visit(a, b), once for each pair whose boxes are no farther apart than `reach` along the axis on
-  /// which the boxes spread most. Cost: O(n log n) and those pairs.
+  /// Calls visit(a, b) once for each pair whose boxes are at most `reach` apart along one axis, that on which
+  /// the boxes spread most. Cost: O(n log n) and those pairs.
   template <class Visit>
   void for_each_candidate(std::span<const Box> boxes, double reach, const Visit& visit);
 
@@ -25,10 +25,10 @@ class Sweep {
   std::span<const Pair> near_pairs(std::span<const Box> boxes, double reach);
 
  private:
-  /// Sorts the boxes by where they begin along that axis, and returns it.
+  /// Sorts the boxes by their lower ends along that axis, and returns it.
   int sort(std::span<const Box> boxes);
 
-  /// By more than differences, squares, their sum and its root round.
+  /// Exceeds the rounding of differences, squares, their sum and its root.
   static constexpr double kRoundedDown = 1 - 1e-15;
 
   std::vector<std::uint32_t> order_, open_;
@@ -37,7 +37,7 @@ class Sweep {
   friend double box_distance(const Box& a, const Box& b);
 };
 
-/// The distance of two boxes, rounded down; 0 where they overlap.
+/// The distance of two boxes, rounded down; 0 if they overlap.
 [[nodiscard]] double box_distance(const Box& a, const Box& b);
 
 template <class Visit>
@@ -46,7 +46,7 @@ void Sweep::for_each_candidate(std::span<const Box> boxes, double reach, const V
   const int axis = sort(boxes);
   open_.clear();
   for (const std::uint32_t b : order_) {
-    // Boxes to come begin no earlier: what ends too early for this one is too far from all of them.
+    // Later boxes begin no earlier along the axis: a box that ends too early for this one does so for them.
     std::erase_if(open_, [&](std::uint32_t o) {
       return kRoundedDown * (boxes[b].lo[axis] - boxes[o].hi[axis]) > reach;
     });

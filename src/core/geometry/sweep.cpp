@@ -1,9 +1,9 @@
-#include "core/sweep.h"
+#include "core/geometry/sweep.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "core/vec.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::core {
 namespace {

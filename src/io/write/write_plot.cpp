@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 
@@ -8,11 +9,14 @@
 
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
-#include "io/write/canvas.h"
-#include "io/write/png.h"
-#include "io/write/ticks.h"
+#include "io/write/pictures/canvas.h"
+#include "io/write/pictures/png.h"
+#include "io/write/pictures/ticks.h"
 
 namespace sdm {
+
+using namespace io;
+
 namespace {
 
 constexpr double kWidth = 900, kPanel = 220, kLeft = 90, kRight = 24, kTop = 40, kFoot = 26, kAxis = 40;
@@ -28,7 +32,7 @@ struct Range {
     for (const double v : values)
       if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
   }
-  // Something to draw in, even without values or with one value only.
+  // Makes the range nonempty, also without values or with a single one.
   void widen() {
     if (!(lo <= hi)) lo = 0, hi = 1;
     const double least = std::max(1e-9 * std::max(std::abs(lo), std::abs(hi)), 1e-30);
@@ -38,7 +42,7 @@ struct Range {
   [[nodiscard]] double part(double v) const { return (v - lo) / (hi - lo); }
 };
 
-// A panel's frame, from its left top corner.
+// The axes of a panel, relative to its top left corner.
 struct Frame {
   double top;
   Range x, y;
@@ -128,8 +132,8 @@ void write_plot_png(const std::filesystem::path& file, const std::string& axis,
   for (const PlotPanel& panel : panels)
     for (const Curve& curve : panel.curves)
       if (curve.values.size() != places.size())
-        throw Error("cannot plot '" + curve.name + "': it has " + std::to_string(curve.values.size()) +
-                    " values for " + std::to_string(places.size()) + " places");
+        throw Error(fmt::format("cannot plot '{}': it has {} values for {} places", curve.name,
+                                curve.values.size(), places.size()));
   const double height = kPanel * static_cast<double>(panels.size()) + kAxis;
   Canvas canvas(kWidth, height, kZoom);
   for (std::size_t i = 0; i < panels.size(); ++i)

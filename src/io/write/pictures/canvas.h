@@ -6,11 +6,11 @@
 #include <memory>
 #include <string>
 
-#include "io/write/picture.h"
+#include "io/write/pictures/picture.h"
 
-namespace sdm {
+namespace sdm::io {
 
-/// White paper. Lengths are in the units of its size; `zoom` pixels make one.
+/// A white canvas. Lengths are in units of `zoom` pixels.
 class Canvas {
  public:
   Canvas(double width, double height, double zoom);
@@ -21,7 +21,7 @@ class Canvas {
   /// centred.
   void text(double x, double baseline, const std::string& text, double size, double room, bool bold = false,
             double align = 0);
-  /// Throws sdm::Error when something could not be drawn; `what` is its name.
+  /// Throws sdm::Error if drawing failed; `what` names the picture in the message.
   [[nodiscard]] Picture picture(const std::string& what);
 
  private:
@@ -31,4 +31,4 @@ class Canvas {
 
 inline constexpr Rgb kInk{28, 30, 34}, kLineColor{60, 62, 66};
 
-}  // namespace sdm
+}  // namespace sdm::io

@@ -1,12 +1,12 @@
-// The unit cube normalisation of a scene.
+// Normalisation of a scene to the unit cube.
 #pragma once
 
 #include <sdm/types.h>
 
 namespace sdm::core {
 
-/// Moves a scene to the cube [-1, 1]³ about the origin, so that single precision serves any placement and
-/// size. The scale is a power of two: it adds no rounding.
+/// Maps a scene into the cube [-1, 1]³, so that single precision suffices for any placement and size. The
+/// scale is a power of two: scaling does not round.
 struct UnitFrame {
   Vec3 origin{};
   double scale = 1;

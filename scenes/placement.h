@@ -1,0 +1,38 @@
+// Placements of meshes as text, such as "fit,rotate:0:90:0,translate:0.8:0:0".
+#pragma once
+
+#include <sdm/mesh.h>
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace sdm::scenes {
+
+/// One step of a placement.
+struct PlacementStep {
+  enum class Kind {
+    fit,        ///< scale and move so that the longest side of the bounds is 1, centred at the origin
+    scale,      ///< multiply by value[0], about the origin
+    rotate,     ///< rotate by value degrees about the X, then Y, then Z axis, right-handed
+    translate,  ///< add value
+  };
+  Kind kind;
+  Vec3 value{};
+};
+
+/// Reads steps separated by commas: fit, scale:S, rotate:X:Y:Z, translate:X:Y:Z. The empty text is no step.
+/// Throws sdm::Error that names the invalid step.
+[[nodiscard]] std::vector<PlacementStep> parse_placement(std::string_view text);
+
+/// Applies the steps in order, each rounded by itself. Throws sdm::Error if a coordinate becomes infinite.
+/// Cost: linear.
+void place(Mesh& mesh, const std::vector<PlacementStep>& steps);
+/// The same for points alone. Also throws sdm::Error for `fit`, which needs a mesh.
+void place(std::span<Vec3> points, const std::vector<PlacementStep>& steps);
+
+/// Returns the steps with each `fit` replaced by its translation and scale for this mesh, so that all frames
+/// of a sequence are placed like the first. Throws as place does.
+[[nodiscard]] std::vector<PlacementStep> without_fit(Mesh mesh, const std::vector<PlacementStep>& steps);
+
+}  // namespace sdm::scenes
