@@ -77,7 +77,8 @@ TEST_P(DeviceFailure, WrongDepthsAreNotedAndDoNoHarm) {
   const test::GlMap found = map();
   EXPECT_GT(found.report.unconfirmed, surface_.sample_texels().size() / 2);
   test::Disagreements distances(1e-6);
-  for (const std::uint32_t t : surface_.sample_texels()) distances.compare(t, found.distance[t], expected_[t]);
+  for (const std::uint32_t t : surface_.sample_texels())
+    distances.compare(t, found.distance[t], expected_[t]);
   EXPECT_TRUE(distances.none());
 }
 
