@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "core/platform.h"
+#include "engine/engine.h"
 #include "gl/support.h"
 #include "support/error_of.h"
 
@@ -62,7 +63,7 @@ TEST_F(GlErrors, MapLargerThanTheTexturesOfTheDevice) {
                   .triangles = {{0, 1, 2}},
                   .corner_uvs = {{{{0, 0}, {1e-3, 0}, {0, 1e-3}}}}};
   const Surface large(mesh, {.kind = AtlasKind::uv, .resolution = 16385});
-  const auto drop = [](std::size_t, std::span<const Vec3>, const sites::ClosestPacket&) {};
+  const auto drop = [](std::size_t, std::span<const Vec3>, const auto&) {};
   const std::string message = error_of([&] { make_engine("gl")->map(large, sites, {}, drop); });
   if (message.empty()) GTEST_SKIP() << "this device allows it";
   EXPECT_THAT(message, AllOf(HasSubstr("16385"), HasSubstr("16384"), HasSubstr("resolution")));
