@@ -28,7 +28,7 @@ TEST(AtlasErrors, OptionsOutOfRange) {
   expect_error({}, {}, "no triangles");
 }
 
-// The resolution that the message asks for is enough.
+// The resolution suggested by the message is sufficient.
 TEST(AtlasErrors, TooSmallResolutionSuggestsASufficientOne) {
   const Mesh mesh = test::degenerate_soup(1000, 1);
   EXPECT_THAT([&] { Surface(mesh, {.resolution = 64}); },
@@ -37,7 +37,7 @@ TEST(AtlasErrors, TooSmallResolutionSuggestsASufficientOne) {
   EXPECT_NO_THROW(Surface(mesh, {.resolution = 128}));
 }
 
-// A strip across the whole atlas takes little of it: once taken for a lack of room.
+// Regression: a strip across the whole atlas, which fills little of it, was reported as too large.
 TEST(AtlasLayout, LongThinMeshesGetEnoughTexels) {
   for (const double width : {0.1, 0.01, 1e-3, 1e-5})
     for (const std::uint32_t resolution : {64u, 1024u, 4096u}) {

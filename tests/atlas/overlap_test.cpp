@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 // The area of the first triangle clipped to the second (Sutherland & Hodgman 1974).
@@ -58,8 +58,7 @@ TEST(Overlap, PairsWithACommonArea) {
 TEST(Overlap, IsExactAtTheLimitsOfTheGrid) {
   const atlas::GridPoint o = {0, 0}, x = {atlas::kGridSteps, atlas::kGridSteps - 1},
                          y = {atlas::kGridSteps, atlas::kGridSteps};
-  // Two slivers on both sides of the line from o to y, which miss each other by nothing, then meet by one
-  // step.
+  // Two slivers on both sides of the line from o to y, which touch, then overlap by one step.
   const atlas::GridPoint above = {atlas::kGridSteps - 1, atlas::kGridSteps};
   EXPECT_FALSE(atlas::find_overlap(
       std::array<atlas::GridTriangle, 2>{atlas::GridTriangle{o, x, y}, atlas::GridTriangle{o, y, above}}));
@@ -101,4 +100,4 @@ TEST(Overlap, SlackToleratesShallowOverlaps) {
 }
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -6,8 +6,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "support/run_sdm.h"
 #include "cli/samples.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {

@@ -1,11 +1,13 @@
-#include "support/run_sdm.h"
 #include "cli/samples.h"
+#include "support/run_sdm.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <csignal>
+
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {

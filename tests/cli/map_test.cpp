@@ -1,5 +1,5 @@
-#include "support/run_sdm.h"
 #include "cli/samples.h"
+#include "support/run_sdm.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +10,8 @@
 #include <sdm/version.h>
 
 #include <nlohmann/json.hpp>
+
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {

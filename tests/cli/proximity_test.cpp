@@ -8,9 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cli/samples.h"
 #include "scenes/placement.h"
 #include "support/run_sdm.h"
-#include "cli/samples.h"
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {

@@ -6,8 +6,10 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "support/run_sdm.h"
 #include "cli/samples.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {

@@ -1,6 +1,6 @@
 // `sdm self`.
-#include "support/run_sdm.h"
 #include "cli/samples.h"
+#include "support/run_sdm.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

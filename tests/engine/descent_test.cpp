@@ -1,4 +1,4 @@
-// The parts of the cpu engine, which the exactness tests see only as a whole.
+// Parts of the cpu engine that the exactness tests cannot observe.
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
@@ -9,14 +9,14 @@
 
 #include "core/geometry/vec.h"
 #include "engine/cpu/finish.h"
-#include "engine/engine.h"
+#include "engine/reference/reference_engine.h"
 #include "sites/sites_data.h"
 #include "support/map_checks.h"
 #include "support/points.h"
 #include "support/shapes.h"
 #include "support/simd_targets.h"
 
-namespace sdm {
+namespace sdm::cpu {
 namespace {
 
 double distance(const float (&a)[3], const Vec3& b) {
@@ -49,7 +49,8 @@ TEST(PointGroup, BallsContainTheirPointsAndChildren) {
   }
 }
 
-// Whatever single precision says, what is named is a local minimum; and what it leaves open is settled.
+// For any winners of the single-precision search, results are local minima, and unsettled queries are
+// settled.
 TEST(Finish, VerifiesEveryWinner) {
   std::mt19937 random(8);
   const Sites sites(test::soup(40, random));
@@ -77,7 +78,7 @@ TEST(Finish, VerifiesEveryWinner) {
   EXPECT_GT(beyond, 0u);
   EXPECT_LT(beyond, queries.size());
 
-  // Sites that are none of theirs: still points of these sites' faces, or of neighbours that are closer.
+  // Wrong winners: results are points of these sites' faces or of closer neighbours.
   for (const SiteType type : {SiteType::vertex, SiteType::edge, SiteType::face}) {
     finish_all(cpu::SiteId::of(type, 7).packed, 1e300);
     for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -164,4 +165,4 @@ TEST(Descent, AgreesWithTheReferenceOnRandomScenes) {
 }
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::cpu

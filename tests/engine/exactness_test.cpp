@@ -1,4 +1,4 @@
-// Every texel of every map, with every set of vector instructions that the machine has, against CGAL's AABB
+// Every texel of every map, with every set of vector instructions of the machine, against CGAL's AABB
 // tree.
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
@@ -13,6 +13,7 @@
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/points.h"
+#include "support/shapes.h"
 #include "support/simd_targets.h"
 
 namespace sdm {
@@ -27,12 +28,12 @@ void PrintTo(const Scene& s, std::ostream* out) {
 }
 
 const Scene kScenes[] = {
-    // The two that everything is measured by, standing close and penetrating.
+    // The pair of the benchmarks, close together and penetrating.
     {"bunny.obj", "fit", "armadillo.off", "fit,translate:0.8:0:0", 512},
     {"bunny.obj", "fit", "armadillo.off", "fit", 256},
     {"armadillo.off", "fit", "bunny.obj", "fit,translate:0.8:0:0", 512},
     {"armadillo.off", "fit", "bunny.obj", "fit", 256},
-    // As they come: the bunny is fifty times smaller, and somewhere else.
+    // In file coordinates: the bunny is fifty times smaller, and elsewhere.
     {"armadillo.off", "", "bunny.obj", "", 256},
     {"bunny.obj", "", "armadillo.off", "", 256},
     // Holes, many components, polygons, non-manifold and degenerate faces.
@@ -95,8 +96,7 @@ std::string scene_name(const testing::TestParamInfo<Scene>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Exactness, testing::ValuesIn(kScenes), scene_name);
 
-// The scenes are worth what their meshes are: this fails when one of the awkward kinds is no longer among
-// them.
+// The scenes must keep covering all awkward kinds of meshes.
 TEST(Exactness, ScenesCoverAllKindsOfMeshes) {
   bool open = false, degenerate = false, many = false, pinched = false;
   for (const Scene& scene : kScenes) {
@@ -109,8 +109,7 @@ TEST(Exactness, ScenesCoverAllKindsOfMeshes) {
   EXPECT_TRUE(open && degenerate && many && pinched);
 }
 
-// Defects that no available file has: edges of three faces and more, randomly flipped faces, duplicates,
-// faces without area.
+// Defects that no installed file has.
 TEST(Exactness, MeshWithDefects) {
   const Mesh mesh = test::with_defects(test::load("blobby.off", "fit"));
   const MeshInfo info = inspect(mesh);
@@ -119,7 +118,7 @@ TEST(Exactness, MeshWithDefects) {
   ASSERT_GT(info.duplicate_faces, 0u);
   ASSERT_FALSE(info.oriented);
   expect_agreement(test::load("head.off", "fit"), mesh, 256);
-  expect_agreement(mesh, test::load("head.off", "fit"), 512);  // turned faces make many charts
+  expect_agreement(mesh, test::load("head.off", "fit"), 512);  // flipped faces make many charts
 }
 
 }  // namespace

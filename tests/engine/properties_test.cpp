@@ -38,7 +38,7 @@ TEST_P(Properties, RigidMotionOfBothPreservesDistances) {
   EXPECT_TRUE(distances.none());
 }
 
-// Whatever the map held before, of another surface, engine or limit.
+// The previous contents may be of another surface, engine or limit.
 TEST_P(Properties, ComputingInPlaceEqualsANewMap) {
   const Sites sites(test::load("elephant.off", "fit"));
   const Surface large(test::load("bunny.obj", "fit"), {.resolution = 256});
@@ -92,7 +92,7 @@ TEST_P(Properties, NeighbouringTexelsAreOneLipschitz) {
 TEST_P(Properties, RefitEqualsRebuild) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Mesh rest = test::load("elephant.off", "fit");
-  // A twist about z that carries vertices far from where the tree was built.
+  // A twist about z: vertices move far from where the tree was built.
   Mesh twisted = rest;
   for (Vec3& p : twisted.positions) {
     const double angle = 4 * p[2], c = std::cos(angle), s = std::sin(angle);

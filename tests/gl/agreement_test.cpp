@@ -1,15 +1,17 @@
 // Every texel of every map by rasterisation against the reference engine.
 #include "core/geometry/vec.h"
 #include "gl/support.h"
+#include "support/map_checks.h"
 #include "support/oracle.h"
+#include "support/points.h"
 
 namespace sdm {
 namespace {
 
 using test::Disagreements;
 
-// How far the foot of the perpendicular from q onto a site's line or plane lies from the site itself: 0 where
-// q is in the site's region of influence. A face too thin for its plane to mean anything passes.
+// The distance of the foot of the perpendicular from q onto a site's line or plane lies from the site itself:
+// 0 where q is in the site's region of influence. A face too thin for its plane to mean anything passes.
 double foot_beyond_site(const Sites& sites, SiteType type, std::uint32_t site, const Vec3& q) {
   const std::vector<Vec3>& p = sites.mesh().positions;
   if (type == SiteType::edge) {

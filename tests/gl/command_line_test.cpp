@@ -67,7 +67,7 @@ TEST_F(GlCommandOptions, StencilValuesRequireStencilAndRangeFrom1To255) {
 }
 
 struct WithoutDevice : ::testing::Test, TwoTori {
-  /// The run fails with one sentence that has both words, and leaves no trace.
+  /// The command fails with one sentence that contains both strings, and leaves no files.
   void expect_failure(const Outcome& run, const std::string& fault, const std::string& advice) const {
     EXPECT_EQ(run.code, 1);
     EXPECT_EQ(run.out, "");

@@ -1,5 +1,5 @@
-// Contexts: on which device, current on which thread, and what goes wrong. These tests need a device; where
-// there is no graphics card, Mesa's llvmpipe is one, and so without any they fail.
+// Contexts: choice of the device, current thread, errors. These tests require a device; without a graphics
+// card, Mesa's llvmpipe is one.
 #define EGL_NO_X11
 #include "engine/gl/device/context.h"
 

@@ -1,5 +1,7 @@
-// What the options of <sdm/gl.h> change: counters, and never a bit of the map.
+// The options of <sdm/gl.h> change the counters of the report, but no bit of the map.
 #include "gl/support.h"
+#include "support/map_checks.h"
+#include "support/points.h"
 
 namespace sdm {
 namespace {
@@ -69,7 +71,7 @@ TEST(Stencil, FewerValuesMissMoreAndKeepEveryBit) {
   }
 }
 
-// With more faces than values, the cache has to evict; with fewer, never.
+// The cache evicts if there are more faces than values, and only then.
 TEST(Stencil, EvictsOnlyWhenFull) {
   const Pair many("BoxAroundFigure");  // 12 faces
   const auto report = [](const Pair& pair, int values) {
@@ -96,7 +98,7 @@ TEST_P(Counters, AreDeterministicForAnyThreadCount) {
 }
 
 // The regions of a single triangle, its three edges and three vertices fill space without overlap: each texel
-// is drawn once, but next to the walls between them.
+// is drawn once, except near the walls between them.
 TEST(Counters, FragmentsOfOneTriangleCoverEachTexelOnce) {
   const Pair pair("OneTriangle");
   for (const bool bounds : {true, false}) {
@@ -115,7 +117,7 @@ TEST(Counters, SitesBetweenCoplanarFacesAreDropped) {
   EXPECT_EQ(r.sites_dropped, 6u);
 }
 
-// The pairs grow as the product of both meshes, the work must not.
+// The number of pairs is the product of the sizes of both meshes; the work must grow more slowly.
 TEST(Counters, BoundsCullAlmostAllPairsOfLargeMeshes) {
   const Pair pair("Apart");
   const GlReport r = gl_map(pair.surface, pair.sites).report;

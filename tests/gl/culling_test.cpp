@@ -1,4 +1,4 @@
-// Regions, their oriented boxes and clipping never lose a closest point.
+// Regions, their oriented boxes and clipping keep every closest point.
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
@@ -83,7 +83,7 @@ TEST(Culling, RegionsAndBoxesContainTheClosestPoints) {
 }
 
 TEST(Culling, OrientedBoxesOfNarrowRegionsAreNarrow) {
-  // On a fine sphere wedges and cones are as narrow as the faces are small; boxes that were not would cull
+  // On a fine sphere wedges and cones are as narrow as the faces are small; wide boxes would cull
   // nothing.
   const Sites sites(test::sphere(4));
   for (const auto& [site, region] : regions_of(internals(sites))) {

@@ -1,4 +1,4 @@
-// Devices that fail in the middle of a map: one sentence, and the next map works.
+// Devices that fail during a map: the error is one sentence, and the next map works.
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>
 
@@ -39,7 +39,7 @@ TEST_P(DeviceFailure, ResetWhileDrawing) {
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("was reset"));
 }
 
-// Once, a device whose context could not be made current again ended the process.
+// Regression: a device whose context could not be made current again ended the process.
 TEST_P(DeviceFailure, LostContext) {
   const Replaced current(epoxy_eglMakeCurrent,
                          PFNEGLMAKECURRENTPROC([](EGLDisplay, EGLSurface, EGLSurface,
@@ -59,14 +59,14 @@ TEST_P(DeviceFailure, UnsupportedFramebuffer) {
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("cannot draw"));
 }
 
-// A device that draws nothing must not pass for one that found nothing.
+// A device that draws nothing must be an error, not a map without values.
 TEST_P(DeviceFailure, MissingTexels) {
   const Replaced draw(epoxy_glDrawElements,
                       PFNGLDRAWELEMENTSPROC([](GLenum, GLsizei, GLenum, const void*) {}));
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("without a value"));
 }
 
-// A driver that lets the wrong site win would have drawn another distance than that site's.
+// If a driver lets the wrong site win, the depth drawn differs from that site's distance.
 TEST_P(DeviceFailure, WrongDepthsAreReportedAndCorrected) {
   static const PFNGLGETTEXTURESUBIMAGEPROC read = epoxy_glGetTextureSubImage;
   const Replaced wrong(epoxy_glGetTextureSubImage,
@@ -86,7 +86,7 @@ TEST_P(DeviceFailure, WrongDepthsAreReportedAndCorrected) {
 }
 
 TEST_P(DeviceFailure, RejectedShader) {
-  {  // the device at hand is given up first: the next map compiles anew
+  {  // discard the cached device, so that the next map compiles its shaders
     const Replaced reset(epoxy_glGetGraphicsResetStatus, PFNGLGETGRAPHICSRESETSTATUSPROC([]() -> GLenum {
                            return GL_UNKNOWN_CONTEXT_RESET;
                          }));

@@ -4,6 +4,10 @@
 
 #include "core/geometry/vec.h"
 #include "gl/support.h"
+#include "support/map_checks.h"
+#include "support/meshes.h"
+#include "support/points.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -49,7 +53,7 @@ TEST(GlEngine, NeighbouringTexelsAreOneLipschitz) {
 TEST(GlEngine, RefitEqualsRebuild) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Mesh rest = test::load("elephant.off", "fit");
-  Mesh twisted = rest;  // about z, which carries vertices far from where the tree was built
+  Mesh twisted = rest;  // about z: vertices move far from where the tree was built
   for (Vec3& p : twisted.positions) {
     const double angle = 4 * p[2], c = std::cos(angle), s = std::sin(angle);
     p = {c * p[0] - s * p[1], s * p[0] + c * p[1], 1.5 * p[2]};

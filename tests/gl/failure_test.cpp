@@ -5,6 +5,7 @@
 #include "engine/engine.h"
 #include "gl/support.h"
 #include "support/error_of.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -57,7 +58,7 @@ TEST_F(GlErrors, InvalidMaximumDistance) {
 
 TEST_F(GlErrors, MapLargerThanTheTexturesOfTheDevice) {
   // One small triangle, in coordinates of its own, keeps the work small. The table of texels needs 1 GB; the
-  // map would need 5 more, so the engine is asked without it.
+  // map would need 5 more, so only the engine is called.
   if (available_memory() < std::size_t{4} << 30) GTEST_SKIP() << "needs 4 GB of memory";
   const Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                   .triangles = {{0, 1, 2}},

@@ -1,4 +1,4 @@
-// Machines without the OpenGL libraries. This program's dlopen stands before the system's.
+// Machines without the OpenGL libraries, simulated: this program's dlopen replaces the system's.
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -24,7 +24,7 @@ Maker ball(int levels, const char* steps = "") {
   return [=] { return placed(sphere(levels), steps); };
 }
 
-// Triangles with an angle of almost 180°, and a small box, for a mesh needs some area.
+// Triangles with an angle of almost 180°, and a small box, because a mesh must have some area.
 Mesh caps() {
   Mesh mesh = placed(cube(0.01), "translate:-1:0:0");
   double y = 0;
@@ -48,7 +48,7 @@ Mesh book() {
   return mesh;
 }
 
-// A triangle with a tip so sharp that walls moved outwards by little move it by much.
+// A triangle with a tip so sharp that it moves far if its walls move outwards slightly.
 Mesh sharp_tip(double width) {
   return {.positions = {{0.2, 0, 0}, {-1, width / 2, 0}, {-1, -width / 2, 0}},
           .triangles = {{0, 1, 2}},
@@ -83,7 +83,7 @@ Maker triangles_at_random(std::size_t count) {
 #define SDM_FAR_AWAY "scale:0.001,translate:100000:-100000:100000"
 
 const std::vector<Scene> kScenes{
-    // Closed: standing beside each other, penetrating, and too far apart to tell much.
+    // Closed: side by side, penetrating, and far apart.
     {"Apart", file("bunny.obj"), file("armadillo.off", "fit,translate:0.8:0:0")},
     {"Penetrating", file("head.off"), file("armadillo.off"), {.resolution = 256}, true},
     {"LargeMap", file("head.off"), file("elephant.off"), {.resolution = 1024}, true},

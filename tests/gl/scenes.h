@@ -1,4 +1,4 @@
-// Pairs of meshes for the gl engine: every kind that can trouble a rasteriser of regions.
+// Pairs of meshes for the gl engine: all kinds that are difficult for a rasteriser of regions.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tiles part the owned texels; their domains and bounds hold for every sample.
+// Tiles partition the owned texels; their domains and bounds are valid for every sample.
 #include "surface/tiles.h"
 
 #include <gtest/gtest.h>
@@ -77,7 +77,7 @@ TEST(Tiles, DomainsContainTheirSamples) {
         for (const std::uint32_t texel : tiles.of(tile)) {
           const Vec2 centre{texel % 256 + 0.5, texel / 256 + 0.5};
           ASSERT_NEAR(norm(domain.point(centre) - frame.to_unit(surface.texel_point(texel))), 0, 1e-12);
-          // Inside by the margin, beyond what a rasteriser moves a side, but for rounding.
+          // Inside by the margin, which exceeds the rasteriser's displacement of a side, up to rounding.
           const std::span<const Vec2> corners = domain.outline.corners();
           ASSERT_GE(corners.size(), 3u);
           double turn = 0;
@@ -131,7 +131,7 @@ TEST(TileTreeCache, TracksMovedAndReplacedSurfaces) {
   const Surface pig(test::load("pig.off", "fit"), {.resolution = 128});
   EXPECT_EQ(cache.of(pig).tiles.count(), TileTree(pig).tiles.count());
   EXPECT_EQ(&cache.of(moved), kept);
-  // Where another surface takes the place of one that is gone.
+  // Another surface at the address of one that no longer exists.
   moved = Surface(test::load("pig.off", "fit"), {.resolution = 256});
   EXPECT_EQ(cache.of(moved).tiles.count(), TileTree(moved).tiles.count());
   EXPECT_NE(cache.of(moved).tiles.count(), tiles);

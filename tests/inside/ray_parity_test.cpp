@@ -70,7 +70,7 @@ TEST(RayParity, CountsAVertexOnceAtMost) {
   }
 }
 
-// A ray within a face and along its edges is one beside them.
+// A ray within a face and along its edges counts as one beside them.
 TEST(RayParity, IgnoresFacesThatContainTheRay) {
   std::mt19937 random(2);
   for (int i = 0; i < 500; ++i) {

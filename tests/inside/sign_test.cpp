@@ -93,7 +93,7 @@ TEST(Sign, NestedCavities) {
 }
 
 TEST(Sign, ComponentsOfAnyOrientation) {
-  // Nothing in the file tells the cavity from a ball but where it is.
+  // Only its position distinguishes the cavity from a ball.
   const Mesh ball = test::sphere(3);
   const Mesh o1 = test::load("knot2.off", "fit,scale:2.2");
   expect_signs(o1, test::joined(ball, test::placed(ball, "scale:0.7")));
@@ -106,7 +106,7 @@ TEST(Sign, InwardAndLocallyFlippedFaces) {
   expect_signs(o1, test::flipped(o2, 7));
 }
 
-// How many of the points are found inside, by the sign's method, with either engine.
+// The number of points inside, by the sign's method, with either engine.
 std::size_t count_inside(const Sites& sites, const std::vector<Vec3>& points) {
   std::size_t count = 0;
   for (const std::string& engine : test::engine_names())
@@ -117,7 +117,7 @@ std::size_t count_inside(const Sites& sites, const std::vector<Vec3>& points) {
   return count;
 }
 
-// A sliver's normal is zero or made of rounding errors, and its neighbours' pseudonormals were wrong.
+// Regression: a sliver's normal is zero or noise, which made its neighbours' pseudonormals wrong.
 TEST(Sign, SliversAtSharpEdges) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(0, 1);
@@ -139,7 +139,7 @@ TEST(Sign, SliversAtSharpEdges) {
     }
 }
 
-// A shell with a vertex on another shell is not inside of it, in whatever order the file lists them.
+// A shell with a vertex on another shell is not inside it, in either order of the file.
 TEST(Sign, TouchingShellsAreSolid) {
   const Mesh big = test::cube(1);
   for (const char* steps : {"scale:0.5,translate:1.5:0:0", "scale:0.5,translate:-1.5:0.2:0",

@@ -1,4 +1,4 @@
-// An independent reader agrees on real files and on what the tests write.
+// Agreement with an independent reader, on installed files and on files of the tests.
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
@@ -20,8 +20,7 @@ namespace {
 // The corners of all triangles, in single precision.
 std::vector<Vec3f> corners_by_assimp(const std::filesystem::path& file) {
   Assimp::Importer importer;
-  // The one transform in the 3DS files here is assimp's own, which turns z up into y up; others keep the axes
-  // of the file.
+  // For 3DS files assimp adds a transform from z up to y up; other formats keep the axes of the file.
   unsigned steps = aiProcess_Triangulate;
   if (file.extension() != ".3ds") steps |= aiProcess_PreTransformVertices;
   const aiScene* scene = importer.ReadFile(file, steps);

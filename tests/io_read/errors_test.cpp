@@ -247,7 +247,7 @@ TEST(Errors, DeeplyNestedJson) {
       "no triangles");
 }
 
-// A small file that shows one mesh very often asks for more memory than there is.
+// A small file that instances one mesh very often requires more memory than available.
 TEST(Errors, ScenesLargerThanMemory) {
   const Mesh mesh = torus(100, 100);
   std::string nodes = "[{\"children\":[1";

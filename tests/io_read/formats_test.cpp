@@ -27,7 +27,7 @@ void expect_same(const Mesh& read, const Mesh& written) {
   EXPECT_EQ(read.triangles, written.triangles);
 }
 
-// Coordinates that single precision does not hold.
+// Coordinates that are not representable in single precision.
 Mesh precise_torus() {
   Mesh mesh = torus(9, 7);
   for (Vec3& p : mesh.positions) p = {p[0] / 3, p[1] * 1e-20, p[2] * 1e20 / 7};
@@ -280,7 +280,7 @@ TEST(Gltf, BinaryAndJsonWithBuffersInsideAndOutside) {
 
 TEST(Gltf, NodeTransformsAreAppliedAndMeshesMerged) {
   const Mesh mesh = torus(8, 4);
-  // Turned by 90° about z and doubled, within a parent that moves; and a mirror image.
+  // Rotated by 90° about z and doubled, within a translated parent; and a mirror image.
   const std::string nodes =
       R"([{"children":[1,2],"translation":[10,0,0]},{"mesh":0,"rotation":[0,0,0.7071067811865476,0.7071067811865476],)"
       R"("scale":[2,2,2]},{"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]}])";
@@ -290,7 +290,7 @@ TEST(Gltf, NodeTransformsAreAppliedAndMeshesMerged) {
   for (std::size_t c = 0; c < original.size(); ++c) {
     const Vec3& p = original[c];
     const Vec3 turned{10 - 2 * p[1], 2 * p[0], 2 * p[2]}, mirrored{10 - p[0], p[1], p[2] + 5};
-    // The mirror image runs the other way round.
+    // The mirror image has the opposite orientation.
     const std::size_t m = original.size() + c / 3 * 3 + std::array{0, 2, 1}[c % 3];
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(merged[c][k], turned[k], 1e-14);

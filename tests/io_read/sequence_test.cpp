@@ -1,4 +1,4 @@
-// Sequences: each form of input gives the frames that were written, and names the frame that is at fault.
+// Sequences: every form of input gives the frames that were written; errors name the frame.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
@@ -98,7 +98,7 @@ TEST(Sequence, FilesAreSortedByNumber) {
     write(std::string("order/walk_") + number + ".obj", obj(at(mesh, frames[t])));
   write("order/notes.txt", "8");
   write("order/walk.mtl", "");
-  std::filesystem::create_directories(folder + "walk_12.obj");  // no file
+  std::filesystem::create_directories(folder + "walk_12.obj");  // a folder, not a file
   MeshSequence sequence(folder);
   expect_frames(sequence, frames);
   EXPECT_EQ(sequence.frame_name(2), "walk_10.obj");
@@ -288,7 +288,7 @@ TEST(SequenceNpy, ErrorsNameTheFault) {
 /// Two targets: the tetrahedron's tip moves along x, and its origin by (−1, −2, 0).
 const Frames kTargets{{{}, {}, {}, {1, 0, 0}}, {{-1, -2, 0}, {}, {}, {}}};
 
-/// The tetrahedron under weights, within a node that doubles it and moves it by 10 in z.
+/// The morphed tetrahedron, within a node that doubles it and moves it by 10 in z.
 std::vector<Vec3> morphed(double tip, double origin) {
   std::vector<Vec3> positions = tetrahedron().positions;
   positions[3][0] += tip;
@@ -352,7 +352,7 @@ TEST(SequenceGltf, ErrorsNameTheFault) {
   expect_refused(file, {"rate"}, {.rate = -1});
   expect_refused(file, {"rate"}, {.rate = std::nan("")});
   expect_refused(file, {"more than a billion"}, {.rate = 1e300});
-  // An infinite weight is a fault of its frame.
+  // An infinite weight is an error of its frame.
   MeshSequence infinite(
       write("inf.glb", morph_gltf(tetrahedron(), kTargets, {"LINEAR", {0, 1}, {0, 0, INFINITY, 1}})));
   expect_fault([&] { (void)infinite.positions(1); }, {"frame 1 (inf.glb at 1 s)", "vertex"});

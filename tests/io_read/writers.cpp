@@ -13,7 +13,7 @@ namespace sdm::test {
 
 namespace {
 
-// In memory where the system has such a place, because the tests write many files.
+// In memory if possible, because the tests write many files.
 std::filesystem::path fast_folder() {
   return std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path();
 }

@@ -33,7 +33,7 @@ struct AllWriters : ::testing::Test {
   TemporaryFolder folder;
 };
 
-/// While it lives, no file can grow beyond `bytes`: writing fails as on a full disk.
+/// During its lifetime no file can grow beyond `bytes`: writing fails as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {

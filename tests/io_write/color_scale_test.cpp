@@ -95,7 +95,7 @@ TEST(ColorScale, RejectsInvalidRangesAndTolerances) {
   EXPECT_THROW((void)color_scale(map, {.tolerance = -1.0}), Error);
 }
 
-// Sites next to each other have numbers that are close, or of a kind, more often than not.
+// Adjacent sites often have close numbers.
 TEST(SiteColor, DiffersBetweenCloseNumbers) {
   for (const SiteType type : {SiteType::vertex, SiteType::edge, SiteType::face}) {
     std::set<std::tuple<int, int, int>> colors;

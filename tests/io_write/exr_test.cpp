@@ -43,7 +43,7 @@ Channels read_exr(const std::filesystem::path& file, std::uint32_t n) {
   return channels;
 }
 
-/// What the file holds for a texel whose values are those of texel `source`.
+/// The values in the file for a texel whose values are those of texel `source`.
 std::vector<std::uint32_t> expected(const Surface& surface, const DistanceMap& map, std::size_t source) {
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
   const Vec3f& v = map.vector[source];

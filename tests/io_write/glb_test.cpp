@@ -37,7 +37,7 @@ std::vector<Element> values(const tinygltf::Model& model, int accessor_index) {
   return result;
 }
 
-/// The texture as a viewer shows it: bilinear, clamped; in [0, 255].
+/// The texture as viewers sample it: bilinear, clamped; in [0, 255].
 std::array<double, 3> sample(const tinygltf::Image& image, const std::array<float, 2>& uv) {
   const double x = double{uv[0]} * image.width - 0.5, y = double{uv[1]} * image.height - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));

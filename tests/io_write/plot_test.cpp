@@ -50,7 +50,7 @@ TEST(Plot, DrawsCurvesInPanels) {
   EXPECT_GT(of_color(pixels, kSecond, pixels.height / 2, pixels.height).size(), 500u);
 }
 
-// Where there is no value there is no line, and one between two gaps is a dot.
+// No line where there is no value; a single value between two gaps is a dot.
 TEST(Plot, LeavesGaps) {
   const TemporaryFolder folder;
   std::vector<double> values(101, 1.0);

@@ -10,13 +10,15 @@
 namespace sdm::test {
 namespace {
 
+using namespace io;
+
 struct Pictures : ::testing::Test {
   const Surface surface{ring(6), {.kind = AtlasKind::charts, .resolution = 256}};
   const DistanceMap map = map_of(surface, [](const Vec3& p) { return p[2] < 0.2 ? p[0] : std::nan(""); });
   const std::size_t n = surface.resolution();
   TemporaryFolder folder;
 
-  /// Calls check(texel, colour) for every owned texel, and finds the background everywhere else.
+  /// Calls check(texel, colour) for every owned texel, and expects the background everywhere else.
   void for_each_texel(const Pixels& pixels, const std::function<void(std::size_t, Rgb)>& check) {
     for (std::size_t y = 0; y < n; ++y)
       for (std::size_t x = 0; x < n; ++x) {

@@ -15,7 +15,7 @@
 namespace sdm::test {
 namespace {
 
-/// A cross product written out, so as not to share the code under test.
+/// A cross product that does not share the code under test.
 double texel_area(const Surface& surface, std::uint32_t face) {
   const auto [u, v] = surface.texel_edges(face);
   const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
@@ -94,7 +94,7 @@ TEST(Statistics, WeightTexelsByTheirSurfaceArea) {
   EXPECT_EQ(area_fraction_beyond(surface, map, 2), 0);
 }
 
-// Weights once were areas in single precision, which vanish or overflow.
+// Regression: weights were areas in single precision, which vanish or overflow.
 TEST(Statistics, HoldForMeshesOfAnySize) {
   const auto mean = [](double scale) {
     Mesh mesh = ring(10);
@@ -106,7 +106,7 @@ TEST(Statistics, HoldForMeshesOfAnySize) {
     return statistics(surface, map).mean / scale;
   };
   const double expected = mean(1);
-  for (const double scale : {0x1p-90, 0x1p-30, 0x1p30, 0x1p90})  // powers of two: the very same atlas
+  for (const double scale : {0x1p-90, 0x1p-30, 0x1p30, 0x1p90})  // powers of two: bit-identical atlas
     EXPECT_NEAR(mean(scale), expected, 1e-6 * expected);
 }
 

@@ -42,7 +42,7 @@ TEST(Temporal, ComputesMinimumMeanAndMaximum) {
   }
 }
 
-// Whenever it is that a texel has none.
+// For any order of the maps.
 TEST(Temporal, TexelsThatLackedAValueHaveNone) {
   const Surface surface(ring(12), {.resolution = 32});
   for (const int missing : {0, 1, 2}) {

@@ -15,7 +15,7 @@ namespace {
 
 using Edge = std::array<std::uint32_t, 2>;
 
-// Soups over few vertices: repeated corners, duplicates and edges of many faces abound.
+// Soups over few vertices: many repeated corners, duplicates and edges of many faces.
 std::vector<Triangle> random_soup(std::mt19937& random, std::uint32_t vertices, std::size_t faces) {
   std::uniform_int_distribution<std::uint32_t> vertex(0, vertices - 1);
   std::vector<Triangle> soup(faces);
@@ -76,7 +76,7 @@ TEST(Topology, VertexFacesAgreeWithBruteForce) {
   }
 }
 
-// Whether faces f and g, turned or not, run along their common edge in opposite directions.
+// Whether faces f and g, flipped or not, traverse their common edge in opposite directions.
 bool agree(const Triangle& f, bool f_turned, const Triangle& g, bool g_turned, const Edge& edge) {
   const auto forward = [&](const Triangle& t) {
     for (int k = 0; k < 3; ++k)

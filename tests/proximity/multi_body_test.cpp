@@ -1,4 +1,4 @@
-// Many bodies at once, against each pair and each map by itself.
+// Many bodies at once, against single pairs and single maps.
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>
 #include <sdm/threads.h>
@@ -68,7 +68,7 @@ TEST(Sweep, LosesNoneByRounding) {
   }
 }
 
-/// A crowd: solids of all kinds and a sheet, some through each other, one inside another, some far off.
+/// Solids of all kinds and a sheet: some intersect, one is inside another, some are far away.
 std::vector<Mesh> crowd() {
   Mesh shell = sphere(2);
   for (Vec3& p : shell.positions) p = 1.5 * p;
@@ -299,7 +299,7 @@ TEST_P(ManyBodies, RefitForAnyThreadCount) {
 }
 
 TEST_P(ManyBodies, AllocateNothingAfterTheFirstFrames) {
-  const ThreadLimit alone(1);  // threads that join later bring memory of their own
+  const ThreadLimit alone(1);  // threads that join later allocate memory of their own
   const std::vector<Mesh> meshes = crowd();
   MultiBodyQuery bodies(meshes, options(1, GetParam()));
   std::array<std::vector<std::vector<Vec3>>, 2> frames;

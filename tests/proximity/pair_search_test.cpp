@@ -14,15 +14,15 @@
 #include "support/pair_oracle.h"
 #include "support/shapes.h"
 
-namespace sdm {
+namespace sdm::exact {
 namespace {
 
 constexpr double kAny = std::numeric_limits<double>::infinity();
 
 Separation closest(const Mesh& m1, const Mesh& m2, const Affine& pose = {}, double bound = kAny) {
   const Sites o1(m1), o2(m2);
-  exact::PairWorkspace workspace;
-  return exact::find_closest({internals(o1), internals(o2), pose}, bound, workspace);
+  PairWorkspace workspace;
+  return find_closest({internals(o1), internals(o2), pose}, bound, workspace);
 }
 
 Mesh moved(Mesh mesh, const Affine& pose) {
@@ -36,7 +36,7 @@ Affine shift(double x, double y = 0, double z = 0) {
 
 double brute_force(const Mesh& m1, const Mesh& m2, const Affine& pose) {
   const Sites o1(m1), o2(m2);
-  const exact::MeshPair pair{internals(o1), internals(o2), pose};
+  const MeshPair pair{internals(o1), internals(o2), pose};
   double least = kAny;
   for (std::uint32_t f = 0; f < m1.triangles.size(); ++f)
     for (std::uint32_t g = 0; g < m2.triangles.size(); ++g)
@@ -185,7 +185,7 @@ TEST(PairSearch, MeshesOfVeryDifferentSizes) {
   }
 }
 
-// A pose that flattens O2, or whose inverse is beyond single precision, is a pose.
+// Poses that flatten O2, or whose inverse overflows single precision, are valid.
 TEST(PairSearch, SingularPoses) {
   const Mesh sphere = test::sphere(2);
   Affine flat = shift(3);
@@ -224,11 +224,11 @@ TEST(PairSearch, AllocatesNothingAfterTheFirstSearches) {
   const Sites o1(test::load("hand.off", "fit")), o2(test::load("head.off", "fit"));
   std::mt19937 random(9);
   const std::vector<Affine> poses = bench::random_poses(o1, o2, 20, random);
-  exact::PairWorkspace workspace;
+  PairWorkspace workspace;
   const auto run = [&] {
     for (const Affine& pose : poses) {
-      (void)exact::find_closest({internals(o1), internals(o2), pose}, kAny, workspace);
-      (void)exact::find_intersection({internals(o1), internals(o2), pose}, workspace);
+      (void)find_closest({internals(o1), internals(o2), pose}, kAny, workspace);
+      (void)find_intersection({internals(o1), internals(o2), pose}, workspace);
     }
   };
   run();
@@ -237,15 +237,15 @@ TEST(PairSearch, AllocatesNothingAfterTheFirstSearches) {
   EXPECT_EQ(test::allocations(), before);
 }
 
-// Results depend on nothing that a workspace was used for before.
+// Results do not depend on earlier uses of the workspace.
 TEST(PairSearch, DoesNotDependOnEarlierSearches) {
   const Sites o1(test::load("hand.off", "fit")), o2(test::load("head.off", "fit"));
   std::mt19937 random(10);
-  exact::PairWorkspace used;
+  PairWorkspace used;
   for (const Affine& pose : bench::random_poses(o1, o2, 10, random)) {
-    exact::PairWorkspace fresh;
-    const exact::MeshPair pair{internals(o1), internals(o2), pose};
-    const Separation a = exact::find_closest(pair, kAny, used), b = exact::find_closest(pair, kAny, fresh);
+    PairWorkspace fresh;
+    const MeshPair pair{internals(o1), internals(o2), pose};
+    const Separation a = find_closest(pair, kAny, used), b = find_closest(pair, kAny, fresh);
     EXPECT_EQ(a.point1, b.point1);
     EXPECT_EQ(a.point2, b.point2);
     EXPECT_EQ(a.face1, b.face1);
@@ -254,4 +254,4 @@ TEST(PairSearch, DoesNotDependOnEarlierSearches) {
 }
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::exact

@@ -15,7 +15,7 @@
 #include "support/shapes.h"
 #include "support/simd_targets.h"
 
-namespace sdm {
+namespace sdm::exact {
 namespace {
 
 struct Pair {
@@ -25,7 +25,7 @@ void PrintTo(const Pair& pair, std::ostream* out) {
   *out << pair.o1 << " and " << pair.o2;
 }
 
-// The last are generated: a ball, and one pressed to a disc of slivers.
+// The last are generated: a ball, and a ball flattened to a disc of slivers.
 const Pair kPairs[] = {{"hand.off", "head.off"},          {"elephant.off", "triceratops.off"},
                        {"knot2.off", "anchor_dense.off"}, {"cube-meshed.off", "sphere966.off"},
                        {"bunny.obj", "armadillo.off"},    {"ball", "disc"}};
@@ -38,14 +38,16 @@ Mesh mesh_of(const std::string& name) {
   return mesh;
 }
 
-bool cgal_says_intersect(const oracle::CgalSurface& o1, const exact::MeshPair& pair) {
+bool cgal_says_intersect(const oracle::CgalSurface& o1, const MeshPair& pair) {
   for (std::uint32_t face = 0; face < pair.o2.mesh.triangles.size(); ++face)
     if (o1.meets(pair.face2(face))) return true;
   return false;
 }
 
-void expect_witnesses(const exact::MeshPair& pair, const Separation& s, double tolerance) {
-  const auto distance_from = [](const Vec3& p, const exact::Corners& t) { return oracle::distance({p, p, p}, t); };
+void expect_witnesses(const MeshPair& pair, const Separation& s, double tolerance) {
+  const auto distance_from = [](const Vec3& p, const Corners& t) {
+    return oracle::distance({p, p, p}, t);
+  };
   EXPECT_NEAR(norm(s.point2 - s.point1), s.distance, tolerance);
   ASSERT_LT(s.face1, pair.o1.mesh.triangles.size());
   ASSERT_LT(s.face2, pair.o2.mesh.triangles.size());
@@ -63,23 +65,23 @@ TEST_P(Poses, AgreeWithFclAndCgal) {
   const bool small = m2.triangles.size() < 12'000;
   const double size = diagonal(bounds(m1)) + diagonal(bounds(m2));
   std::mt19937 random(7);
-  exact::PairWorkspace workspace;
+  PairWorkspace workspace;
   int apart = 0, intersecting = 0;
   test::Disagreements distances(1e-6 * size);
   for (const Affine& pose : bench::random_poses(o1, o2, 200, random)) {
     const std::size_t number = static_cast<std::size_t>(apart + intersecting);
     SCOPED_TRACE(number);
-    const exact::MeshPair pair{internals(o1), internals(o2), pose};
-    const Separation found = exact::find_closest(pair, 10 * size, workspace);
+    const MeshPair pair{internals(o1), internals(o2), pose};
+    const Separation found = find_closest(pair, 10 * size, workspace);
     expect_witnesses(pair, found, 1e-14 * size);
-    ASSERT_EQ(exact::find_intersection(pair, workspace).intersecting, found.intersecting);
+    ASSERT_EQ(find_intersection(pair, workspace).intersecting, found.intersecting);
     if (found.intersecting) {
       ASSERT_EQ(found.distance, 0);
     }
     ++(found.intersecting ? intersecting : apart);
 
-    // FCL says -1 or 0 for surfaces that intersect. It moves the vertices with other roundings than we: where
-    // the surfaces just touch, CGAL is asked about the very triangles that we have.
+    // FCL says -1 or 0 for surfaces that intersect. It rounds moved vertices differently: where the
+    // surfaces just touch, CGAL decides for exactly our triangles.
     distances.compare(number, found.distance, std::max(0.0, fcl.distance(pose)));
     const bool fcl_agrees = fcl.collide(pose) == found.intersecting;
     EXPECT_TRUE(fcl_agrees || found.distance < 1e-12 * size);
@@ -92,21 +94,21 @@ TEST_P(Poses, AgreeWithFclAndCgal) {
   EXPECT_GT(intersecting, 30);
 }
 
-// The same bits with every set of vector instructions is more than is promised; the same distance is.
+// The contract is the same distance with every set of vector instructions, not the same bits.
 TEST_P(Poses, AgreeWithEveryVectorInstructionSet) {
   const Sites o1(mesh_of(GetParam().o1)), o2(mesh_of(GetParam().o2));
   std::mt19937 random(8);
-  exact::PairWorkspace workspace;
+  PairWorkspace workspace;
   for (const Affine& pose : bench::random_poses(o1, o2, 10, random)) {
-    const exact::MeshPair pair{internals(o1), internals(o2), pose};
-    const Separation expected = exact::find_closest(pair, 100, workspace);
+    const MeshPair pair{internals(o1), internals(o2), pose};
+    const Separation expected = find_closest(pair, 100, workspace);
     for (const test::SimdTarget target : test::simd_targets()) {
       SCOPED_TRACE(test::name(target));
       const test::UseSimdTarget use(target);
-      const Separation found = exact::find_closest(pair, 100, workspace);
+      const Separation found = find_closest(pair, 100, workspace);
       EXPECT_EQ(found.distance, expected.distance);
       EXPECT_EQ(found.intersecting, expected.intersecting);
-      EXPECT_EQ(exact::find_intersection(pair, workspace).intersecting, expected.intersecting);
+      EXPECT_EQ(find_intersection(pair, workspace).intersecting, expected.intersecting);
     }
   }
 }
@@ -119,4 +121,4 @@ INSTANTIATE_TEST_SUITE_P(Pairs, Poses, testing::ValuesIn(kPairs), [](const auto&
 });
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::exact

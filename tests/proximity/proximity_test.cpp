@@ -1,5 +1,4 @@
-// Proximity queries against bodies whose answers are known, against maps of all samples, and against
-// themselves.
+// Proximity queries against known results, against maps of all samples, and against themselves.
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
@@ -164,7 +163,7 @@ TEST(Proximity, BoundsContainTheExactResults) {
   EXPECT_LT(undecided, 12u);
 }
 
-// More samples: the bounds close in on what the triangles say.
+// More samples: the bounds converge to the exact results.
 TEST(Proximity, BoundsNarrowWithTheResolution) {
   const Mesh a = load("cow.off", "fit");
   for (const char* placement : {"fit,translate:0.9:0.1:0", "fit,translate:0.4:0.1:0"}) {
@@ -210,7 +209,7 @@ TEST(Proximity, OpenMeshesHaveNoInside) {
   ASSERT_TRUE(solid.penetration_depth());
 }
 
-// Wholly inside, without touching.
+// Completely inside, without contact.
 TEST(Proximity, NestedMeshesCollide) {
   Mesh inner = cube(0.5);
   for (const bool swapped : {false, true}) {
@@ -380,7 +379,7 @@ TEST(ProximityRefit, RigidMotion) {
   EXPECT_EQ(query.colliding().value, first.colliding);
 }
 
-/// Fails if updates and answers still take memory when bodies go through poses for the second time.
+/// Fails if refits and queries still allocate memory when bodies repeat their poses.
 void expect_steady(const Mesh& a, const Mesh& b, bool exact) {
   const std::array frames{b.positions, moved(b, {0.1, 0, 0}).positions, moved(b, {3, 0, 0}).positions};
   ProximityQuery query(a, b, {.atlas = {.resolution = 128}, .exact = exact, .contact_margin = 0.05});
@@ -398,7 +397,7 @@ void expect_steady(const Mesh& a, const Mesh& b, bool exact) {
 }
 
 TEST(ProximityRefit, AllocatesNothingAfterTheFirstFrames) {
-  const ThreadLimit alone(1);  // threads that join later bring memory of their own
+  const ThreadLimit alone(1);  // threads that join later allocate memory of their own
   const Mesh sliver = placed(wedge(0.5), "rotate:31:127:201");
   ASSERT_GT(std::ranges::count(internals(Sites(sliver)).sliver, 1), 0);
   const Mesh hollow = joined(sphere(3), placed(sphere(3), "scale:0.5"));

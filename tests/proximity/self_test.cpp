@@ -1,4 +1,4 @@
-// Self-proximity against brute force over all faces, with what is excluded found naively.
+// Self-proximity against brute force over all faces, with a naive exclusion.
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
@@ -76,7 +76,7 @@ bool within(double length, const Corners& a, const Corners& b) {
   return exact::squared_box_distance(a, b) < length * length && oracle::distance(a, b) < length;
 }
 
-// All pairs of faces, as the rule's words say.
+// All pairs of faces, by the definition of the rule.
 Relation excluded(const Mesh& rest, const ExclusionRule& rule) {
   const Relation touch = touching(rest);
   const std::size_t n = touch.size();
@@ -231,7 +231,7 @@ TEST(Self, DistanceAcrossAFoldIsItsGap) {
   const Mesh mesh = folded(0.2, 60, 8);
   const Surface surface(mesh, {.resolution = 128});
   const Sites sites(mesh);
-  // A rule at rest, where it is flat: the way round the bend counts.
+  // The exclusion is that of the flat rest shape: the path around the bend counts.
   const DistanceMap map = compute_self_map(surface, sites, Exclusion(flat(60, 8), {.geodesic = 0.6}));
   for (const std::uint32_t texel : surface.sample_texels()) {
     if (surface.texel_point(texel)[0] > 1) continue;

@@ -164,8 +164,8 @@ TEST(Orientation, IsExactWhereRoundingIsNot) {
   EXPECT_EQ(orientation(Vec2{0, 0}, Vec2{1e30, 1e30}, Vec2{third, std::nextafter(third, 1)}), 1);
 }
 
-// Points almost on a line and almost in a plane. Whatever corner comes first, and at any power of two:
-// rounding and underflow would have their say.
+// Points almost on a line and almost in a plane. For any order of the corners and any power of
+// two; naive evaluation would round and underflow.
 TEST(Orientation, IsConsistentUnderPermutationAndScaling) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> at(0.5, 1);

@@ -79,7 +79,7 @@ TEST_F(FoldedCloth, KeepsEdgesDistanceAndEnergyAndComesToRest) {
   }
   EXPECT_LT(last_kinetic, 0.02 * 9.81 * start);
 
-  // Layers lie on each other, a thickness apart.
+  // Layers rest on each other, one thickness apart.
   std::size_t layers = 0;
   double closest = 1;
   const auto now = cloth.positions();
@@ -92,7 +92,7 @@ TEST_F(FoldedCloth, KeepsEdgesDistanceAndEnergyAndComesToRest) {
   EXPECT_GT(layers, 100u);
   EXPECT_GT(closest, 0.5 * cloth.thickness());
 
-  // And nowhere, between particles too, do they pass through each other.
+  // Layers intersect nowhere, not even between particles.
   SelfProximityQuery query(cloth.mesh(), {.exclusion = {.geodesic = 2 * cloth.thickness()}});
   query.update(now);
   ASSERT_TRUE(query.separation());

@@ -40,8 +40,8 @@ TEST_P(Letters, HaveUnitHeightAndTheirDepthAndAreCentred) {
   for (int k = 0; k < 3; ++k) EXPECT_LT(box.hi[k] - box.lo[k], 1 + 1e-9);
 }
 
-// Front and back are flat and alike, and the sides stand upright: the volume is the area of the front times
-// the depth, with a positive sign as the faces point outward.
+// Front and back are flat and congruent, and the sides are vertical: the volume is the area of the front
+// times the depth, with a positive sign as the faces point outward.
 TEST_P(Letters, AreOutwardOrientedExtrusions) {
   const Mesh mesh = GetParam().mesh();
   double volume = 0, front = 0, back = 0;

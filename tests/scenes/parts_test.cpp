@@ -19,7 +19,6 @@
 #include "scenes/soft_body.h"
 #include "scenes/spatial_hash.h"
 #include "support/meshes.h"
-#include "support/points.h"
 #include "support/shapes.h"
 
 namespace sdm::scenes {
@@ -62,7 +61,8 @@ TEST(Rotation, IsTheRotationalPartOfADeformation) {
       for (int b = 0; b < 3; ++b)
         for (int k = 0; k < 3; ++k) s[b][a] += q[a][k] * d[k] * q[b][k];
     Matrix part = random_rotation();
-    for (int call = 0; call < 20; ++call) part = rotation_part(r * s, part);  // each goes on from the last
+    for (int call = 0; call < 20; ++call)
+      part = rotation_part(r * s, part);  // each starts from the previous one
     expect_near(part, r, 1e-6);
   }
 }
@@ -150,7 +150,7 @@ TEST(SoftBody, PullsHaveNoNetForceOrTorqueAndRestoreTheShape) {
     torque += cross(pushed[v], pull);
   }
   EXPECT_LE(norm(force), 1e-10);
-  EXPECT_LE(norm(torque), 1e-4);  // as far as the rotations are found
+  EXPECT_LE(norm(torque), 1e-4);  // up to the accuracy of the rotations
   for (int i = 0; i < 20; ++i) body.match_shapes();
   EXPECT_LT(roughness(), 0.01 * before);
 }
@@ -166,7 +166,7 @@ TEST(SoftBody, ClustersFollowTheSurface) {
       strip.triangles.push_back({i, i + 2, i + 3});
       strip.triangles.push_back({i, i + 3, i + 1});
     }
-    append(strips, strip);
+    strips = joined(strips, strip);
   }
   SoftBody body(strips, {.stiffness = 1, .cluster_radius = 0.3, .clusters = 10}, {}, {});
   const auto half = static_cast<std::uint32_t>(strips.positions.size() / 2);
@@ -177,7 +177,7 @@ TEST(SoftBody, ClustersFollowTheSurface) {
 }
 
 TEST(Skeleton, BonesMoveTheirChildrenAndTheSkin) {
-  // Two bones along x, 1 long each; the second turns by a right angle.
+  // Two bones of length 1 along x; the second rotates by a right angle.
   const Skeleton arm{{{0, {0, 0, 0}}, {0, {1, 0, 0}}},
                      {{0, {0, 0, 0}, {0.9, 0, 0}, 0.1, 0.1}, {1, {1.1, 0, 0}, {2, 0, 0}, 0.1, 0.2}}};
   EXPECT_NEAR(skin_distance(arm, {0.3, 0, 0.4}), 0.3, 1e-6);

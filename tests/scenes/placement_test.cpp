@@ -2,8 +2,8 @@
 #include <sdm/error.h>
 
 #include "core/geometry/vec.h"
-#include "support/shapes.h"
 #include "scenes/placement.h"
+#include "support/shapes.h"
 
 namespace sdm::scenes {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-// Where steps take a point.
+// The image of a point.
 Vec3 moved(const Vec3& p, const char* steps) {
   Mesh mesh{{p}, {}, {}};
   place(mesh, parse_placement(steps));
@@ -108,7 +108,7 @@ TEST(Placement, WithoutFitMovesOtherPointsTheSameWay) {
   place(points, resolved);
   for (std::size_t i = 0; i < 4; ++i) expect_near(points[i], expected.positions[i]);
   expect_near(points[4], 0.5 * (expected.positions[1] + expected.positions[2]));
-  // A mesh's faces turn with a mirror image all the same.
+  // Mirror images flip the faces of a mesh, too.
   Mesh again = mesh;
   place(again, resolved);
   EXPECT_EQ(again.triangles, expected.triangles);

@@ -1,4 +1,4 @@
-// How often memory was taken.
+// The number of allocations.
 #pragma once
 
 #include <cstddef>

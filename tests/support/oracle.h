@@ -1,4 +1,4 @@
-// Distances and insides by CGAL, and distances by brute force: independent of everything that they judge.
+// Distances and insides by CGAL, and distances by brute force: independent of the code under test.
 #pragma once
 
 #include <sdm/mesh.h>

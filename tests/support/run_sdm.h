@@ -1,4 +1,4 @@
-// The command sdm as a user runs it.
+// Runs the command sdm in a process of its own.
 #pragma once
 
 #include <cstdint>

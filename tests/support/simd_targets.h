@@ -12,7 +12,7 @@ using SimdTarget = std::int64_t;
 [[nodiscard]] std::vector<SimdTarget> simd_targets();
 [[nodiscard]] std::string name(SimdTarget target);
 
-/// While it lives, the library uses this set only.
+/// During its lifetime the library uses this set only.
 class UseSimdTarget {
  public:
   explicit UseSimdTarget(SimdTarget target);

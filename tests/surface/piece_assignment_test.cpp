@@ -12,8 +12,8 @@
 #include <random>
 #include <vector>
 
-#include "core/parallel.h"
 #include "core/geometry/vec.h"
+#include "core/parallel.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 #include "surface/sample_blocks.h"
@@ -163,7 +163,7 @@ double expect_covered(const Surface& surface, const SamplingBound& bound) {
   return *std::ranges::max_element(distances);
 }
 
-/// The bounds over what is seen, for all motions.
+/// The ratios of bounds to measured values, for all motions.
 std::vector<double> expect_covered_in_motion(const Mesh& mesh, const AtlasOptions& options) {
   Surface surface(mesh, options);
   SamplingBound bound(surface);  // pieces are assigned now
@@ -235,7 +235,7 @@ TEST(PieceAssignment, ChartsSmallerThanTexels) {
   EXPECT_LE(median(ratios), 1.5);
 }
 
-// Hardly a face owns a texel: what it has of others' squares moves on its own.
+// Few faces own a texel: pieces in squares of other faces move independently.
 TEST(PieceAssignment, FacesSmallerThanTexels) {
   EXPECT_LE(median(expect_covered_in_motion(test::load("armadillo.off"), {.resolution = 256})), 1.7);
 }
@@ -249,7 +249,7 @@ TEST(PieceAssignment, SliversFacesWithoutAreaAndSoups) {
   (void)expect_covered_in_motion(test::fan(3000), {.resolution = 256});
 }
 
-// A face without area opens: all of it is covered still.
+// A face without area gains an area: it must remain covered.
 TEST(PieceAssignment, FacesThatGainAnArea) {
   Mesh mesh{.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 0, 0}},
             .triangles = {{0, 1, 2}, {0, 3, 1}},

@@ -10,7 +10,6 @@
 
 #include "core/geometry/vec.h"
 #include "support/meshes.h"
-#include "support/shapes.h"
 #include "surface/sampling_bound/sample_tree.h"
 
 namespace sdm {

@@ -58,7 +58,7 @@ double measured(const Surface& surface, std::size_t count) {
   return *std::ranges::max_element(distances);
 }
 
-/// The bound must hold, and be no more than `slack` times what is seen.
+/// The bound must hold, and be at most `slack` times the measured value.
 void expect_bound(const Surface& surface, double slack, std::size_t points = 200000) {
   const double seen = measured(surface, points), bound = SamplingBound(surface).value();
   EXPECT_LE(seen, bound);
@@ -94,7 +94,7 @@ TEST(SamplingBound, SliversAndFacesWithoutArea) {
   }
 }
 
-// Specks whose texels have no sample, and a segment that sticks out: their points count too.
+// Tiny components without samples, and a protruding degenerate face: their points count too.
 TEST(SamplingBound, PartsWithoutSamples) {
   Mesh mesh = test::joined(test::cube(), test::placed(test::cube(), "scale:1e-5,translate:3:0:0"));
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());

@@ -161,7 +161,7 @@ TEST(Progress, CanCancel) {
   EXPECT_THROW(Surface(test::load("cube.off"), options), Cancelled);
 }
 
-// With its vertices every face takes its texels along.
+// Texels move with the vertices of their faces.
 TEST(SurfaceRefit, MovesTexelsWithTheirFaces) {
   for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
     Mesh mesh = test::load("bunny.obj");
@@ -190,7 +190,7 @@ TEST(SurfaceRefit, MovesTexelsWithTheirFaces) {
     bound.refit(surface);
     EXPECT_GT(bound.value(), 1.5 * first_bound);
 
-    // Back again, to rounding; and where nothing moves, to the bit.
+    // Back again up to rounding; bit-identical where nothing moves.
     surface.refit(mesh.positions);
     const std::vector<Vec3> back = surface.sample_points();
     for (std::size_t i = 0; i < before.size(); ++i) ASSERT_LE(norm(back[i] - before[i]), 1e-9 * size);
