@@ -69,9 +69,9 @@ std::size_t common_frames(const Body& a, const Body& b) {
 }
 
 /// Processes the frames of one command.
-class Run {
+class FrameLoop {
  public:
-  explicit Run(const SequenceCommand& command)
+  explicit FrameLoop(const SequenceCommand& command)
       : command_(command),
         out_(command.out),
         progress_(command.pair.quiet),
@@ -89,7 +89,7 @@ class Run {
 
   /// Writes the results of all frames, or of those before the first bad one, which is then reported by
   /// sdm::Error.
-  void operator()() {
+  void process() {
     out_.fill([&] {
       Stopwatch watch;
       double seconds = 0;
@@ -252,6 +252,6 @@ void add_sequence_command(CLI::App& app) {
                      "Do not compute maps over time; faster, because frames then need no complete map");
   sequence->callback([command] {
     const sdm::ThreadLimit limit(command->pair.threads);
-    Run (*command)();
+    FrameLoop(*command).process();
   });
 }

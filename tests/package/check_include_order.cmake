@@ -36,6 +36,10 @@ file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/*.h ${SOURC
 foreach(file ${files})
   get_filename_component(folder ${file} DIRECTORY)
   list(FIND order "${folder}" place)
+  if(place EQUAL -1 AND folder MATCHES "^engine/")  # another engine
+    list(FIND order engine/table place)
+    list(INSERT order ${place} "${folder}")
+  endif()
   if(place EQUAL -1)
     message(SEND_ERROR "src/${folder} has no place in the order of dependence: ${order}")
     continue()
