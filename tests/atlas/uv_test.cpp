@@ -52,7 +52,7 @@ TEST(Uv, OverlapErrorNamesTheFaces) {
   mesh.corner_uvs[7] = {Vec2{0.97, 0.52}, Vec2{0.99, 0.52}, Vec2{0.98, 0.53}};
   EXPECT_THAT([&] { Surface(mesh, kOptions); },
               ThrowsMessage<Error>(
-                  AllOf(HasSubstr("faces 7 and 1"), HasSubstr("overlap"), HasSubstr("--atlas charts"))));
+                  AllOf(HasSubstr("faces 7 and 1"), HasSubstr("overlap"), HasSubstr("atlas of charts"))));
 }
 
 TEST(Uv, MissingOutsideAndCollapsedCoordinatesAreErrors) {
