@@ -95,7 +95,7 @@ TEST_F(MapCommand, PrecisionPicksTheResolutionOfEachMap) {
 TEST_F(MapCommand, PrecisionOutOfReachFailsAndTellsWhatIsNot) {
   const Outcome run = run_sdm(map({"--precision", "1e-9"}));
   EXPECT_EQ(run.code, 1);
-  EXPECT_THAT(run.err, HasSubstr("times the 32768 texels that a side of the map can have; ask for 0.00"));
+  EXPECT_THAT(run.err, HasSubstr("times the maximum of 32768 texels per side; use 0.00"));
 }
 
 TEST_F(MapCommand, BothMeasuresEitherWay) {
