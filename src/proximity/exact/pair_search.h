@@ -9,13 +9,6 @@
 
 namespace sdm::exact {
 
-/// Work counters, for tests.
-struct PairSearchCounts {
-  std::size_t nodes = 0;           ///< opened: eight boxes tested against one
-  std::size_t leaf_pairs = 0;      ///< of up to eight faces each, tested in single precision
-  std::size_t triangle_pairs = 0;  ///< in double precision
-};
-
 /// Per-thread memory reused between searches; results do not depend on it.
 struct PairWorkspace {
   /// A node or leaf of the wide tree, and the binary node that has its box.
@@ -54,7 +47,6 @@ struct PairWorkspace {
 
   std::vector<Entry> overlapping;  ///< a stack
   Heap apart;
-  PairSearchCounts counts;  ///< summed over searches
 };
 
 /// The closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic where few
