@@ -45,9 +45,7 @@ bool cgal_says_intersect(const oracle::CgalSurface& o1, const MeshPair& pair) {
 }
 
 void expect_witnesses(const MeshPair& pair, const Separation& s, double tolerance) {
-  const auto distance_from = [](const Vec3& p, const Corners& t) {
-    return oracle::distance({p, p, p}, t);
-  };
+  const auto distance_from = [](const Vec3& p, const Corners& t) { return oracle::distance({p, p, p}, t); };
   EXPECT_NEAR(norm(s.point2 - s.point1), s.distance, tolerance);
   ASSERT_LT(s.face1, pair.o1.mesh.triangles.size());
   ASSERT_LT(s.face2, pair.o2.mesh.triangles.size());
