@@ -68,7 +68,7 @@ FclCrowd::FclCrowd(std::span<const Mesh> meshes) : impl_(new Impl) {
 }
 FclCrowd::~FclCrowd() = default;
 
-void FclCrowd::update(std::span<const std::vector<Vec3>> positions) {
+void FclCrowd::refit(std::span<const std::vector<Vec3>> positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Body& body = impl_->bodies[i];
     set_vertices(impl_->vertices, positions[i]);

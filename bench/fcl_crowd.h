@@ -17,7 +17,7 @@ class FclCrowd {
   ~FclCrowd();
 
   /// Refits all hierarchies to new positions.
-  void update(std::span<const std::vector<Vec3>> positions);
+  void refit(std::span<const std::vector<Vec3>> positions);
 
   struct Pair {
     std::uint32_t first, second;  ///< first < second

@@ -67,7 +67,7 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
     const auto collide = [&] { return exact::find_intersection(posed, workspace).intersecting; };
     // FCL returns -1 for surfaces that intersect, and rounds moved vertices differently: for surfaces that
     // just touch it may return either.
-    const Separation found = separate();
+    const exact::Separation found = separate();
     const bool same_distance = std::abs(found.distance - std::max(0.0, fcl.distance(pose))) <= 1e-6 * size;
     const bool same_verdict = collide() == fcl.collide(pose) || found.distance < 1e-12 * size;
     wrong += !same_distance || !same_verdict || collide() != found.intersecting;

@@ -14,14 +14,14 @@ namespace {
 using Row = std::array<std::string, 5>;
 
 std::string words(const sdm::BoundedLength& length) {
-  if (length.kind == sdm::Certainty::bounded)
+  if (length.certainty == sdm::Certainty::bounded)
     return fmt::format("{} ({} to {})", number(length.value), number(length.lower), number(length.upper));
-  return fmt::format("{} ({})", number(length.value), name(length.kind));
+  return fmt::format("{} ({})", number(length.value), name(length.certainty));
 }
 
 Row row(const sdm::PairProximity& pair) {
   return {fmt::to_string(pair.first), fmt::to_string(pair.second),
-          fmt::format("{} ({})", pair.colliding.value ? "yes" : "no", name(pair.colliding.kind)),
+          fmt::format("{} ({})", pair.colliding.value ? "yes" : "no", name(pair.colliding.certainty)),
           words(pair.separation), pair.penetration_depth ? words(*pair.penetration_depth) : "none: no solid"};
 }
 

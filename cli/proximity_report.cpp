@@ -10,7 +10,7 @@ const char* name(sdm::Certainty kind) {
 
 Json to_json(const sdm::BoundedLength& length) {
   return {{"value", length.value},
-          {"kind", name(length.kind)},
+          {"kind", name(length.certainty)},
           {"lower", length.lower},
           {"upper", length.upper},
           {"witness", length.witness ? Json(*length.witness) : Json(nullptr)}};
@@ -25,7 +25,7 @@ Json to_json(const sdm::Contact& contact) {
 }
 
 Json to_json(const sdm::BoundedBool& decision) {
-  return {{"value", decision.value}, {"kind", name(decision.kind)}};
+  return {{"value", decision.value}, {"kind", name(decision.certainty)}};
 }
 
 namespace {
@@ -50,10 +50,10 @@ std::string point(const sdm::Vec3& p) {
 
 std::string words(const sdm::BoundedLength& length, const std::string& unit) {
   const std::string bounds =
-      length.kind == sdm::Certainty::bounded
+      length.certainty == sdm::Certainty::bounded
           ? fmt::format("   between {} and {}", number(length.lower), number(length.upper))
           : std::string();
-  return fmt::format("{}{}{} ({})\n", number(length.value), unit, bounds, name(length.kind));
+  return fmt::format("{}{}{} ({})\n", number(length.value), unit, bounds, name(length.certainty));
 }
 
 std::string between(const sdm::BoundedLength& length) {
@@ -83,7 +83,7 @@ std::string summary(sdm::ProximityQuery& query, const std::string& units) {
   const std::string unit = unit_suffix(units);
   const sdm::BoundedBool colliding = query.colliding();
   std::string text =
-      fmt::format("  colliding  {} ({})\n", colliding.value ? "yes" : "no", name(colliding.kind));
+      fmt::format("  colliding  {} ({})\n", colliding.value ? "yes" : "no", name(colliding.certainty));
   text += "  separation " + words(query.separation(), unit) + between(query.separation());
   if (const auto& depth = query.penetration_depth())
     text += "  depth      " + words(*depth, unit) + between(*depth);

@@ -158,7 +158,7 @@ class FrameLoop {
     if (!o2_.still()) p2 = o2_.positions(frame.index);
     frame.time.read = watch.lap();
     try {
-      query_->update(p1, p2);
+      query_->refit(p1, p2);
     } catch (const sdm::Error& error) {
       throw sdm::Error(fmt::format("frame {}: {}", frame.index, error.what()), error.remedy());
     }

@@ -75,7 +75,7 @@ std::string to_csv(const std::vector<Frame>& frames) {
     };
     add({f.separation.value, f.separation.lower, f.separation.upper});
     cells.push_back(f.colliding.value ? "1" : "0");
-    cells.push_back(name(f.colliding.kind));
+    cells.push_back(name(f.colliding.certainty));
     if (f.depth)
       add({f.depth->value, f.depth->lower, f.depth->upper});
     else
@@ -121,14 +121,14 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
   if (frames.empty()) return text;
   const auto least = std::ranges::min_element(frames, {}, [](const Frame& f) { return f.separation.value; });
   text += fmt::format("  separation at least {}{}, in frame {} ({})\n", number(least->separation.value), unit,
-                      least->index, name(least->separation.kind));
+                      least->index, name(least->separation.certainty));
   const auto colliding = std::ranges::count_if(frames, [](const Frame& f) { return f.colliding.value; });
   text += fmt::format("  colliding  in {} frames\n", colliding);
   const auto deepest =
       std::ranges::max_element(frames, {}, [](const Frame& f) { return f.depth ? f.depth->value : -1; });
   if (deepest->depth && deepest->depth->value > 0)
     text += fmt::format("  depth      at most {}{}, in frame {} ({})\n", number(deepest->depth->value), unit,
-                        deepest->index, name(deepest->depth->kind));
+                        deepest->index, name(deepest->depth->certainty));
   const auto relative = [](const Frame& f) { return std::max(f.relative_error[0], f.relative_error[1]); };
   text += fmt::format("  error      up to {} times that of the first frame\n",
                       number(relative(*std::ranges::max_element(frames, {}, relative))));

@@ -54,9 +54,9 @@ class SDM_API MultiBodyQuery {
 
   /// Moves the vertices of a body, keeping its triangles. Throws sdm::Error, and changes nothing, for a body
   /// that does not exist, a wrong count or a coordinate that is not finite or beyond 1e37. Cost: linear.
-  void update(std::size_t body, std::span<const Vec3> positions);
+  void refit(std::size_t body, std::span<const Vec3> positions);
   /// The same for all bodies, on all cores: one entry per body; an empty one leaves the body unchanged.
-  void update(std::span<const std::span<const Vec3>> positions);
+  void refit(std::span<const std::span<const Vec3>> positions);
 
   /// All pairs that collide or whose separation is at most max_distance, and pairs for which the samples
   /// cannot rule this out: none with separation.lower > max_distance unless they collide. Sorted by first,

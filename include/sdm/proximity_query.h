@@ -22,7 +22,7 @@ enum class Certainty {
 /// A length.
 struct BoundedLength {
   double value = 0;
-  Certainty kind = Certainty::bounded;
+  Certainty certainty = Certainty::bounded;
   double lower = 0, upper = 0;  ///< lower ≤ truth ≤ upper, unless an estimate
   /// A point of O1 and a point of O2 that are `value` apart; empty where no pair of points attains the value.
   std::optional<std::array<Vec3, 2>> witness{};
@@ -30,7 +30,7 @@ struct BoundedLength {
 
 struct BoundedBool {
   bool value = false;
-  Certainty kind = Certainty::estimate;
+  Certainty certainty = Certainty::estimate;
 };
 
 /// A point of one body and the point of the other's surface that is closest to it.
@@ -72,7 +72,7 @@ class SDM_API ProximityQuery {
   /// body stays. Throws sdm::Error, and changes nothing, for a wrong count or a coordinate that is not
   /// finite. Cost: linear. Neither this nor the queries allocate memory once the bodies have been through
   /// similar poses.
-  void update(std::span<const Vec3> o1, std::span<const Vec3> o2);
+  void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
   // Results are computed by the first call after a refit.
 

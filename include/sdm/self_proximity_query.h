@@ -93,7 +93,7 @@ class SDM_API SelfProximityQuery {
 
   /// Moves the vertices; the excluded faces stay the same. Throws sdm::Error, and changes nothing, for a
   /// wrong count or a coordinate that is not finite or beyond 1e37. Cost: linear.
-  void update(std::span<const Vec3> positions);
+  void refit(std::span<const Vec3> positions);
 
   /// The smallest distance between two faces that do not exclude each other, 0 if they intersect; exact.
   /// Empty if there are none within the maximum distance. The witness is a point of either face, that of the

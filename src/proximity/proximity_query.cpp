@@ -43,7 +43,7 @@ ProximityQuery::~ProximityQuery() = default;
 ProximityQuery::ProximityQuery(ProximityQuery&&) noexcept = default;
 ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;
 
-void ProximityQuery::update(std::span<const Vec3> o1, std::span<const Vec3> o2) try {
+void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) try {
   const std::array positions{o1, o2};
   for (int b = 0; b < 2; ++b)
     if (!positions[b].empty())

@@ -142,7 +142,7 @@ TEST_F(SequenceCommand, FollowsTheBodies) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     SCOPED_TRACE(i);
     EXPECT_EQ(all[i]["frame"], i);
-    query.update(read_mesh(std::filesystem::path(moving) / (std::to_string(i) + ".obj")).positions, {});
+    query.refit(read_mesh(std::filesystem::path(moving) / (std::to_string(i) + ".obj")).positions, {});
     EXPECT_EQ(all[i]["separation"]["value"], query.separation().value);
     EXPECT_EQ(all[i]["colliding"]["value"], query.colliding().value);
     EXPECT_EQ(all[i]["penetration_depth"]["value"], query.penetration_depth()->value);

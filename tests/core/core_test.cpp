@@ -11,13 +11,13 @@
 #include <thread>
 
 #include "core/disjoint_sets.h"
+#include "core/geometry/spatial_order.h"
+#include "core/geometry/sweep.h"
+#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/platform.h"
 #include "core/rows.h"
-#include "core/geometry/spatial_order.h"
-#include "core/geometry/sweep.h"
-#include "core/geometry/vec.h"
 
 namespace sdm {
 namespace {

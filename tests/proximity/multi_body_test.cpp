@@ -89,7 +89,7 @@ MultiBodyOptions options(double max_distance = kAny, bool exact = false) {
 
 void expect_same(const BoundedLength& a, const BoundedLength& b) {
   EXPECT_EQ(a.value, b.value);
-  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.certainty, b.certainty);
   EXPECT_EQ(a.lower, b.lower);
   EXPECT_EQ(a.upper, b.upper);
   EXPECT_EQ(a.witness, b.witness);
@@ -98,7 +98,7 @@ void expect_same(const BoundedLength& a, const BoundedLength& b) {
 void expect_same(const PairProximity& a, const PairProximity& b) {
   expect_same(a.separation, b.separation);
   EXPECT_EQ(a.colliding.value, b.colliding.value);
-  EXPECT_EQ(a.colliding.kind, b.colliding.kind);
+  EXPECT_EQ(a.colliding.certainty, b.colliding.certainty);
   ASSERT_EQ(a.penetration_depth.has_value(), b.penetration_depth.has_value());
   if (a.penetration_depth) expect_same(*a.penetration_depth, *b.penetration_depth);
 }
@@ -274,17 +274,17 @@ TEST_P(ManyBodies, RefitForAnyThreadCount) {
     }
   };
   const std::vector<PairProximity> first = copy();
-  for (std::size_t i = 0; i < meshes.size(); ++i) bodies.update(i, meshes[i].positions);
+  for (std::size_t i = 0; i < meshes.size(); ++i) bodies.refit(i, meshes[i].positions);
   expect_all_same(copy(), first);
 
   // All at once, or one after another.
   const Mesh away = moved(meshes[1], {0, 30, 0}), back = moved(meshes[7], {-36, -3, -2});
   std::vector<std::span<const Vec3>> positions(meshes.size());
   positions[1] = away.positions, positions[7] = back.positions;
-  bodies.update(positions);
+  bodies.refit(positions);
   MultiBodyQuery others(meshes, options(2, GetParam()));
-  others.update(7, back.positions);
-  others.update(1, away.positions);
+  others.refit(7, back.positions);
+  others.refit(1, away.positions);
   const std::vector<PairProximity> now = copy();
   {
     const ThreadLimit alone(1);
@@ -309,7 +309,7 @@ TEST_P(ManyBodies, AllocateNothingAfterTheFirstFrames) {
   const auto taken = [&] {
     const std::size_t before = allocations();
     for (const auto& frame : frames) {
-      for (std::size_t i = 0; i < meshes.size(); ++i) bodies.update(i, frame[i]);
+      for (std::size_t i = 0; i < meshes.size(); ++i) bodies.refit(i, frame[i]);
       (void)bodies.pairs();
     }
     return allocations() - before;
@@ -335,7 +335,7 @@ TEST(MultiBodyQuery, AcceptsFewBodies) {
   EXPECT_TRUE(two.pairs().empty());
   EXPECT_EQ(two.candidate_pairs(), 0u);
   EXPECT_EQ(two.nearest_map(0).map.beyond_max_distance, two.surface(0).sample_texels().size());
-  two.update(1, moved(cube(), {3.5, 0, 0}).positions);
+  two.refit(1, moved(cube(), {3.5, 0, 0}).positions);
   ASSERT_EQ(two.pairs().size(), 1u);
   EXPECT_NEAR(two.pairs()[0].separation.value, 1.5, 1e-6);
 }
@@ -345,11 +345,11 @@ TEST(MultiBodyQuery, RejectsMismatchedInput) {
   MultiBodyQuery bodies(meshes, options());
   const BoundedLength before = bodies.pairs()[0].separation;
   const std::vector<Vec3> few(3), nan(8, Vec3{std::nan(""), 0, 0}), good = moved(cube(), {9, 0, 0}).positions;
-  EXPECT_THROW(bodies.update(2, good), Error);
-  EXPECT_THROW(bodies.update(0, few), Error);
-  EXPECT_THROW(bodies.update(1, nan), Error);
-  EXPECT_THROW(bodies.update(std::vector<std::span<const Vec3>>{good}), Error);
-  EXPECT_THROW(bodies.update(std::vector<std::span<const Vec3>>{good, nan}), Error);
+  EXPECT_THROW(bodies.refit(2, good), Error);
+  EXPECT_THROW(bodies.refit(0, few), Error);
+  EXPECT_THROW(bodies.refit(1, nan), Error);
+  EXPECT_THROW(bodies.refit(std::vector<std::span<const Vec3>>{good}), Error);
+  EXPECT_THROW(bodies.refit(std::vector<std::span<const Vec3>>{good, nan}), Error);
   expect_same(bodies.pairs()[0].separation, before);
   EXPECT_THROW((void)bodies.surface(2), Error);
   EXPECT_THROW((void)bodies.sites(2), Error);

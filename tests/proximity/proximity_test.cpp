@@ -43,7 +43,7 @@ TEST(Proximity, Cubes) {
     expect_witness(query.separation());
     EXPECT_LT(query.separation().upper - query.separation().lower, 0.2);
     EXPECT_FALSE(query.colliding().value);
-    EXPECT_EQ(query.colliding().kind, Certainty::exact);
+    EXPECT_EQ(query.colliding().certainty, Certainty::exact);
     ASSERT_TRUE(query.penetration_depth());
     EXPECT_EQ(query.penetration_depth()->value, 0);
     EXPECT_EQ(query.penetration_depth()->upper, 0);
@@ -51,7 +51,7 @@ TEST(Proximity, Cubes) {
   }
   ProximityQuery query(cube(), moved(cube(), {1.7, 0.1, 0.2}), at_resolution(128));
   EXPECT_TRUE(query.colliding().value);
-  EXPECT_EQ(query.colliding().kind, Certainty::exact);
+  EXPECT_EQ(query.colliding().certainty, Certainty::exact);
   expect_holds(*query.penetration_depth(), 0.3, 1e-9);
   EXPECT_NEAR(query.penetration_depth()->value, 0.3, 1e-5);
   expect_witness(*query.penetration_depth());
@@ -66,7 +66,7 @@ TEST(Proximity, DepthOfSpheresConverges) {
     ProximityQuery query(sphere(level), moved(sphere(level), {0.9, 1.2, 0}), at_resolution(resolution));
     ASSERT_TRUE(query.penetration_depth());
     const BoundedLength depth = *query.penetration_depth();
-    EXPECT_EQ(depth.kind, Certainty::bounded);
+    EXPECT_EQ(depth.certainty, Certainty::bounded);
     EXPECT_GT(depth.lower, 0.2);
     const double now = std::max(std::abs(depth.lower - 0.5), std::abs(depth.upper - 0.5));
     EXPECT_LT(now, 0.9 * error) << level;
@@ -90,7 +90,7 @@ TEST(Proximity, DepthInATorus) {
     EXPECT_LT(now, 0.7 * error);
     error = now;
     expect_holds(query.separation(), 0.3, 0.04 * 24 / n);
-    EXPECT_EQ(query.colliding().kind, Certainty::exact);
+    EXPECT_EQ(query.colliding().certainty, Certainty::exact);
   }
 }
 
@@ -139,21 +139,21 @@ TEST(Proximity, BoundsContainTheExactResults) {
       const Mesh posed = placed(b, "scale" + text(shrink(random)) + ",rotate" +
                                        text(turn(random), turn(random), turn(random)) + ",translate" +
                                        text(shift(random), shift(random), shift(random)));
-      sampled.update({}, posed.positions);
-      exact.update({}, posed.positions);
+      sampled.refit({}, posed.positions);
+      exact.refit({}, posed.positions);
       const double tolerance = 1e-6 * scene_diagonal(a, posed);
       const BoundedLength truth = exact.separation();
-      EXPECT_EQ(truth.kind, Certainty::exact);
+      EXPECT_EQ(truth.certainty, Certainty::exact);
       expect_holds(sampled.separation(), truth.value, tolerance);
-      if (sampled.colliding().kind == Certainty::exact) {
+      if (sampled.colliding().certainty == Certainty::exact) {
         EXPECT_EQ(sampled.colliding().value, exact.colliding().value);
       } else {
         ++undecided;
       }
       colliding += exact.colliding().value;
       const BoundedLength& depth = *exact.penetration_depth();
-      EXPECT_EQ(depth.kind, exact.colliding().value ? Certainty::bounded : Certainty::exact);
-      EXPECT_TRUE(depth.kind == Certainty::bounded || depth.value == 0);
+      EXPECT_EQ(depth.certainty, exact.colliding().value ? Certainty::bounded : Certainty::exact);
+      EXPECT_TRUE(depth.certainty == Certainty::bounded || depth.value == 0);
       // The same samples, whether or not some of them were ruled out.
       EXPECT_NEAR(depth.value, sampled.penetration_depth()->value, tolerance);
     }
@@ -203,7 +203,7 @@ TEST(Proximity, OpenMeshesHaveNoInside) {
   ProximityQuery query(open, moved(open, {0.5, 0, 0.2}), at_resolution(128));
   EXPECT_FALSE(query.penetration_depth());
   EXPECT_EQ(query.separation().lower, 0);
-  EXPECT_EQ(query.colliding().kind, Certainty::estimate);
+  EXPECT_EQ(query.colliding().certainty, Certainty::estimate);
   // Of a pair with one solid the other's surface can be inside of it.
   ProximityQuery solid(cube(), moved(open, {0, 0, 0.8}), at_resolution(128));
   ASSERT_TRUE(solid.penetration_depth());
@@ -215,7 +215,7 @@ TEST(Proximity, NestedMeshesCollide) {
   for (const bool swapped : {false, true}) {
     ProximityQuery query(swapped ? inner : cube(), swapped ? cube() : inner, at_resolution(64));
     EXPECT_TRUE(query.colliding().value);
-    EXPECT_EQ(query.colliding().kind, Certainty::exact);
+    EXPECT_EQ(query.colliding().certainty, Certainty::exact);
     expect_holds(query.separation(), 0.5, 1e-9);
     expect_holds(*query.penetration_depth(), 0.5, 1e-9);
   }
@@ -349,21 +349,21 @@ TEST(ProximityRefit, ReturnsToTheSameBits) {
   const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
   ProximityQuery query(a, b, at_resolution(128));
   const Answers first = answers(query);
-  query.update(a.positions, b.positions);
+  query.refit(a.positions, b.positions);
   EXPECT_EQ(answers(query), first);
   const std::vector<Vec3> away = moved(b, {3, 0, 0}).positions;
-  query.update({}, away);
+  query.refit({}, away);
   EXPECT_FALSE(query.colliding().value);
   EXPECT_GT(query.separation().lower, 1);
   EXPECT_TRUE(query.contacts().empty());
   // Texels that have moved away come back but for rounding; from then on to the bit.
-  query.update({}, b.positions);
+  query.refit({}, b.positions);
   const Answers back = answers(query);
   EXPECT_NEAR(back.separation, first.separation, 1e-6);
   EXPECT_NEAR(back.depth, first.depth, 1e-6);
   EXPECT_EQ(back.depths.size(), first.depths.size());
-  query.update({}, away);
-  query.update({}, b.positions);
+  query.refit({}, away);
+  query.refit({}, b.positions);
   EXPECT_EQ(answers(query), back);
 }
 
@@ -372,8 +372,8 @@ TEST(ProximityRefit, RigidMotion) {
   const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
   ProximityQuery query(a, b, at_resolution(128));
   const Answers first = answers(query);
-  query.update(placed(a, "rotate:20:50:-70,translate:2:3:4").positions,
-               placed(b, "rotate:20:50:-70,translate:2:3:4").positions);
+  query.refit(placed(a, "rotate:20:50:-70,translate:2:3:4").positions,
+              placed(b, "rotate:20:50:-70,translate:2:3:4").positions);
   EXPECT_NEAR(query.separation().value, first.separation, 2e-5);
   EXPECT_NEAR(query.penetration_depth()->value, first.depth, 2e-5);
   EXPECT_EQ(query.colliding().value, first.colliding);
@@ -386,7 +386,7 @@ void expect_steady(const Mesh& a, const Mesh& b, bool exact) {
   const auto taken = [&] {
     const std::size_t before = allocations();
     for (const std::vector<Vec3>& frame : frames) {
-      query.update(a.positions, frame);
+      query.refit(a.positions, frame);
       (void)query.separation(), (void)query.colliding(), (void)query.penetration_depth();
       (void)query.contacts();
     }
@@ -415,8 +415,8 @@ TEST(ProximityRefit, RejectsMismatchedPositions) {
   ProximityQuery query(cube(), moved(cube(), {3, 0, 0}), at_resolution(64));
   const double before = query.separation().value;
   const std::vector<Vec3> few(3), nan(8, Vec3{std::nan(""), 0, 0}), good = moved(cube(), {9, 0, 0}).positions;
-  EXPECT_THROW(query.update(few, {}), Error);
-  EXPECT_THROW(query.update(good, nan), Error);
+  EXPECT_THROW(query.refit(few, {}), Error);
+  EXPECT_THROW(query.refit(good, nan), Error);
   EXPECT_EQ(query.separation().value, before);
   EXPECT_THROW(ProximityQuery(cube(), cube(), at_resolution(64, -1)), Error);
   EXPECT_THROW(ProximityQuery(cube(), cube(), at_resolution(64, std::nan(""))), Error);

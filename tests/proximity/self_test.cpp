@@ -319,7 +319,7 @@ void expect_as_pairs(SelfProximityQuery& query, const Relation& out) {
   const double tolerance = 1e-9 * diagonal(bounds(mesh));
   const std::optional<BoundedLength> separation = query.separation();
   ASSERT_TRUE(separation);
-  EXPECT_EQ(separation->kind, Certainty::exact);
+  EXPECT_EQ(separation->certainty, Certainty::exact);
   EXPECT_NEAR(separation->value, pairs.least, tolerance);
   ASSERT_TRUE(separation->witness);
   const auto& [p, q] = *separation->witness;
@@ -368,7 +368,7 @@ TEST(Self, FollowsADeformation) {
   Surface surface(flat(), {.resolution = 64});
   for (const double gap : {0.6, 0.3, 0.05}) {
     const Mesh now = folded(gap);
-    query.update(now.positions);
+    query.refit(now.positions);
     surface.refit(now.positions);
     expect_self_map(surface, query.sites(), compute_self_map(surface, query.sites(), query.exclusion()), out);
     expect_as_pairs(query, out);
@@ -415,7 +415,7 @@ TEST(Self, IsBitIdenticalForAnyThreadCount) {
   const DistanceMap map = compute_self_map(surface, query.sites(), query.exclusion());
   for (const unsigned threads : {0u, 1u, 2u}) {
     const ThreadLimit limit(threads);
-    query.update(mesh.positions);
+    query.refit(mesh.positions);
     EXPECT_TRUE(same(query.separation(), first));
     const auto again = query.contacts(margin);
     ASSERT_EQ(again.size(), contacts.size());
@@ -465,7 +465,7 @@ TEST(Self, RejectsOptionsOutOfRange) {
   EXPECT_THROW((void)compute_self_map(surface, query.sites(), query.exclusion(), {.max_distance = -1}),
                Error);
   std::vector<Vec3> wrong(mesh.positions.begin() + 1, mesh.positions.end());
-  EXPECT_THROW(query.update(wrong), Error);
+  EXPECT_THROW(query.refit(wrong), Error);
   EXPECT_THROW(Exclusion(mesh, {}, [](std::string_view, double) { return false; }), Cancelled);
 }
 

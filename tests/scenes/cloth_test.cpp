@@ -94,7 +94,7 @@ TEST_F(FoldedCloth, KeepsEdgesDistanceAndEnergyAndComesToRest) {
 
   // Layers intersect nowhere, not even between particles.
   SelfProximityQuery query(cloth.mesh(), {.exclusion = {.geodesic = 2 * cloth.thickness()}});
-  query.update(now);
+  query.refit(now);
   ASSERT_TRUE(query.separation());
   EXPECT_GT(query.separation()->value, 0);
   EXPECT_FALSE(query.contacts(1.3 * cloth.thickness()).empty());

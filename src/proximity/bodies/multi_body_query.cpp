@@ -129,7 +129,7 @@ std::size_t MultiBodyQuery::size() const {
   return impl_->bodies.size();
 }
 
-void MultiBodyQuery::update(std::size_t body, std::span<const Vec3> positions) try {
+void MultiBodyQuery::refit(std::size_t body, std::span<const Vec3> positions) try {
   impl_->check(impl_->checked(body), positions);
   impl_->found = false;
   impl_->bodies[body].refit(positions);
@@ -137,7 +137,7 @@ void MultiBodyQuery::update(std::size_t body, std::span<const Vec3> positions) t
   throw out_of_memory("a query of many bodies");
 }
 
-void MultiBodyQuery::update(std::span<const std::span<const Vec3>> positions) try {
+void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) try {
   if (positions.size() != size())
     throw Error("there are " + std::to_string(size()) + " bodies, but positions for " +
                 std::to_string(positions.size()) + " were given; give one entry per body");

@@ -106,7 +106,7 @@ const exact::Separation& PairAnswers::closest_triangles() {
 BoundedLength PairAnswers::exact_separation() {
   const exact::Separation& c = closest_triangles();
   return {.value = c.distance,
-          .kind = Certainty::exact,
+          .certainty = Certainty::exact,
           .lower = c.distance,
           .upper = c.distance,
           .witness = std::array{c.point1, c.point2}};
@@ -121,7 +121,7 @@ BoundedLength PairAnswers::bounded_separation() {
   const auto [value, sample] = least([](double d, double) { return std::abs(d); });
   const double lower = least([](double d, double radius) { return std::abs(d) - radius; }).first;
   return {.value = value,
-          .kind = Certainty::bounded,
+          .certainty = Certainty::bounded,
           .lower = std::max(0.0, lower - precision_),
           .upper = value + precision_,
           .witness = witness(sample)};
@@ -136,7 +136,7 @@ BoundedBool PairAnswers::sampled_collision() {
 
 std::optional<BoundedLength> PairAnswers::depth() {
   if (!bodies_[0]->solid() && !bodies_[1]->solid()) return {};
-  if (options_.exact && !colliding().value) return BoundedLength{.kind = Certainty::exact};
+  if (options_.exact && !colliding().value) return BoundedLength{.certainty = Certainty::exact};
   return bounded_depth();
 }
 
@@ -144,7 +144,7 @@ BoundedLength PairAnswers::bounded_depth() {
   measure();
   const auto [value, sample] = least([](double d, double) { return d; });
   const double most = -least([](double d, double radius) { return d - radius; }).first;
-  BoundedLength found{.kind = Certainty::bounded, .upper = std::max(0.0, most + precision_)};
+  BoundedLength found{.certainty = Certainty::bounded, .upper = std::max(0.0, most + precision_)};
   if (value < 0) {
     found.value = -value;
     found.lower = std::max(0.0, found.value - precision_);

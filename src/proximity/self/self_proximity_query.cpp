@@ -111,7 +111,7 @@ SelfProximityQuery::~SelfProximityQuery() = default;
 SelfProximityQuery::SelfProximityQuery(SelfProximityQuery&&) noexcept = default;
 SelfProximityQuery& SelfProximityQuery::operator=(SelfProximityQuery&&) noexcept = default;
 
-void SelfProximityQuery::update(std::span<const Vec3> positions) try {
+void SelfProximityQuery::refit(std::span<const Vec3> positions) try {
   impl_->sites.refit(positions);
   impl_->closest.reset();
 } catch (const std::bad_alloc&) {
@@ -123,7 +123,7 @@ std::optional<BoundedLength> SelfProximityQuery::separation() try {
   const self::FacePair& c = *impl_->closest;
   if (c.face1 == kNone) return {};
   return BoundedLength{.value = c.distance,
-                       .kind = Certainty::exact,
+                       .certainty = Certainty::exact,
                        .lower = c.distance,
                        .upper = c.distance,
                        .witness = std::array{c.point1, c.point2}};
