@@ -1,4 +1,4 @@
-// The reference engine: the oracle of all others.
+// The reference engine: the oracle for all other engines.
 #pragma once
 
 #include "engine/engine.h"
@@ -8,7 +8,7 @@ namespace sdm::reference {
 
 using engine::ClosestSink;
 
-/// Scalar, double precision, best-first over the binary tree: every number to rounding.
+/// Scalar, double precision, best-first over the binary tree; all results are accurate to rounding.
 [[nodiscard]] ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& point,
                                              double max_distance);
 
