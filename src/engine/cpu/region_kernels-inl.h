@@ -99,11 +99,12 @@ HWY_INLINE PointVec height(Points d, const SiteBlock::Row* plane, uint32_t lane,
 }
 
 // For each kind of site:
-//   matters   whether the region meets the ball and the CandidateBound holds;
-//   squared   the squared distances of one point to a block of sites, or of many points to one site: infinite
-//             outside the prism of a face or beyond the ends of an edge, where the plane or line is closer
-//             than the site. The rest of the region needs no test, since a site is never closer than O2 is;
-//   closest   the point of one site that is closest to p.
+//   may_be_closest  whether the region meets the ball and the CandidateBound holds;
+//   squared         the squared distances of one point to a block of sites, or of many points to one site:
+//                   infinite outside the prism of a face or beyond the ends of an edge, where the plane or
+//                   line is closer than the site. The rest of the region needs no test, since a site is
+//                   never closer than O2 is;
+//   closest         the point of one site that is closest to p.
 
 HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, size_t i,
                                     const CandidateBound& reach) {
