@@ -14,7 +14,7 @@ namespace sdm::io {
 
 enum class MeshFormat { unknown, obj, ply, stl_text, stl_binary, off, gltf, tds };
 
-/// Determines the format from the contents, else from the extension of the file name.
+/// Determines the format from the contents, or else from the file name's extension.
 [[nodiscard]] MeshFormat format_of(std::string_view bytes, const std::filesystem::path& file);
 
 /// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.
