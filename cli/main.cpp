@@ -1,4 +1,4 @@
-// The command sdm. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded.
+// The sdm command. Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.
 #include "bodies.h"
 #include "devices.h"
 #include "info.h"
@@ -24,7 +24,7 @@ void flush_output() {
   if (!std::cout.flush()) throw sdm::Error("cannot write to the standard output; the disk may be full");
 }
 
-/// The option of the command that remedies the error, for its message.
+/// The option that remedies the error, as text for its message.
 std::string advice(sdm::Remedy remedy) {
   switch (remedy) {
     case sdm::Remedy::none:

@@ -23,7 +23,7 @@ struct Result {
   nlohmann::ordered_json report;
 };
 
-/// Computes the map on `on` of the distances to `to`, and writes all its files into `folder`.
+/// Computes the map on `on` of the distances to `to`, and writes all files of it into `folder`.
 Result measure(const MapCommand& command, const Input& on, const Input& to, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
   Stopwatch total;
@@ -90,7 +90,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   return result;
 }
 
-/// The exit code.
+/// Returns the exit code.
 int run(MapCommand command) {
   Stopwatch total;
   const sdm::ThreadLimit limit(command.threads);
@@ -100,7 +100,7 @@ int run(MapCommand command) {
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
   if (command.engine.name == "gl") {
-    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // fails before the long work
+    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // fails early, before the long computation
     command.map.engine = sdm::make_gl_engine(command.gl);
   } else {
     command.map.engine = sdm::make_engine(command.engine.name);

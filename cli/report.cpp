@@ -32,7 +32,7 @@ double overdraw(const sdm::GlReport& r) {
   return r.texels == 0 ? 0 : static_cast<double>(r.fragments) / static_cast<double>(r.texels);
 }
 
-// Milliseconds, to the microsecond.
+// Milliseconds, rounded to microseconds.
 double rounded(double ms) {
   return std::round(1000 * ms) / 1000;
 }
@@ -98,7 +98,7 @@ Json to_json(const sdm::Surface& surface) {
 }
 
 Json to_json(const sdm::DistanceStatistics& d) {
-  // NaN, where no texel has a value, becomes null.
+  // NaN, if no texel has a value, becomes null.
   return {{"kind", "estimate"}, {"min", d.min}, {"max", d.max}, {"mean", d.mean},
           {"rms", d.rms},       {"p50", d.p50}, {"p95", d.p95}, {"p99", d.p99}};
 }
