@@ -21,7 +21,7 @@
 namespace {
 
 void flush_output() {
-  if (!std::cout.flush()) throw sdm::Error("cannot write to the standard output; the disk may be full");
+  if (!std::cout.flush()) throw sdm::Error("cannot write to standard output; the disk may be full");
 }
 
 /// The option that remedies the error, as text for its message.
@@ -42,7 +42,9 @@ std::string advice(sdm::Remedy remedy) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Surface distance maps: the distance from everywhere on one triangle mesh to another.", "sdm");
+  CLI::App app(
+      "Computes surface distance maps: the distance from every point of one triangle mesh to another.",
+      "sdm");
   app.set_version_flag("--version", std::string("sdm ") + sdm::kVersion);
   app.require_subcommand(0, 1);
   app.footer(

@@ -139,12 +139,12 @@ int run(MapCommand command) {
 }  // namespace
 
 void add_map_command(CLI::App& app) {
-  CLI::App* map = app.add_subcommand("map", "Measure the distance from everywhere on mesh O1 to mesh O2");
+  CLI::App* map = app.add_subcommand("map", "Compute the distance from every point of mesh O1 to mesh O2");
   map->footer(
       "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb (O1 in colours) and "
       "report.json.\n"
-      "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded; an interrupt ends sdm by its "
-      "signal.\n\n"
+      "Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded. An interrupt terminates sdm "
+      "with its signal.\n\n"
       "Example, two meshes side by side:\n"
       "  sdm map bunny.obj armadillo.off -o out --transform-o1 fit --transform-o2 fit,translate:0.8:0:0");
   const auto command = std::make_shared<MapCommand>();

@@ -147,15 +147,15 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
   if (outcome.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", outcome.sign.reason);
   if (outcome.beyond_max_distance > 0)
     add("            {} texels are farther than --max-distance\n", outcome.beyond_max_distance);
-  add("  error     at most {}{}, everywhere between the texels (whose values are exact)\n",
-      number(outcome.error_bound), unit);
+  add("  error     at most {}{} between the texels, whose values are exact\n", number(outcome.error_bound),
+      unit);
   if (const auto& verdict = outcome.tolerance) {
     if (!verdict->within)
       add("  tolerance exceeded on {} % of the area\n", number(100 * verdict->exceeded_area_fraction));
     else if (verdict->certified)
-      add("  tolerance kept\n");
+      add("  tolerance met\n");
     else
-      add("  tolerance kept at the samples, not certified between them\n");
+      add("  tolerance met at the samples, but not certified between them\n");
   }
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,

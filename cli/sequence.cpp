@@ -238,7 +238,7 @@ void add_sequence_command(CLI::App& app) {
       "  sdm scene letters -o letters\n"
       "  sdm sequence letters/E.ply+letters/E.npy letters/G.ply+letters/G.npy -o out");
   const auto command = std::make_shared<SequenceCommand>();
-  add_options(*sequence, command->pair, {"A sequence, or a mesh at rest", "The other one"});
+  add_options(*sequence, command->pair, {"A sequence, or a mesh at rest", "The other sequence or mesh"});
   add_output_option(*sequence, command->out);
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")

@@ -15,7 +15,7 @@ using engine::ClosestSink;
 class ReferenceEngine final : public Engine {
  public:
   static constexpr EngineInfo kInfo{
-      .name = "reference", .summary = "plain, to verify the others", .relative_error = 1e-6};
+      .name = "reference", .summary = "simple, for verification", .relative_error = 1e-6};
 
   [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
   void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
