@@ -52,8 +52,7 @@ struct Program {
 };
 
 /// Parses the arguments --list, --filter REGEX, --repetitions N, --threads N and --json FILE, runs the
-/// selected cases, and prints a Markdown table of their figures. The JSON file appears when all cases have
-/// run:
+/// selected cases, and prints a Markdown table of their figures. The JSON file is written at the end:
 ///   {"program": ..., "machine": {"cpu": ..., "cores": ..., "compiler": ...},
 ///    "cases": {NAME: {"verified": ..., "repetitions": ..., "threads": ..., FIGURE: ..., ROW: {FIGURE:
 ///    ...}}}}

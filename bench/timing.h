@@ -28,7 +28,7 @@ struct Contender {
 [[nodiscard]] double median(const std::vector<double>& values);
 [[nodiscard]] double mean(std::span<const double> values);
 
-/// How many times as long as ours the peer takes.
+/// The peer's time relative to ours.
 struct Race {
   double ratio;             ///< of the medians
   double spread;            ///< of the ratios over repetitions: (third − first quartile) / median

@@ -3,7 +3,7 @@
 
 uniform float resolution;
 uniform uint first_polygon;  // of these corners, in the table
-uniform usamplerBuffer polygons;  // seven texels per polygon (RasterPolygon), as bits: floats could be flushed to zero
+uniform usamplerBuffer polygons;  // seven texels per polygon (RasterPolygon), as bits: denormal floats could be flushed
 
 layout(location = 0) in vec2 corner;
 layout(location = 1) in uint polygon;
