@@ -147,8 +147,7 @@ void Rasteriser::Impl::make_inputs(const Ownership& owned) {
   const auto side = static_cast<GLsizei>(resolution);
   if (const OwnerTable* table = std::get_if<OwnerTable>(&owned)) {
     glTextureStorage2D(owners, 1, GL_R32UI, side, side);
-    for (const GLenum filter :
-         {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})  // integer textures cannot be filtered
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})  // integers cannot be blended
       glTextureParameteri(owners, filter, GL_NEAREST);
     glTextureSubImage2D(owners, 0, 0, 0, side, side, GL_RED_INTEGER, GL_UNSIGNED_INT, table->owners.data());
   }

@@ -76,8 +76,7 @@ class BlockSearch {
   std::span<const sampled::Body> bodies_;
   std::size_t on_;
   double max_distance_;
-  std::vector<std::pair<double, std::uint32_t>>
-      order_;  // distance of a body's box from the samples, and the body
+  std::vector<std::pair<double, std::uint32_t>> order_;  // distances of boxes from the samples, and bodies
   std::array<ClosestPoint, surface::kBlockSize> closest_;
   std::array<std::uint32_t, surface::kBlockSize> body_, asked_;
   std::array<Vec3, surface::kBlockSize> at_;  // positions of the samples in asked_
