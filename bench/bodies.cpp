@@ -1,11 +1,10 @@
-// Crowds of deforming bodies: all near pairs in each frame, against FCL's dynamic AABB tree with distances of
-// the same pairs. A repetition is a frame, in which separations are compared.
+// Crowds of deforming bodies: all near pairs in each frame, compared with the distances of the same pairs by
+// FCL's dynamic AABB tree. A repetition is a frame, whose separations are compared.
 //
 //   build/dev/bench/bodies [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 //
-// A frame of ours is an update of all bodies and pairs(): separation with bounds, collision and penetration
-// depth, from samples or exactly. A frame of FCL's is a refit of all bodies and the separations; FCL uses one
-// thread.
+// Our frame is a refit of all bodies and pairs(): separation with bounds, collision and penetration depth,
+// from samples or exact. FCL's frame is a refit of all bodies and the separations; FCL uses one thread.
 #include <sdm/multi_body_query.h>
 #include <sdm/threads.h>
 
@@ -27,7 +26,7 @@
 namespace sdm::bench {
 namespace {
 
-/// A sphere of diameter 1, of 500 triangles.
+/// A sphere of diameter 1 with 500 triangles.
 Mesh ball() {
   constexpr std::uint32_t kAround = 25, kRings = 10;
   Mesh mesh;
@@ -53,8 +52,8 @@ Mesh ball() {
   return mesh;
 }
 
-/// Balls with travelling waves on their surfaces. They drift through a cube of 5 units of volume per body,
-/// and are reflected at its walls.
+/// Balls with travelling waves on their surfaces. They drift through a cube with a volume of 5 units per
+/// body, and are reflected at its walls.
 class Crowd {
  public:
   explicit Crowd(std::size_t size) : side_(std::cbrt(5.0 * static_cast<double>(size))), positions_(size) {

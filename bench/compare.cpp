@@ -1,6 +1,6 @@
-// Maps of the cpu engine against Embree's closest-point queries, texel by texel; how times grow with threads,
-// sites and texels; building, refitting and memory. "ratio" is the peer's time divided by ours, where each
-// case's description names the two.
+// Maps of the cpu engine against Embree's closest-point queries, texel by texel; scaling with threads, sites
+// and texels; building, refitting and memory. "ratio" is the peer's time divided by ours; each case's
+// description names the two.
 //
 //   build/dev/bench/compare [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 #include <sdm/sdm.h>
@@ -63,7 +63,7 @@ Outcome bunny_to_armadillo(const Trial& trial, std::uint32_t resolution, const c
   return against_embree(trial, {&task});
 }
 
-/// The paper's E and G, which overlap in part.
+/// The paper's E and G, which overlap partially.
 std::array<Mesh, 2> letter_meshes() {
   std::array result{scenes::letter_e(), scenes::letter_g()};
   scenes::place(result[1], scenes::parse_placement("rotate:10:30:5,translate:0.35:0.1:0.1"));
@@ -95,7 +95,7 @@ Outcome two_threads(const Trial& trial) {
   return compare(trial, ours({&task}, 2), ours({&task}, 1));
 }
 
-/// Bunny to armadillo, apart and penetrating: the maps of both.
+/// Bunny to armadillo, apart and penetrating: the maps of both placements.
 struct BothPlacements {
   MapTask apart, near;
 
@@ -125,7 +125,7 @@ Outcome more_texels(const Trial& trial) {
   return compare_maps(trial, few, many);
 }
 
-// From a mesh in memory to a structure that is ready for queries, including its destruction; both copy the
+// From a mesh in memory to a structure ready for queries, including its destruction; both libraries copy the
 // vertices and triangles.
 Outcome build(const Trial& trial) {
   const Mesh mesh = armadillo(kPenetrating);
@@ -138,7 +138,7 @@ Outcome build(const Trial& trial) {
   return compare(trial, ours, peer);
 }
 
-/// The positions of a mesh that sways a little.
+/// The positions of a slightly swaying mesh.
 std::vector<Vec3> swayed(const Mesh& mesh, double amplitude) {
   std::vector<Vec3> positions = mesh.positions;
   for (Vec3& p : positions) p[0] += amplitude * std::sin(2 * std::numbers::pi * p[1]);
@@ -172,8 +172,8 @@ Outcome memory(const Trial&) {
   const double surface_bytes = grown_since(before);
   if (!MapTask(texels_of, o2).agrees()) return {};
 
-  // A new thread has no working memory left over from earlier maps, and frees its own when it ends: what
-  // remains then is the map.
+  // A new thread has no working memory from earlier maps, and frees its own when it ends: what remains is the
+  // map.
   DistanceMap map;
   double peak = 0;
   before = heap_bytes();
@@ -193,7 +193,7 @@ Outcome memory(const Trial&) {
                                 {"working_bytes_per_texel", working_bytes / texels}}}}};
 }
 
-/// A frame of the letters: both sway, and both maps follow.
+/// A frame of the letters: both sway, and both maps are recomputed.
 Outcome frame(const Trial& trial) {
   const auto [e, g] = letter_meshes();
   const std::array e_poses{e.positions, swayed(e, 0.01)}, g_poses{g.positions, swayed(g, 0.01)};

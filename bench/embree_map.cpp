@@ -24,7 +24,7 @@ float dot(const Vec3f& a, const Vec3f& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The closest point of a triangle to the origin, by the sign of the barycentric coordinates of its
+/// The closest point of a triangle to the origin, by the signs of the barycentric coordinates of its
 /// projection.
 Vec3f closest_to_origin(const std::array<Vec3f, 3>& triangle) {
   const auto& [a, b, c] = triangle;
@@ -63,7 +63,7 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   texel.distance = distance;
   texel.face = arguments->primID;
   arguments->query->radius = distance;
-  return true;  // the radius has changed
+  return true;  // the search radius has changed
 }
 
 }  // namespace

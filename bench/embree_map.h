@@ -11,7 +11,7 @@
 
 namespace sdm::bench {
 
-/// A query and its result, in single precision as all of Embree.
+/// A query and its result, in single precision as everywhere in Embree.
 struct EmbreeTexel {
   Vec3f point{};
   Vec3f vector{};
@@ -24,7 +24,7 @@ class EmbreeScene {
  public:
   explicit EmbreeScene(const Mesh& mesh);
 
-  /// Sets vector, distance and face for every point, on as many threads as the library uses.
+  /// Sets vector, distance and face for every point, using as many threads as the library does.
   void closest(std::span<EmbreeTexel> texels) const;
 
  private:

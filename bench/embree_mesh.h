@@ -1,4 +1,4 @@
-// Handles of Embree's devices and scenes, and meshes in them.
+// Handles of Embree's devices and scenes, and meshes in scenes.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -22,7 +22,7 @@ using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, Releaser<rt
 /// Adds the mesh to the scene, in single precision; its triangles keep their order. Returns its geometry id.
 unsigned attach(RTCDevice device, RTCScene scene, const Mesh& mesh);
 
-/// The mesh in a scene of its own, ready for queries.
+/// Builds a scene of the mesh alone, ready for queries.
 [[nodiscard]] SceneHandle build_scene(RTCDevice device, const Mesh& mesh, RTCBuildQuality quality);
 
 }  // namespace sdm::bench

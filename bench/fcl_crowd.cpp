@@ -27,7 +27,7 @@ struct PairQuery {
   std::vector<FclCrowd::Pair>& pairs;
 };
 
-// Called for pairs of boxes nearer than `reach`, which a search for the nearest pair would lower.
+// Called for pairs of boxes nearer than `reach`; a search for the nearest pair would reduce it.
 bool measure(Object* a, Object* b, void* data, double& reach) {
   auto& query = *static_cast<PairQuery*>(data);
   reach = query.max_distance;

@@ -23,8 +23,8 @@ class FclCrowd {
     std::uint32_t first, second;  ///< first < second
     double distance;              ///< of the surfaces, with closest points; -1 or 0 where they intersect
   };
-  /// The distances of all pairs whose boxes are nearer than max_distance, sorted by first, then second. Valid
-  /// until the next call.
+  /// Computes the distances of all pairs whose boxes are nearer than max_distance, sorted by first, then
+  /// second. Valid until the next call.
   [[nodiscard]] std::span<const Pair> distances(double max_distance);
 
  private:

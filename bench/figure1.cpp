@@ -1,6 +1,6 @@
 // The paper's Figure 1: surface distance maps of a figure in a box, in both directions, at 256² texels.
-// Writes the meshes and the three pictures of each map to DIR, and figure1.png, which shows the figure in its
-// box with the distances, Voronoi diagrams and directions of both.
+// Writes to DIR the meshes, three pictures of each map, and figure1.png, which shows the figure in its box
+// with the distances, Voronoi diagrams and directions of both maps.
 //
 //   build/release/bench/figure1 [--engine gl|cpu] [DIR]
 #include <sdm/error.h>
@@ -31,7 +31,7 @@ constexpr std::uint32_t kResolution = 256;
 constexpr std::uint32_t kPanelWidth = 315, kPanelHeight = 504, kSubsamples = 2;
 constexpr Rgb kPaper{255, 255, 255};
 
-/// A mesh with the map of its distances to the other one.
+/// A mesh with the map of its distances to the other mesh.
 struct Side {
   std::string name;
   Surface surface;
@@ -42,7 +42,8 @@ struct Side {
   Side(std::string its_name, const Mesh& mesh)
       : name(std::move(its_name)), surface(mesh, {.resolution = kResolution}), sites(mesh) {}
 
-  /// Unsigned, as in the paper. Returns the time in milliseconds, without that of opening the device.
+  /// Computes the unsigned map, as in the paper. Returns the time in milliseconds, without that of opening
+  /// the device.
   double measure(const Sites& to, const std::shared_ptr<const Engine>& engine) {
     const auto start = std::chrono::steady_clock::now();
     map = compute_map(surface, to, {.engine = engine, .sign = SignMethod::none});
@@ -61,7 +62,7 @@ void write_obj(const std::filesystem::path& path, const Mesh& mesh) {
   file.commit();
 }
 
-/// One scale for both maps, so that a colour is the same distance on the figure and on its box.
+/// A common scale for both maps, so that a colour means the same distance on the figure and on its box.
 ColorScale common_scale(const Side& a, const Side& b) {
   const DistanceStatistics on_a = statistics(a.surface, a.map), on_b = statistics(b.surface, b.map);
   return {.map = Colormap::paper2006, .lo = std::min(on_a.min, on_b.min), .hi = std::max(on_a.max, on_b.max)};
@@ -89,7 +90,7 @@ Picture paint(std::span<const Seen> seen, const std::function<Rgb(const Seen&)>&
   return panel;
 }
 
-/// The pictures side by side.
+/// Writes the pictures side by side.
 void write_row(const std::filesystem::path& path, std::span<const Picture> pictures) {
   std::uint32_t width = 0;
   for (const Picture& picture : pictures) width += picture.width;

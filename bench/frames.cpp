@@ -1,5 +1,5 @@
-// The time of a frame of two bodies that deform, as in a simulation: new positions, all proximity queries,
-// and the maps of both directions. A repetition is a frame. In every frame the queries are compared with the
+// The time of a frame of two deforming bodies, as in a simulation: new positions, all proximity queries, and
+// the maps in both directions. A repetition is a frame. In every frame the queries are compared with the
 // complete maps.
 //
 //   build/dev/bench/frames [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
@@ -38,7 +38,7 @@ struct Motion {
   }
 };
 
-/// Whether the answers agree with the minima of both maps.
+/// Whether the results agree with the minima of both maps.
 bool agree(ProximityQuery& query, const std::array<DistanceMap, 2>& maps) {
   double least = std::numeric_limits<double>::infinity(), deepest = 0;
   for (const DistanceMap& map : maps)
@@ -92,7 +92,7 @@ Outcome measure(const Trial& trial, scenes::SceneKind kind, bool exact) {
     samples += query.samples_used();
     verified &= agree(query, maps);
   };
-  frame(motion.frames.front());  // allocates
+  frame(motion.frames.front());  // performs all allocations
   times = {}, colliding = samples = 0;
   for (const auto& positions : motion.frames) frame(positions);
 

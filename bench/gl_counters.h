@@ -9,7 +9,7 @@
 
 namespace sdm::bench {
 
-/// The relations of <sdm/gl.h> that the map's report violates, as text.
+/// Returns the relations of <sdm/gl.h> that the map's report violates, as text.
 [[nodiscard]] std::vector<std::string> violated_relations(const Surface& surface, const DistanceMap& map,
                                                           const GlReport& report, const GlOptions& options);
 

@@ -1,6 +1,6 @@
-// The program around benchmark cases: arguments, tables, JSON and the exit status. A case verifies results
-// first and then measures them; those that are compared take turns in one run (timing.h), so that ratios do
-// not depend on how fast the machine is at the moment.
+// The framework of the benchmark programs: arguments, tables, JSON and the exit status. A case first verifies
+// results and then measures times. Contenders that are compared take turns in one run (timing.h), so that
+// ratios do not depend on changes in the machine's speed.
 #pragma once
 
 #include <functional>
@@ -13,28 +13,28 @@ class App;
 
 namespace sdm::bench {
 
-/// A measured number; its key ends in the unit, if it has one.
+/// A measured number; its key ends with the unit, if it has one.
 struct Figure {
   std::string key;
   double value;
 };
 
-/// A line of a case's results.
+/// A row of a case's results.
 struct Row {
-  std::string name{};  ///< empty if the case has one row only
+  std::string name{};  ///< empty if the case has only one row
   std::vector<Figure> figures{};
 };
 
 struct Outcome {
-  bool verified = false;         ///< whether the results were right; if not, figures may be missing
+  bool verified = false;         ///< whether the results were correct; if not, figures may be missing
   std::vector<Row> rows{};       ///< printed, and written as JSON
-  std::vector<Figure> counts{};  ///< of the work that was measured; written as JSON only
+  std::vector<Figure> counts{};  ///< of the measured work; written as JSON only
 };
 
-/// How a case is run.
+/// The parameters of a case's run.
 struct Trial {
   int repetitions;   ///< at least 1
-  unsigned threads;  ///< that the library may use; 0: one per core
+  unsigned threads;  ///< the number of threads the library may use; 0: one per core
 };
 
 struct Case {
@@ -48,15 +48,15 @@ struct Program {
   std::string name, description;
   std::string repetition;  ///< what a repetition is, in the plural
   std::vector<Case> cases;
-  std::function<void(CLI::App&)> add_options{};  ///< for options of its own
+  std::function<void(CLI::App&)> add_options{};  ///< for the program's own options
 };
 
-/// Parses the arguments --list, --filter REGEX, --repetitions N, --threads N and --json FILE, runs the cases
-/// chosen, and prints a Markdown table of their figures. The JSON file appears when all cases have run:
+/// Parses the arguments --list, --filter REGEX, --repetitions N, --threads N and --json FILE, runs the
+/// selected cases, and prints a Markdown table of their figures. The JSON file is written at the end:
 ///   {"program": ..., "machine": {"cpu": ..., "cores": ..., "compiler": ...},
 ///    "cases": {NAME: {"verified": ..., "repetitions": ..., "threads": ..., FIGURE: ..., ROW: {FIGURE:
 ///    ...}}}}
-/// Returns the exit status: 0; 1 if a result is wrong or something fails; 2 if the arguments are wrong.
+/// Returns the exit status: 0; 1 if a result is wrong or something fails; 2 if the arguments are invalid.
 [[nodiscard]] int run_program(int argc, char** argv, const Program& program) noexcept;
 
 }  // namespace sdm::bench

@@ -81,7 +81,7 @@ std::vector<Figure> work_figures(const Tasks& tasks) {
   for (const MapTask* task : tasks) texels += task->texels();
   std::vector<Figure> figures{{"texels", static_cast<double>(texels)}};
   if constexpr (cpu::kCountWork) {
-    const ThreadLimit this_one(1);  // counts are the calling thread's
+    const ThreadLimit this_one(1);  // the counts are those of the calling thread
     cpu::work_counts() = {};
     for (MapTask* task : tasks) task->compute();
     const cpu::WorkCounts& counts = cpu::work_counts();

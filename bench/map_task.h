@@ -13,7 +13,7 @@
 
 namespace sdm::bench {
 
-/// The unsigned map of O1 to O2. Both compute the same texels in the same order, each into memory that is
+/// The unsigned map of O1 to O2. Both compute the same texels in the same order, and write to memory that is
 /// already allocated.
 class MapTask {
  public:
@@ -25,8 +25,8 @@ class MapTask {
   /// Moves the vertices: refits the surface and the sites, and rebuilds Embree's scene.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
-  /// Computes both maps. Returns whether they agree at every texel to 1e-6 of the diagonal of both meshes'
-  /// bounding box; prints to stderr how many texels do not.
+  /// Computes both maps. Returns whether they agree at every texel, to 1e-6 of the diagonal of the bounding
+  /// box of both meshes; prints the number of texels that do not to stderr.
   [[nodiscard]] bool agrees();
 
   [[nodiscard]] std::size_t texels() const { return queries_.size(); }
@@ -50,7 +50,7 @@ using Tasks = std::vector<MapTask*>;
 [[nodiscard]] Contender ours(const Tasks& tasks, unsigned threads);
 [[nodiscard]] Contender embree(const Tasks& tasks, unsigned threads);
 
-/// "texels"; in builds that count the engine's work also its counts per packet of sixteen texels.
+/// "texels"; in builds with work counters, also the engine's counts per packet of sixteen texels.
 [[nodiscard]] std::vector<Figure> work_figures(const Tasks& tasks);
 
 }  // namespace sdm::bench

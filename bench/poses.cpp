@@ -7,7 +7,7 @@
 namespace sdm::bench {
 
 Affine random_rotation(std::mt19937& random) {
-  // A unit quaternion, uniform on the sphere of four dimensions.
+  // A unit quaternion, uniform on the four-dimensional unit sphere.
   std::normal_distribution<double> normal;
   double q[4], squared = 0;
   for (double& x : q) x = normal(random), squared += x * x;

@@ -1,5 +1,5 @@
 // Exact separation and collision of two meshes against FCL, in poses that are far, near, touching,
-// penetrating and concentric. A repetition is a pose; every answer is compared with FCL's before both are
+// penetrating and concentric. A repetition is a pose; every result is compared with FCL's before both are
 // timed.
 //
 //   build/dev/bench/proximity [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
@@ -26,11 +26,11 @@
 namespace sdm::bench {
 namespace {
 
-/// Microseconds in each pose.
+/// Times in microseconds, one per pose.
 struct Times {
   std::vector<double> ours, fcl;
 
-  // The least of a few turns: a query is far shorter than the pauses that other processes cause.
+  // The minimum over a few turns: a query is far shorter than the interruptions by other processes.
   void add(const Contender& ours_in_pose, const Contender& fcl_in_pose) {
     constexpr int kTurns = 3;
     constexpr double kLeastMs = 0.1;
@@ -40,7 +40,7 @@ struct Times {
   }
 };
 
-/// Medians over poses, and the share of poses in which ours takes less time.
+/// Medians over poses, and the fraction of poses in which ours is faster.
 Row row(std::string name, const Times& times) {
   double faster = 0;
   for (std::size_t i = 0; i < times.ours.size(); ++i) faster += times.ours[i] < times.fcl[i];
@@ -65,8 +65,8 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
     const exact::MeshPair posed{internals(o1), internals(o2), pose};
     const auto separate = [&] { return exact::find_closest(posed, 10 * size, workspace); };
     const auto collide = [&] { return exact::find_intersection(posed, workspace).intersecting; };
-    // FCL returns -1 for surfaces that intersect, and rounds moved vertices differently: for surfaces that
-    // just touch it may return either.
+    // FCL returns -1 for surfaces that intersect, and rounds transformed vertices differently: for surfaces
+    // that just touch, it may return either.
     const exact::Separation found = separate();
     const bool same_distance = std::abs(found.distance - std::max(0.0, fcl.distance(pose))) <= 1e-6 * size;
     const bool same_verdict = collide() == fcl.collide(pose) || found.distance < 1e-12 * size;

@@ -1,6 +1,6 @@
-// The effect of culling by bounds on distance in the gl engine (the paper's Section 4.2), for both ways of
-// clipping. "time" is the time of a row divided by that with bounds; all else but "ms" is per texel: pairs of
-// a site and a tile of a face, tests against nodes of the tree of tiles, pairs that were clipped, polygons
+// The effect of culling by distance bounds in the gl engine (the paper's Section 4.2), for both ways of
+// clipping. "time" is the time of a row divided by that with bounds; all others but "ms" are per texel: pairs
+// of a site and a tile of a face, tests against nodes of the tree of tiles, pairs that were clipped, polygons
 // and fragments drawn. Verifies that bounds change no bit of a map, that distances agree with those of the
 // cpu engine, and that the engine's counters are consistent.
 //
@@ -34,7 +34,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
                             std::bit_cast<std::uint32_t, float>);
 }
 
-/// Whether all distances agree to the accuracy that engines promise.
+/// Whether all distances agree to the accuracy guaranteed for engines.
 bool agree(const Surface& surface, const Sites& sites, const DistanceMap& a, const DistanceMap& b) {
   Box box = bounds(surface.mesh());
   extend(box, bounds(sites.mesh()));

@@ -24,7 +24,7 @@ class Refinement {
     return static_cast<std::uint32_t>(result_.positions.size() - 1);
   }
 
-  /// The vertex at i/parts of the way from a to b, which is the same from either side.
+  /// The vertex at i/parts of the way from a to b; faces on both sides of the edge share it.
   std::uint32_t on_edge(std::uint32_t a, std::uint32_t b, std::uint32_t i) {
     if (i == 0) return a;
     if (i == parts_) return b;
@@ -42,7 +42,7 @@ class Refinement {
 
   void cut(const Triangle& triangle) {
     const auto& [a, b, c] = triangle;
-    // Rows parallel to bc; row i has i + 1 vertices, on ab first.
+    // Rows parallel to bc; row i has i + 1 vertices, starting on ab.
     std::vector<std::uint32_t> before{a}, row;
     for (std::uint32_t i = 1; i <= parts_; ++i) {
       row = {on_edge(a, b, i)};
@@ -66,7 +66,8 @@ class Refinement {
 
   std::uint32_t parts_;
   Mesh result_;
-  std::map<std::array<std::uint32_t, 2>, std::uint32_t> edges_;  ///< to the first vertex within
+  std::map<std::array<std::uint32_t, 2>, std::uint32_t>
+      edges_;  ///< index of the first vertex within each edge
 };
 
 }  // namespace

@@ -7,8 +7,9 @@
 
 namespace sdm::bench {
 
-/// Cuts each triangle into parts² triangles, and moves each coordinate of the vertices by pseudo-random noise
-/// of up to `noise` mean edge lengths, as in scans, so that nothing stays flat. Drops texture coordinates.
+/// Divides each triangle into parts² triangles, and moves each coordinate of the vertices by pseudorandom
+/// noise of up to `noise` mean edge lengths, as in scans, so that nothing stays flat. Drops texture
+/// coordinates.
 [[nodiscard]] Mesh refine_mesh(const Mesh& mesh, std::uint32_t parts, double noise);
 
 }  // namespace sdm::bench

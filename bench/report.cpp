@@ -11,7 +11,8 @@
 namespace sdm::bench {
 namespace {
 
-/// Whole numbers as they are, others to three significant digits, but never rounded above the unit.
+/// Whole numbers in full; others to three significant digits, or to the nearest whole number if that is
+/// more precise.
 std::string number(double value) {
   const double size = std::abs(value);
   const bool whole = value == std::round(value) && size < 1e15;
@@ -21,7 +22,7 @@ std::string number(double value) {
   return text;
 }
 
-/// The processor's name where the system says it (Linux), else empty.
+/// The processor's name where the system provides it (Linux), otherwise empty.
 std::string cpu_name() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)

@@ -1,4 +1,4 @@
-// How outcomes of cases are printed and written.
+// Prints and writes the outcomes of cases.
 #pragma once
 
 #include <fstream>
@@ -10,7 +10,7 @@
 
 namespace sdm::bench {
 
-/// Prints outcomes as rows of Markdown tables on stdout. Rows with the same keys share a heading.
+/// Prints outcomes as rows of Markdown tables on stdout. Consecutive rows with the same keys share a heading.
 class Table {
  public:
   void print(const std::string& name, const Outcome& outcome);
@@ -18,18 +18,18 @@ class Table {
  private:
   void print_heading(const Row& row);
 
-  std::vector<std::string> keys_;  ///< of the last heading
+  std::vector<std::string> keys_;  ///< of the latest heading
 };
 
-/// The JSON file of run_program().
+/// The JSON file written by run_program().
 class JsonReport {
  public:
-  /// Without a file name, writes nothing. Throws Error if the file cannot be written.
+  /// If the file name is empty, writes nothing. Throws Error if the file cannot be written.
   JsonReport(const std::string& program, std::string file_name);
 
   void add(const std::string& name, const Trial& trial, const Outcome& outcome);
 
-  /// Moves the file into its place. Throws Error if it cannot be written.
+  /// Moves the file to its final name. Throws Error if it cannot be written.
   void commit();
 
  private:

@@ -19,8 +19,8 @@ Vec3 atlas::face_normal(const Mesh& mesh, const Triangle& face) {
   return normalized(cross(mesh.positions[face[1]] - a, mesh.positions[face[2]] - a));
 }
 
-/// The mesh without the faces whose outside faces the eye. These degenerate to points, so that the others
-/// keep their indices.
+/// The mesh without the faces whose outside faces the eye. These become degenerate, so that the others keep
+/// their indices.
 Mesh without_near_side(Mesh mesh, const Vec3& eye) {
   for (Triangle& face : mesh.triangles)
     if (dot(atlas::face_normal(mesh, face), eye - mesh.positions[face[0]]) > 0) face[1] = face[2] = face[0];

@@ -1,4 +1,4 @@
-// The texels of maps that a camera sees, by ray casting.
+// Finds the texels of maps that a camera sees, by ray casting.
 #pragma once
 
 #include <sdm/surface.h>
@@ -13,21 +13,21 @@ namespace sdm::bench {
 struct View {
   Vec3 eye{}, target{};
   Vec3 up{0, 0, 1};
-  double field_of_view = 30;  ///< degrees, of the height
+  double field_of_view = 30;  ///< vertical, in degrees
   std::uint32_t width = 0, height = 0;
 };
 
-/// A surface before the camera.
+/// A surface in view of the camera.
 struct Shown {
   const Surface* surface = nullptr;
-  /// Leave out the faces whose outside faces the camera, such as the near walls of a box around the scene.
+  /// Omits the faces whose outside faces the camera, such as the near walls of a box around the scene.
   bool only_inside = false;
 };
 
-/// What the camera sees at a point of the picture.
+/// What the camera sees at a sample point of the picture.
 struct Seen {
   std::uint32_t object = kNone;  ///< index into the list of surfaces, or kNone
-  std::uint32_t texel = kNone;   ///< the one whose sample is nearest in the atlas
+  std::uint32_t texel = kNone;   ///< the texel whose sample is nearest in the atlas
   float light = 1;               ///< brightness: |cosine| of the angle between ray and normal
 };
 

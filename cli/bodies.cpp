@@ -29,7 +29,7 @@ struct BodiesCommand {
   bool json = false, quiet = false;
 };
 
-/// Writes the map of each body to the folder named by its number.
+/// Writes the map of each body to a folder named after its number.
 void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies, OutputFolder& out) {
   sdm::NearestMap nearest;
   for (std::size_t body = 0; body < bodies.size(); ++body) {

@@ -9,5 +9,5 @@
 
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::PairProximity& pair);
 
-/// A line for each pair, below a heading.
+/// A table with one line per pair, below a heading.
 [[nodiscard]] std::string table(std::span<const sdm::PairProximity> pairs);

@@ -1,4 +1,4 @@
-// Options of several commands.
+// Options shared by several commands.
 #pragma once
 
 #include <sdm/io.h>
@@ -15,15 +15,15 @@
 CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder);
 void add_transform_option(CLI::App& app, const std::string& name, const std::string& mesh,
                           std::string& steps);
-/// Returns --resolution; `maps` names the maps in the help text.
+/// Returns --resolution; `maps` describes the maps in the help text.
 CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
                                    const std::string& maps = "the map");
-/// `mesh` names the mesh that is parametrised.
+/// `mesh` describes the parametrised mesh in the help text.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
-/// --exact and --units of commands that print proximity.
+/// Adds --exact and --units, for commands that print proximity.
 void add_proximity_options(CLI::App& app, bool& exact, std::string& units);
-/// --threads, --json and --quiet; `json_prints` describes the JSON for the help text.
+/// Adds --threads, --json and --quiet; `json_prints` describes the JSON in the help text.
 void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
                      const std::string& json_prints);
 

@@ -1,4 +1,4 @@
-// `sdm devices`: lists the devices for the gl engine.
+// `sdm devices`: lists the devices available to the gl engine.
 #pragma once
 
 namespace CLI {

@@ -69,13 +69,13 @@ void print_table(std::ostream& out, const std::string& file, const sdm::MeshInfo
   row("orientable", text(info.orientable));
   row("oriented", text(info.oriented));
   row("manifold", info.manifold ? "yes"
-                                : fmt::format("no, {} edges and {} vertices are not", info.nonmanifold_edges,
-                                              info.nonmanifold_vertices));
+                                : fmt::format("no, {} non-manifold edges and {} non-manifold vertices",
+                                              info.nonmanifold_edges, info.nonmanifold_vertices));
   row("degenerate faces", fmt::to_string(info.degenerate_faces));
   row("duplicate faces", fmt::to_string(info.duplicate_faces));
   row("uvs", text(info.has_uvs));
   row("area", text(info.area));
-  row("volume", info.closed && info.orientable ? text(info.volume) : "none, not closed and orientable");
+  row("volume", info.closed && info.orientable ? text(info.volume) : "none: not closed and orientable");
 }
 
 void run(const Options& options) {

@@ -1,4 +1,4 @@
-// The command sdm. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded.
+// The sdm command. Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.
 #include "bodies.h"
 #include "devices.h"
 #include "info.h"
@@ -21,10 +21,10 @@
 namespace {
 
 void flush_output() {
-  if (!std::cout.flush()) throw sdm::Error("cannot write to the standard output; the disk may be full");
+  if (!std::cout.flush()) throw sdm::Error("cannot write to standard output; the disk may be full");
 }
 
-/// The option of the command that remedies the error, for its message.
+/// The option that remedies the error, as text for its message.
 std::string advice(sdm::Remedy remedy) {
   switch (remedy) {
     case sdm::Remedy::none:
@@ -42,7 +42,9 @@ std::string advice(sdm::Remedy remedy) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Surface distance maps: the distance from everywhere on one triangle mesh to another.", "sdm");
+  CLI::App app(
+      "Computes surface distance maps: the distance from every point of one triangle mesh to another.",
+      "sdm");
   app.set_version_flag("--version", std::string("sdm ") + sdm::kVersion);
   app.require_subcommand(0, 1);
   app.footer(

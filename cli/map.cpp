@@ -23,7 +23,7 @@ struct Result {
   nlohmann::ordered_json report;
 };
 
-/// Computes the map on `on` of the distances to `to`, and writes all its files into `folder`.
+/// Computes the map on `on` of the distances to `to`, and writes all files of it into `folder`.
 Result measure(const MapCommand& command, const Input& on, const Input& to, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
   Stopwatch total;
@@ -90,7 +90,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   return result;
 }
 
-/// The exit code.
+/// Returns the exit code.
 int run(MapCommand command) {
   Stopwatch total;
   const sdm::ThreadLimit limit(command.threads);
@@ -100,7 +100,7 @@ int run(MapCommand command) {
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
   if (command.engine.name == "gl") {
-    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // fails before the long work
+    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // fails early, before the long computation
     command.map.engine = sdm::make_gl_engine(command.gl);
   } else {
     command.map.engine = sdm::make_engine(command.engine.name);
@@ -139,12 +139,12 @@ int run(MapCommand command) {
 }  // namespace
 
 void add_map_command(CLI::App& app) {
-  CLI::App* map = app.add_subcommand("map", "Measure the distance from everywhere on mesh O1 to mesh O2");
+  CLI::App* map = app.add_subcommand("map", "Compute the distance from every point of mesh O1 to mesh O2");
   map->footer(
       "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb (O1 in colours) and "
       "report.json.\n"
-      "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 tolerance exceeded; an interrupt ends sdm by its "
-      "signal.\n\n"
+      "Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded. An interrupt terminates sdm "
+      "with its signal.\n\n"
       "Example, two meshes side by side:\n"
       "  sdm map bunny.obj armadillo.off -o out --transform-o1 fit --transform-o2 fit,translate:0.8:0:0");
   const auto command = std::make_shared<MapCommand>();

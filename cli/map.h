@@ -3,5 +3,5 @@
 
 #include <CLI/CLI.hpp>
 
-/// Ends with CLI::RuntimeError(3) where a tolerance is exceeded.
+/// Ends with CLI::RuntimeError(3) if a tolerance is exceeded.
 void add_map_command(CLI::App& app);

@@ -19,11 +19,11 @@ void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
 
 void add_options(CLI::App& app, MapCommand& c) {
   const auto positive = number("a positive number", [](double x) { return x > 0; });
-  app.add_option("O1", c.o1, "The mesh on which distances are measured (OBJ, PLY, STL, OFF, glTF, 3DS)")
+  app.add_option("O1", c.o1, "The mesh that distances are measured from (OBJ, PLY, STL, OFF, glTF, 3DS)")
       ->required();
-  app.add_option("O2", c.o2, "The mesh to which distances are measured")->required();
+  app.add_option("O2", c.o2, "The mesh that distances are measured to")->required();
   add_output_option(app, c.out);
-  app.add_flag("--both", c.both, "Measure O2 as well: results in DIR/o1 and DIR/o2");
+  app.add_flag("--both", c.both, "Also compute the map of O2; results in DIR/o1 and DIR/o2");
 
   add_transform_option(app, "--transform-o1", "O1", c.transform_o1);
   add_transform_option(app, "--transform-o2", "O2", c.transform_o2);
@@ -49,7 +49,7 @@ void add_options(CLI::App& app, MapCommand& c) {
                                {"winding", sdm::SignMethod::winding}});
   add_engine_option(app, c.engine);
   app.add_option("--gl-device", c.gl.device,
-                 "gl: the device, by its number in `sdm devices` or a part of its name")
+                 "gl: the device, by its number in `sdm devices` or part of its name")
       ->type_name("NAME");
   add_choice<sdm::GlClip>(
       app, "--clip", c.gl.clip,
@@ -63,7 +63,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       "--no-bound-culling", [&c] { c.gl.bound_culling = false; },
       "gl: do not cull sites by upper bounds on the distance; the map is unchanged");
   app.add_option("--tolerance", c.picture.tolerance,
-                 "Colour bands, and exit code 3 if any distance exceeds D, inside or outside")
+                 "Draw colour bands, and exit with code 3 if any distance exceeds D, inside or outside")
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
       ->type_name("D");
 

@@ -14,7 +14,7 @@ struct MapCommand {
   std::string o1, o2, transform_o1, transform_o2;
   std::filesystem::path out;
   sdm::AtlasOptions atlas;
-  sdm::MapOptions map;  ///< without its engine, which is made from the next two
+  sdm::MapOptions map;  ///< its engine is created from the next two members
   sdm::EngineInfo engine = sdm::engines().front();
   sdm::GlOptions gl;
   sdm::PictureOptions picture;

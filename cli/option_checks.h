@@ -1,4 +1,4 @@
-// Validators for options of several commands.
+// Validators and choices for options of several commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// Checks steps for sdm::scenes::parse_placement; returns the fault, or an empty string.
+/// Checks steps for sdm::scenes::parse_placement; returns an error message, or an empty string.
 [[nodiscard]] std::string check_transform(const std::string& text);
 
 /// Requires a finite number for which `accepts` holds.

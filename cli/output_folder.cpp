@@ -58,7 +58,7 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::remove_traces() {
   std::error_code ignored;
   fs::remove_all(staging_, ignored);
-  // Folders that contain results are not empty and remain.
+  // Folders that contain results are not empty, so they remain.
   for (fs::path made = folder_; made != existing_; made = made.parent_path()) fs::remove(made, ignored);
 }
 

@@ -1,25 +1,25 @@
-// The output folder of a command, which receives all files or is left unchanged.
+// The output folder of a command, which receives either all files or none.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <string>
 
-/// Files are first written to a hidden staging folder inside the output folder and moved to their places at
-/// the end. After a failure no file remains, and no folder that did not exist before.
+/// Files are first written to a hidden staging folder inside the output folder, and moved into place at the
+/// end. After a failure no file remains, and no folder that did not exist before.
 class OutputFolder {
  public:
-  /// Throws sdm::Error when `folder` is a file, or cannot be created or written to.
+  /// Throws sdm::Error if `folder` is a file, or cannot be created or written to.
   explicit OutputFolder(const std::filesystem::path& folder);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   /// Calls `work`, which writes its files below staging(), then moves them to the output folder, replacing
-  /// those of an earlier run. Errors name the final path of a file instead of its staged one. Throws what
-  /// `work` throws, and sdm::Error if a folder has the name of an output file.
+  /// those of an earlier run. Error messages contain a file's final path instead of its staged one. Throws
+  /// what `work` throws, and sdm::Error if a folder has the name of an output file.
   void fill(const std::function<void()>& work);
-  /// The staged form of `folder`/`subfolder`, which is created.
+  /// Returns the staged form of `folder`/`subfolder`, and creates it.
   [[nodiscard]] std::filesystem::path staging(const std::filesystem::path& subfolder = {});
 
  private:
@@ -28,10 +28,11 @@ class OutputFolder {
   void remove_traces();
 
   std::filesystem::path folder_, staging_;
-  std::filesystem::path existing_;  ///< the closest ancestor of folder_, or itself, that existed before
+  std::filesystem::path
+      existing_;  ///< the closest ancestor of folder_, or folder_ itself, that existed before
 };
 
 /// Throws sdm::Error if not all of the text could be written.
 void write_text(const std::filesystem::path& file, const std::string& text);
-/// Throws sdm::Error about the file: the disk may be full.
+/// Throws sdm::Error about the file, and says that the disk may be full.
 [[noreturn]] void throw_write_failure(const std::filesystem::path& file);

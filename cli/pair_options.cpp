@@ -10,7 +10,7 @@ void add_options(CLI::App& app, PairCommand& c, const std::array<std::string, 2>
   add_transform_option(app, "--transform-o2", "O2", c.transform_o2);
   add_proximity_options(app, c.options.exact, c.units);
   app.add_option("--margin", c.options.contact_margin,
-                 "Contacts of everything within distance D, not only inside")
+                 "Also report contacts up to a distance of D, not only of penetrating parts")
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
       ->type_name("D");
   add_resolution_option(app, c.options.atlas, "both bodies' maps");

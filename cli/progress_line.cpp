@@ -22,7 +22,7 @@ extern "C" void interrupt(int signal) {
 
 ProgressLine::ProgressLine(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) != 0) {
   for (const int signal : kSignals)
-    if (std::signal(signal, interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);  // as nohup sets it
+    if (std::signal(signal, interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);  // under nohup, for example
 }
 
 ProgressLine::~ProgressLine() {

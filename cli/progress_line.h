@@ -1,4 +1,4 @@
-// Progress on a terminal, and a clean end on Ctrl-C.
+// Progress on a terminal, and clean termination on Ctrl-C.
 #pragma once
 
 #include <sdm/progress.h>
@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-/// One line on stderr that is rewritten, and removed at the end. Shown only where stderr is a terminal. While
-/// it lives, the first interrupt (Ctrl-C, SIGTERM or SIGHUP) cancels the work, and the second one ends the
-/// program.
+/// A line on stderr that is rewritten, and removed at the end. Shown only if stderr is a terminal. During its
+/// lifetime, the first interrupt (Ctrl-C, SIGTERM or SIGHUP) cancels the work, and the second one terminates
+/// the program.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
@@ -16,12 +16,12 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// The callback refers to this object.
+  /// The callback refers to this object, which must outlive it.
   [[nodiscard]] sdm::Progress callback();
   /// Throws sdm::Cancelled after an interrupt.
   void step(std::string_view name);
-  /// After an interrupt and the cleanup that follows it: ends the program by that signal, so that the loop
-  /// of a shell script ends too.
+  /// Terminates the program with the signal that interrupted it, so that a loop in a shell script ends too.
+  /// To be called after the cleanup.
   static void end_by_interrupt();
 
  private:

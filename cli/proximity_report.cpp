@@ -30,7 +30,7 @@ Json to_json(const sdm::BoundedBool& decision) {
 
 namespace {
 
-// Why there is no depth.
+// The reason why there is no penetration depth.
 std::string no_solid(const sdm::ProximityQuery& query) {
   const auto reason = [&](int body) {
     std::string text = sdm::choose_sign(query.sites(body), sdm::SignMethod::automatic).reason;

@@ -11,7 +11,7 @@
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedBool& decision);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Contact& contact);
 
-/// All results of the query, computed if necessary.
+/// All results of the query, which are computed if necessary.
 [[nodiscard]] nlohmann::ordered_json to_json(sdm::ProximityQuery& query);
 
 /// A few lines of text.

@@ -32,7 +32,7 @@ double overdraw(const sdm::GlReport& r) {
   return r.texels == 0 ? 0 : static_cast<double>(r.fragments) / static_cast<double>(r.texels);
 }
 
-// Milliseconds, to the microsecond.
+// Milliseconds, rounded to microseconds.
 double rounded(double ms) {
   return std::round(1000 * ms) / 1000;
 }
@@ -98,7 +98,7 @@ Json to_json(const sdm::Surface& surface) {
 }
 
 Json to_json(const sdm::DistanceStatistics& d) {
-  // NaN, where no texel has a value, becomes null.
+  // NaN, if no texel has a value, becomes null.
   return {{"kind", "estimate"}, {"min", d.min}, {"max", d.max}, {"mean", d.mean},
           {"rms", d.rms},       {"p50", d.p50}, {"p95", d.p95}, {"p99", d.p99}};
 }
@@ -147,15 +147,15 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
   if (outcome.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", outcome.sign.reason);
   if (outcome.beyond_max_distance > 0)
     add("            {} texels are farther than --max-distance\n", outcome.beyond_max_distance);
-  add("  error     at most {}{}, everywhere between the texels (whose values are exact)\n",
-      number(outcome.error_bound), unit);
+  add("  error     at most {}{} between the texels, whose values are exact\n", number(outcome.error_bound),
+      unit);
   if (const auto& verdict = outcome.tolerance) {
     if (!verdict->within)
       add("  tolerance exceeded on {} % of the area\n", number(100 * verdict->exceeded_area_fraction));
     else if (verdict->certified)
-      add("  tolerance kept\n");
+      add("  tolerance met\n");
     else
-      add("  tolerance kept at the samples, not certified between them\n");
+      add("  tolerance met at the samples, but not certified between them\n");
   }
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,

@@ -21,7 +21,7 @@ struct Input {
 [[nodiscard]] Input load_input(const std::string& role, const std::string& file,
                                const std::string& transform);
 
-/// Wall-clock milliseconds. Overlapping steps are each counted in full.
+/// Wall-clock times in milliseconds. Overlapping steps are each counted in full.
 struct Times {
   double import = 0, atlas = 0, sites = 0, map = 0, output = 0, total = 0;
 };
@@ -42,9 +42,9 @@ struct Outcome {
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::DistanceStatistics& distance);
 [[nodiscard]] nlohmann::ordered_json to_json(const Outcome& outcome);
 
-/// JSON text; invalid bytes of file names that are not UTF-8 are left out.
+/// JSON text; drops invalid bytes of file names that are not UTF-8.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);
 
-/// A few lines of text. `on` carries the map of the distances to `to`.
+/// A few lines of text. `on` is the mesh that carries the map, of the distances to `to`.
 [[nodiscard]] std::string summary(const Input& on, const Input& to, const Outcome& outcome,
                                   const std::string& units);

@@ -154,7 +154,7 @@ void add_scene_command(CLI::App& app) {
       ->capture_default_str();
   scene->add_flag("--quiet", command->quiet, "Print only errors");
   scene->footer(
-      "The files can be used as sequences. They are bit-identical every time.\n\n"
+      "The files are sequences for `sdm sequence`. They are bit-identical on every run.\n\n"
       "Example:\n  sdm scene letters -o letters");
   scene->callback([scene, command] {
     if (scene->count("--mesh") > 0 && command->kind != "bunnies")

@@ -119,11 +119,11 @@ void run(SelfCommand command) {
 
 void add_self_command(CLI::App& app) {
   CLI::App* self =
-      app.add_subcommand("self", "Measure the distance from everywhere on a mesh to the rest of it");
+      app.add_subcommand("self", "Compute the distance from every point of a mesh to the rest of the mesh");
   self->footer(
       "Each face excludes a neighbourhood; distances are measured to all other faces.\n"
       "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb and report.json.\n\n"
-      "Example, walls that are closer than along the surface:\n"
+      "Example, distances to parts that are at least 5 away along the surface:\n"
       "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
   const auto command = std::make_shared<SelfCommand>();
   SelfCommand& c = *command;
@@ -133,7 +133,7 @@ void add_self_command(CLI::App& app) {
   add_transform_option(*self, "--transform", "The mesh", c.transform);
   CLI::Option* rings =
       self->add_option("--rings", c.self.exclusion.rings,
-                       "Each face excludes itself, the faces that share a vertex with it, and so on, K times")
+                       "Each face excludes itself and K rings of neighbours, which share vertices")
           ->check(whole_number(1, 1 << 20))
           ->type_name("K")
           ->capture_default_str();

@@ -29,7 +29,7 @@ struct SequenceCommand {
   bool keep_going = false, no_temporal = false;
 };
 
-/// A body: its sequence of meshes, and its placement.
+/// A body: its sequence of meshes and its placement.
 class Body {
  public:
   Body(const std::string& input, const std::string& steps, double rate)
@@ -45,7 +45,7 @@ class Body {
     sdm::scenes::place(mesh, steps_);
     return mesh;
   }
-  /// The placed positions of a frame; requires a body that moves.
+  /// The placed positions of a frame. Requires a moving body.
   [[nodiscard]] std::span<const sdm::Vec3> positions(std::size_t frame) {
     const std::span<const sdm::Vec3> read = sequence_.positions(frame);
     placed_.assign(read.begin(), read.end());
@@ -87,7 +87,7 @@ class FrameLoop {
     }
   }
 
-  /// Writes the results of all frames, or of those before the first bad one, which is then reported by
+  /// Writes the results of all frames, or of those before the first bad one, which is then reported as
   /// sdm::Error.
   void process() {
     out_.fill([&] {
@@ -150,7 +150,7 @@ class FrameLoop {
     frames_.push_back(frame);
   }
 
-  // Both bodies are read before one of them is moved.
+  // Both bodies are read before either is moved.
   void move(Frame& frame) {
     Stopwatch watch;
     std::span<const sdm::Vec3> p1, p2;
@@ -215,8 +215,8 @@ class FrameLoop {
   std::size_t count_;
   std::ofstream lines_;
   std::optional<sdm::ProximityQuery> query_;
-  std::vector<sdm::SamplingBound> bounds_;  // of each body
-  std::vector<sdm::RelativeError> errors_;  // likewise
+  std::vector<sdm::SamplingBound> bounds_;  // one for each body
+  std::vector<sdm::RelativeError> errors_;  // one for each body
   std::vector<Frame> frames_;
   std::vector<BadFrame> bad_;
   bool stopped_ = false;
@@ -238,7 +238,7 @@ void add_sequence_command(CLI::App& app) {
       "  sdm scene letters -o letters\n"
       "  sdm sequence letters/E.ply+letters/E.npy letters/G.ply+letters/G.npy -o out");
   const auto command = std::make_shared<SequenceCommand>();
-  add_options(*sequence, command->pair, {"A sequence, or a mesh at rest", "The other one"});
+  add_options(*sequence, command->pair, {"A sequence, or a mesh at rest", "The other sequence or mesh"});
   add_output_option(*sequence, command->out);
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// As precise as a float; empty for NaN.
+// With the precision of a float; empty for NaN.
 std::string cell(double value) {
   return std::isnan(value) ? std::string() : number(value, 9);
 }
@@ -47,7 +47,7 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   json["colliding"] = to_json(frame.colliding);
   json["penetration_depth"] = frame.depth ? to_json(*frame.depth) : Json(nullptr);
   json["contacts"] = frame.contacts;
-  json["patches"] = Json::array();  // each by its deepest contact, which comes first
+  json["patches"] = Json::array();  // for each patch its deepest contact, which comes first
   for (const sdm::Contact& contact : contacts)
     if (contact.patch == json["patches"].size()) json["patches"].push_back(to_json(contact));
   json["error_bound"] = {{"kind", "bounded"}, {"o1", frame.error_bound[0]}, {"o2", frame.error_bound[1]}};

@@ -1,5 +1,5 @@
-// The results of a sequence, as lines of JSON, as a table and as a plot. The keys and columns are
-// documented in docs/sequences.md.
+// The results of a sequence, as lines of JSON, as a table and as a plot. The keys and columns are documented
+// in docs/sequences.md.
 #pragma once
 
 #include <sdm/sdm.h>
@@ -33,13 +33,13 @@ struct BadFrame {
   std::string fault;
 };
 
-/// One line. `contacts` are those of the frame; the deepest of each contact patch is reported.
+/// One line of JSON. `contacts` are those of the frame; the deepest of each contact patch is reported.
 [[nodiscard]] nlohmann::ordered_json to_json(const Frame& frame, std::span<const sdm::Contact> contacts);
 [[nodiscard]] nlohmann::ordered_json to_json(const BadFrame& frame);
 
-/// frames.csv: a row for each frame that was used.
+/// frames.csv: one row for each frame that was used.
 [[nodiscard]] std::string to_csv(const std::vector<Frame>& frames);
-/// plot.png: separation, depth, relative error and time over frames; gaps for bad ones.
+/// plot.png: separation, depth, relative error and time over frames, with gaps for skipped frames.
 void write_plot(const std::filesystem::path& file, const std::vector<Frame>& frames,
                 const std::string& units);
 /// A few lines of text.

@@ -1,4 +1,4 @@
-// Wall-clock time of consecutive steps.
+// Wall-clock times of consecutive steps.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 class Stopwatch {
  public:
-  /// Milliseconds since the construction or the last call.
+  /// Milliseconds since construction or the last call.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();

@@ -1,7 +1,7 @@
 # sdm_embed_files(<target> HEADER <header> NAMESPACE <namespace> FILES <file>... [CHECK <command line>...])
-# Compiles files into the target, as EmbeddedFile constants of a generated header: site_polygon.vert becomes
-# kSitePolygonVert. The header lies in the folder of the build that mirrors the calling one. Paths are relative
-# to the calling folder. CHECK: lines "COMMAND ..." that run first; if one fails, so does the build.
+# Embeds files into the target as EmbeddedFile constants of a generated header: site_polygon.vert becomes
+# kSitePolygonVert. The header is in the build folder that mirrors the calling folder. Paths are relative to the calling
+# folder. CHECK: "COMMAND ..." lines that run first; if one fails, so does the build.
 function(sdm_embed_files target)
   cmake_parse_arguments(ARG "" "HEADER;NAMESPACE" "FILES;CHECK" ${ARGN})
   set(files)

@@ -1,4 +1,4 @@
-# What the gl engine needs: libepoxy, and its shaders, validated and embedded.
+# Dependencies of the gl engine: libepoxy, and the shaders, which are validated and embedded.
 set(gl_advice "install libepoxy-dev and glslang-tools (Debian), or build without the gl engine: -DSDM_BUILD_GL=OFF")
 find_package(PkgConfig)
 if(PkgConfig_FOUND)
@@ -12,8 +12,8 @@ if(NOT GLSLANG_VALIDATOR)
   message(FATAL_ERROR "glslangValidator was not found: ${gl_advice}")
 endif()
 
-# sdm_embed_shaders(<target> <header> <file>...): embeds files of shaders/ (sdm_embed_files), after each vertex shader
-# was compiled and checked against the fragment shader of its name. A shader that does not compile fails the build.
+# sdm_embed_shaders(<target> <header> <file>...): embeds files of shaders/ (see sdm_embed_files). Each vertex shader is
+# first compiled and linked with the fragment shader of the same name; an error in a shader fails the build.
 function(sdm_embed_shaders target header)
   set(shaders ${ARGN})
   list(TRANSFORM shaders PREPEND ${PROJECT_SOURCE_DIR}/shaders/)

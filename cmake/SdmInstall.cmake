@@ -1,4 +1,4 @@
-# Install rules and the package that find_package(sdm) reads.
+# Install rules, and the package that find_package(sdm) finds.
 include(CMakePackageConfigHelpers)
 
 get_property(sdm_libraries GLOBAL PROPERTY SDM_LIBRARIES)
@@ -15,7 +15,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/sdm-config-version.cmake
 install(FILES ${PROJECT_BINARY_DIR}/sdm-config.cmake ${PROJECT_BINARY_DIR}/sdm-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sdm)
 
-# The same for pkg-config: sdm, and sdm-io for files.
+# pkg-config files: sdm, and sdm-io for file input and output.
 cmake_path(SET lib_folder NORMALIZE "/${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 cmake_path(RELATIVE_PATH lib_folder BASE_DIRECTORY / OUTPUT_VARIABLE lib_folder)
 string(REGEX REPLACE "[^/]+" ".." SDM_PC_PREFIX "${lib_folder}")

@@ -1,7 +1,8 @@
 # sdm_add_library(<name> SOURCES <file>... [LINK <target>...] [LINK_PRIVATE <target>...])
-# The exported library sdm::<name without sdm_>, static or shared by BUILD_SHARED_LIBS, from the object library <name>_objects.
-# Symbols are hidden but for the public API (SDM_API). Internal headers are on no user's include path; what tests and benchmarks of
-# the internals link is <name>_internals, which is the objects themselves where the library is shared.
+# Adds the exported library sdm::<name without sdm_>, static or shared as set by BUILD_SHARED_LIBS, from the object
+# library <name>_objects. All symbols except those of the public API (SDM_API) are hidden, and internal headers are on
+# no user's include path. Tests and benchmarks of internals link <name>_internals, which provides the objects themselves
+# if the library is shared.
 function(sdm_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LINK_PRIVATE" ${ARGN})
   set(internal_folders ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/src)
@@ -39,7 +40,7 @@ function(sdm_add_library name)
   set_property(GLOBAL APPEND PROPERTY SDM_LIBRARIES ${name})
 endfunction()
 
-# sdm_link_private(<name> <target>...): what a library made by sdm_add_library needs besides.
+# sdm_link_private(<name> <target>...): links further private dependencies to a library of sdm_add_library.
 function(sdm_link_private name)
   target_link_libraries(${name}_objects PRIVATE ${ARGN})
   target_link_libraries(${name} PRIVATE ${ARGN})
@@ -48,7 +49,7 @@ function(sdm_link_private name)
   endif()
 endfunction()
 
-# Strict warnings and C++20 for any of the project's targets.
+# Sets strict warnings and C++20 for a target of the project.
 function(sdm_compile_options name)
   target_compile_features(${name} PUBLIC cxx_std_20)
   target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion

@@ -1,4 +1,4 @@
-// Distances of points to a mesh and their closest features, without reading or writing files.
+// Distances from points to a mesh and the closest features, without file input or output.
 #include <sdm/sdm.h>
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// A cube falls onto another one and is pushed out of it at each frame by the deepest contact.
+// A cube falls onto another one, and in each frame is pushed out of it along the deepest contact.
 #include <sdm/sdm.h>
 
 #include <cstdio>
@@ -28,7 +28,7 @@ int main() {
   for (int frame = 0; frame < 40; ++frame) {
     speed -= 0.01;
     for (sdm::Vec3& p : falling.positions) p[2] += speed;
-    query.refit(falling.positions, {});  // the other cube stays at rest
+    query.refit(falling.positions, {});  // the other cube does not move
     if (query.colliding().value && !query.contacts().empty()) {
       const sdm::Contact& deepest = query.contacts().front();
       for (sdm::Vec3& p : falling.positions)

@@ -8,7 +8,7 @@ namespace sdm::scenes {
 /// 12 triangles, facing outward.
 inline Mesh box_mesh(const Box& box) {
   Mesh mesh;
-  // Bit k of a corner's index: whether it lies at the high end of axis k.
+  // Bit k of a corner's index is set if the corner lies at the high end of axis k.
   for (int corner = 0; corner < 8; ++corner) {
     Vec3& p = mesh.positions.emplace_back();
     for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];

@@ -24,7 +24,7 @@ Cloth::Cloth(std::uint32_t n, double side) : thickness_(0.9 * side / (n - 1)), h
   for (std::uint32_t y = 0; y + 1 < n; ++y)
     for (std::uint32_t x = 0; x + 1 < n; ++x) {
       const std::uint32_t a = at(x, y), b = at(x + 1, y), c = at(x + 1, y + 1), d = at(x, y + 1);
-      if ((x + y) % 2 == 0) {  // diagonals alternate, so that no direction folds more easily
+      if ((x + y) % 2 == 0) {  // diagonals alternate, so that folding is equally easy in both directions
         mesh_.triangles.push_back({a, b, c});
         mesh_.triangles.push_back({a, c, d});
       } else {
@@ -50,7 +50,7 @@ void Cloth::add_spring(std::uint32_t a, std::uint32_t b, double compliance) {
 }
 
 void Cloth::step(double dt, std::span<const Sites> solids) {
-  // A speed limit, so that no particle passes another, or through a solid, within a step.
+  // Limits the speed, so that no particle passes another, or through a solid, within a step.
   const double fastest = 0.25 * thickness_ / dt;
   previous_ = positions_;
   for (std::size_t v = 0; v < positions_.size(); ++v) {
@@ -77,8 +77,8 @@ void Cloth::solve_springs(double dt) {
   }
 }
 
-// Particles are balls with the cloth's thickness as diameter; neighbours may come as close as they are at
-// rest. Friction removes a part of the relative motion of particles in contact.
+// Particles are balls whose diameter is the cloth's thickness; neighbours may be as close as at rest.
+// Friction removes part of the relative motion of particles in contact.
 void Cloth::resolve_self_contacts() {
   hash_.fill(positions_);
   for (std::uint32_t i = 0; i < positions_.size(); ++i)

@@ -19,12 +19,12 @@ class Cloth {
   /// A square of this side length in the plane z = 0, centred at the origin.
   Cloth(std::uint32_t n, double side);
 
-  /// At rest. Vertex y·n + x is the particle of column x and row y.
+  /// The mesh at rest. Vertex y·n + x is the particle of column x and row y.
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] std::span<Vec3> positions() { return positions_; }
-  /// The least distance between particles, and of particles to solids, that contacts maintain.
+  /// The minimum distance, maintained by contacts, between particles and of particles to solids.
   [[nodiscard]] double thickness() const { return thickness_; }
-  /// Advances by dt seconds under gravity, with contacts with the solids and with itself.
+  /// Advances by dt seconds under gravity, with contacts with the solids and with the cloth itself.
   void step(double dt, std::span<const Sites> solids);
 
  private:

@@ -34,7 +34,7 @@ std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sit
   std::vector<VertexContact> contacts;
   for (std::size_t i = 0; i < near.size(); ++i) {
     const double distance = is_inside[i] ? -closest[i].distance : closest[i].distance;
-    if (distance >= margin || distance == 0) continue;  // at 0 there is no direction
+    if (distance >= margin || distance == 0) continue;  // at distance 0 the normal is undefined
     const Triangle& face = solid.mesh().triangles[closest[i].face];
     const std::vector<Vec3>& corners = solid.mesh().positions;
     contacts.push_back(

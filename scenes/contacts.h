@@ -10,15 +10,15 @@ namespace sdm::scenes {
 
 /// A point inside a solid, or less than a margin outside its surface.
 struct VertexContact {
-  std::uint32_t point = 0;  ///< its index
-  Triangle face{};          ///< the face that the closest point of the surface lies on
-  Vec3 weights{};           ///< barycentric coordinates of the closest point on it
+  std::uint32_t point = 0;  ///< index of the point
+  Triangle face{};          ///< the face that contains the closest point of the surface
+  Vec3 weights{};           ///< barycentric coordinates of the closest point
   Vec3 normal{};            ///< (point − closest point) / signed distance: unit length, outward
   double depth = 0;         ///< margin − signed distance, > 0
 };
 
-/// The points whose signed distance to the solid (negative inside) is below `margin`, in order. Points
-/// exactly on the surface are left out, as they have no normal.
+/// Finds the points whose signed distance to the solid (negative inside) is below `margin`, in order. Points
+/// exactly on the surface are skipped, as they have no normal.
 [[nodiscard]] std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sites& solid,
                                                        double margin);
 

@@ -5,8 +5,8 @@
 
 namespace sdm::scenes {
 
-/// The letter E: closed, faces outward, 2,098 triangles with edges of about 0.05. It is centred at the
-/// origin, 1 high along y and 0.3 deep along z, and reads from +z. meshes/README.md describes how the mesh
+/// The letter E: closed, oriented outwards, 2,098 triangles with edges of about 0.05. It is centred at the
+/// origin, 1 high along y and 0.3 deep along z, and readable from +z. meshes/README.md describes how the mesh
 /// was made.
 [[nodiscard]] Mesh letter_e();
 

@@ -37,8 +37,8 @@ class Grid {
     return p;
   }
 
-  // Six tetrahedra around the diagonal from the cube's lowest corner to its highest, one for each order of
-  // the axes. Adjacent cubes cut the square that they share along the same diagonal.
+  // Cuts the cube into six tetrahedra around its main diagonal, one for each order of the axes. Adjacent
+  // cubes cut their common square along the same diagonal.
   void cut_cube(std::size_t lowest) {
     const std::array<std::size_t, 3> step{1, size_[0], size_[0] * size_[1]};
     std::array<int, 3> order{0, 1, 2};
@@ -61,7 +61,7 @@ class Grid {
       if (i != first) std::swap(t[i], t[first]), mirrored = !mirrored;
       ++first;
     }
-    if (mirrored) {  // restore it by a swap of two corners on the same side
+    if (mirrored) {  // restore the orientation by swapping two corners on the same side
       if (inside == 1)
         std::swap(t[2], t[3]);
       else
@@ -84,7 +84,7 @@ class Grid {
     if (i > j) std::swap(i, j);
     const auto [place, is_new] = vertices_.try_emplace(i * values_.size() + j, mesh_.positions.size());
     if (is_new) {
-      // The zero of the field, linear along the edge; away from the ends, so that no edge of the surface
+      // The zero of the field, linear along the edge; kept away from the ends, so that no edge of the surface
       // degenerates.
       const double t = std::clamp(values_[i] / (values_[i] - values_[j]), 0.05, 0.95);
       mesh_.positions.push_back(point(i) + t * (point(j) - point(i)));
@@ -96,7 +96,7 @@ class Grid {
   double spacing_;
   std::array<std::size_t, 3> size_{};
   std::vector<double> values_;
-  std::unordered_map<std::size_t, std::uint32_t> vertices_;  ///< on the edge between two grid points
+  std::unordered_map<std::size_t, std::uint32_t> vertices_;  ///< for each cut grid edge
   Mesh mesh_;
 };
 

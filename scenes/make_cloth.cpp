@@ -1,4 +1,4 @@
-// The scene of the cloth.
+// The scene `cloth`.
 #include <map>
 
 #include "core/geometry/vec.h"
@@ -37,7 +37,7 @@ Mesh ball(const Vec3& centre, double radius, int cuts) {
 class FallingCloth : public Simulation {
  public:
   explicit FallingCloth(std::vector<Scene::Body>& bodies) : cloth_(100, 1) {
-    // Rotated, so that the folds differ, and off the centre of the ball, so that it slides off.
+    // Rotated, so that the folds differ, and placed off the ball's centre, so that it slides off.
     const Matrix turn = rotation_about({1, 0, 0}, 0.1) * rotation_about({0, 0, 1}, 0.4);
     for (Vec3& p : cloth_.positions()) p = turn * p + Vec3{0.2, 0.06, 0.72};
     Mesh mesh = cloth_.mesh();

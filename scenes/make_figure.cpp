@@ -1,4 +1,4 @@
-// The scene of the figure in its box: a man, 1 high, who walks on the spot, facing −y.
+// The scene `figure`: a man, 1 high, who walks on the spot in a box, facing −y.
 #include <numbers>
 
 #include "core/geometry/vec.h"
@@ -52,7 +52,7 @@ Skeleton man() {
 }
 
 // The rotations of all bones after `steps` double steps. Legs and arms swing in opposition, a knee bends
-// while its leg moves forward, and the chest turns against the hips.
+// while its leg moves forward, and the chest rotates against the hips.
 std::vector<Matrix> stride(double steps) {
   std::vector<Matrix> rotations(right + 6, rotation_about({1, 0, 0}, 0));
   const double phase = 2 * std::numbers::pi * steps;
@@ -64,7 +64,7 @@ std::vector<Matrix> stride(double steps) {
   for (const std::size_t first : {std::size_t{left}, std::size_t{right}}) {
     const double at = first == left ? phase : phase + std::numbers::pi;
     const double forward = std::cos(at);  // proportional to the forward speed of the leg
-    // A positive rotation about the x axis swings a limb that hangs down to the back.
+    // A positive rotation about the x axis swings a hanging limb backwards.
     const auto swing = [](double angle) { return rotation_about({1, 0, 0}, angle); };
     rotations[first + thigh] = swing(-0.12 - 0.45 * std::sin(at));
     rotations[first + shin] = swing(0.2 + 0.45 * (1 + forward) * (1 + forward) / 2);

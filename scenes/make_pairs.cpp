@@ -1,4 +1,4 @@
-// The scenes of two soft bodies.
+// The scenes `letters` and `bunnies`: pairs of soft bodies.
 #include <sdm/error.h>
 #include <sdm/io.h>
 
@@ -51,7 +51,7 @@ std::unique_ptr<Simulation> make_letters(std::vector<Scene::Body>& bodies) {
 
 std::unique_ptr<Simulation> make_bunnies(std::vector<Scene::Body>& bodies,
                                          const std::filesystem::path& file) {
-  // Face to face.
+  // Facing each other.
   const Mesh mesh = bunny(file);
   return collide(bodies, {.cluster_radius = 0.12},
                  {Start{"left", placed(mesh, "rotate:0:0:180,translate:-0.8:0:0"), {1.2, 0, 0}, {0, 0, 0}},

@@ -18,7 +18,7 @@ namespace {
               "; steps are fit, scale:S, rotate:X:Y:Z and translate:X:Y:Z");
 }
 
-// The numbers after the name of a step, each behind a colon.
+// The numbers after the name of a step, each preceded by a colon.
 std::vector<double> parse_values(std::string_view step, std::string_view text) {
   std::vector<double> values;
   while (!text.empty()) {
@@ -60,7 +60,7 @@ PlacementStep parse_step(std::string_view step) {
   fail(step, "is not known");
 }
 
-// Turns by `degrees` about an axis, counter-clockwise seen from its tip. Multiples of 90° are exact.
+// Rotates by `degrees` about an axis, counter-clockwise seen from its tip. Multiples of 90° are exact.
 void rotate(std::span<Vec3> points, int axis, double degrees) {
   const double turn = std::remainder(degrees, 360);
   const double radians = turn * (std::numbers::pi / 180);
@@ -74,7 +74,7 @@ void rotate(std::span<Vec3> points, int axis, double degrees) {
   }
 }
 
-// A reflection: flip the faces, so that their outside stays outside.
+// After a reflection: reverses the faces, so that their outside stays outside.
 void turn_faces(Mesh& mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   for (auto& uv : mesh.corner_uvs) std::swap(uv[1], uv[2]);

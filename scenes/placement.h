@@ -1,4 +1,4 @@
-// Placements of meshes as text, such as "fit,rotate:0:90:0,translate:0.8:0:0".
+// Placements of meshes given as text, such as "fit,rotate:0:90:0,translate:0.8:0:0".
 #pragma once
 
 #include <sdm/mesh.h>
@@ -21,14 +21,14 @@ struct PlacementStep {
   Vec3 value{};
 };
 
-/// Reads steps separated by commas: fit, scale:S, rotate:X:Y:Z, translate:X:Y:Z. The empty text is no step.
+/// Parses steps separated by commas: fit, scale:S, rotate:X:Y:Z, translate:X:Y:Z. An empty text has no steps.
 /// Throws sdm::Error that names the invalid step.
 [[nodiscard]] std::vector<PlacementStep> parse_placement(std::string_view text);
 
-/// Applies the steps in order, each rounded by itself. Throws sdm::Error if a coordinate becomes infinite.
-/// Cost: linear.
+/// Applies the steps in order, each with its own rounding. Throws sdm::Error if a coordinate becomes
+/// infinite. Cost: linear.
 void place(Mesh& mesh, const std::vector<PlacementStep>& steps);
-/// The same for points alone. Also throws sdm::Error for `fit`, which needs a mesh.
+/// The same for points. Also throws sdm::Error for `fit`, which needs a mesh.
 void place(std::span<Vec3> points, const std::vector<PlacementStep>& steps);
 
 /// Returns the steps with each `fit` replaced by its translation and scale for this mesh, so that all frames

@@ -8,7 +8,7 @@
 namespace sdm::scenes {
 namespace {
 
-// Removes both of two faces with the same three vertices: their neighbours then share the edges.
+// Removes both of two faces that have the same three vertices: their neighbours then share the edges.
 void remove_pairs(std::vector<Triangle>& triangles) {
   std::map<Triangle, std::size_t> counts;
   const auto sorted = [](Triangle t) {

@@ -7,9 +7,9 @@
 
 namespace sdm::scenes {
 
-/// Collapses edges (meshoptimizer) until at most `triangles` are left, or more where no further collapse
-/// would preserve the topology. Pairs of coincident faces, which collapses leave at thin parts, are removed,
-/// and so are texture coordinates.
+/// Collapses edges (meshoptimizer) until at most `triangles` remain, or more if no further collapse preserves
+/// the topology. Removes pairs of coincident faces, which collapses leave at thin parts, and texture
+/// coordinates.
 [[nodiscard]] Mesh reduce_mesh(const Mesh& mesh, std::size_t triangles);
 
 }  // namespace sdm::scenes

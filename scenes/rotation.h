@@ -8,7 +8,7 @@ namespace sdm::scenes {
 /// The columns of a 3 × 3 matrix.
 using Matrix = std::array<Vec3, 3>;
 
-using core::operator*;  // which those below would hide
+using core::operator*;  // otherwise hidden by those below
 
 inline Vec3 operator*(const Matrix& m, const Vec3& x) {
   return x[0] * m[0] + x[1] * m[1] + x[2] * m[2];
@@ -29,10 +29,10 @@ inline Matrix rotation_about(const Vec3& axis, double angle) {
   return m;
 }
 
-/// The rotation R of the polar decomposition A = RS, by iteration from `rotation`. A few iterations only:
-/// where `rotation` is far from R, the result may be so too. Always a rotation, even if A is singular or a
-/// reflection. M. Müller, J. Bender, N. Chentanez and M. Macklin, "A Robust Method to Extract the Rotational
-/// Part of Deformations" (2016), with matrices in place of quaternions.
+/// The rotation R of the polar decomposition A = RS, by iteration from `rotation`. Makes only a few
+/// iterations: if `rotation` is far from R, the result may be too. It is always a rotation, even if A is
+/// singular or a reflection. M. Müller, J. Bender, N. Chentanez and M. Macklin, "A Robust Method to Extract
+/// the Rotational Part of Deformations" (2016), with matrices in place of quaternions.
 inline Matrix rotation_part(const Matrix& a, Matrix rotation) {
   constexpr int kMaxIterations = 20;
   constexpr double kEnough = 1e-9;
@@ -48,7 +48,7 @@ inline Matrix rotation_part(const Matrix& a, Matrix rotation) {
     if (angle < kEnough) break;
     rotation = rotation_about((1 / angle) * turn, angle) * rotation;
   }
-  // Products of rotations drift: orthonormalise the columns.
+  // Products of rotations drift, so the columns are orthonormalised.
   rotation[0] = normalized(rotation[0]);
   rotation[1] = normalized(rotation[1] - dot(rotation[0], rotation[1]) * rotation[0]);
   rotation[2] = cross(rotation[0], rotation[1]);

@@ -1,5 +1,5 @@
-/// The scenes of the paper's experiments: meshes that move and deform, frame by frame. The frames are the
-/// same to the bit on every run, whatever the number of threads.
+/// The scenes of the paper's experiments: meshes that move and deform, frame by frame. The frames are
+/// bit-identical on every run, for any number of threads.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -19,8 +19,8 @@ enum class SceneKind {
 };
 
 struct SceneOptions {
-  /// bunnies: the mesh to reduce to 2,000 triangles. Closed or nearly so, of any position and size, y axis
-  /// up. Empty: the bunny of Debian's glmark2-data.
+  /// bunnies: the mesh to reduce to 2,000 triangles. Closed or nearly so, of any position and size, with the
+  /// y axis up. Empty: the bunny of Debian's glmark2-data.
   std::filesystem::path mesh{};
 };
 
@@ -43,8 +43,8 @@ class Scene {
   [[nodiscard]] std::span<const Body> bodies() const;
   /// Seconds between frames.
   [[nodiscard]] double time_step() const;
-  /// Advances to the next frame: changes the positions of the bodies that move, never the triangles. Cost:
-  /// about 10 ms, for the cloth 100 ms.
+  /// Advances to the next frame: changes only the positions of the moving bodies. Cost: about 10 ms; 100 ms
+  /// for the cloth.
   void advance();
 
   struct Impl;

@@ -1,4 +1,4 @@
-// How a scene advances from frame to frame: one implementation for each kind.
+// Advances a scene from frame to frame: one implementation for each kind.
 #pragma once
 
 #include "scenes/scene.h"
@@ -18,7 +18,7 @@ class Simulation {
   virtual void advance(std::vector<Scene::Body>& bodies) = 0;
 };
 
-/// Each sets `bodies` to the first frame.
+/// Each of these sets `bodies` to the first frame.
 std::unique_ptr<Simulation> make_letters(std::vector<Scene::Body>& bodies);
 std::unique_ptr<Simulation> make_bunnies(std::vector<Scene::Body>& bodies, const std::filesystem::path& mesh);
 std::unique_ptr<Simulation> make_figure(std::vector<Scene::Body>& bodies);

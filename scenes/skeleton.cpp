@@ -5,7 +5,7 @@
 namespace sdm::scenes {
 namespace {
 
-constexpr double kBlend = 0.012;  // metres over which muscles are blended
+constexpr double kBlend = 0.012;  // in metres: the width over which muscles are blended
 
 double distance(const Muscle& muscle, const Vec3& p) {
   const Vec3 along = muscle.end - muscle.begin;
@@ -15,7 +15,7 @@ double distance(const Muscle& muscle, const Vec3& p) {
 
 }  // namespace
 
-// The smooth minimum −k log Σ exp(−d/k), whose exponentials are taken relative to the least distance.
+// The smooth minimum −k log Σ exp(−d/k); exponents are relative to the smallest distance.
 double skin_distance(const Skeleton& skeleton, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (const Muscle& muscle : skeleton.muscles) least = std::min(least, distance(muscle, p));
@@ -34,8 +34,8 @@ std::vector<Motion> pose(const Skeleton& skeleton, std::span<const Matrix> rotat
   return motions;
 }
 
-// The weights are those of the blend in skin_distance, so that a bone moves the surface that its muscle
-// shapes.
+// The weights are those of the blend in skin_distance, so that a bone moves the part of the surface that its
+// muscle shapes.
 Skin::Skin(const Skeleton& skeleton, std::span<const Vec3> rest) : rest_(rest.begin(), rest.end()) {
   for (const Vec3& p : rest_) {
     double least = std::numeric_limits<double>::infinity(), sum = 0;

@@ -10,7 +10,7 @@
 
 namespace sdm::scenes {
 
-/// x → rotation · x + offset
+/// x ↦ rotation · x + offset
 struct Motion {
   Matrix rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 offset{};
@@ -27,7 +27,7 @@ struct Bone {
   Vec3 joint;
 };
 
-/// A part of the shape around a bone: a ball swept from `begin` to `end`, its radius linear in between.
+/// A part of the shape around a bone: a ball swept from `begin` to `end`, whose radius changes linearly.
 struct Muscle {
   std::size_t bone;
   Vec3 begin, end;
@@ -39,11 +39,11 @@ struct Skeleton {
   std::vector<Muscle> muscles;
 };
 
-/// About the signed distance to the union of the muscles, blended smoothly where they meet; negative inside.
+/// Approximates the signed distance to the union of the muscles, blended smoothly where they meet; negative
+/// inside.
 [[nodiscard]] double skin_distance(const Skeleton& skeleton, const Vec3& p);
 
-/// The motion of each bone from the rest pose, where `rotations` are the rotations about the joints relative
-/// to the parents.
+/// The motion of each bone from the rest pose. `rotations`: those about the joints, relative to the parents.
 [[nodiscard]] std::vector<Motion> pose(const Skeleton& skeleton, std::span<const Matrix> rotations);
 
 /// Linear blend skinning: points follow the bones near them.
@@ -55,7 +55,7 @@ class Skin {
 
  private:
   std::vector<Vec3> rest_;
-  std::vector<std::vector<double>> weights_;  ///< for each point, of all bones; they add up to 1
+  std::vector<std::vector<double>> weights_;  ///< weights of all bones for each point; they sum to 1
 };
 
 }  // namespace sdm::scenes

@@ -27,10 +27,10 @@ SoftBody::SoftBody(const Mesh& mesh, const Material& material, const Vec3& veloc
   for (const Vec3& p : positions_) velocities_.push_back(velocity + cross(angular_velocity, p - centre));
   pulls_.resize(n);
 
-  // Each seed is the vertex farthest from the seeds before; once there are enough clusters, a vertex that is
-  // in none.
+  // Each seed is the vertex farthest from the previous seeds; once there are enough clusters, a vertex that
+  // is in none.
   const auto neighbours = neighbours_of(mesh);
-  masses_.assign(n, 0);  // for now, the number of clusters of a vertex
+  masses_.assign(n, 0);  // for now, the number of clusters of each vertex
   std::vector<double> to_seed(n, std::numeric_limits<double>::infinity());
   std::size_t seed = 0;
   while (seed < n) {
@@ -51,8 +51,8 @@ SoftBody::SoftBody(const Mesh& mesh, const Material& material, const Vec3& veloc
   }
 }
 
-// The vertices within the radius that are connected to the seed by such vertices, so that no cluster joins
-// two arms of the E.
+// The vertices within the radius that are connected to the seed through such vertices, so that no cluster
+// joins two arms of the E.
 void SoftBody::add_cluster(const std::vector<std::vector<std::uint32_t>>& neighbours, std::uint32_t seed,
                            double radius) {
   std::vector<std::uint32_t>& vertices = clusters_.emplace_back().vertices;

@@ -11,13 +11,13 @@
 
 namespace sdm::scenes {
 
-/// Every vertex is a particle of mass 1. Overlapping clusters of particles are pulled towards their rest
-/// shape, rotated and translated to fit best; the pulls add up to no force and no torque.
+/// Every vertex is a particle of mass 1. Overlapping clusters of particles are pulled towards the best rigid
+/// fit of their rest shape; the pulls add up to no force and no torque.
 class SoftBody {
  public:
   struct Material {
-    double stiffness = 0.2;        ///< the part of the way to the rest shape covered by a step, in (0, 1]
-    double cluster_radius = 0.15;  ///< smaller: softer overall, equally stiff within a cluster
+    double stiffness = 0.2;        ///< the fraction of the way to the rest shape covered by a step, in (0, 1]
+    double cluster_radius = 0.15;  ///< smaller clusters: softer overall, equally stiff within a cluster
     std::size_t clusters = 150;    ///< minimum; more are added until they cover all vertices
   };
 
@@ -45,7 +45,7 @@ class SoftBody {
 
   double stiffness_;
   std::vector<Cluster> clusters_;
-  std::vector<double> masses_;  ///< of a vertex in each of its clusters: 1 / their number
+  std::vector<double> masses_;  ///< of a vertex in each of its clusters: 1 / number of clusters
   std::vector<Vec3> positions_, previous_, velocities_, pulls_;
 };
 

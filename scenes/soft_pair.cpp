@@ -24,7 +24,7 @@ void SoftPair::step(double dt) {
   }
 }
 
-// A vertex p and the closest point q = Σ w x of a face of the other body are moved apart until (p − q)·normal
+// A vertex p and the closest point q = Σ w x on a face of the other body are moved apart until (p − q)·normal
 // is the gap: p by 1 and the corners by w, times depth / (1 + Σ w²), which conserves momentum. Their relative
 // tangential displacement is reduced by at most kFriction · depth (Coulomb friction).
 void SoftPair::push_apart(std::size_t points, std::size_t solid, double dt) {
@@ -40,7 +40,7 @@ void SoftPair::push_apart(std::size_t points, std::size_t solid, double dt) {
       mass += c.weights[k] * c.weights[k];
     }
     const double depth = std::min(gap_ - dot(point, c.normal),
-                                  kFastest * dt);  // the contacts before may have moved the corners
+                                  kFastest * dt);  // earlier contacts may have moved the corners
     if (depth <= 0) continue;
     slip = slip - dot(slip, c.normal) * c.normal;
     const double friction = std::min(1.0, kFriction * depth / std::max(norm(slip), 1e-30));

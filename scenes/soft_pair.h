@@ -8,10 +8,10 @@
 
 namespace sdm::scenes {
 
-/// Shape matching with contacts by closest points, both ways, and Coulomb friction.
+/// Shape matching, with contacts by closest points in both directions and Coulomb friction.
 class SoftPair : public Simulation {
  public:
-  /// `shapes`: the meshes of the bodies. `gap`: the distance between them that contacts maintain.
+  /// `shapes`: the meshes of the bodies. `gap`: the distance that contacts maintain between them.
   SoftPair(std::array<SoftBody, 2> bodies, const std::vector<Scene::Body>& shapes, double gap);
   void advance(std::vector<Scene::Body>& bodies) override;
 

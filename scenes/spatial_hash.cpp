@@ -4,7 +4,8 @@
 
 namespace sdm::scenes {
 
-// A counting sort: begins_ holds the counts, then the ends, and the beginnings once all points are placed.
+// A counting sort: begins_ first holds the counts, then the ends and, once all points are placed, the
+// beginnings.
 void SpatialHash::fill(std::span<const Vec3> points) {
   begins_.assign(std::bit_ceil(2 * points.size() + 1) + 1, 0);
   sorted_.resize(points.size());

@@ -10,7 +10,7 @@
 
 namespace sdm::scenes {
 
-/// Points sorted into the cells of a uniform grid, which are hashed.
+/// Points sorted into the hashed cells of a uniform grid.
 class SpatialHash {
  public:
   explicit SpatialHash(double cell) : cell_(cell) {}
@@ -18,8 +18,8 @@ class SpatialHash {
   /// Replaces the points. Linear time; no allocation if there are no more points than before.
   void fill(std::span<const Vec3> points);
 
-  /// Calls visit(j) for all points j within the size of a cell of p, and for some others; possibly several
-  /// times for a point. The order is deterministic.
+  /// Calls visit(j) for all points j within a cell size of p, and for some others; possibly several times for
+  /// a point. The order is deterministic.
   template <typename Visit>
   void for_each_near(const Vec3& p, const Visit& visit) const {
     const Cell c = cell_of(p);
@@ -44,7 +44,8 @@ class SpatialHash {
     const std::uint64_t hash = static_cast<std::uint64_t>(x) * 73856093u ^
                                static_cast<std::uint64_t>(y) * 19349663u ^
                                static_cast<std::uint64_t>(z) * 83492791u;
-    return hash & (begins_.size() - 2);  // the number of slots is a power of two; one more entry for the end
+    return hash &
+           (begins_.size() - 2);  // the number of slots is a power of two, followed by one entry for the end
   }
 
   double cell_;

@@ -1,15 +1,15 @@
 #version 450 core
-// The distance from a texel's surface point to a site: the norm of the distance vector, which is affine in the
-// texel (Lemma 1). It is evaluated here rather than interpolated from the polygon's corners: rasterisers move
-// corners to a grid of 1/256 texel, and interpolate with them.
+// The distance from a texel's surface point to a site: the norm of the distance vector, which is affine in
+// the texel (Lemma 1). It is evaluated here rather than interpolated from the polygon's corners, because
+// rasterisers snap corners to a grid of 1/256 texel and interpolate between the snapped positions.
 
-uniform bool by_owner;     // whether the fragment asks who owns its texel
+uniform bool by_owner;  // whether fragments test the owner of their texel
 uniform usampler2D owner;  // the domain that owns each texel
 
-flat in vec2 origin;           // texel coordinates that the affine functions start from
+flat in vec2 origin;  // texel coordinates at which the affine functions have their base values
 flat in vec3 distance_vector, vector_du, vector_dv;
 flat in vec3 walls[5];  // (value, d/du, d/dv): the region is where none is negative
-flat in uint face, domain;  // the face of O2 that the site belongs to, and the domain drawn on
+flat in uint face, domain;  // the face of O2 to which the site belongs, and the domain being drawn
 
 layout(binding = 0, offset = 0) uniform atomic_uint fragments;
 

@@ -1,9 +1,9 @@
 #version 450 core
-// A corner of a site's polygon, in texels of the map. What is the same over the polygon comes from a table.
+// A corner of a site's polygon, in texels of the map. Data common to the polygon comes from a table.
 
 uniform float resolution;
-uniform uint first_polygon;  // of the corners, in the table
-uniform usamplerBuffer polygons;  // seven texels a polygon: RasterPolygon. Bits: a float of them could be flushed.
+uniform uint first_polygon;  // of these corners, in the table
+uniform usamplerBuffer polygons;  // seven texels per polygon (RasterPolygon), as bits: denormal floats could be flushed
 
 layout(location = 0) in vec2 corner;
 layout(location = 1) in uint polygon;

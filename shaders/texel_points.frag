@@ -1,4 +1,4 @@
 #version 450 core
-// Writes nothing but the stencil.
+// Writes only the stencil.
 
 void main() {}

@@ -1,5 +1,5 @@
 #version 450 core
-// A texel of a face, as a point: what a face's stencil is drawn with, so that it covers exactly its texels.
+// A texel of a face, as a point: drawing these sets the stencil of exactly the face's texels.
 
 uniform float resolution;
 

@@ -21,7 +21,7 @@ void for_each_block(std::size_t count, const Progress& progress, std::string_vie
 void for_each_sample_block(const Surface& surface, const Progress& progress, std::string_view step,
                            const std::function<void(std::size_t, std::span<const Vec3>)>& body) {
   for_each_block(surface.sample_texels().size(), progress, step, [&](std::size_t begin, std::size_t end) {
-    // A block's points stay in the cache; those of all samples would not.
+    // The points of one block fit in the cache; those of all samples would not.
     thread_local std::vector<Vec3> points;
     points.resize(end - begin);
     internals(surface).place_samples(begin, points);

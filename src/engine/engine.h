@@ -1,4 +1,4 @@
-// The one interface of the engines: the closest site of each sample of a surface, or of each of any points.
+// The interface of all engines: finds the closest site of each sample of a surface, or of any points.
 #pragma once
 
 #include <sdm/engine.h>
@@ -15,10 +15,10 @@
 namespace sdm {
 namespace engine {
 
-/// Receives closest points as they are found: those of the points from index `first`.
+/// Receives closest points as they are found, for the points from index `first` on.
 using ClosestSink = std::function<void(std::size_t first, const sites::ClosestPacket& closest)>;
 
-/// Receives the closest points of the samples from index `first`, which are at `points`.
+/// Receives the closest points of the samples from index `first` on; `points` are the samples' positions.
 using SampleSink =
     std::function<void(std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest)>;
 
@@ -38,15 +38,15 @@ class Engine {
 
   [[nodiscard]] virtual const EngineInfo& info() const = 0;
 
-  /// Delivers the closest point of every sample, once, from several threads at the same time; type `none`
-  /// where nothing is within max_distance. Calls closest_points for blocks of samples, unless overridden.
-  /// Throws sdm::Error if the engine fails; Cancelled.
+  /// Passes the closest point of every sample to the sink exactly once, from several threads concurrently;
+  /// type `none` where nothing is within max_distance. Calls closest_points for blocks of samples, unless
+  /// overridden. Throws sdm::Error if the engine fails; Cancelled.
   virtual void map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
                    const engine::SampleSink& sink) const;
 
-  /// Delivers the closest point of every point, in their order and on the calling thread. Called for blocks
-  /// of neighbouring points (see engine/blocks.h) from several threads. Throws sdm::Error if the engine
-  /// computes maps only.
+  /// Passes the closest point of every point to the sink, in order and on the calling thread. Called for
+  /// blocks of neighbouring points (see engine/blocks.h) from several threads. Throws sdm::Error if the
+  /// engine computes maps only.
   virtual void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
                               const engine::ClosestSink& sink) const = 0;
 };

@@ -25,7 +25,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
 
   const map::MapWriter writer(map, surface);
   map.sign = sign;
-  // By the samples' position, so that threads rarely write to the same cache line.
+  // Indexed by the samples' position, so that threads rarely write to the same cache line.
   struct alignas(64) Counter {
     std::atomic<std::size_t> count{0};
   };

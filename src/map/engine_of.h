@@ -1,4 +1,4 @@
-// The engine that computes a map.
+// Selects the engine that computes a map.
 #pragma once
 
 #include <sdm/error.h>
@@ -8,7 +8,7 @@
 
 namespace sdm::map {
 
-/// The engine of the options. Throws sdm::Error unless the maximum distance is greater than 0.
+/// Returns the engine of the options. Throws sdm::Error unless the maximum distance is greater than 0.
 [[nodiscard]] inline std::shared_ptr<const Engine> engine_of(const MapOptions& options) {
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
   return options.engine ? options.engine : make_engine(engines().front().name);

@@ -55,7 +55,7 @@ MapWriter::MapWriter(DistanceMap& map, const Surface& surface) : texels_(surface
 std::size_t MapWriter::store(std::size_t first, const sites::ClosestPacket& closest,
                              std::uint32_t inside) const {
   constexpr std::size_t kSize = sites::ClosestPacket::kSize;
-  // Neighbours in space are scattered over the map: prefetch the texels that are written next.
+  // Neighbours in space are scattered over the map: prefetch the texels that are written soon.
   constexpr std::size_t kAhead = 4 * kSize;
   for (std::size_t i = first + kAhead; i < std::min(first + kAhead + kSize, texels_.size()); ++i) {
     __builtin_prefetch(distance_ + texels_[i], 1);

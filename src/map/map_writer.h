@@ -1,4 +1,4 @@
-// Stores the results of engines in a map.
+// Stores the engines' results in a map.
 #pragma once
 
 #include <sdm/map.h>
@@ -9,8 +9,8 @@
 
 namespace sdm::map {
 
-/// Makes room in `map` for the surface, in the memory that it has where that suffices, without values where
-/// no face owns a texel; others are unspecified.
+/// Resizes `map` for the surface, reusing its memory where possible. Texels that no face owns get no value;
+/// all others are unspecified.
 void clear(DistanceMap& map, const Surface& surface);
 
 class MapWriter {
@@ -18,14 +18,15 @@ class MapWriter {
   /// Clears the map. Both must outlive it.
   MapWriter(DistanceMap& map, const Surface& surface);
 
-  /// Stores the closest points of the samples from `first` on; `inside` has a bit for each whose distance is
-  /// negative. Returns how many have none. Threads may store different samples at the same time.
+  /// Stores the closest points of the samples from `first` on; bit i of `inside` is set if the distance of
+  /// sample first + i is negative. Returns the number of samples without a closest point. Threads may store
+  /// different samples concurrently.
   std::size_t store(std::size_t first, const sites::ClosestPacket& closest, std::uint32_t inside) const;
 
  private:
   std::span<const std::uint32_t> texels_;
   DistanceMap& map_;
-  // Its arrays.
+  // The arrays of map_.
   float* distance_;
   Vec3f* vector_;
   std::uint32_t* site_;

@@ -15,8 +15,8 @@ struct WeightedDistance {
   float distance, weight;
 };
 
-// The area of surface of a texel, |∂p/∂u × ∂p/∂v|, the same for all texels of a face; over the largest, so
-// that it fits a float for meshes of any size.
+// The surface area of a texel, |∂p/∂u × ∂p/∂v|, which is the same for all texels of a face; relative to the
+// largest, so that it fits a float for meshes of any size.
 std::vector<float> texel_areas(const Surface& surface) {
   const auto charts = surface.face_charts();
   std::vector<double> areas(charts.size());
@@ -90,7 +90,7 @@ double area_fraction_beyond(const Surface& surface, const DistanceMap& map, doub
     if (owners[texel] == kNone) continue;
     const double weight = areas[owners[texel]];
     area += weight;
-    if (!(std::abs(map.distance[texel]) <= limit)) beyond += weight;  // or none
+    if (!(std::abs(map.distance[texel]) <= limit)) beyond += weight;  // also if it has no value
   }
   return area > 0 ? beyond / area : 0;
 }

@@ -22,8 +22,8 @@ void TemporalMaps::add(const DistanceMap& map) try {
     parallel_for(sum_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const float d = map.distance[i];
-        sum_[i] += d;  // NaN stays
-        // So NaN stays in the least and the largest, whichever has it.
+        sum_[i] += d;  // NaN if either is
+        // NaN in either operand makes the minimum and maximum NaN as well.
         if (d < least_[i] || std::isnan(d)) least_[i] = d;
         if (d > largest_[i] || std::isnan(d)) largest_[i] = d;
       }

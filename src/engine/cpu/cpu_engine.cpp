@@ -1,5 +1,5 @@
-// The CPU engine: groups of points descend through lists of sites, in the unit frame of O2 and single
-// precision; then the winners in double.
+// The cpu engine: groups of points descend through candidate lists in single precision, in the unit frame of
+// O2; the winners are then evaluated in double.
 #include <algorithm>
 #include <memory>
 
@@ -11,7 +11,7 @@
 namespace sdm::cpu {
 namespace {
 
-// A bound in the unit frame, enlarged so that rounding never excludes what lies within max_distance.
+// A bound in the unit frame, enlarged so that rounding never excludes a site within max_distance.
 float unit_limit(const UnitFrame& frame, double max_distance) {
   return static_cast<float>(std::min((1 + 1e-5) * frame.scale * max_distance + 1e-6, 1e18));
 }

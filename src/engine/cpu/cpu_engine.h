@@ -8,9 +8,9 @@ namespace sdm::cpu {
 
 using engine::ClosestSink;
 
-/// Groups of points descend through the wide tree and lists of its sites in single precision; the winner is
-/// evaluated in double. Groups are formed of neighbours in `points`. A winner can differ from the closest
-/// site only where the two distances differ by rounding: about 10⁻⁷ of the scene's extent.
+/// Groups of neighbouring `points` descend through the wide tree and through candidate lists in single
+/// precision; the winner is evaluated in double. A winner can differ from the closest site only where the two
+/// distances are equal up to rounding, about 10⁻⁷ of the scene's extent.
 void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
                 const ClosestSink& sink);
 

@@ -19,17 +19,16 @@
 namespace sdm::cpu {
 namespace {
 
-// A list for a group is worth its traversal where the group has so many points for each leaf of O2's tree
-// within reach, or is as small as kFewPoints; else its parts fare better with traversals of their own.
-// (Measured.)
+// A shared candidate list pays off where the group has at least this many points for each leaf of O2's tree
+// within reach, or at most kFewPoints points. Otherwise its subgroups are traversed separately. (Measured.)
 constexpr std::size_t kPointsPerLeaf = 14, kFewPoints = 64;
-// So many sites are evaluated for all packets of a ball, rather than filtered any further: more where there
-// are only four packets. (Measured.)
+// Lists of up to this many sites are evaluated for all packets of a ball instead of being filtered further:
+// more where there are only four packets. (Measured.)
 constexpr std::size_t few_sites(int level) {
   if (!uses(Idea::short_lists)) return 0;
   return level == 1 ? 8 : 3;
 }
-// The highest level whose groups get a traversal of their own.
+// The highest level whose groups are traversed as one.
 constexpr int kHighestGroups = !uses(Idea::groups)         ? 0
                                : !uses(Idea::large_groups) ? 1
                                                            : PointGroup::kLevels - 1;
@@ -41,7 +40,8 @@ constexpr int kHighestGroups = !uses(Idea::groups)         ? 0
 HWY_BEFORE_NAMESPACE();
 namespace sdm::cpu::HWY_NAMESPACE {
 
-// The point of O2 that is closest to c so far, with the square of the distance; else a bound, and c itself.
+// The closest point of O2 to c found so far, with its squared distance; until one is found, a bound and c
+// itself.
 struct Nearest {
   float squared;
   float point[3];
@@ -66,7 +66,7 @@ HWY_INLINE void improve(Nearest& nearest, const SiteList<Some>& list, const floa
   for (size_t i = 0; i < list.used; ++i) improve(nearest, list.blocks[i], p);
 }
 
-// c − b for a point c and the points b of a node's boxes that are closest to it.
+// c − b for a point c and the closest points b to it in a node's boxes.
 struct FromBoxes {
   BlockVec x, y, z, squared;
 
@@ -85,7 +85,8 @@ class Search {
   Search(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit, Descent& descent)
       : tree_(tree), regions_(regions), limit_(limit), s_(descent) {}
 
-  // Finds the winners of a ball's points by a traversal for them all, or for each of the balls below.
+  // Finds the winners of a ball's points by one traversal for all of them, or by one for each of its child
+  // balls.
   void start(int level, size_t index) {
     if constexpr (kHighestGroups < PointGroup::kLevels - 1)
       if (level > kHighestGroups)
@@ -95,7 +96,7 @@ class Search {
     lists.clear();
     count_work(&WorkCounts::groups);
     Nearest nearest = within_limit(ball);
-    if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the group before lies near
+    if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the previous group is near
       nearest = last_, nearest.squared = squared_distance(ball, last_.point);
     improve_in_tree(nearest, ball.centre);
     if (uses(Idea::last_nearest) && nearest.found) last_ = nearest;
@@ -130,7 +131,7 @@ class Search {
     for (size_t child = first; child < end; ++child) visit(child);
   }
 
-  // The centre of a face that is closest to p.
+  // Improves `nearest` to the closest centre of a face to p.
   void improve_in_tree(Nearest& nearest, const float* p) {
     hierarchy::traverse_nearest_child_first(
         tree_, s_.stack,
@@ -167,7 +168,7 @@ class Search {
 
   uint32_t faces_in(uint32_t leaf) const { return regions_.leaves[leaf + 1] - regions_.leaves[leaf]; }
 
-  // The leaves of the tree that come within reach, as children of nodes. Returns false if there are more than
+  // Finds the leaves of the tree within reach, as children of nodes. Returns false if there are more than
   // `most`.
   bool find_leaves(const CandidateBound& reach, size_t most) {
     auto& open = s_.open;
@@ -189,7 +190,8 @@ class Search {
     return true;
   }
 
-  // The sites of the leaves found that matter: first by bounds on all that a face owns, then one by one.
+  // Collects the candidates from the leaves found: first by bounds on all sites that a face owns, then one by
+  // one.
   void collect(const CandidateBound& reach, SiteLists& lists) {
     count_work(&WorkCounts::leaves, s_.leaves.size());
     s_.owners.clear();
@@ -202,7 +204,7 @@ class Search {
                return may_be_closest(Block(), regions_.bounds[leaf], lane, reach);
              }));
     }
-    // A face owns three edges and three vertices at most: none of these stores needs a branch.
+    // A face owns at most three edges and three vertices, so none of these stores needs a branch.
     s_.edges.resize(3 * s_.owners.size());
     s_.vertices.resize(3 * s_.owners.size());
     uint32_t *edge = s_.edges.data(), *vertex = s_.vertices.data();
@@ -236,7 +238,7 @@ class Search {
     HWY_NAMESPACE::keep(from.vertices, reach, to.vertices);
   }
 
-  // Finds the winners of a ball's points in the lists of its level.
+  // Finds the winners of a ball's points in the candidate lists of its level.
   void descend(int level, size_t index) {
     const SiteLists& lists = s_.lists[level];
     if (level == 0 || lists.size() <= few_sites(level)) {
@@ -268,13 +270,13 @@ class Search {
     alignas(64) float best[PointGroup::kPacket];
     std::fill_n(best, PointGroup::kPacket, std::numeric_limits<float>::infinity());
     count_work(&WorkCounts::evaluations, lists.size());
-    // Of equals the first wins: at the end of an edge its vertex, at the border of a face its edge.
+    // Of equal distances the first wins: at the end of an edge its vertex, at the border of a face its edge.
     offer(lists.vertices, first, best, winners);
     offer(lists.edges, first, best, winners);
     offer(lists.faces, first, best, winners);
   }
 
-  // Offers every site of a list to the points of a packet.
+  // Evaluates every site of a list for the points of a packet.
   template <class Some>
   void offer(const SiteList<Some>& list, size_t first, float* best, uint32_t* winners) const {
     const Points d;
@@ -301,7 +303,7 @@ class Search {
   const sites::Regions& regions_;
   const float limit_;
   Descent& s_;
-  Nearest last_{0, {}, false};  // of the last traversal
+  Nearest last_{0, {}, false};  // from the previous traversal
 };
 
 void FindWinners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,

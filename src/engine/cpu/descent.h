@@ -1,5 +1,5 @@
-// Closest sites of the points of a group: one traversal of O2's tree collects a list of sites for many
-// points, and the lists of ever fewer points are filtered from it.
+// Closest sites for groups of points: one traversal of O2's tree collects a candidate list for many points,
+// from which the lists of smaller and smaller groups are filtered.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace sdm::cpu {
 
-/// What a thread keeps between groups.
+/// Per-thread memory, reused between groups.
 struct Descent {
   PointGroup points;
   std::uint32_t winners[PointGroup::kMostPoints];  ///< SiteId::packed of each point's closest site
@@ -21,9 +21,9 @@ struct Descent {
   SiteLists gathered, lists[PointGroup::kLevels];
 };
 
-/// Finds the closest site within `limit` for every point of descent.points; one that is farther may be named
-/// too. Selected in single precision: a winner can be another than the closest site only where the two differ
-/// by rounding. Chooses the best vector instructions that the machine has, at run time.
+/// Finds the closest site within `limit` of every point of descent.points; a site beyond the limit may also
+/// be returned. Selects in single precision: a winner can differ from the closest site only where the two
+/// distances are equal up to rounding. Dispatches at run time to the best vector instructions of the machine.
 void find_winners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,
                   Descent& descent);
 

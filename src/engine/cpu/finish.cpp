@@ -21,9 +21,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace core::HWY_NAMESPACE;
 
 constexpr size_t kPacket = sites::ClosestPacket::kSize;
-static_assert(kPacket == PointGroup::kPacket);  // winners come in whole packets
+static_assert(kPacket == PointGroup::kPacket);  // winners are stored in whole packets
 
-// Queries, and what is found for them.
+// Queries and their results.
 struct Packet {
   sites::ClosestPacket& found;
   alignas(64) double query[3][kPacket];
@@ -40,9 +40,9 @@ struct Packet {
   }
 };
 
-// Runs on(query, from) for those vectors of a packet that have one of `lanes`: it sets from = query − closest
-// point and returns the mask of queries that lie in the site's region. Keeps the points of `lanes`, and
-// returns those of them that are inside.
+// Calls on(query, from) for each vector of a packet that contains one of `lanes`. It sets from = query −
+// closest point and returns the mask of queries in the site's region. Stores the closest points of `lanes`,
+// and returns the lanes whose queries are in the region.
 template <class On>
 HWY_INLINE uint32_t for_lanes(Packet& p, uint32_t lanes, const On& on) {
   const Doubles d;
@@ -56,7 +56,7 @@ HWY_INLINE uint32_t for_lanes(Packet& p, uint32_t lanes, const On& on) {
     const auto mask = on(query, from);
     const uint8_t bits[8] = {here};
     const auto keep = hn::LoadMaskBits(d, bits);
-    // To the point as rounded, so that a query on the mesh has the distance 0.
+    // Relative to the rounded closest point, so that a query on the mesh has distance 0.
     const auto to_point = [&](Vec q, Vec f) HWY_ATTR { return hn::Sub(hn::Sub(q, f), q); };
     const Vec x = to_point(query.x, from.x), y = to_point(query.y, from.y), z = to_point(query.z, from.z);
     const Vec distance = hn::Sqrt(hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x))));
@@ -73,7 +73,7 @@ HWY_INLINE uint32_t for_lanes(Packet& p, uint32_t lanes, const On& on) {
   return inside & lanes;
 }
 
-// Over the face, on the inner side of its three walls.
+// Above or below the face: on the inner side of its three walls.
 uint32_t on_face(const sites::SitesData& sites, uint32_t face, Packet& p, uint32_t lanes) {
   if (sites.sliver[face]) return 0;
   const Triangle& t = sites.mesh.triangles[face];
@@ -93,7 +93,7 @@ uint32_t on_face(const sites::SitesData& sites, uint32_t face, Packet& p, uint32
   });
 }
 
-// Between the ends of the edge, where none of its faces comes closer.
+// Between the ends of the edge, where neither of its faces is closer.
 uint32_t on_edge(const sites::SitesData& sites, uint32_t edge, Packet& p, uint32_t lanes) {
   const auto [a, b] = sites.topology.edges[edge];
   const Vec3 &start = sites.mesh.positions[a], along = sites.mesh.positions[b] - start;
@@ -115,7 +115,7 @@ uint32_t on_edge(const sites::SitesData& sites, uint32_t edge, Packet& p, uint32
   });
 }
 
-// Where no edge of the vertex comes closer.
+// Where no edge of the vertex is closer.
 uint32_t on_vertex(const sites::SitesData& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
   const Vec3& point = sites.mesh.positions[vertex];
   // In a closed, consistently oriented mesh every neighbour follows the vertex in exactly one face.
@@ -145,7 +145,7 @@ uint32_t on_site(const sites::SitesData& sites, SiteId site, Packet& p, uint32_t
   }
 }
 
-// The lanes of a packet that have this winner, as bits.
+// The lanes of a packet that have this winner, as a bit mask.
 HWY_INLINE uint32_t lanes_of(const uint32_t* winners, uint32_t winner) {
   const hn::CappedTag<uint32_t, 8> d;
   uint32_t bits = 0;
@@ -157,7 +157,7 @@ HWY_INLINE uint32_t lanes_of(const uint32_t* winners, uint32_t winner) {
   return bits;
 }
 
-// What winners say of sites, for whole packets.
+// Stores the sites of the winners, for whole packets.
 HWY_INLINE void name_sites(const uint32_t* winners, sites::ClosestPacket& found) {
   static_assert(static_cast<int>(SiteType::none) == 255);
   const hn::CappedTag<uint32_t, 8> d;

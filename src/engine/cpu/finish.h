@@ -1,4 +1,4 @@
-// Closest points on the sites that single precision found, in double.
+// Closest points in double on the sites selected in single precision.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace sdm::cpu {
 
-/// Delivers for each query the closest point of its winner, if the query lies in that site's region of
-/// influence; else the walk of closest_around_face from there, or the reference engine where it is unsettled.
-/// Type none beyond max_distance, and where there is no winner.
+/// Delivers the closest point of each query on its winner, if the query lies in that site's region of
+/// influence. Otherwise walks from there with closest_around_face, or calls the reference engine where the
+/// walk does not settle it. Type none beyond max_distance, and where there is no winner.
 void finish(const sites::SitesData& sites, std::span<const std::uint32_t> winners,
             std::span<const Vec3> queries, double max_distance, const engine::ClosestSink& deliver);
 

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sdm::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The ball about the middle of the box of a packet's points.
+// The ball around a packet's points, centred on their bounding box.
 void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, hierarchy::FloatBox& box) {
   const hn::CappedTag<float, PointGroup::kPacket> d;
   const auto load = [&](int k, size_t i) HWY_ATTR {
@@ -39,13 +39,13 @@ void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, hierarchy:
   ball.radius = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, most)));
 }
 
-// Moves points to the frame. Returns whether one of them is far away; those are put at its origin.
+// Maps points into the frame. Returns whether any of them is far away; those are moved to its origin.
 bool MoveToFrame(std::span<const Vec3> points, const UnitFrame& frame,
                  float (*position)[PointGroup::kMostPoints]) {
   const hn::CappedTag<double, 8> d;
   const hn::Rebind<float, decltype(d)> df;
   const size_t lanes = hn::Lanes(d);
-  size_t i = 0;  // as long as all are near, many at a time
+  size_t i = 0;  // many at a time, as long as all are near
   for (; i + lanes <= points.size(); i += lanes) {
     hn::Vec<decltype(d)> p[3];
     hn::LoadInterleaved3(d, points[i].data(), p[0], p[1], p[2]);
@@ -81,7 +81,8 @@ namespace {
 HWY_EXPORT(AroundPackets);
 HWY_EXPORT(MoveToFrame);
 
-// The ball about the middle of the box of the points of some balls, and that box in the place of the first.
+// The ball around the points of some balls, centred on their bounding box, which replaces the box of the
+// first.
 Ball around(std::span<const Ball> balls, std::span<hierarchy::FloatBox> boxes, hierarchy::FloatBox& box) {
   box = boxes[0];
   Ball ball{};

@@ -1,4 +1,4 @@
-// Points that descend through lists of sites together: packets of sixteen, and balls around them and around
+// Points that descend through candidate lists together: packets of sixteen, and balls around packets and
 // groups of packets.
 #pragma once
 
@@ -18,8 +18,8 @@ struct Ball {
   float radius;
 };
 
-/// Level 0 has a ball for each packet; another level's balls each cover kFan of the level below, up to one
-/// for all.
+/// Level 0 has one ball per packet. Each ball of a higher level covers kFan balls of the level below, up to
+/// one ball for all.
 struct PointGroup {
   static constexpr std::size_t kPacket = 16, kFan = 4;
   static constexpr int kLevels = 7;
@@ -27,14 +27,15 @@ struct PointGroup {
   static constexpr std::size_t kMostPoints = kPacket << (2 * (kLevels - 1));
 
   std::size_t packets = 0;
-  int top = 0;                                 ///< the level of the one ball
-  alignas(64) float position[3][kMostPoints];  ///< of the points, the last one repeated to fill its packet
+  int top = 0;                                 ///< the level of the single ball
+  alignas(64) float position[3][kMostPoints];  ///< of the points; the last one is repeated to fill its packet
   std::vector<Ball> balls[kLevels];
-  std::vector<hierarchy::FloatBox> boxes;  ///< of the points of each ball of a level, while they are placed
+  std::vector<hierarchy::FloatBox>
+      boxes;  ///< scratch memory of place(): bounding boxes of the points of a level's balls
 
-  /// The group of 1 to kMostPoints points, in the frame. Balls are small where the points come in an order
-  /// like that of core/spatial_order.h. They contain their points, and the balls below them, but for
-  /// rounding. Points that are far away are put at the frame's origin; returns whether there are any.
+  /// Sets the group to 1 to kMostPoints points, mapped into the frame. Balls are small if the points are in
+  /// an order like that of core/spatial_order.h. Up to rounding, they contain their points and the balls
+  /// below them. Points that are far away are moved to the frame's origin; returns whether there are any.
   bool place(std::span<const Vec3> points, const UnitFrame& frame);
 
   /// Beyond this multiple of O2's size, squares approach the range of single precision.

@@ -1,4 +1,4 @@
-// Tests of regions of sites, and distances to sites, many at a time. Included once for each set of vector
+// Vectorised tests of sites' regions, and distances to sites. Included once for each set of vector
 // instructions.
 #if defined(SDM_REGION_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SDM_REGION_KERNELS_INL_H
@@ -32,30 +32,30 @@ HWY_INLINE hn::Vec<D> square_norm(D, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) {
   return hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
 }
 
-// Heights over planes, and points, err by a few units in the last place of the coordinates. O2 lies in the
-// cube [−1, 1]³.
+// The rounding error of points and of heights over planes: a few units in the last place of the coordinates.
+// O2 lies in the cube [−1, 1]³.
 inline float coordinate_error(const Ball& ball) {
   const auto& [x, y, z] = ball.centre;
   return 2e-6f * std::max({1.0f, std::abs(x), std::abs(y), std::abs(z)});
 }
 
-// Of a ball that still meets all regions that it meets, whatever rounding does to the tests.
+// The radius of a ball that meets all regions that `ball` meets, despite rounding in the tests.
 inline float enlarged_radius(const Ball& ball) {
   return 1.0001f * ball.radius + coordinate_error(ball);
 }
 
-// Which pieces of O2 can hold the closest point of any point x of the ball (c, r). Let a be a point of O2, B
-// a convex piece of it, b the point of B closest to c. If some b' of B is closer to x than a is, then
-//   |c − b'|² ≤ |c − a|² + 2 r |b' − a|,  and  |c − b'|² ≥ |c − b|² + |b − b'|²,  for B is convex;
+// Which pieces of O2 can contain the closest point of any point x of the ball (c, r). Let a be a point of O2,
+// B a convex piece of it, and b the point of B closest to c. If some b' of B is closer to x than a is, then
+//   |c − b'|² ≤ |c − a|² + 2 r |b' − a|,  and  |c − b'|² ≥ |c − b|² + |b − b'|²,  since B is convex;
 // with |b' − a| ≤ |b − a| + |b − b'| it follows that
 //   |c − b|² ≤ |c − a|² + 2 r |b − a| + r².
-// Far from O2 this is much tighter than |c − b| ≤ |c − a| + 2r: the closer b is to a, the smaller the
-// difference of their distances for any x.
+// Far from O2 this is much tighter than |c − b| ≤ |c − a| + 2r: the closer b is to a, the less their
+// distances to x can differ.
 struct CandidateBound {
   float centre[3], radius;  // of the ball; enlarged by the rounding error of the region tests
   float from_a[3];          // c − a
-  float squared;            // |c − a|² + r², and the rounding of squares
-  float squared_limit;      // nor can what is beyond the limit for all x
+  float squared;            // |c − a|² + r², enlarged by the rounding error of squares
+  float squared_limit;      // beyond this, a site is outside the limit for all x
 
   CandidateBound(const Ball& ball, float squared_to_a, const float (&a)[3], float limit) {
     for (int k = 0; k < 3; ++k) {
@@ -68,7 +68,7 @@ struct CandidateBound {
     squared_limit = (limit + radius) * (limit + radius);
   }
 
-  // Whether it holds for squared = |c − b|² and c − b = (x, y, z).
+  // Whether the bound holds for squared = |c − b|² and c − b = (x, y, z).
   template <class D>
   HWY_INLINE hn::Mask<D> holds(D d, hn::Vec<D> squared_to_b, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) const {
     const auto a_to_b = square_norm(d, hn::Sub(hn::Set(d, from_a[0]), x), hn::Sub(hn::Set(d, from_a[1]), y),
@@ -99,11 +99,12 @@ HWY_INLINE PointVec height(Points d, const SiteBlock::Row* plane, uint32_t lane,
 }
 
 // For each kind of site:
-//   matters   whether the region meets the ball and the bound of Reach holds;
-//   squared   the squared distances of one point to a block of sites, or of many points to one site: infinite
-//             beyond the prism of a face or the ends of an edge, where its plane or line is too close. No
-//             other part of a region needs to be tested, for a site is never closer than O2 is;
-//   closest   the point of one site that is closest to p.
+//   may_be_closest  whether the region meets the ball and the CandidateBound holds;
+//   squared         the squared distances of one point to a block of sites, or of many points to one site:
+//                   infinite outside the prism of a face or beyond the ends of an edge, where the plane or
+//                   line is closer than the site. The rest of the region needs no test, since a site is
+//                   never closer than O2 is;
+//   closest         the point of one site that is closest to p.
 
 HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, size_t i,
                                     const CandidateBound& reach) {
@@ -114,13 +115,13 @@ HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, si
   }
   const BlockVec squared = square_norm(d, r[0], r[1], r[2]), h2 = hn::Mul(h, h);
   const BlockVec radius = hn::Load(d, bounds.radius + i), reach_radius = hn::Set(d, reach.radius);
-  // Beside the disc, but for what cancels in the difference of squares.
+  // The distance from the disc's axis, reduced by the cancellation error in the difference of squares.
   const BlockVec beside =
       hn::Sqrt(hn::Max(hn::NegMulAdd(squared, hn::Set(d, 1e-6f), hn::Sub(squared, h2)), hn::Zero(d)));
   const BlockVec slope =
       uses(Idea::cones) ? hn::Load(d, bounds.slope + i) : hn::Set(d, sites::FaceBounds::kOpen);
   const BlockVec most = hn::MulAdd(slope, hn::Add(hn::Abs(h), reach_radius), hn::Add(radius, reach_radius));
-  // c − b = h normal + s (r − h normal), and the convex piece is the disc.
+  // c − b = h normal + s (r − h normal), where the convex piece B is the disc.
   const BlockVec beyond = hn::Max(hn::Sub(beside, radius), hn::Zero(d));
   const BlockVec s = hn::Div(beyond, hn::Max(beside, hn::Set(d, 1e-30f)));
   const BlockVec along = hn::NegMulAdd(s, h, h);
@@ -137,7 +138,7 @@ HWY_INLINE BlockMask may_be_closest(Block d, const FaceBlock& block, size_t i, c
   BlockMask pass = hn::Ge(height(d, block.row + FaceBlock::wall(0), i, reach.centre), inner);
   pass = hn::And(pass, hn::Ge(height(d, block.row + FaceBlock::wall(1), i, reach.centre), inner));
   pass = hn::And(pass, hn::Ge(height(d, block.row + FaceBlock::wall(2), i, reach.centre), inner));
-  // The convex piece is the face's whole plane.
+  // The convex piece B is the whole plane of the face.
   const BlockVec h = height(d, plane, i, reach.centre);
   const auto from = [&](int k) HWY_ATTR { return hn::Mul(h, hn::Load(d, plane[k] + i)); };
   const BlockMask near = reach.holds(d, hn::Mul(h, h), from(0), from(1), from(2));

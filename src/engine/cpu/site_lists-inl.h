@@ -1,5 +1,5 @@
-// Lists of sites: gathered from regions, filtered into others. Included once for each set of vector
-// instructions.
+// Candidate lists: collected from regions, and filtered from other lists. Included once for each set of
+// vector instructions.
 #if defined(SDM_SITE_LISTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SDM_SITE_LISTS_INL_H
 #undef SDM_SITE_LISTS_INL_H
@@ -24,7 +24,7 @@
 namespace sdm::cpu {
 namespace {
 
-// For each mask of eight bits, the positions of the bits that are set, a byte each.
+// For each mask of eight bits, the positions of the set bits, one byte each.
 constexpr std::array<std::uint64_t, 256> kPositions = [] {
   std::array<std::uint64_t, 256> table{};
   for (unsigned mask = 0; mask < 256; ++mask)
@@ -40,7 +40,7 @@ constexpr std::array<std::uint64_t, 256> kPositions = [] {
 HWY_BEFORE_NAMESPACE();
 namespace sdm::cpu::HWY_NAMESPACE {
 
-// Runs test(i) → mask over the lanes of a block and returns the first `count` results as bits.
+// Evaluates test(i) → mask over the lanes of a block and returns the first `count` results as a bit mask.
 template <class Test>
 HWY_INLINE uint32_t select(uint32_t count, const Test& test) {
   const Block d;
@@ -53,14 +53,14 @@ HWY_INLINE uint32_t select(uint32_t count, const Test& test) {
   return bits & ((1u << count) - 1);
 }
 
-// The lanes whose bits are set, in order; then others.
+// Bytes as vector lanes: first the positions of the set bits in order, then others.
 HWY_INLINE hn::Vec<hn::RebindToUnsigned<Block>> positions(uint64_t bytes_in_order) {
   const hn::Rebind<uint8_t, Block> bytes;
   return hn::PromoteTo(hn::RebindToUnsigned<Block>(),
                        hn::LoadU(bytes, reinterpret_cast<const uint8_t*>(&bytes_in_order)));
 }
 
-// Appends those of eight numbers whose bits are set.
+// Appends those of eight numbers whose bit is set.
 HWY_INLINE void append(std::vector<uint32_t>& to, const uint32_t* numbers, uint32_t bits) {
   const size_t size = to.size();
   if constexpr (hn::MaxLanes(Block()) < SiteBlock::kWidth) {
@@ -74,12 +74,12 @@ HWY_INLINE void append(std::vector<uint32_t>& to, const uint32_t* numbers, uint3
   }
 }
 
-// Sets four rows of a block, from `row` on, to the same numbers of eight regions.
+// Fills four rows of a block, from `row` on, with the corresponding numbers of eight regions.
 template <class Some>
 HWY_INLINE void transpose_four(const typename Some::Region* const (&regions)[SiteBlock::kWidth], size_t row,
                                Some& block) {
   SiteBlock::Row* to = block.row + row;
-  // A load may cross from one member of a region to the next: it reads the representation of the whole.
+  // A load may cross from one member of a region into the next: it reads the bytes of the whole region.
   const auto numbers = [&](size_t lane) {
     return reinterpret_cast<const std::byte*>(regions[lane]) + row * sizeof(float);
   };
@@ -105,7 +105,7 @@ HWY_INLINE void transpose_four(const typename Some::Region* const (&regions)[Sit
 #endif
 }
 
-// Makes a list of the regions at these places; id(place) names them.
+// Builds a list of the regions at these places; id(place) is their SiteId.
 template <class Some, class Id>
 void gather(std::span<const uint32_t> places, const std::vector<typename Some::Region>& regions, const Id& id,
             SiteList<Some>& list) {
@@ -122,7 +122,7 @@ void gather(std::span<const uint32_t> places, const std::vector<typename Some::R
       if (i + kAhead < places.size()) hwy::Prefetch(&regions[places[i + kAhead]]);
       from[lane] = &regions[places[std::min(i, places.size() - 1)]];
     }
-    // Where there are fifteen rows, the last four overlap the four before.
+    // With fifteen rows, the last group of four overlaps the one before.
     static_assert(Some::kRows == 15 || Some::kRows == 16);
     for (size_t row = 0; row < Some::kRows; row += 4)
       transpose_four(from, std::min(row, Some::kRows - 4), block);
@@ -130,7 +130,7 @@ void gather(std::span<const uint32_t> places, const std::vector<typename Some::R
   }
 }
 
-// Appends the sites of a block whose bits are set: they fill the list's last block, and then another.
+// Appends the sites of a block whose bit is set: first to the list's last block, then to a new one.
 template <class Some>
 void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
   constexpr uint32_t kWidth = SiteBlock::kWidth;
@@ -151,8 +151,8 @@ void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
       to.id[at % kWidth] = block.id[lane];
     }
   } else {
-    // One permutation moves the sites to the lanes from `filled` on, and those that are too many to the
-    // front, which is where they belong in the next block.
+    // One permutation moves the sites to the lanes from `filled` on. Those that do not fit wrap around to the
+    // front, where they belong in the next block.
     const Block d;
     const hn::RebindToUnsigned<Block> du;
     const auto indices = positions(std::rotl(kPositions[bits], static_cast<int>(8 * filled)));
@@ -166,7 +166,7 @@ void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
   }
 }
 
-// Appends the sites of a block that matter.
+// Appends the candidates of a block.
 template <class Some>
 HWY_INLINE void keep(const Some& block, const CandidateBound& reach, SiteList<Some>& list) {
   const uint32_t bits =

@@ -1,4 +1,4 @@
-// Lists of sites, transposed so that vector instructions test eight of them at once.
+// Candidate lists, transposed so that vector instructions test eight sites at once.
 #pragma once
 
 #include <sdm/sites.h>
@@ -10,7 +10,8 @@
 
 namespace sdm::cpu {
 
-/// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could tell.
+/// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could
+/// determine.
 struct SiteId {
   static constexpr std::uint32_t kUnsettled = kNone - 1, kSiteMask = 0x3FFFFFFF;
 
@@ -25,14 +26,14 @@ struct SiteId {
   [[nodiscard]] std::uint32_t site() const { return packed & kSiteMask; }
 };
 
-/// Up to eight sites, a lane each.
+/// Up to eight sites, one per lane.
 struct SiteBlock {
   static constexpr std::uint32_t kWidth = 8;
-  using Row = float[kWidth];  ///< the same number of each site
+  using Row = float[kWidth];  ///< the same number of each site's region
   std::uint32_t count = 0;
 };
 
-/// The regions of eight sites, transposed: row[r][lane] is number r of a region of mesh/regions.h.
+/// The regions of up to eight sites, transposed: row[r][lane] is number r of a region of sites/regions.h.
 template <class RegionType, std::size_t rows>
 struct RegionBlock : SiteBlock {
   using Region = RegionType;
@@ -41,7 +42,7 @@ struct RegionBlock : SiteBlock {
   alignas(32) std::uint32_t id[kWidth];  ///< SiteId::packed
 };
 
-// Each names its rows: a vector has three, one for each coordinate, and a plane four.
+// The rows of each kind: a vector takes three, one for each coordinate, and a plane four.
 
 struct FaceBlock : RegionBlock<sites::FaceRegion, 16> {
   static constexpr std::size_t kPlane = 0;
@@ -56,7 +57,7 @@ struct VertexBlock : RegionBlock<sites::VertexRegion, 3 + 3 * sites::VertexRegio
   static constexpr std::size_t ray(std::size_t k) { return 3 + 3 * k; }
 };
 
-// The order is that of the members.
+// The rows follow the order of the members.
 static_assert(offsetof(sites::FaceRegion, plane) == FaceBlock::kPlane * sizeof(float) &&
               offsetof(sites::FaceRegion, wall) == FaceBlock::wall(0) * sizeof(float));
 static_assert(offsetof(sites::EdgeRegion, start) == EdgeBlock::kStart * sizeof(float) &&
@@ -66,11 +67,11 @@ static_assert(offsetof(sites::EdgeRegion, start) == EdgeBlock::kStart * sizeof(f
 static_assert(offsetof(sites::VertexRegion, point) == VertexBlock::kPoint * sizeof(float) &&
               offsetof(sites::VertexRegion, ray) == VertexBlock::ray(0) * sizeof(float));
 
-/// All blocks are full but the last one.
+/// All blocks but the last one are full.
 template <class Block>
 struct SiteList {
   std::vector<Block> blocks;  ///< grown as needed, never shrunk
-  std::size_t used = 0;       ///< blocks that hold the list
+  std::size_t used = 0;       ///< number of blocks in the list
 
   [[nodiscard]] std::size_t size() const {
     return used == 0 ? 0 : Block::kWidth * (used - 1) + blocks[used - 1].count;

@@ -1,6 +1,5 @@
-// Statistics of the cpu engine's search: counts of the work that it does, which do not depend on the
-// machine's speed. Only builds with -DSDM_COUNT_WORK=ON have them, as those of bench/ablation; others count
-// nothing, at no cost.
+// Work counters of the cpu engine's search, which do not depend on the machine's speed. Only builds with
+// -DSDM_COUNT_WORK=ON have them, such as those of bench/ablation; in others they cost nothing.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +10,9 @@ struct WorkCounts {
   std::size_t groups = 0;       ///< groups of points for which the tree was traversed
   std::size_t nodes = 0;        ///< tree nodes visited
   std::size_t leaves = 0;       ///< tree leaves whose face bounds were tested
-  std::size_t gathered = 0;     ///< sites that passed these bounds and were gathered from the leaves
-  std::size_t list_blocks = 0;  ///< blocks of eight sites that were filtered for a smaller ball
-  std::size_t evaluations = 0;  ///< pairs of a site and a packet for which distances were computed
+  std::size_t gathered = 0;     ///< sites that passed these bounds and were collected from the leaves
+  std::size_t list_blocks = 0;  ///< blocks of eight sites filtered for a smaller ball
+  std::size_t evaluations = 0;  ///< pairs of a site and a packet whose distances were computed
 };
 
 #ifdef SDM_COUNT_WORK
@@ -22,7 +21,7 @@ inline constexpr bool kCountWork = true;
 inline constexpr bool kCountWork = false;
 #endif
 
-/// The counts of the calling thread, since it began or since they were reset by assignment.
+/// The counts of the calling thread since it started or last reset them by assignment.
 inline WorkCounts& work_counts() {
   thread_local WorkCounts counts;
   return counts;

@@ -1,4 +1,4 @@
-// Convex polygons in an image, and cutting them by half-planes.
+// Convex polygons in an image, and clipping them by half-planes.
 #pragma once
 
 #include <sdm/types.h>
@@ -10,7 +10,7 @@
 
 namespace sdm::gl {
 
-/// Where value + gradient·(u, v) ≥ 0.
+/// The half-plane value + gradient·(u, v) ≥ 0.
 struct HalfPlane {
   double value = 0;
   Vec2 gradient{};
@@ -18,10 +18,10 @@ struct HalfPlane {
   [[nodiscard]] double operator()(const Vec2& uv) const { return value + dot(gradient, uv); }
 };
 
-/// Corners in order around it; none for the empty polygon.
+/// Corners in order around the polygon; none for the empty polygon.
 class ConvexPolygon {
  public:
-  /// A cut adds one corner at most: seven of a domain's outline and five walls of a region fit.
+  /// A cut adds at most one corner, so this fits seven of a domain's outline and five walls of a region.
   static constexpr int kMaxCorners = 12;
 
   ConvexPolygon() = default;
@@ -35,8 +35,8 @@ class ConvexPolygon {
   [[nodiscard]] std::span<const Vec2> corners() const { return {corners_.data(), count_}; }
   [[nodiscard]] bool empty() const { return count_ == 0; }
 
-  /// Keeps what lies in the half-plane (Sutherland & Hodgman 1974). Corners beyond kMaxCorners, which only
-  /// rounding could make, are left out.
+  /// Keeps the part in the half-plane (Sutherland & Hodgman 1974). Corners beyond kMaxCorners, which only
+  /// rounding could produce, are dropped.
   void cut(const HalfPlane& keep) {
     std::array<double, kMaxCorners> height;
     bool all = true;

@@ -12,11 +12,12 @@
 
 namespace sdm::gl {
 
-/// A leaf is one domain. All in the unit frame of O2.
+/// One domain per leaf. All coordinates are in the unit frame of O2.
 struct DomainTree {
   hierarchy::AabbTree tree;
   hierarchy::LeafOrder leaves;
-  std::vector<double> bound;  ///< of each node: no sample of its domains is farther from O2
+  std::vector<double>
+      bound;  ///< of each node: upper bound on the distance from any sample of its domains to O2
 
   /// Refits the boxes to the current domains. Cost: linear.
   DomainTree(const Surface& surface, const TileTree& tiles, const UnitFrame& frame);
@@ -27,9 +28,9 @@ struct DomainTree {
 /// Sets the bound of every node to `bound`.
 void set_bounds(DomainTree& tree, double bound);
 
-/// Sets the bounds from one point of O2 for each leaf, the one closest to the middle of its box: no point of
-/// the box is farther from it than the farthest corner. The paper improves the bounds site after site, and
-/// depends on the order; this is where that process ends. `slack` is added, and `largest` never exceeded.
+/// Sets the bounds from one point of O2 for each leaf, the one closest to the centre of its box: no point of
+/// the box is farther from it than the farthest corner is. The paper improves the bounds site by site, in an
+/// order-dependent process that converges to these. Adds `slack`; bounds never exceed `largest`.
 void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, double largest);
 
 }  // namespace sdm::gl

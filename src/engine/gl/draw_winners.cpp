@@ -16,10 +16,10 @@
 namespace sdm::gl {
 namespace {
 
-// Tiles of O1 drawn together, at most. A site's region and box are made once for each block.
+// The most tiles of O1 drawn together. A site's region and box are computed once per such set.
 constexpr std::uint32_t kBlockTiles = 2048;
 
-// How long lengths are, in the unit frame of O2.
+// Bounds on lengths, in the unit frame of O2.
 struct Extent {
   double size;   // no coordinate is larger
   double reach;  // no sample is farther from O2
@@ -35,11 +35,11 @@ struct Extent {
   }
 };
 
-// Beyond this many sizes of O2 squares come near the end of single precision.
+// Beyond this multiple of O2's size, squares approach the range of single precision.
 constexpr double kFarAway = 1e15;
-// The rounding error of single precision relative to the scene's size; regions are enlarged by it.
+// The rounding error of single precision relative to the scene's size, by which regions are enlarged.
 constexpr double kRegionSlack = 0x1p-20;
-// Distances that differ by less may be mistaken for each other, so bounds leave more.
+// Distances that differ by less may compare either way, so bounds are enlarged by this.
 constexpr double kBoundSlack = 0x1p-17;
 
 void store(const PairCounts& counts, const SiteIndex& sites, const surface::Tiles& tiles, GlReport& report) {

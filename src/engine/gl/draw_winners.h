@@ -12,17 +12,17 @@
 
 namespace sdm::gl {
 
-/// What was found at each texel of a surface in single precision.
+/// The result of drawing at each texel of a surface, in single precision.
 struct RasterWinners {
-  /// A face of O2 that the closest site belongs to; kNone where no face of O1 owns the texel, or nothing lies
-  /// within the maximum distance.
+  /// A face of O2 to which the closest site belongs; kNone where no face of O1 owns the texel, or nothing
+  /// lies within the maximum distance.
   std::vector<std::uint32_t> faces;
-  /// The distance drawn there, in units of `depth_unit`. All sites that are closest to some texel were drawn
-  /// at it, so none is nearer than this: a face whose distance is no larger, but for the tolerance, is
+  /// The distance drawn, in units of `depth_unit`. All sites that are closest to some texel were drawn there,
+  /// so no site is nearer than this: a face whose distance is at most this, up to the tolerance, is
   /// confirmed.
   std::vector<float> depths;
   double depth_unit = 1;
-  double tolerance = 0;  ///< of what single precision, and regions drawn a little too large, do to depths
+  double tolerance = 0;  ///< error of depths from single precision and from enlarging the regions
 
   [[nodiscard]] bool confirms(std::uint32_t texel, double distance) const {
     return distance <= depth_unit * static_cast<double>(depths[texel]) + tolerance;
@@ -38,8 +38,8 @@ struct DrawTask {
   const engine::EngineOptions& options;
 };
 
-/// Draws the map on a device whose context is current, and fills the counts and times of the report up to
-/// read_back. Throws sdm::Error where OpenGL fails; Cancelled.
+/// Draws the map on a device whose context is current, and fills the report's counts and times up to
+/// read_back. Throws sdm::Error if OpenGL fails; Cancelled.
 [[nodiscard]] RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlReport& report);
 
 }  // namespace sdm::gl

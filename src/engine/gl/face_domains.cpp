@@ -40,8 +40,8 @@ PlanarDomain face_domain(const Surface& surface, const surface::Tiles& tiles, st
   domain.outline = ConvexPolygon::rectangle(lo - Vec2{kMargin, kMargin}, hi + Vec2{kMargin, kMargin});
   if (clip == GlClip::stencil) return domain;
 
-  // Cuts parallel to the sides, at the texels rather than at the sides themselves: closer, and sure to hold
-  // every texel however the side was rounded.
+  // Cuts parallel to the sides, but through the outermost texels instead of the sides themselves: tighter,
+  // and guaranteed to contain every texel however the side was rounded.
   const std::array<Vec2, 3> corner = atlas_corners(surface, face);
   for (int k = 0; k < 3; ++k) {
     const Vec2 side = corner[(k + 1) % 3] - corner[k];

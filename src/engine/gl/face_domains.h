@@ -1,5 +1,5 @@
-// Tiles of O1's faces as planar domains, in the unit frame of O2: the affine maps of the paper (3.3),
-// updated.
+// Tiles of O1's faces as planar domains in the unit frame of O2: the paper's affine maps (3.3), refitted to
+// the current vertices.
 #pragma once
 
 #include <sdm/gl.h>
@@ -11,8 +11,8 @@
 
 namespace sdm::gl {
 
-/// The domain of a tile; its id is its face. Its outline is the rectangle of its texels, cut for
-/// GlClip::planes along the face's sides.
+/// The domain of a tile; its id is its face. Its outline is the rectangle of its texels, clipped along the
+/// face's sides for GlClip::planes.
 [[nodiscard]] PlanarDomain face_domain(const Surface& surface, const surface::Tiles& tiles,
                                        std::uint32_t tile, const UnitFrame& frame, GlClip clip);
 

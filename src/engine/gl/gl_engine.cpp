@@ -25,12 +25,12 @@ void check(const GlOptions& options) {
     throw Error(std::to_string(options.stencil_values) + " stencil values are out of range; use 1 to 255");
 }
 
-// The devices of the process, by the requested name. One map is drawn at a time. They live as long as the
-// process: at its end drivers may be gone before anything that could be destroyed.
+// The process's devices, by requested name. One map is drawn at a time. They are never destroyed: at process
+// exit, drivers may be gone before anything could be destroyed.
 struct Devices {
   std::mutex drawing;
   std::map<std::string, std::unique_ptr<RasterDevice>, std::less<>> open;
-  TileTreeCache tiles;  // of the surfaces mapped by any of them
+  TileTreeCache tiles;  // of the surfaces mapped on any of them
 };
 
 Devices& devices() {
@@ -38,7 +38,8 @@ Devices& devices() {
   return all;
 }
 
-// Calls use(device, ms) for the device wanted, with its context current. Opening it takes ms, once.
+// Calls use(device, ms) for the requested device, with its context current; ms is the time spent on opening
+// it.
 template <class Use>
 auto with_device(const std::string& wanted, Use use) {
   Devices& all = devices();
@@ -52,13 +53,13 @@ auto with_device(const std::string& wanted, Use use) {
   } catch (const Cancelled&) {
     throw;
   } catch (const Error&) {
-    all.open.erase(wanted);  // it may be lost: the next map starts afresh
+    all.open.erase(wanted);  // it may be lost: the next map opens it anew
     throw;
   }
 }
 
-// Delivers the closest points of texels, in double precision, from their winners. Returns for how many texels
-// the winner was not confirmed, and the cpu engine found the closest site.
+// Passes on the closest points of texels, in double, from their winners. Returns the number of texels whose
+// winner was not confirmed; for these, the cpu engine found the closest site.
 std::size_t confirm(const sites::SitesData& sites, const RasterWinners& winners,
                     std::span<const std::uint32_t> texels, std::span<const Vec3> points, double max_distance,
                     const engine::ClosestSink& sink) {

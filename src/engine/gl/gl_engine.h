@@ -1,4 +1,4 @@
-// The gl engine: surface distance maps by rasterisation on OpenGL.
+// The gl engine: surface distance maps by rasterisation with OpenGL.
 #pragma once
 
 #include <sdm/gl.h>

@@ -6,7 +6,7 @@
 namespace sdm::gl {
 namespace {
 
-// Any unit vector across `axis`, which has length 1.
+// Any unit vector orthogonal to `axis`, which has length 1.
 Vec3 across(const Vec3& axis) {
   const int least =
       static_cast<int>(std::min_element(axis.begin(), axis.end(),
@@ -17,7 +17,7 @@ Vec3 across(const Vec3& axis) {
   return normalized(cross(axis, unit));
 }
 
-// A box by its axes and the interval that it covers along each, from `origin`.
+// A box given by its axes and its interval along each of them, relative to `origin`.
 OrientedBox from_intervals(const Vec3& origin, const std::array<Vec3, 3>& axes, const Vec3& lo,
                            const Vec3& hi, double slack) {
   OrientedBox box{origin, axes, {}};
@@ -32,7 +32,8 @@ OrientedBox cube(const Vec3& centre, double half) {
   return {centre, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, {half, half, half}};
 }
 
-// The prism over the face: its rectangle along the longest side, times both sides of the plane.
+// The prism over the face: its bounding rectangle along the longest side, extended to both sides of the
+// plane.
 OrientedBox around_face(const SiteRegion& region, double reach, double slack) {
   Vec3 longest{};
   for (int k = 0; k < 3; ++k)
@@ -51,14 +52,13 @@ OrientedBox around_face(const SiteRegion& region, double reach, double slack) {
   return from_intervals(region.anchor, axes, lo, hi, slack);
 }
 
-// The wedge where y·n ≥ 0 for one or two normals: symmetric about b = Σ n. A ray that bounds it makes with b
-// an angle whose sine is n·b, so that the wedge, cut off at `reach`, covers [0, reach] along b and ± reach
-// n·b across.
+// The wedge where y·n ≥ 0 for one or two normals: symmetric about b = Σ n. The sine of the angle between b
+// and a ray that bounds the wedge is n·b, so the wedge, truncated at `reach`, covers [0, reach] along b and ±
+// reach n·b across it.
 OrientedBox around_edge(const SiteRegion& region, double reach, double slack) {
   const Vec3 along = normalized(region.axis);
   if (along == Vec3{}) return cube(region.anchor, reach + slack);
-  std::array<Vec3, 2>
-      normals{};  // across the edge and of length 1 in double: their sum may be nearly nothing
+  std::array<Vec3, 2> normals{};  // orthogonal to the edge, of length 1 in double: their sum may be nearly 0
   const int count = region.wall_count - region.strict_walls;
   for (int k = 0; k < count; ++k) {
     const Vec3& n = region.walls[region.strict_walls + k].normal;
@@ -73,11 +73,12 @@ OrientedBox around_edge(const SiteRegion& region, double reach, double slack) {
                         {0, wedge ? 0 : -reach, -sine * reach}, {length, reach, sine * reach}, slack);
 }
 
-// The unit vectors along the edges of the cone where y·n ≥ 0 for every wall: each across two of the normals.
+// The unit vectors along the edges of the cone where y·n ≥ 0 for every wall: each is orthogonal to two
+// normals.
 struct ConeEdges {
-  std::array<Vec3, 12> rays;  // both ways for each pair of four walls
+  std::array<Vec3, 12> rays;  // both directions for each pair of four walls
   int count = 0;
-  bool degenerate = false;  // two normals have no direction across both
+  bool degenerate = false;  // two normals determine no orthogonal direction
 
   explicit ConeEdges(const SiteRegion& region) {
     for (int i = 0; i < region.wall_count; ++i)
@@ -92,8 +93,8 @@ struct ConeEdges {
   }
 };
 
-// About b, the middle of the cone's edges e, if all of them have e·b > 0: a unit vector y = Σ λ e of the cone
-// then has y·b ≥ 0 and Σ λ ≤ 1 / min(e·b), so that y·t ≤ max(e·t) / min(e·b) along any t.
+// Around b, the middle of the cone's edges e, if e·b > 0 for all of them: a unit vector y = Σ λ e of the cone
+// has y·b ≥ 0 and Σ λ ≤ 1 / min(e·b), so y·t ≤ max(e·t) / min(e·b) along any t.
 OrientedBox around_vertex(const SiteRegion& region, double reach, double slack) {
   const ConeEdges edges(region);
   Vec3 sum{};
@@ -101,8 +102,8 @@ OrientedBox around_vertex(const SiteRegion& region, double reach, double slack) 
   const Vec3 middle = normalized(sum);
   double least = 1;
   for (int i = 0; i < edges.count; ++i) least = std::min(least, dot(edges.rays[i], middle));
-  // A saddle's cone is the vertex alone. A cone that is no cone, or nearly fills a half-space, is not worth a
-  // box.
+  // The cone of a saddle is the vertex alone. A degenerate cone, or one that nearly fills a half-space, gets
+  // no tighter box.
   if (edges.count == 0 && region.wall_count == sites::VertexRegion::kRays && !edges.degenerate)
     return cube(region.anchor, slack);
   if (edges.count < 3 || edges.degenerate || least < 0.01) return cube(region.anchor, reach + slack);

@@ -15,12 +15,12 @@ struct OrientedBox {
   Vec3 half{};
 };
 
-/// Contains all of the region that is within `reach` of its site, and `slack` around it.
+/// Contains the part of the region within `reach` of its site, enlarged by `slack`.
 [[nodiscard]] OrientedBox oriented_box(const SiteRegion& region, double reach, double slack);
 
-/// Whether the boxes may meet: by the six directions of their faces. The nine products of edges, which would
-/// make the separating axis test complete, rarely separate what these do not (Gottschalk et al. 1996; van den
-/// Bergen 1997); clipping decides what is left.
+/// Whether the boxes may meet, by the six face normals. The nine cross products of edges, which would
+/// complete the separating axis test, rarely separate boxes that these do not (Gottschalk et al. 1996; van
+/// den Bergen 1997); clipping decides the rest.
 [[nodiscard]] bool may_meet(const OrientedBox& box, const hierarchy::FloatBox& other);
 
 }  // namespace sdm::gl

@@ -9,10 +9,10 @@
 namespace sdm::gl {
 namespace {
 
-// Polygons that are enough for a batch.
+// The number of polygons that completes a batch.
 constexpr std::size_t kBatchPolygons = 1 << 15;
-// Leaves of O2's tree at a time: few at first, and more as long as they do not make more than a batch. What
-// waits in memory then is mostly two batches; at the very most, all sites of so many leaves meet all domains
+// Leaves of O2's tree processed at once: few at first, more as long as they produce no more than a batch.
+// Memory then rarely exceeds two batches; in the worst case, all sites of kMostLeaves leaves meet all domains
 // of a block.
 constexpr std::size_t kFirstLeaves = 4, kMostLeaves = 64;
 

@@ -1,4 +1,4 @@
-// All pairs of a block of domains and the sites of O2, drawn in batches of bounded size.
+// Draws all pairs of the sites of O2 and a block of domains, in batches of bounded size.
 #pragma once
 
 #include <functional>
@@ -9,11 +9,11 @@
 
 namespace sdm::gl {
 
-/// Culls and clips on all cores while the device draws the batch before. The order in which polygons are
-/// drawn, and every count, depend on the meshes alone.
+/// Culls and clips on all cores while the device draws the previous batch. The order of drawing and all
+/// counts depend only on the meshes.
 class PairStream {
  public:
-  /// `reach` is the largest distance of interest. All references must outlive it.
+  /// `reach`: the largest distance of interest. All references must outlive it.
   PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterScale& scale,
              Rasteriser& rasteriser, GlReport::Times& time);
 
@@ -35,7 +35,7 @@ class PairStream {
   const RasterScale& scale_;
   Rasteriser& rasteriser_;
   GlReport::Times& time_;
-  std::vector<RasterBatch> parts_;  ///< one a leaf of O2's tree
+  std::vector<RasterBatch> parts_;  ///< one for each leaf of O2's tree
   std::vector<PairCounts> counts_;
   RasterBatch batch_;
   PairCounts total_;

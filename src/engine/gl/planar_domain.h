@@ -1,5 +1,5 @@
-// What the rasteriser draws on: a piece of a plane in space, mapped affinely to a piece of an image. A face
-// of O1 in its atlas is one; so would be a slice of a grid.
+// The domain of the rasteriser: a piece of a plane in space, mapped affinely to a piece of an image. A face
+// of O1 in its atlas is one; a slice of a grid would be another.
 #pragma once
 
 #include <sdm/types.h>
@@ -9,8 +9,8 @@
 
 namespace sdm::gl {
 
-/// What is drawn reaches this far beyond the texel centres that it is meant for, in texels: OpenGL promises
-/// corners on a grid of 1/16 only, and fragments decide for themselves.
+/// How far, in texels, polygons extend beyond the texel centres they are meant for: OpenGL guarantees corners
+/// only to a grid of 1/16 texel, and the fragment shader makes the final decision.
 inline constexpr double kMargin = 1.0 / 8;
 
 /// (u, v) ↦ origin + (u − image_origin.u) edges[0] + (v − image_origin.v) edges[1], in texels.
@@ -19,7 +19,7 @@ struct PlanarDomain {
   Vec2 image_origin{};
   Vec3 origin{};
   std::array<Vec3, 2> edges{};
-  ConvexPolygon outline;  ///< contains the centres of its texels, and all that is drawn on it
+  ConvexPolygon outline;  ///< contains the centres of its texels, and everything drawn on it
 
   [[nodiscard]] Vec3 point(const Vec2& uv) const {
     const Vec2 d = uv - image_origin;

@@ -5,7 +5,7 @@
 namespace sdm::gl {
 namespace {
 
-// A wall, restricted to the domain's plane.
+// The wall restricted to the domain's plane.
 HalfPlane restrict(const HalfSpace& wall, const PlanarDomain& domain) {
   HalfPlane h;
   h.gradient = {dot(wall.normal, domain.edges[0]), dot(wall.normal, domain.edges[1])};

@@ -1,4 +1,4 @@
-// A drawn polygon: the part of a domain inside a site's region, with the distance vector to the site.
+// A polygon to be drawn: the part of a domain inside a site's region, with the distance vector to the site.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace sdm::gl {
 
-/// A record of the table that the vertex shader reads. Affine functions are given by their value at `origin`,
-/// the centre of a texel, and their change over one texel to the right and down. Lengths in units of
+/// A record of the table that the vertex shader reads. An affine function is given by its value at `origin`,
+/// the centre of a texel, and its change per texel to the right and down. Lengths are in units of
 /// RasterScale.
 struct RasterPolygon {
   float vector[3], origin_u;
@@ -27,7 +27,7 @@ struct RasterCorner {
   std::uint32_t polygon;
 };
 
-/// Polygons to be drawn together.
+/// Polygons drawn together.
 struct RasterBatch {
   std::vector<RasterPolygon> polygons;
   std::vector<RasterCorner> corners;  ///< of polygon i: first_corner[i] ... first_corner[i + 1]
@@ -43,12 +43,12 @@ struct RasterBatch {
 };
 
 struct RasterScale {
-  double slack;     ///< walls are loosened by this: their rounding must not open cracks
-  double to_depth;  ///< a power of two that takes every distance of the map below 1
+  double slack;     ///< walls are moved outwards by this, so that rounding opens no cracks
+  double to_depth;  ///< a power of two that scales all distances of the map below 1
 };
 
-/// Cuts the domain's outline by the walls of the region, and adds what is left to the batch. Returns whether
-/// anything is.
+/// Clips the domain's outline by the walls of the region and adds the result to the batch, unless it is
+/// empty. Returns whether it was added.
 bool add_polygon(RasterBatch& batch, const SiteRegion& region, const PlanarDomain& domain,
                  const RasterScale& scale);
 

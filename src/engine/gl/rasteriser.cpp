@@ -18,10 +18,10 @@
 namespace sdm::gl {
 namespace {
 
-constexpr std::size_t kPiece = 1 << 16;  // polygons a draw call
-constexpr std::size_t kCounters = 1024;  // of fragments, one a piece
+constexpr std::size_t kPiece = 1 << 16;  // polygons per piece of a batch
+constexpr std::size_t kCounters = 1024;  // fragment counters, one per piece
 
-// Fragments that a polygon can have at most: the texels of its bounding rectangle.
+// An upper bound on a polygon's fragments: the texels of its bounding rectangle.
 double fragment_bound(std::span<const RasterCorner> corners) {
   float lo[2] = {corners[0].u, corners[0].v}, hi[2] = {corners[0].u, corners[0].v};
   for (const RasterCorner& c : corners) {
@@ -38,7 +38,7 @@ std::span<const RasterCorner> corners_of(const RasterBatch& batch, std::size_t p
 
 template <class T>
 void upload(GLuint buffer, std::span<const T> data) {
-  // New storage each time: the device may still draw from the old one.
+  // Allocates new storage each time: the device may still be drawing from the old one.
   glNamedBufferData(buffer, static_cast<GLsizeiptr>(data.size_bytes()), data.data(), GL_STREAM_DRAW);
 }
 
@@ -46,7 +46,7 @@ const void* offset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
 }
 
-// All texels of a square texture, in bands of rows: OpenGL counts bytes with 31 bits.
+// Reads all texels of a square texture, in bands of rows: OpenGL counts bytes with 31 bits.
 template <class T>
 void read(GLuint texture, std::uint32_t resolution, GLenum format, GLenum type, std::vector<T>& out) {
   out.resize(std::size_t{resolution} * resolution);
@@ -99,7 +99,7 @@ struct Rasteriser::Impl {
   VertexArray polygon_corners, texel_points;
   std::vector<std::uint32_t> index_data;
   std::vector<std::uint32_t> order;
-  Fence last;  // of the draws before
+  Fence last;  // after the previous draw()
 
   Impl(const RasterDevice& d, std::uint32_t n, const Ownership& owned);
 
@@ -169,7 +169,7 @@ void Rasteriser::Impl::make_inputs(const Ownership& owned) {
   glNamedBufferStorage(counters, kCounters * sizeof(GLuint), nullptr, 0);
 }
 
-// The state that no draw changes. The context and the programs are shared with other rasterisers.
+// Sets the state that no draw changes. The context and the programs are shared with other rasterisers.
 void Rasteriser::Impl::begin() {
   const float width = static_cast<float>(resolution);
   const Program& program = device.programs_->polygons;
@@ -189,7 +189,7 @@ void Rasteriser::Impl::begin() {
   glDepthFunc(GL_LESS);
 }
 
-// Submits the drawn batch. At most two draw calls are in flight.
+// Submits the batch. At most two draw calls are in flight.
 void Rasteriser::Impl::end() {
   const Fence before = std::exchange(last, Fence::after_all_commands());
   before.wait();
@@ -208,7 +208,7 @@ void Rasteriser::Impl::clear() {
   glClearNamedBufferData(counters, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
 }
 
-// The state for polygons; that of the stencil differs in what it masks.
+// Sets the state for polygons; the stencil passes use other masks.
 void Rasteriser::Impl::begin_polygons() const {
   glUseProgram(device.programs_->polygons.id());
   glBindVertexArray(polygon_corners);
@@ -256,7 +256,7 @@ void Rasteriser::Impl::draw_piece(const RasterBatch& batch, std::size_t begin, s
   ++batches;
 }
 
-// One draw call for each domain's run of polygons: its stencil value holds for the whole call.
+// One draw call per domain, for its consecutive polygons: its stencil value is valid for the whole call.
 void Rasteriser::Impl::draw_by_domain(const RasterBatch& batch) {
   std::size_t first_index = 0;
   for (std::size_t i = 0; i < order.size();) {
@@ -271,7 +271,7 @@ void Rasteriser::Impl::draw_by_domain(const RasterBatch& batch) {
   }
 }
 
-// From here on only texels of the domain are drawn.
+// Restricts drawing to texels of the domain.
 void Rasteriser::Impl::set_stencil(std::uint32_t domain) {
   const StencilCache::Use use = cache->use(domain);
   if (!use.hit) {
@@ -305,7 +305,7 @@ void Rasteriser::Impl::collect_counters() {
 }
 
 Rasteriser::Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned) {
-  // The image, its owners and its copy; a device that shares the machine's memory takes it from there.
+  // The copy that is read back; on a software device, also the image and its owners.
   const std::size_t texels = std::size_t{resolution} * resolution;
   require_memory((device.context().device().software ? 24 : 8) * texels,
                  "a map of " + std::to_string(resolution) + "² texels");
@@ -324,8 +324,8 @@ void Rasteriser::check_size(const Context& context, std::uint32_t resolution) {
 
 void Rasteriser::draw(const RasterBatch& batch) {
   impl_->begin();
-  // A piece's counter must not overflow, and its draw call must not take so long that the driver resets the
-  // device.
+  // A piece's fragment counter must not overflow, and its draw calls must not take so long that the driver
+  // resets the device.
   constexpr double kMostFragments = 1u << 31;
   for (std::size_t begin = 0; begin < batch.size();) {
     double bound = 0;

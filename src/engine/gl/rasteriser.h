@@ -1,4 +1,4 @@
-// Draws the polygons of sites on planar domains; the depth test keeps the closest at each texel.
+// Draws the sites' polygons on planar domains; the depth test keeps the closest site at each texel.
 #pragma once
 
 #include <sdm/gl.h>
@@ -14,27 +14,27 @@
 
 namespace sdm::gl {
 
-/// Which texels a domain's polygons may reach. Domains that share an image own disjoint texels.
-struct WholeImage {};  ///< one domain that owns them all
+/// Which texels a domain's polygons may cover. Domains that share an image own disjoint texels.
+struct WholeImage {};  ///< a single domain that owns all texels
 struct OwnerTable {
-  std::span<const std::uint32_t> owners;  ///< the domain of each texel: fragments ask
+  std::span<const std::uint32_t> owners;  ///< the domain of each texel, which the fragment shader looks up
 };
 struct StencilValues {
   std::span<const std::uint32_t> offsets, texels;  ///< texels of each domain, in compressed rows
-  int values;                                      ///< that domains share, in [1, 255] (4.1)
+  int values;                                      ///< stencil values that domains share, in [1, 255] (4.1)
 };
 using Ownership = std::variant<WholeImage, OwnerTable, StencilValues>;
 
 /// Row 0 first.
 struct RasterImage {
-  std::vector<std::uint32_t> faces;  ///< of O2, that the closest site belongs to, or kNone
-  std::vector<float> depths;         ///< the distance drawn, in units of RasterScale; 1 where there is none
+  std::vector<std::uint32_t> faces;  ///< of O2: the face of the closest site, or kNone
+  std::vector<float> depths;  ///< the distance drawn, in units of RasterScale; 1 where nothing was drawn
 };
 
 /// Per-device state: the context and the programs.
 class RasterDevice {
  public:
-  /// Throws sdm::Error where there is no such device, or it refuses a shader.
+  /// Throws sdm::Error if there is no such device, or it rejects a shader.
   explicit RasterDevice(std::string_view wanted);
   ~RasterDevice();
 
@@ -47,26 +47,26 @@ class RasterDevice {
   std::unique_ptr<Programs> programs_;
 };
 
-/// One square image on a device: depth and stencil, the closest site's face. The device's context must be
-/// current for its whole life.
+/// A square image on a device: depth and stencil, and the closest site's face. The device's context must be
+/// current for its whole lifetime.
 class Rasteriser {
  public:
-  /// All texels infinitely far. `owned` must outlive it. Throws sdm::Error when the device cannot hold the
-  /// image.
+  /// Clears all texels to infinite distance. `owned` must outlive it. Throws sdm::Error if the device cannot
+  /// allocate the image.
   Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned);
   ~Rasteriser();
 
-  /// Throws sdm::Error for a resolution larger than the device's images.
+  /// Throws sdm::Error if the resolution exceeds the device's largest image.
   static void check_size(const Context& context, std::uint32_t resolution);
 
-  /// Draws in the order of the batch, on each domain. The device may still be drawing this batch on return,
-  /// but has finished the previous one. Throws sdm::Error.
+  /// Draws each domain's polygons in the order of the batch. On return the device may still be drawing this
+  /// batch, but has finished the previous one. Throws sdm::Error.
   void draw(const RasterBatch& batch);
 
-  /// Returns the drawn result. Waits for the device.
+  /// Reads the result. Waits for the device.
   [[nodiscard]] RasterImage read_back();
 
-  /// Adds fragments, batches and stencil counts so far. Waits for the device.
+  /// Adds the fragment, batch and stencil counts so far to the report. Waits for the device.
   void count_into(GlReport& report);
 
  private:

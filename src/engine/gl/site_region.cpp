@@ -15,7 +15,7 @@ void add_wall(SiteRegion& region, const Vec3& normal, double offset) {
 }
 
 // Two walls that meet at an angle α, each moved outwards by s, meet s / sin(α/2) farther out. A face with a
-// sharper corner than this is closed off at both ends of its longest side, where its sharp corners are.
+// corner sharper than this is closed off at both ends of its longest side, where its sharp corners are.
 constexpr double kSharp = 0.5;  // sine
 
 void add_end_planes(SiteRegion& region) {
@@ -39,8 +39,8 @@ bool has_interior(const sites::FaceRegion& region) {
 }
 
 bool has_interior(const sites::EdgeRegion& region) {
-  // Opposite to the rounding of single precision: the wedge between is narrower than what walls are loosened
-  // by.
+  // The walls are opposite up to the rounding of single precision: the wedge between them is narrower than
+  // the distance by which walls are moved outwards.
   constexpr double kOpposite = 2e-7;
   const Vec3 a = get3(region.wall[0]), b = get3(region.wall[1]);
   return a == Vec3{} || b == Vec3{} || norm(a + b) > kOpposite;

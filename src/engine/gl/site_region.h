@@ -1,4 +1,4 @@
-// A site of O2 with its region of influence, and the distance vector to it, which is affine there (Lemma 1).
+// A site of O2 with its region of influence and the distance vector to it, which is affine there (Lemma 1).
 #pragma once
 
 #include <sdm/sites.h>
@@ -10,25 +10,26 @@
 
 namespace sdm::gl {
 
-/// Where normal·x ≥ offset.
+/// The half-space normal·x ≥ offset.
 struct HalfSpace {
   Vec3 normal{};
   double offset = 0;
 };
 
-/// All in the unit frame of O2. The region is the intersection of the walls; see mesh/regions.h.
+/// All coordinates are in the unit frame of O2. The region is the intersection of the walls; see
+/// sites/regions.h.
 struct SiteRegion {
   static constexpr int kMostWalls = 5;
 
   SiteType type = SiteType::none;
-  std::uint32_t face = kNone;  ///< one that the site belongs to
-  Vec3 anchor{};               ///< a point of the site's plane or line, or the vertex
+  std::uint32_t face = kNone;  ///< a face to which the site belongs
+  Vec3 anchor{};               ///< a point of the site's plane or line, or the vertex itself
   Vec3 axis{};                 ///< face: its normal; edge: its direction; vertex: none
   std::array<Vec3, 3> corners{};
   int corner_count = 0;
   std::array<HalfSpace, kMostWalls> walls{};
   int wall_count = 0;
-  /// The first walls, beyond which the distance vector is not that to the site: it is too short.
+  /// The number of leading walls beyond which the affine vector is too short to be the distance vector.
   int strict_walls = 0;
 
   /// The linear part of x ↦ closest point − x.
@@ -50,13 +51,13 @@ struct SiteRegion {
   }
 };
 
-/// Whether the region has an interior. A face too thin for its walls has none, nor has an edge whose two
-/// faces lie in one plane: the sites around them hold all closest points.
+/// Whether the region has an interior. A face too thin for its walls has none, nor does an edge whose two
+/// faces are coplanar: the sites around them contain all closest points.
 [[nodiscard]] bool has_interior(const sites::FaceRegion& region);
 [[nodiscard]] bool has_interior(const sites::EdgeRegion& region);
 [[nodiscard]] bool has_interior(const sites::VertexRegion& region);
 
-/// Of the face, edge or vertex at an index of regions.faces, edges or vertices.
+/// The region of the face, edge or vertex at an index of regions.faces, edges or vertices.
 [[nodiscard]] SiteRegion region_of(const sites::SitesData& sites, const sites::FaceRegion& region,
                                    std::size_t index);
 [[nodiscard]] SiteRegion region_of(const sites::SitesData& sites, const sites::EdgeRegion& region,

@@ -1,4 +1,4 @@
-// The paper's stencil cache (4.1): which face has which of the few values of the stencil buffer.
+// The paper's stencil cache (4.1): assigns the few values of the stencil buffer to faces.
 #pragma once
 
 #include <cstdint>
@@ -7,20 +7,20 @@
 
 namespace sdm::gl {
 
-/// Values 1 ... K, reassigned from the least recently used. Independent of OpenGL.
+/// Values 1 ... K, of which the least recently used is reassigned. Independent of OpenGL.
 class StencilCache {
  public:
   static constexpr std::uint32_t kNobody = 0xFFFFFFFFu;
 
   struct Use {
     int value = 0;
-    bool hit = false;                 ///< the value is on the face's texels already
-    std::uint32_t evicted = kNobody;  ///< whose texels have the value and must lose it first
+    bool hit = false;                 ///< the face's texels already have the value
+    std::uint32_t evicted = kNobody;  ///< the face that has lost the value; its texels must be cleared first
   };
 
   explicit StencilCache(int values) : values_(values) {}
 
-  /// The value of a face from now on. Cost: constant.
+  /// Returns the value of a face, assigning one if necessary. Cost: constant.
   Use use(std::uint32_t face) {
     ++lookups_;
     if (const auto found = entries_.find(face); found != entries_.end()) {
@@ -53,7 +53,7 @@ class StencilCache {
     int value;
   };
   int values_;
-  std::list<Entry> recent_;  ///< the most recent first
+  std::list<Entry> recent_;  ///< most recently used first
   std::unordered_map<std::uint32_t, std::list<Entry>::iterator> entries_;
   std::uint64_t lookups_ = 0, hits_ = 0, evictions_ = 0;
 };

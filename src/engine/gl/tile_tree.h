@@ -1,4 +1,4 @@
-// The tiles of a surface under an AABB tree, and where they are kept from map to map.
+// An AABB tree over the tiles of a surface, and a cache of such trees.
 #pragma once
 
 #include <map>
@@ -15,14 +15,14 @@ struct TileTree {
   explicit TileTree(const Surface& surface);
 
   surface::Tiles tiles;
-  hierarchy::AabbTree tree;  ///< one tile a leaf; its boxes are those of the shape it was built for
+  hierarchy::AabbTree tree;  ///< one tile per leaf; its boxes are those of the shape it was built for
 };
 
-/// The trees of surfaces that are mapped again and again, as in a sequence: building one takes longer than
-/// drawing a map of a small mesh. Entries of surfaces that no longer exist are dropped at the next call.
+/// The trees of surfaces that are mapped repeatedly, as in a sequence: building one takes longer than drawing
+/// a map of a small mesh. Entries of surfaces that no longer exist are dropped at the next call.
 class TileTreeCache {
  public:
-  /// Builds the tree at the first call for a surface. Valid until the next call.
+  /// Returns the tree of a surface, built on the first call. Valid until the next call.
   [[nodiscard]] const TileTree& of(const Surface& surface);
 
  private:

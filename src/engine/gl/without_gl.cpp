@@ -1,4 +1,4 @@
-// Replaces the gl engine where sdm is built without OpenGL.
+// Replaces the gl engine in builds without OpenGL.
 #include <sdm/error.h>
 #include <sdm/gl.h>
 

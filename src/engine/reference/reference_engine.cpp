@@ -1,4 +1,4 @@
-// The reference engine: one query at a time, plain enough to be believed.
+// The reference engine: one query at a time, in plain code that is easy to verify.
 #include <algorithm>
 
 #include "core/geometry/vec.h"
@@ -9,7 +9,8 @@
 namespace sdm::reference {
 namespace {
 
-// The distance of a point of the unit frame to a box, less what double rounding may have added to it.
+// A lower bound on the distance of a point of the unit frame to a box, reduced by the rounding error of
+// double.
 double lower_bound(const hierarchy::FloatBox& box, const Vec3& p) {
   return (1 - 1e-12) * norm(gap(box, p));
 }
@@ -22,7 +23,7 @@ ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q, dou
   best.distance = max_distance;
   hierarchy::traverse_best_first(
       sites.tree, [&](const hierarchy::FloatBox& box) { return lower_bound(box, unit); },
-      // A node is entered even when its bound equals the best distance: O2 may lie at max_distance exactly.
+      // A node is visited even if its bound equals the best distance: O2 may lie at exactly max_distance.
       [&](double bound) { return bound <= best.distance * sites.frame.scale; },
       [&](std::uint32_t leaf) {
         for (const std::uint32_t face : sites.tree.items_of(leaf)) {

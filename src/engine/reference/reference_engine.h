@@ -1,4 +1,4 @@
-// The reference engine: the oracle of all others.
+// The reference engine: the oracle for all other engines.
 #pragma once
 
 #include "engine/engine.h"
@@ -8,14 +8,14 @@ namespace sdm::reference {
 
 using engine::ClosestSink;
 
-/// Scalar, double precision, best-first over the binary tree: every number to rounding.
+/// Scalar, double precision, best-first over the binary tree; all results are accurate to rounding.
 [[nodiscard]] ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& point,
                                              double max_distance);
 
 class ReferenceEngine final : public Engine {
  public:
   static constexpr EngineInfo kInfo{
-      .name = "reference", .summary = "plain, to verify the others", .relative_error = 1e-6};
+      .name = "reference", .summary = "simple, for verification", .relative_error = 1e-6};
 
   [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
   void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,

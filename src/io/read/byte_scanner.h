@@ -20,7 +20,7 @@ template <typename T>
   return std::bit_cast<T>(raw);
 }
 
-/// Reads binary data from front to back, and never past their end.
+/// Reads binary data from front to back, never past its end.
 class ByteScanner {
  public:
   explicit ByteScanner(std::string_view bytes, std::endian order = std::endian::little)

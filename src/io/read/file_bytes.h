@@ -15,7 +15,7 @@ struct FileBytes {
   [[nodiscard]] std::string_view view() const { return {data.get(), size}; }
 };
 
-/// Reads a regular file after checking that there is enough memory for it and for the mesh made from it.
+/// Reads a regular file, after checking that there is enough memory for it and for the mesh built from it.
 /// Throws sdm::Error; the message does not name the file.
 [[nodiscard]] FileBytes read_bytes(const std::filesystem::path& file);
 

@@ -1,5 +1,5 @@
-// One reader for each format. All throw sdm::Error; the message gives the fault and its position, but not the
-// name of the file.
+// One reader for each format. All throw sdm::Error; the message describes the fault and its position, but
+// does not name the file.
 #pragma once
 
 #include <filesystem>
@@ -17,10 +17,10 @@ namespace sdm::io {
 /// face (vertex_indices, texcoord) and tristrips. All other elements and properties are skipped.
 [[nodiscard]] PolygonMesh read_ply(std::string_view bytes);
 
-/// Read STL, as text or binary. Normals and attributes are skipped.
+/// Reads STL, as text or binary. Normals and attributes are skipped.
 [[nodiscard]] PolygonMesh read_stl_text(std::string_view text);
 [[nodiscard]] PolygonMesh read_stl_binary(std::string_view bytes);
-/// Returns whether the data begin with the header of a binary STL file, and have the size that it implies.
+/// Returns whether the data begin with the header of a binary STL file and have the size that it implies.
 [[nodiscard]] bool is_stl_binary(std::string_view bytes);
 
 /// Reads Geomview OFF as text, with any of the prefixes ST, C and N.

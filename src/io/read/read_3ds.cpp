@@ -9,7 +9,8 @@
 namespace sdm::io {
 namespace {
 
-// A file is a tree of chunks. Each has a type, a length that includes these six bytes, data, and chunks.
+// A file is a tree of chunks. Each has a type, a length that includes this six-byte header, data, and
+// subchunks.
 enum ChunkKind : std::uint16_t {
   kMain = 0x4D4D,
   kEditor = 0x3D3D,
@@ -77,7 +78,7 @@ void read_triangle_mesh(ByteScanner in, PolygonMesh& mesh) {
 
 void read_object(ByteScanner in, PolygonMesh& mesh) {
   while (in.number<char>() != '\0') {
-  }  // its name
+  }  // the object's name
   while (in.remaining() > 0) {
     const Chunk chunk = next_chunk(in);
     if (chunk.kind == kTriangleMesh) read_triangle_mesh(chunk.data, mesh);

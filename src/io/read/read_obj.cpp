@@ -6,15 +6,15 @@
 namespace sdm::io {
 namespace {
 
-// The highest index in any face, and where it is. Faces may precede the items that they refer to, so it is
+// The highest index in any face, and its position. Faces may precede the items that they refer to, so it is
 // checked at the end.
 struct HighestIndex {
   std::uint32_t index = 0;
   const char* at = nullptr;
 };
 
-// Reads an index: positive ones count from 1, negative ones back from the last of the `count` items so far.
-// The result counts from 0.
+// Reads an index: positive ones count from 1, negative ones backwards from the last of the `count` items so
+// far. The result counts from 0.
 std::uint32_t parse_index(TextScanner& in, std::size_t count, HighestIndex& highest) {
   const char* at = in.position();
   const std::int64_t i = in.integer();

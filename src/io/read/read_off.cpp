@@ -7,7 +7,7 @@
 namespace sdm::io {
 namespace {
 
-// The prefixes of a header, in the order of Geomview: [ST][C][N][4][n]OFF.
+// The prefixes of a header, in Geomview's order: [ST][C][N][4][n]OFF.
 struct Header {
   bool is_off = false, uvs = false, colours = false, normals = false, four = false, any_dimension = false;
 };
@@ -62,7 +62,7 @@ PolygonMesh read_off(std::string_view text) {
     throw Error("binary OFF is not supported; save it as text");
 
   const std::size_t vertices = parse_count(in), faces = parse_count(in);
-  in.skip_line();  // the count of edges, if any, is not reliable
+  in.skip_line();  // the edge count, if any, is unreliable
   // A vertex takes at least the 6 bytes "0 0 0\n", a face the 2 bytes "0\n"; the last newline may be missing.
   if (vertices > in.remaining() || faces > in.remaining() || 6 * vertices + 2 * faces > in.remaining() + 1)
     throw Error(

@@ -15,7 +15,7 @@ using Type = PlyHeader::Type;
 using Element = PlyHeader::Element;
 using Property = PlyHeader::Property;
 
-// The two sources of numbers. A double represents all PLY types without loss.
+// The two sources of numbers, text and binary. A double represents all PLY types without loss.
 class TextSource {
  public:
   explicit TextSource(std::string_view text) : in_(text) {}
@@ -79,7 +79,7 @@ class PlyReader {
         for (std::size_t row = 0; row < element.count; ++row) read_row(element);
     }
     if (mesh_.corner_uvs.size() != mesh_.corners.size()) {
-      // Unless all faces have their own, those of the vertices are used, if any.
+      // Unless all faces have texture coordinates of their own, those of the vertices are used, if any.
       mesh_.uvs = std::move(vertex_uvs_);
       mesh_.corner_uvs = mesh_.uvs.empty() ? std::vector<std::uint32_t>{} : mesh_.corners;
     }
@@ -160,7 +160,7 @@ class PlyReader {
     }
   }
 
-  // A list holds strips, separated by −1. Every other triangle of a strip is flipped.
+  // A list contains strips, separated by −1. Every other triangle of a strip is flipped.
   void read_strips(const Element& element) {
     const std::size_t indices = list_place(element, {"vertex_indices", "vertex_index"});
     for (std::size_t row = 0; row < element.count; ++row) {

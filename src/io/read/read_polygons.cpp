@@ -79,7 +79,7 @@ const Format* find_format(const Content& content, const std::filesystem::path& f
 }
 
 std::string_view without_byte_order_mark(std::string_view bytes) {
-  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // of UTF-8
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // the UTF-8 byte order mark
   return bytes;
 }
 

@@ -12,7 +12,7 @@
 
 namespace sdm::io {
 
-/// Whether a mesh file is glTF, by the contents, else by the extension of the file name.
+/// Returns whether a mesh file is glTF, from the contents, or else from the file name's extension.
 [[nodiscard]] bool is_gltf(std::string_view bytes, const std::filesystem::path& file);
 
 /// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.

@@ -8,7 +8,7 @@
 namespace sdm::io {
 namespace {
 
-// Binary: a comment of 80 bytes, a count, and for each triangle a normal, three corners, and an attribute.
+// Binary: an 80-byte comment and a count; then, for each triangle, a normal, three corners and an attribute.
 constexpr std::size_t kHeaderBytes = 84, kTriangleBytes = 50, kNormalBytes = 12;
 
 std::uint32_t triangle_count(std::string_view bytes) {

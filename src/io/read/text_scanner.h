@@ -49,7 +49,7 @@ class TextScanner {
 
   /// Returns whether the next character is part of a word.
   [[nodiscard]] bool in_word() const { return at_ != end_ && !is_delimiter(*at_); }
-  /// Reads a word: at least one character, and all up to the next blank. Empty at the end of the text.
+  /// Reads a word: at least one character, and all others up to the next blank. Empty at the end of the text.
   std::string_view word() {
     const char* start = at_;
     if (at_ != end_) ++at_;

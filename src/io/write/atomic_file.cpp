@@ -22,7 +22,7 @@ std::string reason(int error) {
   return error != 0 ? std::generic_category().message(error) : "write error";
 }
 
-// Unique among the files that all processes of this machine write at the same time.
+// Unique among the files that all processes of this machine write concurrently.
 std::filesystem::path temporary_beside(const std::filesystem::path& file) {
   static std::atomic<unsigned> count{0};
   return file.parent_path() /

@@ -8,7 +8,7 @@
 namespace sdm::io {
 namespace {
 
-// All steps within a disc, the shortest first; of equally long ones, those along rows first.
+// All offsets within a disc, shortest first; of equal lengths, those along rows first.
 std::vector<std::array<int, 2>> disc() {
   std::vector<std::array<int, 2>> steps;
   for (int dy = -kGutter; dy <= kGutter; ++dy)
@@ -26,7 +26,7 @@ std::uint32_t gutter_source(std::uint32_t resolution, std::span<const std::uint3
                             std::uint32_t y) {
   static const auto steps = disc();
   for (const auto& [dx, dy] : steps) {
-    // Steps out of the image wrap around to large numbers.
+    // Offsets out of the image wrap around to large numbers.
     const std::uint32_t sx = x + static_cast<std::uint32_t>(dx), sy = y + static_cast<std::uint32_t>(dy);
     if (sx >= resolution || sy >= resolution) continue;
     const std::size_t source = std::size_t{sy} * resolution + sx;

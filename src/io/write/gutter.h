@@ -1,4 +1,4 @@
-// Values for the free texels around charts, so that filtering at a chart's border does not mix in the
+// Values for the free texels around charts, so that filtering at a chart's border does not blend in the
 // background.
 #pragma once
 
@@ -9,11 +9,11 @@
 
 namespace sdm::io {
 
-/// How far, in texels, values reach beyond the charts: bilinear filtering needs 1, the rest serves smaller
+/// How far, in texels, values extend beyond the charts: bilinear filtering needs 1, the rest is for smaller
 /// mip levels.
 inline constexpr int kGutter = 4;
 
-/// The owned texel nearest to (x, y), itself where it is owned; kNone where there is none within kGutter
+/// The owned texel nearest to (x, y): the texel itself if it is owned; kNone if there is none within kGutter
 /// texels. `owners`: resolution² values, kNone for a free texel.
 [[nodiscard]] std::uint32_t gutter_source(std::uint32_t resolution, std::span<const std::uint32_t> owners,
                                           std::uint32_t x, std::uint32_t y);

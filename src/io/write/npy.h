@@ -8,8 +8,8 @@
 
 namespace sdm::io {
 
-/// NPY version 1.0 (NumPy's NEP 1) for numbers of `type`, such as "<f4", the last index running fastest.
-/// Padded to 128 bytes whatever the shape, which has three indices at most.
+/// The header of NPY version 1.0 (NumPy's NEP 1) for numbers of `type`, such as "<f4", with the last index
+/// varying fastest. Padded to 128 bytes for every shape; `shape` has at most three indices.
 [[nodiscard]] std::string npy_header(std::string_view type, std::span<const std::uint64_t> shape);
 
 }  // namespace sdm::io

@@ -29,7 +29,7 @@ struct SequenceWriter::Impl {
 
 SequenceWriter::SequenceWriter(const std::filesystem::path& file, std::size_t vertices)
     : impl_(new Impl{.out = AtomicFile(file), .vertices = vertices}) {
-  impl_->write_header();  // again when the number of frames is known
+  impl_->write_header();  // rewritten now that the number of frames is known
 }
 SequenceWriter::~SequenceWriter() = default;
 SequenceWriter::SequenceWriter(SequenceWriter&&) noexcept = default;

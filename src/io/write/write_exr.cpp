@@ -44,7 +44,7 @@ class ExrStream : public Imf::OStream {
   AtomicFile& file_;
 };
 
-// A channel of the texels, which are structures whose members all have four bytes and therefore no
+// A channel of the texels, which are structures whose members all have four bytes and which therefore have no
 // padding.
 struct Channel {
   const char* name;
@@ -62,14 +62,15 @@ Imf::Header header(std::uint32_t n, std::span<const Channel> channels) {
   return result;
 }
 
-// Writes the texels that texel(source, covered) gives: `source` is the owned texel whose values are taken,
-// for gutters a neighbour; kNone where there is none.
+// Writes the texels that texel(source, covered) returns. `source` is the owned texel whose values are used, a
+// neighbour's in gutters; kNone if there is none.
 template <class Texel, class Get>
 void write_texels(const std::filesystem::path& file, const Surface& surface,
                   std::span<const Channel> channels, const Get& texel) {
   const std::uint32_t n = surface.resolution();
   const auto owners = surface.texel_faces();
-  // Blocks of rows bound the memory; they are multiples of the 16 rows that are compressed together.
+  // Writing groups of rows bounds the memory. OpenEXR compresses 16 rows together, so groups are multiples of
+  // that.
   constexpr std::uint32_t kRows = 256;
   std::vector<Texel> texels(std::size_t{n} * std::min(kRows, n));
   // OpenEXR creates no threads by default.

@@ -28,17 +28,18 @@ using namespace io;
 
 namespace {
 
-/// Vertices of the glTF mesh: one for each position that a vertex of the mesh has in the atlas.
+/// Vertices of the glTF mesh: one for each position in the atlas of each vertex of the mesh.
 struct SplitVertices {
   std::vector<std::uint32_t> vertex;     ///< of the mesh
   std::vector<std::array<float, 2>> uv;  ///< in [0, 1], v down: the atlas over its resolution
   std::vector<Triangle> triangles;
 };
 
-// Positions closer than this, in texels, are equal: charts are farther apart, rounding errors far smaller.
+// Positions closer than this, in texels, are equal: charts are farther apart, and rounding errors are far
+// smaller.
 constexpr double kSamePlace = 1.0 / 64;
-// The number of positions searched for each vertex: a vertex of a million single-face charts must not take
-// 10^12 steps.
+// The most positions searched for each vertex: a vertex of a million single-face charts must not take 10^12
+// steps.
 constexpr int kMostSplits = 64;
 
 bool same(const Vec2& a, const Vec2& b) {
@@ -57,7 +58,7 @@ SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint
     Triangle& triangle = result.triangles.emplace_back();
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint32_t vertex = mesh.triangles[face][corner];
-      // A face with no or hardly any area is invisible: any position will do.
+      // A face with almost no area is invisible: any position will do.
       Vec2 place = charts[face] == kNone ? Vec2{} : surface.to_atlas(face, mesh.positions[vertex]);
       if (!std::isfinite(place[0]) || !std::isfinite(place[1])) place = {};
       std::uint32_t split = first[vertex];
@@ -78,7 +79,7 @@ SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint
   return result;
 }
 
-/// The model under construction: a single buffer, filled from front to back.
+/// The model under construction: a single buffer that grows at the end.
 struct GlbModel {
   tinygltf::Model model;
 
@@ -100,7 +101,7 @@ struct GlbModel {
     return static_cast<int>(model.bufferViews.size()) - 1;
   }
 
-  /// `Element`: a scalar or an array of N scalars, as the type says.
+  /// `Element`: a scalar or an array of N scalars, consistent with `type`.
   template <class Element>
   int add_accessor(const std::vector<Element>& values, int type, int component_type, int target) {
     tinygltf::Accessor accessor;
@@ -115,8 +116,7 @@ struct GlbModel {
   }
 };
 
-/// glTF has single precision: positions far from (0, 0, 0) are stored relative to an origin near the
-/// mesh.
+/// glTF uses single precision: positions far from the origin are stored relative to an origin near the mesh.
 struct Placement {
   Vec3 origin{};
   double scale = 1;  ///< metres per unit
@@ -169,8 +169,9 @@ void add_primitive(GlbModel& glb, const Mesh& mesh, const SplitVertices& vertice
   glb.model.meshes[0].primitives.push_back(primitive);
 }
 
-/// The coloured map, its gutters filled. Corners of charts reach beyond the texels that the chart owns, and
-/// small charts own hardly any: the free texels that are blended at a vertex take the vertex's own distance.
+/// The coloured map with its gutters filled. Corners of charts extend beyond the texels that the chart owns,
+/// and small charts own hardly any: the free texels that are blended at a vertex get the vertex's own
+/// distance.
 std::string texture_png(const Surface& surface, const DistanceMap& map, const ColorScale& scale,
                         std::span<const float> vertex_distances) {
   const std::uint32_t n = surface.resolution();
@@ -208,7 +209,7 @@ void add_material(GlbModel& glb, const std::string& png) {
   image.bufferView = glb.add_view(png.data(), png.size(), 0);
   image.mimeType = "image/png";
   model.images.push_back(image);
-  // No mip levels: they would mix charts that are neighbours only in the atlas.
+  // No mip levels: they would blend charts that are neighbours only in the atlas.
   tinygltf::Sampler sampler;
   sampler.minFilter = sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
   sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -251,7 +252,7 @@ void write_glb(const std::filesystem::path& file, const Surface& surface, const 
   if (vertex_distances.size() != mesh.positions.size())
     throw Error("cannot write " + file.string() +
                 ": pass one distance for each vertex of the surface's mesh");
-  // glTF forbids NaN: faces with a vertex that has no value are a primitive of their own, without _DISTANCE.
+  // glTF forbids NaN: faces with a vertex without a value form a separate primitive, without _DISTANCE.
   std::array<std::vector<std::uint32_t>, 2> faces;
   for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
     const bool known =

@@ -32,7 +32,7 @@ struct Range {
     for (const double v : values)
       if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
   }
-  // Makes the range nonempty, also without values or with a single one.
+  // Makes the range nonempty, even if there are no values or only one.
   void widen() {
     if (!(lo <= hi)) lo = 0, hi = 1;
     const double least = std::max(1e-9 * std::max(std::abs(lo), std::abs(hi)), 1e-30);
@@ -93,7 +93,7 @@ void draw_curve(Canvas& canvas, const Frame& frame, std::span<const double> plac
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool here = std::isfinite(values[i]) && std::isfinite(places[i]);
     if (here && drawing) cairo_line_to(cairo, frame.across(places[i]), frame.up(values[i]));
-    if (here && !drawing) {  // a value between gaps is a dot
+    if (here && !drawing) {  // an isolated value between gaps is drawn as a dot
       cairo_move_to(cairo, frame.across(places[i]), frame.up(values[i]));
       cairo_line_to(cairo, frame.across(places[i]), frame.up(values[i]));
     }

@@ -28,7 +28,7 @@ LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const st
   return text;
 }
 
-// A picture of the map's own size: the background where no face is, else color(texel).
+// A picture of the size of the map: color(texel) where a face owns the texel, otherwise the background.
 template <class Color>
 void write_map_png(const std::filesystem::path& file, const Surface& surface, Color&& color) {
   AtomicFile out(file);

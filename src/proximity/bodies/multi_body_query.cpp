@@ -24,7 +24,7 @@ const MultiBodyOptions& checked(const MultiBodyOptions& options) {
   return options;
 }
 
-// Adds the body to the message of errors thrown by `work`.
+// Adds the body to the messages of errors thrown by `work`.
 template <class Work>
 void on_behalf_of(std::size_t body, const Work& work) {
   try {
@@ -36,7 +36,7 @@ void on_behalf_of(std::size_t body, const Work& work) {
   }
 }
 
-// The memory of pairs that are measured at the same time: as many as there are threads.
+// A pool of the memory for pairs measured concurrently: one entry for each thread.
 class AnswersPool {
  public:
   explicit AnswersPool(const sampled::PairAnswers::Options& options) : options_(options) {}

@@ -17,7 +17,7 @@
 namespace sdm::bodies {
 namespace {
 
-// Finds the nearest bodies for the samples of a block, again and again.
+// Finds the nearest bodies for the samples of a block; reuses its memory between blocks.
 class BlockSearch {
  public:
   BlockSearch(std::span<const sampled::Body> bodies, std::size_t on, double max_distance)
@@ -38,10 +38,10 @@ class BlockSearch {
   [[nodiscard]] std::uint32_t body(std::size_t i) const { return body_[i]; }
 
  private:
-  // The result is at most this far.
+  // An upper bound on the result.
   [[nodiscard]] double limit(std::size_t i) const { return std::min(max_distance_, closest_[i].distance); }
 
-  // The nearest box first: it most likely makes the others unnecessary.
+  // Nearest box first: it most likely rules out the others.
   void sort_bodies(std::span<const Vec3> points) {
     Box box;
     for (const Vec3& p : points) extend(box, p);
@@ -76,10 +76,10 @@ class BlockSearch {
   std::span<const sampled::Body> bodies_;
   std::size_t on_;
   double max_distance_;
-  std::vector<std::pair<double, std::uint32_t>> order_;  // boxes' distances from the samples, and bodies
+  std::vector<std::pair<double, std::uint32_t>> order_;  // distances of boxes from the samples, and bodies
   std::array<ClosestPoint, surface::kBlockSize> closest_;
   std::array<std::uint32_t, surface::kBlockSize> body_, asked_;
-  std::array<Vec3, surface::kBlockSize> at_;  // of those asked for
+  std::array<Vec3, surface::kBlockSize> at_;  // positions of the samples in asked_
 };
 
 SignUsed signs_of_others(std::span<const sampled::Body> bodies, std::size_t on) {

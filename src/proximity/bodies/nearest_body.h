@@ -1,4 +1,4 @@
-// Which of many bodies is nearest, at every texel of one.
+// The nearest of many bodies at every texel of one of them.
 #pragma once
 
 #include <sdm/multi_body_query.h>
@@ -9,7 +9,7 @@
 
 namespace sdm::bodies {
 
-/// As Bodies::nearest_map.
+/// See MultiBodyQuery::nearest_map.
 void map_nearest(std::span<const sampled::Body> bodies, std::size_t on, double max_distance,
                  NearestMap& nearest);
 

@@ -1,4 +1,4 @@
-// Boxes of one tree, a lane each, against a box of another. Included once for each set of vector
+// Tests boxes of one tree, one per lane, against a box of the other. Included once for each set of vector
 // instructions.
 #if defined(SDM_PROXIMITY_BOX_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SDM_PROXIMITY_BOX_LANES_INL_H
@@ -33,7 +33,8 @@ HWY_INLINE void load(Lanes d, const float (&rows)[3][kWidth], size_t i, Vec (&v)
   for (int k = 0; k < 3; ++k) v[k] = hn::Load(d, rows[k] + i);
 }
 
-// Boxes apart by `gap` along three orthogonal axes: their distance, or minus the least overlap.
+// The distance of boxes from their gaps along three orthogonal axes; if they overlap, minus the smallest
+// overlap.
 HWY_INLINE Vec distance_of_gaps(Lanes d, const Vec (&gap)[3]) {
   const Vec most = hn::Max(hn::Max(gap[0], gap[1]), gap[2]);
   Vec apart[3];
@@ -50,7 +51,7 @@ struct CentredBox {
       half[k] = 0.5f * (box.hi[k] - box.lo[k]);
     }
   }
-  // The box around this one in another frame, with what rounding takes away.
+  // The bounding box of `box` in another frame, enlarged by the rounding error.
   CentredBox(const CentredBox& box, const FrameMap& map) {
     for (int k = 0; k < 3; ++k) {
       centre[k] = map.offset[k], half[k] = map.error;
@@ -63,11 +64,11 @@ struct CentredBox {
   [[nodiscard]] float size() const { return half[0] + half[1] + half[2]; }
 };
 
-// Lower bounds on the distances of boxes to one box, by axes that may separate them: along the sides of the
-// boxes of either tree, and the direction between the closest points so far.
+// Lower bounds on the distances of boxes to one box, from axes that may separate them: along the sides of the
+// boxes of either tree, and in the direction between the closest points found so far.
 class BoxDistances {
  public:
-  // For boxes of the tree of `side` to a box of the other tree, in its own frame.
+  // For boxes of the tree of `side`, and a box of the other tree in the other tree's frame.
   BoxDistances(const UnitMaps& maps, const Direction& direction, int side, const CentredBox& other)
       : maps_(maps), direction_(direction), side_(side), other_(other), seen_(other, maps.to[side]) {}
 
@@ -108,7 +109,7 @@ class BoxDistances {
   const UnitMaps& maps_;
   const Direction& direction_;
   int side_;
-  CentredBox other_, seen_;  // the other box where it is, and around it in this frame
+  CentredBox other_, seen_;  // the other box in its own frame, and its bounding box in this one
 };
 
 }  // namespace sdm::exact::HWY_NAMESPACE

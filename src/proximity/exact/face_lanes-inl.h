@@ -1,4 +1,5 @@
-// The faces of two leaves against each other, a lane each. Included once for each set of vector instructions.
+// Tests the faces of two leaves against each other, one per lane. Included once for each set of vector
+// instructions.
 #if defined(SDM_PROXIMITY_FACE_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SDM_PROXIMITY_FACE_LANES_INL_H
 #undef SDM_PROXIMITY_FACE_LANES_INL_H
@@ -12,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sdm::exact::HWY_NAMESPACE {
 
-// An extent along an axis.
+// The interval that something covers along an axis.
 struct Extent {
   Vec lo, hi;
 
@@ -41,7 +42,7 @@ class LeafFaces {
     }
   }
 
-  // From O2's frame.
+  // Transforms the faces from O2's frame.
   void move(const FrameMap& map) {
     const Lanes d;
     for (auto& corner : corner_)
@@ -62,7 +63,7 @@ class LeafFaces {
       for (int k = 0; k < 3; ++k) v[k] = hn::Sub(corner[2][k], corner[0][k]);
       for (int k = 0; k < 3; ++k)
         normal[k] = hn::MulSub(u[(k + 1) % 3], v[(k + 2) % 3], hn::Mul(u[(k + 2) % 3], v[(k + 1) % 3]));
-      // Any axis of length at most 1 is valid, so rounding of the axis of a needle is harmless.
+      // Any axis of length at most 1 gives a valid bound, so rounding of the axis of a needle is harmless.
       const Vec squared = dot(normal, normal), least = hn::Set(d, 1e-37f);
       const Vec inverse =
           hn::IfThenElseZero(hn::Gt(squared, least), hn::Div(hn::Set(d, 1.0f), hn::Sqrt(squared)));
@@ -94,8 +95,9 @@ class LeafFaces {
   uint32_t first_ = 0, count_ = 0;
 };
 
-// Lower bounds for faces of `a`, from lane i on, and one of `b`: from their boxes, and along both normals and
-// the direction between the closest points so far (0 if there are none, which excludes nothing).
+// Lower bounds on the distances of the faces of `a`, from lane i on, to a face of `b`: from their boxes,
+// along both normals, and in the direction between the closest points found so far (a zero vector if there
+// are none, which excludes nothing).
 HWY_INLINE Vec face_distances(const LeafFaces& a, size_t i, const LeafFaces& b, uint32_t face,
                               const Direction& direction) {
   const Lanes d;
@@ -118,14 +120,14 @@ HWY_INLINE Vec face_distances(const LeafFaces& a, size_t i, const LeafFaces& b, 
   return least;
 }
 
-// A box, as its centre and its half sides as vectors, in O1's frame.
+// A box in O1's frame: its centre, and its half sides as vectors.
 struct PlacedBox {
   float centre[3], side[3][3] = {};
 
   explicit PlacedBox(const CentredBox& box) {
     for (int k = 0; k < 3; ++k) centre[k] = box.centre[k], side[k][k] = box.half[k];
   }
-  // From O2's frame.
+  // Transforms a box from O2's frame.
   PlacedBox(const CentredBox& box, const FrameMap& map) {
     for (int i = 0; i < 3; ++i) {
       centre[i] = map.offset[i];
@@ -144,7 +146,8 @@ struct PlacedBox {
   }
 };
 
-// A lower bound for the faces of a leaf and a box, from the boxes of the faces and along their normals.
+// A lower bound on the distance between the faces of a leaf and a box, from the boxes of the faces and along
+// their normals.
 inline float least_distance(const LeafFaces& faces, const PlacedBox& box) {
   const Lanes d;
   Vec least = hn::Inf(d);
@@ -163,7 +166,7 @@ inline float least_distance(const LeafFaces& faces, const PlacedBox& box) {
   return hn::GetLane(hn::MinOfLanes(d, least));
 }
 
-// The least that the faces of a leaf reach along u, by the discs around them; in the leaf's frame.
+// A lower bound on x·u over the faces of a leaf, from the discs around them; in the leaf's frame.
 inline float least_along(const sites::Regions& regions, uint32_t leaf, const float (&u)[3]) {
   const sites::FaceBounds& bounds = regions.bounds[leaf];
   const uint32_t count = regions.leaves[leaf + 1] - regions.leaves[leaf];
@@ -174,8 +177,8 @@ inline float least_along(const sites::Regions& regions, uint32_t leaf, const flo
     Vec centre[3], normal[3];
     load(d, bounds.centre, i, centre);
     load(d, bounds.normal, i, normal);
-    // A disc reaches as far as its radius times the part of u in its plane; all of u where the normal may be
-    // rounding noise.
+    // A disc extends by its radius times the length of u's component in its plane, or times |u| where the
+    // normal may be rounding noise.
     const auto flat = hn::Lt(hn::Load(d, bounds.slope + i), hn::Set(d, sites::FaceBounds::kOpen));
     const Vec across = hn::IfThenElseZero(flat, dot(d, normal, u));
     const Vec within = hn::Sqrt(hn::Max(hn::NegMulAdd(across, across, hn::Set(d, squared)), hn::Zero(d)));

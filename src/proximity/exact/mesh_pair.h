@@ -16,7 +16,7 @@ struct MeshPair {
   const sites::SitesData &o1, &o2;
   Affine pose{};
 
-  /// The corners of a face. Compiled once: vector code must see the same roundings as all other code does.
+  /// The corners of a face. Compiled only once: vector code must get the same rounding as all other code.
   [[nodiscard]] Corners face1(std::uint32_t face) const;
   [[nodiscard]] Corners face2(std::uint32_t face) const;
 };
@@ -25,9 +25,9 @@ struct MeshPair {
 struct Separation {
   double distance = std::numeric_limits<double>::infinity();  ///< |point2 − point1|, to rounding
   bool intersecting = false;  ///< decided exactly; if so the distance is 0 and both points are one
-  Vec3 point1{}, point2{};    ///< as O2 is posed
+  Vec3 point1{}, point2{};    ///< with O2 posed
   std::uint32_t face1 = kNone,
-                face2 = kNone;  ///< faces they lie on; kNone: nothing within the requested bound
+                face2 = kNone;  ///< faces that contain the points; kNone: nothing within the requested bound
 };
 
 }  // namespace sdm::exact

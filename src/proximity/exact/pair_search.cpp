@@ -16,7 +16,7 @@ namespace sdm::exact::HWY_NAMESPACE {
 
 using Entry = PairWorkspace::Entry;
 
-// `separate`: the closest faces are sought, else any that intersect.
+// `separate`: searches for the closest faces, otherwise for any that intersect.
 template <bool separate>
 class PairSearch {
  public:
@@ -39,9 +39,9 @@ class PairSearch {
   }
 
  private:
-  // Pairs that overlap have all to be looked at, unless an intersection is found: depth first, for this soon
-  // finds one. Of the others the nearest comes first, so that none is looked at but those nearer than the
-  // closest faces.
+  // Overlapping pairs must all be visited, unless an intersection is found: depth first, which finds one
+  // soon. Disjoint pairs are visited nearest first, so that only those nearer than the closest faces are
+  // visited.
   bool next(Entry& entry) {
     if (!w_.overlapping.empty()) {
       entry = w_.overlapping.back();
@@ -80,14 +80,14 @@ class PairSearch {
         w_.apart.push(child);
         continue;
       }
-      auto at = w_.overlapping.end();  // the deepest on top
+      auto at = w_.overlapping.end();  // deepest overlap on top
       while (at != w_.overlapping.begin() + base && (at - 1)->least < child.least) --at;
       w_.overlapping.insert(at, child);
     }
   }
 
-  // The box of a leaf says little of its faces if they are large: against a smaller box they are bounded one
-  // by one. Returns whether this pair is finished; otherwise it is opened later.
+  // The box of a leaf with large faces is a loose bound: against a smaller box, its faces are bounded one by
+  // one. Returns whether this pair is finished; otherwise it is opened later.
   bool put_off(Entry entry, const CentredBox& small) {
     const int large = entry.place[0].leaf() ? 0 : 1;
     load_faces(large, entry.place[large].leaf_number());
@@ -100,7 +100,8 @@ class PairSearch {
     return true;
   }
 
-  // Whether all faces of the leaves are too far apart along the direction between the closest points so far.
+  // Whether all faces of the leaves are too far apart in the direction between the closest points found so
+  // far.
   bool discs_apart(const Entry& entry) const {
     if (!direction_.known) return false;
     float apart = direction_.offset - maps_.to[0].error;
@@ -118,7 +119,7 @@ class PairSearch {
   }
 
   void compare_leaves(const Entry& entry) {
-    if (discs_apart(entry)) return;  // along a better direction than when the leaves were met
+    if (discs_apart(entry)) return;  // the direction may have improved since the leaves were paired
     for (int side = 0; side < 2; ++side) load_faces(side, entry.place[side].leaf_number());
     const LeafFaces &a = faces_[0], &b = faces_[1];
     Candidate candidates[kWidth * kWidth];
@@ -141,13 +142,13 @@ class PairSearch {
     return hn::Mul(hn::Set(d, maps_.unit[0]), hn::Sub(distance, hn::Set(d, maps_.to[0].error)));
   }
 
-  // Faces by their places in the order of the trees.
+  // Faces by their position in the order of the trees.
   struct Candidate {
     float least;
     uint32_t owner1, owner2;
   };
 
-  // The nearest first: it makes most others too far.
+  // Nearest first, which excludes most of the others.
   void compare(Candidate* candidates, size_t count) {
     for (; count > 0 && !best_.intersecting; --count) {
       Candidate* nearest = candidates;
@@ -160,11 +161,11 @@ class PairSearch {
   }
 
   void compare(const Candidate& candidate) {
-    constexpr double kAbove = 1 + 1e-12;  // by more than squares are rounded: equals must be compared
+    constexpr double kAbove = 1 + 1e-12;  // larger than the rounding error of squares: ties must be compared
     const uint32_t face1 = sites_[0]->tree.items[candidate.owner1],
                    face2 = sites_[1]->tree.items[candidate.owner2];
     const Corners a = pair_.face1(face1), b = pair_.face2(face2);
-    // Most pairs end here if details are too fine for single precision.
+    // Most pairs end here if the meshes have details too fine for single precision.
     if (squared_box_distance(a, b) > kAbove * best_.distance * best_.distance) return;
     if (!(candidate.least > 0) && triangles_intersect(a, b)) {
       const Vec3 point = common_point(a, b);
@@ -187,9 +188,9 @@ class PairSearch {
   PairWorkspace& w_;
   Separation best_;
   float limit_;          // pairs farther than this are excluded
-  Direction direction_;  // from the closest point of O1 so far to that of O2
+  Direction direction_;  // from the closest point of O1 found so far to that of O2
   LeafFaces faces_[2];
-  uint32_t loaded_[2] = {kNone, kNone};  // their leaves
+  uint32_t loaded_[2] = {kNone, kNone};  // the leaves they were loaded from
 };
 
 Separation FindClosest(const MeshPair& pair, double bound, PairWorkspace& workspace) {

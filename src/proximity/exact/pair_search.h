@@ -1,4 +1,5 @@
-// The closest faces of two surfaces, by their two trees: no triangle is moved but those that are compared.
+// The closest faces of two surfaces, by traversing both trees: only triangles that are compared are
+// transformed.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +10,9 @@
 
 namespace sdm::exact {
 
-/// Per-thread memory reused between searches; results do not depend on it.
+/// Per-thread memory, reused between searches; results do not depend on it.
 struct PairWorkspace {
-  /// A node or leaf of the wide tree, and the binary node that has its box.
+  /// A node or leaf of the wide tree, and the binary node that stores its box.
   struct Place {
     std::uint32_t child = 0, source = 0;
 
@@ -19,12 +20,12 @@ struct PairWorkspace {
     [[nodiscard]] std::uint32_t leaf_number() const { return hierarchy::WideTree::leaf_number(child); }
   };
   struct Entry {
-    std::array<Place, 2> place;  ///< in the trees of O1 and O2; at first both roots
-    float least = 0;             ///< lower bound on the distance; where boxes overlap, minus how far
+    std::array<Place, 2> place;  ///< in the trees of O1 and O2; initially both roots
+    float least = 0;  ///< lower bound on the distance; if the boxes overlap, minus the depth of the overlap
 
     [[nodiscard]] bool leaves() const { return place[0].leaf() && place[1].leaf(); }
   };
-  /// The nearest on top.
+  /// A heap with the nearest pair on top.
   class Heap {
    public:
     [[nodiscard]] bool empty() const { return entries_.empty(); }
@@ -49,12 +50,12 @@ struct PairWorkspace {
   Heap apart;
 };
 
-/// The closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic where few
-/// faces compete, at worst all pairs of faces that do; one thread, no allocation once the workspace has
-/// grown.
+/// Finds the closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic if
+/// few faces are candidates, in the worst case all pairs of candidates; single-threaded, without allocation
+/// once the workspace has grown.
 [[nodiscard]] Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace);
 
-/// Faces of the two surfaces that have a point in common, if any; decided exactly.
+/// Finds two faces, one of each surface, that have a point in common, if any; decided exactly.
 [[nodiscard]] Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace);
 
 }  // namespace sdm::exact

@@ -1,5 +1,5 @@
-// Closest points of triangles: the least over pairs of features, of points that lie on them whatever rounding
-// does.
+// Closest points of triangles: the minimum over all pairs of features. The points lie on the features
+// regardless of rounding.
 #include <algorithm>
 #include <limits>
 #include <tuple>
@@ -33,9 +33,9 @@ struct Sides {
   [[nodiscard]] Vec3 on_side(int k, const Vec3& p) const {
     return corner[k] + std::clamp(dot(p - corner[k], side[k]) * inverse_squared[k], 0.0, 1.0) * side[k];
   }
-  /// The foot of p's perpendicular, if it is within the triangle.
+  /// Whether the orthogonal projection of p lies in the triangle; `foot` receives it.
   [[nodiscard]] bool over(const Vec3& p, Vec3& foot) const {
-    // n·(r × s) = (n × r)·s: the areas beside the sides from corner 0, as shares of the whole.
+    // n·(r × s) = (n × r)·s: the barycentric coordinates of corners 1 and 2.
     const Vec3 turned = cross(normal, p - corner[0]);
     const double v = -dot(turned, side[2]) * inverse_normal, w = -dot(turned, side[0]) * inverse_normal;
     if (!(v > 0 && w > 0 && v + w < 1)) return false;
@@ -44,8 +44,8 @@ struct Sides {
   }
 };
 
-// The points where the lines of two segments come closest, if both are within. By cross products: products of
-// dot products lose all digits where the segments are nearly parallel.
+// The points where the lines of two segments are closest, if both lie within the segments. Uses cross
+// products: products of dot products cancel completely where the segments are nearly parallel.
 void offer_crossing(PointPair& best, const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
   const Vec3 n = cross(u, v), r = q - p;
   const double inverse = Sides::inverse(squared_norm(n));
@@ -87,7 +87,7 @@ PointPair closest_points(const Corners& a, const Corners& b) {
 }
 
 Vec3 common_point(const Corners& a, const Corners& b) {
-  // A corner on the other triangle, or edges that cross, or an edge that passes through the other triangle.
+  // A corner and the other triangle, two edges, or an edge and the interior of the triangle that it crosses.
   const Sides sides[2] = {Sides(a), Sides(b)};
   PointPair best = closest(sides[0], sides[1]);
   for (int i = 0; i < 2; ++i) {

@@ -1,4 +1,4 @@
-// Two triangles, whatever their shape: needles, segments and points too.
+// Distance and intersection of two triangles of any shape, including needles, segments and points.
 #pragma once
 
 #include <sdm/types.h>
@@ -7,7 +7,7 @@ namespace sdm::exact {
 
 using Corners = std::array<Vec3, 3>;
 
-/// The squared distance of the boxes around two triangles: of the triangles at least as much.
+/// The squared distance of the bounding boxes of two triangles: a lower bound for the triangles.
 [[nodiscard]] double squared_box_distance(const Corners& a, const Corners& b);
 
 /// Whether the closed triangles have a point in common; touching counts. Exact for all finite coordinates.
@@ -19,15 +19,16 @@ struct PointPair {
   Vec3 point1, point2;
 };
 
-/// The closest two points of triangles that do not intersect. They lie on their triangles to rounding, so
-/// that the distance is never too small; where two features are parallel to rounding, any of their closest
-/// points. Cost: the distances of all pairs of features.
+/// The closest points of two triangles that do not intersect. They lie on their triangles to rounding, so the
+/// distance is never too small. Where two features are parallel to rounding, any of their closest points may
+/// be returned. Cost: the distances of all pairs of features.
 [[nodiscard]] PointPair closest_points(const Corners& a, const Corners& b);
 
-/// A point on both of two triangles that intersect, to rounding.
+/// A common point of two triangles that intersect, to rounding.
 [[nodiscard]] Vec3 common_point(const Corners& a, const Corners& b);
 
-/// Either: of any two triangles; 0 apart if and only if they intersect, or so near that squares vanish.
+/// closest_points() or common_point() of any two triangles. `squared` is 0 if and only if they intersect, or
+/// are so close that the square underflows.
 [[nodiscard]] PointPair closest_or_common(const Corners& a, const Corners& b);
 
 }  // namespace sdm::exact

@@ -1,4 +1,4 @@
-// Intersection of triangles by the signs of orientations only, which are exact.
+// Intersection of triangles, decided by the signs of orientations only, which are exact.
 #include "core/geometry/predicates.h"
 #include "core/geometry/vec.h"
 #include "proximity/exact/triangle_pair.h"
@@ -8,7 +8,7 @@ namespace {
 
 using Signs = std::array<int, 3>;
 
-// The sides of t's plane that three points are on; none where t has no plane.
+// The sides of t's plane on which three points lie; 0 if t has no plane.
 Signs sides(const Corners& t, const Corners& points) {
   return {orientation(t[0], t[1], t[2], points[0]), orientation(t[0], t[1], t[2], points[1]),
           orientation(t[0], t[1], t[2], points[2])};
@@ -20,12 +20,13 @@ bool agree(const Signs& s) {
   return !(s[0] > 0 || s[1] > 0 || s[2] > 0) || !(s[0] < 0 || s[1] < 0 || s[2] < 0);
 }
 
-// Whether the line through p and q, which crosses the plane of t in one point, does so within t.
+// Whether the line through p and q, which crosses the plane of t at one point, crosses it within t.
 bool line_meets(const Vec3& p, const Vec3& q, const Corners& t) {
   return agree({orientation(p, q, t[0], t[1]), orientation(p, q, t[1], t[2]), orientation(p, q, t[2], t[0])});
 }
 
-// Whether an edge of `edges` that crosses the plane of t, or ends on it, meets t. `side` are their corners'.
+// Whether an edge of `edges` that crosses the plane of t, or ends on it, meets t. `side`: those of its
+// corners.
 bool any_edge_meets(const Corners& edges, const Signs& side, const Corners& t) {
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3;
@@ -54,7 +55,7 @@ bool segments_meet(const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) {
          orientation(r, s, p) * orientation(r, s, q) <= 0;
 }
 
-// A triangle without area consists of its edges.
+// A triangle without area has no interior, only edges.
 bool holds(const Corners2& t, const Vec2& p) {
   const auto& [a, b, c] = t.at;
   return orientation(a, b, c) != 0 &&
@@ -70,12 +71,12 @@ bool meet(const Corners2& a, const Corners2& b) {
 
 // Coplanar triangles, or triangles without a plane.
 bool flat_intersect(const Corners& a, const Corners& b) {
-  // Two without a plane: segments, which may pass each other.
+  // Two triangles without a plane: segments, which may be skew.
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       if (orientation(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]) != 0) return false;
-  // All points lie in one plane. A projection along an axis preserves disjointness unless it flattens the
-  // plane to a line, or the line to a point, and one of the three does not.
+  // All points lie in one plane. A projection along an axis preserves disjointness unless it collapses the
+  // plane to a line, or the line to a point; at least one of the three axes does not.
   for (int axis = 0; axis < 3; ++axis)
     if (!meet(Corners2(a, axis), Corners2(b, axis))) return false;
   return true;
@@ -90,8 +91,9 @@ bool triangles_intersect(const Corners& a, const Corners& b) {
   const Signs a_sides = sides(b, a);
   if (one_sided(a_sides)) return false;
   if (b_sides == Signs{} && a_sides == Signs{}) return flat_intersect(a, b);
-  // Both are cut by the line in which the planes meet (or one is a segment). If the cuts overlap, one of them
-  // has an end in the other: a point where an edge of one triangle, not in the plane of the other, meets it.
+  // The line in which the planes intersect cuts both triangles (or one of them is a segment). If the cuts
+  // overlap, one of them has an endpoint in the other: a point where an edge of one triangle, not in the
+  // plane of the other, meets it.
   return any_edge_meets(b, b_sides, a) || any_edge_meets(a, a_sides, b);
 }
 

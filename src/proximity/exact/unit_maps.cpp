@@ -6,8 +6,8 @@
 namespace sdm::exact {
 namespace {
 
-// At least the largest factor by which a map stretches, |A|₂ = √|AAᵀ|₂ ≤ √|AAᵀ|∞, and that itself for
-// rotations and scales.
+// An upper bound on the largest stretch of a map: |A|₂ = √|AAᵀ|₂ ≤ √|AAᵀ|∞, with equality for rotations and
+// scales.
 double largest_stretch(const Affine& map) {
   double most = 0;
   for (const Vec3& row : map.rows) {
@@ -18,16 +18,16 @@ double largest_stretch(const Affine& map) {
 }
 
 FrameMap in_floats(const Affine& map) {
-  // Coordinates are at most 1 before; the sum of a dozen roundings, each of half a unit in the last place.
+  // Coordinates are at most 1 before the map; a dozen roundings of half a unit in the last place add up.
   constexpr double kError = 16 * std::numeric_limits<float>::epsilon();
-  constexpr double kLargest = 1e15;  // of which floats can still hold the square
+  constexpr double kLargest = 1e15;  // the square still fits a float
   FrameMap result{};
   double largest = 1;
   bool usable = true;
   for (int i = 0; i < 3; ++i) {
     double reach = std::abs(map.offset[i]);
     for (const double x : map.rows[i]) reach += std::abs(x);
-    usable = usable && reach < kLargest;  // and no NaN
+    usable = usable && reach < kLargest;  // nor NaN
     largest = std::max(largest, reach);
   }
   if (!usable) return {{}, {}, std::numeric_limits<float>::infinity()};
@@ -49,7 +49,7 @@ bool diagonal(const Affine& map) {
 }  // namespace
 
 UnitMaps::UnitMaps(const MeshPair& pair) {
-  constexpr double kBelow = 1 - 1e-6;  // more than norms are rounded by
+  constexpr double kBelow = 1 - 1e-6;  // reduced by more than norms are rounded
   const UnitFrame &frame1 = pair.o1.frame, &frame2 = pair.o2.frame;
   Affine to_frame1;
   for (int i = 0; i < 3; ++i) to_frame1.rows[i] = (frame1.scale / frame2.scale) * pair.pose.rows[i];

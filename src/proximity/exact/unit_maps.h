@@ -1,36 +1,36 @@
-// The unit frames of two meshes, seen from each other in single precision.
+// The maps between the unit frames of two meshes, in single precision.
 #pragma once
 
 #include "proximity/exact/mesh_pair.h"
 
 namespace sdm::exact {
 
-/// Into one unit frame from the other.
+/// A map into one unit frame from the other.
 struct FrameMap {
   float row[3][3], offset[3];
-  float error;  ///< of a coordinate mapped, and of differences and extents of coordinates there; if infinite
-                ///< the map tells nothing
+  float error;  ///< bound on the error of mapped coordinates, and of their differences and extents; if
+                ///< infinite, the map gives no bound
 };
 
-/// A direction of space, seen from both frames: along[0]·x1 + along[1]·x2 + offset is how far a point x2 in
-/// the frame of O2 lies from x1 in the frame of O1 in this direction, in the unit of O1's frame.
+/// A direction in space, given in both frames: along[0]·x1 + along[1]·x2 + offset is the extent in this
+/// direction from a point x1 in the frame of O1 to a point x2 in the frame of O2, in the unit of O1's frame.
 struct Direction {
   bool known = false;
   float along[2][3] = {}, offset = 0;
 };
 
-/// Lengths are compared in one unit: the larger mesh is about 1 long.
+/// Lengths are compared in a common unit in which the larger mesh has a size of about 1.
 struct UnitMaps {
   FrameMap to[2];  ///< into the frame of O1, and of O2
-  float unit[2];   ///< what lengths measured in these frames come to, at least
-  bool aligned;    ///< the axes of both frames are the same: either sees the other's boxes as they are
+  float unit[2];   ///< lower bounds on the units of these frames, in the common unit
+  bool aligned;    ///< both frames have the same axes, so boxes of one are boxes of the other
 
   explicit UnitMaps(const MeshPair& pair);
 
-  /// A length of O1, rounded up by more than rounding takes from a norm.
+  /// Converts a length of O1, rounded up by more than the rounding error of a norm.
   [[nodiscard]] float round_up(double length) const;
 
-  /// The direction of a vector; not known if that is zero.
+  /// The direction of a vector; not known if the vector is zero.
   [[nodiscard]] Direction direction(const Vec3& vector) const;
 
  private:

@@ -1,4 +1,4 @@
-// A mesh as O1 and as O2: its surface and its sites.
+// A mesh in both roles: the surface of an O1 and the sites of an O2.
 #pragma once
 
 #include <sdm/sites.h>
@@ -24,16 +24,16 @@ class Body {
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const Sites& sites() const { return sites_; }
-  /// Around all faces.
+  /// The bounding box of all faces.
   [[nodiscard]] const Box& box() const { return box_; }
-  /// Whether it has an inside.
+  /// Whether it is a solid, with an inside.
   [[nodiscard]] bool solid() const { return internals(sites_).is_solid(); }
   [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
 
-  /// Builds pieces() for the present shape, the first time only: queries that the triangles alone answer need
-  /// none. Safe from many threads.
+  /// Builds pieces() for the current shape unless already built: queries answered from the triangles alone do
+  /// not need them. Thread-safe.
   void require_pieces() const;
-  /// The pieces of the surface; after require_pieces().
+  /// The pieces of the surface. Requires a call of require_pieces().
   [[nodiscard]] const surface::PieceAssignment& pieces() const { return *pieces_->assignment; }
 
  private:

@@ -16,7 +16,7 @@ std::span<const Contact> ContactPatches::sort(std::span<Contact> contacts, std::
   });
   order_.resize(boxes.size());
   std::iota(order_.begin(), order_.end(), 0u);
-  // By distinct keys: a stable sort would take memory.
+  // Distinct keys make the order unique; a stable sort would allocate memory.
   std::ranges::sort(order_, {}, [&](std::uint32_t c) { return std::pair(-contacts[c].depth, c); });
   constexpr std::uint32_t kUnnumbered = kNone;
   std::uint32_t patches = 0;

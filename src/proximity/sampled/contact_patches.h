@@ -1,4 +1,4 @@
-// Contacts in patches: those whose places on the surface are connected.
+// Groups contacts into contact patches: those connected on the surface.
 #pragma once
 
 #include <sdm/proximity_query.h>
@@ -11,11 +11,12 @@
 
 namespace sdm::sampled {
 
-/// Sorts contacts, again and again in the same memory.
+/// Sorts contacts; reuses its memory between calls.
 class ContactPatches {
  public:
-  /// Numbers patches, of contacts whose boxes meet, one after the other: by their deepest contact, the
-  /// deepest patch first. Returns the contacts patch by patch, in each by depth; valid until the next call.
+  /// Numbers the patches. Contacts whose boxes meet, directly or through others, are in one patch; patches
+  /// are in the order of their deepest contacts, deepest first. Returns the contacts by patch, and by depth
+  /// within a patch; valid until the next call.
   std::span<const Contact> sort(std::span<Contact> contacts, std::span<const Box> boxes);
 
  private:

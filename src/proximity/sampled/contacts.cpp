@@ -12,7 +12,7 @@
 namespace sdm::sampled {
 namespace {
 
-// The contact of a sample of body `body`, as Contact defines it; `outwards` is the direction in which the
+// The contact of a sample of body `body`, as defined by Contact; `outwards` is the direction in which the
 // other body pushes this one.
 Contact contact_of(int body, const Vec3& sample, const Vec3& vector, double depth, const Vec3& outwards) {
   Contact c{.point1 = sample, .point2 = sample + vector, .depth = depth};
@@ -70,7 +70,8 @@ void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int 
       const Vec3 vector{closest.vector[0][i], closest.vector[1][i], closest.vector[2][i]};
       const bool inside = on.distances.distances()[parts_[first + i].deepest] < 0;
       const std::uint32_t face = sites.face_of(closest.type[i], closest.site[i]);
-      if (!inside) extend(boxes_[contacts_.size()], points_[first + i] + vector);  // across the gap
+      if (!inside)
+        extend(boxes_[contacts_.size()], points_[first + i] + vector);  // including the way across the gap
       const double depth = inside ? closest.distance[i] : -closest.distance[i];
       const Vec3 outwards = std::abs(depth) > length ? (1 / depth) * vector : sites.normals.face[face];
       contacts_.push_back(contact_of(body, points_[first + i], vector, depth, outwards));

@@ -1,4 +1,4 @@
-// Contacts from the samples that are inside the other body, or close to it.
+// Contacts from the samples inside the other body, or close to it.
 #pragma once
 
 #include <sdm/proximity_query.h>
@@ -19,26 +19,27 @@ struct MeasuredBody {
   const LocalDistances& distances;  ///< to the other body
 };
 
-/// Finds contacts, again and again in the same memory.
+/// Finds contacts; reuses its memory between calls.
 class ContactFinder {
  public:
-  /// As Query::contacts. `length`: below this, the depth does not determine the normal.
+  /// See ProximityQuery::contacts. `length`: below this length, the vector to the other body does not
+  /// determine the normal.
   std::span<const Contact> find(const std::array<MeasuredBody, 2>& bodies, double margin, double length);
 
  private:
   /// The samples of one chart within a block.
   struct Part {
     std::uint32_t chart;
-    std::size_t deepest;  ///< sample of the part, among those measured
-    Box box;              ///< around all that its samples within the margin cover
+    std::size_t deepest;  ///< index among the measured samples
+    Box box;              ///< contains everything that the samples within the margin cover
   };
   void find_parts(const MeasuredBody& body, double margin);
   void add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length);
 
   std::vector<Part> parts_;   ///< of one body
-  std::vector<Vec3> points_;  ///< their deepest
+  std::vector<Vec3> points_;  ///< the deepest samples of the parts
   std::vector<Contact> contacts_;
-  std::vector<Box> boxes_;  ///< of each contact: its part, and the way across a gap
+  std::vector<Box> boxes_;  ///< of each contact: the box of its part, extended across the gap
   ContactPatches patches_;
 };
 

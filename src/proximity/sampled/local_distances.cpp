@@ -13,7 +13,7 @@
 namespace sdm::sampled {
 namespace {
 
-// Calls take(index, signed distance) for each point, which are in spatial order.
+// Calls take(index, signed distance) for each point; the points are in spatial order.
 template <class Take>
 void find_distances(const Body& body, std::span<const Vec3> points, const Take& take) {
   const auto deliver = [&](std::size_t first, const sites::ClosestPacket& closest) {
@@ -71,7 +71,7 @@ void LocalDistances::measure() {
   points_.resize(count), radii_.resize(count), distances_.resize(count);
   constexpr std::size_t kGrain = 16;
   const auto measure = [&](std::size_t begin, std::size_t end) {
-    while (begin < end) {  // blocks that follow each other share a search
+    while (begin < end) {  // consecutive blocks share a search
       std::size_t next = begin + 1;
       while (next < end && probes_[next].blocks.first == probes_[next - 1].blocks.end) ++next;
       measure_blocks(begin, next);

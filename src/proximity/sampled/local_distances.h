@@ -1,4 +1,4 @@
-// Distances from a surface's samples to another body, for the samples that affect a result.
+// Distances to another body from those samples of a surface that affect a result.
 #pragma once
 
 #include <array>
@@ -10,40 +10,41 @@
 
 namespace sdm::sampled {
 
-/// The samples are probed at a few of them: each bounds the distances of those around it, which are
-/// 1-Lipschitz. What can still be within reach is probed more densely, down to single blocks, and of the
-/// blocks that remain all samples are measured. A distance to the inside of a solid is negative. Culled
-/// samples are never evaluated, so they cost almost nothing.
+/// Distances are 1-Lipschitz, so the distance at one sample, a probe, bounds those of the samples around it.
+/// Ranges of blocks that may be within reach are probed more densely, down to single blocks; then all samples
+/// of the remaining blocks are measured. Distances inside a solid are negative. Culled samples are never
+/// evaluated, so they cost almost nothing.
 class LocalDistances {
  public:
-  /// One probe for so many blocks, at one density after the other. (Measured.)
+  /// Blocks per probe, for each pass of probing. (Measured.)
   static constexpr std::array<std::size_t, 2> kBlocksPerProbe{8, 1};
 
-  /// Starts with all samples of `on`. The bodies must stay until these are measured.
+  /// Starts with all samples of `on`. The bodies must remain unchanged until they are measured.
   void start(const Body& on, const Body& to);
   /// Probes the remaining blocks, on all cores.
   void probe(std::size_t blocks_per_probe);
-  /// The least of the |distances| probed so far.
+  /// The smallest |distance| probed so far.
   [[nodiscard]] double least_probed() const { return least_probed_; }
-  /// Keeps blocks that may be nearer than `reach` or inside.
+  /// Keeps only blocks that may be nearer than `reach`, or inside.
   void keep(double reach);
-  /// Measures all samples that are left, on all cores; they were last probed block by block.
+  /// Measures all remaining samples, on all cores. The last probe() must have been with one block per probe.
   void measure();
 
-  // The samples measured, block by block, in increasing order: their points, covering radii (see
+  // The measured samples, block by block, in increasing order: their points, covering radii (see
   // SamplingBound::sample_radii) and distances.
   [[nodiscard]] std::span<const Vec3> points() const { return points_; }
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
   [[nodiscard]] std::span<const float> distances() const { return distances_; }
-  /// Which of the surface's samples the i-th one is.
+  /// The index on the surface of the i-th measured sample.
   [[nodiscard]] std::size_t sample(std::size_t i) const;
 
  private:
   struct Probe {
     surface::BlockRange blocks;
     double distance = 0;
-    double radius = 0;  ///< of a ball about the probe that contains the blocks' samples and their pieces
-    /// No sample of the blocks, and no point of its pieces, is nearer.
+    double radius =
+        0;  ///< of a ball around the probe that contains the samples of the blocks and their pieces
+    /// Lower bound on the distance of any sample of the blocks and any point of their pieces.
     [[nodiscard]] double least() const { return distance - radius; }
   };
   void measure_blocks(std::size_t begin, std::size_t end);

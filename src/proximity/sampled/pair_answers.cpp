@@ -72,7 +72,7 @@ void PairAnswers::measure() {
   for (LocalDistances& distances : distances_) distances.measure();
 }
 
-// The least of value(distance, covering radius) of all samples measured, and where.
+// The minimum of value(distance, covering radius) over all measured samples, and its sample.
 template <class Value>
 std::pair<double, PairAnswers::Sample> PairAnswers::least(const Value& value) const {
   std::pair<double, Sample> least{kNoLimit, {}};
@@ -84,7 +84,7 @@ std::pair<double, PairAnswers::Sample> PairAnswers::least(const Value& value) co
   return least;
 }
 
-// The sample, and the closest point of the other body.
+// The sample and the closest point on the other body.
 std::optional<std::array<Vec3, 2>> PairAnswers::witness(const Sample& sample) const {
   if (sample.index == kNone) return {};
   const Vec3& p = distances_[sample.body].points()[sample.index];

@@ -1,4 +1,4 @@
-// The results for two bodies: used by ProximityQuery for its pair and by MultiBodyQuery for each pair.
+// The results for two bodies, as computed by ProximityQuery for its pair and by MultiBodyQuery for each pair.
 #pragma once
 
 #include <sdm/proximity_query.h>
@@ -14,8 +14,8 @@
 
 namespace sdm::sampled {
 
-/// Results as documented at ProximityQuery, each computed on first use. Memory is reused from
-/// pair to pair; no answer depends on those before.
+/// Results as documented at ProximityQuery, each computed on first use. Memory is reused from pair to pair;
+/// results do not depend on earlier pairs.
 class PairAnswers {
  public:
   struct Options {
@@ -25,8 +25,8 @@ class PairAnswers {
 
   explicit PairAnswers(const Options& options) : options_(options) {}
 
-  /// Sets the bodies to which the results refer. They must outlive this object and remain as they
-  /// are until the next call.
+  /// Sets the bodies to which the results refer. They must outlive this object and remain unchanged until the
+  /// next call.
   void begin(const Body& o1, const Body& o2);
 
   [[nodiscard]] const BoundedLength& separation();
@@ -36,7 +36,7 @@ class PairAnswers {
   [[nodiscard]] std::size_t samples_used() const;
 
  private:
-  /// A sample of one of the bodies, among those measured.
+  /// A measured sample of one of the bodies.
   struct Sample {
     int body = 0;
     std::size_t index = kNone;
@@ -57,14 +57,14 @@ class PairAnswers {
 
   Options options_;
   std::array<const Body*, 2> bodies_{};
-  double precision_ = 0;                     // of a distance
+  double precision_ = 0;                     // error of a computed distance
   std::array<LocalDistances, 2> distances_;  // of each body to the other
   ContactFinder finder_;
   exact::PairWorkspace workspace_;
 
-  // Results for these bodies.
+  // Results for the current bodies.
   bool measured_ = false, depth_found_ = false;
-  std::optional<exact::Separation> closest_;  // of the triangles
+  std::optional<exact::Separation> closest_;  // from the triangles
   std::optional<BoundedLength> separation_, depth_;
   std::optional<BoundedBool> colliding_;
   std::optional<std::span<const Contact>> contacts_;

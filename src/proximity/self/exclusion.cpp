@@ -21,7 +21,7 @@ void check(const ExclusionRule& rule) {
                 " is out of range; use a positive number");
 }
 
-// The faces reachable from each face over shared vertices.
+// The faces reachable from each face through shared vertices.
 class Neighbours {
  public:
   Neighbours(const Mesh& mesh, const ExclusionRule& rule)
@@ -32,7 +32,7 @@ class Neighbours {
             for (const std::uint32_t v : mesh.triangles[f]) put(v, f);
         })) {}
 
-  // Marks of one thread; none is set before and after a call of `of`.
+  // The marks of one thread; none is set between calls of `of`.
   struct Met {
     std::vector<bool> vertices, faces;
   };
@@ -74,7 +74,7 @@ class Neighbours {
   [[nodiscard]] bool within(double length, std::uint32_t f, std::uint32_t g) const {
     const exact::Corners a = corners(f), b = corners(g);
     const double most = length * length;
-    // Corners or boxes decide nearly always.
+    // Corners or boxes decide in nearly all cases.
     for (const Vec3& p : a)
       for (const Vec3& q : b)
         if (squared_norm(q - p) < most) return true;
@@ -95,8 +95,8 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress
   const Neighbours neighbours(rest, rule);
   offsets_.assign(1, 0);
 
-  // In blocks of so many faces that all their neighbourhoods together, however large, are a bounded part of
-  // memory: the whole is checked before it is stored.
+  // Faces are processed in portions whose neighbourhoods, however large, take a bounded amount of memory: the
+  // total is checked before it is stored.
   constexpr std::size_t kEntries = std::size_t{1} << 26, kGrain = 256;
   const std::size_t block = std::clamp<std::size_t>(kEntries / count, 1, std::size_t{1} << 16);
   std::vector<std::vector<std::uint32_t>> rows(std::min(block, count));
@@ -123,7 +123,7 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress
   throw out_of_memory("the excluded neighbourhoods of all faces");
 }
 
-// Straight distances from f do not lead the same way as those from g.
+// Keeps only mutual exclusions: the search from g may miss f although the search from f finds g.
 void Exclusion::keep_mutual() {
   std::vector<std::uint8_t> mutual(excluded_.size());
   constexpr std::size_t kGrain = 1024;

@@ -32,7 +32,7 @@ void gather_around(std::span<const Vec3> points, double max_distance, self::Self
   search.gather(centre(box), std::sqrt(squared), max_distance);
 }
 
-// Returns whether there is one.
+// Returns whether there is a closest point.
 bool store(const ClosestPoint& closest, const Vec3& p, std::uint32_t texel, DistanceMap& map) {
   const bool found = closest.type != SiteType::none;
   map.distance[texel] = static_cast<float>(closest.distance);
@@ -99,7 +99,7 @@ std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusio
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
     for (int k = 0; k < 3 && !topology.ignored(f); ++k) {
       float& at_vertex = least[mesh.triangles[f][k]];
-      at_vertex = std::fmin(at_vertex, at_corners[f][k]);  // of NaN and a number the number
+      at_vertex = std::fmin(at_vertex, at_corners[f][k]);  // ignores NaN
     }
   return least;
 } catch (const std::bad_alloc&) {

@@ -33,7 +33,7 @@ struct SelfProximityQuery::Impl {
   // Results since the last refit.
   std::optional<self::FacePair> closest;
 
-  std::vector<self::FacePair> nearest{};  // of each face with sites, in the order of the tree
+  std::vector<self::FacePair> nearest{};  // of each face in the tree, in its order
   std::vector<Contact> contacts{};
   std::vector<Box> boxes{};
   sampled::ContactPatches patches{};
@@ -43,7 +43,7 @@ struct SelfProximityQuery::Impl {
         exclusion(sites.mesh(), options.exclusion, options.progress),
         max_distance(options.max_distance) {}
 
-  // Calls body(search, place) for the place of each face in the tree, neighbours one after the other.
+  // Calls body(search, place) for the place of each face in the tree, neighbours one after another.
   template <class Body>
   void for_each_face(const Body& body) const {
     const std::vector<std::uint32_t>& faces = internals(sites).tree.items;
@@ -56,8 +56,8 @@ struct SelfProximityQuery::Impl {
     });
   }
 
-  // Bounds come from whatever thread was first; but of the nearest pairs none is ever ruled out, and one of
-  // them is before all others.
+  // The bound depends on the order in which threads finish, but it never excludes a pair at the smallest
+  // distance, and exactly one of those is before all others.
   self::FacePair find_closest() const {
     std::atomic<double> bound{max_distance};
     std::mutex mutex;

@@ -14,8 +14,8 @@ namespace sdm::self {
 
 struct SelfSearch::Scratch {
   std::vector<hierarchy::OpenChild<double>> stack;
-  std::vector<std::pair<double, std::uint32_t>> candidates;  ///< by their distance from the ball's centre
-  std::vector<std::uint8_t> excluded;                        ///< of each face; all 0 between searches
+  std::vector<std::pair<double, std::uint32_t>> candidates;  ///< with their distance from the ball's centre
+  std::vector<std::uint8_t> excluded;                        ///< for each face; all 0 between searches
 
   static Scratch& of_this_thread() {
     thread_local Scratch scratch;
@@ -25,7 +25,7 @@ struct SelfSearch::Scratch {
 
 namespace {
 
-constexpr double kAbove = 1 + 1e-12;  // by more than squares are rounded: equals must be compared
+constexpr double kAbove = 1 + 1e-12;  // larger than the rounding error of squares: ties must be compared
 
 exact::Corners corners(const Mesh& mesh, std::uint32_t face) {
   const Triangle& t = mesh.triangles[face];
@@ -57,14 +57,14 @@ void SelfSearch::start_from(std::uint32_t face) {
   mark(1);
 }
 
-// Calls visit(face) for the faces in leaves whose boxes are no farther from `box` than `limit`, which may
-// shrink meanwhile; the nearer leaves first, as far as depth first allows. Excluded faces are passed over.
+// Calls visit(face) for the faces in leaves whose boxes are within `limit` of `box`; `limit` may shrink
+// meanwhile. Depth first, the nearest child first. Skips excluded faces.
 template <class Visit>
 void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) const {
   const UnitFrame& frame = sites_.frame;
   const Box unit{frame.to_unit(box.lo), frame.to_unit(box.hi)};
   const auto within = [&](double squared) {
-    // Coordinates of the unit frame are rounded by 1e-16.
+    // Coordinates in the unit frame have a rounding error of 1e-16.
     const double most = (1 + 1e-9) * frame.scale * limit + 1e-15;
     return !(squared > most * most);
   };
@@ -83,8 +83,8 @@ void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) c
       });
 }
 
-// A face g that is closest to a point q of the ball is so near its centre c: with d_c = min d(c, ·),
-// d(c, g) ≤ d(q, g) + r ≤ d_c + 2r.
+// A bound on the distance from the centre c to a face g that is closest to a point q of the ball: with d_c =
+// min d(c, ·), d(c, g) ≤ d(q, g) + r ≤ d_c + 2r.
 void SelfSearch::gather(const Vec3& centre, double radius, double max_distance) {
   centre_ = centre, max_distance_ = max_distance;
   auto& candidates = scratch_.candidates;
@@ -121,7 +121,7 @@ FacePair SelfSearch::nearest(double max_distance) const {
   visit_near(box, limit, [&](std::uint32_t other) {
     const exact::Corners others = corners(sites_.mesh, other);
     if (exact::squared_box_distance(own, others) > kAbove * limit * limit) return;
-    const bool first = face_ < other;  // either way the same roundings
+    const bool first = face_ < other;  // the same order, and so the same rounding, from either face
     const exact::PointPair c =
         first ? exact::closest_or_common(own, others) : exact::closest_or_common(others, own);
     const FacePair pair{std::sqrt(c.squared), std::min(face_, other), std::max(face_, other), c.point1,

@@ -1,4 +1,4 @@
-// The nearest of those faces of a mesh that one of its faces does not exclude.
+// Finds the nearest face of a mesh that a given face does not exclude.
 #pragma once
 
 #include <sdm/self_proximity_query.h>
@@ -12,32 +12,31 @@ namespace sdm::self {
 /// The closest points of two faces.
 struct FacePair {
   double distance = std::numeric_limits<double>::infinity();
-  std::uint32_t face1 = kNone, face2 = kNone;  ///< the smaller first; kNone: there are none
+  std::uint32_t face1 = kNone, face2 = kNone;  ///< the smaller index first; kNone: there is no pair
   Vec3 point1{}, point2{};
 
-  /// The nearer one; of equals, that of the smaller faces: one of any set of pairs is before all others.
+  /// Orders pairs by distance, then by faces, so that every set of pairs has a unique first one.
   [[nodiscard]] bool before(const FacePair& other) const;
 };
 
-/// Searches of one thread, each from a face; its memory is kept from one to the next, also when they are made
-/// anew.
+/// Per-thread searches, each starting from a face. The memory is kept between searches and between objects.
 class SelfSearch {
  public:
-  /// The arguments must outlive it. One at a time in a thread.
+  /// The arguments must outlive it. At most one per thread at a time.
   SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion);
   ~SelfSearch();
   SelfSearch(const SelfSearch&) = delete;
   SelfSearch& operator=(const SelfSearch&) = delete;
 
-  /// From now on it is this face whose neighbourhood is passed over.
+  /// Sets the face whose neighbourhood is excluded.
   void start_from(std::uint32_t face);
 
-  /// Gathers the faces that can be the closest one of any point in a ball.
+  /// Collects the faces that can be closest to any point of a ball.
   void gather(const Vec3& centre, double radius, double max_distance);
   /// The closest point to a point of that ball, within the same distance.
   [[nodiscard]] ClosestPoint closest_to(const Vec3& q) const;
 
-  /// The nearest face to the one it started from, within max_distance.
+  /// The nearest face to the face of start_from(), within max_distance.
   [[nodiscard]] FacePair nearest(double max_distance) const;
 
  private:

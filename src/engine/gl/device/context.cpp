@@ -20,14 +20,14 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-// Mesa's renderers on the processor, which EGL does not mark on its older platforms.
+// Mesa's software renderers, which EGL does not mark on its older platforms.
 bool names_software(std::string_view renderer) {
   const std::string name = lower_case(renderer);
   return std::ranges::any_of(std::array{"llvmpipe", "softpipe", "software"},
                              [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-// Binds OpenGL as the API that EGL's functions speak of on this thread, for as long as it lives.
+// Binds OpenGL as the current API of EGL's functions on this thread, for its lifetime.
 struct BoundApi {
   const EGLenum former = eglQueryAPI();
   const bool bound = eglBindAPI(EGL_OPENGL_API);
@@ -60,7 +60,7 @@ EGLContext create_context(EGLDisplay display) {
                                    EGL_LOSE_CONTEXT_ON_RESET,
                                    EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
-  if (context == EGL_NO_CONTEXT) {  // some drivers cannot tell of resets
+  if (context == EGL_NO_CONTEXT) {  // some drivers cannot report resets
     attributes[6] = EGL_NONE;
     context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
   }
@@ -164,7 +164,7 @@ int Context::max_texture_buffer_size() const {
 
 Context::Current::Current(const Context& context)
     : api_(eglQueryAPI()), own_display_(context.impl_->display) {
-  eglBindAPI(EGL_OPENGL_API);  // of which the next four speak
+  eglBindAPI(EGL_OPENGL_API);  // the next four calls refer to it
   display_ = eglGetCurrentDisplay();
   draw_ = eglGetCurrentSurface(EGL_DRAW);
   read_ = eglGetCurrentSurface(EGL_READ);
@@ -188,7 +188,7 @@ void Context::check(std::string_view step) const {
   const GLenum reset = glGetGraphicsResetStatus();
   const GLenum error = glGetError();
   if (reset == GL_NO_ERROR && error == GL_NO_ERROR) return;
-  // The errors after the first are its consequences. A lost context never runs out of them.
+  // Errors after the first are its consequences. A lost context reports them forever.
   for (int i = 0; i < 8 && glGetError() != GL_NO_ERROR; ++i) continue;
 
   const std::string where = " while " + std::string(step);

@@ -9,8 +9,8 @@
 namespace sdm::gl {
 namespace {
 
-// libepoxy loads these libraries when they are first called, and aborts the process if it cannot. They stay
-// loaded: drivers do not expect to be unloaded.
+// libepoxy loads these libraries on first use, and aborts the process if it cannot. They stay loaded: drivers
+// do not expect to be unloaded.
 void require_libraries() {
   const auto loads = [](const char* library) { return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr; };
   if (!loads("libEGL.so.1"))

@@ -1,4 +1,4 @@
-// OpenGL objects that delete themselves. All need a current context for their whole life.
+// RAII handles of OpenGL objects. All need a current context for their whole lifetime.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -22,7 +22,7 @@ class Object {
 };
 
 namespace detail {
-// libepoxy's entry points are variables, which templates cannot name.
+// libepoxy's entry points are variables, which cannot be template arguments.
 inline void create_buffer(GLuint& id) {
   glCreateBuffers(1, &id);
 }
@@ -50,7 +50,7 @@ inline void delete_vertex_array(GLuint& id) {
 }
 }  // namespace detail
 
-/// A place in the stream of commands; none after the default constructor.
+/// A position in the command stream; default-constructed, none.
 class Fence {
  public:
   Fence() = default;
@@ -61,16 +61,16 @@ class Fence {
     return *this;
   }
 
-  /// Also sets the device to work on them.
+  /// Also flushes the commands, so that the device starts on them.
   [[nodiscard]] static Fence after_all_commands() {
     Fence fence;
     fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     glFlush();
     return fence;
   }
-  /// Until the device has come here, or is lost.
+  /// Waits until the device reaches this position or is lost.
   void wait() const {
-    constexpr GLuint64 kSecond = 1'000'000'000;  // in the unit of OpenGL
+    constexpr GLuint64 kSecond = 1'000'000'000;  // in nanoseconds
     while (sync_ != nullptr && glClientWaitSync(sync_, 0, kSecond) == GL_TIMEOUT_EXPIRED)
       if (glGetGraphicsResetStatus() != GL_NO_ERROR) return;
   }

@@ -8,7 +8,7 @@
 namespace sdm::gl {
 namespace {
 
-/// What a driver has to say, on one line.
+/// A driver's log, on one line.
 template <class GetLog>
 std::string log_of(GLuint object, GetLog get_log) {
   std::string text(1000, '\0');

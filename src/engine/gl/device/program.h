@@ -1,4 +1,4 @@
-// Shader programs, from the sources that the build embeds.
+// Shader programs, from the sources embedded by the build.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -10,20 +10,20 @@ namespace sdm::gl {
 /// GLSL. The build embeds the files of shaders/ (shaders.h, generated).
 using ShaderSource = EmbeddedFile;
 
-/// A vertex and a fragment shader, linked. Needs a current context, for its whole life.
+/// A linked vertex and fragment shader. Needs a current context for its whole lifetime.
 class Program {
  public:
-  /// Throws sdm::Error with the names of the files and the device and the compiler's message if compilation
-  /// fails.
+  /// Throws sdm::Error if compilation fails, with the names of the files and the device and the compiler's
+  /// message.
   Program(const ShaderSource& vertex, const ShaderSource& fragment);
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
   [[nodiscard]] GLuint id() const { return id_; }
-  /// The location of a uniform, which must be in use, else sdm::Error.
+  /// Returns the location of a uniform. Throws sdm::Error if the program does not use it.
   [[nodiscard]] GLint uniform(const char* name) const;
-  /// For when the context is gone, and has taken it along.
+  /// Releases ownership after the context, and the program with it, is gone.
   void forget() { id_ = 0; }
 
  private:

@@ -19,7 +19,7 @@ class FrameSource {
   /// Returns the polygons, which all frames share, with the positions of the first frame: vertices that
   /// coincide in it are welded. Called once.
   [[nodiscard]] virtual PolygonMesh take_polygons() = 0;
-  /// Returns the name of the file that they come from; empty if it is the input itself.
+  /// Returns the name of the file that contains the polygons; empty if it is the input itself.
   [[nodiscard]] virtual std::string polygons_name() const { return {}; }
   [[nodiscard]] virtual std::size_t count() const = 0;
   [[nodiscard]] virtual std::string name(std::size_t frame) const = 0;

@@ -21,7 +21,7 @@ std::size_t place_of_plus(const std::string& input) {
   return input.ends_with(".npy") || input.ends_with(".NPY") ? input.rfind('+') : std::string::npos;
 }
 
-// Looked up in the working directory, else in the folder of the mesh.
+// Relative paths are looked up in the working directory, then in the folder of the mesh.
 fs::path npy_file(const fs::path& mesh, const fs::path& npy) {
   std::error_code ignored;
   return fs::exists(npy, ignored) ? npy : mesh.parent_path() / npy;
@@ -38,7 +38,7 @@ std::unique_ptr<FrameSource> open_file(const fs::path& file, double rate) {
   return single_file(file);
 }
 
-// Existing files and folders take precedence over patterns, whatever characters their names have.
+// Existing files and folders take precedence over patterns, whatever characters their names contain.
 std::unique_ptr<FrameSource> open_source(const std::string& input, double rate) {
   std::error_code ignored;
   if (fs::is_directory(input, ignored)) return numbered_files_in(input);
@@ -60,7 +60,7 @@ struct MeshSequence::Impl {
   std::unique_ptr<io::FrameSource> source;
   Mesh mesh;                              // the first frame
   std::vector<std::uint32_t> renumbered;  // the vertex of mesh for each vertex in the files, or kNone
-  double weld_tolerance = 0;              // how far vertices may move apart that are welded
+  double weld_tolerance = 0;              // how far apart welded vertices may move
   std::vector<Vec3> file_positions, positions;
 
   void open(double rate);

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A regular file, read at any position.
+// A regular file with random access.
 class RandomAccessFile {
  public:
   explicit RandomAccessFile(const fs::path& file)
@@ -113,7 +113,7 @@ class NpyFrames : public FrameSource {
     if (shape[1] != vertices)
       throw Error(fmt::format("has {} vertices per frame, but {} has {}", shape[1],
                               mesh_name_.filename().string(), vertices));
-    // The size of the file bounds the number of frames, so nothing below can overflow.
+    // The file size bounds the number of frames, so nothing below can overflow.
     const std::uint64_t frame_bytes = std::uint64_t{vertices} * 3 * header_.number_bytes;
     const std::uint64_t data = file_.size() - header_.data_begin;
     if (data % frame_bytes != 0 || data / frame_bytes != shape[0])

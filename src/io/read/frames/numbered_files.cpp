@@ -22,7 +22,7 @@ struct Name {
 
 constexpr std::string_view kDigits = "0123456789";
 
-// Splits a name whose stem ends in digits.
+// Splits a name if its stem ends in digits.
 std::optional<Name> split_at_number(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   if (dot == std::string_view::npos || dot == 0) return std::nullopt;
@@ -35,7 +35,7 @@ std::optional<Name> split_at_number(std::string_view name) {
 // A pattern, split at its number.
 struct Pattern {
   std::string before, after;
-  std::optional<std::size_t> width;  // the least number of digits; none for *, which matches any
+  std::optional<std::size_t> width;  // the minimum number of digits; none for *, which matches any number
 };
 
 Pattern parse_pattern(const std::string& text) {
@@ -111,7 +111,7 @@ NumberedFiles NumberedFiles::like(const fs::path& pattern) {
 
 NumberedFiles NumberedFiles::in(const fs::path& folder) {
   std::vector<File> files;
-  std::string model;  // a name that the others must match
+  std::string model;  // the name that the others must match
   for_each_file(folder, [&](const fs::path& path) {
     const std::string name = path.filename().string();
     const auto parts = split_at_number(name);

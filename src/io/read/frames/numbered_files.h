@@ -11,12 +11,12 @@ namespace sdm::io {
 /// Files whose names differ only in a number, which increases in equal steps. Some may be missing.
 class NumberedFiles {
  public:
-  /// Finds the files in a folder whose names match the last component of `pattern`, which has one %d or %04d,
-  /// as in printf, or one * for any digits. Throws sdm::Error for any other pattern, if there is no such
-  /// file, if more files are missing than exist, and if two have the same number.
+  /// Finds the files in a folder whose names match the last component of `pattern`, which contains either one
+  /// %d or %04d, as in printf, or one * for any digits. Throws sdm::Error if the pattern is different, if no
+  /// file matches, if more files are missing than exist, or if two have the same number.
   [[nodiscard]] static NumberedFiles like(const std::filesystem::path& pattern);
   /// Finds the files in a folder that have the extension of a mesh file and a name that ends in a number.
-  /// Throws sdm::Error as above, and if their names differ otherwise.
+  /// Throws sdm::Error as above, and if the names differ in more than the number.
   [[nodiscard]] static NumberedFiles in(const std::filesystem::path& folder);
 
   /// Returns the number of files, including missing ones.

@@ -58,7 +58,7 @@ FileBytes decode_base64(std::string_view text) {
   return bytes;
 }
 
-// Decodes %20 and the like.
+// Decodes escape sequences such as %20.
 std::string decode_percent(std::string_view uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -95,7 +95,7 @@ std::size_t column_count(const std::string& type) {
   throw Error(fmt::format("an accessor has type {} where numbers or vectors are needed", type.substr(0, 32)));
 }
 
-// Calls visit with a zero of the type that has this code in glTF.
+// Calls visit with a zero of the type with this glTF component code.
 template <typename Visit>
 auto with_component_type(std::size_t code, const Visit& visit) {
   switch (code) {
@@ -116,7 +116,7 @@ auto with_component_type(std::size_t code, const Visit& visit) {
   }
 }
 
-// Converting negative or fractional numbers, or too large ones, would be undefined.
+// Converting negative, fractional or too large numbers would be undefined.
 std::size_t checked(const json& value, const char* name) {
   if (!value.is_number_unsigned())
     throw Error(fmt::format("{} must be a whole number that is not negative", name));
@@ -199,7 +199,7 @@ std::vector<double> GltfDocument::rows_of(const json& place, std::size_t compone
     using Component = decltype(zero);
     const std::size_t row_bytes = columns * sizeof(Component),
                       stride = whole_number(view, "byteStride", row_bytes);
-    // The first row must fit, and each of the others `stride` bytes further.
+    // The first row must fit, and each of the others lies `stride` bytes further.
     if (rows > 0 && (begin > bytes.size() || row_bytes > bytes.size() - begin || stride == 0 ||
                      rows - 1 > (bytes.size() - begin - row_bytes) / stride))
       throw Error("an accessor extends beyond its buffer view");
@@ -208,7 +208,7 @@ std::vector<double> GltfDocument::rows_of(const json& place, std::size_t compone
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t c = 0; c < columns; ++c) {
         const double value = load<Component>(bytes.data() + begin + r * stride + c * sizeof(Component));
-        // The least signed integer represents −1 too.
+        // The smallest signed integer also represents −1.
         values.push_back(
             divide ? std::max(value / static_cast<double>(std::numeric_limits<Component>::max()), -1.0)
                    : value);
@@ -250,7 +250,7 @@ GltfNumbers GltfDocument::numbers(std::size_t accessor_index) const {
 }
 
 void throw_gltf_fault(const json::exception& fault) {
-  // The messages begin with a code in brackets.
+  // The library's messages begin with a code in brackets.
   const std::string text = fault.what();
   throw Error(fmt::format("invalid glTF: {}", text.substr(std::min(text.size(), text.find("] ") + 2))));
 }

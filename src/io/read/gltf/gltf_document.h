@@ -20,7 +20,7 @@ namespace sdm::io {
 /// Returns a member that is a list of such numbers; empty if there is no such member.
 [[nodiscard]] std::vector<std::size_t> whole_numbers(const nlohmann::json& object, const char* name);
 
-/// The elements of an accessor as rows of numbers: a VEC3 is a row of three.
+/// The elements of an accessor, as rows of numbers: a VEC3 is a row of three.
 struct GltfNumbers {
   std::size_t columns = 0;
   std::vector<double> values;
@@ -29,18 +29,18 @@ struct GltfNumbers {
   [[nodiscard]] const double* row(std::size_t r) const { return values.data() + r * columns; }
 };
 
-/// Rethrows the fault, a member that is missing or of the wrong type, as sdm::Error.
+/// Rethrows a fault about a missing member, or one of the wrong type, as sdm::Error.
 [[noreturn]] void throw_gltf_fault(const nlohmann::json::exception& fault);
 
-/// All sizes and offsets are checked against the data. Faults throw sdm::Error, or nlohmann::json::exception
-/// for a member that is missing or of the wrong type.
+/// All sizes and offsets are checked against the data. Throws sdm::Error for faults;
+/// nlohmann::json::exception for members that are missing or of the wrong type.
 class GltfDocument {
  public:
-  /// Parses JSON or GLB and loads the buffers; those in other files are looked up in `folder`.
+  /// Parses JSON or GLB and loads the buffers; external buffers are looked up in `folder`.
   GltfDocument(std::string_view bytes, const std::filesystem::path& folder);
 
   [[nodiscard]] const nlohmann::json& root() const { return root_; }
-  /// Returns an item of a top-level list. Throws if there is none.
+  /// Returns an item of a top-level list. Throws if it does not exist.
   [[nodiscard]] const nlohmann::json& item(const char* list, std::size_t index) const;
   /// Returns the number of rows that an accessor declares.
   [[nodiscard]] std::size_t count(std::size_t accessor) const {
@@ -51,13 +51,13 @@ class GltfDocument {
   [[nodiscard]] GltfNumbers numbers(std::size_t accessor) const;
 
  private:
-  /// Returns rows of a buffer view. `place` has the index of the view and the offset in it.
+  /// Returns rows of a buffer view. `place` contains the index of the view and the offset in it.
   [[nodiscard]] std::vector<double> rows_of(const nlohmann::json& place, std::size_t component_type,
                                             bool normalized, std::size_t rows, std::size_t columns) const;
   void load_buffers(std::optional<std::string_view> binary_chunk, const std::filesystem::path& folder);
 
   nlohmann::json root_;
-  std::vector<FileBytes> files_;  // the memory of buffers_, except for that of the binary chunk
+  std::vector<FileBytes> files_;  // the memory of buffers_, except for the binary chunk
   std::vector<std::string_view> buffers_;
 };
 

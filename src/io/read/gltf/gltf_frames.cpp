@@ -18,10 +18,10 @@ namespace {
 using nlohmann::json;
 
 // The vertices of a primitive of an animated node: position = rest + Σ weight · displacement. The linear part
-// of the node's transform is applied to displacements beforehand.
+// of the node's transform is already applied to the displacements.
 struct MorphedPart {
   std::size_t first_vertex, track;
-  std::vector<std::vector<Vec3>> displacements;  // by target; empty for one without positions
+  std::vector<std::vector<Vec3>> displacements;  // for each target; empty if it has no positions
 };
 
 std::size_t target_count(const GltfDocument& document, std::size_t mesh) {
@@ -122,7 +122,7 @@ class GltfFrames : public FrameSource {
   }
 
  private:
-  // The frames are at the keys of all tracks, or in equal steps from the first key to the last.
+  // Frames are at the keys of all tracks, or in equal steps from the first key to the last.
   void choose_times(double rate) {
     for (const WeightTrack& track : tracks_)
       key_times_.insert(key_times_.end(), track.times().begin(), track.times().end());
@@ -131,7 +131,7 @@ class GltfFrames : public FrameSource {
     count_ = key_times_.size();
     if (rate == 0) return;
     interval_ = 1 / rate;
-    constexpr double kRounding = 1e-6;  // of a step
+    constexpr double kRounding = 1e-6;  // as a fraction of a step
     const double steps = std::floor((key_times_.back() - key_times_.front()) * rate + kRounding);
     if (!(steps < 1e9)) throw Error("has more than a billion frames at this rate; choose a lower one");
     count_ = static_cast<std::size_t>(steps) + 1;

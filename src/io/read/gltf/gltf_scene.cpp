@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// translation · rotation · scale, or a matrix by columns.
+// From translation, rotation and scale, or a matrix in column-major order.
 GltfTransform node_transform(const json& node) {
   GltfTransform t;
   if (node.contains("matrix")) {
@@ -29,7 +29,8 @@ GltfTransform node_transform(const json& node) {
   return t;
 }
 
-// The root nodes of the default scene, else of the first scene, else all nodes without a parent.
+// The root nodes of the default scene; without one, of the first scene; without any scene, all nodes without
+// a parent.
 std::vector<std::size_t> roots(const GltfDocument& document) {
   const json& root = document.root();
   if (root.contains("scenes") && !root["scenes"].empty())

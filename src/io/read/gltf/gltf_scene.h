@@ -11,7 +11,7 @@
 
 namespace sdm::io {
 
-/// x → linear · x + offset. `linear` holds columns.
+/// x ↦ linear · x + offset. `linear` holds columns.
 struct GltfTransform {
   std::array<Vec3, 3> linear{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 offset{};
@@ -41,7 +41,7 @@ struct GltfInstance {
 enum GltfMode : std::size_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 [[nodiscard]] std::size_t gltf_mode(const nlohmann::json& primitive);
 
-/// Returns all triangles of the scene. The vertices of primitives follow each other in the order of
+/// Returns all triangles of the scene. The vertices of the primitives are concatenated in the order of
 /// gltf_instances.
 [[nodiscard]] PolygonMesh read_gltf_scene(const GltfDocument& document);
 

@@ -11,14 +11,14 @@ namespace sdm::io {
 /// The weights of one node over time.
 class WeightTrack {
  public:
-  /// From the sampler of an animation, for a node with `targets` targets. Throws sdm::Error if times do not
+  /// Reads the sampler of an animation, for a node with `targets` targets. Throws sdm::Error if times do not
   /// increase, or the number of values does not match them.
   WeightTrack(const GltfDocument& document, const nlohmann::json& sampler, std::size_t targets);
 
   /// Returns the times of the keys: at least one, finite, increasing.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] std::size_t targets() const { return targets_; }
-  /// Computes the weight of each target. They are constant before the first key and after the last.
+  /// Computes the weights of all targets. They are constant before the first key and after the last.
   void sample(double time, std::span<double> weights) const;
 
  private:

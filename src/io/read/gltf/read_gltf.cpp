@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// Returns where the corners of the i-th triangle are in the list of indices.
+// Returns the positions of the i-th triangle's corners in the list of indices.
 std::array<std::size_t, 3> corner_places(std::size_t mode, std::size_t i) {
   if (mode == kStrip) return i % 2 == 0 ? std::array{i, i + 1, i + 2} : std::array{i + 1, i, i + 2};
   if (mode == kFan) return {0, i + 1, i + 2};
@@ -61,7 +61,7 @@ void add_primitive(const GltfDocument& document, const json& primitive, const Gl
   }
 }
 
-// Many nodes may have the same mesh, so a small file can expand to a large scene.
+// Many nodes may share a mesh, so a small file can expand to a large scene.
 void check_memory(const GltfDocument& document, const std::vector<GltfInstance>& scene) {
   constexpr std::size_t bytes_per_item = 128;
   std::size_t items = 0;

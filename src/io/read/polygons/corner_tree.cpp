@@ -10,8 +10,8 @@
 namespace sdm::io {
 namespace {
 
-// The points in the unit square, for spatial_order works in single precision. Halved first, so that no
-// difference of finite coordinates overflows.
+// The points mapped to the unit square, since spatial_order works in single precision. Halved first, so that
+// no difference of finite coordinates overflows.
 std::vector<Vec3> to_unit_square(std::span<const Vec2> points) {
   std::vector<Vec3> result(points.size());
   for (int k = 0; k < 2; ++k) {
@@ -56,8 +56,8 @@ bool CornerTree::may_overlap(const Box& box, const std::array<Vec2, 3>& triangle
     if (box.low[k] > std::max({a[k], b[k], c[k]}) || box.high[k] < std::min({a[k], b[k], c[k]})) return false;
   if (box.low == box.high && (box.low == a || box.low == b || box.low == c)) return false;
   for (int k = 0; k < 3; ++k) {
-    // cross(to − from, p − from) is greatest at one corner of the box. Where it is negative by more than
-    // rounding, all p in the box lie outside of the edge.
+    // cross(to − from, p − from) is largest at one corner of the box. If it is negative there by more than
+    // rounding, all p in the box lie outside the edge.
     const Vec2 &from = triangle[k], &to = triangle[(k + 1) % 3];
     const double x = to[0] - from[0], y = to[1] - from[1];
     const double greatest = x * ((x > 0 ? box.high[1] : box.low[1]) - from[1]) -

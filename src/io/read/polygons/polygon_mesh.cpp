@@ -34,7 +34,7 @@ std::uint64_t mix(std::uint64_t h) {
   return h ^ h >> 32;
 }
 
-// Random, so that no file can be crafted to collide in the hash table. Results do not depend on it.
+// Random, so that no file can be crafted to cause collisions in the hash table. Results do not depend on it.
 std::uint64_t hash_seed() {
   static const std::uint64_t seed = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
   return seed;
@@ -46,8 +46,8 @@ class PositionTable {
   PositionTable(std::size_t capacity, const std::vector<Vec3>& positions)
       : positions_(positions), slots_(std::bit_ceil(capacity + capacity / 2 + 1), kNone) {}
 
-  /// Returns the index of an equal position that was inserted before. Otherwise inserts and returns `index`;
-  /// the caller then appends p to `positions`.
+  /// Returns the index of an equal position inserted earlier. Otherwise inserts and returns `index`; the
+  /// caller then appends p to `positions`.
   std::uint32_t find_or_insert(const Vec3& p, std::uint32_t index) {
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t slot = hash(p) & mask;; slot = (slot + 1) & mask) {
@@ -68,7 +68,7 @@ class PositionTable {
   std::uint64_t seed_ = hash_seed();
 };
 
-// Fills mesh.positions. Returns the new index of each old vertex, kNone for those without a face.
+// Fills mesh.positions. Returns the new index of each vertex of the file, kNone for those without a face.
 std::vector<std::uint32_t> weld(const PolygonMesh& polygons, Mesh& mesh) {
   std::vector<std::uint32_t> renumbered(polygons.positions.size(), kNone);
   for (const std::uint32_t v : polygons.corners) renumbered[v] = 0;
@@ -95,8 +95,8 @@ bool all_corners_have_uvs(const PolygonMesh& polygons) {
 }
 
 // Collects the corners of one polygon, as indices into PolygonMesh::corners. Of consecutive corners on the
-// same vertex only the first is kept, as long as three remain: many exporters write triangles as quads with a
-// repeated corner.
+// same vertex only the first is kept, as long as three corners remain: many exporters write triangles as
+// quads with a repeated corner.
 void gather(const std::vector<std::uint32_t>& corners, const std::vector<std::uint32_t>& renumbered,
             std::uint32_t begin, std::uint32_t end, std::vector<std::uint32_t>& places) {
   places.clear();

@@ -8,7 +8,7 @@
 
 namespace sdm::io {
 
-/// Polygons over shared vertices, as a file has them; nothing is checked.
+/// Polygons over shared vertices, as stored in a file; unchecked.
 struct PolygonMesh {
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;
@@ -16,7 +16,8 @@ struct PolygonMesh {
   std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; may be empty
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
 
-  /// Makes a polygon of the corners since the last one. Fewer than three are dropped.
+  /// Ends a polygon of the corners added since the last one. Polygons of fewer than three corners are
+  /// dropped.
   void end_polygon();
 };
 
@@ -25,8 +26,8 @@ struct PolygonMesh {
 /// is out of range, a coordinate is not finite, or there are no faces.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons);
 
-/// As above. Also returns the index in the mesh of each vertex, or kNone if it was dropped. Vertices of the
-/// mesh are in the order in which the file first has them.
+/// As above. Also returns the index in the mesh of each vertex, or kNone if it was dropped. The mesh's
+/// vertices are in the order of their first occurrence in the file.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered);
 
 }  // namespace sdm::io

@@ -1,4 +1,4 @@
-// The least of many keys that change.
+// The minimum of many keys that change.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace sdm::io {
 
-/// A tournament tree. Keys are ordered by <; those of places that were never set are `worst`.
+/// A tournament tree. Keys are ordered by <; positions without a key have the key `worst`.
 template <typename Key>
 class Tournament {
  public:
@@ -25,12 +25,13 @@ class Tournament {
     best_[node] = key;
     while ((node /= 2) > 0) update(node);
   }
-  /// Returns the place of a least key; of several, the first one from `start` on, cyclically. Cost: O(log n).
+  /// Returns the position of a smallest key: of several, the first one from `start` on, cyclically. Cost:
+  /// O(log n).
   [[nodiscard]] std::size_t least_from(std::size_t start) const {
     const auto holds_least = [&](std::size_t node) { return !(best_[1] < best_[node]); };
     std::size_t node = leaves_ + start;
     if (!holds_least(node)) {
-      // Up to where a least key lies on the right, or else to the root; then down to the first of them.
+      // Go up until a smallest key lies to the right, or to the root; then down to the first such key.
       while (node > 1 && (node % 2 != 0 || !holds_least(node + 1))) node /= 2;
       if (node > 1) ++node;
     }
@@ -42,7 +43,7 @@ class Tournament {
   void update(std::size_t node) { best_[node] = std::min(best_[2 * node], best_[2 * node + 1]); }
 
   std::size_t leaves_ = 0;  // a power of two; the children of node i are 2i and 2i + 1
-  std::vector<Key> best_;   // the least key below each node
+  std::vector<Key> best_;   // the smallest key below each node
 };
 
 }  // namespace sdm::io

@@ -8,11 +8,11 @@
 namespace sdm::io {
 namespace {
 
-// Smaller polygons are searched corner by corner. Where corners are collinear up to rounding, the boxes of
-// the index exclude some that the test of single corners would not, and so other ears may be chosen.
+// Smaller polygons are searched corner by corner. Where corners are collinear up to rounding, the index's
+// boxes exclude some that the test of single corners would not, and so other ears may be chosen.
 constexpr std::size_t kIndexedCorners = 1024;
 
-// Newell's normal, of a polygon that need not be planar: twice the area vector.
+// Newell's normal of a polygon, which need not be planar: twice the area vector.
 Vec3 area_vector(std::span<const Vec3> points) {
   Vec3 n{};
   for (std::size_t i = 1; i + 1 < points.size(); ++i)
@@ -22,7 +22,7 @@ Vec3 area_vector(std::span<const Vec3> points) {
 
 }  // namespace
 
-// Drops the coordinate in which the polygon's normal is longest: the orientation is kept, no area vanishes.
+// Drops the largest coordinate of the polygon's normal, which keeps the orientation and makes no area vanish.
 void Triangulator::project() {
   const Vec3 n = area_vector(points_);
   int k = 0;
@@ -34,20 +34,20 @@ void Triangulator::project() {
   for (std::size_t p = 0; p < points_.size(); ++p) plane_[p] = {points_[p][i], points_[p][j]};
 }
 
-// Twice the signed area of a triangle: positive where a, b, c have the polygon's orientation.
+// Twice the signed area of a triangle; positive if a, b, c have the polygon's orientation.
 double Triangulator::turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   return cross(plane_[b] - plane_[a], plane_[c] - plane_[a]);
 }
 
-// Whether p lies in the triangle or on its boundary. Corners that coincide with one of the triangle's are
-// bridges to holes and do not count.
+// Whether p lies in the triangle or on its boundary. Corners that coincide with one of the triangle's belong
+// to bridges to holes and do not count.
 bool Triangulator::blocks(std::uint32_t p, std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   if (plane_[p] == plane_[a] || plane_[p] == plane_[b] || plane_[p] == plane_[c]) return false;
   return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
 }
 
-// A corner is an ear when it is convex and no other corner blocks its triangle. If any corner does, one that
-// is not convex does.
+// A corner is an ear if it is convex and no other corner blocks its triangle. If any corner blocks it, a
+// non-convex one does.
 bool Triangulator::is_ear(std::uint32_t b) const {
   if (!corners_[b].convex) return false;
   const std::uint32_t a = corners_[b].previous, c = corners_[b].next;
@@ -63,8 +63,8 @@ Triangulator::Rank Triangulator::rank(std::uint32_t corner) const {
   return {corners_[corner].ear ? Kind::ear : Kind::other, corners_[corner].cut};
 }
 
-// The ear with the shortest diagonal, or if a polygon that crosses itself has no ear, the corner with the
-// shortest one; of equals the first from `start` on.
+// The ear with the shortest diagonal; if a self-intersecting polygon has no ear, the corner with the shortest
+// diagonal. Of equal ones, the first from `start` on.
 std::uint32_t Triangulator::best_ear(std::uint32_t start) const {
   if (indexed_) return static_cast<std::uint32_t>(ranks_.least_from(start));
   std::uint32_t best = start;

@@ -13,21 +13,20 @@
 
 namespace sdm::io {
 
-/// Triangulates polygons by clipping ears, the one with the shortest diagonal first. Keeps its buffers from
-/// one polygon to the next.
+/// Triangulates polygons by clipping ears, shortest diagonal first. Reuses its memory between polygons.
 class Triangulator {
  public:
   /// Returns the n − 2 triangles of a polygon with n ≥ 3 finite corners, as indices into `points`, with the
   /// polygon's orientation. They tile it if it is simple and planar; corners may coincide, as at bridges to
-  /// holes. Every other polygon gives n − 2 triangles with its boundary too. Valid until the next call.
-  /// Cost: about O(n log n), and O(n²) at worst, where the polygon overlaps itself everywhere.
+  /// holes. For any other polygon, the n − 2 triangles still have its boundary. Valid until the next call.
+  /// Cost: about O(n log n); in the worst case, where the polygon overlaps itself everywhere, O(n²).
   std::span<const std::array<std::uint32_t, 3>> triangulate(std::span<const Vec3> points);
 
  private:
   struct Corner {
     std::uint32_t previous, next;
     bool convex, ear;
-    double cut;  // squared length of the diagonal that clips this corner
+    double cut;  // squared length of the diagonal that cuts off this corner
   };
   /// The order of clipping: ears first, then by length of the diagonal.
   enum class Kind { ear, other, clipped };
@@ -46,7 +45,7 @@ class Triangulator {
   std::vector<Vec2> plane_;
   std::vector<Corner> corners_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  // Of large polygons: the ranks of all corners, and those corners that are left and not convex.
+  // For large polygons: the ranks of all corners, and the remaining corners that are not convex.
   bool indexed_ = false;
   Tournament<Rank> ranks_;
   CornerTree reflex_;

@@ -1,4 +1,4 @@
-// Drawing with cairo into an RGB picture.
+// Draws with cairo into an RGB picture.
 #pragma once
 
 #include <cairo.h>
@@ -17,8 +17,8 @@ class Canvas {
 
   [[nodiscard]] cairo_t* cairo() { return context_.get(); }
   void set_color(Rgb color);
-  /// Text from (x, baseline), narrowed to `room`; `align` 0: from there to the right, 1: to the left, 0.5:
-  /// centred.
+  /// Draws text at (x, baseline), narrowed to fit `room`. `align`: 0: the text starts at x; 1: it ends there;
+  /// 0.5: it is centred.
   void text(double x, double baseline, const std::string& text, double size, double room, bool bold = false,
             double align = 0);
   /// Throws sdm::Error if drawing failed; `what` names the picture in the message.

@@ -63,7 +63,7 @@ Rgb hsl(double hue, double saturation, double lightness) {
   return {channel(0), channel(8), channel(4)};
 }
 
-// A bijection of 32-bit numbers whose every bit depends on all bits of x.
+// A bijection on 32-bit numbers in which every output bit depends on all input bits.
 std::uint32_t scramble(std::uint32_t x) {
   x = (x ^ (x >> 16)) * 0x7feb352du;
   x = (x ^ (x >> 15)) * 0x846ca68bu;
@@ -131,7 +131,7 @@ Rgb site_color(SiteType type, std::uint32_t site) {
 Rgb direction_color(const Vec3f& vector) {
   const double length = std::hypot(vector[0], vector[1], vector[2]);
   if (std::isnan(length)) return kNoValue;
-  // At distance zero there is no direction: the middle of the colour cube.
+  // The zero vector has no direction: use the centre of the colour cube.
   const double scale = length > 0 ? 1 / length : 0;
   const auto channel = [scale](double x) {
     return static_cast<std::uint8_t>(std::lround(127.5 * (1 + std::clamp(scale * x, -1.0, 1.0))));

@@ -14,27 +14,27 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-inline constexpr Rgb kBackground{222, 224, 228};  ///< texels of no face
-inline constexpr Rgb kNoValue{128, 130, 134};     ///< owned, but beyond the maximum distance
+inline constexpr Rgb kBackground{222, 224, 228};  ///< texels that no face owns
+inline constexpr Rgb kNoValue{128, 130, 134};  ///< owned texels without a value, beyond the maximum distance
 
-/// From distances to colours, continuous but for the edges of the tolerance bands.
+/// A map from distances to colours, continuous except at the edges of the tolerance bands.
 struct ColorScale {
   Colormap map = Colormap::viridis;   ///< never automatic
-  double lo = 0, hi = 1;              ///< lo < hi; colours are constant beyond
-  std::optional<double> tolerance{};  ///< bands in place of the map
+  double lo = 0, hi = 1;              ///< lo < hi; colours are constant outside
+  std::optional<double> tolerance{};  ///< if set, bands instead of the map
 
   [[nodiscard]] Rgb operator()(double distance) const;
 };
 
-/// The scale selected by `options`, with defaults from the map.
-/// Throws sdm::Error unless the range is finite and increasing and the tolerance finite and ≥ 0.
+/// The scale selected by `options`, with defaults from the map. Throws sdm::Error unless the range is finite
+/// and increasing, and the tolerance is finite and ≥ 0.
 [[nodiscard]] ColorScale color_scale(const DistanceMap& map, const PictureOptions& options);
 
 /// A pseudorandom colour for each site: pale for faces, strong for edges, dark for vertices; kNoValue for
 /// none.
 [[nodiscard]] Rgb site_color(SiteType type, std::uint32_t site);
 
-/// The unit vector along `vector`, (x, y, z) → (r, g, b) by (1 + x)/2; kNoValue where it is NaN.
+/// The colour of the unit vector along `vector`: (x, y, z) → (r, g, b) by (1 + x)/2; kNoValue if it is NaN.
 [[nodiscard]] Rgb direction_color(const Vec3f& vector);
 
 }  // namespace sdm::io

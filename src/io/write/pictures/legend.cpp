@@ -9,12 +9,12 @@
 namespace sdm::io {
 namespace {
 
-// Lengths at 1024 texels; everything is drawn in these and scaled.
+// Lengths for a resolution of 1024; the drawing is scaled as a whole.
 constexpr double kWidth = 232, kMargin = 24, kBarWidth = 30, kBarTop = 84, kMaxHeight = 1024;
 constexpr double kMinHeight = 460;
 constexpr double kTitleSize = 19, kTextSize = 15, kLine = 23;
 
-// Long text is shrunk to fit the picture.
+// Shrinks long text to fit the picture.
 void write_text(Canvas& canvas, double x, double baseline, const std::string& text, double size,
                 bool bold = false) {
   canvas.text(x, baseline, text, size, kWidth - x - kMargin / 2, bold);
@@ -26,8 +26,8 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom
     return bottom - (d - scale.lo) / (scale.hi - scale.lo) * (bottom - top);
   };
   constexpr int kSteps = 4096;  // finer than any pixel of the bar
-  // Without smoothing, every pixel has the colour of one step, unmixed with the background. Each step extends
-  // below the next one, which covers it, so that rounding leaves no seams.
+  // Without antialiasing, every pixel has the colour of one step, unblended with the background. Each step
+  // extends below the next one, which covers it, so rounding leaves no seams.
   cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
   for (int i = 0; i < kSteps; ++i) {
     const double foot = bottom - i * (bottom - top) / kSteps, head = std::max(top, foot - 3);

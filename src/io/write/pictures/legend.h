@@ -12,11 +12,12 @@ namespace sdm::io {
 
 struct LegendText {
   std::string title, units;
-  std::vector<std::string> notes;  ///< a line each, below the bar
-  bool has_missing = false;        ///< explain the colour of texels without a value
+  std::vector<std::string> notes;  ///< one per line, below the bar
+  bool has_missing = false;        ///< explains the colour of texels without a value
 };
 
-/// Draws a legend for a map of `resolution` rows; it may be lower or, for small maps, higher than that.
+/// Draws a legend for a map of `resolution` rows. The legend may be lower than that or, for small maps,
+/// higher.
 [[nodiscard]] Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32_t resolution);
 
 }  // namespace sdm::io

@@ -27,7 +27,8 @@ void write_bytes(png_structp png, png_bytep bytes, size_t count) {
 }
 void flush(png_structp) {}
 
-// Returns false if libpng fails: it then jumps back into this function, which must own nothing to destroy.
+// Returns false if libpng fails: it jumps back into this function, which must own nothing that needs
+// destruction.
 bool encode(const PngWriter& writer, std::uint32_t width, std::uint32_t height, std::vector<Rgb>& pixels,
             const std::function<void(std::uint32_t, std::span<Rgb>)>& row) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;

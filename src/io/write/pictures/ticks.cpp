@@ -8,7 +8,7 @@
 namespace sdm::io {
 namespace {
 
-// Replaces a leading hyphen by the minus sign.
+// Replaces a leading hyphen with a minus sign.
 std::string with_minus_sign(std::string number) {
   if (number.starts_with('-')) number.replace(0, 1, "\u2212");
   return number;
@@ -26,7 +26,7 @@ std::vector<double> ticks(double lo, double hi, int count) {
       break;
     }
   std::vector<double> result;
-  // Multiplied instead of accumulated: far from zero, adding a step may not change a value.
+  // Multiplied rather than accumulated: far from zero, adding a step may not change a value.
   const double first = std::ceil(lo / step - 1e-9);
   for (int i = 0; i <= 2 * count; ++i) {
     const double value = (first + i) * step;
