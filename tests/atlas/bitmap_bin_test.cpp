@@ -66,7 +66,7 @@ TEST(BitmapBin, FindsTheFirstFit) {
   }
 }
 
-TEST(BitmapBin, HoldsAStampOfItsOwnSizeAndNoLarger) {
+TEST(BitmapBin, FitsStampsUpToItsOwnSize) {
   atlas::BitmapBin bin(64);
   atlas::Stamp stamp{64, 1, {{0, 0, 64}}};
   EXPECT_TRUE(bin.first_fit(stamp, 0, 64));

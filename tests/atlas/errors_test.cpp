@@ -1,8 +1,10 @@
 #include <gmock/gmock.h>
 #include <sdm/error.h>
+#include <sdm/sdm.h>
 #include <sdm/surface.h>
 
-#include "atlas/meshes.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -26,17 +28,17 @@ TEST(AtlasErrors, OptionsOutOfRange) {
   expect_error({}, {}, "no triangles");
 }
 
-// The resolution that the message asks for is enough.
-TEST(AtlasErrors, TooSmallAResolutionNamesOneThatWillDo) {
-  const Mesh mesh = test::soup(1000, 1);
+// The resolution suggested by the message is sufficient.
+TEST(AtlasErrors, TooSmallResolutionSuggestsASufficientOne) {
+  const Mesh mesh = test::degenerate_soup(1000, 1);
   EXPECT_THAT([&] { Surface(mesh, {.resolution = 64}); },
               ThrowsMessage<Error>(
                   AllOf(HasSubstr("64"), HasSubstr("too small for 1080 charts"), HasSubstr("about 128"))));
   EXPECT_NO_THROW(Surface(mesh, {.resolution = 128}));
 }
 
-// A strip across the whole atlas takes little of it: once taken for a lack of room.
-TEST(AtlasErrors, LongThinMeshesAreLaidOutAcross) {
+// Regression: a strip across the whole atlas, which fills little of it, was reported as too large.
+TEST(AtlasLayout, LongThinMeshesGetEnoughTexels) {
   for (const double width : {0.1, 0.01, 1e-3, 1e-5})
     for (const std::uint32_t resolution : {64u, 1024u, 4096u}) {
       SCOPED_TRACE(width);

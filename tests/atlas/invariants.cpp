@@ -26,7 +26,7 @@ bool has_area(const Mesh& mesh, std::uint32_t face) {
   return cross(b - a, c - a) != Vec3{};
 }
 
-// How far inside the triangle p is: the least distance to the lines of its edges, negative outside of one.
+// The depth of p inside the triangle: the least distance to the lines of its edges, negative outside of one.
 double depth(const std::array<Vec2, 3>& t, const Vec2& p) {
   const double turn = cross(t[1] - t[0], t[2] - t[0]) < 0 ? -1 : 1;
   double least = std::numeric_limits<double>::infinity();

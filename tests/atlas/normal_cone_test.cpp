@@ -27,7 +27,7 @@ double widest(const std::vector<Vec3>& normals, const Vec3& axis) {
   return std::acos(least);
 }
 
-TEST(NormalCone, OfAJoinHoldsAllNormals) {
+TEST(NormalCone, JoinContainsAllNormals) {
   std::mt19937 random(4);
   int joined = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec.h"
 
-namespace sdm {
+namespace sdm::atlas {
 namespace {
 
 // The area of the first triangle clipped to the second (Sutherland & Hodgman 1974).
@@ -41,7 +41,7 @@ atlas::GridTriangle random_triangle(std::mt19937& random, int lo, int hi) {
 }
 
 // On few grid points, so that shared corners, touching edges and zero areas are common.
-TEST(Overlap, OfPairsIsACommonArea) {
+TEST(Overlap, PairsWithACommonArea) {
   std::mt19937 random(1);
   int overlaps = 0;
   for (int i = 0; i < 100000; ++i) {
@@ -58,8 +58,7 @@ TEST(Overlap, OfPairsIsACommonArea) {
 TEST(Overlap, IsExactAtTheLimitsOfTheGrid) {
   const atlas::GridPoint o = {0, 0}, x = {atlas::kGridSteps, atlas::kGridSteps - 1},
                          y = {atlas::kGridSteps, atlas::kGridSteps};
-  // Two slivers on both sides of the line from o to y, which miss each other by nothing, then meet by one
-  // step.
+  // Two slivers on both sides of the line from o to y, which touch, then overlap by one step.
   const atlas::GridPoint above = {atlas::kGridSteps - 1, atlas::kGridSteps};
   EXPECT_FALSE(atlas::find_overlap(
       std::array<atlas::GridTriangle, 2>{atlas::GridTriangle{o, x, y}, atlas::GridTriangle{o, y, above}}));
@@ -92,7 +91,7 @@ TEST(Overlap, IsFoundAmongMany) {
   }
 }
 
-TEST(Overlap, SlackForgivesShallowOnes) {
+TEST(Overlap, SlackToleratesShallowOverlaps) {
   const atlas::GridTriangle low = {{{0, 0}, {1000, 0}, {0, 1000}}},
                             high = {{{997, 0}, {1997, 1000}, {997, 1000}}};
   const std::array pair = {low, high};
@@ -101,4 +100,4 @@ TEST(Overlap, SlackForgivesShallowOnes) {
 }
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::atlas

@@ -9,7 +9,7 @@
 namespace sdm {
 namespace {
 
-// Vertices at halves of texels, so that centres lie on edges and corners all the time: each centre within the
+// Vertices at halves of texels, so that many centres lie on edges and corners: each centre within the
 // square still belongs to exactly one triangle, in either orientation.
 TEST(Rasterise, SharedEdgesGiveEachCentreToOneTriangle) {
   std::mt19937 random(3);

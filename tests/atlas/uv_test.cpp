@@ -1,8 +1,9 @@
 #include <gmock/gmock.h>
 #include <sdm/error.h>
+#include <sdm/sdm.h>
 
 #include "atlas/invariants.h"
-#include "atlas/meshes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -13,7 +14,7 @@ using testing::ThrowsMessage;
 
 const AtlasOptions kOptions{.kind = AtlasKind::uv, .resolution = 200};
 
-TEST(Uv, TakesTheMeshesOwnCoordinates) {
+TEST(Uv, UsesTheMeshesOwnCoordinates) {
   const Surface surface(test::height_field(30), kOptions);
   test::expect_charts(surface);
   test::expect_owners(surface);
@@ -33,7 +34,7 @@ TEST(Uv, StretchIsRelativeToTheScaleOfAll) {
   EXPECT_NEAR(Surface(mesh, kOptions).max_stretch(), 2, 1e-12);
 }
 
-TEST(Uv, MirroredAndSeparatePiecesAreFine) {
+TEST(Uv, AcceptsMirroredAndSeparatePieces) {
   Mesh mesh = test::height_field(10);
   for (auto& face : mesh.corner_uvs)
     for (Vec2& uv : face) uv[0] = (1 - uv[0]) / 2;
@@ -46,12 +47,12 @@ TEST(Uv, MirroredAndSeparatePiecesAreFine) {
   test::expect_maps(surface);
 }
 
-TEST(Uv, OverlapNamesTheFaces) {
+TEST(Uv, OverlapErrorNamesTheFaces) {
   Mesh mesh = test::height_field(10);
   mesh.corner_uvs[7] = {Vec2{0.97, 0.52}, Vec2{0.99, 0.52}, Vec2{0.98, 0.53}};
   EXPECT_THAT([&] { Surface(mesh, kOptions); },
               ThrowsMessage<Error>(
-                  AllOf(HasSubstr("faces 7 and 1"), HasSubstr("overlap"), HasSubstr("--atlas charts"))));
+                  AllOf(HasSubstr("faces 7 and 1"), HasSubstr("overlap"), HasSubstr("atlas of charts"))));
 }
 
 TEST(Uv, MissingOutsideAndCollapsedCoordinatesAreErrors) {

@@ -6,8 +6,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "run.h"
-#include "samples.h"
+#include "cli/samples.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
@@ -18,7 +19,7 @@ using Json = nlohmann::json;
 
 /// Two tori that cross, and one 10 away.
 struct BodiesCommand : ::testing::Test, TwoTori {
-  std::string o3 = write_obj(folder / "third.obj", torus(8, 1, {10, 0, 0}));
+  std::string o3 = write_obj(folder / "third.obj", ring(8, 1, {10, 0, 0}));
 
   [[nodiscard]] std::vector<std::string> bodies(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments{"bodies", o1, o2, o3};

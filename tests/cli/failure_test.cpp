@@ -1,11 +1,13 @@
-#include "run.h"
-#include "samples.h"
+#include "cli/samples.h"
+#include "support/run_sdm.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <csignal>
+
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
@@ -62,7 +64,7 @@ TEST_F(Failure, AFullDiskLeavesNoTraceOfAnyCommand) {
   const std::string moving = folder / "moving";
   std::filesystem::create_directory(moving);
   for (int i = 0; i < 3; ++i)
-    write_obj(std::filesystem::path(moving) / (std::to_string(i) + ".obj"), torus(12, 1, {0.1 * i, 0, 0}));
+    write_obj(std::filesystem::path(moving) / (std::to_string(i) + ".obj"), ring(12, 1, {0.1 * i, 0, 0}));
   before = names_in(folder.path());
   const std::vector<std::vector<std::string>> commands{
       {"self", o1, "--resolution", "64"},
@@ -116,7 +118,7 @@ TEST_F(Failure, AResultWhosePlaceIsTakenByAFolderReplacesNothing) {
 }
 
 TEST_F(Failure, ResolutionsTooSmallForTheChartsOrTheMemory) {
-  write_obj(o1, torus(60));
+  write_obj(o1, ring(60));
   expect_failure(run_sdm({"map", o1, o2, "-o", out, "--resolution", "16", "--atlas", "triangles"}), "16");
   // 32768² texels take tens of gigabytes.
 #ifdef __SANITIZE_ADDRESS__
@@ -131,7 +133,7 @@ TEST_F(Failure, OptionsThatTheMeshesDoNotAllow) {
   for (int repeat = 0; repeat < 10; ++repeat)
     expect_failure(run_sdm(map({"--atlas", "uv"})), "texture coordinates");
   expect_failure(run_sdm(map({"--atlas", "uv"})), "--atlas charts");
-  Mesh open = torus(16);
+  Mesh open = ring(16);
   open.triangles.resize(100);
   write_obj(o2, open);
   expect_failure(run_sdm(map({"--sign", "pseudonormal"})), "O2 is open");
@@ -139,8 +141,8 @@ TEST_F(Failure, OptionsThatTheMeshesDoNotAllow) {
 }
 
 TEST_F(Failure, AnInterruptedRunLeavesNoTrace) {
-  write_obj(o1, torus(250));
-  write_obj(o2, torus(250, 1, {0.3, 0, 0}));
+  write_obj(o1, ring(250));
+  write_obj(o2, ring(250, 1, {0.3, 0, 0}));
   const Outcome run = run_sdm({"map", o1, o2, "-o", out, "--resolution", "4096", "--engine", "reference"},
                               {.interrupt_after_ms = 1500});
   expect_failure(run, "cancelled", 128 + SIGINT);  // as a shell expects that is to end its loop

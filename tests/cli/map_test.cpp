@@ -1,5 +1,5 @@
-#include "run.h"
-#include "samples.h"
+#include "cli/samples.h"
+#include "support/run_sdm.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +10,8 @@
 #include <sdm/version.h>
 
 #include <nlohmann/json.hpp>
+
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
@@ -93,7 +95,7 @@ TEST_F(MapCommand, PrecisionPicksTheResolutionOfEachMap) {
 TEST_F(MapCommand, PrecisionOutOfReachFailsAndTellsWhatIsNot) {
   const Outcome run = run_sdm(map({"--precision", "1e-9"}));
   EXPECT_EQ(run.code, 1);
-  EXPECT_THAT(run.err, HasSubstr("times the 32768 texels that a side of the map can have; ask for 0.00"));
+  EXPECT_THAT(run.err, HasSubstr("times the maximum of 32768 texels per side; use 0.00"));
 }
 
 TEST_F(MapCommand, BothMeasuresEitherWay) {
@@ -210,7 +212,7 @@ TEST_F(MapCommand, QuietIsQuietAndATerminalSeesProgress) {
 }
 
 TEST_F(MapCommand, FlawedFacesAreToleratedAndCounted) {
-  Mesh mesh = torus(10);
+  Mesh mesh = ring(10);
   mesh.triangles.push_back({0, 0, 1});
   mesh.triangles.push_back(mesh.triangles[3]);
   write_obj(o1, mesh);

@@ -8,9 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "run.h"
-#include "samples.h"
+#include "cli/samples.h"
 #include "scenes/placement.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
@@ -103,7 +104,7 @@ struct SequenceCommand : ProximityCommand {
 
   SequenceCommand() {
     std::filesystem::create_directory(moving);
-    for (int i = 0; i < 12; ++i) write_frame(i, torus(12, 1, {0.5 * i - 3.2, 0, 0}));
+    for (int i = 0; i < 12; ++i) write_frame(i, ring(12, 1, {0.5 * i - 3.2, 0, 0}));
   }
   void write_frame(int i, const Mesh& mesh) const {
     write_obj(std::filesystem::path(moving) / (std::to_string(i) + ".obj"), mesh);
@@ -135,7 +136,7 @@ TEST_F(SequenceCommand, FollowsTheBodies) {
   const std::vector<Json> all = lines();
   ASSERT_EQ(all.size(), 12u);
   EXPECT_EQ(csv_rows(), 12u);
-  ProximityQuery query(torus(12, 1, {-3.2, 0, 0}), read_mesh(o2), {.atlas = {.resolution = 64}});
+  ProximityQuery query(ring(12, 1, {-3.2, 0, 0}), read_mesh(o2), {.atlas = {.resolution = 64}});
   SamplingBound bound(query.surface(0));
   const RelativeError error(query.surface(0), bound);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -174,8 +175,8 @@ TEST_F(SequenceCommand, StopsAtABadFrame) {
   EXPECT_THAT(all[4]["error"].get<std::string>(), HasSubstr("frame 4"));
   EXPECT_EQ(csv_rows(), 4u);
 
-  write_frame(4, torus(10));  // another mesh
-  write_obj(std::filesystem::path(moving) / "7.obj", torus(12, 1, {std::nan(""), 0, 0}));
+  write_frame(4, ring(10));  // another mesh
+  write_obj(std::filesystem::path(moving) / "7.obj", ring(12, 1, {std::nan(""), 0, 0}));
   run = run_sdm(sequence({"--keep-going"}));
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("frames     10, and 2 that could not be used"));
@@ -191,7 +192,7 @@ TEST_F(SequenceCommand, PlacesAllFramesAsTheFirst) {
   ASSERT_EQ(run.code, 0) << run.err;
   const std::vector<Json> all = lines();
   // The torus moves by 0.5 a frame; fitted, its width is 1.
-  const Box box = inspect(torus(12)).bounds;
+  const Box box = inspect(ring(12)).bounds;
   const double first = all[0]["separation"]["value"], last = all[11]["separation"]["value"];
   EXPECT_NEAR(last - first, 11 * 0.5 / (box.hi[0] - box.lo[0]), 0.1);
 }
@@ -200,7 +201,7 @@ TEST_F(SequenceCommand, RefusesSequencesThatDoNotFit) {
   const std::string other = folder / "other";
   std::filesystem::create_directory(other);
   for (int i = 0; i < 3; ++i)
-    write_obj(std::filesystem::path(other) / (std::to_string(i) + ".obj"), torus(12));
+    write_obj(std::filesystem::path(other) / (std::to_string(i) + ".obj"), ring(12));
   const Outcome run = run_sdm({"sequence", moving, other, "-o", out});
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("12 frames and"));

@@ -1,10 +1,14 @@
 // Small meshes as files, for runs of the command.
 #pragma once
 
-#include "io_write/samples.h"
+#include <sdm/io.h>
 
 #include <algorithm>
 #include <fstream>
+#include <vector>
+
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 
@@ -37,8 +41,8 @@ inline const std::vector<std::string> kResults{"direction.png", "distance.png", 
 /// Two tori, the second one of them 0.3 units to the right of the first: they cross.
 struct TwoTori {
   TemporaryFolder folder;
-  std::string o1 = write_obj(folder / "first.obj", torus(12)),
-              o2 = write_obj(folder / "second.obj", torus(16, 1, {0.3, 0, 0}));
+  std::string o1 = write_obj(folder / "first.obj", ring(12)),
+              o2 = write_obj(folder / "second.obj", ring(16, 1, {0.3, 0, 0}));
   std::string out = folder / "out";
 
   /// The arguments of a run, `more` appended.

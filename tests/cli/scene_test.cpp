@@ -6,8 +6,10 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "run.h"
-#include "samples.h"
+#include "cli/samples.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {
@@ -62,7 +64,7 @@ TEST_F(SceneCommand, BothFormatsHoldTheSameFrames) {
 }
 
 TEST_F(SceneCommand, BunniesAreMadeOfTheMeshGiven) {
-  const std::string mesh = write_obj(folder / "torus.obj", torus(60));
+  const std::string mesh = write_obj(folder / "torus.obj", ring(60));
   ASSERT_EQ(run_sdm({"scene", "bunnies", "-o", out, "--frames", "2", "--mesh", mesh}).code, 0);
   EXPECT_NEAR(description()["bodies"][0]["triangles"].get<double>(), 2000, 20);
   std::ofstream(folder / "bad.obj") << "v 0 0 0\n";

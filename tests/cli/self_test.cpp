@@ -1,6 +1,6 @@
 // `sdm self`.
-#include "run.h"
-#include "samples.h"
+#include "cli/samples.h"
+#include "support/run_sdm.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

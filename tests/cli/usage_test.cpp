@@ -1,9 +1,13 @@
-#include "io_write/samples.h"
-#include "run.h"
+#include "support/run_sdm.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/io.h>
 #include <sdm/version.h>
+
+#include <vector>
+
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {

@@ -1,21 +1,29 @@
-// The parts of the cpu engine, which the exactness tests see only as a whole.
+// Parts of the cpu engine that the exactness tests cannot observe.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
 #include <memory>
+#include <random>
+#include <vector>
 
 #include "core/geometry/vec.h"
 #include "engine/cpu/finish.h"
-#include "engine/engine.h"
-#include "engine/simd_targets.h"
-#include "engine/support.h"
+#include "engine/reference/reference_engine.h"
 #include "sites/sites_data.h"
+#include "support/map_checks.h"
+#include "support/points.h"
+#include "support/shapes.h"
+#include "support/simd_targets.h"
 
-namespace sdm {
+namespace sdm::cpu {
 namespace {
 
 double distance(const float (&a)[3], const Vec3& b) {
   return norm(Vec3{a[0], a[1], a[2]} - b);
 }
 
-TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
+TEST(PointGroup, BallsContainTheirPointsAndChildren) {
   std::mt19937 random(4);
   const auto group = std::make_unique<cpu::PointGroup>();
   for (const std::size_t count : {1u, 15u, 16u, 17u, 64u, 65u, 1000u, 4097u, 65536u}) {
@@ -41,8 +49,9 @@ TEST(PointGroup, BallsContainTheirPointsAndTheBallsBelow) {
   }
 }
 
-// Whatever single precision says, what is named is a local minimum; and what it leaves open is settled.
-TEST(Finish, TakesNoWinnerOnTrust) {
+// For any winners of the single-precision search, results are local minima, and unsettled queries are
+// settled.
+TEST(Finish, VerifiesEveryWinner) {
   std::mt19937 random(8);
   const Sites sites(test::soup(40, random));
   std::vector<Vec3> queries(37);
@@ -69,7 +78,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
   EXPECT_GT(beyond, 0u);
   EXPECT_LT(beyond, queries.size());
 
-  // Sites that are none of theirs: still points of these sites' faces, or of neighbours that are closer.
+  // Wrong winners: results are points of these sites' faces or of closer neighbours.
   for (const SiteType type : {SiteType::vertex, SiteType::edge, SiteType::face}) {
     finish_all(cpu::SiteId::of(type, 7).packed, 1e300);
     for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -86,7 +95,7 @@ TEST(Finish, TakesNoWinnerOnTrust) {
 
 // Soups and grids, flat and rough, whole and small slivers, of any size and place; queries on the mesh, on
 // its vertices and lattice points, where regions meet, and away from it.
-TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
+TEST(Descent, AgreesWithTheReferenceOnRandomScenes) {
   std::size_t within = 0, beyond = 0, wrong = 0;
   const std::vector<test::SimdTarget> targets = test::simd_targets();
   for (unsigned seed = 0; seed < 200; ++seed) {
@@ -156,4 +165,4 @@ TEST(Descent, AgreesWithTheReferenceOnScenesAtRandom) {
 }
 
 }  // namespace
-}  // namespace sdm
+}  // namespace sdm::cpu

@@ -1,11 +1,20 @@
-// Every texel of every map, with every set of vector instructions that the machine has, against CGAL's AABB
+// Every texel of every map, with every set of vector instructions of the machine, against CGAL's AABB
 // tree.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
 #include <optional>
+#include <random>
+#include <vector>
 
 #include "core/geometry/vec.h"
-#include "engine/oracle.h"
-#include "engine/simd_targets.h"
-#include "engine/support.h"
+#include "support/engines.h"
+#include "support/map_checks.h"
+#include "support/meshes.h"
+#include "support/oracle.h"
+#include "support/points.h"
+#include "support/shapes.h"
+#include "support/simd_targets.h"
 
 namespace sdm {
 namespace {
@@ -19,12 +28,12 @@ void PrintTo(const Scene& s, std::ostream* out) {
 }
 
 const Scene kScenes[] = {
-    // The two that everything is measured by, standing close and penetrating.
+    // The pair of the benchmarks, close together and penetrating.
     {"bunny.obj", "fit", "armadillo.off", "fit,translate:0.8:0:0", 512},
     {"bunny.obj", "fit", "armadillo.off", "fit", 256},
     {"armadillo.off", "fit", "bunny.obj", "fit,translate:0.8:0:0", 512},
     {"armadillo.off", "fit", "bunny.obj", "fit", 256},
-    // As they come: the bunny is fifty times smaller, and somewhere else.
+    // In file coordinates: the bunny is fifty times smaller, and elsewhere.
     {"armadillo.off", "", "bunny.obj", "", 256},
     {"bunny.obj", "", "armadillo.off", "", 256},
     // Holes, many components, polygons, non-manifold and degenerate faces.
@@ -51,7 +60,7 @@ void expect_agreement(const Mesh& o1, const Mesh& o2, std::uint32_t resolution) 
   const double tolerance = 1e-6 * test::scene_diagonal(o1, o2);
   ASSERT_GT(surface.sample_texels().size(), 100u);
 
-  const std::vector<Vec3> points = test::sample_points(surface);
+  const std::vector<Vec3> points = surface.sample_points();
   const std::vector<double> expected = test::evaluate(oracle::CgalDistance(o2), points);
   std::optional<DistanceMap> reference;
   for (const test::EngineOnTarget& engine : test::engines_on_targets()) {
@@ -67,8 +76,8 @@ void expect_agreement(const Mesh& o1, const Mesh& o2, std::uint32_t resolution) 
   }
   for (const std::string& engine : test::engine_names()) {
     SCOPED_TRACE(engine);
-    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = make_engine(engine)}), expected,
-                                tolerance);
+    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = make_engine(engine)}),
+                                expected, tolerance);
   }
 }
 
@@ -87,9 +96,8 @@ std::string scene_name(const testing::TestParamInfo<Scene>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Exactness, testing::ValuesIn(kScenes), scene_name);
 
-// The scenes are worth what their meshes are: this fails when one of the awkward kinds is no longer among
-// them.
-TEST(Exactness, ScenesHaveMeshesOfEveryKind) {
+// The scenes must keep covering all awkward kinds of meshes.
+TEST(Exactness, ScenesCoverAllKindsOfMeshes) {
   bool open = false, degenerate = false, many = false, pinched = false;
   for (const Scene& scene : kScenes) {
     const MeshInfo info = inspect(test::load(scene.o2));
@@ -101,29 +109,16 @@ TEST(Exactness, ScenesHaveMeshesOfEveryKind) {
   EXPECT_TRUE(open && degenerate && many && pinched);
 }
 
-// Defects that no available file has: edges of three faces and more, randomly flipped faces, duplicates,
-// faces without area.
-TEST(Exactness, SpoiltMesh) {
-  std::mt19937 random(9);
-  Mesh mesh = test::turned(test::load("blobby.off", "fit"), 3);
-  const std::size_t count = mesh.triangles.size();
-  for (std::size_t i = 0; i < count; i += 20) {
-    const auto [a, b, c] = mesh.triangles[i];
-    const auto added = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.push_back(mesh.positions[a] +
-                             test::random_point({{-.05, -.05, -.05}, {.05, .05, .05}}, random));
-    mesh.positions.push_back(0.5 * (mesh.positions[b] + mesh.positions[c]));
-    mesh.triangles.insert(
-        mesh.triangles.end(),
-        {{a, b, added}, {c, b, a}, {a, a, b}, {b, c, added + 1}, {added + 1, added + 1, added + 1}});
-  }
+// Defects that no installed file has.
+TEST(Exactness, MeshWithDefects) {
+  const Mesh mesh = test::with_defects(test::load("blobby.off", "fit"));
   const MeshInfo info = inspect(mesh);
   ASSERT_GT(info.nonmanifold_edges, 0u);
   ASSERT_GT(info.degenerate_faces, 0u);
   ASSERT_GT(info.duplicate_faces, 0u);
   ASSERT_FALSE(info.oriented);
   expect_agreement(test::load("head.off", "fit"), mesh, 256);
-  expect_agreement(mesh, test::load("head.off", "fit"), 512);  // turned faces make many charts
+  expect_agreement(mesh, test::load("head.off", "fit"), 512);  // flipped faces make many charts
 }
 
 }  // namespace

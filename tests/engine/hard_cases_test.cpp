@@ -1,8 +1,19 @@
-// Inputs that break careless engines: ties everywhere, contact, extreme scales, slivers, soup.
+// Difficult inputs: ties everywhere, contact, extreme scales, slivers, soups.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
 #include "core/geometry/vec.h"
-#include "engine/oracle.h"
-#include "engine/simd_targets.h"
-#include "engine/support.h"
+#include "support/engines.h"
+#include "support/map_checks.h"
+#include "support/meshes.h"
+#include "support/oracle.h"
+#include "support/points.h"
+#include "support/shapes.h"
+#include "support/simd_targets.h"
 
 namespace sdm {
 namespace {
@@ -16,11 +27,12 @@ class HardCases : public testing::TestWithParam<test::EngineOnTarget> {
     const Surface surface(o1, {.resolution = resolution});
     const Sites sites(o2);
     const double tolerance = 1e-6 * test::scene_diagonal(o1, o2);
-    const std::vector<Vec3> points = test::sample_points(surface);
+    const std::vector<Vec3> points = surface.sample_points();
     const auto expected = test::evaluate([&](const Vec3& p) { return oracle::brute_force(o2, p); }, points);
-    test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam().engine}), expected,
-                     tolerance);
-    test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = GetParam().engine}),
+    test::expect_map(surface, sites, compute_map(surface, sites, {.engine = make_engine(GetParam().name)}),
+                     expected, tolerance);
+    test::expect_closest_points(sites, points,
+                                closest_points(sites, points, {.engine = make_engine(GetParam().name)}),
                                 expected, tolerance);
   }
 
@@ -35,11 +47,12 @@ TEST_P(HardCases, ConcentricSpheres) {
   expect_exact(test::placed(test::sphere(2), "scale:0.001"), test::sphere(4));
 }
 
-TEST_P(HardCases, EverySiteEquallyNear) {
+TEST_P(HardCases, EquidistantSites) {
   const Sites sites(test::sphere(5));
   const std::vector<Vec3> centre(1000, Vec3{});
   const double expected = oracle::brute_force(sites.mesh(), {});
-  test::expect_closest_points(sites, centre, closest_points(sites, centre, {.engine = GetParam().engine}),
+  test::expect_closest_points(sites, centre,
+                              closest_points(sites, centre, {.engine = make_engine(GetParam().name)}),
                               std::vector<double>(centre.size(), expected), 1e-6);
 }
 
@@ -52,13 +65,13 @@ TEST_P(HardCases, IdenticalMeshes) {
   const Mesh mesh = test::load("head.off", "fit");
   const Surface surface(mesh, {.resolution = 256});
   const Sites sites(mesh);
-  test::expect_map(surface, sites, compute_map(surface, sites, {.engine = GetParam().engine}),
+  test::expect_map(surface, sites, compute_map(surface, sites, {.engine = make_engine(GetParam().name)}),
                    std::vector<double>(surface.sample_texels().size(), 0.0),
                    1e-6 * test::scene_diagonal(mesh, mesh));
 }
 
-// A face whose third corner is on its longest side but for rounding: by its normal, which is noise, points
-// may seem to lie over it that are far away.
+// A face whose third corner is on its longest side up to rounding: its normal is noise, by which distant
+// points may appear to lie over the face.
 TEST_P(HardCases, SliversWhoseNormalIsNoise) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -80,7 +93,7 @@ TEST_P(HardCases, SliversWhoseNormalIsNoise) {
     const auto expected =
         test::evaluate([&](const Vec3& p) { return oracle::brute_force(mesh, p); }, queries);
     ASSERT_NEAR(expected[0], 0, 1e-12);
-    const auto closest = closest_points(sites, queries, {.engine = GetParam().engine});
+    const auto closest = closest_points(sites, queries, {.engine = make_engine(GetParam().name)});
     for (std::size_t k = 0; k < queries.size(); ++k) {
       EXPECT_NEAR(closest[k].distance, expected[k], 1e-9);
       EXPECT_NEAR(norm(closest[k].point - queries[k]), closest[k].distance, 1e-12);
@@ -88,7 +101,7 @@ TEST_P(HardCases, SliversWhoseNormalIsNoise) {
   }
 }
 
-TEST_P(HardCases, TinyAndFar) {
+TEST_P(HardCases, TinyMeshesFarAway) {
   expect_exact(test::cube(), test::placed(test::sphere(1), "scale:1e-6,translate:1000:200:-300"));
   expect_exact(test::cube(), test::placed(test::sphere(1), "scale:1e-6,translate:1:1:1"));
   expect_exact(test::placed(test::cube(), "scale:1e-6"), test::placed(test::sphere(3), "translate:0:0:1.5"));
@@ -112,17 +125,13 @@ TEST_P(HardCases, Slivers) {
   // A fan of needles, a thousand times longer than wide and worse, of which many share the tip.
   for (const double width : {1e-3, 1e-6, 1e-9, 1e-12}) {
     SCOPED_TRACE(width);
-    Mesh fan;
-    fan.positions = {{0, 0, 0}};
-    for (std::uint32_t i = 0; i <= 200; ++i)
-      fan.positions.push_back({1, width * i, 0.1 * std::sin(0.05 * i)});
-    for (std::uint32_t i = 1; i <= 200; ++i) fan.triangles.push_back({0, i, i + 1});
+    const Mesh fan = test::needles(width);
     expect_exact(test::placed(test::sphere(2), "translate:0.5:0:0"), fan);
     expect_exact(test::placed(test::sphere(2), "scale:0.01,translate:0.5:0:0.02"), fan);
   }
 }
 
-// Once, the walls of a flat triangle let points on its extension through in single precision.
+// Regression: in single precision, points on the extension of a flat triangle passed its walls.
 TEST_P(HardCases, CapsAlmostWithoutHeight) {
   for (const double height : {1e-5, 1e-7, 1e-9, 1e-12, 0.0}) {
     SCOPED_TRACE(height);
@@ -136,8 +145,7 @@ TEST_P(HardCases, CapsAlmostWithoutHeight) {
 }
 
 TEST_P(HardCases, SingleTriangle) {
-  const Mesh triangle{
-      .positions = {{0, 0, 0}, {1, 0, 0.2}, {0.3, 0.8, 0}}, .triangles = {{0, 1, 2}}, .corner_uvs = {}};
+  const Mesh triangle = test::single_triangle();
   expect_exact(test::sphere(2), triangle);
   expect_exact(triangle, test::sphere(2));
   expect_exact(triangle, triangle);
@@ -170,12 +178,13 @@ TEST_P(HardCases, RandomQueries) {
   std::mt19937 random(7);
   const Mesh mesh = test::soup(1000, random);
   const Sites sites(mesh);
-  std::vector<Vec3> queries;  // scattered: nothing that neighbours could share
+  std::vector<Vec3> queries;  // scattered, so that neighbours share nothing
   for (int i = 0; i < 5000; ++i) queries.push_back(test::random_point({{-2, -2, -2}, {3, 3, 3}}, random));
   const auto expected = test::evaluate([&](const Vec3& p) { return oracle::brute_force(mesh, p); }, queries);
-  test::expect_closest_points(sites, queries, closest_points(sites, queries, {.engine = GetParam().engine}),
+  test::expect_closest_points(sites, queries,
+                              closest_points(sites, queries, {.engine = make_engine(GetParam().name)}),
                               expected, 1e-6 * 8);
-  EXPECT_TRUE(closest_points(sites, {}, {.engine = GetParam().engine}).empty());
+  EXPECT_TRUE(closest_points(sites, {}, {.engine = make_engine(GetParam().name)}).empty());
 }
 
 }  // namespace

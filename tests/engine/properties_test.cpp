@@ -1,7 +1,18 @@
 // Properties of distance maps of any meshes.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
 #include "core/geometry/vec.h"
-#include "engine/oracle.h"
-#include "engine/support.h"
+#include "support/engines.h"
+#include "support/map_checks.h"
+#include "support/meshes.h"
+#include "support/oracle.h"
+#include "support/points.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -14,7 +25,7 @@ class Properties : public testing::TestWithParam<std::string> {
 };
 INSTANTIATE_TEST_SUITE_P(Engines, Properties, testing::ValuesIn(test::engine_names()), test::engine_name);
 
-TEST_P(Properties, RigidMotionOfBothLeavesDistances) {
+TEST_P(Properties, RigidMotionOfBothPreservesDistances) {
   const char* motion = "rotate:20:-130:77,translate:0.3:-0.4:0.25";
   const Mesh o1 = test::load("head.off", "fit"), o2 = test::load("elephant-with-holes.off", "fit");
   const Sites here(o2), there(test::placed(o2, motion));
@@ -27,8 +38,8 @@ TEST_P(Properties, RigidMotionOfBothLeavesDistances) {
   EXPECT_TRUE(distances.none());
 }
 
-// Whatever the map held before, of another surface, engine or limit.
-TEST_P(Properties, AMapComputedInPlaceIsAsIfNew) {
+// The previous contents may be of another surface, engine or limit.
+TEST_P(Properties, ComputingInPlaceEqualsANewMap) {
   const Sites sites(test::load("elephant.off", "fit"));
   const Surface large(test::load("bunny.obj", "fit"), {.resolution = 256});
   const Surface small(test::load("head.off", "fit"), {.resolution = 64});
@@ -55,7 +66,7 @@ TEST_P(Properties, AMapComputedInPlaceIsAsIfNew) {
     }
 }
 
-TEST_P(Properties, OneLipschitzBetweenNeighbouringTexels) {
+TEST_P(Properties, NeighbouringTexelsAreOneLipschitz) {
   const Surface surface(test::load("bunny.obj", "fit"), {.resolution = 256});
   const Sites sites(test::load("elephant.off", "fit"));
   const DistanceMap signed_map = map(surface, sites);
@@ -81,7 +92,7 @@ TEST_P(Properties, OneLipschitzBetweenNeighbouringTexels) {
 TEST_P(Properties, RefitEqualsRebuild) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Mesh rest = test::load("elephant.off", "fit");
-  // A twist about z that carries vertices far from where the tree was built.
+  // A twist about z: vertices move far from where the tree was built.
   Mesh twisted = rest;
   for (Vec3& p : twisted.positions) {
     const double angle = 4 * p[2], c = std::cos(angle), s = std::sin(angle);
@@ -97,7 +108,7 @@ TEST_P(Properties, RefitEqualsRebuild) {
   EXPECT_TRUE(distances.none());
 }
 
-TEST(Refit, LeavesEverythingAsItWasWhenRefused) {
+TEST(RejectedRefit, ChangesNothing) {
   const Mesh mesh = test::load("elephant.off", "fit");
   Sites sites(mesh);
   std::vector<Vec3> positions = mesh.positions;
@@ -114,7 +125,7 @@ TEST(Refit, LeavesEverythingAsItWasWhenRefused) {
   EXPECT_NEAR(closest_points(sites, query)[0].distance, oracle::brute_force(mesh, query[0]), 1e-6);
 }
 
-TEST_P(Properties, UnionIsTheMinimum) {
+TEST_P(Properties, DistanceToAUnionIsTheMinimum) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Mesh a = test::load("elephant-with-holes.off", "fit,translate:0.3:0:0");
   const Mesh b = test::load("knot2.off", "fit,translate:-0.3:0.2:0");
@@ -133,12 +144,13 @@ TEST_P(Properties, UnionIsTheMinimum) {
   EXPECT_LT(nearer_a, surface.sample_texels().size());
 }
 
-TEST_P(Properties, MaxDistanceCutsAndCounts) {
+TEST_P(Properties, MaxDistanceOmitsAndCountsTexels) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Sites sites(test::load("elephant.off", "fit,translate:0.5:0:0"));
   const DistanceMap all = map(surface, sites);
   const double limit = 0.3, tolerance = 1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh());
-  const DistanceMap near = compute_map(surface, sites, {.engine = make_engine(GetParam()), .max_distance = limit});
+  const DistanceMap near =
+      compute_map(surface, sites, {.engine = make_engine(GetParam()), .max_distance = limit});
   std::size_t beyond = 0, wrong = 0;
   test::Disagreements distances(tolerance);
   for (const std::uint32_t t : surface.sample_texels()) {
@@ -158,10 +170,12 @@ TEST_P(Properties, MaxDistanceCutsAndCounts) {
   EXPECT_GT(beyond, surface.sample_texels().size() / 10);
   EXPECT_LT(beyond, surface.sample_texels().size());
 
-  const DistanceMap nothing = compute_map(surface, sites, {.engine = make_engine(GetParam()), .max_distance = 1e-9});
+  const DistanceMap nothing =
+      compute_map(surface, sites, {.engine = make_engine(GetParam()), .max_distance = 1e-9});
   EXPECT_EQ(nothing.beyond_max_distance, surface.sample_texels().size());
   const std::vector<Vec3> far{{100, 0, 0}};
-  const ClosestPoint none = closest_points(sites, far, {.engine = make_engine(GetParam()), .max_distance = 1.0})[0];
+  const ClosestPoint none =
+      closest_points(sites, far, {.engine = make_engine(GetParam()), .max_distance = 1.0})[0];
   EXPECT_EQ(none.type, SiteType::none);
   EXPECT_EQ(none.site, kNone);
 }
@@ -170,14 +184,14 @@ TEST_P(Properties, MapEqualsClosestPoints) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 64});
   const Sites sites(test::load("elephant-with-holes.off", "fit"));
   const DistanceMap texels = map(surface, sites);
-  const auto closest = closest_points(sites, test::sample_points(surface), {.engine = make_engine(GetParam())});
+  const auto closest = closest_points(sites, surface.sample_points(), {.engine = make_engine(GetParam())});
   test::Disagreements distances(1e-6 * test::scene_diagonal(surface.mesh(), sites.mesh()));
   for (std::size_t i = 0; i < closest.size(); ++i)
     distances.compare(i, texels.distance[surface.sample_texels()[i]], closest[i].distance);
   EXPECT_TRUE(distances.none());
 }
 
-TEST_P(Properties, ThreadsDoNotMatter) {
+TEST_P(Properties, DoNotDependOnTheNumberOfThreads) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Sites sites(test::load("elephant.off", "fit"));
   const DistanceMap many = map(surface, sites);
@@ -202,7 +216,8 @@ TEST_P(Properties, ProgressCancels) {
   (void)compute_map(surface, sites, {.engine = make_engine(GetParam()), .progress = watch});
   EXPECT_GT(last, 0);
   const auto stop = [](std::string_view, double) { return false; };
-  EXPECT_THROW((void)compute_map(surface, sites, {.engine = make_engine(GetParam()), .progress = stop}), Cancelled);
+  EXPECT_THROW((void)compute_map(surface, sites, {.engine = make_engine(GetParam()), .progress = stop}),
+               Cancelled);
 }
 
 }  // namespace

@@ -1,15 +1,17 @@
 // Every texel of every map by rasterisation against the reference engine.
 #include "core/geometry/vec.h"
-#include "engine/oracle.h"
 #include "gl/support.h"
+#include "support/map_checks.h"
+#include "support/oracle.h"
+#include "support/points.h"
 
 namespace sdm {
 namespace {
 
 using test::Disagreements;
 
-// How far the foot of the perpendicular from q onto a site's line or plane lies from the site itself: 0 where
-// q is in the site's region of influence. A face too thin for its plane to mean anything passes.
+// The distance of the foot of the perpendicular from q onto a site's line or plane lies from the site itself:
+// 0 where q is in the site's region of influence. A face too thin for its plane to mean anything passes.
 double foot_beyond_site(const Sites& sites, SiteType type, std::uint32_t site, const Vec3& q) {
   const std::vector<Vec3>& p = sites.mesh().positions;
   if (type == SiteType::edge) {
@@ -71,7 +73,7 @@ void expect_signs(const Surface& surface, const DistanceMap& map, const Distance
 class Agreement : public testing::TestWithParam<test::Scene> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, Agreement, testing::ValuesIn(test::scenes()), test::scene_name);
 
-TEST_P(Agreement, EveryTexelWithTheReference) {
+TEST_P(Agreement, EveryTexelMatchesTheReference) {
   const test::Scene& scene = GetParam();
   const Surface surface(scene.o1(), scene.atlas);
   const Sites sites(scene.o2());
@@ -93,7 +95,7 @@ TEST_P(Agreement, EveryTexelWithTheReference) {
 }
 
 // The scenes cover all awkward kinds of meshes.
-TEST(Agreement, ScenesHaveMeshesOfEveryKind) {
+TEST(Agreement, ScenesCoverAllKindsOfMeshes) {
   bool open = false, nonmanifold = false, degenerate = false, large = false;
   for (const test::Scene& scene : test::scenes()) {
     const MeshInfo info = inspect(scene.o2());

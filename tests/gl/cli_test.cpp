@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/run.h"
 #include "cli/samples.h"
+#include "support/run_sdm.h"
 
 namespace sdm::test {
 namespace {
@@ -43,7 +43,7 @@ void expect_laws(const Json& r) {
   EXPECT_EQ(count(r, "stencil_lookups"), count(r, "stencil_hits") + count(r, "stencil_misses"));
 }
 
-TEST_F(GlCommand, TellsWhatTheCpuTellsAndWhatItDid) {
+TEST_F(GlCommand, ReportsTheStatisticsOfTheCpuEngineAndItsCounters) {
   const Json cpu = report({});
   const Json gl = report({"--engine", "gl"});
   EXPECT_FALSE(cpu.contains("raster"));
@@ -67,7 +67,7 @@ TEST_F(GlCommand, OptionsReachTheEngine) {
   EXPECT_EQ(count(stencil, "stencil_misses") - count(stencil, "stencil_evictions"), 3u);
 }
 
-TEST_F(GlCommand, WrongOptionsAreUsageErrorsAndUnknownDevicesFail) {
+TEST_F(GlCommand, InvalidOptionsAreUsageErrorsAndUnknownDevicesFail) {
   EXPECT_EQ(run_sdm(map({"--engine", "gl", "--stencil-values", "0"})).code, 2);
   EXPECT_EQ(run_sdm(map({"--engine", "gl", "--stencil-values", "256"})).code, 2);
   EXPECT_EQ(run_sdm(map({"--engine", "gl", "--clip", "scissors"})).code, 2);

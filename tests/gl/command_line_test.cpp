@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/run.h"
 #include "cli/samples.h"
+#include "support/run_sdm.h"
 
 namespace sdm::test {
 namespace {
@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Json = nlohmann::json;
 
-TEST(DevicesCommand, ListsWhatTheLibraryLists) {
+TEST(DevicesCommand, ListsTheDevicesOfTheLibrary) {
   const std::vector<GlDevice> devices = gl_devices();
   const Outcome table = run_sdm({"devices"});
   const Outcome json = run_sdm({"devices", "--json"});
@@ -36,9 +36,9 @@ TEST(DevicesCommand, ListsWhatTheLibraryLists) {
   EXPECT_EQ(Json::parse(json.out), expected);
 }
 
-struct GlOptions : ::testing::Test, TwoTori {};
+struct GlCommandOptions : ::testing::Test, TwoTori {};
 
-TEST_F(GlOptions, AreForTheGlEngineOnly) {
+TEST_F(GlCommandOptions, RequireTheGlEngine) {
   for (const std::vector<std::string>& option : {std::vector<std::string>{"--gl-device", "0"},
                                                  {"--clip", "planes"},
                                                  {"--clip", "stencil"},
@@ -56,7 +56,7 @@ TEST_F(GlOptions, AreForTheGlEngineOnly) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-TEST_F(GlOptions, StencilValuesAreForTheStencilAndFromOneTo255) {
+TEST_F(GlCommandOptions, StencilValuesRequireStencilAndRangeFrom1To255) {
   EXPECT_THAT(run_sdm(map({"--engine", "gl", "--stencil-values", "3"})).err,
               StartsWith("--stencil-values: needs --clip stencil\n"));
   for (const char* values : {"0", "256", "-1", "many", "1.5"}) {
@@ -67,7 +67,7 @@ TEST_F(GlOptions, StencilValuesAreForTheStencilAndFromOneTo255) {
 }
 
 struct WithoutDevice : ::testing::Test, TwoTori {
-  /// The run fails with one sentence that has both words, and leaves no trace.
+  /// The command fails with one sentence that contains both strings, and leaves no files.
   void expect_failure(const Outcome& run, const std::string& fault, const std::string& advice) const {
     EXPECT_EQ(run.code, 1);
     EXPECT_EQ(run.out, "");
@@ -77,7 +77,7 @@ struct WithoutDevice : ::testing::Test, TwoTori {
   }
 };
 
-TEST_F(WithoutDevice, NoDriverIsOneSentence) {
+TEST_F(WithoutDevice, MissingDriverIsOneSentence) {
   for (const char* name : {"__EGL_VENDOR_LIBRARY_DIRS", "__EGL_VENDOR_LIBRARY_FILENAMES"}) {
     const Conditions conditions{.environment = {std::string(name) + "=/nowhere"}};
     expect_failure(run_sdm({"devices"}, conditions), "no device", "libgl1-mesa-dri");
@@ -87,7 +87,7 @@ TEST_F(WithoutDevice, NoDriverIsOneSentence) {
   }
 }
 
-TEST_F(WithoutDevice, TooOldAnOpenGLIsOneSentence) {
+TEST_F(WithoutDevice, OldOpenGLIsOneSentence) {
   const Conditions mesa_44{
       .environment = {"__EGL_VENDOR_LIBRARY_FILENAMES=/usr/share/glvnd/egl_vendor.d/50_mesa.json",
                       "MESA_GL_VERSION_OVERRIDE=4.4"}};
@@ -95,7 +95,7 @@ TEST_F(WithoutDevice, TooOldAnOpenGLIsOneSentence) {
   expect_failure(run_sdm(map({"--engine", "gl"}), mesa_44), "no OpenGL 4.5", "driver");
 }
 
-TEST_F(WithoutDevice, AnUnknownOneIsRefusedWithAList) {
+TEST_F(WithoutDevice, UnknownDeviceErrorListsTheDevices) {
   expect_failure(run_sdm(map({"--engine", "gl", "--gl-device", "no such device"})), "no such device",
                  gl_devices()[0].name);
 }

@@ -1,5 +1,5 @@
-// Contexts: on which device, current on which thread, and what goes wrong. These tests need a device; where
-// there is no graphics card, Mesa's llvmpipe is one, and so without any they fail.
+// Contexts: choice of the device, current thread, errors. These tests require a device; without a graphics
+// card, Mesa's llvmpipe is one.
 #define EGL_NO_X11
 #include "engine/gl/device/context.h"
 
@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <thread>
 
-#include "gl/error_of.h"
 #include "gl/replaced.h"
+#include "support/error_of.h"
 
 namespace sdm::gl {
 namespace {
@@ -33,7 +33,7 @@ TEST(GlContext, DevicesAreListedHardwareFirst) {
   }
 }
 
-TEST(GlContext, IsTheOneThatIsWanted) {
+TEST(GlContext, UsesTheRequestedDevice) {
   const std::vector<GlDevice> devices = gl_devices();
   EXPECT_EQ(Context("").device().name, devices[0].name);
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -46,7 +46,7 @@ TEST(GlContext, IsTheOneThatIsWanted) {
   EXPECT_EQ(Context(part).device().name, devices[0].name);
 }
 
-TEST(GlContext, UnknownDevicesAreRefusedWithAListOfThoseThereAre) {
+TEST(GlContext, UnknownDeviceErrorListsTheDevices) {
   const std::vector<GlDevice> devices = gl_devices();
   for (const std::string wanted : {"no such device", "1000", "-1", "99999999999999999999999", "0x0"}) {
     const std::string error = error_of([&] { Context{wanted}; });
@@ -56,7 +56,7 @@ TEST(GlContext, UnknownDevicesAreRefusedWithAListOfThoseThereAre) {
   }
 }
 
-TEST(GlContext, IsOpenGL45CoreThatTellsOfResetsWhereItCan) {
+TEST(GlContext, IsOpenGL45CoreWithResetNotification) {
   const Context context("");
   const Context::Current current(context);
   EXPECT_GE(epoxy_gl_version(), 45);
@@ -72,7 +72,7 @@ TEST(GlContext, IsOpenGL45CoreThatTellsOfResetsWhereItCan) {
   }
 }
 
-TEST(GlContext, MovesWithItsDevice) {
+TEST(GlContext, MoveKeepsTheDevice) {
   Context first("");
   const std::string name = first.device().name;
   Context second(std::move(first));
@@ -81,7 +81,7 @@ TEST(GlContext, MovesWithItsDevice) {
   second.check("moving");
 }
 
-TEST(GlCurrent, NestsAndRestoresTheFormerContext) {
+TEST(GlCurrent, NestsAndRestoresThePreviousContext) {
   const Context outer(""), inner("");
   EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
   {
@@ -104,7 +104,7 @@ TEST(GlCurrent, NestsAndRestoresTheFormerContext) {
   EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
 }
 
-TEST(GlCurrent, RestoresTheApiThatTheThreadHasBound) {
+TEST(GlCurrent, RestoresTheBoundApi) {
   for (const EGLenum api : {EGL_OPENGL_ES_API, EGL_OPENGL_API}) {
     ASSERT_TRUE(eglBindAPI(api));
     const Context context("");
@@ -114,7 +114,7 @@ TEST(GlCurrent, RestoresTheApiThatTheThreadHasBound) {
   }
 }
 
-TEST(GlCurrent, IsFreeForTheNextThread) {
+TEST(GlCurrent, ReleasesTheContextForOtherThreads) {
   const Context context("");
   GLuint buffer = 0;
   const auto on_a_thread = [&](auto work) {
@@ -130,7 +130,7 @@ TEST(GlCurrent, IsFreeForTheNextThread) {
   EXPECT_TRUE(glIsBuffer(buffer));
 }
 
-TEST(GlCurrent, RefusesASecondThreadAtTheSameTime) {
+TEST(GlCurrent, RejectsConcurrentUse) {
   const Context context("");
   const Context::Current current(context);
   std::thread([&] {
@@ -152,11 +152,11 @@ struct GlCheck : ::testing::Test {
   }
 };
 
-TEST_F(GlCheck, IsSilentWhereAllIsWell) {
+TEST_F(GlCheck, PassesWithoutErrors) {
   EXPECT_EQ(error(), "");
 }
 
-TEST_F(GlCheck, TellsAnErrorOnce) {
+TEST_F(GlCheck, ReportsAnErrorOnce) {
   glEnable(GL_RGBA);
   expect_error("GL_INVALID_ENUM");
   EXPECT_EQ(error(), "");
@@ -165,7 +165,7 @@ TEST_F(GlCheck, TellsAnErrorOnce) {
   EXPECT_EQ(error(), "");
 }
 
-TEST_F(GlCheck, TellsThatMemoryIsShort) {
+TEST_F(GlCheck, ReportsOutOfMemory) {
   GLuint texture = 0;
   GLint side = 0, layers = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
@@ -177,7 +177,7 @@ TEST_F(GlCheck, TellsThatMemoryIsShort) {
   glDeleteTextures(1, &texture);
 }
 
-TEST_F(GlCheck, TellsOfAReset) {
+TEST_F(GlCheck, ReportsAReset) {
   const auto expect_reset = [&](PFNGLGETGRAPHICSRESETSTATUSPROC status, const std::string& what) {
     const Replaced reset(epoxy_glGetGraphicsResetStatus, status);
     expect_error(what);
@@ -188,7 +188,7 @@ TEST_F(GlCheck, TellsOfAReset) {
   EXPECT_EQ(error(), "");
 }
 
-TEST_F(GlCheck, TellsOfALostContextWhoseErrorsNeverEnd) {
+TEST_F(GlCheck, ReportsALostContextThatRepeatsErrorsForever) {
   const Replaced lost(epoxy_glGetError, PFNGLGETERRORPROC([]() -> GLenum { return GL_CONTEXT_LOST; }));
   expect_error("was reset");
 }

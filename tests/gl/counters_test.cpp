@@ -1,5 +1,7 @@
-// What the options of <sdm/gl.h> change: counters, and never a bit of the map.
+// The options of <sdm/gl.h> change the counters of the report, but no bit of the map.
 #include "gl/support.h"
+#include "support/map_checks.h"
+#include "support/points.h"
 
 namespace sdm {
 namespace {
@@ -15,11 +17,11 @@ struct Pair {
 
 class Counters : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, Counters,
-                         testing::Values("BoxAroundFigure", "FigureInBox", "Spoilt", "Soup",
+                         testing::Values("BoxAroundFigure", "FigureInBox", "WithDefects", "Soup",
                                          "CoplanarContact", "Identical", "SmallDetailFarAway"),
                          [](const auto& scene) { return scene.param; });
 
-TEST_P(Counters, BoundsSaveWorkAndChangeNoBit) {
+TEST_P(Counters, BoundCullingReducesWorkAndKeepsEveryBit) {
   const Pair pair(GetParam());
   for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
     const GlOptions with{.clip = clip}, without{.clip = clip, .bound_culling = false};
@@ -36,7 +38,7 @@ TEST_P(Counters, BoundsSaveWorkAndChangeNoBit) {
 }
 
 // Both draw the same distances; of sites that tie to rounding, either may win.
-TEST_P(Counters, StencilAndPlanesFindTheSameDistances) {
+TEST_P(Counters, StencilAndPlanesGiveTheSameDistances) {
   const Pair pair(GetParam());
   const test::GlMap planes = gl_map(pair.surface, pair.sites, {.clip = GlClip::planes});
   const test::GlMap stencil = gl_map(pair.surface, pair.sites, {.clip = GlClip::stencil});
@@ -47,7 +49,7 @@ TEST_P(Counters, StencilAndPlanesFindTheSameDistances) {
 }
 
 // An LRU cache of more values holds at any time all that one of fewer holds, so misses can only become fewer.
-TEST(Stencil, FewerValuesMissMoreAndChangeNoBit) {
+TEST(Stencil, FewerValuesMissMoreAndKeepEveryBit) {
   for (const char* name : {"CoplanarContact", "Needles", "OnOneTriangle", "TinyBesideLarge"}) {
     SCOPED_TRACE(name);
     const Pair pair(name);
@@ -69,7 +71,7 @@ TEST(Stencil, FewerValuesMissMoreAndChangeNoBit) {
   }
 }
 
-// With more faces than values, the cache has to evict; with fewer, never.
+// The cache evicts if there are more faces than values, and only then.
 TEST(Stencil, EvictsOnlyWhenFull) {
   const Pair many("BoxAroundFigure");  // 12 faces
   const auto report = [](const Pair& pair, int values) {
@@ -81,7 +83,7 @@ TEST(Stencil, EvictsOnlyWhenFull) {
   EXPECT_GT(report(Pair("LargeMap"), 255).stencil_evictions, 0u);
 }
 
-TEST_P(Counters, DoNotDependOnThreadsOrRepetition) {
+TEST_P(Counters, AreDeterministicForAnyThreadCount) {
   const Pair pair(GetParam());
   for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
     const test::GlMap first = gl_map(pair.surface, pair.sites, {.clip = clip});
@@ -96,8 +98,8 @@ TEST_P(Counters, DoNotDependOnThreadsOrRepetition) {
 }
 
 // The regions of a single triangle, its three edges and three vertices fill space without overlap: each texel
-// is drawn once, but next to the walls between them.
-TEST(Fragments, OfOneTriangleCoverEachTexelOnce) {
+// is drawn once, except near the walls between them.
+TEST(Counters, FragmentsOfOneTriangleCoverEachTexelOnce) {
   const Pair pair("OneTriangle");
   for (const bool bounds : {true, false}) {
     const GlReport r = gl_map(pair.surface, pair.sites, {.bound_culling = bounds}).report;
@@ -108,15 +110,15 @@ TEST(Fragments, OfOneTriangleCoverEachTexelOnce) {
 }
 
 // Of a box's edges the six diagonals of its sides lie between coplanar faces: nothing is closest to them.
-TEST(Sites, BetweenCoplanarFacesAreDropped) {
+TEST(Counters, SitesBetweenCoplanarFacesAreDropped) {
   const Pair pair("FigureInBox");
   const GlReport r = gl_map(pair.surface, pair.sites).report;
   EXPECT_EQ(r.sites, 12u + 18u + 8u);
   EXPECT_EQ(r.sites_dropped, 6u);
 }
 
-// The pairs grow as the product of both meshes, the work must not.
-TEST(Bounds, LeaveFewPolygonsOfLargeMeshes) {
+// The number of pairs is the product of the sizes of both meshes; the work must grow more slowly.
+TEST(Counters, BoundsCullAlmostAllPairsOfLargeMeshes) {
   const Pair pair("Apart");
   const GlReport r = gl_map(pair.surface, pair.sites).report;
   EXPECT_GT(r.pairs, 1000000000u);

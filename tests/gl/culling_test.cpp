@@ -1,10 +1,18 @@
-// Regions, their oriented boxes and clipping never lose a closest point.
+// Regions, their oriented boxes and clipping keep every closest point.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
 #include <map>
+#include <random>
+#include <vector>
 
 #include "engine/gl/oriented_box.h"
 #include "engine/gl/pair_culling.h"
 #include "engine/reference/reference_engine.h"
-#include "engine/support.h"
+#include "support/meshes.h"
+#include "support/points.h"
+#include "support/shapes.h"
 
 namespace sdm::gl {
 namespace {
@@ -43,7 +51,7 @@ bool inside(const OrientedBox& box, const Vec3& p) {
   return true;
 }
 
-TEST(Culling, RegionsAndBoxesHoldTheClosestPoints) {
+TEST(Culling, RegionsAndBoxesContainTheClosestPoints) {
   for (const auto& [name, mesh] : meshes()) {
     SCOPED_TRACE(name);
     const Sites sites(mesh);
@@ -75,7 +83,7 @@ TEST(Culling, RegionsAndBoxesHoldTheClosestPoints) {
 }
 
 TEST(Culling, OrientedBoxesOfNarrowRegionsAreNarrow) {
-  // On a fine sphere wedges and cones are as narrow as the faces are small; boxes that were not would cull
+  // On a fine sphere wedges and cones are as narrow as the faces are small; wide boxes would cull
   // nothing.
   const Sites sites(test::sphere(4));
   for (const auto& [site, region] : regions_of(internals(sites))) {
@@ -88,7 +96,7 @@ TEST(Culling, OrientedBoxesOfNarrowRegionsAreNarrow) {
   }
 }
 
-TEST(Culling, BoxesThatShareAPointMayMeet) {
+TEST(Culling, OverlappingBoxesAreNeverSeparated) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(-1, 1);
   int apart = 0;
@@ -113,7 +121,7 @@ TEST(Culling, BoxesThatShareAPointMayMeet) {
   EXPECT_GT(apart, 2000);
 }
 
-TEST(ConvexPolygon, KeepsExactlyWhatTheHalfPlaneHolds) {
+TEST(ConvexPolygon, CutKeepsExactlyTheHalfPlane) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> unit(-1, 1);
   int inside_count = 0, outside_count = 0;
@@ -143,7 +151,7 @@ TEST(ConvexPolygon, KeepsExactlyWhatTheHalfPlaneHolds) {
   EXPECT_GT(outside_count, 1000);
 }
 
-TEST(Blocks, PartTheTree) {
+TEST(Blocks, PartitionTheTree) {
   const Surface surface(test::load("cow.off", "fit"), {.resolution = 128});
   const TileTree tiles(surface);
   const DomainTree tree(surface, tiles, UnitFrame{});

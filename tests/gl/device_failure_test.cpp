@@ -1,12 +1,15 @@
-// Devices that fail in the middle of a map: one sentence, and the next map works.
+// Devices that fail during a map: the error is one sentence, and the next map works.
 #include <gmock/gmock.h>
+#include <sdm/sdm.h>
 
 #include <cstring>
+#include <vector>
 
-#include "engine/support.h"
-#include "gl/error_of.h"
 #include "gl/replaced.h"
 #include "gl/support.h"
+#include "support/error_of.h"
+#include "support/map_checks.h"
+#include "support/meshes.h"
 
 namespace sdm {
 namespace {
@@ -30,41 +33,41 @@ class DeviceFailure : public testing::TestWithParam<GlClip> {
 };
 INSTANTIATE_TEST_SUITE_P(Clips, DeviceFailure, testing::Values(GlClip::planes, GlClip::stencil));
 
-TEST_P(DeviceFailure, AResetWhileDrawing) {
+TEST_P(DeviceFailure, ResetWhileDrawing) {
   const Replaced reset(epoxy_glGetGraphicsResetStatus,
                        PFNGLGETGRAPHICSRESETSTATUSPROC([]() -> GLenum { return GL_GUILTY_CONTEXT_RESET; }));
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("was reset"));
 }
 
-// Once, a device whose context could not be made current again ended the process.
-TEST_P(DeviceFailure, AContextThatIsGone) {
+// Regression: a device whose context could not be made current again ended the process.
+TEST_P(DeviceFailure, LostContext) {
   const Replaced current(epoxy_eglMakeCurrent,
                          PFNEGLMAKECURRENTPROC([](EGLDisplay, EGLSurface, EGLSurface,
                                                   EGLContext) -> EGLBoolean { return EGL_FALSE; }));
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("cannot be used"));
 }
 
-TEST_P(DeviceFailure, MemoryThatIsShort) {
+TEST_P(DeviceFailure, OutOfMemory) {
   const Replaced error(epoxy_glGetError, PFNGLGETERRORPROC([]() -> GLenum { return GL_OUT_OF_MEMORY; }));
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("not enough memory"));
 }
 
-TEST_P(DeviceFailure, AFramebufferThatIsNotSupported) {
+TEST_P(DeviceFailure, UnsupportedFramebuffer) {
   const Replaced status(epoxy_glCheckNamedFramebufferStatus,
                         PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC(
                             [](GLuint, GLenum) -> GLenum { return GL_FRAMEBUFFER_UNSUPPORTED; }));
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("cannot draw"));
 }
 
-// A device that draws nothing must not pass for one that found nothing.
-TEST_P(DeviceFailure, TexelsLeftOut) {
+// A device that draws nothing must be an error, not a map without values.
+TEST_P(DeviceFailure, MissingTexels) {
   const Replaced draw(epoxy_glDrawElements,
                       PFNGLDRAWELEMENTSPROC([](GLenum, GLsizei, GLenum, const void*) {}));
   EXPECT_THAT(test::error_of([&] { return map(); }), HasSubstr("without a value"));
 }
 
-// A driver that lets the wrong site win would have drawn another distance than that site's.
-TEST_P(DeviceFailure, WrongDepthsAreNotedAndDoNoHarm) {
+// If a driver lets the wrong site win, the depth drawn differs from that site's distance.
+TEST_P(DeviceFailure, WrongDepthsAreReportedAndCorrected) {
   static const PFNGLGETTEXTURESUBIMAGEPROC read = epoxy_glGetTextureSubImage;
   const Replaced wrong(epoxy_glGetTextureSubImage,
                        PFNGLGETTEXTURESUBIMAGEPROC([](GLuint texture, GLint level, GLint x, GLint y, GLint z,
@@ -82,8 +85,8 @@ TEST_P(DeviceFailure, WrongDepthsAreNotedAndDoNoHarm) {
   EXPECT_TRUE(distances.none());
 }
 
-TEST_P(DeviceFailure, AShaderThatIsRefused) {
-  {  // the device at hand is given up first: the next map compiles anew
+TEST_P(DeviceFailure, RejectedShader) {
+  {  // discard the cached device, so that the next map compiles its shaders
     const Replaced reset(epoxy_glGetGraphicsResetStatus, PFNGLGETGRAPHICSRESETSTATUSPROC([]() -> GLenum {
                            return GL_UNKNOWN_CONTEXT_RESET;
                          }));

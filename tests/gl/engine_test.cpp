@@ -4,13 +4,17 @@
 
 #include "core/geometry/vec.h"
 #include "gl/support.h"
+#include "support/map_checks.h"
+#include "support/meshes.h"
+#include "support/points.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
 
 using test::gl_map;
 
-TEST(GlEngine, RigidMotionOfBothLeavesDistances) {
+TEST(GlEngine, RigidMotionOfBothPreservesDistances) {
   const Mesh o1 = test::with_uvs(test::load("head.off", "fit"), 256);
   const Mesh o2 = test::load("elephant.off", "fit");
   const AtlasOptions atlas{.kind = AtlasKind::uv, .resolution = 256};
@@ -29,7 +33,7 @@ TEST(GlEngine, RigidMotionOfBothLeavesDistances) {
   }
 }
 
-TEST(GlEngine, OneLipschitzBetweenNeighbouringTexels) {
+TEST(GlEngine, NeighbouringTexelsAreOneLipschitz) {
   const test::Scene& scene = test::scene("Penetrating");
   const Surface surface(scene.o1(), scene.atlas);
   const test::GlMap map = gl_map(surface, Sites(scene.o2()));
@@ -49,7 +53,7 @@ TEST(GlEngine, OneLipschitzBetweenNeighbouringTexels) {
 TEST(GlEngine, RefitEqualsRebuild) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Mesh rest = test::load("elephant.off", "fit");
-  Mesh twisted = rest;  // about z, which carries vertices far from where the tree was built
+  Mesh twisted = rest;  // about z: vertices move far from where the tree was built
   for (Vec3& p : twisted.positions) {
     const double angle = 4 * p[2], c = std::cos(angle), s = std::sin(angle);
     p = {c * p[0] - s * p[1], s * p[0] + c * p[1], 1.5 * p[2]};
@@ -63,7 +67,7 @@ TEST(GlEngine, RefitEqualsRebuild) {
   EXPECT_TRUE(distances.none());
 }
 
-TEST(GlEngine, MapsOfAnySizeFollowEachOther) {
+TEST(GlEngine, ConsecutiveMapsMayDifferInSize) {
   const Sites sites(test::load("elephant.off", "fit"));
   const Surface small(test::load("head.off", "fit"), {.resolution = 64});
   const Surface large(test::cube(0.4), {.resolution = 512});
@@ -77,7 +81,7 @@ TEST(GlEngine, MapsOfAnySizeFollowEachOther) {
     }
 }
 
-TEST(GlEngine, ThreadsMayAskAtOnce) {
+TEST(GlEngine, MapsFromConcurrentThreads) {
   const Sites elephant(test::load("elephant.off", "fit")), box(test::cube(0.3));
   const Surface head(test::load("head.off", "fit"), {.resolution = 128});
   const Surface ball(test::sphere(2), {.resolution = 64});
@@ -120,7 +124,7 @@ TEST(GlEngine, ProgressIsReportedFromOneThreadAtATime) {
   EXPECT_EQ(last, 1);
 }
 
-TEST(GlEngine, CancelsAtAnyCallAndMapsAgain) {
+TEST(GlEngine, CanCancelAtAnyProgressCall) {
   const Surface surface(test::load("head.off", "fit"), {.resolution = 128});
   const Sites sites(test::load("elephant.off", "fit"));
   for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {

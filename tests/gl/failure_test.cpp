@@ -3,8 +3,9 @@
 
 #include "core/platform.h"
 #include "engine/engine.h"
-#include "gl/error_of.h"
 #include "gl/support.h"
+#include "support/error_of.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -13,7 +14,7 @@ using test::error_of;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-struct Refusal : testing::Test {
+struct GlErrors : testing::Test {
   [[nodiscard]] std::string error(const GlOptions& raster) const {
     return error_of([&] { return test::gl_map(surface, sites, raster); });
   }
@@ -21,20 +22,20 @@ struct Refusal : testing::Test {
   const Sites sites{test::sphere(1)};
 };
 
-TEST_F(Refusal, OfStencilValuesOutOfRange) {
+TEST_F(GlErrors, StencilValuesOutOfRange) {
   for (const int values : {0, -1, 256, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()})
     EXPECT_THAT(error({.clip = GlClip::stencil, .stencil_values = values}),
                 AllOf(HasSubstr(std::to_string(values)), HasSubstr("255")));
   EXPECT_EQ(error({.clip = GlClip::stencil, .stencil_values = 1}), "");
 }
 
-TEST_F(Refusal, OfUnknownDevices) {
+TEST_F(GlErrors, UnknownDevices) {
   for (const char* device : {"no such device", "99", "-1", "0x0", "99999999999999999999"})
     EXPECT_THAT(error({.device = device}), HasSubstr(device));
   EXPECT_EQ(error({}), "") << "the next map works";
 }
 
-TEST_F(Refusal, BeforeThereIsASurface) {
+TEST_F(GlErrors, BeforeASurfaceExists) {
   EXPECT_FALSE(gl_device({}, 256).name.empty());
   EXPECT_THAT(error_of([] { return gl_device({.device = "no such device"}, 256); }),
               HasSubstr("no such device"));
@@ -43,20 +44,21 @@ TEST_F(Refusal, BeforeThereIsASurface) {
   EXPECT_THAT(error_of([] { return gl_device({.stencil_values = 0}, 256); }), HasSubstr("255"));
 }
 
-TEST_F(Refusal, OfClosestPoints) {
+TEST_F(GlErrors, ClosestPointsAreNotSupported) {
   const std::vector<Vec3> query{{0, 0, 0}};
   EXPECT_THAT(error_of([&] { return closest_points(sites, query, {.engine = make_engine("gl")}); }),
               AllOf(HasSubstr("gl"), HasSubstr("maps"), HasSubstr("cpu")));
 }
 
-TEST_F(Refusal, OfAMaximumDistanceThatIsNone) {
+TEST_F(GlErrors, InvalidMaximumDistance) {
   for (const double limit : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW((void)compute_map(surface, sites, {.engine = make_engine("gl"), .max_distance = limit}), Error);
+    EXPECT_THROW((void)compute_map(surface, sites, {.engine = make_engine("gl"), .max_distance = limit}),
+                 Error);
 }
 
-TEST_F(Refusal, OfAMapLargerThanTheDevicesTextures) {
+TEST_F(GlErrors, MapLargerThanTheTexturesOfTheDevice) {
   // One small triangle, in coordinates of its own, keeps the work small. The table of texels needs 1 GB; the
-  // map would need 5 more, so the engine is asked without it.
+  // map would need 5 more, so only the engine is called.
   if (available_memory() < std::size_t{4} << 30) GTEST_SKIP() << "needs 4 GB of memory";
   const Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                   .triangles = {{0, 1, 2}},
@@ -69,7 +71,7 @@ TEST_F(Refusal, OfAMapLargerThanTheDevicesTextures) {
   EXPECT_EQ(error({}), "") << "the next map works";
 }
 
-TEST_F(Refusal, OfNoDeviceThatIsListed) {
+TEST_F(GlErrors, NoneForListedDevices) {
   const std::vector<GlDevice> devices = gl_devices();
   ASSERT_FALSE(devices.empty());
   EXPECT_TRUE(std::ranges::is_sorted(devices, {}, &GlDevice::software)) << "hardware first";

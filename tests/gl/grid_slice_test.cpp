@@ -1,8 +1,14 @@
 // The rasteriser on a slice of a grid: any plane with an affine map is a domain, not only a face of O1.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <vector>
+
 #include "engine/gl/rasteriser.h"
 #include "engine/reference/reference_engine.h"
-#include "engine/support.h"
 #include "sites/closest_on_face.h"
+#include "support/map_checks.h"
+#include "support/meshes.h"
 
 namespace sdm::gl {
 namespace {
@@ -18,7 +24,7 @@ PlanarDomain slice(double z) {
   return domain;
 }
 
-TEST(GridSlice, HoldsTheClosestFaces) {
+TEST(GridSlice, ContainsTheClosestFaces) {
   const Sites sites(test::load("cow.off", "fit"));
   const sites::SitesData& impl = internals(sites);
   const RasterDevice device("");

@@ -1,4 +1,4 @@
-// Machines without the OpenGL libraries. This program's dlopen stands before the system's.
+// Machines without the OpenGL libraries, simulated: this program's dlopen replaces the system's.
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "gl/error_of.h"
+#include "support/error_of.h"
 
 namespace {
 std::set<std::string, std::less<>> missing;
@@ -28,14 +28,14 @@ struct MissingLibrary : ::testing::Test {
   ~MissingLibrary() override { missing.clear(); }
 };
 
-TEST_F(MissingLibrary, IsNamedWithItsPackage) {
+TEST_F(MissingLibrary, ErrorNamesTheLibraryAndItsPackage) {
   missing = {"libEGL.so.1"};
   EXPECT_THAT(test::error_of(gl_devices), AllOf(HasSubstr("libEGL.so.1"), HasSubstr("libegl1")));
   missing = {"libGL.so.1", "libOpenGL.so.0"};
   EXPECT_THAT(test::error_of(gl_devices), AllOf(HasSubstr("libOpenGL.so.0"), HasSubstr("libopengl0")));
 }
 
-TEST_F(MissingLibrary, OneOfTheTwoForOpenGLIsEnough) {
+TEST_F(MissingLibrary, OneOfTheOpenGLLibrariesSuffices) {
   missing = {"libOpenGL.so.0"};
   EXPECT_EQ(test::error_of(gl_devices), "");
 }

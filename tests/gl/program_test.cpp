@@ -6,7 +6,7 @@
 
 #include "engine/gl/device/context.h"
 #include "engine/gl/shaders.h"
-#include "gl/error_of.h"
+#include "support/error_of.h"
 
 namespace sdm::gl {
 namespace {
@@ -35,20 +35,20 @@ struct GlProgram : ::testing::Test {
   }
 };
 
-TEST_F(GlProgram, ThoseOfTheEngineCompileAndLink) {
+TEST_F(GlProgram, EngineProgramsCompileAndLink) {
   const Program polygons(kSitePolygonVert, kSitePolygonFrag), points(kTexelPointsVert, kTexelPointsFrag);
   EXPECT_TRUE(glIsProgram(polygons.id()));
   EXPECT_TRUE(glIsProgram(points.id()));
   context.check("compiling");
 }
 
-TEST_F(GlProgram, KnowsTheUniformsThatAreUsed) {
+TEST_F(GlProgram, FindsTheActiveUniforms) {
   const Program program(kVertex, kFragment);
   EXPECT_GE(program.uniform("size"), 0);
   EXPECT_THAT(error_of([&] { return program.uniform("colour"); }), HasSubstr("colour"));
 }
 
-TEST_F(GlProgram, AShaderThatDoesNotCompileIsNamedAndItsCompilerQuoted) {
+TEST_F(GlProgram, CompileErrorNamesTheShaderAndQuotesTheLog) {
   constexpr std::string_view kText = "#version 450 core\nvoid main() { no_such_function(); }\n";
   expect_refusal({"bad.vert", kText}, kFragment, "bad.vert", "no_such_function");
   expect_refusal(kVertex, {"bad.frag", kText}, "bad.frag", "no_such_function");
@@ -56,7 +56,7 @@ TEST_F(GlProgram, AShaderThatDoesNotCompileIsNamedAndItsCompilerQuoted) {
   expect_refusal(kVertex, {"new.frag", "#version 990 core\nvoid main() {}\n"}, "new.frag", "(");
 }
 
-TEST_F(GlProgram, ALongComplaintIsCutShort) {
+TEST_F(GlProgram, LongLogsAreTruncated) {
   std::string text = "#version 450 core\nvoid main() {\n";
   for (int i = 0; i < 1000; ++i) text += "unknown_" + std::to_string(i) + " = 1;\n";
   const std::string error = error_of([&] { Program({"bad.vert", text + "}\n"}, kFragment); });
@@ -64,14 +64,14 @@ TEST_F(GlProgram, ALongComplaintIsCutShort) {
   EXPECT_LT(error.size(), 2000u);
 }
 
-TEST_F(GlProgram, ShadersThatDoNotFitAreBothNamed) {
+TEST_F(GlProgram, LinkErrorNamesBothShaders) {
   constexpr ShaderSource kOther{
       "other.frag", "#version 450 core\nin vec3 missing;\nout vec4 c;\nvoid main() { c = missing.xyzz; }\n"};
   expect_refusal(kVertex, kOther, "good.vert", "missing");
   expect_refusal(kVertex, kOther, "other.frag", "missing");
 }
 
-TEST_F(GlProgram, LeavesNothingBehind) {
+TEST_F(GlProgram, ReleasesItsObjects) {
   GLuint id = 0;
   {
     const Program program(kVertex, kFragment);

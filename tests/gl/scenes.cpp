@@ -1,8 +1,13 @@
 #include "gl/scenes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 #include "core/geometry/vec.h"
+#include "support/meshes.h"
+#include "support/points.h"
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
@@ -19,19 +24,7 @@ Maker ball(int levels, const char* steps = "") {
   return [=] { return placed(sphere(levels), steps); };
 }
 
-Mesh triangle() {
-  return {.positions = {{0, 0, 0}, {1, 0, 0.2}, {0.3, 0.8, 0}}, .triangles = {{0, 1, 2}}, .corner_uvs = {}};
-}
-
-// A fan whose blades share their tip.
-Mesh needles(double width) {
-  Mesh fan{.positions = {{0, 0, 0}}, .triangles = {}, .corner_uvs = {}};
-  for (std::uint32_t i = 0; i <= 200; ++i) fan.positions.push_back({1, width * i, 0.1 * std::sin(0.05 * i)});
-  for (std::uint32_t i = 1; i <= 200; ++i) fan.triangles.push_back({0, i, i + 1});
-  return fan;
-}
-
-// Triangles with an angle of almost 180°, and a small box, for a mesh needs some area.
+// Triangles with an angle of almost 180°, and a small box, because a mesh must have some area.
 Mesh caps() {
   Mesh mesh = placed(cube(0.01), "translate:-1:0:0");
   double y = 0;
@@ -55,7 +48,7 @@ Mesh book() {
   return mesh;
 }
 
-// A triangle with a tip so sharp that walls moved outwards by little move it by much.
+// A triangle with a tip so sharp that it moves far if its walls move outwards slightly.
 Mesh sharp_tip(double width) {
   return {.positions = {{0.2, 0, 0}, {-1, width / 2, 0}, {-1, -width / 2, 0}},
           .triangles = {{0, 1, 2}},
@@ -90,7 +83,7 @@ Maker triangles_at_random(std::size_t count) {
 #define SDM_FAR_AWAY "scale:0.001,translate:100000:-100000:100000"
 
 const std::vector<Scene> kScenes{
-    // Closed: standing beside each other, penetrating, and too far apart to tell much.
+    // Closed: side by side, penetrating, and far apart.
     {"Apart", file("bunny.obj"), file("armadillo.off", "fit,translate:0.8:0:0")},
     {"Penetrating", file("head.off"), file("armadillo.off"), {.resolution = 256}, true},
     {"LargeMap", file("head.off"), file("elephant.off"), {.resolution = 1024}, true},
@@ -103,8 +96,11 @@ const std::vector<Scene> kScenes{
     // Open, of many components, non-manifold, degenerate.
     {"Holes", file("lion-head.off", "fit,translate:0.3:0.2:0.1"), file("elephant-with-holes.off")},
     {"Parts", file("bear_bis.off"), file("blobby_3cc.off")},
-    {"Spoilt", file("head.off"), [] { return spoilt("blobby.off"); }},
-    {"OnSpoilt", [] { return spoilt("blobby.off"); }, file("head.off"), {.resolution = 512}},
+    {"WithDefects", file("head.off"), [] { return with_defects(load("blobby.off", "fit")); }},
+    {"OnMeshWithDefects",
+     [] { return with_defects(load("blobby.off", "fit")); },
+     file("head.off"),
+     {.resolution = 512}},
     {"ZeroAreaFaces", file("triceratops.off"), file("degtri_sliding.off", "fit,translate:0.4:0:0")},
     {"Polygons", file("dino.off"), file("boeing.off")},
     {"Soup", ball(2), triangles_at_random(400)},
@@ -117,8 +113,8 @@ const std::vector<Scene> kScenes{
     // Few faces, and large ones.
     {"FigureInBox", file("lion-head.off"), box(0.55)},
     {"BoxAroundFigure", box(0.55), file("lion-head.off")},
-    {"OneTriangle", ball(2), [] { return triangle(); }},
-    {"OnOneTriangle", [] { return triangle(); }, ball(3, "scale:0.4"), {.resolution = 128}, true},
+    {"OneTriangle", ball(2), single_triangle},
+    {"OnOneTriangle", single_triangle, ball(3, "scale:0.4"), {.resolution = 128}, true},
     // Ties and contact.
     {"Identical", file("elephant.off"), file("elephant.off")},
     {"CoplanarContact", box(1), box(1, "translate:2:0.5:0.25"), {.resolution = 128}},
@@ -184,22 +180,6 @@ std::string scene_name(const testing::TestParamInfo<Scene>& info) {
 
 void PrintTo(const Scene& scene, std::ostream* out) {
   *out << scene.name;
-}
-
-Mesh spoilt(std::string_view name) {
-  std::mt19937 random(9);
-  Mesh mesh = turned(load(std::string(name), "fit"), 3);
-  const std::size_t count = mesh.triangles.size();
-  for (std::size_t i = 0; i < count; i += 20) {
-    const auto [a, b, c] = mesh.triangles[i];
-    const auto added = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.push_back(mesh.positions[a] + random_point({{-.05, -.05, -.05}, {.05, .05, .05}}, random));
-    mesh.positions.push_back(0.5 * (mesh.positions[b] + mesh.positions[c]));
-    mesh.triangles.insert(
-        mesh.triangles.end(),
-        {{a, b, added}, {c, b, a}, {a, a, b}, {b, c, added + 1}, {added + 1, added + 1, added + 1}});
-  }
-  return mesh;
 }
 
 Mesh with_uvs(Mesh mesh, std::uint32_t resolution) {

@@ -1,10 +1,12 @@
-// Pairs of meshes for the gl engine: every kind that can trouble a rasteriser of regions.
+// Pairs of meshes for the gl engine: all kinds that are difficult for a rasteriser of regions.
 #pragma once
 
-#include <functional>
-#include <vector>
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
 
-#include "engine/support.h"
+#include <functional>
+#include <string_view>
+#include <vector>
 
 namespace sdm::test {
 
@@ -19,9 +21,6 @@ struct Scene {
 [[nodiscard]] const Scene& scene(std::string_view name);
 [[nodiscard]] std::string scene_name(const testing::TestParamInfo<Scene>& info);
 void PrintTo(const Scene& scene, std::ostream* out);
-
-/// A closed mesh with defects: edges of three faces, flipped faces, duplicates, faces without area.
-[[nodiscard]] Mesh spoilt(std::string_view name);
 
 /// The mesh with texture coordinates of its own, laid out as an atlas of charts: the same texels in the same
 /// places wherever the mesh is moved to.

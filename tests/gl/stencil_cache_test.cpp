@@ -1,4 +1,4 @@
-// The stencil cache against the plainest model of one: a list in order of use.
+// The stencil cache against a simple model: a list in order of use.
 #include "engine/gl/stencil_cache.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 class StencilCacheOf : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Values, StencilCacheOf, testing::Values(1, 2, 7, 255));
 
-TEST_P(StencilCacheOf, FollowsTheModel) {
+TEST_P(StencilCacheOf, MatchesAnLruModel) {
   struct Entry {
     std::uint32_t face;
     int value;
@@ -24,7 +24,7 @@ TEST_P(StencilCacheOf, FollowsTheModel) {
   std::mt19937 random(1);
   std::uint64_t hits = 0, evictions = 0;
   for (int i = 0; i < 20000; ++i) {
-    // Sometimes near the former faces, sometimes anywhere.
+    // Sometimes near the previous faces, sometimes anywhere.
     const auto faces = static_cast<std::uint32_t>(random() % 2 ? 2 * GetParam() + 1 : 600);
     const std::uint32_t face = static_cast<std::uint32_t>(random()) % faces;
     const StencilCache::Use use = cache.use(face);

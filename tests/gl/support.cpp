@@ -48,8 +48,7 @@ testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b) {
   return testing::AssertionSuccess();
 }
 
-void expect_laws(const GlReport& r, const Surface& surface, const Sites& sites,
-                 const GlOptions& options) {
+void expect_laws(const GlReport& r, const Surface& surface, const Sites& sites, const GlOptions& options) {
   EXPECT_FALSE(r.device.name.empty());
   EXPECT_FALSE(r.device.driver.empty());
   EXPECT_EQ(r.clip, options.clip);

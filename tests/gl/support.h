@@ -1,4 +1,4 @@
-// Maps by the gl engine, and what holds for each of them and its report.
+// Maps of the gl engine, and the invariants of a map and its report.
 #pragma once
 
 #include "gl/scenes.h"
@@ -9,10 +9,9 @@ struct GlMap : DistanceMap {
   GlReport report{};
 };
 
-[[nodiscard]] GlMap gl_map(const Surface& surface, const Sites& sites,
-                                 const GlOptions& options = {});
+[[nodiscard]] GlMap gl_map(const Surface& surface, const Sites& sites, const GlOptions& options = {});
 
-/// Whether two maps have the very same bits in every value.
+/// Whether two maps are bit-identical in every value.
 [[nodiscard]] testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b);
 
 /// Fails unless the counters obey the laws of <sdm/gl.h>, for a map without a maximum distance.

@@ -1,12 +1,19 @@
-// Tiles part the owned texels; their domains and bounds hold for every sample.
+// Tiles partition the owned texels; their domains and bounds are valid for every sample.
 #include "surface/tiles.h"
 
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
 #include <algorithm>
+#include <cmath>
+#include <random>
 #include <set>
+#include <vector>
 
 #include "engine/engine.h"
 #include "engine/gl/domain_tree.h"
-#include "engine/support.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
 #include "surface/surface_data.h"
 
 namespace sdm::gl {
@@ -26,7 +33,7 @@ std::vector<Scene> scenes() {
           {"soup", test::soup(80, random), test::soup(50, random)}};
 }
 
-TEST(Tiles, PartTheOwnedTexels) {
+TEST(Tiles, PartitionTheOwnedTexels) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
     const Surface surface(scene.o1, {.kind = scene.kind, .resolution = 256});
@@ -57,7 +64,7 @@ TEST(Tiles, PartTheOwnedTexels) {
   }
 }
 
-TEST(Tiles, DomainsHoldTheirSamples) {
+TEST(Tiles, DomainsContainTheirSamples) {
   for (const Scene& scene : scenes())
     for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
       SCOPED_TRACE(scene.name);
@@ -70,7 +77,7 @@ TEST(Tiles, DomainsHoldTheirSamples) {
         for (const std::uint32_t texel : tiles.of(tile)) {
           const Vec2 centre{texel % 256 + 0.5, texel / 256 + 0.5};
           ASSERT_NEAR(norm(domain.point(centre) - frame.to_unit(surface.texel_point(texel))), 0, 1e-12);
-          // Inside by the margin, beyond what a rasteriser moves a side, but for rounding.
+          // Inside by the margin, which exceeds the rasteriser's displacement of a side, up to rounding.
           const std::span<const Vec2> corners = domain.outline.corners();
           ASSERT_GE(corners.size(), 3u);
           double turn = 0;
@@ -113,7 +120,7 @@ TEST(Tiles, BoundsHoldForEverySample) {
   }
 }
 
-TEST(TileTreeCache, FollowsSurfaces) {
+TEST(TileTreeCache, TracksMovedAndReplacedSurfaces) {
   TileTreeCache cache;
   Surface cow(test::load("cow.off", "fit"), {.resolution = 128});
   const std::uint32_t tiles = cache.of(cow).tiles.count();
@@ -124,7 +131,7 @@ TEST(TileTreeCache, FollowsSurfaces) {
   const Surface pig(test::load("pig.off", "fit"), {.resolution = 128});
   EXPECT_EQ(cache.of(pig).tiles.count(), TileTree(pig).tiles.count());
   EXPECT_EQ(&cache.of(moved), kept);
-  // Where another surface takes the place of one that is gone.
+  // Another surface at the address of one that no longer exists.
   moved = Surface(test::load("pig.off", "fit"), {.resolution = 256});
   EXPECT_EQ(cache.of(moved).tiles.count(), TileTree(moved).tiles.count());
   EXPECT_NE(cache.of(moved).tiles.count(), tiles);

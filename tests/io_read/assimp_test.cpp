@@ -1,17 +1,18 @@
-// An independent reader agrees on real files and on what the tests write.
-#include <gtest/gtest.h>
-#include <sdm/io.h>
-
+// Agreement with an independent reader, on installed files and on files of the tests.
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <gtest/gtest.h>
+#include <sdm/io.h>
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
 #include <functional>
+#include <vector>
 
 #include "core/geometry/vec.h"
 #include "io_read/writers.h"
-#include "mesh/shapes.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -19,8 +20,7 @@ namespace {
 // The corners of all triangles, in single precision.
 std::vector<Vec3f> corners_by_assimp(const std::filesystem::path& file) {
   Assimp::Importer importer;
-  // The one transform in the 3DS files here is assimp's own, which turns z up into y up; others keep the axes
-  // of the file.
+  // For 3DS files assimp adds a transform from z up to y up; other formats keep the axes of the file.
   unsigned steps = aiProcess_Triangulate;
   if (file.extension() != ".3ds") steps |= aiProcess_PreTransformVertices;
   const aiScene* scene = importer.ReadFile(file, steps);
@@ -59,11 +59,11 @@ void expect_agreement(const std::filesystem::path& file) {
   EXPECT_LE(norm(our_sum - their_sum), tolerance * static_cast<double>(ours.size()));
 }
 
-TEST(Assimp, AgreesOnRealFiles) {
+TEST(Assimp, AgreesOnInstalledFiles) {
   for (const char* name :
        {"bunny.obj", "armadillo.off", "horse.3ds", "elephant.off", "camel.off", "fandisk.off", "hand.off",
         "sphere.stl", "pig.stl", "sphere.ply", "colored_tetra.ply"})
-    expect_agreement(std::filesystem::path(SDM_TEST_MESHES) / name);
+    expect_agreement(test::mesh_file(name));
 }
 
 TEST(Assimp, AgreesOnWrittenFiles) {

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "io_read/writers.h"
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -177,7 +177,7 @@ TEST(Errors, PlyHeaders) {
                "no list vertex_indices");
 }
 
-TEST(Errors, OffOfOtherKinds) {
+TEST(Errors, UnsupportedOffVariants) {
   expect_fault("a.off", "4OFF\n1 1 0\n", "three dimensions");
   expect_fault("a.off", "nOFF\n4\n1 1 0\n", "three dimensions");
   expect_fault("a.off", std::string("OFF BINARY\n\0\0\0\1", 15), "binary data");
@@ -247,8 +247,8 @@ TEST(Errors, DeeplyNestedJson) {
       "no triangles");
 }
 
-// A small file that shows one mesh very often asks for more memory than there is.
-TEST(Errors, ScenesThatGrow) {
+// A small file that instances one mesh very often requires more memory than available.
+TEST(Errors, ScenesLargerThanMemory) {
   const Mesh mesh = torus(100, 100);
   std::string nodes = "[{\"children\":[1";
   const int count = 100000;

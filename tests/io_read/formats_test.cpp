@@ -6,9 +6,10 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <vector>
 
 #include "io_read/writers.h"
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -26,7 +27,7 @@ void expect_same(const Mesh& read, const Mesh& written) {
   EXPECT_EQ(read.triangles, written.triangles);
 }
 
-// Coordinates that single precision does not hold.
+// Coordinates that are not representable in single precision.
 Mesh precise_torus() {
   Mesh mesh = torus(9, 7);
   for (Vec3& p : mesh.positions) p = {p[0] / 3, p[1] * 1e-20, p[2] * 1e20 / 7};
@@ -39,7 +40,7 @@ TEST(Obj, KeepsDoublesOrderAndTextureCoordinates) {
   EXPECT_EQ(read.corner_uvs, mesh.corner_uvs);
 }
 
-TEST(Obj, AllFormsOfCorners) {
+TEST(Obj, AllCornerSyntaxes) {
   const std::string vertices = "v 0 0 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 0.5\nvn 0 0 1\n";
   const std::pair<const char*, bool> faces[] = {{"f 1 2 3", false},
                                                 {"f 1/1 2/2 3/3", true},
@@ -63,16 +64,16 @@ TEST(Obj, AllFormsOfCorners) {
   }
 }
 
-TEST(Obj, RelativeIndicesCountFromWhereTheyStand) {
+TEST(Obj, RelativeIndicesCountBackFromTheirLine) {
   const Mesh read = read_as("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 5\nf -4 -3 -1\n");
   EXPECT_EQ(read.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}}));
 }
 
-TEST(Obj, FacesMayComeBeforeTheirVertices) {
+TEST(Obj, FacesMayPrecedeTheirVertices) {
   EXPECT_EQ(read_as("a.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles.size(), 1u);
 }
 
-TEST(Obj, SkipsWhatItDoesNotNeed) {
+TEST(Obj, SkipsOtherStatements) {
   const Mesh read = read_as(
       "a.obj",
       "\xEF\xBB\xBF# C:\\path\\\nmtllib a.mtl\no thing\ng a b\nusemtl red\ns off\n"
@@ -95,7 +96,7 @@ TEST(Obj, FacesMayHaveAnyNumberOfCorners) {
   EXPECT_EQ(read_as("a.obj", vertices + face + '\n').positions.size(), 3u);
 }
 
-TEST(Obj, LinesMayEndAsOnWindowsAndOldMacs) {
+TEST(Obj, AllLineEndings) {
   const Mesh mesh = torus(5, 4);
   for (const char* end : {"\r\n", "\r"}) {
     std::string contents;
@@ -104,7 +105,7 @@ TEST(Obj, LinesMayEndAsOnWindowsAndOldMacs) {
   }
 }
 
-TEST(Obj, TextureCoordinatesOfSomeCornersAreNone) {
+TEST(Obj, IgnoresTextureCoordinatesOfSomeCornersOnly) {
   EXPECT_TRUE(
       read_as("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\nf 1 2 3\n").corner_uvs.empty());
   EXPECT_TRUE(read_as("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt nan 0\nf 1/1 2/1 3/1\n").corner_uvs.empty());
@@ -162,7 +163,7 @@ TEST(Stl, NegativeZeroIsZero) {
   EXPECT_EQ(read.positions.size(), 4u);
 }
 
-TEST(Stl, BinaryMayHaveBytesToSpare) {
+TEST(Stl, BinaryMayHaveTrailingBytes) {
   const Mesh mesh = torus(4, 4);
   expect_same_shape(read_as("a.stl", stl_binary(mesh) + "spare"), mesh);
 }
@@ -180,7 +181,7 @@ TEST(Ply, AllEncodings) {
   }
 }
 
-TEST(Ply, EveryTypeAndPropertiesAndElementsToSkip) {
+TEST(Ply, AllTypesAndSkippedPropertiesAndElements) {
   struct Type {
     const char* name;
     void (*put)(std::string&, double, std::endian);
@@ -241,7 +242,7 @@ TEST(Ply, TextureCoordinatesOfVertices) {
   }
 }
 
-TEST(Ply, FacesMayComeFirstAndSomeHaveNoTextureCoordinates) {
+TEST(Ply, FacesMayPrecedeVerticesAndLackTextureCoordinates) {
   const Mesh read = read_as(
       "a.ply",
       "ply\r\nformat ascii 1.0\r\nelement face 3\r\nproperty list uchar int vertex_indices\r\nproperty list "
@@ -279,7 +280,7 @@ TEST(Gltf, BinaryAndJsonWithBuffersInsideAndOutside) {
 
 TEST(Gltf, NodeTransformsAreAppliedAndMeshesMerged) {
   const Mesh mesh = torus(8, 4);
-  // Turned by 90° about z and doubled, within a parent that moves; and a mirror image.
+  // Rotated by 90° about z and doubled, within a translated parent; and a mirror image.
   const std::string nodes =
       R"([{"children":[1,2],"translation":[10,0,0]},{"mesh":0,"rotation":[0,0,0.7071067811865476,0.7071067811865476],)"
       R"("scale":[2,2,2]},{"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]}])";
@@ -289,7 +290,7 @@ TEST(Gltf, NodeTransformsAreAppliedAndMeshesMerged) {
   for (std::size_t c = 0; c < original.size(); ++c) {
     const Vec3& p = original[c];
     const Vec3 turned{10 - 2 * p[1], 2 * p[0], 2 * p[2]}, mirrored{10 - p[0], p[1], p[2] + 5};
-    // The mirror image runs the other way round.
+    // The mirror image has the opposite orientation.
     const std::size_t m = original.size() + c / 3 * 3 + std::array{0, 2, 1}[c % 3];
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(merged[c][k], turned[k], 1e-14);
@@ -339,7 +340,7 @@ TEST(Tds, MeshesAreWeldedWithTextureCoordinates) {
   EXPECT_EQ(read.corner_uvs, mesh.corner_uvs);
 }
 
-TEST(Format, IsToldByContentFirst) {
+TEST(Format, IsDetectedByContentFirst) {
   const Mesh mesh = torus(6, 5);
   for (const std::string& contents : {obj(mesh), off(mesh), stl_text(mesh), stl_binary(mesh), ply_text(mesh),
                                       ply_binary(mesh, std::endian::little), glb(mesh), tds(mesh)})
@@ -347,12 +348,12 @@ TEST(Format, IsToldByContentFirst) {
       expect_same_shape(read_as(name, contents), mesh);
 }
 
-TEST(Format, IsToldByExtensionWhereContentDoesNot) {
+TEST(Format, IsDetectedByExtensionIfContentIsAmbiguous) {
   EXPECT_EQ(read_as("a.OFF", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").triangles.size(), 1u);
   EXPECT_EQ(read_as("a.Obj", "maplib x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").triangles.size(), 1u);
 }
 
-TEST(Vertices, UnusedOnesAreDroppedAndEqualOnesWelded) {
+TEST(Vertices, UnusedAreDroppedAndEqualAreWelded) {
   const Mesh read =
       read_as("a.obj", "v 9 9 9\nv 0 0 0\nv nan 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 1 0\nf 2 4 5\nf 6 5 7\n");
   EXPECT_EQ(read.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));

@@ -1,13 +1,14 @@
-// Any bytes give a valid mesh or sequence, or sdm::Error.
+// Any input gives a valid mesh or sequence, or an sdm::Error.
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/sequence.h>
 
 #include <random>
+#include <vector>
 
 #include "io_read/sequences.h"
 #include "io_read/writers.h"
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -42,7 +43,7 @@ std::vector<Seed> seeds() {
                                    {"CUBICSPLINE", {0, 1}, std::vector<float>(12, 0.5f)}, "", true)}};
 }
 
-// Whether it is read; fails the test where the outcome is neither of the two that are allowed.
+// Whether the file is read; fails the test unless it is read or rejected with an Error.
 bool try_read(const Seed& seed) {
   static const std::filesystem::path rest = write_file("rest.off", off(tetrahedron()));
   const std::filesystem::path file = write_file(seed.name, seed.contents);
@@ -108,8 +109,8 @@ TEST(Fuzz, MutatedFiles) {
       mutator.mutate(mutated.contents);
       refused += !try_read(mutated);
     }
-    EXPECT_GT(refused, 100u) << seed.name;   // the mutations do harm
-    EXPECT_LT(refused, 3000u) << seed.name;  // and do not always
+    EXPECT_GT(refused, 100u) << seed.name;   // mutations damage files
+    EXPECT_LT(refused, 3000u) << seed.name;  // but not always
   }
 }
 

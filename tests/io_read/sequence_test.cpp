@@ -1,14 +1,15 @@
-// Sequences: each form of input gives the frames that were written, and names the frame that is at fault.
+// Sequences: every form of input gives the frames that were written; errors name the frame.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/sequence.h>
 
 #include <fstream>
+#include <vector>
 
 #include "io_read/sequences.h"
 #include "io_read/writers.h"
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -89,7 +90,7 @@ TEST(Sequence, NumberedFilesOfEveryFormat) {
   }
 }
 
-TEST(Sequence, FilesComeInTheOrderOfTheirNumbers) {
+TEST(Sequence, FilesAreSortedByNumber) {
   const Mesh mesh = tetrahedron();
   const Frames frames = frames_of(mesh, 4);
   const std::string folder = fresh("order");
@@ -97,13 +98,13 @@ TEST(Sequence, FilesComeInTheOrderOfTheirNumbers) {
     write(std::string("order/walk_") + number + ".obj", obj(at(mesh, frames[t])));
   write("order/notes.txt", "8");
   write("order/walk.mtl", "");
-  std::filesystem::create_directories(folder + "walk_12.obj");  // no file
+  std::filesystem::create_directories(folder + "walk_12.obj");  // a folder, not a file
   MeshSequence sequence(folder);
   expect_frames(sequence, frames);
   EXPECT_EQ(sequence.frame_name(2), "walk_10.obj");
 }
 
-TEST(Sequence, PatternsTakeTheNamesThatPrintfWouldMake) {
+TEST(Sequence, PatternsMatchPrintfNames) {
   const Mesh mesh = tetrahedron();
   const std::string folder = fresh("printf");
   const auto add = [&](const std::string& name) { write("printf/" + name, obj(mesh)); };
@@ -125,7 +126,7 @@ TEST(Sequence, PatternsTakeTheNamesThatPrintfWouldMake) {
   expect_refused(folder + "a*.obj", {"a99999999999999999999.obj", "too large"});
 }
 
-TEST(Sequence, StepsAreFoundAndGapsAreFramesThatCannotBeRead) {
+TEST(Sequence, StepsAreDetectedAndGapsAreUnreadableFrames) {
   const Mesh mesh = tetrahedron();
   const Frames frames = frames_of(mesh, 4);
   const std::string folder = fresh("gaps");
@@ -139,7 +140,7 @@ TEST(Sequence, StepsAreFoundAndGapsAreFramesThatCannotBeRead) {
   expect_refused(fresh("empty"), {"no mesh files whose names end in a number"});
 }
 
-TEST(Sequence, FramesThatDifferFromTheFirstAreNamedAndOthersAreReadAllTheSame) {
+TEST(Sequence, MismatchedFramesAreErrorsAndLaterFramesReadable) {
   const Mesh mesh = torus(8, 4);
   const Frames frames = frames_of(mesh, 2);
   Mesh more = mesh, fewer = mesh, turned = mesh, far = mesh;
@@ -170,7 +171,7 @@ TEST(Sequence, FramesThatDifferFromTheFirstAreNamedAndOthersAreReadAllTheSame) {
   expect_refused(folder, {folder + ": 0000.obj: ", "NaN"});
 }
 
-TEST(Sequence, VerticesThatAreOneStayTogether) {
+TEST(Sequence, WeldedVerticesMustStayTogether) {
   const Mesh mesh = torus(8, 4);
   const Frames frames = frames_of(mesh, 2);
   fresh("weld");
@@ -215,7 +216,7 @@ TEST(SequenceNpy, EveryLayout) {
       }
 }
 
-TEST(SequenceNpy, AreFoundBesideTheMesh) {
+TEST(SequenceNpy, FindsTheArrayBesideTheMesh) {
   const Mesh mesh = tetrahedron();
   fresh("beside");
   const std::string file = write("beside/four.off", off(mesh));
@@ -225,7 +226,7 @@ TEST(SequenceNpy, AreFoundBesideTheMesh) {
 }
 
 // The array is that of the vertices in the file, which may repeat some and not use others.
-TEST(SequenceNpy, VerticesAreThoseOfTheFile) {
+TEST(SequenceNpy, VerticesAreInFileOrder) {
   const std::string file =
       write("seam.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 0 0 1\nf 2 3 4\nf 5 4 6\n");
   Frames frames{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 0, 1}}};
@@ -240,7 +241,7 @@ TEST(SequenceNpy, VerticesAreThoseOfTheFile) {
   expect_fault([&] { (void)apart.positions(1); }, {"frame 1 of seam.npy", "vertex 4 has moved away"});
 }
 
-TEST(SequenceNpy, FaultsAreNamed) {
+TEST(SequenceNpy, ErrorsNameTheFault) {
   const Mesh mesh = tetrahedron();
   const std::string good = npy(frames_of(mesh, 2)), file = write("four.off", off(mesh));
   const auto refuse = [&](const std::string& contents, const std::string& fault) {
@@ -287,7 +288,7 @@ TEST(SequenceNpy, FaultsAreNamed) {
 /// Two targets: the tetrahedron's tip moves along x, and its origin by (−1, −2, 0).
 const Frames kTargets{{{}, {}, {}, {1, 0, 0}}, {{-1, -2, 0}, {}, {}, {}}};
 
-/// The tetrahedron under weights, within a node that doubles it and moves it by 10 in z.
+/// The morphed tetrahedron, within a node that doubles it and moves it by 10 in z.
 std::vector<Vec3> morphed(double tip, double origin) {
   std::vector<Vec3> positions = tetrahedron().positions;
   positions[3][0] += tip;
@@ -326,7 +327,7 @@ TEST(SequenceGltf, WeightsAtARate) {
   expect_frames(cubic, {morphed(0, 1), morphed(0.5 + 1, 0.5 - 0.5), morphed(1, 0)});
 }
 
-TEST(SequenceGltf, FaultsAreNamed) {
+TEST(SequenceGltf, ErrorsNameTheFault) {
   const auto refuse = [](const WeightChannel& channel, const std::string& fault) {
     expect_refused(write("morph.glb", morph_gltf(tetrahedron(), kTargets, channel)), {"morph.glb: ", fault});
   };
@@ -351,7 +352,7 @@ TEST(SequenceGltf, FaultsAreNamed) {
   expect_refused(file, {"rate"}, {.rate = -1});
   expect_refused(file, {"rate"}, {.rate = std::nan("")});
   expect_refused(file, {"more than a billion"}, {.rate = 1e300});
-  // An infinite weight is a fault of its frame.
+  // An infinite weight is an error of its frame.
   MeshSequence infinite(
       write("inf.glb", morph_gltf(tetrahedron(), kTargets, {"LINEAR", {0, 1}, {0, 0, INFINITY, 1}})));
   expect_fault([&] { (void)infinite.positions(1); }, {"frame 1 (inf.glb at 1 s)", "vertex"});

@@ -1,4 +1,4 @@
-// Files of sequences made in memory.
+// Sequence files, built in memory.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -16,7 +16,7 @@ using Frames = std::vector<std::vector<Vec3>>;
 /// precision where the mesh's are multiples of 1/8.
 [[nodiscard]] Frames frames_of(const Mesh& mesh, std::size_t count);
 
-/// How an array lies in an NPY file.
+/// The layout of the array in an NPY file.
 struct NpyLayout {
   std::size_t number_bytes = 4;
   bool fortran_order = false;
@@ -27,7 +27,7 @@ struct NpyLayout {
 [[nodiscard]] std::string npy_header(const std::string& dictionary);
 
 /// A channel of an animation: `values` has the weights of all targets key by key; for CUBICSPLINE three rows
-/// a key.
+/// per key.
 struct WeightChannel {
   std::string interpolation = "LINEAR";
   std::vector<float> times, values;

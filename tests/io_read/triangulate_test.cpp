@@ -90,7 +90,7 @@ TEST(Triangulate, ConcaveQuadsInEveryPlane) {
       }
 }
 
-TEST(Triangulate, CornersInLineStayPartOfTheBorder) {
+TEST(Triangulate, KeepsCollinearCornersOnTheBorder) {
   expect_tiling({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
   expect_tiling(
       {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, 0}, {0, 3, 0}, {0, 1, 0}});
@@ -180,7 +180,7 @@ TEST(Triangulate, ManyHolesWithBridges) {
   expect_tiling(rotated(polygon));
 }
 
-TEST(Triangulate, PolygonsWithoutAreaOrThatCrossThemselvesGiveTrianglesToo) {
+TEST(Triangulate, DegenerateAndSelfIntersectingPolygons) {
   io::Triangulator triangulator;
   EXPECT_EQ(triangulator.triangulate(Polygon(6, Vec3{1, 2, 3})).size(), 4u);
   EXPECT_EQ(triangulator.triangulate(Polygon{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u);

@@ -3,30 +3,27 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
+
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 
 namespace {
 
-// Lives as long as the process; in memory where the system has such a place, for the tests write many files.
-struct Folder {
-  std::filesystem::path path =
-      std::filesystem::path(std::filesystem::exists("/dev/shm") ? "/dev/shm" : ::testing::TempDir()) /
-      ("sdm_io_read_" + std::to_string(getpid()));
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
+// In memory if possible, because the tests write many files.
+std::filesystem::path fast_folder() {
+  return std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path();
+}
 
 }  // namespace
 
 std::filesystem::path write_file(const std::string& name, std::string_view contents) {
-  static const Folder folder;
-  std::ofstream(folder.path / name, std::ios::binary) << contents;
-  return folder.path / name;
+  static const TemporaryFolder folder(fast_folder());
+  std::ofstream(folder / name, std::ios::binary) << contents;
+  return folder / name;
 }
 
 Mesh read_as(const std::string& name, std::string_view contents) {

@@ -1,4 +1,4 @@
-// Mesh files made in memory, and read back through a real file.
+// Mesh files, built in memory and read through a real file.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -21,7 +21,7 @@ Mesh read_as(const std::string& name, std::string_view contents);
 /// What read_mesh throws for a file with these contents, without the path; empty if it throws nothing.
 std::string fault_of(const std::string& name, std::string_view contents);
 
-/// The bytes of numbers, one after the other.
+/// Appends the bytes of a number.
 template <typename T>
 void put(std::string& out, T value, std::endian order = std::endian::little) {
   char raw[sizeof(T)];

@@ -1,12 +1,17 @@
-#include "samples.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/io.h>
 #include <sys/resource.h>
 
 #include <csignal>
 #include <fstream>
+#include <vector>
+
+#include "support/made_up_maps.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {
@@ -15,7 +20,7 @@ using Writer = std::function<void(const std::filesystem::path&)>;
 
 struct AllWriters : ::testing::Test {
   const Field field = [](const Vec3& p) { return p[0]; };
-  const Surface surface{torus(8), {.kind = AtlasKind::triangles, .resolution = 256}};
+  const Surface surface{ring(8), {.kind = AtlasKind::triangles, .resolution = 256}};
   const DistanceMap map = map_of(surface, field);
   const std::vector<float> vertices = at_vertices(surface.mesh(), field);
   const std::vector<Writer> writers{
@@ -28,7 +33,7 @@ struct AllWriters : ::testing::Test {
   TemporaryFolder folder;
 };
 
-/// While it lives, no file can grow beyond `bytes`: writing fails as on a full disk.
+/// During its lifetime no file can grow beyond `bytes`: writing fails as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -54,7 +59,7 @@ std::string contents(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST_F(AllWriters, LeaveNothingBehindOnAFullDisk) {
+TEST_F(AllWriters, LeaveNoFilesOnAFullDisk) {
   for (std::size_t i = 0; i < writers.size(); ++i)
     for (const rlim_t bytes : {0, 100, 1500, 6000}) {
       const FileSizeLimit limit(bytes);
@@ -69,7 +74,7 @@ TEST_F(AllWriters, LeaveNothingBehindOnAFullDisk) {
     }
 }
 
-TEST_F(AllWriters, LeaveAnEarlierFileAloneOnFailureAndReplaceItOnSuccess) {
+TEST_F(AllWriters, ReplaceAnExistingFileOnlyOnSuccess) {
   for (const Writer& write : writers) {
     const auto file = folder / "result";
     std::ofstream(file) << "earlier";
@@ -84,7 +89,7 @@ TEST_F(AllWriters, LeaveAnEarlierFileAloneOnFailureAndReplaceItOnSuccess) {
   }
 }
 
-TEST_F(AllWriters, RefuseAFolderThatIsNotThereAndANameThatIsTaken) {
+TEST_F(AllWriters, RejectMissingFoldersAndFoldersAsFiles) {
   std::filesystem::create_directory(folder / "taken");
   for (const Writer& write : writers) {
     EXPECT_THROW(write(folder / "missing/result"), Error);

@@ -42,7 +42,7 @@ TEST(ColorScale, IsSymmetricAboutZeroForSignedMaps) {
   EXPECT_GT(scale(1).r, scale(1).b);
 }
 
-TEST(ColorScale, SpendsTheWholeScaleOnAMapOfOneSign) {
+TEST(ColorScale, SpansMapsOfOneSignCompletely) {
   for (const auto& distances : {std::vector<float>{0.5f, 4}, std::vector<float>{-4, -0.5f}}) {
     const ColorScale scale = color_scale(map_with(distances, SignMethod::pseudonormal), {});
     EXPECT_EQ(scale.map, Colormap::viridis);
@@ -51,7 +51,7 @@ TEST(ColorScale, SpendsTheWholeScaleOnAMapOfOneSign) {
   }
 }
 
-TEST(ColorScale, StaysCentredOnZeroInALopsidedRange) {
+TEST(ColorScale, StaysCentredOnZeroInAsymmetricRanges) {
   const ColorScale scale = color_scale(map_with({-1, 2}, SignMethod::pseudonormal), {.range = {{-1, 3}}});
   EXPECT_EQ(scale(0), (Rgb{255, 255, 255}));
   EXPECT_EQ(scale(3), (Rgb{103, 0, 31}));
@@ -67,14 +67,14 @@ TEST(ColorScale, ToleranceBandsChangeExactlyAtTheTolerance) {
   EXPECT_GT(scale(-above).b, scale(-above).r);
 }
 
-TEST(ColorScale, AnExplicitMapWinsOverTheBands) {
+TEST(ColorScale, ExplicitColormapOverridesTheBands) {
   const ColorScale scale =
       color_scale(map_with({0, 1}, SignMethod::none), {.colormap = Colormap::paper2006, .tolerance = 0.5});
   EXPECT_EQ(scale(0), (Rgb{255, 0, 0}));
   EXPECT_EQ(scale(1), (Rgb{0, 255, 0}));
 }
 
-TEST(ColorScale, HasARangeEvenWhereTheMapHasNone) {
+TEST(ColorScale, HasARangeForMapsWithoutValues) {
   for (const auto& map : {map_with({kNaN}, SignMethod::none), map_with({}, SignMethod::pseudonormal),
                           map_with({0, 0}, SignMethod::none), map_with({-2}, SignMethod::pseudonormal),
                           map_with({7}, SignMethod::none)})
@@ -87,7 +87,7 @@ TEST(ColorScale, HasARangeEvenWhereTheMapHasNone) {
       }
 }
 
-TEST(ColorScale, RefusesRangesAndTolerancesThatAreNone) {
+TEST(ColorScale, RejectsInvalidRangesAndTolerances) {
   const DistanceMap map = map_with({1}, SignMethod::none);
   EXPECT_THROW((void)color_scale(map, {.range = {{1, 1}}}), Error);
   EXPECT_THROW((void)color_scale(map, {.range = {{2, 1}}}), Error);
@@ -95,8 +95,8 @@ TEST(ColorScale, RefusesRangesAndTolerancesThatAreNone) {
   EXPECT_THROW((void)color_scale(map, {.tolerance = -1.0}), Error);
 }
 
-// Sites next to each other have numbers that are close, or of a kind, more often than not.
-TEST(SiteColor, DiffersAmongCloseNumbers) {
+// Adjacent sites often have close numbers.
+TEST(SiteColor, DiffersBetweenCloseNumbers) {
   for (const SiteType type : {SiteType::vertex, SiteType::edge, SiteType::face}) {
     std::set<std::tuple<int, int, int>> colors;
     for (std::uint32_t site = 0; site < 256; ++site) {

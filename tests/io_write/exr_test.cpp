@@ -1,4 +1,3 @@
-#include "samples.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -7,10 +6,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/io.h>
 
 #include <bit>
+#include <cmath>
 #include <map>
 #include <random>
+#include <vector>
+
+#include "support/made_up_maps.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {
@@ -37,7 +43,7 @@ Channels read_exr(const std::filesystem::path& file, std::uint32_t n) {
   return channels;
 }
 
-/// What the file holds for a texel whose values are those of texel `source`.
+/// The values in the file for a texel whose values are those of texel `source`.
 std::vector<std::uint32_t> expected(const Surface& surface, const DistanceMap& map, std::size_t source) {
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
   const Vec3f& v = map.vector[source];
@@ -51,8 +57,8 @@ std::vector<std::uint32_t> expected(const Surface& surface, const DistanceMap& m
           surface.texel_faces()[source]};
 }
 
-TEST(Exr, HoldsMapsOverTime) {
-  const Surface surface(torus(12), {.resolution = 64});
+TEST(Exr, MapsOverTime) {
+  const Surface surface(ring(12), {.resolution = 64});
   TemporalMaps maps;
   for (int t = 0; t < 3; ++t) maps.add(map_of(surface, [t](const Vec3& p) { return p[t]; }));
   const TemporaryFolder folder;
@@ -67,7 +73,7 @@ TEST(Exr, HoldsMapsOverTime) {
     ASSERT_NEAR(value("mean.D"), (p[0] + p[1] + p[2]) / 3, 1e-6);
     ASSERT_EQ(value("coverage.A"), 1);
   }
-  EXPECT_THROW(write_exr(folder / "other.exr", Surface(torus(12), {.resolution = 32}), maps), Error);
+  EXPECT_THROW(write_exr(folder / "other.exr", Surface(ring(12), {.resolution = 32}), maps), Error);
   EXPECT_FALSE(std::filesystem::exists(folder / "other.exr"));
 }
 
@@ -120,30 +126,30 @@ void expect_holds(const Surface& surface, const DistanceMap& map) {
     }
 }
 
-TEST(Exr, HoldsTheMapBitByBitAndFillsGutters) {
+TEST(Exr, KeepsEveryBitAndFillsGutters) {
   for (const AtlasKind kind : {AtlasKind::triangles, AtlasKind::charts}) {
-    const Surface surface(torus(6), {.kind = kind, .resolution = 200});
+    const Surface surface(ring(6), {.kind = kind, .resolution = 200});
     expect_holds(surface, map_of(surface, [](const Vec3& p) { return p[0] * p[1] - p[2]; }));
   }
 }
 
-TEST(Exr, HoldsMissingValuesAsNaNAndNone) {
-  const Surface surface(torus(6), {.kind = AtlasKind::triangles, .resolution = 300});
+TEST(Exr, MissingValuesAreNaNAndNone) {
+  const Surface surface(ring(6), {.kind = AtlasKind::triangles, .resolution = 300});
   const DistanceMap map = map_of(surface, [](const Vec3& p) { return p[0] < 0 ? p[1] : std::nan(""); });
   ASSERT_GT(map.beyond_max_distance, 0u);
   expect_holds(surface, map);
 }
 
-TEST(Exr, HoldsTheLackOfAnythingInRangeAsInfinity) {
-  const Surface surface(torus(6), {.kind = AtlasKind::triangles, .resolution = 300});
+TEST(Exr, NothingInRangeIsInfinity) {
+  const Surface surface(ring(6), {.kind = AtlasKind::triangles, .resolution = 300});
   const DistanceMap map = map_of(
       surface, [](const Vec3& p) { return p[0] < 0 ? p[1] : std::numeric_limits<double>::infinity(); });
   ASSERT_GT(map.beyond_max_distance, 0u);
   expect_holds(surface, map);
 }
 
-TEST(Exr, HoldsTheSmallestMap) {
-  const Surface surface(torus(3), {.kind = AtlasKind::charts, .resolution = 64});
+TEST(Exr, SmallestMap) {
+  const Surface surface(ring(3), {.kind = AtlasKind::charts, .resolution = 64});
   expect_holds(surface, map_of(surface, [](const Vec3&) { return -0.0; }));
 }
 

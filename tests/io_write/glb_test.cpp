@@ -1,14 +1,19 @@
 #include "io/write/pictures/color_scale.h"
-#include "samples.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/io.h>
 #include <tiny_gltf.h>
 
 #include <cstdlib>
 #include <cstring>
 #include <set>
+#include <vector>
+
+#include "support/made_up_maps.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {
@@ -32,7 +37,7 @@ std::vector<Element> values(const tinygltf::Model& model, int accessor_index) {
   return result;
 }
 
-/// The texture as a viewer shows it: bilinear, clamped; in [0, 255].
+/// The texture as viewers sample it: bilinear, clamped; in [0, 255].
 std::array<double, 3> sample(const tinygltf::Image& image, const std::array<float, 2>& uv) {
   const double x = double{uv[0]} * image.width - 0.5, y = double{uv[1]} * image.height - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
@@ -48,10 +53,10 @@ std::array<double, 3> sample(const tinygltf::Image& image, const std::array<floa
   return color;
 }
 
-TEST(Glb, HasTheColourOfItsDistanceAtEveryVertex) {
+TEST(Glb, VertexColoursMatchTheirDistances) {
   const Field field = [](const Vec3& p) { return p[0]; };
   for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
-    const Surface surface(torus(24), {.kind = kind, .resolution = 1024});
+    const Surface surface(ring(24), {.kind = kind, .resolution = 1024});
     const DistanceMap map = map_of(surface, field);
     const PictureOptions options{.colormap = Colormap::viridis};
     const TemporaryFolder folder;
@@ -73,9 +78,9 @@ TEST(Glb, HasTheColourOfItsDistanceAtEveryVertex) {
   }
 }
 
-TEST(Glb, HoldsTheMeshItself) {
+TEST(Glb, ContainsTheMesh) {
   const Field field = [](const Vec3& p) { return p[0]; };
-  const Surface surface(torus(9), {.resolution = 256});
+  const Surface surface(ring(9), {.resolution = 256});
   const Mesh& mesh = surface.mesh();
   const TemporaryFolder folder;
   write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(mesh, field));
@@ -101,10 +106,10 @@ TEST(Glb, HoldsTheMeshItself) {
   EXPECT_LT(positions.size(), 2 * triangles.size());
 }
 
-TEST(Glb, IsPlacedInMetresAndKeepsItsPrecisionFarFromTheOrigin) {
+TEST(Glb, ScalesToMetresAndKeepsPrecisionFarFromTheOrigin) {
   const Field field = [](const Vec3&) { return 1; };
   const Vec3 far{4e6, -5e6, 1e6};
-  const Surface surface(torus(6, 1, far), {.kind = AtlasKind::triangles, .resolution = 256});
+  const Surface surface(ring(6, 1, far), {.kind = AtlasKind::triangles, .resolution = 256});
   const TemporaryFolder folder;
   write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(surface.mesh(), field),
             {.units = "mm"});
@@ -122,10 +127,10 @@ TEST(Glb, IsPlacedInMetresAndKeepsItsPrecisionFarFromTheOrigin) {
     }
 }
 
-TEST(Glb, FacesWithoutAValueArePartOfItWithoutDistances) {
+TEST(Glb, ContainsFacesWithoutAValue) {
   for (const double none : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     const Field field = [none](const Vec3& p) { return p[0] < 0 ? p[1] : none; };
-    const Surface surface(torus(9), {.resolution = 256});
+    const Surface surface(ring(9), {.resolution = 256});
     const TemporaryFolder folder;
     write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(surface.mesh(), field));
     const tinygltf::Model model = read_glb(folder / "model.glb");
@@ -139,9 +144,9 @@ TEST(Glb, FacesWithoutAValueArePartOfItWithoutDistances) {
   }
 }
 
-TEST(Glb, RefusesWhatItCannotHold) {
+TEST(Glb, RejectsMismatchedVertexDistances) {
   const Field field = [](const Vec3&) { return 1; };
-  const Surface surface(torus(4), {.resolution = 128});
+  const Surface surface(ring(4), {.resolution = 128});
   const TemporaryFolder folder;
   const std::vector<float> too_few(3);
   EXPECT_THROW(write_glb(folder / "model.glb", surface, map_of(surface, field), too_few), Error);
@@ -159,21 +164,21 @@ TEST(Glb, PassesTheKhronosValidator) {
     files += " " + (folder / name).string();
   };
   const Field linear = [](const Vec3& p) { return p[0] + p[1]; };
-  Mesh flawed = torus(8);
+  Mesh flawed = ring(8);
   flawed.triangles.push_back({0, 0, 1});            // repeated corner
   flawed.triangles.push_back(flawed.triangles[0]);  // duplicate
   flawed.positions.push_back(flawed.positions[0]);  // no area, three vertices
   flawed.triangles.push_back({0, 1, static_cast<std::uint32_t>(flawed.positions.size() - 1)});
   flawed.positions.push_back({9, 9, 9});  // of no face
 
-  add("charts.glb", torus(16), {.resolution = 256}, linear);
-  add("triangles.glb", torus(16), {.kind = AtlasKind::triangles, .resolution = 512}, linear, {.units = "in"});
+  add("charts.glb", ring(16), {.resolution = 256}, linear);
+  add("triangles.glb", ring(16), {.kind = AtlasKind::triangles, .resolution = 512}, linear, {.units = "in"});
   add("flawed.glb", flawed, {.resolution = 256}, linear);
-  add("far.glb", torus(8, 1, {1e9, 1e9, -1e9}), {.resolution = 256}, linear, {.units = "mm"});
-  add("huge.glb", torus(8, 1e30), {.resolution = 256}, linear);
-  add("tiny.glb", torus(8, 1e-30), {.resolution = 256}, linear, {.units = "um"});
-  add("empty.glb", torus(8), {.resolution = 256}, [](const Vec3&) { return std::nan(""); });
-  add("partly.glb", torus(8), {.resolution = 256}, [](const Vec3& p) { return p[2] > 0 ? 1 : std::nan(""); });
+  add("far.glb", ring(8, 1, {1e9, 1e9, -1e9}), {.resolution = 256}, linear, {.units = "mm"});
+  add("huge.glb", ring(8, 1e30), {.resolution = 256}, linear);
+  add("tiny.glb", ring(8, 1e-30), {.resolution = 256}, linear, {.units = "um"});
+  add("empty.glb", ring(8), {.resolution = 256}, [](const Vec3&) { return std::nan(""); });
+  add("partly.glb", ring(8), {.resolution = 256}, [](const Vec3& p) { return p[2] > 0 ? 1 : std::nan(""); });
   add("single.glb", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}}, {.resolution = 16}, linear);
 
   const std::string install =

@@ -55,7 +55,7 @@ TEST(Legend, ShowsTheColoursFromTopToBottom) {
   }
 }
 
-TEST(Legend, RefusesTextThatIsNone) {
+TEST(Legend, RejectsInvalidText) {
   EXPECT_THROW((void)draw_legend({}, {"Distance", "\xff\xfe", {}, false}, 64), Error);
 }
 

@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/io.h>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "read_png.h"
-#include "samples.h"
+#include "io_write/read_png.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {
@@ -48,7 +50,7 @@ TEST(Plot, DrawsCurvesInPanels) {
   EXPECT_GT(of_color(pixels, kSecond, pixels.height / 2, pixels.height).size(), 500u);
 }
 
-// Where there is no value there is no line, and one between two gaps is a dot.
+// No line where there is no value; a single value between two gaps is a dot.
 TEST(Plot, LeavesGaps) {
   const TemporaryFolder folder;
   std::vector<double> values(101, 1.0);
@@ -70,7 +72,7 @@ TEST(Plot, LeavesGaps) {
   EXPECT_EQ(between(0.52, 0.58), 0);
 }
 
-TEST(Plot, DrawsWhateverThereIs) {
+TEST(Plot, DrawsAnyValues) {
   const TemporaryFolder folder;
   const auto draw = [&](const std::vector<double>& places, const std::vector<double>& values) {
     const std::vector<PlotPanel> panels{{"title", {{"", values}}}};

@@ -1,16 +1,24 @@
-#include "read_png.h"
-#include "samples.h"
+#include <sdm/io.h>
+
+#include <cmath>
+
+#include "io_write/read_png.h"
+#include "support/made_up_maps.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {
 
+using namespace io;
+
 struct Pictures : ::testing::Test {
-  const Surface surface{torus(6), {.kind = AtlasKind::charts, .resolution = 256}};
+  const Surface surface{ring(6), {.kind = AtlasKind::charts, .resolution = 256}};
   const DistanceMap map = map_of(surface, [](const Vec3& p) { return p[2] < 0.2 ? p[0] : std::nan(""); });
   const std::size_t n = surface.resolution();
   TemporaryFolder folder;
 
-  /// Calls check(texel, colour) for every owned texel, and finds the background everywhere else.
+  /// Calls check(texel, colour) for every owned texel, and expects the background everywhere else.
   void for_each_texel(const Pixels& pixels, const std::function<void(std::size_t, Rgb)>& check) {
     for (std::size_t y = 0; y < n; ++y)
       for (std::size_t x = 0; x < n; ++x) {
@@ -23,7 +31,7 @@ struct Pictures : ::testing::Test {
   }
 };
 
-TEST_F(Pictures, DistanceHasTheScalesColoursAndALegendBesideThem) {
+TEST_F(Pictures, DistanceHasTheColoursOfTheScaleAndALegend) {
   for (const PictureOptions& options : {PictureOptions{}, PictureOptions{.units = "mm"},
                                         PictureOptions{.colormap = Colormap::viridis, .range = {{-1, 0.5}}},
                                         PictureOptions{.tolerance = 0.3}}) {
@@ -47,7 +55,7 @@ TEST_F(Pictures, DistanceHasTheScalesColoursAndALegendBesideThem) {
   }
 }
 
-TEST_F(Pictures, UnitsAreWrittenInTheLegend) {
+TEST_F(Pictures, LegendNamesTheUnits) {
   write_distance_png(folder / "a.png", surface, map, {.units = "mm"});
   write_distance_png(folder / "b.png", surface, map, {.units = "inches of the old kind"});
   const Pixels a = read_png(folder / "a.png"), b = read_png(folder / "b.png");
@@ -55,7 +63,7 @@ TEST_F(Pictures, UnitsAreWrittenInTheLegend) {
   EXPECT_NE(a.colors, b.colors);
 }
 
-TEST_F(Pictures, VoronoiHasOneColourASite) {
+TEST_F(Pictures, VoronoiHasOneColourPerSite) {
   write_voronoi_png(folder / "voronoi.png", surface, map);
   const Pixels pixels = read_png(folder / "voronoi.png");
   EXPECT_EQ(pixels.width, n);
@@ -66,7 +74,7 @@ TEST_F(Pictures, VoronoiHasOneColourASite) {
   });
 }
 
-TEST_F(Pictures, NothingInRangeHasItsOwnColourAndNoPartInTheScale) {
+TEST_F(Pictures, NothingInRangeHasItsOwnColourOutsideTheScale) {
   const auto field = [](double none) { return [none](const Vec3& p) { return p[2] > 0.2 ? none : p[0]; }; };
   const DistanceMap endless = map_of(surface, field(std::numeric_limits<double>::infinity())),
                     nan = map_of(surface, field(std::nan("")));
@@ -103,8 +111,8 @@ TEST_F(Pictures, DirectionDecodesToTheUnitVector) {
   });
 }
 
-TEST(SmallPicture, IsNoLowerThanItsLegend) {
-  const Surface surface(torus(3), {.kind = AtlasKind::charts, .resolution = 64});
+TEST(SmallPicture, IsAtLeastAsHighAsItsLegend) {
+  const Surface surface(ring(3), {.kind = AtlasKind::charts, .resolution = 64});
   const DistanceMap map = map_of(surface, [](const Vec3& p) { return p[0]; });
   const TemporaryFolder folder;
   write_distance_png(folder / "distance.png", surface, map);

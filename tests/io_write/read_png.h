@@ -1,4 +1,4 @@
-// PNG files back into pixels.
+// Reads the pixels of PNG files.
 #pragma once
 
 #include "io/write/pictures/color_scale.h"

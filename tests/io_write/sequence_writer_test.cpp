@@ -5,8 +5,10 @@
 #include <sdm/sequence.h>
 
 #include <fstream>
+#include <vector>
 
-#include "samples.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::test {
 namespace {
@@ -14,9 +16,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(WritePly, MeshesAreReadAgainToTheBit) {
+TEST(WritePly, RoundTripKeepsEveryBit) {
   const TemporaryFolder folder;
-  const Mesh mesh = torus(12, 0.1, {1.0 / 3, 1e-30, 1e3});
+  const Mesh mesh = ring(12, 0.1, {1.0 / 3, 1e-30, 1e3});
   write_ply(folder / "torus.ply", mesh);
   const Mesh read = read_mesh(folder / "torus.ply");
   EXPECT_EQ(read.triangles, mesh.triangles);
@@ -24,7 +26,7 @@ TEST(WritePly, MeshesAreReadAgainToTheBit) {
   EXPECT_THROW(write_ply(folder / "no" / "torus.ply", mesh), Error);
 }
 
-TEST(WriteNpy, HoldsANumberATexel) {
+TEST(WriteNpy, HasOneNumberPerTexel) {
   const TemporaryFolder folder;
   const std::vector<std::uint32_t> values{0, 1, 0xFFFFFFFF, 258};
   write_npy(folder / "body.npy", 2, values);
@@ -39,11 +41,11 @@ TEST(WriteNpy, HoldsANumberATexel) {
 
 struct Motion : ::testing::Test {
   TemporaryFolder folder;
-  Mesh mesh = torus(12);
+  Mesh mesh = ring(12);
   std::filesystem::path file = folder / "motion.npy";
 };
 
-TEST_F(Motion, FramesAreReadAgainInSinglePrecision) {
+TEST_F(Motion, FramesRoundTripInSinglePrecision) {
   write_ply(folder / "torus.ply", mesh);
   SequenceWriter writer(file, mesh.positions.size());
   for (int t = 0; t < 12; ++t) {
@@ -61,7 +63,7 @@ TEST_F(Motion, FramesAreReadAgainInSinglePrecision) {
 }
 
 // NumPy maps files whose numbers begin at a multiple of 64.
-TEST_F(Motion, HeadersAreThoseOfNumPy) {
+TEST_F(Motion, HeadersMatchNumPy) {
   SequenceWriter writer(file, mesh.positions.size());
   writer.add(mesh.positions);
   writer.commit();
@@ -74,7 +76,7 @@ TEST_F(Motion, HeadersAreThoseOfNumPy) {
   EXPECT_EQ(bytes[127], '\n');
 }
 
-TEST_F(Motion, NothingAppearsBeforeTheEnd) {
+TEST_F(Motion, FileAppearsOnlyWhenComplete) {
   {
     SequenceWriter writer(file, mesh.positions.size());
     writer.add(mesh.positions);
@@ -83,7 +85,7 @@ TEST_F(Motion, NothingAppearsBeforeTheEnd) {
   EXPECT_TRUE(folder.empty());
 }
 
-TEST_F(Motion, FaultsAreNamed) {
+TEST_F(Motion, ErrorsNameTheFault) {
   SequenceWriter writer(file, mesh.positions.size());
   writer.add(mesh.positions);
   EXPECT_THAT([&] { writer.add(std::span(mesh.positions).first(3)); },

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "map/squares.h"
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
@@ -35,7 +35,7 @@ TEST_F(Tolerance, IsNotCertifiedIfTheErrorBoundReachesBeyond) {
   EXPECT_FALSE(verdict.certified);
 }
 
-TEST_F(Tolerance, IsExceededForCertain) {
+TEST_F(Tolerance, IsCertainlyExceeded) {
   const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.25, 0.99);
   EXPECT_FALSE(verdict.within);
   EXPECT_TRUE(verdict.certified);
@@ -63,7 +63,7 @@ TEST_F(Tolerance, IsExceededWhereThereIsNoValue) {
   EXPECT_FALSE(check_tolerance(surface, map, at_vertices, 0, 2).within);
 }
 
-TEST_F(Tolerance, RefusesDistancesOfOtherVertices) {
+TEST_F(Tolerance, RejectsDistancesOfOtherVertices) {
   at_vertices.pop_back();
   EXPECT_THROW(static_cast<void>(check_tolerance(surface, map, at_vertices, 0, 2)), Error);
 }

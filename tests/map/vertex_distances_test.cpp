@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-#include "map/squares.h"
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
@@ -23,7 +22,7 @@ Mesh around() {
   return mesh;
 }
 
-TEST(DistancesAtVertices, AreSignedAsTheMap) {
+TEST(DistancesAtVertices, AreSignedLikeTheMap) {
   const Sites sites(around());
   EXPECT_THAT(distances_at_vertices(tetrahedron(), sites), Each(-1));
   EXPECT_THAT(distances_at_vertices(tetrahedron(), sites, {.sign = SignMethod::none}), Each(1));
@@ -36,7 +35,7 @@ TEST(DistancesAtVertices, AreNanBeyondTheMaximum) {
   EXPECT_THAT(distances_at_vertices(mesh, sites, {.max_distance = 2}), ElementsAre(1, 1, IsNan()));
 }
 
-TEST(DistancesAtVertices, AreThoseOfTheCpuEngineForGl) {
+TEST(DistancesAtVertices, UseTheCpuEngineForGl) {
   std::shared_ptr<const Engine> gl;
   try {
     gl = make_engine("gl");
@@ -48,7 +47,7 @@ TEST(DistancesAtVertices, AreThoseOfTheCpuEngineForGl) {
             distances_at_vertices(tetrahedron(), sites));
 }
 
-TEST(DistancesAtVertices, RefuseASignThatO2DoesNotAllow) {
+TEST(DistancesAtVertices, RejectASignThatO2DoesNotAllow) {
   const Sites open(square(2, 1));
   EXPECT_THROW(
       static_cast<void>(distances_at_vertices(tetrahedron(), open, {.sign = SignMethod::pseudonormal})),

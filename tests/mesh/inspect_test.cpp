@@ -2,8 +2,9 @@
 #include <sdm/mesh.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -27,7 +28,7 @@ TEST(Inspect, EulerCharacteristicOfATorusIsZero) {
   EXPECT_TRUE(info.closed && info.oriented && info.manifold && info.has_uvs);
 }
 
-TEST(Inspect, VolumeDoesNotDependOnThePlaceOrTheSenseOfTurn) {
+TEST(Inspect, VolumeIsInvariantUnderMotionAndOrientation) {
   Mesh mesh = test::torus(20, 13);
   const double volume = inspect(mesh).volume;
   EXPECT_GT(volume, 0);
@@ -49,7 +50,7 @@ TEST(Inspect, OpenMesh) {
   EXPECT_EQ(info.volume, 0);
 }
 
-TEST(Inspect, BandsAndMoebiusBands) {
+TEST(Inspect, BandsAndMoebiusStrips) {
   const MeshInfo plain = inspect(test::band(9, false)), crossed = inspect(test::band(9, true));
   EXPECT_TRUE(plain.orientable && plain.oriented && plain.manifold);
   EXPECT_FALSE(crossed.orientable || crossed.oriented);
@@ -116,12 +117,12 @@ TEST(Inspect, DuplicatesAndRepeatedCornersLeaveAMeshClosed) {
 
 TEST(Inspect, CountsComponents) {
   Mesh mesh;
-  for (int k = 0; k < 5; ++k) test::append(mesh, test::tetrahedron());
+  for (int k = 0; k < 5; ++k) mesh = test::joined(mesh, test::tetrahedron());
   EXPECT_EQ(inspect(mesh).components, 5u);
   EXPECT_NEAR(inspect(mesh).volume, 5.0 / 6, 1e-15);
 }
 
-TEST(Inspect, NothingIsNothing) {
+TEST(Inspect, EmptyMesh) {
   const MeshInfo info = inspect({});
   EXPECT_EQ(info.components, 0u);
   EXPECT_FALSE(info.closed);

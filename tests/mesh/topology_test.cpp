@@ -6,15 +6,16 @@
 #include <map>
 #include <random>
 #include <set>
+#include <vector>
 
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
 
 using Edge = std::array<std::uint32_t, 2>;
 
-// Soups over few vertices: repeated corners, duplicates and edges of many faces abound.
+// Soups over few vertices: many repeated corners, duplicates and edges of many faces.
 std::vector<Triangle> random_soup(std::mt19937& random, std::uint32_t vertices, std::size_t faces) {
   std::uniform_int_distribution<std::uint32_t> vertex(0, vertices - 1);
   std::vector<Triangle> soup(faces);
@@ -75,7 +76,7 @@ TEST(Topology, VertexFacesAgreeWithBruteForce) {
   }
 }
 
-// Whether faces f and g, turned or not, run along their common edge in opposite directions.
+// Whether faces f and g, flipped or not, traverse their common edge in opposite directions.
 bool agree(const Triangle& f, bool f_turned, const Triangle& g, bool g_turned, const Edge& edge) {
   const auto forward = [&](const Triangle& t) {
     for (int k = 0; k < 3; ++k)
@@ -108,7 +109,7 @@ std::vector<Triangle> random_part_of_projective_plane(std::mt19937& random, std:
   return soup;
 }
 
-TEST(Orient, FindsATurningExactlyWhenThereIsOne) {
+TEST(Orient, FindsAnOrientationExactlyIfOneExists) {
   std::mt19937 random(3);
   int orientable = 0, not_orientable = 0;
   for (int round = 0; round < 400; ++round) {
@@ -132,7 +133,7 @@ TEST(Orient, FindsATurningExactlyWhenThereIsOne) {
   EXPECT_GT(not_orientable, 20);
 }
 
-TEST(Orient, ComponentsAreJoinedByTwoFaceEdgesAndTurnTheFewerFaces) {
+TEST(Orient, FlipsTheFewerFacesOfComponentsJoinedByTwoFaceEdges) {
   std::mt19937 random(4);
   for (int round = 0; round < 200; ++round) {
     const std::vector<Triangle> soup = random_soup(random, 12, 14);
@@ -169,7 +170,7 @@ TEST(Orient, ComponentsAreJoinedByTwoFaceEdgesAndTurnTheFewerFaces) {
   }
 }
 
-TEST(Orient, TurnsBackWhatWasTurned) {
+TEST(Orient, RestoresFlippedFaces) {
   Mesh mesh = test::torus(12, 9);
   std::mt19937 random(5);
   std::vector<std::uint8_t> turned(mesh.triangles.size(), 0);

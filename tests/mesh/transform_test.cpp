@@ -3,7 +3,7 @@
 #include <sdm/transform.h>
 
 #include "core/geometry/vec.h"
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -63,14 +63,14 @@ TEST(Transform, FitNeedsAnExtent) {
   EXPECT_THAT([&] { static_cast<void>(fit_to_unit(mesh)); }, ThrowsMessage<Error>(HasSubstr("extent")));
 }
 
-TEST(Transform, ReflectionsKeepTheOutside) {
+TEST(Transform, ReflectionsKeepTheOrientation) {
   Mesh mesh = test::torus(16, 12);
   const double before = volume(mesh);
   transform(mesh, Transform::scaling(-2));
   EXPECT_NEAR(volume(mesh), 8 * before, 1e-12 * before);
 }
 
-TEST(Transform, AnInfiniteCoordinateChangesNothing) {
+TEST(Transform, RejectedOverflowChangesNothing) {
   Mesh mesh = test::tetrahedron();
   mesh.positions[3] = {0, 0, 1e200};
   const std::vector<Vec3> before = mesh.positions;

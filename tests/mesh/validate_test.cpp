@@ -3,8 +3,9 @@
 #include <sdm/mesh.h>
 
 #include <limits>
+#include <vector>
 
-#include "mesh/shapes.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -16,7 +17,7 @@ void expect_refused(const Mesh& mesh, const char* fault) {
   EXPECT_THAT([&] { validate(mesh); }, ThrowsMessage<Error>(HasSubstr(fault)));
 }
 
-TEST(Validate, AcceptsSoundMeshes) {
+TEST(Validate, AcceptsValidMeshes) {
   EXPECT_NO_THROW(validate(test::tetrahedron()));
   EXPECT_NO_THROW(validate(test::torus(8, 5)));
 }
@@ -27,18 +28,18 @@ TEST(Validate, ToleratesSingleDegenerateAndDuplicateFaces) {
   EXPECT_NO_THROW(validate(mesh));
 }
 
-TEST(Validate, RefusesMeshesWithoutTriangles) {
+TEST(Validate, RejectsMeshesWithoutTriangles) {
   expect_refused({}, "no triangles");
   expect_refused({{{0, 0, 0}}, {}, {}}, "no triangles");
 }
 
-TEST(Validate, RefusesIndicesOutOfRange) {
+TEST(Validate, RejectsIndicesOutOfRange) {
   Mesh mesh = test::tetrahedron();
   mesh.triangles[2][1] = 4;
   expect_refused(mesh, "index out of range: triangle 2 refers to vertex 4 of 4");
 }
 
-TEST(Validate, RefusesCoordinatesThatAreNotFiniteOrTooLarge) {
+TEST(Validate, RejectsNonFiniteAndTooLargeCoordinates) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Mesh mesh = test::tetrahedron();
@@ -52,12 +53,12 @@ TEST(Validate, RefusesCoordinatesThatAreNotFiniteOrTooLarge) {
   EXPECT_NO_THROW(validate(mesh));
 }
 
-TEST(Validate, RefusesMeshesWithoutArea) {
+TEST(Validate, RejectsMeshesWithoutArea) {
   const std::vector<Vec3> line = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
   expect_refused({line, {{0, 1, 2}, {0, 0, 1}, {2, 2, 2}}, {}}, "all triangles are degenerate");
 }
 
-TEST(Validate, RefusesTextureCoordinatesForSomeTriangles) {
+TEST(Validate, RejectsTextureCoordinatesOfSomeTrianglesOnly) {
   Mesh mesh = test::torus(4, 4);
   mesh.corner_uvs.pop_back();
   expect_refused(mesh, "texture coordinates for 31 of 32 triangles");
@@ -66,7 +67,7 @@ TEST(Validate, RefusesTextureCoordinatesForSomeTriangles) {
   expect_refused(mesh, "triangle 7 has a NaN or infinite texture coordinate");
 }
 
-TEST(Bounds, EncloseExactlyTheVerticesInUse) {
+TEST(Bounds, EncloseExactlyTheUsedVertices) {
   Mesh mesh = test::tetrahedron();
   mesh.positions.push_back({100, 100, 100});
   EXPECT_EQ(bounds(mesh).lo, (Vec3{0, 0, 0}));

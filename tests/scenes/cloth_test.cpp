@@ -26,7 +26,7 @@ TEST(Cloth, IsASheet) {
   EXPECT_NEAR(info.area, 4, 1e-9);
 }
 
-TEST(Cloth, FallsFreelyAsOne) {
+TEST(Cloth, FallsRigidly) {
   Cloth cloth(20, 1);
   for (int i = 0; i < 60; ++i) cloth.step(kStep, {});
   const double t = 60 * kStep;
@@ -46,7 +46,7 @@ struct FoldedCloth : ::testing::Test {
   }
 };
 
-TEST_F(FoldedCloth, KeepsItsEdgesItsDistanceAndItsEnergyAndComesToRest) {
+TEST_F(FoldedCloth, KeepsEdgesDistanceAndEnergyAndComesToRest) {
   const double start = height_sum(cloth);
   std::vector<Vec3> before(cloth.positions().begin(), cloth.positions().end());
   double last_kinetic = 0;
@@ -79,7 +79,7 @@ TEST_F(FoldedCloth, KeepsItsEdgesItsDistanceAndItsEnergyAndComesToRest) {
   }
   EXPECT_LT(last_kinetic, 0.02 * 9.81 * start);
 
-  // Layers lie on each other, a thickness apart.
+  // Layers rest on each other, one thickness apart.
   std::size_t layers = 0;
   double closest = 1;
   const auto now = cloth.positions();
@@ -92,7 +92,7 @@ TEST_F(FoldedCloth, KeepsItsEdgesItsDistanceAndItsEnergyAndComesToRest) {
   EXPECT_GT(layers, 100u);
   EXPECT_GT(closest, 0.5 * cloth.thickness());
 
-  // And nowhere, between particles too, do they pass through each other.
+  // Layers intersect nowhere, not even between particles.
   SelfProximityQuery query(cloth.mesh(), {.exclusion = {.geodesic = 2 * cloth.thickness()}});
   query.update(now);
   ASSERT_TRUE(query.separation());

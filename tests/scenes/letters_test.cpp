@@ -22,7 +22,7 @@ void PrintTo(const Letter& letter, std::ostream* out) {
 
 struct Letters : ::testing::TestWithParam<Letter> {};
 
-TEST_P(Letters, AreClosedSolidsOfOnePartWithoutHoles) {
+TEST_P(Letters, AreClosedConnectedAndOfGenusZero) {
   const MeshInfo info = inspect(GetParam().mesh());
   EXPECT_TRUE(info.closed && info.oriented && info.manifold);
   EXPECT_EQ(info.components, 1u);
@@ -32,7 +32,7 @@ TEST_P(Letters, AreClosedSolidsOfOnePartWithoutHoles) {
   EXPECT_EQ(info.triangles, GetParam().triangles);
 }
 
-TEST_P(Letters, AreOneHighCentredAndOfTheirDepth) {
+TEST_P(Letters, HaveUnitHeightAndTheirDepthAndAreCentred) {
   const Box box = bounds(GetParam().mesh());
   EXPECT_NEAR(box.hi[1] - box.lo[1], 1, 1e-3);
   EXPECT_DOUBLE_EQ(box.hi[2], 0.15);
@@ -40,9 +40,9 @@ TEST_P(Letters, AreOneHighCentredAndOfTheirDepth) {
   for (int k = 0; k < 3; ++k) EXPECT_LT(box.hi[k] - box.lo[k], 1 + 1e-9);
 }
 
-// Front and back are flat and alike, and the sides stand upright: the volume is the area of the front times
-// the depth, with a positive sign as the faces point outward.
-TEST_P(Letters, AreExtrusionsThatFaceOutward) {
+// Front and back are flat and congruent, and the sides are vertical: the volume is the area of the front
+// times the depth, with a positive sign as the faces point outward.
+TEST_P(Letters, AreOutwardOrientedExtrusions) {
   const Mesh mesh = GetParam().mesh();
   double volume = 0, front = 0, back = 0;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -70,7 +70,7 @@ TEST_P(Letters, AreEvenlyMeshed) {
 
 // Seen from +z: the arms of an E end at the right, where the G, whose opening is there too, has its bar. At
 // the height of the bar, the middle of the letter is empty in both.
-TEST(Letters, ReadFromTheFront) {
+TEST(Letters, AreReadableFromTheFront) {
   const auto fills = [](const Mesh& mesh, double x, double y) {
     return std::ranges::any_of(mesh.triangles, [&](const Triangle& t) {
       const auto side = [&](int k) {

@@ -24,7 +24,7 @@ double signed_volume(const Mesh& mesh) {
   return six / 6;
 }
 
-TEST(LevelSet, IsAClosedManifoldOfTheRightTopologyFacingOut) {
+TEST(LevelSet, IsAnOutwardOrientedManifoldOfTheExpectedTopology) {
   struct Case {
     double (*field)(const Vec3&);
     int euler;

@@ -4,12 +4,13 @@
 #include <sdm/io.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "core/geometry/vec.h"
-#include "mesh/shapes.h"
 #include "scenes/box_mesh.h"
 #include "scenes/contacts.h"
 #include "scenes/reduce_mesh.h"
@@ -17,6 +18,8 @@
 #include "scenes/skeleton.h"
 #include "scenes/soft_body.h"
 #include "scenes/spatial_hash.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
 
 namespace sdm::scenes {
 namespace {
@@ -48,7 +51,7 @@ TEST(Rotation, TurnsAboutItsAxisRightHanded) {
   }
 }
 
-TEST(Rotation, IsThePartOfADeformation) {
+TEST(Rotation, IsTheRotationalPartOfADeformation) {
   for (int i = 0; i < 200; ++i) {
     const Matrix r = random_rotation(), q = random_rotation();
     // S = QᵀDQ is symmetric and positive: A = RS.
@@ -58,12 +61,13 @@ TEST(Rotation, IsThePartOfADeformation) {
       for (int b = 0; b < 3; ++b)
         for (int k = 0; k < 3; ++k) s[b][a] += q[a][k] * d[k] * q[b][k];
     Matrix part = random_rotation();
-    for (int call = 0; call < 20; ++call) part = rotation_part(r * s, part);  // each goes on from the last
+    for (int call = 0; call < 20; ++call)
+      part = rotation_part(r * s, part);  // each starts from the previous one
     expect_near(part, r, 1e-6);
   }
 }
 
-TEST(Rotation, IsOneWhateverTheMatrix) {
+TEST(Rotation, IsARotationForAnyMatrix) {
   for (const Matrix& a :
        {Matrix{}, Matrix{{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, Matrix{{{1, 2, 3}, {1, 2, 3}, {0, 0, 0}}},
         Matrix{{{1e9, 0, 0}, {0, 0, 0}, {0, 0, 1e-9}}}}) {
@@ -73,7 +77,7 @@ TEST(Rotation, IsOneWhateverTheMatrix) {
   }
 }
 
-TEST(SpatialHash, FindsAllThatAreNear) {
+TEST(SpatialHash, FindsAllNearPoints) {
   std::vector<Vec3> points(500);
   for (Vec3& p : points) p = random_point();
   SpatialHash hash(0.2);
@@ -87,7 +91,7 @@ TEST(SpatialHash, FindsAllThatAreNear) {
   }
 }
 
-TEST(Contacts, AreThoseWithinTheMarginOfASolid) {
+TEST(SceneContacts, AreThePointsWithinTheMarginOfASolid) {
   const Sites box(box_mesh({{-1, -1, -1}, {1, 1, 1}}));
   const std::vector<Vec3> points{{0.2, 0.3, 0.9}, {0.2, 0.3, 1.05},  {0.2, 0.3, 1.15},
                                  {5, 0, 0},       {1.03, 1.04, 0.5}, {0, 0, 1}};
@@ -107,7 +111,7 @@ TEST(Contacts, AreThoseWithinTheMarginOfASolid) {
   }
 }
 
-TEST(SoftBody, MovesRigidlyWhileNothingTouchesIt) {
+TEST(SoftBody, MovesRigidlyWithoutContact) {
   const Mesh mesh = torus(24, 12);
   SoftBody body(mesh, {.stiffness = 0.2, .cluster_radius = 1}, {1, 2, 3}, {0, 0, 2});
   for (int i = 0; i < 100; ++i) {
@@ -120,7 +124,7 @@ TEST(SoftBody, MovesRigidlyWhileNothingTouchesIt) {
     EXPECT_LE(norm(body.positions()[v] - (turn * mesh.positions[v] + Vec3{0.1, 0.2, 0.3})), 1e-3);
 }
 
-TEST(SoftBody, PullsAreWithoutForceAndTorqueAndLeadBackToTheShape) {
+TEST(SoftBody, PullsHaveNoNetForceOrTorqueAndRestoreTheShape) {
   const Mesh mesh = torus(24, 12);
   SoftBody body(mesh, {.stiffness = 0.5, .cluster_radius = 1}, {}, {});
   std::vector<Vec3> pushed;
@@ -146,7 +150,7 @@ TEST(SoftBody, PullsAreWithoutForceAndTorqueAndLeadBackToTheShape) {
     torque += cross(pushed[v], pull);
   }
   EXPECT_LE(norm(force), 1e-10);
-  EXPECT_LE(norm(torque), 1e-4);  // as far as the rotations are found
+  EXPECT_LE(norm(torque), 1e-4);  // up to the accuracy of the rotations
   for (int i = 0; i < 20; ++i) body.match_shapes();
   EXPECT_LT(roughness(), 0.01 * before);
 }
@@ -162,7 +166,7 @@ TEST(SoftBody, ClustersFollowTheSurface) {
       strip.triangles.push_back({i, i + 2, i + 3});
       strip.triangles.push_back({i, i + 3, i + 1});
     }
-    append(strips, strip);
+    strips = joined(strips, strip);
   }
   SoftBody body(strips, {.stiffness = 1, .cluster_radius = 0.3, .clusters = 10}, {}, {});
   const auto half = static_cast<std::uint32_t>(strips.positions.size() / 2);
@@ -172,8 +176,8 @@ TEST(SoftBody, ClustersFollowTheSurface) {
     EXPECT_LE(norm(body.positions()[v] - strips.positions[v] - Vec3{0, -0.5, 0}), 1e-9);
 }
 
-TEST(Skeleton, BonesCarryThoseBelowAndTheSkin) {
-  // Two bones along x, 1 long each; the second turns by a right angle.
+TEST(Skeleton, BonesMoveTheirChildrenAndTheSkin) {
+  // Two bones of length 1 along x; the second rotates by a right angle.
   const Skeleton arm{{{0, {0, 0, 0}}, {0, {1, 0, 0}}},
                      {{0, {0, 0, 0}, {0.9, 0, 0}, 0.1, 0.1}, {1, {1.1, 0, 0}, {2, 0, 0}, 0.1, 0.2}}};
   EXPECT_NEAR(skin_distance(arm, {0.3, 0, 0.4}), 0.3, 1e-6);
@@ -189,7 +193,7 @@ TEST(Skeleton, BonesCarryThoseBelowAndTheSkin) {
 }
 
 TEST(ReduceMesh, KeepsTheShapeAndStaysClosed) {
-  const Mesh mesh = read_mesh(SDM_TEST_MESHES "/bunny.obj"), reduced = reduce_mesh(mesh, 2000);
+  const Mesh mesh = test::load("bunny.obj"), reduced = reduce_mesh(mesh, 2000);
   const MeshInfo info = inspect(reduced), full = inspect(mesh);
   EXPECT_NEAR(static_cast<double>(info.triangles), 2000, 20);
   EXPECT_EQ(info.unused_vertices + info.duplicate_faces, 0u);

@@ -2,8 +2,8 @@
 #include <sdm/error.h>
 
 #include "core/geometry/vec.h"
-#include "mesh/shapes.h"
 #include "scenes/placement.h"
+#include "support/shapes.h"
 
 namespace sdm::scenes {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-// Where steps take a point.
+// The image of a point.
 Vec3 moved(const Vec3& p, const char* steps) {
   Mesh mesh{{p}, {}, {}};
   place(mesh, parse_placement(steps));
@@ -62,7 +62,7 @@ TEST(Placement, FitMakesTheLongestSideOneAndCentresIt) {
   EXPECT_LT(box.hi[1] - box.lo[1], 1);
 }
 
-TEST(Placement, MirrorImagesKeepTheirOutside) {
+TEST(Placement, MirrorImagesKeepTheirOrientation) {
   Mesh mesh = test::torus(16, 12);
   const auto outward_volume = [](const Mesh& m) {
     double six = 0;
@@ -75,7 +75,7 @@ TEST(Placement, MirrorImagesKeepTheirOutside) {
   EXPECT_NEAR(outward_volume(mesh), 8 * volume, 1e-12 * volume);
 }
 
-TEST(Placement, RefusesToLeaveTheFiniteNumbers) {
+TEST(Placement, RejectsOverflow) {
   Mesh mesh = test::tetrahedron();
   EXPECT_THROW(place(mesh, parse_placement("scale:1e300,scale:1e300")), Error);
 }
@@ -95,7 +95,7 @@ TEST(ParsePlacement, ReadsAllSteps) {
 }
 
 // Frames of a sequence are placed as the first, wherever they are.
-TEST(Placement, WithoutFitPlacesOtherPointsAlike) {
+TEST(Placement, WithoutFitMovesOtherPointsTheSameWay) {
   Mesh mesh = test::tetrahedron();
   place(mesh, parse_placement("scale:3,translate:7:8:9"));
   const auto steps = parse_placement("rotate:10:20:30,fit,scale:-2,fit,translate:1:2:3");
@@ -108,14 +108,14 @@ TEST(Placement, WithoutFitPlacesOtherPointsAlike) {
   place(points, resolved);
   for (std::size_t i = 0; i < 4; ++i) expect_near(points[i], expected.positions[i]);
   expect_near(points[4], 0.5 * (expected.positions[1] + expected.positions[2]));
-  // A mesh's faces turn with a mirror image all the same.
+  // Mirror images flip the faces of a mesh, too.
   Mesh again = mesh;
   place(again, resolved);
   EXPECT_EQ(again.triangles, expected.triangles);
   EXPECT_THROW(place(points, parse_placement("fit")), Error);
 }
 
-TEST(ParsePlacement, NamesTheStepAtFault) {
+TEST(ParsePlacement, ErrorNamesTheInvalidStep) {
   const auto expect_refused = [](const char* text, const char* step) {
     EXPECT_THAT([&] { static_cast<void>(parse_placement(text)); }, ThrowsMessage<Error>(HasSubstr(step)))
         << text;

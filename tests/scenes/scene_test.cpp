@@ -1,12 +1,14 @@
-// The scenes look right in numbers: bodies of the right size that move, touch, deform and part, and lose
-// neither momentum nor shape; the same to the bit whatever the number of threads.
+// Bodies have the right size, move, touch, deform and separate, and keep momentum and shape; scenes are
+// bit-identical for any number of threads.
 #include <gmock/gmock.h>
+#include <sdm/closest_points.h>
 #include <sdm/error.h>
 #include <sdm/map.h>
 #include <sdm/threads.h>
 
 #include "core/geometry/vec.h"
 #include "scenes/scene.h"
+#include "support/meshes.h"
 
 namespace sdm::scenes {
 namespace {
@@ -15,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 SceneOptions options() {
-  return {.mesh = SDM_TEST_MESHES "/bunny.obj"};
+  return {.mesh = test::mesh_file("bunny.obj")};
 }
 
 void expect_triangles(const Scene& scene, const std::vector<std::pair<std::string, double>>& expected) {
@@ -27,14 +29,14 @@ void expect_triangles(const Scene& scene, const std::vector<std::pair<std::strin
   }
 }
 
-TEST(Scene, BodiesHaveTheSizesOfThePaper) {
+TEST(Scene, BodiesHaveThePapersSizes) {
   expect_triangles(Scene(SceneKind::letters), {{"E", 2100}, {"G", 1600}});
   expect_triangles(Scene(SceneKind::bunnies, options()), {{"left", 2000}, {"right", 2000}});
   expect_triangles(Scene(SceneKind::figure), {{"figure", 17200}, {"box", 12}});
   expect_triangles(Scene(SceneKind::cloth), {{"cloth", 2 * 99 * 99}, {"ball", 2048}, {"floor", 12}});
 }
 
-TEST(Scene, IsTheSameToTheBitWhateverTheNumberOfThreads) {
+TEST(Scene, IsBitIdenticalForAnyThreadCount) {
   for (const auto& [kind, frames] : {std::pair{SceneKind::letters, 40},
                                      {SceneKind::bunnies, 35},
                                      {SceneKind::figure, 3},
@@ -51,7 +53,7 @@ TEST(Scene, IsTheSameToTheBitWhateverTheNumberOfThreads) {
   }
 }
 
-TEST(Scene, BunniesNeedAMesh) {
+TEST(Scene, BunniesRequireAMesh) {
   EXPECT_THAT([] { Scene(SceneKind::bunnies, {.mesh = "/no/such/bunny.obj"}); },
               ThrowsMessage<Error>(HasSubstr("/no/such/bunny.obj: there is no such file")));
 }
@@ -89,7 +91,7 @@ double strained(const Mesh& now, const Mesh& rest) {
 
 struct Collision : ::testing::TestWithParam<SceneKind> {};
 
-TEST_P(Collision, TouchesDeformsPartsAndKeepsMomentumAndShape) {
+TEST_P(Collision, TouchesDeformsSeparatesAndKeepsMomentumAndShape) {
   Scene scene(GetParam(), options());
   const std::vector<Scene::Body> rest(scene.bodies().begin(), scene.bodies().end());
   for (const Scene::Body& body : rest) EXPECT_TRUE(inspect(body.mesh).closed);
@@ -120,7 +122,7 @@ TEST_P(Collision, TouchesDeformsPartsAndKeepsMomentumAndShape) {
     }
   }
   EXPECT_LT(least, 0.005);  // they touch
-  EXPECT_GT(least, -0.02);  // and hardly penetrate
+  EXPECT_GT(least, -0.02);  // with little penetration
   EXPECT_GT(most_strained, 0.1);
   EXPECT_GT(clearance(scene.bodies()[0].mesh, scene.bodies()[1].mesh), 0.05);
 }
@@ -130,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Scene, Collision, ::testing::Values(SceneKind::letters,
                            return std::string(kind.param == SceneKind::letters ? "Letters" : "Bunnies");
                          });
 
-TEST(Scene, TheFigureWalksOnTheSpotWithinItsBox) {
+TEST(Scene, FigureWalksInPlaceInsideItsBox) {
   Scene scene(SceneKind::figure);
   const Mesh first = scene.bodies()[0].mesh, box = scene.bodies()[1].mesh;
   const MeshInfo info = inspect(first);

@@ -1,8 +1,11 @@
 #include "io/read/read_polygons.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
+#include <ranges>
+#include <vector>
 
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
@@ -16,33 +19,63 @@ bool is_text(std::string_view bytes) {
                      [](char c) { return static_cast<unsigned char>(c) >= ' ' || (c >= '\t' && c <= '\r'); });
 }
 
-MeshFormat format_of_content(std::string_view bytes) {
-  if (bytes.starts_with("glTF")) return MeshFormat::gltf;
-  if (is_stl_binary(bytes)) return MeshFormat::stl_binary;
-  TextScanner in(bytes);
-  if (in.accept("ply")) return MeshFormat::ply;
-  if (!is_text(bytes)) return bytes.starts_with("MM") ? MeshFormat::tds : MeshFormat::unknown;
-  if (!in.next_word()) return MeshFormat::unknown;
-  const std::string_view word = in.word();
-  if (word.starts_with('{')) return MeshFormat::gltf;
-  if (word == "solid" || word == "SOLID") return MeshFormat::stl_text;
-  if (is_off_header(word)) return MeshFormat::off;
+// What the formats are recognised by.
+struct Content {
+  std::string_view bytes;
+  bool text;
+  std::string_view first_word;  ///< empty unless text
+
+  explicit Content(std::string_view all) : bytes(all), text(is_text(all)) {
+    if (TextScanner in(all); text && in.next_word()) first_word = in.word();
+  }
+};
+
+bool is_obj(const Content& content) {
   constexpr std::string_view statements[] = {"v", "vt", "vn", "f", "o", "g", "s", "mtllib", "usemtl"};
-  if (std::ranges::find(statements, word) != std::end(statements)) return MeshFormat::obj;
-  return MeshFormat::unknown;
+  return std::ranges::find(statements, content.first_word) != std::end(statements);
 }
 
-MeshFormat format_of_extension(const std::filesystem::path& file, bool text) {
+PolygonMesh read_stl(std::string_view bytes) {
+  return is_stl_binary(bytes) || !is_text(bytes) ? read_stl_binary(bytes) : read_stl_text(bytes);
+}
+
+struct Format {
+  std::string_view names;       ///< for messages
+  std::string_view extensions;  ///< in lower case
+  bool text_only;
+  bool (*matches)(const Content& content);
+  PolygonMesh (*read)(std::string_view bytes, const std::filesystem::path& file);
+};
+
+// The table of formats. The first that matches the content is taken, else the one with the extension.
+constexpr Format kFormats[] = {
+    {"glTF, GLB", ".gltf .glb", false,
+     [](const Content& c) { return c.bytes.starts_with("glTF") || c.first_word.starts_with('{'); },
+     read_gltf},
+    {"STL", ".stl", false,
+     [](const Content& c) {
+       return is_stl_binary(c.bytes) || c.first_word == "solid" || c.first_word == "SOLID";
+     },
+     [](std::string_view bytes, const auto&) { return read_stl(bytes); }},
+    {"PLY", ".ply", false, [](const Content& c) { return TextScanner(c.bytes).accept("ply"); },
+     [](std::string_view bytes, const auto&) { return read_ply(bytes); }},
+    {"OFF", ".off", true, [](const Content& c) { return is_off_header(c.first_word); },
+     [](std::string_view bytes, const auto&) { return read_off(bytes); }},
+    {"OBJ", ".obj", true, is_obj, [](std::string_view bytes, const auto&) { return read_obj(bytes); }},
+    {"3DS", ".3ds", false, [](const Content& c) { return !c.text && c.bytes.starts_with("MM"); },
+     [](std::string_view bytes, const auto&) { return read_3ds(bytes); }},
+};
+
+const Format* find_format(const Content& content, const std::filesystem::path& file) {
+  for (const Format& format : kFormats)
+    if (format.matches(content)) return &format;
   std::string extension = file.extension().string();
   for (char& c : extension)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  if (extension == ".obj") return MeshFormat::obj;
-  if (extension == ".ply") return MeshFormat::ply;
-  if (extension == ".stl") return text ? MeshFormat::stl_text : MeshFormat::stl_binary;
-  if (extension == ".off") return MeshFormat::off;
-  if (extension == ".gltf" || extension == ".glb") return MeshFormat::gltf;
-  if (extension == ".3ds") return MeshFormat::tds;
-  return MeshFormat::unknown;
+  for (const Format& format : kFormats)
+    for (const auto word : std::views::split(format.extensions, ' '))
+      if (std::ranges::equal(word, extension)) return &format;
+  return nullptr;
 }
 
 std::string_view without_byte_order_mark(std::string_view bytes) {
@@ -52,36 +85,21 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
 
 }  // namespace
 
-MeshFormat format_of(std::string_view bytes, const std::filesystem::path& file) {
-  bytes = without_byte_order_mark(bytes);
-  const MeshFormat format = format_of_content(bytes);
-  return format == MeshFormat::unknown ? format_of_extension(file, is_text(bytes)) : format;
+bool is_gltf(std::string_view bytes, const std::filesystem::path& file) {
+  return find_format(Content(without_byte_order_mark(bytes)), file) == &kFormats[0];
 }
 
 PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file) {
-  bytes = without_byte_order_mark(bytes);
-  const MeshFormat format = format_of(bytes, file);
-  if (!is_text(bytes) && (format == MeshFormat::obj || format == MeshFormat::off))
-    throw Error("holds binary data where text is expected; it is damaged or has another format");
-  switch (format) {
-    case MeshFormat::obj:
-      return read_obj(bytes);
-    case MeshFormat::ply:
-      return read_ply(bytes);
-    case MeshFormat::stl_text:
-      return read_stl_text(bytes);
-    case MeshFormat::stl_binary:
-      return read_stl_binary(bytes);
-    case MeshFormat::off:
-      return read_off(bytes);
-    case MeshFormat::gltf:
-      return read_gltf(bytes, file);
-    case MeshFormat::tds:
-      return read_3ds(bytes);
-    case MeshFormat::unknown:
-      break;
+  const Content content(without_byte_order_mark(bytes));
+  const Format* format = find_format(content, file);
+  if (format == nullptr) {
+    std::vector<std::string_view> names;
+    for (const Format& known : kFormats) names.push_back(known.names);
+    throw Error(fmt::format("unknown format; {} are supported", fmt::join(names, ", ")));
   }
-  throw Error("unknown format; OBJ, PLY, STL, OFF, glTF, GLB and 3DS are supported");
+  if (format->text_only && !content.text)
+    throw Error("holds binary data where text is expected; it is damaged or has another format");
+  return format->read(content.bytes, file);
 }
 
 }  // namespace sdm::io

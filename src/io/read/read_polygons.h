@@ -12,10 +12,8 @@
 
 namespace sdm::io {
 
-enum class MeshFormat { unknown, obj, ply, stl_text, stl_binary, off, gltf, tds };
-
-/// Determines the format from the contents, or else from the file name's extension.
-[[nodiscard]] MeshFormat format_of(std::string_view bytes, const std::filesystem::path& file);
+/// Returns whether a mesh file is glTF, by its contents, or else by the file name's extension.
+[[nodiscard]] bool is_gltf(std::string_view bytes, const std::filesystem::path& file);
 
 /// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.
 [[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file);

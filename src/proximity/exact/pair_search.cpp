@@ -59,7 +59,6 @@ class PairSearch {
 
   // Pairs the children of the larger node with the other node.
   void open(const Entry& entry) {
-    ++w_.counts.nodes;
     const CentredBox box[2] = {box_of(entry, 0), box_of(entry, 1)};
     const int larger = box[0].size() * maps_.unit[0] < box[1].size() * maps_.unit[1];
     const int side = entry.place[larger].leaf() ? 1 - larger : larger;
@@ -121,7 +120,6 @@ class PairSearch {
 
   void compare_leaves(const Entry& entry) {
     if (discs_apart(entry)) return;  // the direction may have improved since the leaves were paired
-    ++w_.counts.leaf_pairs;
     for (int side = 0; side < 2; ++side) load_faces(side, entry.place[side].leaf_number());
     const LeafFaces &a = faces_[0], &b = faces_[1];
     Candidate candidates[kWidth * kWidth];
@@ -169,7 +167,6 @@ class PairSearch {
     const Corners a = pair_.face1(face1), b = pair_.face2(face2);
     // Most pairs end here if the meshes have details too fine for single precision.
     if (squared_box_distance(a, b) > kAbove * best_.distance * best_.distance) return;
-    ++w_.counts.triangle_pairs;
     if (!(candidate.least > 0) && triangles_intersect(a, b)) {
       const Vec3 point = common_point(a, b);
       best_ = {0, true, point, point, face1, face2};

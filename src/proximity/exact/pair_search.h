@@ -10,13 +10,6 @@
 
 namespace sdm::exact {
 
-/// Work counters, for tests.
-struct PairSearchCounts {
-  std::size_t nodes = 0;           ///< pairs opened: eight boxes tested against one
-  std::size_t leaf_pairs = 0;      ///< tested in single precision, with up to eight faces each
-  std::size_t triangle_pairs = 0;  ///< compared in double precision
-};
-
 /// Per-thread memory, reused between searches; results do not depend on it.
 struct PairWorkspace {
   /// A node or leaf of the wide tree, and the binary node that stores its box.
@@ -55,7 +48,6 @@ struct PairWorkspace {
 
   std::vector<Entry> overlapping;  ///< a stack
   Heap apart;
-  PairSearchCounts counts;  ///< summed over searches
 };
 
 /// Finds the closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic if

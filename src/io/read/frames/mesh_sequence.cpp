@@ -33,7 +33,7 @@ std::unique_ptr<FrameSource> open_file(const fs::path& file, double rate) {
     throw Error(
         fmt::format("holds positions without triangles; add the mesh that they belong to, as in mesh.obj+{}",
                     file.filename().string()));
-  if (format_of(contents.view(), file) == MeshFormat::gltf)
+  if (is_gltf(contents.view(), file))
     if (auto frames = gltf_frames(contents.view(), file, rate)) return frames;
   return single_file(file);
 }

@@ -1,0 +1,426 @@
+// Proximity queries against known results, against maps of all samples, and against themselves.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "core/geometry/vec.h"
+#include "sites/sites_data.h"
+#include "support/allocations.h"
+#include "support/meshes.h"
+#include "support/points.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+ProximityOptions at_resolution(std::uint32_t resolution, double margin = 0) {
+  return {.atlas = {.resolution = resolution}, .contact_margin = margin};
+}
+
+void expect_holds(const BoundedLength& length, double truth, double slack) {
+  EXPECT_LE(length.lower, truth + slack);
+  EXPECT_GE(length.upper, truth - slack);
+  EXPECT_LE(length.lower, length.value);
+  EXPECT_LE(length.value, length.upper);
+}
+
+void expect_witness(const BoundedLength& length) {
+  ASSERT_TRUE(length.witness);
+  EXPECT_NEAR(norm((*length.witness)[1] - (*length.witness)[0]), length.value, 1e-6);
+}
+
+// Faces 0.3 apart, or through each other by 0.3.
+TEST(Proximity, Cubes) {
+  for (const double gap : {0.3, 2.0, 40.0}) {
+    ProximityQuery query(cube(), moved(cube(), {2 + gap, 0.1, 0.2}), at_resolution(64));
+    expect_holds(query.separation(), gap, 1e-9);
+    expect_witness(query.separation());
+    EXPECT_LT(query.separation().upper - query.separation().lower, 0.2);
+    EXPECT_FALSE(query.colliding().value);
+    EXPECT_EQ(query.colliding().kind, Certainty::exact);
+    ASSERT_TRUE(query.penetration_depth());
+    EXPECT_EQ(query.penetration_depth()->value, 0);
+    EXPECT_EQ(query.penetration_depth()->upper, 0);
+    EXPECT_TRUE(query.contacts().empty());
+  }
+  ProximityQuery query(cube(), moved(cube(), {1.7, 0.1, 0.2}), at_resolution(128));
+  EXPECT_TRUE(query.colliding().value);
+  EXPECT_EQ(query.colliding().kind, Certainty::exact);
+  expect_holds(*query.penetration_depth(), 0.3, 1e-9);
+  EXPECT_NEAR(query.penetration_depth()->value, 0.3, 1e-5);
+  expect_witness(*query.penetration_depth());
+  EXPECT_EQ(query.separation().lower, 0);
+}
+
+// The deepest point of either of two unit spheres at the distance 1.5 is 0.5 below the other.
+TEST(Proximity, DepthOfSpheresConverges) {
+  double error = 1;
+  for (const int level : {1, 2, 3, 4}) {
+    const auto resolution = static_cast<std::uint32_t>(32 << level);
+    ProximityQuery query(sphere(level), moved(sphere(level), {0.9, 1.2, 0}), at_resolution(resolution));
+    ASSERT_TRUE(query.penetration_depth());
+    const BoundedLength depth = *query.penetration_depth();
+    EXPECT_EQ(depth.kind, Certainty::bounded);
+    EXPECT_GT(depth.lower, 0.2);
+    const double now = std::max(std::abs(depth.lower - 0.5), std::abs(depth.upper - 0.5));
+    EXPECT_LT(now, 0.9 * error) << level;
+    error = now;
+  }
+  EXPECT_LT(error, 0.01);
+}
+
+// A ball of radius 0.4 in the tube of radius 1 of a torus, 0.3 off the circle in its middle, which goes
+// through the ball's surface: the wall is 1 away there, and 0.3 at the nearest.
+TEST(Proximity, DepthInATorus) {
+  double error = 1;
+  for (const std::uint32_t n : {24u, 48u, 96u}) {
+    Mesh ball = sphere(3);
+    for (Vec3& p : ball.positions) p = 0.4 * p + Vec3{2.3, 0, 0};
+    ProximityQuery query(torus(2 * n, n), ball, at_resolution(4 * n));
+    const BoundedLength depth = *query.penetration_depth();
+    EXPECT_TRUE(query.colliding().value);
+    expect_holds(depth, 1, 0.04 * 24 / n);
+    const double now = depth.upper - depth.lower;
+    EXPECT_LT(now, 0.7 * error);
+    error = now;
+    expect_holds(query.separation(), 0.3, 0.04 * 24 / n);
+    EXPECT_EQ(query.colliding().kind, Certainty::exact);
+  }
+}
+
+// Culled samples do not affect results: complete maps give the same.
+TEST(Proximity, AgreesWithCompleteMaps) {
+  const Mesh bunny = load("bunny.obj", "fit");
+  for (const char* placement :
+       {"fit,translate:0.8:0:0", "fit,translate:0.1:0:0", "fit,scale:0.2", "fit,translate:0.45:0:0"}) {
+    SCOPED_TRACE(placement);
+    const Mesh armadillo = load("armadillo.off", placement);
+    ProximityQuery query(bunny, armadillo, at_resolution(256));
+    const double tolerance = 2e-6 * scene_diagonal(bunny, armadillo);
+    double least = 1e300, deepest = 0, lower = 1e300;
+    for (int b = 0; b < 2; ++b) {
+      const Surface& surface = query.surface(b);
+      const DistanceMap map = compute_map(surface, query.sites(1 - b));
+      const SamplingBound bound(surface);
+      for (std::size_t i = 0; i < surface.sample_texels().size(); ++i) {
+        const double d = map.distance[surface.sample_texels()[i]];
+        least = std::min(least, std::abs(d));
+        lower = std::min(lower, std::abs(d) - bound.sample_radii()[i]);
+        if (map.sign.method != SignMethod::none) deepest = std::max(deepest, -d);
+      }
+    }
+    EXPECT_NEAR(query.separation().value, least, tolerance);
+    EXPECT_NEAR(query.separation().lower, std::max(0.0, lower), tolerance);
+    EXPECT_NEAR(query.penetration_depth()->value, deepest, tolerance);
+    EXPECT_GT(query.samples_used(), 0u);
+  }
+}
+
+// Of bodies in many poses: apart, touching, through each other, nested.
+TEST(Proximity, BoundsContainTheExactResults) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> turn(-180, 180), shift(-0.8, 0.8), shrink(0.2, 1);
+  const std::array pairs{std::array{load("cow.off", "fit"), load("head.off", "fit")},
+                         std::array{placed(torus(40, 20), "fit"), placed(sphere(3), "fit")},
+                         std::array{placed(cube(), "fit"), load("pig.off", "fit")}};
+  std::size_t colliding = 0, undecided = 0;
+  for (const auto& [a, b] : pairs) {
+    ProximityQuery sampled(a, b, at_resolution(128));
+    ProximityQuery exact(a, b, {.atlas = {.resolution = 128}, .exact = true});
+    for (int pose = 0; pose < 40; ++pose) {
+      SCOPED_TRACE(pose);
+      const auto text = [](auto... x) { return ((std::string(1, ':') + std::to_string(x)) + ...); };
+      const Mesh posed = placed(b, "scale" + text(shrink(random)) + ",rotate" +
+                                       text(turn(random), turn(random), turn(random)) + ",translate" +
+                                       text(shift(random), shift(random), shift(random)));
+      sampled.update({}, posed.positions);
+      exact.update({}, posed.positions);
+      const double tolerance = 1e-6 * scene_diagonal(a, posed);
+      const BoundedLength truth = exact.separation();
+      EXPECT_EQ(truth.kind, Certainty::exact);
+      expect_holds(sampled.separation(), truth.value, tolerance);
+      if (sampled.colliding().kind == Certainty::exact) {
+        EXPECT_EQ(sampled.colliding().value, exact.colliding().value);
+      } else {
+        ++undecided;
+      }
+      colliding += exact.colliding().value;
+      const BoundedLength& depth = *exact.penetration_depth();
+      EXPECT_EQ(depth.kind, exact.colliding().value ? Certainty::bounded : Certainty::exact);
+      EXPECT_TRUE(depth.kind == Certainty::bounded || depth.value == 0);
+      // The same samples, whether or not some of them were ruled out.
+      EXPECT_NEAR(depth.value, sampled.penetration_depth()->value, tolerance);
+    }
+  }
+  EXPECT_GT(colliding, 30u);
+  EXPECT_LT(colliding, 110u);
+  EXPECT_LT(undecided, 12u);
+}
+
+// More samples: the bounds converge to the exact results.
+TEST(Proximity, BoundsNarrowWithTheResolution) {
+  const Mesh a = load("cow.off", "fit");
+  for (const char* placement : {"fit,translate:0.9:0.1:0", "fit,translate:0.4:0.1:0"}) {
+    SCOPED_TRACE(placement);
+    const Mesh b = load("head.off", placement);
+    ProximityQuery exact(a, b, {.atlas = {.resolution = 64}, .exact = true});
+    const double truth = exact.separation().value, tolerance = 1e-6 * scene_diagonal(a, b);
+    double separation = 1e300, depth = 1e300, deepest = 0;
+    for (const std::uint32_t resolution : {64u, 128u, 256u, 512u}) {
+      ProximityQuery query(a, b, at_resolution(resolution));
+      const auto narrows = [](const BoundedLength& length, double& width) {
+        EXPECT_LT(length.upper - length.lower, 0.75 * width);
+        width = length.upper - length.lower;
+      };
+      expect_holds(query.separation(), truth, tolerance);
+      if (truth > 0) narrows(query.separation(), separation);
+      if (exact.colliding().value) {
+        // The truth is not known, but between the largest lower bound and each upper one.
+        narrows(*query.penetration_depth(), depth);
+        deepest = std::max(deepest, query.penetration_depth()->lower);
+        EXPECT_GE(query.penetration_depth()->upper, deepest);
+      }
+    }
+    EXPECT_LT(truth > 0 ? separation : depth, 0.02);
+  }
+}
+
+TEST(Proximity, ComputesFewSamples) {
+  ProximityQuery query(sphere(5), moved(sphere(5), {2.2, 0, 0}), at_resolution(512));
+  (void)query.separation();
+  const std::size_t all = query.surface(0).sample_texels().size() + query.surface(1).sample_texels().size();
+  EXPECT_LT(query.samples_used(), all / 4);
+}
+
+TEST(Proximity, OpenMeshesHaveNoInside) {
+  const Mesh open = band(30, false);
+  ProximityQuery query(open, moved(open, {0.5, 0, 0.2}), at_resolution(128));
+  EXPECT_FALSE(query.penetration_depth());
+  EXPECT_EQ(query.separation().lower, 0);
+  EXPECT_EQ(query.colliding().kind, Certainty::estimate);
+  // Of a pair with one solid the other's surface can be inside of it.
+  ProximityQuery solid(cube(), moved(open, {0, 0, 0.8}), at_resolution(128));
+  ASSERT_TRUE(solid.penetration_depth());
+}
+
+// Completely inside, without contact.
+TEST(Proximity, NestedMeshesCollide) {
+  Mesh inner = cube(0.5);
+  for (const bool swapped : {false, true}) {
+    ProximityQuery query(swapped ? inner : cube(), swapped ? cube() : inner, at_resolution(64));
+    EXPECT_TRUE(query.colliding().value);
+    EXPECT_EQ(query.colliding().kind, Certainty::exact);
+    expect_holds(query.separation(), 0.5, 1e-9);
+    expect_holds(*query.penetration_depth(), 0.5, 1e-9);
+  }
+}
+
+// Two cubes with their edges parallel, overlapping by 0.3 along x: contacts push O1 to the left.
+TEST(Contacts, OfCubesPushThemApart) {
+  ProximityQuery query(cube(), moved(cube(), {1.7, 0, 0}), at_resolution(256));
+  ASSERT_FALSE(query.contacts().empty());
+  std::size_t along = 0;
+  for (const Contact& c : query.contacts()) {
+    EXPECT_NEAR(norm(c.normal), 1, 1e-9);
+    EXPECT_GE(c.depth, 0);
+    EXPECT_NEAR(norm(c.point2 - c.point1), c.depth, 1e-9);
+    EXPECT_LE(norm(c.depth * c.normal - (c.point2 - c.point1)), 2e-5);
+    EXPECT_EQ(c.patch, 0u);
+    along += c.normal[0] < -0.999;
+  }
+  EXPECT_GE(along, 2u);  // a face of either cube at least
+  EXPECT_LT(query.contacts()[0].normal[0], -0.999);
+  EXPECT_NEAR(query.contacts()[0].depth, 0.3, 1e-5);
+}
+
+// Two spheres, a little apart, within the margin: contacts on the line between them.
+TEST(Contacts, WithinTheMarginPointAlongTheLineOfCentres) {
+  const Vec3 centre{1.5, 1.2, 0.9};  // 2.12 away
+  const double distance = norm(centre);
+  ProximityQuery query(sphere(4), moved(sphere(4), centre), at_resolution(256, distance - 2 + 0.02));
+  ASSERT_FALSE(query.contacts().empty());
+  EXPECT_FALSE(query.colliding().value);
+  const Vec3 along = (-1 / distance) * centre;  // pushes O1 off O2
+  for (const Contact& c : query.contacts()) {
+    EXPECT_LE(c.depth, -(distance - 2) + 0.01);
+    EXPECT_GE(c.depth, -(distance - 2) - 0.02);
+    EXPECT_GT(dot(c.normal, along), 0.9);
+  }
+  // The deepest sample is within the covering radius R of the line: the normal turns by less than 2 R /
+  // distance of centres, and by the bend of a face.
+  EXPECT_GT(dot(query.contacts()[0].normal, along), std::cos(0.1));
+}
+
+// From a cube inside a ball whose faces are flat, up to h from the round one: a point at the radius ρ has its
+// closest point q within 1 − ρ, and |q| ≥ 1 − h. For the angle θ between q − p and the radius, as |q|² = ρ² +
+// d² + 2 ρ d cos θ, that says cos θ ≥ 1 − (2h − h²) / (2 ρ (1 − ρ)).
+TEST(Contacts, OfABallPointAlongItsRadius) {
+  double steepest = 1;
+  for (const int level : {2, 3, 4, 5}) {
+    const Mesh ball = sphere(level);
+    double h = 0;
+    for (const auto& [i, j, k] : ball.triangles) {
+      const Vec3 &a = ball.positions[i], &b = ball.positions[j], &c = ball.positions[k];
+      h = std::max(h, 1 - dot(normalized(cross(b - a, c - a)), a));
+    }
+    ProximityQuery query(ball, moved(cube(0.3), {0.3, 0.1, 0.2}), at_resolution(128));
+    std::size_t sampled = 0;
+    double least = 1;
+    for (const Contact& c : query.contacts()) {
+      const double radius = norm(c.point2);
+      EXPECT_NEAR(norm(c.normal), 1, 1e-9);
+      if (!(c.depth > 0 && radius < 1 - 2 * h)) continue;
+      ++sampled;
+      // The ball is pushed so that its wall passes the cube where it is nearest.
+      const double cosine = dot(c.normal, (-1 / radius) * c.point2);
+      EXPECT_GE(cosine, 1 - (2 * h - h * h) / (2 * radius * (1 - radius)) - 1e-6) << level;
+      least = std::min(least, cosine);
+    }
+    EXPECT_GT(sampled, 10u);
+    EXPECT_LT(1 - least, 1.01 * steepest);
+    steepest = 1 - least;
+  }
+  EXPECT_LT(steepest, 0.01);
+}
+
+// Three balls on a plate.
+TEST(Contacts, FormPatches) {
+  Mesh balls, plate = cube();
+  for (Vec3& p : plate.positions) p = {4 * p[0], 4 * p[1], 0.5 * p[2] - 0.5};
+  for (int i = 0; i < 3; ++i)
+    balls = joined(balls, moved(sphere(3), {2.5 * (i - 1), 0.3 * i, 0.95 - 0.01 * i}));
+  ProximityQuery query(balls, plate, at_resolution(512));
+  std::set<std::uint32_t> patches;
+  double last = 1;
+  for (const Contact& c : query.contacts()) {
+    if (patches.insert(c.patch).second) {
+      EXPECT_LE(c.depth, last);  // patches by their deepest
+      EXPECT_EQ(c.patch + 1, patches.size());
+      EXPECT_GT(c.normal[2], 0.99);  // upwards: O1 is pushed off the plate
+      last = c.depth;
+    }
+    EXPECT_LE(c.depth, last);
+  }
+  EXPECT_EQ(patches.size(), 3u);
+  EXPECT_NEAR(query.contacts()[0].point1[0], 2.5, 0.2);
+}
+
+TEST(Contacts, FlipWhenTheBodiesAreSwapped) {
+  const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
+  ProximityQuery ab(a, b, at_resolution(256)), ba(b, a, at_resolution(256));
+  ASSERT_FALSE(ab.contacts().empty());
+  ASSERT_EQ(ab.contacts().size(), ba.contacts().size());
+  const auto key = [](const Vec3& p) { return std::tuple(p[0], p[1], p[2]); };
+  std::vector<Contact> x(ab.contacts().begin(), ab.contacts().end()),
+      y(ba.contacts().begin(), ba.contacts().end());
+  std::ranges::sort(x, {}, [&](const Contact& c) { return std::pair(key(c.point1), key(c.point2)); });
+  std::ranges::sort(y, {}, [&](const Contact& c) { return std::pair(key(c.point2), key(c.point1)); });
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_EQ(x[i].point1, y[i].point2);
+    EXPECT_EQ(x[i].point2, y[i].point1);
+    EXPECT_EQ(x[i].depth, y[i].depth);
+    EXPECT_EQ(x[i].normal, -y[i].normal);
+  }
+  EXPECT_EQ(ab.separation().value, ba.separation().value);
+  EXPECT_EQ(ab.penetration_depth()->value, ba.penetration_depth()->value);
+}
+
+struct Answers {
+  double separation, lower, depth, upper;
+  bool colliding;
+  std::vector<double> depths;
+  bool operator==(const Answers&) const = default;
+};
+
+Answers answers(ProximityQuery& query) {
+  Answers a{query.separation().value,         query.separation().lower, query.penetration_depth()->value,
+            query.penetration_depth()->upper, query.colliding().value,  {}};
+  for (const Contact& c : query.contacts()) a.depths.push_back(c.depth);
+  return a;
+}
+
+TEST(ProximityRefit, ReturnsToTheSameBits) {
+  const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
+  ProximityQuery query(a, b, at_resolution(128));
+  const Answers first = answers(query);
+  query.update(a.positions, b.positions);
+  EXPECT_EQ(answers(query), first);
+  const std::vector<Vec3> away = moved(b, {3, 0, 0}).positions;
+  query.update({}, away);
+  EXPECT_FALSE(query.colliding().value);
+  EXPECT_GT(query.separation().lower, 1);
+  EXPECT_TRUE(query.contacts().empty());
+  // Texels that have moved away come back but for rounding; from then on to the bit.
+  query.update({}, b.positions);
+  const Answers back = answers(query);
+  EXPECT_NEAR(back.separation, first.separation, 1e-6);
+  EXPECT_NEAR(back.depth, first.depth, 1e-6);
+  EXPECT_EQ(back.depths.size(), first.depths.size());
+  query.update({}, away);
+  query.update({}, b.positions);
+  EXPECT_EQ(answers(query), back);
+}
+
+// A rigid motion of both bodies changes results only by rounding.
+TEST(ProximityRefit, RigidMotion) {
+  const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.5:0.1:0");
+  ProximityQuery query(a, b, at_resolution(128));
+  const Answers first = answers(query);
+  query.update(placed(a, "rotate:20:50:-70,translate:2:3:4").positions,
+               placed(b, "rotate:20:50:-70,translate:2:3:4").positions);
+  EXPECT_NEAR(query.separation().value, first.separation, 2e-5);
+  EXPECT_NEAR(query.penetration_depth()->value, first.depth, 2e-5);
+  EXPECT_EQ(query.colliding().value, first.colliding);
+}
+
+/// Fails if refits and queries still allocate memory when bodies repeat their poses.
+void expect_steady(const Mesh& a, const Mesh& b, bool exact) {
+  const std::array frames{b.positions, moved(b, {0.1, 0, 0}).positions, moved(b, {3, 0, 0}).positions};
+  ProximityQuery query(a, b, {.atlas = {.resolution = 128}, .exact = exact, .contact_margin = 0.05});
+  const auto taken = [&] {
+    const std::size_t before = allocations();
+    for (const std::vector<Vec3>& frame : frames) {
+      query.update(a.positions, frame);
+      (void)query.separation(), (void)query.colliding(), (void)query.penetration_depth();
+      (void)query.contacts();
+    }
+    return allocations() - before;
+  };
+  EXPECT_GT(taken(), 0u);
+  EXPECT_EQ(taken(), 0u);
+}
+
+TEST(ProximityRefit, AllocatesNothingAfterTheFirstFrames) {
+  const ThreadLimit alone(1);  // threads that join later allocate memory of their own
+  const Mesh sliver = placed(wedge(0.5), "rotate:31:127:201");
+  ASSERT_GT(std::ranges::count(internals(Sites(sliver)).sliver, 1), 0);
+  const Mesh hollow = joined(sphere(3), placed(sphere(3), "scale:0.5"));
+  ASSERT_EQ(internals(Sites(hollow)).shells.size(), 2u);
+  for (const bool exact : {false, true}) {
+    SCOPED_TRACE(exact);
+    expect_steady(torus(60, 30), moved(sphere(4), {2.5, 0, 0.3}), exact);
+    expect_steady(load("cow.off", "fit"), load("head.off", "fit,translate:0.5:0.1:0"), exact);
+    expect_steady(sliver, moved(sliver, {0.2, 0.1, 0}), exact);
+    expect_steady(hollow, moved(hollow, {0.7, 0, 0}), exact);
+  }
+}
+
+TEST(ProximityRefit, RejectsMismatchedPositions) {
+  ProximityQuery query(cube(), moved(cube(), {3, 0, 0}), at_resolution(64));
+  const double before = query.separation().value;
+  const std::vector<Vec3> few(3), nan(8, Vec3{std::nan(""), 0, 0}), good = moved(cube(), {9, 0, 0}).positions;
+  EXPECT_THROW(query.update(few, {}), Error);
+  EXPECT_THROW(query.update(good, nan), Error);
+  EXPECT_EQ(query.separation().value, before);
+  EXPECT_THROW(ProximityQuery(cube(), cube(), at_resolution(64, -1)), Error);
+  EXPECT_THROW(ProximityQuery(cube(), cube(), at_resolution(64, std::nan(""))), Error);
+}
+
+}  // namespace
+}  // namespace sdm::test

@@ -1,0 +1,87 @@
+#include "support/run_sdm.h"
+
+#include <poll.h>
+#include <pty.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+#include <thread>
+
+namespace sdm::test {
+namespace {
+
+void set_limit(__rlimit_resource resource, std::optional<std::uint64_t> value) {
+  if (!value) return;
+  const rlimit limit{*value, *value};
+  setrlimit(resource, &limit);
+}
+
+/// Reads both ends until they are closed.
+void drain(std::array<int, 2> ends, std::array<std::string*, 2> texts) {
+  for (int open = 2; open > 0;) {
+    std::array<pollfd, 2> polls{{{ends[0], POLLIN, 0}, {ends[1], POLLIN, 0}}};
+    poll(polls.data(), polls.size(), -1);
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (polls[i].revents == 0) continue;
+      std::array<char, 4096> buffer;
+      const ssize_t count = read(ends[i], buffer.data(), buffer.size());
+      if (count > 0) {
+        texts[i]->append(buffer.data(), static_cast<std::size_t>(count));
+      } else {
+        close(ends[i]);
+        ends[i] = -1;  // poll skips it
+        --open;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& options) {
+  std::vector<char*> argv{const_cast<char*>("sdm")};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  std::array<int, 2> out, err;
+  const bool made =
+      pipe(out.data()) == 0 &&
+      (options.terminal ? openpty(&err[0], &err[1], nullptr, nullptr, nullptr) : pipe(err.data())) == 0;
+  if (!made) throw std::runtime_error("no pipe");
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(out[1], STDOUT_FILENO);
+    dup2(err[1], STDERR_FILENO);
+    for (const int end : {out[0], out[1], err[0], err[1]}) close(end);
+    if (options.file_size) std::signal(SIGXFSZ, SIG_IGN);
+    set_limit(RLIMIT_FSIZE, options.file_size);
+    set_limit(RLIMIT_AS, options.memory);
+    for (const std::string& variable : options.environment) putenv(const_cast<char*>(variable.c_str()));
+    execv(SDM_COMMAND, argv.data());
+    _exit(127);
+  }
+  close(out[1]);
+  close(err[1]);
+
+  std::thread interrupter;
+  if (options.interrupt_after_ms > 0)
+    interrupter = std::thread([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(options.interrupt_after_ms));
+      kill(child, SIGINT);
+    });
+  Outcome run;
+  drain({out[0], err[0]}, {&run.out, &run.err});
+  if (interrupter.joinable()) interrupter.join();
+  int status = 0;
+  waitpid(child, &status, 0);
+  run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return run;
+}
+
+}  // namespace sdm::test

@@ -1,0 +1,26 @@
+// Runs the command sdm in a process of its own.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sdm::test {
+
+struct Outcome {
+  int code = -1;  ///< exit code, or 128 + the signal that ended it
+  std::string out, err;
+};
+
+struct Conditions {
+  std::optional<std::uint64_t> file_size{};  ///< no file can grow beyond it: a full disk
+  std::optional<std::uint64_t> memory{};     ///< address space
+  std::vector<std::string> environment{};    ///< NAME=value, besides that of this program
+  bool terminal = false;                     ///< stderr is a terminal
+  int interrupt_after_ms = 0;                ///< send SIGINT then, unless 0
+};
+
+[[nodiscard]] Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& options = {});
+
+}  // namespace sdm::test
