@@ -66,8 +66,7 @@ class Refinement {
 
   std::uint32_t parts_;
   Mesh result_;
-  std::map<std::array<std::uint32_t, 2>, std::uint32_t>
-      edges_;  ///< index of the first vertex within each edge
+  std::map<std::array<std::uint32_t, 2>, std::uint32_t> edges_;  ///< the first vertex within each edge
 };
 
 }  // namespace

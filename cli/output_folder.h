@@ -28,8 +28,7 @@ class OutputFolder {
   void remove_traces();
 
   std::filesystem::path folder_, staging_;
-  std::filesystem::path
-      existing_;  ///< the closest ancestor of folder_, or folder_ itself, that existed before
+  std::filesystem::path existing_;  ///< the closest ancestor of folder_, or itself, that existed before
 };
 
 /// Throws sdm::Error if not all of the text could be written.

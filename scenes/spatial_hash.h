@@ -44,8 +44,7 @@ class SpatialHash {
     const std::uint64_t hash = static_cast<std::uint64_t>(x) * 73856093u ^
                                static_cast<std::uint64_t>(y) * 19349663u ^
                                static_cast<std::uint64_t>(z) * 83492791u;
-    return hash &
-           (begins_.size() - 2);  // the number of slots is a power of two, followed by one entry for the end
+    return hash & (begins_.size() - 2);  // size() − 1 slots, a power of two
   }
 
   double cell_;

@@ -30,8 +30,7 @@ struct PointGroup {
   int top = 0;                                 ///< the level of the single ball
   alignas(64) float position[3][kMostPoints];  ///< of the points; the last one is repeated to fill its packet
   std::vector<Ball> balls[kLevels];
-  std::vector<hierarchy::FloatBox>
-      boxes;  ///< scratch memory of place(): bounding boxes of the points of a level's balls
+  std::vector<hierarchy::FloatBox> boxes;  ///< bounding boxes of the points of a level's balls, for place()
 
   /// Sets the group to 1 to kMostPoints points, mapped into the frame. Balls are small if the points are in
   /// an order like that of core/spatial_order.h. Up to rounding, they contain their points and the balls

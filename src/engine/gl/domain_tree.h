@@ -16,8 +16,7 @@ namespace sdm::gl {
 struct DomainTree {
   hierarchy::AabbTree tree;
   hierarchy::LeafOrder leaves;
-  std::vector<double>
-      bound;  ///< of each node: upper bound on the distance from any sample of its domains to O2
+  std::vector<double> bound;  ///< of each node: no sample of its domains is farther from O2
 
   /// Refits the boxes to the current domains. Cost: linear.
   DomainTree(const Surface& surface, const TileTree& tiles, const UnitFrame& frame);

@@ -70,8 +70,7 @@ void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int 
       const Vec3 vector{closest.vector[0][i], closest.vector[1][i], closest.vector[2][i]};
       const bool inside = on.distances.distances()[parts_[first + i].deepest] < 0;
       const std::uint32_t face = sites.face_of(closest.type[i], closest.site[i]);
-      if (!inside)
-        extend(boxes_[contacts_.size()], points_[first + i] + vector);  // including the way across the gap
+      if (!inside) extend(boxes_[contacts_.size()], points_[first + i] + vector);  // across the gap
       const double depth = inside ? closest.distance[i] : -closest.distance[i];
       const Vec3 outwards = std::abs(depth) > length ? (1 / depth) * vector : sites.normals.face[face];
       contacts_.push_back(contact_of(body, points_[first + i], vector, depth, outwards));

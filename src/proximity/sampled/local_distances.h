@@ -42,8 +42,7 @@ class LocalDistances {
   struct Probe {
     surface::BlockRange blocks;
     double distance = 0;
-    double radius =
-        0;  ///< of a ball around the probe that contains the samples of the blocks and their pieces
+    double radius = 0;  ///< of a ball around the probe that contains the blocks' samples and pieces
     /// Lower bound on the distance of any sample of the blocks and any point of their pieces.
     [[nodiscard]] double least() const { return distance - radius; }
   };
