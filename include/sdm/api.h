@@ -1,4 +1,4 @@
-/// The mark of the public API: all other symbols of a shared library are hidden.
+/// Export macro of the public API. All other symbols of a shared library are hidden.
 #pragma once
 
 #if defined(__GNUC__)

@@ -1,4 +1,4 @@
-/// How the faces of a mesh are laid out in a texture.
+/// How the faces of a mesh are laid out in a texture atlas.
 #pragma once
 
 #include <sdm/progress.h>
@@ -8,16 +8,16 @@
 namespace sdm {
 
 enum class AtlasKind {
-  charts,     ///< clusters of faces with like normals, projected orthogonally
-  triangles,  ///< a chart for each triangle, mapped without distortion
+  charts,     ///< clusters of faces with similar normals, each projected orthogonally
+  triangles,  ///< one chart per triangle, mapped without distortion
   uv,         ///< the mesh's own texture coordinates
 };
 
 struct AtlasOptions {
   AtlasKind kind = AtlasKind::charts;
-  std::uint32_t resolution = 1024;  ///< texels a side, in [16, 32768]
-  double max_stretch = 1.3;  ///< charts: lengths grow by no more from atlas to surface; > 1, 100 at most
-  std::uint32_t gutter = 1;  ///< free texels around each chart, its own (charts, triangles)
+  std::uint32_t resolution = 1024;  ///< texels per side, in [16, 32768]
+  double max_stretch = 1.3;  ///< charts: bounds the growth of lengths from atlas to surface; in (1, 100]
+  std::uint32_t gutter = 1;  ///< free texels around each chart, not shared (charts, triangles)
   Progress progress{};
 };
 

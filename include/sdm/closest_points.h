@@ -1,4 +1,4 @@
-/// Closest points of O2 to any points.
+/// Closest points of O2 to arbitrary points.
 #pragma once
 
 #include <sdm/api.h>
@@ -10,9 +10,11 @@
 
 namespace sdm {
 
-/// Closest points of O2 to any points, in any order, by the same engines. `distance` in the result is
-/// unsigned; options.sign is not used. Throws sdm::Error for a coordinate that is NaN or beyond 1e37, for a
-/// max_distance that is not positive, or for an engine that computes maps only; Cancelled.
+/// Returns the closest point of O2 to each of `points`, which may be in any order. `distance` is unsigned;
+/// options.sign is ignored. Points farther than options.max_distance have no site (SiteType::none). Throws
+/// sdm::Error for a coordinate that is NaN or beyond 1e37, for a max_distance that is not positive, for an
+/// engine that computes maps only, or if there is not enough memory; Cancelled. Cost: sorting the points in
+/// space, and one search per point by the engine.
 [[nodiscard]] SDM_API std::vector<ClosestPoint> closest_points(const Sites& sites,
                                                                std::span<const Vec3> points,
                                                                const MapOptions& options = {});

@@ -8,10 +8,11 @@
 
 namespace sdm {
 
-/// The option that remedies an error, for programs whose users set it by another name.
+/// The option that remedies an error, for programs that expose it under another name.
 enum class Remedy { none, atlas_kind, resolution, sign_method };
 
-/// Invalid input or a missing resource: one sentence that names the object, the fault and the remedy.
+/// Invalid input or a missing resource. The message is one sentence that names the object, the fault and the
+/// remedy.
 class SDM_API Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, Remedy remedy = Remedy::none)

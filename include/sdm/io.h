@@ -1,4 +1,4 @@
-/// Reading meshes and writing maps. Every function throws sdm::Error that names the file and the fault.
+/// Reading meshes and writing maps. Every function throws an sdm::Error that names the file and the fault.
 #pragma once
 
 #include <sdm/api.h>
@@ -15,12 +15,14 @@
 
 namespace sdm {
 
-/// Reads OBJ, PLY, STL, OFF, glTF/GLB or 3DS, told apart by content first, then by extension. Polygons are
-/// triangulated; node transforms applied; all meshes of the file become one. Vertices used by faces keep
-/// their order; bit-identical positions are welded. The result is valid in the sense of validate().
+/// Reads OBJ, PLY, STL, OFF, glTF/GLB or 3DS. The format is detected from the content, then from the
+/// extension. Polygons are triangulated, node transforms are applied, and all meshes of the file are merged
+/// into one. Vertices used by faces keep their order; bit-identical positions are welded. The result is valid
+/// in the sense of validate().
 [[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
 
-/// Binary PLY of the positions, in double precision, and triangles; read_mesh returns them to the bit.
+/// Writes the positions, in double precision, and the triangles as binary PLY; read_mesh returns them
+/// bit-identical.
 SDM_API void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 
 /// Colour scales for images of maps.
@@ -34,27 +36,27 @@ enum class Colormap {
 struct PictureOptions {
   Colormap colormap = Colormap::automatic;
   std::optional<std::array<double, 2>>
-      range{};  ///< of the colour scale; by default from the map (symmetric if diverging)
-  std::optional<double> tolerance{};  ///< bands: green within ±tolerance, outside it by sign
-  std::string units{};                ///< written in the legend: "mm", ...
+      range{};                        ///< of the colour scale; default: from the map, symmetric if diverging
+  std::optional<double> tolerance{};  ///< bands: green within ±tolerance, beyond it by sign
+  std::string units{};                ///< shown in the legend: "mm", ...
 };
 
-/// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A.
-/// Gutters are dilated; coverage.A is the true coverage. Invalid: NaN and 0xFFFFFFFF; of self maps with
-/// nothing in range +∞, 0 and 0xFFFFFFFF.
+/// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Values
+/// are dilated into the gutters; coverage.A is the coverage before dilation. Texels without a value hold NaN
+/// and 0xFFFFFFFF; in self maps, texels with nothing in range hold +∞, 0 and 0xFFFFFFFF.
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
-/// The same for maps over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
+/// The same for statistics over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
 
-/// A number a texel, such as NearestMap::body, as NPY of shape (resolution, resolution), uint32, row 0 at the
-/// top. Throws sdm::Error, too, where there are not resolution² numbers.
+/// Writes one number per texel, such as NearestMap::body, as NPY of shape (resolution, resolution), uint32,
+/// row 0 at the top. Also throws sdm::Error unless there are resolution² numbers.
 SDM_API void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
                        std::span<const std::uint32_t> values);
 
-/// distance.png: the distance in colours, with a legend of range and units.
+/// distance.png: the colour-mapped distance, with a legend of range and units.
 SDM_API void write_distance_png(const std::filesystem::path& file, const Surface& surface,
                                 const DistanceMap& map, const PictureOptions& options = {});
-/// voronoi.png: a colour for each closest site.
+/// voronoi.png: one colour per closest site.
 SDM_API void write_voronoi_png(const std::filesystem::path& file, const Surface& surface,
                                const DistanceMap& map);
 /// direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
@@ -66,20 +68,21 @@ struct Curve {
   std::string name;
   std::vector<double> values;
 };
-/// Curves over the same axis, with a title, and a line for each name if there are several.
+/// Curves over a common axis, with a title and, if there are several, their names.
 struct PlotPanel {
   std::string title;
   std::vector<Curve> curves;
 };
-/// plot.png: panels below each other over one axis, `places`, which has a name. Throws sdm::Error, too, where
-/// a curve has not one value a place.
+/// plot.png: panels stacked over a common axis with the label `axis` and the positions `places`. Also throws
+/// sdm::Error unless every curve has one value per position.
 SDM_API void write_plot_png(const std::filesystem::path& file, const std::string& axis,
                             std::span<const double> places, std::span<const PlotPanel> panels);
 
-/// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex, opens
-/// coloured in any viewer. `vertex_distances`: one for each vertex of surface.mesh(), not finite where there
-/// is none: as glTF knows no such number, the faces of such vertices form a primitive without `_DISTANCE`.
-/// Units m, cm, mm, um, in, ft scale the node to metres; none or others leave it.
+/// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex; any
+/// viewer displays the colours. `vertex_distances`: one per vertex of surface.mesh(), not finite where there
+/// is none. glTF allows finite numbers only, so the faces of such vertices form a primitive without
+/// `_DISTANCE`. The units m, cm, mm, um, in and ft scale the node to metres; with others or none the node is
+/// not scaled.
 SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        std::span<const float> vertex_distances, const PictureOptions& options = {});
 

@@ -25,8 +25,8 @@ struct MapOptions {
   Progress progress{};
 };
 
-/// One value a texel, row 0 at the top, in arrays of resolution². Where there is none, because no face owns
-/// the texel or O2 is farther than max_distance: NaN, kNone and SiteType::none.
+/// One value per texel, in arrays of resolution², row 0 at the top. Texels without a value, because no face
+/// owns them or O2 is farther than max_distance, hold NaN, kNone and SiteType::none.
 struct DistanceMap {
   std::uint32_t resolution = 0;
   std::vector<float> distance;      ///< |vector|, negative inside O2 if signed
@@ -37,15 +37,16 @@ struct DistanceMap {
   std::size_t beyond_max_distance = 0;  ///< owned texels without a value
 };
 
-/// Computes the map. Distance and vector are those of a site found exactly (cpu: to 1e-6 of the diagonal of
-/// both meshes; gl: to 2e-6; reference: to double rounding), evaluated in double and stored in float. Throws
-/// sdm::Error for a sign method that O2 does not allow, for a max_distance that is not positive, if the
-/// engine fails, or for want of memory; Cancelled.
+/// Computes the map. Distance and vector are those to a closest site, evaluated in double and stored in
+/// float; the site is closest to within 1e-6 (cpu) or 2e-6 (gl) of the diagonal of both meshes, or double
+/// rounding (reference). Throws sdm::Error for a sign method that O2 does not allow, for a max_distance that
+/// is not positive, if the engine fails, or if there is not enough memory; Cancelled. Cost: depends on the
+/// engine; for cpu, one search per owned texel, all cores.
 [[nodiscard]] SDM_API DistanceMap compute_map(const Surface& surface, const Sites& sites,
                                               const MapOptions& options = {});
 
-/// Writes into `map`, reusing its memory where possible: for sequences of frames. If it
-/// throws, the map's values are unspecified.
+/// The same, into `map`, whose memory is reused where possible: for sequences of frames. If it throws, the
+/// values of the map are unspecified.
 SDM_API void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,
                          DistanceMap& map);
 

@@ -13,24 +13,24 @@ namespace sdm {
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
-  /// Texture coordinates of each triangle's three corners, (0, 0) at the lower left of the image;
-  /// empty, or one entry a triangle.
+  /// Texture coordinates of each triangle's three corners, (0, 0) at the lower left of the image; empty, or
+  /// one entry per triangle.
   std::vector<std::array<Vec2, 3>> corner_uvs;
 };
 
 /// Throws sdm::Error unless the mesh can be used: every index in range, every coordinate finite and at most
-/// 1e37 in magnitude, the mesh larger than 1e-30, at most 2^30 triangles, at least one of them with an area,
-/// and texture coordinates finite and for all triangles or none. Cost: linear.
+/// 1e37 in magnitude, the extent of the mesh above 1e-30, at most 2^30 triangles, at least one of them with
+/// an area, and texture coordinates finite and present for all triangles or none. Cost: linear.
 SDM_API void validate(const Mesh& mesh);
 
-/// Bounds of all positions that a triangle refers to. Cost: linear.
+/// Returns the bounding box of all vertices that triangles use. Cost: linear.
 [[nodiscard]] SDM_API Box bounds(const Mesh& mesh);
 
 /// Counts and topology of a mesh, as printed by `sdm info`.
 struct MeshInfo {
   std::size_t vertices = 0, triangles = 0, edges = 0;
   Box bounds;
-  std::size_t components = 0;            ///< sets of faces connected over shared vertices
+  std::size_t components = 0;            ///< sets of faces connected by shared vertices
   std::size_t boundary_edges = 0;        ///< edges of exactly one face
   std::size_t nonmanifold_edges = 0;     ///< edges of three faces or more
   std::size_t nonmanifold_vertices = 0;  ///< vertices whose faces do not form one fan
@@ -46,8 +46,8 @@ struct MeshInfo {
   double volume = 0;  ///< enclosed; 0 unless closed and orientable
 };
 
-/// Counts and classifies. Duplicate faces, and degenerate faces with repeated corners, do not count as
-/// incident to edges. Cost: O(n log n).
+/// Computes the counts and the topology of a mesh. Duplicate faces, and degenerate faces with repeated
+/// corners, do not count as incident to edges. Cost: O(n log n).
 [[nodiscard]] SDM_API MeshInfo inspect(const Mesh& mesh);
 
 }  // namespace sdm

@@ -1,4 +1,4 @@
-/// Proximity of many bodies: all pairs, and the map of each body to all others.
+/// Proximity of many bodies: all pairs, and the distance map of each body to all others.
 #pragma once
 
 #include <sdm/api.h>
@@ -15,8 +15,8 @@
 namespace sdm {
 
 struct MultiBodyOptions {
-  AtlasOptions atlas{.resolution = 128};  ///< of each body: its samples are where distances are measured
-  /// Separation and collision from the triangles themselves; else from the samples, with their bounds.
+  AtlasOptions atlas{.resolution = 128};  ///< of each body; distances are measured at its samples
+  /// Compute separation and collision from the triangles; otherwise from the samples, with bounds.
   bool exact = false;
   /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
   double max_distance = std::numeric_limits<double>::infinity();
@@ -30,21 +30,22 @@ struct PairProximity {
   std::optional<BoundedLength> penetration_depth{};
 };
 
-/// The map of a body to all others together.
+/// The distance map of one body to all others.
 struct NearestMap {
-  /// As compute_map writes it, to the body whose surface is nearest at each texel; among equally near ones,
-  /// the body with the lowest index. Signed by that body alone: negative inside of it, if it is closed and
-  /// orientable.
+  /// As computed by compute_map, at each texel to the body with the nearest surface, or to the one with the
+  /// lowest index if several are equally near. The sign is that of this body alone: negative inside it if it
+  /// is closed and orientable.
   DistanceMap map;
-  /// That body for each texel; kNone where the map has no value.
+  /// The index of that body for each texel; kNone where the map has no value.
   std::vector<std::uint32_t> body;
 };
 
-/// Bodies that deform, each against all others: for simulation loops.
+/// Proximity of deforming bodies, each against all others, for simulation loops.
 class SDM_API MultiBodyQuery {
  public:
-  /// Throws sdm::Error as Surface and Sites do, and then names the body, and for a maximum distance that is
-  /// not greater than 0. Any number of bodies is allowed, including 0. Cost: all atlases and sites.
+  /// Builds the atlas and the sites of every body; any number of bodies is allowed, including 0. Throws
+  /// sdm::Error as Surface and Sites do, naming the body, and for a maximum distance that is not positive.
+  /// Cost: that of all atlases and sites.
   explicit MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options = {});
   ~MultiBodyQuery();
   MultiBodyQuery(MultiBodyQuery&&) noexcept;
@@ -53,29 +54,31 @@ class SDM_API MultiBodyQuery {
   [[nodiscard]] std::size_t size() const;
 
   /// Moves the vertices of a body, keeping its triangles. Throws sdm::Error, and changes nothing, for a body
-  /// that does not exist, a wrong count or a coordinate that is not finite or beyond 1e37. Cost: linear.
+  /// that does not exist, a wrong number of positions, or a coordinate that is not finite or beyond 1e37.
+  /// Cost: linear.
   void refit(std::size_t body, std::span<const Vec3> positions);
   /// The same for all bodies, on all cores: one entry per body; an empty one leaves the body unchanged.
   void refit(std::span<const std::span<const Vec3>> positions);
 
-  /// All pairs that collide or whose separation is at most max_distance, and pairs for which the samples
-  /// cannot rule this out: none with separation.lower > max_distance unless they collide. Sorted by first,
-  /// then by second body. Each has the answers that Query has for its bodies. Computed at the first call
-  /// after an update, and valid until the next one. Neither this nor update takes memory once the bodies have
-  /// been through such poses. Cost: a sweep over the bodies' boxes; then each candidate pair as by Query, all
-  /// cores sharing the pairs.
+  /// Returns all pairs that collide or whose separation is at most max_distance, and those for which the
+  /// samples cannot rule this out. No pair has separation.lower > max_distance unless it collides. Sorted by
+  /// first, then by second body. The results of a pair are those of ProximityQuery. Computed by the first
+  /// call after a refit and valid until the next update. Neither this nor refit()() allocates memory once
+  /// the bodies have been through similar poses. Cost: a sweep over the boxes of the bodies, then that of
+  /// ProximityQuery for each candidate pair, the pairs distributed over all cores.
   [[nodiscard]] std::span<const PairProximity> pairs();
-  /// Pairs whose boxes were within max_distance of each other when pairs() was computed last.
+  /// The number of pairs whose boxes were within max_distance of each other when pairs() was last computed.
   [[nodiscard]] std::size_t candidate_pairs() const;
 
-  /// Distances from each texel of a body to the nearest of the other bodies; where none is within
-  /// max_distance, no value. Throws sdm::Error for a body that does not exist and if there is not enough
-  /// memory. Cost: of compute_map to those bodies whose boxes are nearer than what has been found, all cores.
+  /// Returns the distances from the texels of a body to the nearest other body; texels with none within
+  /// max_distance have no value. Throws sdm::Error for a body that does not exist, or if there is not enough
+  /// memory. Cost: that of compute_map to each body whose box is nearer than the distances found so far, all
+  /// cores.
   [[nodiscard]] NearestMap nearest_map(std::size_t body) const;
-  /// Writes into `nearest`, reusing its memory where possible.
+  /// The same, into `nearest`, whose memory is reused where possible.
   void nearest_map(std::size_t body, NearestMap& nearest) const;
 
-  /// Throw sdm::Error for a body that does not exist.
+  /// The atlas and the sites of a body. Both throw sdm::Error for a body that does not exist.
   [[nodiscard]] const Surface& surface(std::size_t body) const;
   [[nodiscard]] const Sites& sites(std::size_t body) const;
 
@@ -84,9 +87,9 @@ class SDM_API MultiBodyQuery {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The distance of each vertex of a body to the nearest of the other bodies, signed as in nearest_map; NaN
-/// where none is within max_distance. Throws sdm::Error for a body that does not exist. Cost: closest_points
-/// to each other body.
+/// Returns the distance from each vertex of a body to the nearest other body, signed as in nearest_map; NaN
+/// where none is within max_distance. Throws sdm::Error for a body that does not exist. Cost: that of
+/// closest_points to every other body.
 [[nodiscard]] SDM_API std::vector<float> nearest_distances_at_vertices(const MultiBodyQuery& bodies,
                                                                        std::size_t body, double max_distance);
 

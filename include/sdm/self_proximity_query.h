@@ -1,4 +1,4 @@
-/// Proximity of a mesh to itself: maps, separation and contacts of a surface that may fold.
+/// Proximity of a mesh to itself: maps, separation and contacts of a surface that folds.
 #pragma once
 
 #include <sdm/api.h>
@@ -16,28 +16,30 @@ namespace sdm {
 
 /// The neighbourhood of a face along the surface, to which no distances are measured.
 struct ExclusionRule {
-  /// The face, all faces that share a vertex with it, and so on, this many times; ≥ 1.
+  /// Exclude the face and this many rings of faces around it, connected by shared vertices; ≥ 1.
   std::uint32_t rings = 1;
-  /// Instead: faces closer than this along the surface at rest; > 0, in units of the mesh.
+  /// If set, replaces `rings`: exclude faces closer than this along the surface at rest; > 0, in units of the
+  /// mesh.
   std::optional<double> geodesic{};
 };
 
-/// The faces that each face of a mesh excludes: itself, and its neighbourhood. Two faces exclude each other,
-/// or neither does. Depends on the mesh at rest only, however it is deformed later.
+/// The faces that each face of a mesh excludes: itself and its neighbourhood. The relation is symmetric. It
+/// depends on the mesh at rest only, not on later deformation.
 ///
-/// With a geodesic length L, face g is excluded for f if faces that share vertices, one with the next, lead
-/// from f to g, all of them less than L from f in a straight line at rest; and as well from g to f. So no
-/// point that remains is nearer than L along the surface at rest: the way to it would be such a chain. It is
-/// conservative: it excludes more where the surface folds back within L at rest.
+/// With a geodesic length L, faces f and g exclude each other if a chain of faces, consecutive ones sharing a
+/// vertex, leads from f to g such that every face of it is less than L from f in a straight line at rest, and
+/// likewise a chain from g to f. No point that is not excluded is therefore nearer than L along the surface
+/// at rest: the shortest path to it would run through such a chain. The rule is conservative: it excludes
+/// more where the surface at rest folds back within L.
 class SDM_API Exclusion {
  public:
-  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and if there is
-  /// not enough memory for all neighbourhoods; Cancelled. Cost: the sum of their sizes, with L that many
-  /// distances of triangles; all cores.
+  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and if there is not
+  /// enough memory for all neighbourhoods; Cancelled. Cost: linear in the sum of their sizes (with L, as many
+  /// triangle–triangle distances), all cores.
   explicit Exclusion(const Mesh& rest, const ExclusionRule& rule = {}, const Progress& progress = {});
 
   [[nodiscard]] std::size_t faces() const { return offsets_.size() - 1; }
-  /// In increasing order.
+  /// The faces that `face` excludes, in increasing order.
   [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t face) const {
     return {excluded_.data() + offsets_[face], excluded_.data() + offsets_[face + 1]};
   }
@@ -51,25 +53,25 @@ class SDM_API Exclusion {
 
 struct SelfMapOptions {
   double max_distance =
-      std::numeric_limits<double>::infinity();  ///< > 0, in units of the mesh: what is farther does not count
+      std::numeric_limits<double>::infinity();  ///< > 0, in units of the mesh: anything farther is ignored
   Progress progress{};
 };
 
-/// At every texel the nearest point of the faces that the texel's face does not exclude: unsigned, exact to
-/// double rounding, stored in float. A texel with nothing in range, because all is excluded or farther than
-/// max_distance, has the distance +∞, the vector 0, kNone and SiteType::none, and counts as
-/// beyond_max_distance; NaN means that no face owns the texel. Within a face the distance is 1-Lipschitz;
-/// from face to face it may jump, as the exclusion does.
+/// Computes, at every texel, the closest point of the faces that the texel's face does not exclude. Distances
+/// are unsigned, exact up to double rounding, stored in float. A texel with nothing in range, because every
+/// face is excluded or farther than max_distance, has the distance +∞, the vector 0, kNone and
+/// SiteType::none, and counts as beyond_max_distance; NaN means that no face owns the texel. Within a face
+/// the distance is 1-Lipschitz; between faces it may jump, as their exclusions differ.
 ///
-/// `surface` and `sites` are built from the same mesh and positions, `exclusion` from the same mesh at rest;
-/// throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, and for want of
-/// memory; Cancelled. Cost: one search per texel that skips excluded faces; all cores.
+/// `surface` and `sites` must be built from the same mesh and positions, `exclusion` from the same mesh at
+/// rest. Throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, or if there
+/// is not enough memory; Cancelled. Cost: one search per texel that skips excluded faces; all cores.
 [[nodiscard]] SDM_API DistanceMap compute_self_map(const Surface& surface, const Sites& sites,
                                                    const Exclusion& exclusion,
                                                    const SelfMapOptions& options = {});
 
-/// The same at the vertices: of each, the least over its faces; +∞ with nothing in range, NaN at a vertex
-/// without faces. Faces that Sites ignores do not count.
+/// The same at the vertices: for each, the minimum over its faces; +∞ if nothing is in range, NaN for a
+/// vertex without faces. Faces that Sites ignores are skipped.
 [[nodiscard]] SDM_API std::vector<float> self_distances_at_vertices(const Sites& sites,
                                                                     const Exclusion& exclusion,
                                                                     const SelfMapOptions& options = {});
@@ -77,12 +79,12 @@ struct SelfMapOptions {
 struct SelfProximityOptions {
   ExclusionRule exclusion{};
   double max_distance =
-      std::numeric_limits<double>::infinity();  ///< > 0, of separations, in units of the mesh
+      std::numeric_limits<double>::infinity();  ///< of separation(); > 0, in units of the mesh
   Progress progress{};                          ///< of the construction
 };
 
-/// The proximity of a deforming mesh to itself: for simulation loops. Results are computed from the
-/// triangles, not from samples, so they need no bounds.
+/// Proximity of a deforming mesh to itself, for simulation loops. Results are exact: computed from the
+/// triangles, without sampling error.
 class SDM_API SelfProximityQuery {
  public:
   /// Throws sdm::Error as Sites and Exclusion do, and for a maximum distance out of range.
@@ -92,21 +94,22 @@ class SDM_API SelfProximityQuery {
   SelfProximityQuery& operator=(SelfProximityQuery&&) noexcept;
 
   /// Moves the vertices; the excluded faces stay the same. Throws sdm::Error, and changes nothing, for a
-  /// wrong count or a coordinate that is not finite or beyond 1e37. Cost: linear.
+  /// wrong number of positions or a coordinate that is not finite or beyond 1e37. Cost: linear.
   void refit(std::span<const Vec3> positions);
 
   /// The smallest distance between two faces that do not exclude each other, 0 if they intersect; exact.
-  /// Empty if there are none within the maximum distance. The witness is a point of either face, that of the
-  /// lower index first. Cost: a search a face, with the least distance found so far as its bound; all cores.
+  /// Empty if there are none within the maximum distance. The witness is a point on each of the two faces,
+  /// the face of lower index first. Cost: one search per face, bounded by the smallest distance found so far;
+  /// all cores.
   [[nodiscard]] std::optional<BoundedLength> separation();
 
-  /// Each face that comes as near as `margin`, in units of the mesh, to a face it does not exclude has a
-  /// contact with the nearest of those, at their closest points; one for two faces that are each other's.
-  /// point1 lies on the face of the lower index; depth = −|point2 − point1|, for a surface has no inside;
-  /// where that is 0, the normal is the second face's. Contacts whose boxes, each around its two faces, meet
-  /// are of one patch: the nearest patch comes first, and in each the nearest contact. Valid until the next
-  /// call. Throws sdm::Error for a margin that is negative or not finite. Cost: a search a face, all cores,
-  /// and sorting.
+  /// Each face within `margin`, in units of the mesh, of a face that it does not exclude has a contact with
+  /// the nearest such face, at their closest points; two faces that are nearest to each other share one
+  /// contact. point1 lies on the face of lower index. depth = −|point2 − point1|, as a surface has no inside;
+  /// where it is 0, the normal is that of the second face. Contacts belong to the same patch if their boxes,
+  /// each around its two faces, intersect. Sorted by patch, the nearest first, and by distance within a
+  /// patch. Valid until the next call. Throws sdm::Error for a margin that is negative or not finite. Cost:
+  /// one search per face, all cores, and sorting.
   [[nodiscard]] std::span<const Contact> contacts(double margin);
 
   [[nodiscard]] const Sites& sites() const;

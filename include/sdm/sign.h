@@ -11,28 +11,29 @@
 
 namespace sdm {
 
-/// How the inside of O2 is told from the outside. Negative means inside.
+/// How inside and outside of O2 are distinguished. Negative distances are inside.
 enum class SignMethod {
   automatic,     ///< pseudonormal where O2 is closed and orientable, else none
   none,          ///< unsigned distances
-  pseudonormal,  ///< the closest site's angle-weighted pseudonormal (Bærentzen & Aanæs 2005); for closed O2,
-                 ///< exact but at walls thinner than 1e-7 of the distance to them
-  winding,  ///< generalised winding number above 1/2 (Jacobson et al. 2013): an estimate for open O2
+  pseudonormal,  ///< the closest site's angle-weighted pseudonormal (Bærentzen & Aanæs 2005); correct for
+                 ///< closed O2, except at walls thinner than 1e-7 of the distance to them
+  winding,       ///< generalised winding number above 1/2 (Jacobson et al. 2013): an estimate for open O2
 };
 
-/// The method that was used, and why, in words for a report.
+/// The method that was used, and the reason in words, for reports.
 struct SignUsed {
   SignMethod method = SignMethod::none;
   std::string reason;
 };
 
-/// The sign method that compute_map uses for `asked`, with its reason. Throws sdm::Error where O2 does not
-/// allow it.
+/// Returns the sign method that compute_map uses for `asked`, with the reason. Throws sdm::Error if O2 does
+/// not allow it.
 [[nodiscard]] SDM_API SignUsed choose_sign(const Sites& sites, SignMethod asked);
 
-/// For each closest point: whether its query lies inside O2 (1) or not (0), by `method` (pseudonormal or
-/// winding, else none is). `closest` comes from closest_points with the same sites; where it has no site, the
-/// answer of pseudonormal is 0. Throws sdm::Error for a method that O2 does not allow.
+/// Returns, for each query, whether it lies inside O2 (1) or not (0) according to `method`; all are 0 if no
+/// method is used. `closest` are the closest points of the queries, from closest_points with the same sites;
+/// pseudonormal returns 0 where there is no site. Throws sdm::Error for a method that O2 does not allow, if
+/// the numbers of queries and closest points differ, or if there is not enough memory.
 [[nodiscard]] SDM_API std::vector<std::uint8_t> inside_flags(const Sites& sites,
                                                              std::span<const Vec3> queries,
                                                              std::span<const ClosestPoint> closest,

@@ -1,4 +1,4 @@
-/// What distances are measured to (O2): the open faces, open edges and vertices of a mesh.
+/// The object that distances are measured to (O2): the open faces, open edges and vertices of a mesh.
 #pragma once
 
 #include <sdm/api.h>
@@ -38,9 +38,9 @@ class SDM_API Sites {
   Sites(Sites&&) noexcept;
   Sites& operator=(Sites&&) noexcept;
 
-  /// Moves the vertices and keeps the triangles. Cost: linear, and a few rays per component of a closed mesh.
-  /// Throws sdm::Error, and changes nothing, when the count differs or a coordinate is not finite or beyond
-  /// 1e37.
+  /// Moves the vertices and keeps the triangles. Cost: linear, plus a few rays per component of a closed
+  /// mesh. Throws sdm::Error, and changes nothing, when the count differs or a coordinate is not finite or
+  /// beyond 1e37.
   void refit(std::span<const Vec3> positions);
 
   [[nodiscard]] const Mesh& mesh() const;

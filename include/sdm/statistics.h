@@ -10,8 +10,8 @@
 
 namespace sdm {
 
-/// Of the texels that hold a finite value, each weighted by the surface area of its texel.
-/// All are NaN when there are none.
+/// Statistics of the texels that hold a finite value, each weighted by its area on the surface. The distances
+/// are NaN if there are none.
 struct DistanceStatistics {
   std::size_t texels = 0;  ///< with a value
   std::size_t negative_texels = 0;
@@ -19,12 +19,12 @@ struct DistanceStatistics {
   double p50 = 0, p95 = 0, p99 = 0;  ///< area-weighted percentiles
 };
 
-/// Over `map.distance` as it is, signed or not. Throws sdm::Error if the map does not belong to this surface.
-/// Cost: O(n log n) in texels.
+/// Computes statistics of `map.distance` as it is, signed or not. Throws sdm::Error if the map does not
+/// belong to this surface. Cost: O(n log n) in texels.
 [[nodiscard]] SDM_API DistanceStatistics statistics(const Surface& surface, const DistanceMap& map);
 
-/// The share of the area, in [0, 1], whose |distance| is above `limit`; texels beyond the map's maximum
-/// distance count as above. 0 for a map without texels. Cost: O(n) in texels.
+/// Returns the fraction of the area, in [0, 1], whose |distance| is above `limit`; texels beyond the map's
+/// maximum distance count as above. 0 for a map without texels. Cost: O(n) in texels.
 [[nodiscard]] SDM_API double area_fraction_beyond(const Surface& surface, const DistanceMap& map,
                                                   double limit);
 

@@ -19,7 +19,7 @@ class SurfaceData;
 ///
 /// Atlas coordinates (u, v) are in texels, u to the right, v *down* from the upper left corner of the image,
 /// so that texel (x, y) has its centre at (x + 0.5, y + 0.5) and the index y * resolution + x. Every face has
-/// an affine map M from its plane to the atlas; a texel belongs to the face that its centre lies in, at most
+/// an affine map M from its plane to the atlas; a texel belongs to the face that contains its centre, at most
 /// one.
 class SDM_API Surface {
  public:
@@ -43,9 +43,10 @@ class SDM_API Surface {
 
   /// The face that owns each texel, or kNone; resolution² values.
   [[nodiscard]] std::span<const std::uint32_t> texel_faces() const;
-  /// The indices of all owned texels, in an order in which neighbours are near each other on the surface.
+  /// The indices of all owned texels, in an order that keeps consecutive texels close together on the
+  /// surface.
   [[nodiscard]] std::span<const std::uint32_t> sample_texels() const;
-  /// texel_point of each of them. Cost: computed at each call, linear in samples, all cores.
+  /// texel_point() of each of sample_texels(). Computed by each call. Cost: linear in samples, all cores.
   [[nodiscard]] std::vector<Vec3> sample_points() const;
   /// The surface point of an owned texel's centre: M⁻¹ of its face.
   [[nodiscard]] Vec3 texel_point(std::uint32_t texel) const;
@@ -60,7 +61,7 @@ class SDM_API Surface {
   /// The edges of a texel on the surface: the columns ∂p/∂u and ∂p/∂v of M⁻¹. The face must have a chart.
   [[nodiscard]] std::array<Vec3, 2> texel_edges(std::uint32_t face) const;
 
-  /// Owned texels over all texels.
+  /// The number of owned texels divided by that of all texels.
   [[nodiscard]] double utilisation() const;
   /// The largest factor by which a length grows from atlas to surface, relative to the atlas's own scale (for
   /// `uv`: the scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for

@@ -10,13 +10,13 @@
 
 namespace sdm {
 
-/// For every texel of a fixed atlas: the minimum, maximum and mean distance over the added maps. NaN where a
-/// texel has no owner, or was beyond the maximum distance in one of the maps; of self maps, whose +∞ says so,
-/// the least is of the other maps.
+/// For every texel of a fixed atlas: the minimum, maximum and mean distance over the added maps. NaN where no
+/// face owns the texel, or where it was beyond the maximum distance in one of the maps. Self maps mark the
+/// latter by +∞ instead: the minimum is then that over the other maps.
 class SDM_API TemporalMaps {
  public:
-  /// Throws sdm::Error when the map has another resolution than those before. Cost: O(n) in texels, all
-  /// cores.
+  /// Adds a map. Throws sdm::Error if its resolution differs from that of earlier maps. Cost: O(n) in texels,
+  /// all cores.
   void add(const DistanceMap& map);
 
   [[nodiscard]] std::size_t maps() const { return maps_; }

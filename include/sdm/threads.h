@@ -9,7 +9,7 @@
 
 namespace sdm {
 
-/// While it lives, every function of the library uses at most `count` threads (0: all cores).
+/// During its lifetime, every function of the library uses at most `count` threads (0: all cores).
 class SDM_API ThreadLimit {
  public:
   explicit ThreadLimit(unsigned count);
@@ -22,8 +22,8 @@ class SDM_API ThreadLimit {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Runs independent tasks, concurrently if the limit allows. If one throws, tasks that were not begun are
-/// skipped, and its exception is rethrown once no task is running.
+/// Runs independent tasks, concurrently if the limit allows. If one throws, tasks that have not started are
+/// skipped, and its exception is rethrown once the running tasks have finished.
 SDM_API void run_concurrently(const std::vector<std::function<void()>>& tasks);
 
 }  // namespace sdm

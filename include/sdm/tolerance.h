@@ -16,8 +16,8 @@ struct ToleranceVerdict {
   double tolerance = 0;
   /// Of |distance|, over all samples and all vertices of faces; infinite if one of them has no value.
   double largest = 0;
-  /// Share of the area, in [0, 1], of texels whose |distance| is greater than the tolerance or that have no
-  /// value.
+  /// Fraction of the area, in [0, 1], of texels whose |distance| is greater than the tolerance or that have
+  /// no value.
   double exceeded_area_fraction = 0;
   bool within = true;  ///< largest ≤ tolerance
   /// The verdict holds for the whole surface. If within: largest + error_bound ≤ tolerance, since distances
@@ -25,17 +25,17 @@ struct ToleranceVerdict {
   bool certified = true;
 };
 
-/// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value.
-/// `error_bound`: how much |distance| at any point of the surface can exceed the largest at samples and
-/// vertices: SamplingBound::value() plus engine_accuracy().
-/// Throws sdm::Error if the map or the distances belong to another surface. Cost: linear in texels and faces.
+/// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value. `error_bound`:
+/// upper bound on how much |distance| at any point of the surface can exceed the largest at samples and
+/// vertices: SamplingBound::value() plus engine_accuracy(). Throws sdm::Error if the map or the distances
+/// belong to another surface. Cost: linear in texels and faces.
 [[nodiscard]] SDM_API ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
                                                        std::span<const float> vertex_distances,
                                                        double error_bound, double tolerance);
 
-/// Upper bound on the error of any distance that the engine computes from points of `on` to `to`, in units of
-/// the meshes, including the rounding to float: EngineInfo::relative_error times the diagonal of the bounding
-/// box of both meshes. Cost: linear.
+/// Returns an upper bound on the error of any distance that the engine computes from points of `on` to `to`,
+/// in units of the meshes, including the rounding to float: EngineInfo::relative_error times the diagonal of
+/// the bounding box of both meshes. Cost: linear.
 [[nodiscard]] SDM_API double engine_accuracy(const EngineInfo& engine, const Mesh& on, const Mesh& to);
 
 }  // namespace sdm

@@ -22,17 +22,17 @@ struct SDM_API Transform {
   [[nodiscard]] static Transform rotation(const Vec3& degrees);
 
   [[nodiscard]] Vec3 operator()(const Vec3& p) const;
-  /// Of the linear part; negative for a reflection.
+  /// The determinant of the linear part; negative for a reflection.
   [[nodiscard]] double determinant() const;
   /// (a * b)(p) = a(b(p)) up to rounding.
   friend SDM_API Transform operator*(const Transform& a, const Transform& b);
 };
 
-/// Scales uniformly and translates so that the longest side of the bounds becomes 1, centred at the origin.
-/// Throws sdm::Error unless the bounds have a positive extent. Cost: linear.
+/// Returns the uniform scaling and translation that make the longest side of the bounds 1 and centre them at
+/// the origin. Throws sdm::Error unless the bounds have a positive extent. Cost: linear.
 [[nodiscard]] SDM_API Transform fit_to_unit(const Mesh& mesh);
 
-/// Maps all positions; a reflection also flips the faces, so that their outside stays outside. Throws
+/// Maps all positions; a reflection also reverses the faces, so that they keep facing outwards. Throws
 /// sdm::Error, and changes nothing, if a coordinate becomes infinite or NaN. Cost: linear.
 SDM_API void transform(Mesh& mesh, const Transform& map);
 /// The same for points alone.

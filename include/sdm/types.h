@@ -14,7 +14,7 @@ using Vec3f = std::array<float, 3>;
 /// Three indices of vertices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// The one representation of "no face, no site, no texel".
+/// The index that represents "no face", "no site" and "no texel".
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
 /// Axis-aligned box; empty while lo > hi.

@@ -10,10 +10,10 @@
 
 namespace sdm {
 
-/// The distance of each vertex of `mesh` to O2, NaN beyond options.max_distance; signed as the map that
-/// compute_map computes with the same options. An engine that is maps_only is
-/// replaced by cpu. Throws sdm::Error as closest_points does, and for a sign method that O2 does not allow;
-/// Cancelled. Cost: as closest_points.
+/// Returns the distance from each vertex of `mesh` to O2, NaN beyond options.max_distance; signed as by
+/// compute_map with the same options. A maps_only engine is replaced by cpu. Throws sdm::Error as
+/// closest_points does, and for a sign method that O2 does not allow; Cancelled. Cost: that of
+/// closest_points.
 [[nodiscard]] SDM_API std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites,
                                                                MapOptions options = {});
 

@@ -13,7 +13,8 @@
 namespace sdm::atlas {
 namespace {
 
-// Charts gain nothing by more, and their axes stay well away from the planes of their faces.
+// Larger values would not improve the charts, and this one keeps their axes well away from the planes of
+// their faces.
 constexpr double kMaxStretch = 100;
 
 std::vector<Chart> single_faces(const FaceGeometry& faces) {
@@ -27,10 +28,10 @@ void report(const Progress& progress, double fraction) {
   if (progress && !progress("atlas", fraction)) throw Cancelled();
 }
 
-// The projection of a chart followed by its placement maps along the unit vectors right and down (times the
-// scale s) of the chart's plane. Back, p moves in the face's plane, normal n, so that its projection along
-// the axis moves by right / s: ∂p/∂u = (right − axis (n·right)/(n·axis)) / s, and ∂p/∂v likewise. Well
-// conditioned for any sliver, as n·axis ≥ cos θ; the singular values are 1/s and 1/(s n·axis).
+// The projection of a chart followed by its placement maps onto the unit vectors right and down of the
+// chart's plane, times the scale s. For the inverse, p moves in the face's plane, with normal n, so that its
+// projection along the axis moves by right / s: ∂p/∂u = (right − axis (n·right)/(n·axis)) / s, and ∂p/∂v
+// likewise. Well conditioned for any sliver, as n·axis ≥ cos θ; the singular values are 1/s and 1/(s n·axis).
 std::array<Vec3, 2> lifted(const std::array<Vec3, 2>& plane, double scale, const Vec3& axis,
                            const Vec3& normal) {
   const auto lift = [&](const Vec3& e) {

@@ -17,7 +17,7 @@ struct Layout {
   std::vector<std::vector<std::uint32_t>> charts;  ///< the faces of each
   std::vector<FaceMap> maps;
   std::vector<std::array<Vec2, 3>>
-      corners;  ///< atlas coordinates; of a chart's vertex the same for each of its faces
+      corners;  ///< atlas coordinates; a vertex has the same ones in all faces of a chart
   double max_stretch = 1;
 };
 
@@ -28,7 +28,7 @@ struct Layout {
 
 /// AtlasKind::charts and AtlasKind::triangles.
 [[nodiscard]] Layout chart_layout(const Mesh& mesh, const AtlasOptions& options);
-/// AtlasKind::uv. A chart is a set of faces that join at edges where their coordinates agree.
+/// AtlasKind::uv. A chart is a set of faces connected by edges at which their coordinates agree.
 [[nodiscard]] Layout uv_layout(const Mesh& mesh, const AtlasOptions& options);
 
 }  // namespace sdm::atlas

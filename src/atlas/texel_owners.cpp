@@ -21,8 +21,8 @@ void for_each_texel(const Layout& layout, const std::vector<std::uint32_t>& face
     for_each_centre(layout.corners[f], [&](std::uint32_t x, std::uint32_t y) { visit(f, x, y); });
 }
 
-// Packing puts the centroid of the largest face on a texel centre where no other lies in a face; with a face
-// that is thinner than rounding, that centre may still fall beside it.
+// Packing puts the centroid of the largest face on a texel centre where no other lies in a face; for a face
+// thinner than rounding errors, that centre may still fall beside it.
 void claim_centroid(const Layout& layout, const std::vector<std::uint32_t>& faces, std::uint32_t resolution,
                     std::vector<std::uint32_t>& owner) {
   const auto smaller = [&](auto f, auto g) {
@@ -50,7 +50,8 @@ std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::
       if (!any && kind != AtlasKind::uv) claim_centroid(layout, layout.charts[c], resolution, owner);
     }
   };
-  // Packed charts share no texel; a mesh's own may overlap by rounding, so the first one in order has it.
+  // Packed charts share no texel. A mesh's own charts may overlap by rounding: the first one, in order, owns
+  // the texel.
   if (kind == AtlasKind::uv)
     rasterise_charts(0, layout.charts.size());
   else

@@ -8,12 +8,12 @@
 
 namespace sdm::atlas {
 
-/// The face whose triangle in the atlas has each texel's centre, or kNone. Every chart owns a texel, but for
-/// AtlasKind::uv.
+/// For each texel, the face whose triangle in the atlas contains its centre, or kNone. Every chart owns at
+/// least one texel, except for AtlasKind::uv.
 [[nodiscard]] std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind,
                                                    std::uint32_t resolution);
 
-/// The texels that a face owns, in their order.
+/// All texels that are owned by a face, in increasing order.
 [[nodiscard]] std::vector<std::uint32_t> owned_texels(const std::vector<std::uint32_t>& texel_faces);
 
 }  // namespace sdm::atlas

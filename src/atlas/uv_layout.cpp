@@ -13,10 +13,11 @@
 namespace sdm::atlas {
 namespace {
 
-// Coordinates this far outside [0, 1] are taken for rounding; overlaps this deep, in texels, too.
+// Coordinates up to this far outside [0, 1], and overlaps up to this depth in texels, are attributed to
+// rounding.
 constexpr double kOutside = 1e-6;
 constexpr double kTexelSlack = 1.0 / 1024;
-constexpr double kLeastArea = 1e-12;  // square texels; below it the map back to the surface loses its meaning
+constexpr double kLeastArea = 1e-12;  // square texels; below it the map to the surface is meaningless
 
 [[noreturn]] void fail(const std::string& fault) {
   throw Error("the mesh's texture coordinates do not form an atlas: " + fault + "; use an atlas of charts",

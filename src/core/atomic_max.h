@@ -1,4 +1,4 @@
-// The maximum of values from several threads; it does not depend on their order.
+// Atomic maximum. The result does not depend on the order of the threads.
 #pragma once
 
 #include <atomic>
@@ -16,5 +16,5 @@ void atomic_max(T& largest, T value) {
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

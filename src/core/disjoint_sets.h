@@ -14,7 +14,7 @@ class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count = 0) { reset(count); }
 
-  /// Makes each number a set of its own. Keeps its memory.
+  /// Makes each number a set of its own. Reuses its memory between calls.
   void reset(std::size_t count) {
     parent_.resize(count);
     std::iota(parent_.begin(), parent_.end(), 0u);
@@ -36,5 +36,5 @@ class DisjointSets {
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

@@ -7,11 +7,11 @@ namespace sdm::core {
 
 struct EmbeddedFile {
   std::string_view name;   ///< without its folder
-  std::string_view bytes;  ///< lives as long as the program
+  std::string_view bytes;  ///< valid for the lifetime of the program
 };
 
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

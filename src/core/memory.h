@@ -1,4 +1,4 @@
-// Errors about memory.
+// Checks and errors for insufficient memory.
 //
 // Where a file or an option determines the size, require_memory checks it before anything is allocated,
 // because systems that overcommit memory kill the process instead of letting an allocation fail. Elsewhere
@@ -22,5 +22,5 @@ void require_memory(std::size_t bytes, std::string_view purpose);
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

@@ -9,8 +9,8 @@
 namespace sdm::core {
 
 /// Calls body(begin, end) for disjoint ranges of at most about `grain` that cover [0, count), on all cores
-/// allowed. With a progress callback, reports the fraction done, 1 at the end, and throws Cancelled if the
-/// callback returns false.
+/// that ThreadLimit allows. With a progress callback, reports the fraction done, 1 at the end, and throws
+/// Cancelled if the callback returns false.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body);
 void parallel_for(std::size_t count, std::size_t grain, const Progress& progress, std::string_view step,
@@ -29,12 +29,12 @@ class Tasks {
   ~Tasks() = default;
 };
 
-/// Runs first(tasks) and all tasks added, concurrently as cores are free. Unlike nested parallel_invoke, no
-/// thread waits for one branch while there is work in another. An exception is rethrown once all tasks that
-/// were started have finished.
+/// Runs first(tasks) and all tasks added, concurrently as cores become free. Unlike nested parallel_invoke,
+/// no thread waits for one branch while there is work in another. An exception is rethrown once all tasks
+/// that were started have finished.
 void parallel_tasks(const std::function<void(Tasks& tasks)>& first);
 
-/// The number of threads that parallel_for uses at present.
+/// The number of threads that parallel_for currently uses.
 [[nodiscard]] unsigned thread_count();
 
 using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
@@ -48,5 +48,5 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

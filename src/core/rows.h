@@ -1,4 +1,4 @@
-// Rows of varying length, stored one after the other in one array.
+// Rows of varying length, stored consecutively in one array.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace sdm::core {
 
-/// Row i is items[offsets[i]] to before items[offsets[i + 1]].
+/// Row i is items[offsets[i]] up to, but not including, items[offsets[i + 1]].
 template <class Item, class Offset = std::uint32_t>
 struct CompressedRows {
-  std::vector<Offset> offsets;  ///< of each row, and the end of the last
+  std::vector<Offset> offsets;  ///< start of each row, and the end of the last
   std::vector<Item> items;
 
   [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
@@ -24,11 +24,12 @@ struct CompressedRows {
   }
 };
 
-/// Sorts items into rows by counting: visit(put) calls put(row, item) for each, and is called twice. Items
-/// of a row keep their order.
+/// Sorts items into rows by a counting sort: visit(put) calls put(row, item) for each item, and is called
+/// twice. Items of a row keep their order.
 template <class Item, class Offset = std::uint32_t, class Visit>
 CompressedRows<Item, Offset> make_rows(std::size_t count, const Visit& visit) {
-  // offsets[i + 2] counts row i, offsets[i + 1] then runs from its begin to its end, where row i + 1 begins.
+  // offsets[i + 2] counts row i; offsets[i + 1] then advances from the start of row i to its end, where row i
+  // + 1 starts.
   CompressedRows<Item, Offset> rows{std::vector<Offset>(count + 2, 0), {}};
   visit([&](std::size_t row, const Item&) { ++rows.offsets[row + 2]; });
   std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
@@ -41,5 +42,5 @@ CompressedRows<Item, Offset> make_rows(std::size_t count, const Visit& visit) {
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

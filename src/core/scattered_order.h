@@ -7,8 +7,8 @@
 
 namespace sdm::core {
 
-/// A permutation of 0 ... count − 1 that begins with 0: the multiples, modulo count, of a number coprime to
-/// it, near its golden section.
+/// A permutation of 0 ... count − 1 that starts with 0: the multiples, modulo count, of a step coprime to
+/// count and close to count divided by the golden ratio.
 inline std::vector<std::uint32_t> scattered_order(std::size_t count) {
   auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(count)) | 1;
   while (std::gcd(step, count) != 1) ++step;
@@ -20,5 +20,5 @@ inline std::vector<std::uint32_t> scattered_order(std::size_t count) {
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

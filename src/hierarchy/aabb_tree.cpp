@@ -21,8 +21,8 @@ std::vector<FloatBox> to_float(std::span<const Box> boxes) {
   return rounded;
 }
 
-// The next float above or below x: std::nextafter for finite x, inline. The bits of floats of one sign are
-// ordered as integers are, by magnitude.
+// The next float above or below x: std::nextafter for finite x, inlined. For floats of one sign, the order of
+// the bit patterns as integers is that of the magnitudes.
 float next(float x, bool above) {
   const auto bits = std::bit_cast<std::int32_t>(x);
   return std::bit_cast<float>(bits + ((bits < 0) == above ? -1 : 1));

@@ -28,7 +28,7 @@ inline FloatBox unite(const FloatBox& a, const FloatBox& b) {
   return box;
 }
 
-/// The distance of two boxes, or of a box and a point, along each axis; 0 where they overlap.
+/// The distance between two boxes, or a box and a point, along each axis; 0 where they overlap.
 inline Vec3 gap(const FloatBox& a, const FloatBox& b) {
   Vec3 gap;
   for (int k = 0; k < 3; ++k) gap[k] = std::max({0.0, double{a.lo[k]} - b.hi[k], double{b.lo[k]} - a.hi[k]});
@@ -51,7 +51,7 @@ struct AabbTree {
     [[nodiscard]] bool leaf() const { return count > 0; }
   };
   std::vector<Node> nodes;           ///< empty when there are no items
-  std::vector<std::uint32_t> items;  ///< indices of boxes, leaf after leaf
+  std::vector<std::uint32_t> items;  ///< indices of boxes, in the order of the leaves
 
   [[nodiscard]] const FloatBox& box(std::uint32_t node) const { return nodes[node].box; }
   [[nodiscard]] std::span<const std::uint32_t> items_of(std::uint32_t leaf) const {
@@ -59,9 +59,9 @@ struct AabbTree {
   }
 };
 
-/// Builds a tree of the boxes that `indices` selects, with at most `leaf_size` in a leaf, by the binned
-/// surface area heuristic. Boxes are in the unit frame. The result does not depend on the number of threads.
-/// Cost: O(n log n), all cores.
+/// Builds a tree of the boxes that `indices` selects, with at most `leaf_size` of them per leaf, by the
+/// binned surface area heuristic. Boxes are in the unit frame. The result does not depend on the number of
+/// threads. Cost: O(n log n), all cores.
 [[nodiscard]] AabbTree build_aabb_tree(std::span<const FloatBox> boxes, std::vector<std::uint32_t> indices,
                                        std::uint32_t leaf_size);
 [[nodiscard]] AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> indices,

@@ -17,10 +17,9 @@ HWY_BEFORE_NAMESPACE();
 namespace sdm::hierarchy::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr uint32_t kParallelItems = 2048;  // a subtree of fewer is built by one thread
+constexpr uint32_t kParallelItems = 2048;  // smaller subtrees are built by one thread
 
-// A box as −lo and hi, so that a union is a maximum.
-// The fourth lane of each is spare.
+// A box as −lo and hi, so that a union is a maximum. The fourth lane of each is unused.
 struct Bounds {
   alignas(32) float reach[2][4];
 
@@ -38,7 +37,7 @@ struct Bounds {
   float half_area() const { return extent(0) * extent(1) + extent(1) * extent(2) + extent(2) * extent(0); }
 };
 
-// The box of an item, with its index in a spare lane.
+// The box of an item, with its index in an unused lane.
 Bounds item_of(const FloatBox& box, uint32_t index) {
   return {{{-box.lo[0], -box.lo[1], -box.lo[2], std::bit_cast<float>(index)},
            {box.hi[0], box.hi[1], box.hi[2], 0}}};
@@ -47,14 +46,14 @@ uint32_t index_of(const Bounds& item) {
   return std::bit_cast<uint32_t>(item.reach[0][3]);
 }
 
-// Divides the range of the items' centres along each axis into bins. Centres are doubled.
+// Divides the range of the items' centres along each axis into bins. Centres are stored multiplied by two.
 struct Binning {
   static constexpr int kBins = 8;
 
   alignas(16) float first[4], per_length[4] = {};
 
   explicit Binning(const Bounds& centres) {
-    constexpr float kLeastExtent = 1e-30f;  // keeps the quotient finite; below, all are in the first bin
+    constexpr float kLeastExtent = 1e-30f;  // keeps the quotient finite; below it, all are in the first bin
     for (int k = 0; k < 4; ++k) first[k] = -centres.reach[0][k];
     for (int k = 0; k < 3; ++k)
       if (centres.extent(k) > kLeastExtent) per_length[k] = kBins / centres.extent(k);
@@ -70,7 +69,7 @@ struct Binning {
       hn::Store(hn::ConvertTo(di, hn::Min(along, hn::Set(d, kBins - 1.0f))), di, bin + i);
     }
   }
-  // Whether that is `bin` or a later one, for one axis and 0 < bin < kBins.
+  // Whether the bin along one axis is `bin` or a later one, for 0 < bin < kBins.
   HWY_INLINE bool from(int bin, const Bounds& item, int axis) const {
     const float centre = item.reach[1][axis] - item.reach[0][axis];
     return (centre - first[axis]) * per_length[axis] >= static_cast<float>(bin);
@@ -161,8 +160,8 @@ class Builder {
     int axis, bin;  ///< the first bin of the right side; axis −1 if the centres of all items agree
   };
 
-  // The cut of least cost, area × leaves summed over both sides, by the surface area heuristic: a leaf is
-  // visited as a whole, full or not. For many items, a sample of them suffices.
+  // The cut of lowest cost by the surface area heuristic: area × number of leaves, summed over both sides,
+  // since a leaf is visited as a whole, full or not. For many items, a subset of them suffices.
   Cut best_cut(const Bounds* items, uint32_t item_count, const Binning& binning) const {
     constexpr int kBins = Binning::kBins;
     constexpr uint32_t kSample = 512;

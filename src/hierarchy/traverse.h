@@ -33,7 +33,7 @@ void traverse(const AabbTree& tree, Subtree subtree, const Enter& enter, const V
 }
 
 /// Depth first, the nearer child first; the left one if both are equally near. lower_bound(box) is a lower
-/// bound on the distance of anything in the box. A node is entered if within(its bound) holds at that time,
+/// bound on the distance to anything in the box. A node is entered if within(its bound) holds at that time,
 /// so the limit may shrink as leaves are visited.
 template <class LowerBound, class Within, class Visit>
 void traverse_nearer_first(const AabbTree& tree, const LowerBound& lower_bound, const Within& within,
@@ -59,7 +59,7 @@ void traverse_best_first(const AabbTree& tree, const LowerBound& lower_bound, co
   struct Open {
     double bound;
     std::uint32_t node;
-    bool operator<(const Open& other) const { return bound > other.bound; }  // the least on top
+    bool operator<(const Open& other) const { return bound > other.bound; }  // the smallest on top
   };
   if (tree.nodes.empty()) return;
   std::priority_queue<Open> open;
@@ -77,8 +77,8 @@ void traverse_best_first(const AabbTree& tree, const LowerBound& lower_bound, co
   }
 }
 
-/// The value of a subtree: summary(node), an optional, if it has a value; else leaf(node) or
-/// merge(left value, right value).
+/// The value of a subtree: summary(node), an optional, if it is set; otherwise leaf(node) or merge(left
+/// value, right value).
 template <class Summary, class Leaf, class Merge>
 auto reduce(const AabbTree& tree, std::uint32_t index, const Summary& summary, const Leaf& leaf,
             const Merge& merge) -> typename decltype(summary(index))::value_type {

@@ -13,7 +13,7 @@ namespace sdm::hierarchy {
 struct WideTree {
   static constexpr int kWidth = 8;
 
-  /// A child is the index of another wide node, or the number of a leaf of the binary tree, in their order.
+  /// A child is the index of another wide node, or of a leaf of the binary tree, counted in tree order.
   [[nodiscard]] static constexpr bool is_leaf(std::uint32_t child) { return (child & kLeafBit) != 0; }
   [[nodiscard]] static constexpr std::uint32_t leaf_number(std::uint32_t child) { return child & ~kLeafBit; }
   [[nodiscard]] static constexpr std::uint32_t leaf(std::uint32_t number) { return number | kLeafBit; }
@@ -32,7 +32,7 @@ struct WideTree {
   static constexpr std::uint32_t kLeafBit = 0x80000000u;
 };
 
-/// Squared distances of a box to the boxes of a node's children.
+/// Squared distances from a box to the boxes of a node's children.
 inline void squared_distances(const WideTree::Node& node, const Box& box,
                               double (&squared)[WideTree::kWidth]) {
   for (int i = 0; i < WideTree::kWidth; ++i) squared[i] = 0;
@@ -47,7 +47,7 @@ inline void squared_distances(const WideTree::Node& node, const Box& box,
 /// linear.
 [[nodiscard]] WideTree collapse(const AabbTree& tree);
 
-/// Takes over the boxes of the binary tree after a refit. Cost: linear.
+/// Copies the boxes of the binary tree after a refit. Cost: linear.
 void refit(WideTree& wide, const AabbTree& tree);
 
 }  // namespace sdm::hierarchy

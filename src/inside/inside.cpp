@@ -41,7 +41,7 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
                                      const sites::ClosestPacket& closest) const {
   std::uint32_t inside = 0;
   if (method_ == SignMethod::none) return inside;
-  const bool in_box = method_ == SignMethod::pseudonormal;  // most queries are told by it alone
+  const bool in_box = method_ == SignMethod::pseudonormal;  // the box alone decides most queries
   for (std::size_t i = 0; i < closest.count; ++i)
     if (!in_box || sdm::contains(box_, queries[i]))
       inside |= static_cast<std::uint32_t>((*this)(queries[i], closest.get(i, queries[i]))) << i;

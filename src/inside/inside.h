@@ -1,6 +1,6 @@
-// Inside or outside of a mesh. All such questions go through this header: on which side queries lie whose
-// closest points are known (InsideTest), and whether a moved solid contains a point, exactly (contains).
-// Which meshes have an inside is up to SitesData::is_solid.
+// Inside or outside of a mesh. All such tests go through this header: InsideTest for queries whose closest
+// points are known, and contains(), which is exact, for a moved solid. SitesData::is_solid determines which
+// meshes have an inside.
 #pragma once
 
 #include <sdm/sign.h>
@@ -23,7 +23,7 @@ class InsideTest {
 
   /// `closest` is the closest point of the query (not used by the winding number). On the surface: outside.
   [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
-  /// A bit for each query of a packet that is inside.
+  /// A bit mask of the queries of a packet that are inside.
   [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries,
                                          const sites::ClosestPacket& closest) const;
 
@@ -33,7 +33,7 @@ class InsideTest {
 
   const sites::SitesData& sites_;
   SignMethod method_;
-  Box box_;  ///< of O2: no point outside it is inside O2, however close the tie
+  Box box_;  ///< of O2: no point outside it is inside O2, even where rounding would decide
   bool has_slivers_ = false;
   std::optional<WindingNumber> winding_;
 };

@@ -46,8 +46,8 @@ bool segment_meets(const Box& box, const Vec3& start, const Vec3& along) {
   return first <= last + kRounding;
 }
 
-// ±1 if the segment pq crosses the triangle, by the side that it comes from, or 0; nothing where it meets the
-// triangle's edges. Neither p nor q lies on the triangle.
+// ±1 if the segment pq crosses the triangle, depending on the side that it comes from, otherwise 0; empty if
+// it meets an edge of the triangle. Neither p nor q lies on the triangle.
 std::optional<int> crossing(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
   const bool above_p = orientation(t[0], t[1], t[2], p) > 0, above_q = orientation(t[0], t[1], t[2], q) > 0;
   if (above_p == above_q) return 0;
@@ -85,7 +85,7 @@ bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& poi
   if (!sdm::contains(box, point)) return false;
   const double length = 2 * diagonal(box);
   // Segments along (1, t, t²) that intersect an edge are skipped. Those that meet the same edge lie in one
-  // plane, and no plane through the point holds more than two of them: this ends.
+  // plane through the point, and no such plane contains more than two of them, so the loop terminates.
   for (double t = 0.0137035999;; t += 0.0072973525)
     if (const auto turns = winding(solid, pose, point, point + length * Vec3{1, t, t * t}))
       return *turns != 0;

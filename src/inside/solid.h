@@ -1,4 +1,4 @@
-// Meshes as the solids that they bound.
+// Meshes as solids.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@ namespace sdm::inside {
 
 /// The winding number of a closed mesh moved by `pose`, with outward-oriented faces, around p, from the
 /// crossings of the segment to a point q outside the mesh. Empty if the segment intersects an edge. Exact if
-/// p does not lie on the surface. Cost: O(log n) and the faces that the segment meets.
+/// p does not lie on the surface. Cost: O(log n), plus linear in the faces that the segment meets.
 [[nodiscard]] std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p,
                                          const Vec3& q);
 
-/// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its faces
-/// wind around the point. Exact. Cost: that of `winding`, most often once.
+/// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its winding
+/// number around the point is not 0. Exact. Cost: usually one call of winding().
 [[nodiscard]] bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
 
 }  // namespace sdm::inside

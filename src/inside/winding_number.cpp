@@ -12,7 +12,7 @@
 namespace sdm::inside {
 namespace {
 
-// A dipole stands for its faces from this many radii on.
+// Beyond this many radii, a dipole replaces its faces.
 constexpr double kFar = 3;
 
 std::array<Vec3, 3> corners(const sites::SitesData& sites, std::uint32_t face) {
@@ -31,7 +31,7 @@ WindingNumber::WindingNumber(const sites::SitesData& sites)
     d.moment += moment;
     d.area += area;
   };
-  // `d` has the sums of what is below a node whose box this is.
+  // `d` holds the sums over the subtree of a node, `box` is the box of the node.
   const auto finish = [&](Dipole& d, const hierarchy::FloatBox& box) {
     const Vec3 lo{box.lo[0], box.lo[1], box.lo[2]}, hi{box.hi[0], box.hi[1], box.hi[2]};
     const Vec3 middle = sites.frame.origin + (0.5 / sites.frame.scale) * (lo + hi);

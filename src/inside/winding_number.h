@@ -1,4 +1,4 @@
-// The generalised winding number of a soup around points.
+// The generalised winding number of a triangle soup.
 #pragma once
 
 #include <sdm/types.h>
@@ -10,8 +10,8 @@
 namespace sdm::inside {
 
 /// How many times the mesh winds around a point (Jacobson, Kavan & Sorkine 2013): 1 inside and 0 outside a
-/// closed mesh, in between around an open one. Far subtrees act as dipoles (Barill et al. 2018), which errs
-/// by about 10⁻².
+/// closed mesh, in between around an open one. Distant subtrees are approximated by dipoles (Barill et al.
+/// 2018), with an error of about 10⁻².
 class WindingNumber {
  public:
   explicit WindingNumber(const sites::SitesData& sites);
@@ -22,11 +22,11 @@ class WindingNumber {
     Vec3 centre{};  ///< area-weighted mean of the faces' centroids
     Vec3 moment{};  ///< sum of the faces' normals times areas
     double area = 0;
-    double radius = 0;  ///< about the centre, of everything below
+    double radius = 0;  ///< of a ball around the centre that contains the subtree
   };
 
   const sites::SitesData& sites_;
-  std::vector<Dipole> dipoles_;  ///< of each node of the tree
+  std::vector<Dipole> dipoles_;  ///< one per node of the tree
 };
 
 }  // namespace sdm::inside

@@ -27,8 +27,9 @@ void count_components(const Mesh& mesh, MeshInfo& info) {
   }
 }
 
-// Walks from face to face about a vertex, from `face` over its edge `edge`, until a border or `face` again;
-// returns the number of faces entered. No edge at the vertex has more than two faces.
+// Walks from face to face around a vertex, from `face` across its edge `edge`, until it reaches a boundary
+// edge or `face` again; returns the number of faces entered. Requires that no edge at the vertex has more
+// than two faces.
 std::size_t walk(const mesh::Topology& topology, std::uint32_t vertex, std::uint32_t face,
                  std::uint32_t edge) {
   std::size_t entered = 0;
@@ -46,7 +47,7 @@ std::size_t walk(const mesh::Topology& topology, std::uint32_t vertex, std::uint
 }
 
 // Whether the faces of a vertex form one fan, open or closed: each edge at the vertex has at most two of
-// them, and a walk from any of them over both of its edges meets them all.
+// them, and a walk from any of them across both of its edges reaches them all.
 bool is_fan(const mesh::Topology& topology, std::uint32_t vertex, std::span<const std::uint32_t> faces) {
   std::array<std::uint32_t, 2> first_edges{};
   for (const std::uint32_t f : faces) {
@@ -70,8 +71,8 @@ void count_nonmanifold_vertices(const Mesh& mesh, const mesh::Topology& topology
   }
 }
 
-// Area, and the sum of the signed tetrahedra over the centre of the bounds: Gauss's theorem for a closed
-// mesh.
+// Measures the area and, for a closed mesh, the volume: by Gauss's theorem, the sum of the signed tetrahedra
+// with the centre of the bounds as apex.
 void measure(const Mesh& mesh, const mesh::Topology& topology, const mesh::Orientation& orientation,
              MeshInfo& info) {
   const Vec3 origin = info.bounds.lo[0] <= info.bounds.hi[0] ? centre(info.bounds) : Vec3{};

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMaxTriangles = std::size_t{1} << 30;
 
 // Distances are stored in single precision, and products of six coordinates must be finite in double: both
-// hold below.
+// are true up to this coordinate.
 constexpr double kMaxCoordinate = 1e37, kMinSize = 1e-30;
 
 bool has_area(const Mesh& mesh, const Triangle& t) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-// One edge of one face, running as the face does; in the list of the smaller of its vertices.
+// An edge of a face, directed as in the face; stored in the list of its smaller vertex.
 struct HalfEdge {
   std::uint32_t larger;    ///< vertex
   std::uint32_t opposite;  ///< vertex of the face
@@ -43,8 +43,8 @@ CompressedRows<HalfEdge> half_edges_by_smaller_vertex(std::size_t vertex_count,
   });
 }
 
-// Brings the half-edges of a vertex into the order of edges and faces. Those of duplicate faces, whose three
-// vertices a half-edge of an earlier face has, too, move to the end and are not counted.
+// Sorts the half-edges of a vertex by edge, then by face. Those of duplicate faces, which have the same three
+// vertices as a half-edge of an earlier face, move to the end and are not counted.
 Share sort_half_edges(std::span<HalfEdge> half_edges) {
   std::ranges::sort(half_edges, [](const HalfEdge& a, const HalfEdge& b) {
     if (a.larger != b.larger) return a.larger < b.larger;
@@ -62,8 +62,8 @@ Share sort_half_edges(std::span<HalfEdge> half_edges) {
   return share;
 }
 
-// Across each half-edge of each face: twice the neighbour, plus 1 if the two run along their edge the same
-// way; kNone unless there is exactly one.
+// For each half-edge of a face: twice the neighbouring face, plus 1 if both traverse the edge in the same
+// direction; kNone unless there is exactly one neighbour.
 using Neighbours = std::array<std::uint32_t, 3>;
 
 std::vector<Neighbours> find_neighbours(std::span<const Triangle> triangles, const Topology& topology) {
@@ -146,7 +146,7 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
       flipped_members += result.flipped[f];
       for (const std::uint32_t neighbour : neighbours[f]) {
         if (neighbour == kNone) continue;
-        // Neighbours agree when they run along their edge in opposite directions.
+        // Neighbours agree if they traverse their edge in opposite directions.
         const std::uint32_t g = neighbour / 2;
         const auto flipped = static_cast<std::uint8_t>(result.flipped[f] ^ (neighbour & 1));
         if (result.component[g] == kNone) {

@@ -1,4 +1,4 @@
-// Which faces share which edges: for any soup.
+// Edges and their incident faces, for any triangle soup.
 #pragma once
 
 #include <sdm/types.h>
@@ -33,7 +33,7 @@ struct Topology {
 
 /// For each face, whether to flip it so that neighbours across two-face edges are consistently oriented,
 /// flipping the fewer faces of each component of such neighbours; `orientable` is false when no choice
-/// satisfies all of them. Ignored faces stay.
+/// satisfies all of them. Ignored faces are not flipped.
 struct Orientation {
   std::vector<std::uint8_t> flipped;      ///< 1 for each face to flip
   std::vector<std::uint32_t> component;   ///< of each face, over two-face edges; kNone if ignored
@@ -47,7 +47,7 @@ using VertexFaces = CompressedRows<std::uint32_t>;
 [[nodiscard]] VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> triangles,
                                        const Topology& topology);
 
-/// Whether the face runs along its k-th edge from the smaller to the larger vertex.
+/// Whether the face traverses its k-th edge from the smaller to the larger vertex.
 inline bool runs_forward(const Triangle& triangle, int k) {
   return triangle[k] < triangle[k < 2 ? k + 1 : 0];
 }

@@ -1,4 +1,4 @@
-// The checks of positions, for meshes and for their refits.
+// Validation of positions, for meshes and their refits.
 #pragma once
 
 #include <sdm/types.h>
@@ -10,7 +10,7 @@ namespace sdm::mesh {
 /// Throws sdm::Error for a coordinate that is not finite or too large to compute with.
 void validate_positions(std::span<const Vec3> positions);
 
-/// The same for new positions of `count` vertices: also when there are more or fewer.
+/// The same for new positions of `count` vertices; also throws if there are more or fewer.
 void validate_positions(std::span<const Vec3> positions, std::size_t count);
 
 }  // namespace sdm::mesh

@@ -71,7 +71,7 @@ class SiteOrder {
     return places[site];
   }
 
-  // The last face, t, has this edge as its side k.
+  // Records that side k of the last face, t, is this edge.
   void meet(std::uint32_t edge, const Triangle& t, int k, SitePlaces& places) {
     const auto face = static_cast<std::uint32_t>(places.corners.size() - 1);
     const Triangle& corners = places.corners.back();

@@ -39,7 +39,8 @@ ClosestPoint closest_on_face(const SitesData& sites, std::uint32_t face, const V
 
   ClosestPoint best{.face = face};
   double best_squared = std::numeric_limits<double>::infinity();
-  // A sliver's normal is rounding noise, by which q may seem to lie over it: its sides stand for all of it.
+  // The normal of a sliver is rounding noise, which may place q over the face: its sides represent it
+  // instead.
   const bool sliver = sites.sliver[face] != 0;
   bool over_face = !sliver;
   for (int k = 0; k < 3; ++k) {

@@ -12,7 +12,7 @@ namespace sdm::sites {
 
 /// Starts with closest_on_face(face) and moves to neighbouring faces while they are strictly closer: a local
 /// minimum of the distance over the mesh, to double rounding. This makes a site selected in single precision
-/// consistent with its neighbourhood, which pseudonormals rely on.
+/// consistent with its neighbourhood, as pseudonormals require.
 [[nodiscard]] ClosestPoint closest_around_face(const SitesData& sites, std::uint32_t face, const Vec3& q);
 
 }  // namespace sdm::sites

@@ -14,7 +14,7 @@ struct ClosestPacket {
   alignas(64) double vector[3][kSize];  ///< closest point − query
   alignas(64) double distance[kSize];
   std::uint32_t site[kSize];
-  SiteType type[kSize];  ///< `none`: then only this has a meaning
+  SiteType type[kSize];  ///< if `none`, the other values are undefined
   std::size_t count = 0;
 
   void set(std::size_t i, const Vec3& query, const ClosestPoint& c) {
@@ -23,7 +23,7 @@ struct ClosestPacket {
     site[i] = c.site;
     type[i] = c.type;
   }
-  /// Without a face, unless that is the site.
+  /// `face` is set only if the site is a face.
   [[nodiscard]] ClosestPoint get(std::size_t i, const Vec3& query) const {
     if (type[i] == SiteType::none) return {};
     return {.point = {query[0] + vector[0][i], query[1] + vector[1][i], query[2] + vector[2][i]},

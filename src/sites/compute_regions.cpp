@@ -18,13 +18,14 @@ namespace sdm::sites::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace core::HWY_NAMESPACE;
 
-// In single precision the walls of a face thinner than this, in the unit frame, would close in nothing. Its
-// edges stand for it: no point of it is farther from them than half of this.
+// In single precision, the walls of a face thinner than this, in the unit frame, would enclose nothing. Its
+// edges represent it instead: no point of it is farther from them than half of this.
 constexpr double kThin = 1e-6;
-// Faces whose smallest height is below this share of their longest side have normals of rounding errors.
+// Faces whose smallest height is below this fraction of their longest side have normals that consist of
+// rounding errors.
 constexpr double kSliver = 1e-9;
 
-// Four numbers of each lane, one lane after the other, in single precision.
+// Four numbers per lane, the lanes consecutive, in single precision.
 struct FourLanes {
   alignas(64) float at[kLanes][4];
 
@@ -66,14 +67,14 @@ class ToUnit {
   const UnitFrame& frame_;
 };
 
-// From the cosine. Near 0 and π its rounding is 2e-8 of the angle, which as a weight of a pseudonormal could
-// turn a sign only where the other faces leave it undecided to as many digits.
+// The angle with this cosine. Near 0 and π, rounding changes the angle by 2e-8; as a weight of a
+// pseudonormal, this could change a sign only where the other faces leave it undecided to as many digits.
 HWY_INLINE Vec angle_of(Vec cosine) {
   const Doubles d;
   return hn::Acos(d, hn::Min(hn::Max(cosine, hn::Set(d, -1.0)), hn::Set(d, 1.0)));
 }
 
-// The centre of the smallest circle about a triangle, from its corner 0, given its sides and their squared
+// The centre of the smallest circle around a triangle, from its corner 0, given its sides and their squared
 // lengths: with q the squared length of the side across from a corner, and q′ and q″ the others, corners have
 // weights q (q′ + q″ − q), or 0, 1, 1 where the angle at the first is obtuse.
 HWY_INLINE Vec3v enclosing_centre(const Vec3v (&side)[3], const Vec (&squared)[3], Vec longest_squared) {
@@ -163,7 +164,7 @@ void ComputeFaces(Regions& regions, const Placement& placement, std::span<FaceSh
 }
 
 void ComputeEdges(Regions& regions, const Placement& placement, size_t begin, size_t end) {
-  // So much thicker that faces which are thin by their own measure are thin by this one, too.
+  // Slightly above kThin, so that faces that are thin by their own measure are thin by this one, too.
   constexpr double kHardlyThicker = 1.000001 * kThin;
   const Doubles d;
   const ToUnit unit(placement.frame);
@@ -188,7 +189,7 @@ void ComputeEdges(Regions& regions, const Placement& placement, size_t begin, si
         const Vec3v third = sub(opposite, along);
         const Vec longest =
             hn::Sqrt(hn::Max(hn::Max(dot(along, along), dot(opposite, opposite)), dot(third, third)));
-        // No wall towards a face that its edges stand for.
+        // No wall towards a face that is represented by its edges.
         const auto thick = hn::Gt(hn::Mul(size, length), hn::Mul(hn::Set(d, kHardlyThicker), longest));
         const Vec3v inward = mul(hn::IfThenElseZero(thick, inverse_or_zero(size)), height);
         wall[j].store(inward, dot(inward, start), i);

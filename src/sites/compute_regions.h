@@ -1,4 +1,4 @@
-// The numbers of regions of influence, many sites at a time.
+// Computes regions of influence, many sites at a time.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace sdm::sites {
 
-// Each selects the best vector instructions of the machine at run time.
+// Each function selects the best available vector instructions at run time.
 
 /// The faces of the leaves from `begin` to `end`: their regions and shapes, and the discs of their bounds.
 void compute_faces(Regions& regions, const Placement& placement, std::span<FaceShape> shapes,

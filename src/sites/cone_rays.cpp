@@ -17,7 +17,7 @@ namespace sdm::sites::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 8>;
 
-// Unit vectors to the neighbours, in whole vectors: what fills up the last is out of question.
+// Unit vectors to the neighbours, padded to whole SIMD vectors; padding is never chosen.
 struct Directions {
   float *x, *y, *z;
   float* handicap;  // infinite for those chosen
@@ -67,7 +67,7 @@ size_t most_opposed(const Directions& to, float x, float y, float z) {
 std::array<uint32_t, VertexRegion::kRays> SpreadNeighbours(std::span<const Vec3> positions, double scale,
                                                            uint32_t vertex,
                                                            std::span<const uint32_t> neighbours) {
-  constexpr size_t kUsual = 16;  // neighbours for which no memory is taken
+  constexpr size_t kUsual = 16;  // up to this many neighbours, nothing is allocated
   const size_t lanes = hn::Lanes(Floats());
   const size_t size = (neighbours.size() + lanes - 1) / lanes * lanes;
   float usual[4 * kUsual];

@@ -17,12 +17,12 @@ struct Shell {
   bool inward = false;  ///< as flipped by the orientation, the faces enclose a negative volume
 };
 
-// Six times the volume; a corner of the shell as origin keeps the digits of small shells. Summed in parts
-// that do not depend on the number of threads.
+// Six times the volume. A corner of the shell as origin preserves the precision of small shells. Summed in
+// parts that do not depend on the number of threads.
 double volume(const Shell& shell, const inside::FaceTree& faces, std::span<const std::uint8_t> flipped) {
   const std::span<const Vec3> p = faces.positions;
   const Vec3& origin = p[faces.triangles[shell.faces.front()][0]];
-  thread_local std::vector<double> parts_of_this_thread;  // one that waits for a loop takes up no other shell
+  thread_local std::vector<double> parts_of_this_thread;  // a thread waiting for a loop starts no other shell
   std::vector<double>& parts = parts_of_this_thread;
   parts.assign((shell.faces.size() + kGrain - 1) / kGrain, 0);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -37,8 +37,8 @@ double volume(const Shell& shell, const inside::FaceTree& faces, std::span<const
   return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
 
-// Whether the shell lies inside an odd number of others. Shells that touch or overlap others lie partly
-// inside at most: a few points just outside faces far apart must all agree.
+// Whether the shell lies inside an odd number of others. Shells that touch or overlap others are at most
+// partly inside them, so a few points just outside faces that are far apart must all agree.
 bool hollow(const Shell& shell, const inside::FaceTree& faces, const mesh::Orientation& orientation) {
   constexpr std::size_t kPoints = 5;
   constexpr double kOff = 1e-7;  // in the unit frame

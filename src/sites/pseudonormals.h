@@ -1,6 +1,6 @@
-// Outward normals of the sites of a closed, orientable mesh, for telling inside from outside (Bærentzen &
-// Aanæs 2005): with c the closest point of the mesh to q and n the pseudonormal of the site that c lies on, q
-// is outside where (q − c)·n > 0.
+// Outward normals of the sites of a closed, orientable mesh, which distinguish inside from outside (Bærentzen
+// & Aanæs 2005): with c the closest point of the mesh to q and n the pseudonormal of the site that c lies on,
+// q is outside where (q − c)·n > 0.
 #pragma once
 
 #include <sdm/sites.h>

@@ -12,18 +12,18 @@ namespace {
 
 constexpr std::size_t kVertices = 4096, kLeaves = 128;  // grains
 
-// The slope of the bounds of a face and what it owns, from the least cosine of the angles between its normal
-// and those of the faces around.
+// The slope of the bounds of a face and the sites it owns, from the smallest cosine of the angles between its
+// normal and those of the faces around it.
 float slope_of(double cosine) {
-  constexpr double kSteepest = 20;    // more counts as open
+  constexpr double kSteepest = 20;    // steeper slopes count as open
   constexpr double kRounding = 1e-6;  // of single precision
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   if (!(sine < kSteepest * cosine)) return FaceBounds::kOpen;
   return static_cast<float>((1 + kRounding) * (sine / cosine) + kRounding);
 }
 
-// What needs the normals of the faces around a site: the slopes of a leaf's bounds, and the pseudonormals of
-// the vertices that its faces own.
+// Computes what depends on the normals of the faces around a site: the slopes of a leaf's bounds, and the
+// pseudonormals of the vertices that its faces own.
 void look_around(Regions& regions, std::size_t leaf, std::span<const FaceShape> shapes,
                  Pseudonormals& normals) {
   const SitePlaces& places = regions.places;

@@ -23,7 +23,7 @@
 namespace sdm::sites {
 
 // One cache line each, because sites are loaded individually. Coordinates in the unit frame; all normals and
-// directions have length 1, or 0 where geometry gives none (and then never exclude anything).
+// directions have length 1, or 0 where they are undefined (and then never exclude anything).
 
 /// height(x) = plane·(x, −1); inside the prism where every wall·(x, −1) ≥ 0.
 struct alignas(64) FaceRegion {
@@ -46,26 +46,27 @@ struct alignas(64) VertexRegion {
 /// Bounds for up to eight faces, tested together: x lies in the region of a face, or of an edge or vertex
 /// that the face owns, only if with r = x − centre and h = normal·r
 ///   |r − h normal| ≤ radius + slope |h|.
-/// For all of these sites lie in a disc of the face's plane. Where the faces around them form a closed fan
-/// whose normals stay within an angle of this normal, so does, up to its sign, the direction from a site to
-/// any x of its region: slope is the angle's tangent. (In polar cones: above any direction u in the plane the
-/// sheet around a vertex v has a point v + u + s normal, |s| ≤ slope; for u the direction of x − v in the
-/// plane, (x − v)·(u + s normal) ≤ 0 says |x − v in the plane| ≤ slope |h|.) Elsewhere slope is kOpen.
+/// This holds because all of these sites lie in a disc of the face's plane. Where the faces around them form
+/// a closed fan whose normals are within some angle of this normal, so is, up to its sign, the direction from
+/// a site to any x of its region: slope is the tangent of that angle. (In polar cones: above any direction u
+/// in the plane the sheet around a vertex v has a point v + u + s normal, |s| ≤ slope; for u the direction of
+/// x − v in the plane, (x − v)·(u + s normal) ≤ 0 says |x − v in the plane| ≤ slope |h|.) Elsewhere slope is
+/// kOpen.
 struct FaceBounds {
   static constexpr int kWidth = 8;
-  static constexpr float kOpen = 1e18f;  ///< slope elsewhere, and where a face is too thin for its normal
+  static constexpr float kOpen = 1e18f;  ///< elsewhere, and where a face is too thin for a reliable normal
   alignas(32) float centre[3][kWidth];   ///< a point of the face
   alignas(32) float normal[3][kWidth];
   alignas(32) float radius[kWidth];
   alignas(32) float slope[kWidth];
 };
 
-/// A copy of the topology in which faces, edges and vertices are indexed by region. Refits read it in order,
-/// and its references are nearby in memory.
+/// A copy of the topology in which faces, edges and vertices are indexed by region. Refits read it
+/// sequentially, and its indices refer to nearby memory.
 struct SitePlaces {
   struct Edge {
     std::array<std::uint32_t, 4> corners;  ///< its ends, and the third corners of its first two faces
-    std::array<std::uint32_t, 2> faces;    ///< these faces, or one twice
+    std::array<std::uint32_t, 2> faces;    ///< these faces, or the only one twice
   };
   std::vector<Triangle> corners;  ///< of each face
   std::vector<Edge> edges;
@@ -73,9 +74,10 @@ struct SitePlaces {
   CompressedRows<std::uint32_t> fans;  ///< of each vertex: 4f + k for each face f, of which it is corner k
 };
 
-/// The sites by the leaves of a tree over the faces. Each edge and vertex is owned by the first of its faces.
+/// The sites, in the order of the leaves of a tree over the faces. Each edge and vertex is owned by the first
+/// of its faces.
 struct Regions {
-  /// A face, and the first of the edges and vertices that it owns: the next entry's end them.
+  /// A face, and the first of the edges and vertices that it owns; they end at those of the next entry.
   struct Owner {
     std::uint32_t face, edges, vertices;
   };
@@ -86,7 +88,7 @@ struct Regions {
   std::vector<EdgeRegion> edges;
   std::vector<VertexRegion> vertices;
 
-  std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it make a closed sheet
+  std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it form a closed sheet
   SitePlaces places;
 };
 
@@ -104,8 +106,8 @@ struct RegionSource {
 /// refit() computes their regions. Cost: linear, all cores.
 [[nodiscard]] Regions build_regions(const RegionSource& source, const hierarchy::AabbTree& tree);
 
-/// Sets `placed` to the positions in the order of the regions' vertices. Refits read them again and again,
-/// and this order is that of the tree, while a mesh may have any. Cost: linear, all cores.
+/// Sets `placed` to the positions in the order of the regions' vertices. Refits read each position several
+/// times, and this order follows the tree, while that of a mesh is arbitrary. Cost: linear, all cores.
 void place(const Regions& regions, std::span<const Vec3> positions, std::vector<Vec3>& placed);
 
 /// Sets `boxes` to those of the leaves. Cost: linear, all cores.
@@ -115,20 +117,20 @@ void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<c
 struct FaceShape {
   Vec3 normal;  ///< unit length, outward, 0 without area
   Vec3 angle;   ///< at each corner
-  bool thin;    ///< too thin for a prism in single precision: its edges stand for it
-  bool sliver;  ///< too thin for a normal that could be trusted
+  bool thin;    ///< too thin for a prism in single precision: represented by its edges
+  bool sliver;  ///< too thin for a reliable normal
 };
 
-/// The vertices as they lie now, and what they mean to the faces.
+/// The present positions of the vertices, and the orientation of the faces.
 struct Placement {
   const UnitFrame& frame;                  ///< in which regions are computed
   std::span<const Vec3> vertices;          ///< see place()
   std::span<const std::uint8_t> inverted;  ///< of each face of the mesh: clockwise as seen from outside
 };
 
-/// Computes the regions, and what signs need: pseudonormals, outward as far as `inverted` is right, and which
-/// faces are slivers, too thin for normals that could be trusted. `shapes` are computed on the way, of each
-/// owner. Cost: linear, all cores.
+/// Computes the regions, and the data that signs require: pseudonormals, which point outwards if `inverted`
+/// is correct, and which faces are slivers, too thin for reliable normals. `shapes`, one per owner, are
+/// intermediate results. Cost: linear, all cores.
 void refit(Regions& regions, const Placement& placement, Pseudonormals& normals,
            std::vector<std::uint8_t>& sliver, std::vector<FaceShape>& shapes);
 

@@ -45,7 +45,7 @@ SitesData::SitesData(Mesh given) {
       {mesh.positions, triangles, topology, vertex_faces, orientation.orientable, frame.scale}, tree);
   normals = {std::vector<Vec3>(triangles.size()), std::vector<Vec3>(mesh.positions.size())};
   sliver.resize(triangles.size());
-  Refit refit;  // of a mesh that stays nothing is kept
+  Refit refit;  // discarded: a mesh that is never refitted does not need it
   place(regions, mesh.positions, refit.placed);
   compute_regions(refit);
 }

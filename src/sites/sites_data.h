@@ -15,10 +15,10 @@
 
 namespace sdm::sites {
 
-/// The sites of a mesh under a tree over its faces. Only Sites changes it: all others have it as const.
+/// The sites of a mesh, with a tree over its faces. Only Sites modifies it; all other code has const access.
 class SitesData {
  public:
-  /// As Sites'.
+  /// As Sites::Sites.
   explicit SitesData(Mesh mesh);
   void refit(std::span<const Vec3> positions);
 
@@ -35,14 +35,14 @@ class SitesData {
         return site;
     }
   }
-  /// Valid as long as this.
+  /// Valid for the lifetime of this object.
   [[nodiscard]] inside::FaceTree face_tree() const { return {mesh.positions, mesh.triangles, frame, tree}; }
 
   Mesh mesh;
   mesh::Topology topology;
   mesh::VertexFaces vertex_faces;
   bool closed = false;
-  bool consistently_oriented = false;  ///< closed, and neighbouring faces run the same way round
+  bool consistently_oriented = false;  ///< closed, with the same orientation of neighbouring faces
   mesh::Orientation orientation;
   Shells shells;  ///< if closed and orientable
   std::vector<std::uint8_t>
@@ -53,7 +53,7 @@ class SitesData {
   hierarchy::WideTree wide;  ///< the same, collapsed
   Regions regions;           ///< by the leaves of both
   Pseudonormals normals;
-  std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a normal that could be trusted
+  std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a reliable normal
 
  private:
   /// Intermediate data of a refit, whose memory the next one reuses.
@@ -65,7 +65,7 @@ class SitesData {
 
   [[nodiscard]] std::vector<hierarchy::FloatBox> face_boxes() const;
   void set_inverted();
-  void compute_regions(Refit& refit);  ///< whose `placed` are the present positions
+  void compute_regions(Refit& refit);  ///< refit.placed: the present positions
 
   Refit last_refit_;
 };
@@ -74,7 +74,7 @@ class SitesData {
 
 namespace sdm {
 
-/// What a Sites holds. Found by argument-dependent lookup.
+/// The data of Sites. Found by argument-dependent lookup.
 [[nodiscard]] inline const sites::SitesData& internals(const Sites& sites) {
   return *sites.data_;
 }

@@ -1,4 +1,4 @@
-// Samples in blocks of neighbours; the last block may be shorter.
+// Blocks of 256 consecutive samples; the last block may be shorter.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace sdm::surface {
 
-inline constexpr std::size_t kBlockSize = 256;  // a compact piece of the surface: see core/spatial_order.h
+inline constexpr std::size_t kBlockSize = 256;  // compact on the surface: see core/geometry/spatial_order.h
 
 /// The samples of a block: [first, end).
 struct SampleBlock {
@@ -16,7 +16,7 @@ struct SampleBlock {
   [[nodiscard]] std::size_t size() const { return end - first; }
 };
 
-/// Blocks that follow each other: [first, end).
+/// Consecutive blocks: [first, end).
 struct BlockRange {
   std::size_t first, end;
   /// The sample in their middle.

@@ -10,14 +10,14 @@
 
 namespace sdm::surface {
 
-/// Names a surface from its layout to its end, whatever moves it. Caches of what refits keep refer to it
-/// weakly.
+/// Identifies a surface for its lifetime; refits and moves of the object do not change it. Caches of data
+/// that refits preserve hold weak references to it.
 struct Identity {};
 
-/// A mesh and its layout in the atlas. Only Surface changes it: all others have it as const.
+/// A mesh and its layout in the atlas. Only Surface modifies it; all other code has const access.
 class SurfaceData {
  public:
-  /// As Surface's.
+  /// As Surface::Surface.
   SurfaceData(Mesh mesh, const AtlasOptions& options);
   void refit(std::span<const Vec3> positions);
 
@@ -27,13 +27,13 @@ class SurfaceData {
     const Vec2 d = uv - map.origin;
     return mesh.positions[mesh.triangles[face][0]] + d[0] * map.edges[0] + d[1] * map.edges[1];
   }
-  /// Of the centre of a texel that the face owns.
+  /// The surface point of the centre of a texel that the face owns.
   [[nodiscard]] Vec3 texel_point(std::uint32_t face, std::uint32_t texel) const {
     return to_surface(face, {texel % resolution + 0.5, texel / resolution + 0.5});
   }
   /// Sets `points` to those of the samples from `first` on.
   void place_samples(std::size_t first, std::span<Vec3> points) const;
-  /// As Surface's.
+  /// As Surface::sample_points.
   [[nodiscard]] std::vector<Vec3> sample_points() const;
 
   Mesh mesh;
@@ -48,7 +48,7 @@ class SurfaceData {
   std::shared_ptr<const Identity> identity = std::make_shared<Identity>();
 
  private:
-  void order_samples();  ///< in space
+  void order_samples();  ///< in spatial order
   void find_sample_faces();
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kGrain = 512;  // faces or tiles
 
-// Owned texels by face, those of a face from the top left.
+// Sorts the owned texels by face, those of a face from the top left.
 void sort_by_face(const Surface& surface, Tiles& tiles) {
   tiles.face_offsets.assign(surface.mesh().triangles.size() + 1, 0);
   const std::span<const std::uint32_t> owners = surface.texel_faces();
@@ -22,7 +22,7 @@ void sort_by_face(const Surface& surface, Tiles& tiles) {
     if (owners[texel] != kNone) tiles.texels[next[owners[texel]]++] = texel;
 }
 
-// The square of a face's bounding rectangle that a texel is in.
+// The squares of a face's bounding rectangle, and which of them contains a texel.
 struct TileGrid {
   std::uint32_t resolution, left = kNone, top = kNone, right = 0;
 

@@ -1,4 +1,4 @@
-// The faces of a surface in tiles, small in the atlas and so in space.
+// The faces of a surface divided into tiles, which are small in the atlas and therefore in space.
 #pragma once
 
 #include <sdm/surface.h>
@@ -7,14 +7,15 @@
 
 namespace sdm::surface {
 
-/// A tile holds texels of one face in a square of kSide texels; most faces are one tile. Refits keep them.
+/// A tile holds texels of one face in a square of kSide texels; most faces are one tile. Refits do not change
+/// them.
 struct Tiles {
   static constexpr std::uint32_t kSide = 16;
 
-  /// Cost: linear in texels, and their sorting in faces of more than one tile; all cores.
+  /// Cost: linear in texels, plus sorting those of faces with more than one tile; all cores.
   explicit Tiles(const Surface& surface);
 
-  std::vector<std::uint32_t> texels;        ///< owned texels, face after face, tile after tile
+  std::vector<std::uint32_t> texels;        ///< owned texels, by face, then by tile
   std::vector<std::uint32_t> face_offsets;  ///< texels of each face of the mesh, and the end
   std::vector<std::uint32_t> offsets;       ///< texels of each tile, and the end
   std::vector<std::uint32_t> faces;         ///< of each tile

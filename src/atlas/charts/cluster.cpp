@@ -12,7 +12,7 @@
 namespace sdm::atlas {
 namespace {
 
-// Normals of a chart keep this far inside the cone, so that rounding cannot take them out of it.
+// Normals of a chart stay inside the cone by this margin, so that rounding cannot move them out of it.
 constexpr double kMargin = 1e-9;
 constexpr int kRounds = 2;
 // How much slower a chart grows over faces turned away from its axis.
@@ -43,7 +43,7 @@ class Clustering {
 
  private:
   [[nodiscard]] bool fits(std::uint32_t face, const Vec3& axis) const {
-    // A face alone fits its own normal, whatever the rounding.
+    // A single face fits its own normal despite rounding.
     return dot(faces_.normal[face], axis) >= std::min(cos_, 1 - 1e-12);
   }
 
@@ -69,8 +69,8 @@ class Clustering {
     }
   }
 
-  // All clusters grow at once from their most central faces, each face going to the one that is nearest along
-  // the surface.
+  // Grows all clusters simultaneously from their most central faces; each face joins the cluster that is
+  // nearest along the surface.
   void regrow() {
     struct Front {
       double cost;
@@ -98,7 +98,7 @@ class Clustering {
     drop_empty_clusters();
   }
 
-  // Of each cluster, the face closest to its centre of gravity.
+  // For each cluster, the face closest to its centre of gravity.
   [[nodiscard]] std::vector<std::uint32_t> central_faces() const {
     std::vector<Vec3> centre(axes_.size());
     std::vector<double> area(axes_.size());
@@ -118,14 +118,14 @@ class Clustering {
     return central;
   }
 
-  // Joins pairs of neighbours whose normals fit one cone, the smallest clusters first, each with the
-  // neighbour that it shares the longest border with; until no pair is left. A pair that did not fit is tried
+  // Merges pairs of neighbours whose normals fit one cone until no such pair is left: the smallest clusters
+  // first, each with the neighbour with which it shares the longest border. A pair that did not fit is tried
   // again only after one of the two has grown.
   void merge() {
     std::vector<NormalCone> cones = all_cones();
     std::vector<double> area = areas();
     std::vector<Link> links = all_links();
-    std::vector<std::uint32_t> target(axes_.size());  // the cluster that each has become part of, or itself
+    std::vector<std::uint32_t> target(axes_.size());  // the cluster that each was merged into, or itself
     std::iota(target.begin(), target.end(), 0u);
     std::vector<std::uint8_t> grown(axes_.size(), 1);
     for (bool merged = true; merged;) {
@@ -152,7 +152,8 @@ class Clustering {
           break;
         }
       }
-      // A busy cluster is in one merger a round, so that targets are never themselves joined to others in it.
+      // A cluster takes part in at most one merge per round, so that targets are not themselves merged in the
+      // same round.
       for (Link& link : links) link = {target[link.from], target[link.to], link.length};
       unite(links);
       for (std::uint32_t& l : label_)
@@ -216,7 +217,7 @@ class Clustering {
     return area;
   }
 
-  // The clusters that are not part of others, the smallest first.
+  // The clusters that were not merged into others, the smallest first.
   [[nodiscard]] static std::vector<std::uint32_t> by_area(const std::vector<double>& area,
                                                           const std::vector<std::uint32_t>& target) {
     std::vector<std::uint32_t> order;
@@ -226,8 +227,9 @@ class Clustering {
     return order;
   }
 
-  // A face with two sides on the same other cluster moves there: borders get shorter (triangle inequality),
-  // and no cluster falls apart, as such a face hangs on its own by one side at most.
+  // Moves faces with two sides on the same other cluster to that cluster: borders get shorter (triangle
+  // inequality), and no cluster falls apart, as such a face is connected to its own cluster by at most one
+  // side.
   void straighten_borders() {
     constexpr int kSweeps = 4;
     for (int sweep = 0; sweep < kSweeps; ++sweep)

@@ -1,4 +1,4 @@
-// Clusters of adjacent faces with like normals.
+// Clusters of adjacent faces with similar normals.
 #pragma once
 
 #include <sdm/progress.h>
@@ -10,7 +10,7 @@
 
 namespace sdm::atlas {
 
-/// Few, large, compact charts: every face with an area is in exactly one. Projections of a chart's faces may
+/// Partitions the faces with an area into few, large, compact charts. The projections of a chart's faces may
 /// overlap. Cost: O(n log n).
 [[nodiscard]] std::vector<Chart> cluster_faces(const Mesh& mesh, const FaceGeometry& faces, double cos_angle);
 

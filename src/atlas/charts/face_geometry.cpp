@@ -29,7 +29,7 @@ std::vector<std::array<std::uint32_t, 3>> face_neighbours(const Mesh& mesh) {
 Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   std::array<Vec3, 3> edges = {b - a, c - b, a - c};
   if (cross(edges[0], edges[2]) == Vec3{}) return {};
-  // Without the scale, squares of small lengths would vanish.
+  // Without the scale, squares of small lengths would underflow.
   double scale = 0;
   for (const Vec3& e : edges)
     for (const double x : e) scale = std::max(scale, std::abs(x));
@@ -39,7 +39,8 @@ Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int k = 1; k < 3; ++k)
     if (squared_norm(edges[k]) > squared_norm(edges[longest])) longest = k;
   const Vec3 along = normalized(edges[longest]);
-  // The height, made perpendicular to the longest edge twice: once is not enough where it nearly vanishes.
+  // The height, orthogonalised twice against the longest edge: once does not suffice where it nearly
+  // vanishes.
   Vec3 height = edges[(longest + 1) % 3];
   for (int pass = 0; pass < 2; ++pass) height = height - dot(height, along) * along;
   return normalized(cross(along, normalized(height)));

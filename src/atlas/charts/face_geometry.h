@@ -1,4 +1,4 @@
-// Normals, areas and neighbours of faces, from which charts are grown.
+// Normals, areas and neighbours of faces, the input of charting.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -16,12 +16,12 @@ struct FaceGeometry {
   std::vector<std::array<std::uint32_t, 3>> neighbours;
 };
 
-/// Unit normal of a triangle, perpendicular to its longest edge to rounding even where the triangle is so
+/// Unit normal of a triangle, perpendicular to its longest edge up to rounding, even where the triangle is so
 /// thin that its height is rounding noise: points of the triangle then lie in the plane through a corner with
 /// this normal. Zero where the triangle has no area.
 [[nodiscard]] Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Cost: O(n log n), in parallel but for the neighbours.
+/// Cost: O(n log n), in parallel except for the neighbours.
 [[nodiscard]] FaceGeometry face_geometry(const Mesh& mesh);
 
 }  // namespace sdm::atlas

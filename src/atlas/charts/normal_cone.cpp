@@ -10,7 +10,7 @@ namespace {
 
 struct Cap {
   Vec3 axis;
-  double cos;  ///< the least ray·axis
+  double cos;  ///< the smallest ray·axis
 };
 
 // Gnomonic projection about the axis maps convex cones to convex sets: the extreme rays are the corners of
@@ -35,8 +35,8 @@ std::vector<Vec3> extreme_rays(std::span<const Vec3> vectors, const Vec3& axis) 
 }
 
 // The centre of the smallest cap is the direction of the centre of the smallest ball around the unit vectors,
-// which steps of 1/(i + 1) towards the farthest one approach (Bădoiu & Clarkson 2003). Ends early with a cap
-// of cos_angle.
+// which steps of 1/(i + 1) towards the farthest one approach (Bădoiu & Clarkson 2003). Stops early at a cap
+// within cos_angle.
 Cap find_cap(std::span<const Vec3> rays, Vec3 centre, double cos_angle) {
   constexpr int kSteps = 24;
   Cap best{{}, -1};
@@ -71,7 +71,8 @@ NormalCone spanned_cone(std::span<const Vec3> normals, const Vec3& axis) {
 }
 
 std::optional<NormalCone> join(const NormalCone& a, const NormalCone& b, double cos_angle) {
-  // Two rays more than 2θ apart fit no cap of angle θ: most pairs that do not fit show it by their extremes.
+  // Two rays more than 2θ apart fit no cap of angle θ: comparing the extremes rejects most pairs that do not
+  // fit.
   const Vec3& from_b = farthest(a.rays, b.axis);
   if (dot(from_b, farthest(b.rays, from_b)) < 2 * cos_angle * cos_angle - 1) return std::nullopt;
   std::vector<Vec3> rays = a.rays;

@@ -46,7 +46,8 @@ bool interiors_meet(const GridTriangle& a, const GridTriangle& b, double slack) 
   return !separates(a, b, slack) && !separates(b, a, slack);
 }
 
-// A uniform grid over the triangles' bounds, with lists of the triangles whose boxes meet each cell.
+// A uniform grid over the triangles' bounds, with a list for each cell of the triangles whose boxes intersect
+// it.
 class Buckets {
  public:
   explicit Buckets(std::span<const Rectangle> boxes) {
@@ -59,8 +60,8 @@ class Buckets {
     origin_ = all.lo;
     const double width = std::max(1, all.hi[0] - all.lo[0]), height = std::max(1, all.hi[1] - all.lo[1]);
     cell_ = std::max(1.0, std::sqrt(width * height / static_cast<double>(boxes.size())));
-    // Long thin sets have few cells across: cells are squares, but never more of them than a few a triangle,
-    // nor so small that the lists grow long.
+    // Cells are squares, so that long thin sets have few cells across, but there are at most a few cells per
+    // triangle, and cells are not so small that the lists grow long.
     const auto limit = 8.0 * static_cast<double>(boxes.size()) + 64;
     for (;; cell_ *= 2) {
       columns_ = static_cast<std::int64_t>(width / cell_) + 1;
@@ -121,13 +122,14 @@ std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const 
   std::uint64_t pairs = 0;
   for (std::size_t cell = 0; cell < buckets.cells(); ++cell) {
     const auto list = buckets.list(cell);
-    // The last of the list first: where layers lie on each other, a pair far apart cuts their stack in the
-    // middle.
+    // Starts with the last of the list: where layers overlap, a pair far apart in the list splits the stack
+    // in the middle.
     for (std::size_t i = 0; i + 1 < list.size(); ++i) {
       if ((pairs += list.size() - i) > budget) return std::pair(solid[list[i]], solid[list.back()]);
       for (std::size_t j = list.size() - 1; j > i; --j) {
         const Rectangle &a = boxes[list[i]], &b = boxes[list[j]];
-        // Of the cells that two boxes share, the one with the low corner of their intersection tests them.
+        // Of the cells that two boxes share, only the one with the low corner of their intersection tests the
+        // pair.
         if (!boxes_meet(a, b)) continue;
         if (buckets.cell_of(std::max(a.lo[0], b.lo[0]), std::max(a.lo[1], b.lo[1])) != cell) continue;
         const std::size_t first = solid[list[i]], second = solid[list[j]];

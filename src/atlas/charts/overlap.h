@@ -22,10 +22,10 @@ constexpr std::int64_t orientation(const GridPoint& a, const GridPoint& b, const
   return std::int64_t{b[0] - a[0]} * (c[1] - a[1]) - std::int64_t{b[1] - a[1]} * (c[0] - a[0]);
 }
 
-/// Two triangles whose interiors meet, if any do. With `slack` > 0, an overlap no deeper than this, in grid
-/// steps, is none. Triangles of zero area overlap nothing. Gives up after about `budget` pairs with an
-/// arbitrary pair of triangles (which is what a caller who splits the set wants). Cost: linear for triangles
-/// of like size.
+/// Two triangles whose interiors intersect, if any do. With `slack` > 0, overlaps no deeper than this, in
+/// grid steps, are ignored. Triangles of zero area overlap nothing. After about `budget` tests the search
+/// stops and returns an arbitrary pair, which serves callers that split the set. Cost: linear for triangles
+/// of similar size.
 [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> find_overlap(
     std::span<const GridTriangle> triangles, double slack = 0, std::uint64_t budget = UINT64_MAX);
 

@@ -9,10 +9,10 @@
 namespace sdm::atlas {
 namespace {
 
-// Enough to try of a hull with many edges.
+// At most this many edges of a hull are tried.
 constexpr std::size_t kDirections = 256;
 
-// The direction of the side of the least bounding rectangle: it lies along an edge of the hull (Freeman &
+// The direction of a side of the smallest bounding rectangle: it lies along an edge of the hull (Freeman &
 // Shapira 1975).
 Vec2 least_rectangle(std::vector<Vec2> points) {
   const auto hull = convex_hull(std::move(points), [](const Vec2& p) -> const Vec2& { return p; });
@@ -66,7 +66,7 @@ ShapeFrame upright_frame(const Mesh& mesh, const Chart& chart) {
   return frame;
 }
 
-// Total length of the sides of faces whose neighbour there is not of the chart.
+// Total length of the sides of faces across which the neighbour is not in the chart.
 double border_length(const FaceGeometry& faces, const Chart& chart, const Shape& shape) {
   double length = 0;
   for (std::size_t i = 0; i < chart.faces.size(); ++i)

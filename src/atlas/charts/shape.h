@@ -23,12 +23,12 @@ struct ShapeFrame {
 struct Shape {
   ShapeFrame frame;
   std::vector<std::array<Vec2, 3>> triangles;  ///< shape coordinates of the chart's faces, in their order
-  std::uint32_t largest = 0;                   ///< the triangle of most area
+  std::uint32_t largest = 0;                   ///< the triangle with the largest area
   Vec2 size{};                                 ///< of the smallest bounding rectangle
   double area = 0, perimeter = 0;              ///< of the projection; borders of holes included
 };
 
-/// The shapes of charts, each turned so that its bounding rectangle of least area is upright. Cost: O(n log
+/// The shapes of charts, each turned so that its smallest bounding rectangle is axis-aligned. Cost: O(n log
 /// n), in parallel.
 [[nodiscard]] std::vector<Shape> chart_shapes(const Mesh& mesh, const FaceGeometry& faces,
                                               std::span<const Chart> charts);

@@ -13,13 +13,14 @@
 namespace sdm::atlas {
 namespace {
 
-// A fan of many slivers has a box test for nearly every pair: such a chart is cut rather than waited for.
+// In a fan of many slivers, nearly every pair needs a box test: such a chart is cut instead of tested in
+// full.
 std::uint64_t pair_budget(std::size_t faces) {
   return 10'000'000 + 100 * std::uint64_t{faces};
 }
 
-// The faces in the chart's projection on a grid across it, right and up seen from outside: counter-clockwise
-// but for snapping.
+// The faces in the chart's projection on a grid across it, right and up seen from outside: counter-clockwise,
+// except where snapping flips them.
 std::vector<GridTriangle> snap(const Mesh& mesh, const Chart& chart) {
   const auto [right, up] = tangent_frame(chart.axis);
   const Vec3& origin = mesh.positions[mesh.triangles[chart.faces[0]][0]];
@@ -88,8 +89,8 @@ class Splitter {
     return triangles;
   }
 
-  // Two halves, grown from a face each, so that each face goes to the one nearer along the chart. Faces that
-  // neither reaches (an overlap elsewhere took their link away) form a third.
+  // Cuts the chart into two parts grown from one face each; each face joins the part that is nearer along the
+  // chart. Faces that neither reaches (an earlier cut has disconnected them) form a third part.
   [[nodiscard]] std::vector<Chart> cut(const Chart& chart, std::uint32_t first, std::uint32_t second) const {
     struct Front {
       double cost;

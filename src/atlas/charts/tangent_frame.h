@@ -10,15 +10,15 @@
 
 namespace sdm::atlas {
 
-/// Unit vectors (right, up) so that right, up and the unit axis are a right-handed frame.
+/// Unit vectors (right, up) such that right, up and the unit axis form a right-handed frame.
 inline std::array<Vec3, 2> tangent_frame(const Vec3& axis) {
   const Vec3 other = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 right = normalized(cross(other, axis));
   return {right, cross(axis, right)};
 }
 
-/// The corners of the convex hull, counter-clockwise (Andrew's monotone chain), of points whose position `at`
-/// gives.
+/// The corners of the convex hull, counter-clockwise (Andrew's monotone chain). `at` returns the position of
+/// a point.
 template <class Point, class At>
 std::vector<Point> convex_hull(std::vector<Point> points, At at) {
   const auto lower = [&](const Point& p, const Point& q) { return at(p) < at(q); };

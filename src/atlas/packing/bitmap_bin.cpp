@@ -14,7 +14,7 @@ inline std::uint64_t load(const std::uint64_t* words, std::size_t x) {
   return words[word] >> shift | words[word + 1] << 1 << (63 - shift);
 }
 
-// Words a row: the last two are full, so that load may read past the end.
+// Words per row. All bits of the last two are set, so that load may read past the end.
 std::size_t words_per_row(std::uint32_t size) {
   return size / 64 + 3;
 }
@@ -93,9 +93,9 @@ void BitmapBin::place(const Stamp& stamp, Spot spot) {
   }
 }
 
-// Level k + 1 from level k, which tells of half as many cells, where cells [begin, end) of level 0 have
-// changed: from 2^(k+1) before them on. Done where a level stays as it was, since the next depends on it
-// alone.
+// Updates level k + 1 from level k, whose bits cover half as many cells, after cells [begin, end) of level 0
+// have changed: bits from 2^(k+1) before them on are affected. Stops at a level that does not change, since
+// the next one depends on it alone.
 void BitmapBin::update_levels(std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t k = 0; k + 1 < levels_; ++k) {
     const std::uint64_t* lower = row(k, y);

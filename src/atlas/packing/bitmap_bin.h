@@ -13,16 +13,17 @@ struct Run {
   std::uint32_t row, begin, length;
 };
 
-/// A shape of cells in a rectangle: its runs, the longest first (it fails first), then best such that runs of
-/// neighbouring rows, which tend to fail at the same places, are far apart.
+/// A shape of cells in a rectangle: its runs, the longest first (the most likely to fail), the others
+/// preferably ordered so that runs of neighbouring rows, which tend to fail at the same positions, are far
+/// apart.
 struct Stamp {
   std::uint32_t width = 0, height = 0;
   std::vector<Run> runs;
 };
 
-/// Each row is kept as bitmaps of 64 columns a word: level k has bit x set when one of the 2^k cells from x
-/// on is taken. A run of length l, 2^k ≤ l < 2^(k+1), then fits at x where neither bit x nor bit x + l − 2^k
-/// of level k is set: two shifted words test 64 positions.
+/// Each row is stored as bitmaps of 64 columns per word: level k has bit x set when one of the 2^k cells from
+/// x on is taken. A run of length l, 2^k ≤ l < 2^(k+1), then fits at x where neither bit x nor bit x + l −
+/// 2^k of level k is set: two shifted words test 64 positions.
 class BitmapBin {
  public:
   struct Spot {
@@ -30,10 +31,11 @@ class BitmapBin {
   };
 
   explicit BitmapBin(std::uint32_t size);
-  /// Memory that a bin of this size takes.
+  /// The memory of a bin of this size, in bytes.
   [[nodiscard]] static std::size_t bytes(std::uint32_t size);
 
-  /// The spot of the least y in [first_y, end_y), then of the least x, where no cell of the stamp is taken.
+  /// The position with the smallest y in [first_y, end_y), then the smallest x, at which no cell of the stamp
+  /// is taken.
   [[nodiscard]] std::optional<Spot> first_fit(const Stamp& stamp, std::uint32_t first_y, std::uint32_t end_y);
   void place(const Stamp& stamp, Spot spot);
 
@@ -50,7 +52,7 @@ class BitmapBin {
   void update_longest(std::uint32_t y);
 
   std::uint32_t size_, levels_;
-  std::size_t stride_;  // words a row; bits from size_ on are always set
+  std::size_t stride_;  // words per row; bits from size_ on are always set
   std::vector<std::uint64_t> bits_;
   // An upper bound on the free spans of a row, which rejects most rows. Exact except for stale rows.
   std::vector<std::uint32_t> longest_;

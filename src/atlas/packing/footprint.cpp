@@ -11,7 +11,7 @@
 namespace sdm::atlas {
 namespace {
 
-/// A byte a cell.
+/// One byte per cell.
 struct Bitmap {
   Bitmap(std::uint32_t columns, std::uint32_t rows)
       : width(columns), height(rows), cells(std::size_t{columns} * rows, 0) {}
@@ -86,7 +86,7 @@ Bitmap spread_rows(const Bitmap& bitmap, std::uint32_t reach) {
   return result;
 }
 
-// (x, y) → (height − 1 − y, x), as `turned` has it.
+// (x, y) → (height − 1 − y, x), as in turned().
 Bitmap turn(const Bitmap& bitmap) {
   Bitmap result(bitmap.height, bitmap.width);
   for (std::uint32_t y = 0; y < bitmap.height; ++y)

@@ -22,12 +22,12 @@ struct FootprintOptions {
   std::uint32_t gutter = 1, cell = 1;
 };
 
-/// The shape's bounds, gutter included, must fit some thousand texels. The shift is such that at least one
-/// texel centre lies in a face.
+/// The shape's bounds, gutter included, may span tens of thousands of texels at most. The shift is such that
+/// at least one texel centre lies in a face.
 [[nodiscard]] Footprint make_footprint(const Shape& shape, const FootprintOptions& options);
 
-/// A point of the rectangle after quarter turns of it from x to y: proper rotations, which map texels to
-/// texels.
+/// The position of a point of the rectangle after rotating the rectangle by quarter turns from x towards y:
+/// proper rotations, which map texels to texels.
 [[nodiscard]] Vec2 turned(const Footprint& footprint, unsigned quarter_turns, const Vec2& point);
 
 }  // namespace sdm::atlas

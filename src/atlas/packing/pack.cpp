@@ -17,11 +17,11 @@
 namespace sdm::atlas {
 namespace {
 
-// Beyond this many cells a side, a cell is a square of several texels: charts are large then, and lose little
-// by it. Many small charts have more cells.
+// Above this many cells per side, a cell is a square of several texels: charts are then large and lose little
+// space by it. Many small charts get more cells.
 constexpr double kCells = 2048, kCellsPerChart = 10;
-// The search tries this many scales at once, whatever the number of threads, and ends at a share of the
-// atlas.
+// The search tries this many scales at a time, regardless of the number of threads, and stops at this
+// precision, a fraction of the atlas area.
 constexpr int kTrials = 4;
 constexpr double kPrecision = 0.005;
 // From this number of charts, speed is preferred over filling the last gaps.
@@ -33,7 +33,7 @@ std::uint32_t texels_per_cell(std::uint32_t resolution, std::size_t charts) {
   return static_cast<std::uint32_t>(std::ceil(resolution / cells));
 }
 
-// Lengths of the same three leading bits share a class.
+// Lengths with the same three leading bits share a class.
 std::uint64_t size_class(std::uint32_t length) {
   const auto shift = static_cast<std::uint32_t>(std::max(0, static_cast<int>(std::bit_width(length)) - 3));
   return std::uint64_t{shift} << 3 | length >> shift;
@@ -55,8 +55,8 @@ class Packer {
 
   [[nodiscard]] std::uint32_t cells() const { return resolution_ / cell_; }
 
-  // The scale at which footprints take about the given share of the atlas: a region dilated by r grows by r
-  // times its perimeter and a few texels for its corners. None where corners alone take more.
+  // The scale at which footprints cover about the given fraction of the atlas: a region dilated by r grows by
+  // r times its perimeter and a few texels for its corners. Empty if corners alone take more.
   [[nodiscard]] std::optional<double> scale_for(double share) const {
     const double gutter = std::ceil(1.0 * gutter_ / cell_) * cell_;
     const double reach = gutter + 0.5 * cell_, corner = 2 * gutter + cell_;
@@ -75,13 +75,13 @@ class Packer {
     return std::min(2 * room / (b + std::sqrt(b * b + 4 * area * room)), longest_fit);
   }
 
-  // First fit, large shapes first, in the turn that reaches least far down. None where a shape finds no
-  // place.
+  // Places shapes by first fit, large ones first, each in the rotation that extends least far down. Empty if
+  // a shape does not fit.
   [[nodiscard]] std::optional<std::vector<Placement>> try_scale(double scale) const {
     BitmapBin bin(cells());
     std::vector<Placement> placements(shapes_.size());
-    // Where the last stamp of about the same size went, a later one hardly finds a place above: with many
-    // small charts this saves nearly all of the search.
+    // A stamp rarely fits above the last one of about the same size: starting from there saves nearly all of
+    // the search with many small charts.
     const bool many = shapes_.size() > kManyCharts;
     std::unordered_map<std::uint64_t, std::uint32_t> first_rows;
     for (const std::uint32_t s : order_) {
@@ -90,7 +90,7 @@ class Packer {
       const Footprint footprint = make_footprint(shapes_[s], {scale, gutter_, cell_});
       std::optional<BitmapBin::Spot> best;
       unsigned best_turn = 0;
-      std::uint32_t bottom = cells() + 1;  // to be undercut
+      std::uint32_t bottom = cells() + 1;  // an upper bound
       for (unsigned turn = 0; turn < 4; ++turn) {
         const Stamp& stamp = footprint.stamps[turn];
         if (stamp.height >= bottom) continue;
@@ -123,11 +123,11 @@ class Packer {
   std::span<const Shape> shapes_;
   std::uint32_t resolution_, gutter_, cell_;
   double longest_ = 0;                // side of a shape's rectangle
-  std::vector<std::uint32_t> order_;  // of placing
+  std::vector<std::uint32_t> order_;  // of placement
 };
 
 [[noreturn]] void throw_too_small(std::size_t charts, std::uint32_t resolution, std::uint32_t gutter) {
-  // Charts of a texel or two, packed to four fifths.
+  // Assumes charts of one or two texels, packed to four fifths.
   const double side = (2.0 * gutter + 1) * std::sqrt(1.25 * static_cast<double>(charts));
   const auto enough =
       static_cast<std::uint64_t>(std::exp2(std::ceil(std::log2(std::max(side, resolution + 1.0)))));
@@ -147,7 +147,7 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
                             const Progress& progress) {
   const Packer packer(shapes, resolution, gutter);
   require_memory(kTrials * BitmapBin::bytes(packer.cells()), "packing the atlas");
-  // Shares of the atlas: `low` is known to fit once there is a best packing, `high` is not expected to.
+  // Fractions of the atlas: `low` is known to fit once there is a best packing, `high` is not expected to.
   double low = 0.66, high = 1.0;
   std::optional<std::vector<Placement>> best;
   const double precision = shapes.size() > kManyCharts ? kPrecisionOfMany : kPrecision;

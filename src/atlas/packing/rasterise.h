@@ -11,8 +11,8 @@
 
 namespace sdm::atlas {
 
-/// Twice the signed area of (a, b, p), evaluated the same way, but for the sign, for the edge (b, a): where
-/// two triangles share an edge, a point beside it is on exactly one side.
+/// Twice the signed area of (a, b, p), evaluated identically, up to the sign, for the edge (b, a): where two
+/// triangles share an edge, a point beside it is on exactly one side.
 inline double edge_side(const Vec2& a, const Vec2& b, const Vec2& p) {
   return a < b ? cross(b - a, p - a) : -cross(a - b, p - b);
 }
@@ -48,7 +48,7 @@ void for_each_centre(std::array<Vec2, 3> t, Visit visit) {
       left = std::min({left, x, other});
       right = std::max({right, x, other});
     }
-    // The interval is rounded, the decision is not: one centre more is tried at both ends.
+    // The interval is rounded, but the decision is not: one more centre is tested at both ends.
     const auto last = static_cast<std::int64_t>(std::ceil(right - 0.5));
     for (auto x = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(left - 0.5))); x <= last;
          ++x)

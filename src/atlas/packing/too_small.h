@@ -1,4 +1,4 @@
-// Atlases whose resolution does not suffice.
+// The error for a resolution that is too small.
 #pragma once
 
 #include <sdm/error.h>
@@ -8,12 +8,12 @@
 
 namespace sdm::atlas {
 
-/// A resolution at which the atlas cannot be laid out; a larger one may do.
+/// The atlas cannot be laid out at this resolution; a larger one may suffice.
 class TooSmall : public Error {
  public:
   TooSmall(const std::string& message, std::uint64_t enough)
       : Error(message, Remedy::resolution), enough_(enough) {}
-  /// About the least resolution that would do.
+  /// About the smallest resolution that would suffice.
   [[nodiscard]] std::uint64_t enough() const { return enough_; }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace sdm::core {
 
-/// p ↦ rows·p + offset. The identity maps every point to itself, to the bit.
+/// p ↦ rows·p + offset. The identity returns every point bit-identical.
 struct Affine {
   std::array<Vec3, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 offset{};
@@ -31,5 +31,5 @@ inline Affine inverse(const Affine& map) {
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

@@ -10,8 +10,8 @@ namespace sdm::core {
 namespace {
 
 // J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997:
-// rounding of a determinant of differences is at most this share of the sum of its terms' magnitudes. What
-// underflows is added: far below kUnderflow, for coordinates of up to 1e40.
+// the rounding error of a determinant of differences is at most this fraction of the sum of the magnitudes of
+// its terms, plus what underflows: far less than kUnderflow for coordinates up to 1e40.
 constexpr double kHalfUlp = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kError3 = (7 + 56 * kHalfUlp) * kHalfUlp, kError2 = (3 + 16 * kHalfUlp) * kHalfUlp;
 constexpr double kUnderflow = 1e-200;
@@ -20,8 +20,8 @@ int sign(double x) {
   return (x > 0) - (x < 0);
 }
 
-// Differences of coordinates as integers, in a unit that divides them all: of any two doubles they have at
-// most 2100 bits, and a product of three has three times as many. Nothing is allocated.
+// Differences of coordinates as integers, in a unit that divides all of them. For any two doubles they have
+// at most 2100 bits, and a product of three has three times as many. The size is fixed: nothing is allocated.
 using boost::multiprecision::cpp_int_backend;
 using Integer =
     boost::multiprecision::number<cpp_int_backend<6400, 6400, boost::multiprecision::signed_magnitude,

@@ -11,7 +11,7 @@ namespace sdm::core {
 namespace {
 
 constexpr std::size_t kPacket = 16;
-constexpr std::size_t kParallelItems = 1 << 15;  // fewer are ordered by one thread
+constexpr std::size_t kParallelItems = 1 << 15;  // below this, one thread
 
 struct Item {
   Vec3f point;

@@ -8,13 +8,13 @@
 
 namespace sdm::core {
 
-/// Indices of the points such that every aligned 16·2^k of them lie in a small box: the points are split in
-/// half along the longest side of their box, recursively, down to packets of sixteen. Cost: O(n log n), all
-/// cores.
+/// Indices of the points such that every aligned run of 16·2^k points lies in a small box: the points are
+/// split in half along the longest side of their box, recursively, down to packets of sixteen. Cost: O(n log
+/// n), all cores.
 [[nodiscard]] std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points);
 
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

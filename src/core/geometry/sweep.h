@@ -10,13 +10,13 @@
 
 namespace sdm::core {
 
-/// Finds pairs of near boxes; its memory is kept from one search to the next.
+/// Finds pairs of nearby boxes. Reuses its memory between calls.
 class Sweep {
  public:
   using Pair = std::array<std::uint32_t, 2>;
 
-  /// Calls visit(a, b) once for each pair whose boxes are at most `reach` apart along one axis, that on which
-  /// the boxes spread most. Cost: O(n log n) and those pairs.
+  /// Calls visit(a, b) once for each pair whose boxes are at most `reach` apart along one axis, the one along
+  /// which the boxes are spread most. Cost: O(n log n), plus linear in those pairs.
   template <class Visit>
   void for_each_candidate(std::span<const Box> boxes, double reach, const Visit& visit);
 
@@ -28,7 +28,7 @@ class Sweep {
   /// Sorts the boxes by their lower ends along that axis, and returns it.
   int sort(std::span<const Box> boxes);
 
-  /// Exceeds the rounding of differences, squares, their sum and its root.
+  /// Covers the rounding of differences, squares, their sum and its root.
   static constexpr double kRoundedDown = 1 - 1e-15;
 
   std::vector<std::uint32_t> order_, open_;
@@ -37,7 +37,7 @@ class Sweep {
   friend double box_distance(const Box& a, const Box& b);
 };
 
-/// The distance of two boxes, rounded down; 0 if they overlap.
+/// The distance between two boxes, rounded down; 0 if they overlap.
 [[nodiscard]] double box_distance(const Box& a, const Box& b);
 
 template <class Visit>
@@ -46,7 +46,8 @@ void Sweep::for_each_candidate(std::span<const Box> boxes, double reach, const V
   const int axis = sort(boxes);
   open_.clear();
   for (const std::uint32_t b : order_) {
-    // Later boxes begin no earlier along the axis: a box that ends too early for this one does so for them.
+    // Later boxes start no earlier along the axis: a box that ends too early for this one ends too early for
+    // them.
     std::erase_if(open_, [&](std::uint32_t o) {
       return kRoundedDown * (boxes[b].lo[axis] - boxes[o].hi[axis]) > reach;
     });
@@ -58,5 +59,5 @@ void Sweep::for_each_candidate(std::span<const Box> boxes, double reach, const V
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

@@ -6,7 +6,7 @@
 namespace sdm::core {
 
 /// Maps a scene into the cube [-1, 1]³, so that single precision suffices for any placement and size. The
-/// scale is a power of two: scaling does not round.
+/// scale is a power of two, so scaling does not round.
 struct UnitFrame {
   Vec3 origin{};
   double scale = 1;
@@ -20,5 +20,5 @@ struct UnitFrame {
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

@@ -82,7 +82,7 @@ inline bool overlap(const Box& a, const Box& b) {
     if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
   return true;
 }
-/// The distance of two boxes along each axis; 0 where they overlap.
+/// The distance between two boxes along each axis; 0 where they overlap.
 inline Vec3 gap(const Box& a, const Box& b) {
   Vec3 gap;
   for (int k = 0; k < 3; ++k) gap[k] = std::max({a.lo[k] - b.hi[k], b.lo[k] - a.hi[k], 0.0});
@@ -98,5 +98,5 @@ inline double diagonal(const Box& box) {
 }  // namespace sdm::core
 
 namespace sdm {
-using namespace core;  // the vocabulary of every folder
+using namespace core;  // used unqualified in every folder
 }

@@ -1,4 +1,4 @@
-// Vectors of three doubles, one in each lane. Included once for each set of vector instructions.
+// Vectors of three doubles, one per lane. Included once for each set of vector instructions.
 
 #if defined(SDM_CORE_VEC_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SDM_CORE_VEC_LANES_INL_H_
@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sdm::core::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr size_t kLanes = 8;  // at a time, in one vector or several
+constexpr size_t kLanes = 8;  // processed together, in one register or several
 using Doubles = hn::CappedTag<double, kLanes>;
 using Vec = hn::Vec<Doubles>;
 
@@ -57,7 +57,7 @@ HWY_INLINE Vec3v normalized(const Vec3v& a) {
   return mul(inverse_or_zero(hn::Sqrt(dot(a, a))), a);
 }
 
-// Vectors gathered and scattered one by one; at first all are 0.
+// Vectors that are loaded and stored one lane at a time; initially 0.
 struct Vec3Lanes {
   alignas(64) double at[3][kLanes];
 

@@ -9,10 +9,11 @@
 namespace sdm::inside {
 namespace {
 
-// Rays run along (1, kSlopeY, kSlopeZ): a direction that no modelled edge or face is likely to contain.
+// Rays run along (1, kSlopeY, kSlopeZ): a direction that is unlikely to be parallel to a modelled edge or
+// face.
 constexpr double kSlopeY = 0.0137035999, kSlopeZ = 0.0072973525;
 
-// A point seen along the ray from `origin`: its distance along X, and where it is beside the ray.
+// A point as seen along the ray from `origin`: its distance along X, and its offset from the ray in y and z.
 struct Seen {
   double along;
   Vec2 beside;
@@ -31,9 +32,9 @@ bool meets(const hierarchy::FloatBox& box, const Vec3& origin) {
          origin[2] + kSlopeZ * begin <= box.hi[2] && origin[2] + kSlopeZ * end >= box.lo[2];
 }
 
-// On which side of the ray an edge passes, by the sign: of twice the area that its ends make with the ray; or
-// where that is 0, of what it becomes as the ray moves aside by ε in y and by far less, ε², in z. No vertex
-// lies on a ray so moved.
+// The sign gives the side of the ray on which an edge passes: that of twice the area spanned by its ends and
+// the ray or, where the area is 0, that of its value after the ray is moved by ε in y and by ε² in z, for
+// infinitesimal ε. No vertex lies on the moved ray.
 double side_of_ray(const Vec2& from, const Vec2& to, double area) {
   if (area != 0) return area;
   return from[1] != to[1] ? from[1] - to[1] : to[0] - from[0];

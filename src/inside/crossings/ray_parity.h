@@ -1,4 +1,4 @@
-// Inside or outside of a closed mesh by counting how often a ray meets it.
+// Inside or outside of a closed mesh, by counting the crossings of a ray.
 #pragma once
 
 #include <sdm/types.h>
@@ -10,7 +10,7 @@
 
 namespace sdm::inside {
 
-/// Faces of a mesh under a tree.
+/// The faces of a mesh, with a tree over them.
 struct FaceTree {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
@@ -19,8 +19,8 @@ struct FaceTree {
 };
 
 /// Whether a ray from `origin`, a point in the unit frame, meets the faces of the tree an odd number of
-/// times, leaving out the faces of one component (kNone: none). Not defined on the mesh itself. Allocates
-/// nothing. Cost: O(log n) and the faces met.
+/// times, leaving out the faces of one component (kNone: none). Undefined for points on the mesh. Allocates
+/// nothing. Cost: O(log n), plus linear in the faces met.
 [[nodiscard]] bool odd_crossings(const FaceTree& faces, const Vec3& origin,
                                  std::span<const std::uint32_t> component = {},
                                  std::uint32_t left_out = kNone);

@@ -1,5 +1,4 @@
-// The pieces of a surface in the order in which a PieceAssignment uses them: block after block, in each face
-// after face.
+// Sorts the pieces of a surface into the order in which a PieceAssignment uses them: by block, then by face.
 #include <algorithm>
 #include <numeric>
 #include <ranges>
@@ -65,7 +64,7 @@ class PieceAssignmentBuilder {
  private:
   using FaceInBlock = PieceAssignment::FaceInBlock;
 
-  /// Those of one block; their ends count from its first.
+  /// The faces of one block; ends are relative to the first of the block.
   struct BlockFaces {
     std::vector<FaceInBlock> faces;
     std::vector<std::uint8_t> squares;

@@ -1,6 +1,6 @@
-// Which pieces there are, and which sample each is assigned to. Any choice gives valid radii; a good one
-// gives small ones, now and when the surface has moved. A face is cut along the squares of the texels. Where
-// it owns a square, the sample is the square's centre.
+// Cuts the faces into pieces and assigns each piece to a sample. Any assignment gives valid radii; a good one
+// gives small radii, now and after the surface has deformed. Faces are cut along the squares of the texels.
+// Where a face owns a square, the sample is the square's centre.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -17,7 +17,8 @@
 namespace sdm::surface {
 namespace {
 
-/// A sample this many half diagonals away is near enough: points across an edge may be as far as its square.
+/// A sample within this many half diagonals is near enough: points across an edge may be as far as its
+/// square.
 constexpr double kNearEnough = 1.1;
 
 std::array<Vec3, 3> vertices_of(const Mesh& mesh, std::size_t face) {
@@ -35,8 +36,8 @@ double typical_radius(const Surface& surface) {
   return 0.5 * std::sqrt(doubled_area / static_cast<double>(surface.sample_texels().size()));
 }
 
-/// A face without area is its longest edge, up to its height. A triangle stands for it in the plane whose
-/// base is as many squares long as it should have pieces.
+/// A face without area is its longest edge, up to its height. It is represented by a triangle in the plane
+/// whose base is as many squares long as it should have pieces.
 std::array<Vec2, 3> unfolded(const std::array<Vec3, 3>& vertices, double piece_length) {
   constexpr double kMostPieces = 1024;
   const auto edge = [&](int k) { return vertices[(k + 1) % 3] - vertices[k]; };
@@ -68,7 +69,7 @@ class Cutter {
 
   FacePieces operator()() {
     constexpr std::size_t kFacesPerGroup = 64;
-    // Chart by chart, so that lookups are local.
+    // In the order of the charts, so that lookups are local.
     const std::span<const std::uint32_t> charts = surface_.face_charts();
     std::vector<std::uint32_t> order(charts.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -88,7 +89,7 @@ class Cutter {
   struct Face {
     std::uint32_t index;
     std::array<Vec3, 3> vertices;
-    double enough;  ///< a distance of pieces to their samples that need not be improved
+    double enough;  ///< a distance from a piece to its sample that needs no improvement
   };
 
   void cut(std::uint32_t index, Pieces& pieces) {
@@ -122,11 +123,11 @@ class Cutter {
     for_each_square(internals(surface_).corners[face.index], visit);
   }
 
-  /// A piece in the square with this upper left corner, which its face does not own. If it is far from every
-  /// sample because it is large, it is halved.
+  /// Adds a piece in the square with this upper left corner, which its face does not own. A piece that is far
+  /// from every sample because it is large is halved.
   void add_piece(Pieces& pieces, const Face& face, const Vec2& square, const Polygon& polygon, int cuts) {
     constexpr int kMostCuts = 4;
-    constexpr std::size_t kMostCorners = 8;  // of which a cut makes 12 at most
+    constexpr std::size_t kMostCorners = 8;  // cutting a polygon of 8 gives at most 12
     const Outline outline(face.vertices, polygon);
     const auto [texel, distance] =
         near_samples_.choose(face.index, square[0], square[1], outline, face.enough);

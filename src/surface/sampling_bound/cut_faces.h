@@ -1,4 +1,4 @@
-// The pieces of a surface that belong to samples.
+// Pieces of a surface, assigned to samples.
 #pragma once
 
 #include <sdm/surface.h>
@@ -15,10 +15,10 @@ struct FacePiece {
 };
 
 struct FacePieces {
-  /// Of a few faces each, that are near each other. Samples count from the first of all.
+  /// Each group holds the pieces of a few neighbouring faces. Sample indices are global.
   std::vector<std::vector<FacePiece>> face_groups;
-  /// Of each sample, whether its face has an end of either diagonal of its square, none of which is among the
-  /// pieces then.
+  /// For each sample, whether its face contains an end of each diagonal of its square; no part of such a
+  /// square is among the pieces.
   std::vector<std::uint8_t> whole_square;
 };
 

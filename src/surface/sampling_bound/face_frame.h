@@ -7,7 +7,7 @@
 
 namespace sdm::surface {
 
-/// The point of weights (a, b), a, b ≥ 0, a + b ≤ 1, is origin + a edges[0] + b edges[1].
+/// The point with weights (a, b), a, b ≥ 0, a + b ≤ 1, is origin + a edges[0] + b edges[1].
 struct FaceFrame {
   Vec3 origin;
   std::array<Vec3, 2> edges;
@@ -20,8 +20,8 @@ struct FaceFrame {
 
   [[nodiscard]] Vec3 at(double a, double b) const { return origin + a * edges[0] + b * edges[1]; }
 
-  /// How far a point can be off that is computed from weights rounded to float: these by 2⁻²⁵ each at most,
-  /// and a few roundings in double.
+  /// Upper bound on the error of a point computed from weights rounded to float: at most 2⁻²⁵ per weight,
+  /// plus a few roundings in double.
   [[nodiscard]] double rounding() const {
     double largest = 0;
     for (const Vec3& v : {origin, origin + edges[0], origin + edges[1]})

@@ -7,16 +7,16 @@
 
 namespace sdm::surface {
 
-/// Four points of a face: the corners of a convex polygon, the last one repeated where there are fewer; of a
-/// polygon with more, some of its corners, and a piece after it, of the same sample, has the others.
+/// Four points of a face: the corners of a convex polygon, the last one repeated if there are fewer. A
+/// polygon with more corners is stored as several consecutive pieces of the same sample.
 struct Piece {
-  std::uint32_t sample;                         ///< that it is assigned to, from the first of its block on
+  std::uint32_t sample;  ///< that it is assigned to, relative to the first of its block
   std::array<std::array<float, 4>, 2> weights;  ///< of the face's edges to its vertices 1 and 2
 };
 
 /// Sets squared[i] to the square of the largest distance of a corner of pieces[i] from its sample, in double.
 /// The points of the face are origin + weights[0] edges[0] + weights[1] edges[1]; `points` are those of the
-/// block's samples. As |p − s| is convex in p, no point of the piece is farther.
+/// block's samples. As |p − s| is convex in p, no other point of the piece is farther.
 void measure_pieces(std::span<const Piece> pieces, const Vec3& origin, const std::array<Vec3, 2>& edges,
                     std::span<const Vec3> points, std::span<double> squared);
 

@@ -40,7 +40,7 @@ NearSamples::Choice NearSamples::choose(std::uint32_t face, double x, double y, 
   return best;
 }
 
-// A face with an opposed normal may be in contact now, but may move independently.
+// A face with an opposite normal may be in contact now, but may move independently.
 bool NearSamples::same_side(std::uint32_t face, std::uint32_t other) const {
   const auto normal = [this](std::uint32_t f) {
     const auto& [a, b, c] = surface_.mesh().triangles[f];

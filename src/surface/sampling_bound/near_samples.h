@@ -14,7 +14,7 @@ class Outline {
   Outline(const std::array<Vec3, 3>& vertices, const Polygon& polygon);
 
   [[nodiscard]] Vec3 middle() const;
-  /// The largest distance of any of its points: that of a corner, for |p − s| is convex in p.
+  /// The largest distance from s to any of its points: that of a corner, as |p − s| is convex in p.
   [[nodiscard]] double farthest_from(const Vec3& s) const;
 
  private:
@@ -22,25 +22,25 @@ class Outline {
   std::size_t count_ = 0;
 };
 
-/// Chooses samples for pieces. Around a piece in the atlas are samples that will move along with it; beyond a
-/// seam the nearest in space may be nearer.
+/// Chooses samples for pieces. Samples around the piece in the atlas will move along with it; near a seam,
+/// the nearest sample in space may be closer.
 class NearSamples {
  public:
   /// `radius` is about half a texel's diagonal. The surface must outlive this. Cost: linear in samples.
   NearSamples(const Surface& surface, double radius)
       : surface_(surface),
-        // A few texels: runs that jump to another chart are cut.
+        // A few texels, so that runs that jump to another chart are cut.
         tree_(surface, 16 * radius) {}
 
   struct Choice {
-    std::uint32_t texel = kNone;                                ///< whose sample it is
+    std::uint32_t texel = kNone;                                ///< the texel of the sample
     double distance = std::numeric_limits<double>::infinity();  ///< of the outline's farthest corner
   };
-  /// For a piece of the face in the square of the texel at (x, y): the first found that is within `enough`,
-  /// else the nearest.
+  /// For a piece of the face in the square of the texel at (x, y): the first sample found within `enough`,
+  /// otherwise the nearest.
   [[nodiscard]] Choice choose(std::uint32_t face, double x, double y, const Outline& outline,
                               double enough) const;
-  /// For a piece of a face that has no place in the atlas.
+  /// The same for a piece of a face that is not in the atlas.
   [[nodiscard]] std::uint32_t nearest_texel(const Outline& outline) const {
     return surface_.sample_texels()[tree_.nearest(outline.middle())];
   }

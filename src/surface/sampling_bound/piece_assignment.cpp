@@ -14,7 +14,7 @@
 namespace sdm::surface {
 namespace {
 
-/// A float that is not less.
+/// x rounded up to a float.
 float rounded_up(double x) {
   return static_cast<float>(x * (1 + 0x1p-23));
 }
@@ -28,8 +28,8 @@ double half_diagonal(const std::array<Vec3, 2>& texel_edges) {
 
 namespace {
 
-// How far whole squares of texels reach on the face, plus what M⁻¹, which places the samples, moves the
-// face's own corners by rounding.
+// The distance from the centre of a texel's square on the face to its farthest corner, plus the rounding
+// error of M⁻¹, which places the samples, at the face's own corners.
 double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame& frame) {
   const atlas::FaceMap& map = internals(surface).maps[face];
   const auto& [du, dv] = map.edges;
@@ -43,7 +43,8 @@ double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame
 
 }  // namespace
 
-// Calls take_face(face, how far any of its points here is from its sample).
+// Calls take_face(face, radius) for each face in the block: no point of its pieces here is farther from its
+// sample.
 template <class Take>
 void PieceAssignment::measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
                                     std::span<float> radii, const Take& take_face) const {
@@ -93,8 +94,8 @@ void PieceAssignment::measure(const Surface& surface, Radii& radii) const {
   radii.largest = *std::ranges::max_element(radii.faces);
 }
 
-// A face maps the rectangle around its texels, and the one around its weights, to parallelograms, which are
-// farthest from p at a corner.
+// A face maps the bounding rectangle of its texels, and that of its weights, to parallelograms, whose
+// farthest point from p is a corner.
 double PieceAssignment::radius_about(const Surface& surface, std::size_t block, const Vec3& p) const {
   double farthest = 0;
   for_each_face(block, [&](const FaceInBlock& part, auto squares, std::span<const Piece> pieces) {
@@ -118,8 +119,8 @@ double PieceAssignment::radius_about(const Surface& surface, std::size_t block, 
   return farthest;
 }
 
-// Pieces lie within their face, and samples within the triangle that M⁻¹ makes of the face's corners in the
-// atlas: a little off the face, by rounding.
+// Pieces lie within their face, and samples within the image under M⁻¹ of its triangle in the atlas, which
+// differs from the face by rounding.
 double PieceAssignment::face_radius_about(const Surface& surface, BlockRange blocks, const Vec3& p) const {
   const SurfaceData& s = internals(surface);
   double squared = 0;

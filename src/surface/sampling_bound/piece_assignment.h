@@ -10,45 +10,46 @@
 
 namespace sdm::surface {
 
-/// Half the longer diagonal of a texel's square on the surface, given its edges: the farthest that a point of
-/// it gets from its centre.
+/// Half the longer diagonal of a texel's square on the surface, given its edges: the largest distance from
+/// the centre to a point of the square.
 [[nodiscard]] double half_diagonal(const std::array<Vec3, 2>& texel_edges);
 
 /// A cover of the surface by convex pieces, each assigned to a sample. Samples and pieces move affinely with
-/// their faces, so it holds for any positions of the vertices: what depends on these is how far the pieces
-/// reach, computed by `measure` for all samples, or block by block. See docs/theory.md, "The error bound".
+/// their faces, so it is valid for any positions of the vertices. Only the radii depend on the positions;
+/// they are computed for all samples, or block by block. See docs/theory.md, "The error bound".
 ///
-/// In all functions the surface is the one that this was made for, at whatever positions.
+/// All functions take the surface that this was built for, with any positions.
 ///
-/// Memory: a byte a sample, 36 a face and block that it has samples or pieces in, and 36 a piece: about one
-/// for every second square crossed by an edge of a face, and one for every square along chart borders.
+/// Memory: 1 byte per sample, 36 bytes per face and block in which it has samples or pieces, and 36 bytes per
+/// piece. There is about one piece for every two squares crossed by an edge of a face, and one for every
+/// square along chart borders.
 class PieceAssignment {
  public:
-  /// Assigns each piece to a sample that is near now. Cost: linear in texels and pieces, all cores.
+  /// Assigns each piece to a nearby sample. Cost: linear in texels and pieces, all cores.
   explicit PieceAssignment(const Surface& surface);
 
   struct Radii {
-    std::vector<float> samples;  ///< the largest distance to each sample of a point of its pieces
-    std::vector<float> faces;    ///< the largest distance to its sample of a point of each face
+    std::vector<float> samples;  ///< the largest distance from each sample to its pieces
+    std::vector<float> faces;    ///< the largest distance from a point of each face to its sample
     double largest = 0;
   };
-  /// Upper bounds, rounded upwards, on the radii. Allocates nothing where `radii` was used before. The result
+  /// Upper bounds, rounded upwards, on the radii. Allocates nothing if `radii` was used before. The result
   /// does not depend on the number of threads. Cost: linear in faces, samples and pieces, all cores.
   void measure(const Surface& surface, Radii& radii) const;
 
   /// The same for the samples of one block, whose points are given.
   void measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
                      std::span<float> radii) const;
-  /// The radius of a ball about p that contains all samples of the block and their pieces. Cost: linear in
+  /// The radius of a ball around p that contains all samples of the block and their pieces. Cost: linear in
   /// the faces that these lie on.
   [[nodiscard]] double radius_about(const Surface& surface, std::size_t block, const Vec3& p) const;
   /// The same for many blocks, larger but cheaper: of a ball that contains those faces, which may lie partly
   /// in other blocks.
   [[nodiscard]] double face_radius_about(const Surface& surface, BlockRange blocks, const Vec3& p) const;
 
-  /// For each face the largest distance to the nearest sample of some of its points, rounded downwards: a
-  /// lower bound on its radius. `bound` is the largest of the present radii. Cost: some nearest samples a
-  /// face, all cores.
+  /// For each face, the largest distance from some of its points to the nearest sample, rounded downwards: a
+  /// lower bound on its radius. `bound` is the largest of the present radii. Cost: a few nearest-sample
+  /// searches per face, all cores.
   [[nodiscard]] std::vector<double> radius_lower_bounds(const Surface& surface, double bound) const;
 
  private:
@@ -58,8 +59,8 @@ class PieceAssignment {
   struct FaceInBlock {
     std::uint32_t face = kNone;
     std::uint32_t square_end = 0,
-                  piece_end = 0;  ///< its squares and pieces: from the end of the entry before
-    /// Its samples are the centres of texels among these; none where the lower ones are above the upper ones.
+                  piece_end = 0;  ///< its squares and pieces start at the end of the previous entry
+    /// Its samples are the centres of texels in this rectangle, which is empty if low > high.
     std::array<std::uint16_t, 2> low_texel{0xFFFF, 0xFFFF}, high_texel{};
     std::array<float, 2> low_weights{1, 1}, high_weights{};  ///< of the corners of its pieces
   };
@@ -72,8 +73,8 @@ class PieceAssignment {
 
   std::vector<std::uint32_t> block_ends_;  ///< of each block's faces
   std::vector<FaceInBlock> faces_in_blocks_;
-  /// Samples, counted from the first of their block, in whose square the face has an end of either diagonal,
-  /// so that half the longer one is how far it reaches. Of other squares all parts are among the pieces.
+  /// Samples, relative to the first of their block, in whose square the face contains an end of each
+  /// diagonal, so that half the longer one is the radius. All parts of other squares are among the pieces.
   std::vector<std::uint8_t> squares_;
   std::vector<Piece> pieces_;
 };

@@ -10,17 +10,17 @@
 
 namespace sdm::surface {
 
-/// A convex polygon within a triangle of the atlas. Each corner knows its place in the atlas and its weights:
+/// A convex polygon within a triangle of the atlas. Each corner stores its atlas coordinates and its weights:
 /// the point is vertex 0 + weights[0] (vertex 1 − vertex 0) + weights[1] (vertex 2 − vertex 0), wherever the
-/// vertices are. Weights are carried along where corners are cut, so that slivers need no inverse of a map.
+/// vertices are. Weights are carried along where corners are cut, so that slivers need no inverse map.
 class Polygon {
  public:
   struct Corner {
     Vec2 at, weights;
   };
 
-  /// A line adds one corner; where rounding has made n corners not quite convex, n/2 at most. From three,
-  /// four lines reach 13.
+  /// Clipping by a line adds one corner, or at most n/2 where rounding has made n corners slightly
+  /// non-convex. Four lines turn three corners into at most 13.
   static constexpr std::size_t kMostCorners = 13;
 
   explicit Polygon(const std::array<Vec2, 3>& triangle) {
@@ -32,7 +32,8 @@ class Polygon {
   [[nodiscard]] std::span<const Corner> corners() const { return {corners_.data(), count_}; }
   [[nodiscard]] bool empty() const { return count_ == 0; }
 
-  /// The part where side · (at[axis] − line) ≥ 0; side is 1 or −1. New corners are on the line to the bit.
+  /// The part where side · (at[axis] − line) ≥ 0; side is 1 or −1. The coordinate of new corners along the
+  /// axis is that of the line, bit-identical.
   [[nodiscard]] Polygon clipped(int axis, double line, double side) const {
     Polygon part;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -57,8 +58,8 @@ class Polygon {
     const auto [lo, hi] = std::ranges::minmax(corners(), {}, [axis](const Corner& c) { return c.at[axis]; });
     return {lo.at[axis], hi.at[axis]};
   }
-  /// The extent along the other axis of what lies on a line of this one, along which it was clipped; lo > hi
-  /// where nothing does.
+  /// The extent along the other axis of the points on a line of this axis, along which the polygon was
+  /// clipped; lo > hi if there are none.
   [[nodiscard]] std::array<double, 2> range_on(int axis, double line) const {
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
     for (const Corner& c : corners())
@@ -81,16 +82,16 @@ class Polygon {
 struct SquareCorners {
   bool upper_left, upper_right, lower_left, lower_right;
 
-  /// An end of either diagonal: what the triangle has of the square then reaches half the longer diagonal
-  /// from the centre, and no farther, whatever an affine map makes of the square. All that one line leaves on
-  /// the centre's side has them.
+  /// Whether there is an end of each diagonal. The part of the square in the triangle then extends half the
+  /// longer diagonal from the centre, and no farther, under any affine map. This is so wherever a single line
+  /// clips the square and the centre remains.
   [[nodiscard]] bool both_diagonals() const {
     return (upper_left || lower_right) && (upper_right || lower_left);
   }
 };
 
 /// Calls visit(x, y, corners, part) for the squares [x, x + 1] × [y, y + 1] that the triangle meets, in rows;
-/// part() is what it has of the square, which may turn out to be empty. The parts cover the triangle. Cost:
+/// part() is the part of the triangle in the square, which may be empty. The parts cover the triangle. Cost:
 /// linear in squares.
 template <class Visit>
 void for_each_square(const std::array<Vec2, 3>& triangle, Visit visit) {

@@ -1,4 +1,4 @@
-// The radii from below: points of the surface with their true distance to the nearest sample.
+// Lower bounds on the radii, from the true distances of points of the surface to the nearest sample.
 #include "core/atomic_max.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
@@ -11,13 +11,13 @@
 namespace sdm::surface {
 namespace {
 
-/// The largest distance to the nearest sample of the points of one face that were looked at.
+/// The largest distance from the tested points of one face to the nearest sample.
 class Farthest {
  public:
   Farthest(std::span<const Vec3> samples, const SampleTree& tree, double distance = 0)
       : samples_(samples), tree_(tree), distance_(distance) {}
 
-  /// `most` is the distance to some sample.
+  /// `most` is the distance to some sample, an upper bound.
   void look_at(const Vec3& p, double most = std::numeric_limits<double>::infinity()) {
     if (most > distance_) distance_ = std::max(distance_, norm(p - samples_[tree_.nearest(p)]));
   }
@@ -29,8 +29,8 @@ class Farthest {
   double distance_;
 };
 
-/// The weights of the corner of a texel's square that is nearest to the middle of a face: in a large one
-/// four samples are equally far from it, and the nearest.
+/// The weights of the corner of a texel's square that is nearest to the middle of a face: in a large face,
+/// the four samples nearest to it are equally far.
 std::array<double, 2> middle_corner(const std::array<Vec2, 3>& triangle) {
   const Vec2 a = triangle[1] - triangle[0], b = triangle[2] - triangle[0];
   const Vec2 middle = triangle[0] + (1.0 / 3) * (a + b);

@@ -25,7 +25,7 @@ double stepped(double resolution) {
   return kStep * std::clamp(std::ceil(resolution / kStep), 1.0, kMost / kStep);
 }
 
-/// About how many times the resolution it takes; above 1 if and only if it does not suffice.
+/// About the factor by which the resolution must change; above 1 if and only if it does not suffice.
 double needed_factor(const Mesh& mesh, AtlasOptions options, double resolution, double precision) try {
   options.resolution = static_cast<std::uint32_t>(resolution);
   return SamplingBound(Surface(mesh, options)).value() / precision;
@@ -49,10 +49,10 @@ std::uint32_t resolution_for(const Mesh& mesh, AtlasOptions options, double prec
     throw Error("a precision of " + std::to_string(precision) +
                 " is out of range; use a length above 0 in the units of the mesh");
   validate(mesh);
-  // What most atlases take: seven tenths of their texels are owned, and points beside seams are a third
+  // Typical of most atlases: seven tenths of the texels are owned, and points beside seams are a third
   // farther from a sample than the corners of squares.
   const double usual = 1.1 * std::sqrt(area_of(mesh)) / precision;
-  // A trial at the most possible takes tens of gigabytes: none where there is no hope.
+  // A trial at the maximum resolution takes tens of gigabytes: skip it if it cannot succeed.
   if (usual > 2 * kMost) throw_unreachable(precision, usual);
 
   // Trials that are too coarse and fine enough, with their factors.
@@ -66,7 +66,7 @@ std::uint32_t resolution_for(const Mesh& mesh, AtlasOptions options, double prec
       return static_cast<std::uint32_t>(fine);
     if (coarse == kMost) throw_unreachable(precision, factor * kMost);
     if (fine == 0) {
-      resolution = stepped(std::max(factor, 1.125) * coarse);  // also where the bound hardly follows
+      resolution = stepped(std::max(factor, 1.125) * coarse);  // even where the bound hardly changes
     } else if (coarse == 0) {
       resolution = std::min(stepped(factor * fine), fine - gap);
     } else {

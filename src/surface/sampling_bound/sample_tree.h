@@ -9,19 +9,18 @@
 
 namespace sdm::surface {
 
-/// A tree over runs of samples, whose order keeps neighbours together: so it is built in a fraction of the
-/// time of a tree over the samples themselves. The surface, which must have a sample, must outlive it and
-/// stay as it is.
+/// A tree over runs of consecutive samples, which are close together: it is built in a fraction of the time
+/// of a tree over single samples. The surface must have a sample, outlive the tree and remain unchanged.
 class SampleTree {
  public:
-  /// Runs stay within `radius` of their first sample: a few texels, so that a run that leaps to another place
+  /// Runs stay within `radius` of their first sample: a few texels, so that a run that jumps to another place
   /// is cut. Cost: linear in samples, all cores.
   SampleTree(const Surface& surface, double radius);
 
-  /// Of all samples.
+  /// The points of all samples.
   [[nodiscard]] std::span<const Vec3> points() const { return points_; }
 
-  /// The nearest sample, by its place in sample_texels(). Cost: O(log n) for queries near the surface.
+  /// The nearest sample, as an index into sample_texels(). Cost: O(log n) for queries near the surface.
   [[nodiscard]] std::uint32_t nearest(const Vec3& query) const;
 
  private:
