@@ -63,7 +63,7 @@ class SDM_API MultiBodyQuery {
   /// Returns all pairs that collide or whose separation is at most max_distance, and those for which the
   /// samples cannot rule this out. No pair has separation.lower > max_distance unless it collides. Sorted by
   /// first, then by second body. The results of a pair are those of ProximityQuery. Computed by the first
-  /// call after a refit and valid until the next update. Neither this nor refit()() allocates memory once
+  /// call after a refit and valid until the next one. Neither this nor refit() allocates memory once
   /// the bodies have been through similar poses. Cost: a sweep over the boxes of the bodies, then that of
   /// ProximityQuery for each candidate pair, the pairs distributed over all cores.
   [[nodiscard]] std::span<const PairProximity> pairs();
