@@ -55,3 +55,11 @@ function(sdm_compile_options name)
   target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
     $<$<BOOL:${SDM_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
+
+# For the targets of a folder that have precompiled headers: ccache keeps their objects only with this setting.
+macro(sdm_cache_precompiled_headers)
+  if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache$")
+    set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CMAKE_CXX_COMPILER_LAUNCHER})
+  endif()
+endmacro()

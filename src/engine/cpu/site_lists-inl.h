@@ -75,9 +75,9 @@ HWY_INLINE void append(std::vector<uint32_t>& to, const uint32_t* numbers, uint3
 }
 
 // Fills four rows of a block, from `row` on, with the corresponding numbers of eight regions.
-template <class Some>
-HWY_INLINE void transpose_four(const typename Some::Region* const (&regions)[SiteBlock::kWidth], size_t row,
-                               Some& block) {
+template <class TypedBlock>
+HWY_INLINE void transpose_four(const typename TypedBlock::Region* const (&regions)[SiteBlock::kWidth],
+                               size_t row, TypedBlock& block) {
   SiteBlock::Row* to = block.row + row;
   // A load may cross from one member of a region into the next: it reads the bytes of the whole region.
   const auto numbers = [&](size_t lane) {
@@ -106,16 +106,16 @@ HWY_INLINE void transpose_four(const typename Some::Region* const (&regions)[Sit
 }
 
 // Builds a list of the regions at these places; id(place) is their SiteId.
-template <class Some, class Id>
-void gather(std::span<const uint32_t> places, const std::vector<typename Some::Region>& regions, const Id& id,
-            SiteList<Some>& list) {
+template <class TypedBlock, class Id>
+void gather(std::span<const uint32_t> places, const std::vector<typename TypedBlock::Region>& regions,
+            const Id& id, SiteList<TypedBlock>& list) {
   constexpr size_t kWidth = SiteBlock::kWidth, kAhead = 4 * kWidth;
   list.used = (places.size() + kWidth - 1) / kWidth;
   if (list.used > list.blocks.size()) list.blocks.resize(2 * list.used);
   for (size_t i = 0; i < std::min(kAhead, places.size()); ++i) hwy::Prefetch(&regions[places[i]]);
   for (size_t b = 0; b < list.used; ++b) {
-    Some& block = list.blocks[b];
-    const typename Some::Region* from[kWidth];
+    TypedBlock& block = list.blocks[b];
+    const typename TypedBlock::Region* from[kWidth];
     block.count = static_cast<uint32_t>(std::min(kWidth, places.size() - kWidth * b));
     for (size_t lane = 0; lane < kWidth; ++lane) {
       const size_t i = kWidth * b + lane;
@@ -123,20 +123,20 @@ void gather(std::span<const uint32_t> places, const std::vector<typename Some::R
       from[lane] = &regions[places[std::min(i, places.size() - 1)]];
     }
     // With fifteen rows, the last group of four overlaps the one before.
-    static_assert(Some::kRows == 15 || Some::kRows == 16);
-    for (size_t row = 0; row < Some::kRows; row += 4)
-      transpose_four(from, std::min(row, Some::kRows - 4), block);
+    static_assert(TypedBlock::kRows == 15 || TypedBlock::kRows == 16);
+    for (size_t row = 0; row < TypedBlock::kRows; row += 4)
+      transpose_four(from, std::min(row, TypedBlock::kRows - 4), block);
     for (size_t lane = 0; lane < block.count; ++lane) block.id[lane] = id(places[kWidth * b + lane]).packed;
   }
 }
 
 // Appends the sites of a block whose bit is set: first to the list's last block, then to a new one.
-template <class Some>
-void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
+template <class TypedBlock>
+void append(SiteList<TypedBlock>& list, const TypedBlock& block, uint32_t bits) {
   constexpr uint32_t kWidth = SiteBlock::kWidth;
   if (list.used + 1 >= list.blocks.size()) list.blocks.resize(2 * list.blocks.size() + 2);
   if (list.used == 0 || list.blocks[list.used - 1].count == kWidth) list.blocks[list.used++].count = 0;
-  Some &last = list.blocks[list.used - 1], &next = list.blocks[list.used];
+  TypedBlock &last = list.blocks[list.used - 1], &next = list.blocks[list.used];
   const uint32_t filled = last.count, total = filled + static_cast<uint32_t>(std::popcount(bits));
   last.count = std::min(total, kWidth);
   if (total > kWidth) {
@@ -146,8 +146,8 @@ void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
   if constexpr (hn::MaxLanes(Block()) < kWidth) {
     for (uint32_t at = filled; bits != 0; bits &= bits - 1, ++at) {
       const int lane = std::countr_zero(bits);
-      Some& to = at < kWidth ? last : next;
-      for (size_t row = 0; row < Some::kRows; ++row) to.row[row][at % kWidth] = block.row[row][lane];
+      TypedBlock& to = at < kWidth ? last : next;
+      for (size_t row = 0; row < TypedBlock::kRows; ++row) to.row[row][at % kWidth] = block.row[row][lane];
       to.id[at % kWidth] = block.id[lane];
     }
   } else {
@@ -161,21 +161,22 @@ void append(SiteList<Some>& list, const Some& block, uint32_t bits) {
       hn::StoreU(hn::IfThenElse(hn::FirstN(tag, filled), hn::LoadU(tag, out), moved), tag, out);
       if (total > kWidth) hn::StoreU(moved, tag, out_next);
     };
-    for (size_t row = 0; row < Some::kRows; ++row) move(d, block.row[row], last.row[row], next.row[row]);
+    for (size_t row = 0; row < TypedBlock::kRows; ++row)
+      move(d, block.row[row], last.row[row], next.row[row]);
     move(du, block.id, last.id, next.id);
   }
 }
 
 // Appends the candidates of a block.
-template <class Some>
-HWY_INLINE void keep(const Some& block, const CandidateBound& reach, SiteList<Some>& list) {
+template <class TypedBlock>
+HWY_INLINE void keep(const TypedBlock& block, const CandidateBound& reach, SiteList<TypedBlock>& list) {
   const uint32_t bits =
       select(block.count, [&](size_t i) HWY_ATTR { return may_be_closest(Block(), block, i, reach); });
   if (bits != 0) append(list, block, bits);
 }
 
-template <class Some>
-void keep(const SiteList<Some>& from, const CandidateBound& reach, SiteList<Some>& to) {
+template <class TypedBlock>
+void keep(const SiteList<TypedBlock>& from, const CandidateBound& reach, SiteList<TypedBlock>& to) {
   to.used = 0;
   for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], reach, to);
 }
