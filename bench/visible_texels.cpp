@@ -14,7 +14,7 @@ namespace {
 
 using namespace io;
 
-Vec3 atlas::face_normal(const Mesh& mesh, const Triangle& face) {
+Vec3 face_normal(const Mesh& mesh, const Triangle& face) {
   const Vec3& a = mesh.positions[face[0]];
   return normalized(cross(mesh.positions[face[1]] - a, mesh.positions[face[2]] - a));
 }
@@ -23,7 +23,7 @@ Vec3 atlas::face_normal(const Mesh& mesh, const Triangle& face) {
 /// their indices.
 Mesh without_near_side(Mesh mesh, const Vec3& eye) {
   for (Triangle& face : mesh.triangles)
-    if (dot(atlas::face_normal(mesh, face), eye - mesh.positions[face[0]]) > 0) face[1] = face[2] = face[0];
+    if (dot(face_normal(mesh, face), eye - mesh.positions[face[0]]) > 0) face[1] = face[2] = face[0];
   return mesh;
 }
 
@@ -71,8 +71,7 @@ std::vector<Seen> visible_texels(const View& view, std::span<const Shown> object
       const Surface& surface = *objects[query.hit.geomID].surface;
       const std::uint32_t face = query.hit.primID;
       const Vec3 point = view.eye + query.ray.tfar * ray;
-      const double cosine =
-          std::abs(dot(atlas::face_normal(surface.mesh(), surface.mesh().triangles[face]), ray));
+      const double cosine = std::abs(dot(face_normal(surface.mesh(), surface.mesh().triangles[face]), ray));
       seen[i] = {query.hit.geomID, texel_at(surface, face, point), static_cast<float>(cosine)};
     }
   });

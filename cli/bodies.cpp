@@ -1,5 +1,6 @@
 #include "bodies.h"
 
+#include <fmt/format.h>
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
@@ -109,7 +110,8 @@ void run(BodiesCommand command) {
 }
 
 void add_options(CLI::App& app, BodiesCommand& c) {
-  app.add_option("FILE", c.files, "One mesh per body (OBJ, PLY, STL, OFF, glTF, 3DS), at least two")
+  app.add_option("FILE", c.files,
+                 fmt::format("One mesh per body ({}), at least two", sdm::mesh_format_names()))
       ->required()
       ->expected(2, CLI::detail::expected_max_vector_size);
   add_output_option(app, c.out)

@@ -1,5 +1,6 @@
 #include "info.h"
 
+#include <fmt/format.h>
 #include <sdm/io.h>
 #include <sdm/mesh.h>
 
@@ -92,7 +93,8 @@ void run(const Options& options) {
 void add_info_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Print counts, bounds, topology, area and volume of a mesh");
   const auto options = std::make_shared<Options>();
-  command->add_option("MESH", options->file, "OBJ, PLY, STL, OFF, glTF, GLB or 3DS file")->required();
+  command->add_option("MESH", options->file, fmt::format("The mesh ({})", sdm::mesh_format_names()))
+      ->required();
   command->add_flag("--json", options->json, "Print JSON");
   command->footer("Example:\n  sdm info scan.ply");
   command->callback([options] { run(*options); });

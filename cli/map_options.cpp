@@ -1,5 +1,8 @@
 #include "map_options.h"
 
+#include <fmt/format.h>
+#include <sdm/io.h>
+
 #include "common_options.h"
 #include "option_checks.h"
 
@@ -19,7 +22,8 @@ void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
 
 void add_options(CLI::App& app, MapCommand& c) {
   const auto positive = number("a positive number", [](double x) { return x > 0; });
-  app.add_option("O1", c.o1, "The mesh that distances are measured from (OBJ, PLY, STL, OFF, glTF, 3DS)")
+  app.add_option("O1", c.o1,
+                 fmt::format("The mesh that distances are measured from ({})", sdm::mesh_format_names()))
       ->required();
   app.add_option("O2", c.o2, "The mesh that distances are measured to")->required();
   add_output_option(app, c.out);

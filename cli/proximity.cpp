@@ -1,5 +1,6 @@
 #include "proximity.h"
 
+#include <fmt/format.h>
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
@@ -56,6 +57,6 @@ void add_proximity_command(CLI::App& app) {
       "Example, two meshes in contact:\n"
       "  sdm proximity bunny.obj armadillo.off --transform-o1 fit --transform-o2 fit,translate:0.1:0:0");
   const auto command = std::make_shared<PairCommand>();
-  add_options(*proximity, *command, {"A mesh (OBJ, PLY, STL, OFF, glTF, 3DS)", "The other mesh"});
+  add_options(*proximity, *command, {fmt::format("A mesh ({})", sdm::mesh_format_names()), "The other mesh"});
   proximity->callback([command] { run(*command); });
 }

@@ -1,5 +1,8 @@
 #include "self.h"
 
+#include <fmt/format.h>
+#include <sdm/io.h>
+
 #include "common_options.h"
 #include "format.h"
 #include "map_files.h"
@@ -128,7 +131,7 @@ void add_self_command(CLI::App& app) {
   const auto command = std::make_shared<SelfCommand>();
   SelfCommand& c = *command;
   const auto positive = number("a positive number", [](double x) { return x > 0; });
-  self->add_option("MESH", c.file, "The mesh (OBJ, PLY, STL, OFF, glTF, 3DS)")->required();
+  self->add_option("MESH", c.file, fmt::format("The mesh ({})", sdm::mesh_format_names()))->required();
   add_output_option(*self, c.out);
   add_transform_option(*self, "--transform", "The mesh", c.transform);
   CLI::Option* rings =

@@ -21,6 +21,9 @@ namespace sdm {
 /// in the sense of validate().
 [[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
 
+/// The names of the formats that read_mesh supports, separated by commas, for messages and help texts.
+[[nodiscard]] SDM_API std::string mesh_format_names();
+
 /// Writes the positions, in double precision, and the triangles as binary PLY; read_mesh returns them
 /// bit-identical.
 SDM_API void write_ply(const std::filesystem::path& file, const Mesh& mesh);

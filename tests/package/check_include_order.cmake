@@ -1,3 +1,5 @@
+cmake_minimum_required(VERSION 3.23)
+
 # A folder of src/ includes only itself and the folders before it, so that the graph of includes has neither a
 # circle nor an arrow that points up. Prints the graph: for each folder the folders that it includes.
 set(order
@@ -32,14 +34,19 @@ set(order
   io/write/pictures
   io/write)
 
+# Another engine is before the table of engines.
+file(GLOB engines LIST_DIRECTORIES true RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/engine/*)
+foreach(engine ${engines})
+  if(IS_DIRECTORY ${SOURCE_DIR}/src/${engine} AND NOT engine IN_LIST order)
+    list(FIND order engine/table place)
+    list(INSERT order ${place} ${engine})
+  endif()
+endforeach()
+
 file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/*.h ${SOURCE_DIR}/src/*.cpp)
 foreach(file ${files})
   get_filename_component(folder ${file} DIRECTORY)
   list(FIND order "${folder}" place)
-  if(place EQUAL -1 AND folder MATCHES "^engine/")  # another engine
-    list(FIND order engine/table place)
-    list(INSERT order ${place} "${folder}")
-  endif()
   if(place EQUAL -1)
     message(SEND_ERROR "src/${folder} has no place in the order of dependence: ${order}")
     continue()

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
+#include <sdm/io.h>
 
 #include <algorithm>
 #include <ranges>
@@ -66,16 +67,20 @@ constexpr Format kFormats[] = {
      [](std::string_view bytes, const auto&) { return read_3ds(bytes); }},
 };
 
-const Format* find_format(const Content& content, const std::filesystem::path& file) {
-  for (const Format& format : kFormats)
-    if (format.matches(content)) return &format;
-  std::string extension = file.extension().string();
-  for (char& c : extension)
+const Format* format_of_extension(std::string_view extension) {
+  std::string lower(extension);
+  for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   for (const Format& format : kFormats)
     for (const auto word : std::views::split(format.extensions, ' '))
-      if (std::ranges::equal(word, extension)) return &format;
+      if (std::ranges::equal(word, lower)) return &format;
   return nullptr;
+}
+
+const Format* find_format(const Content& content, const std::filesystem::path& file) {
+  for (const Format& format : kFormats)
+    if (format.matches(content)) return &format;
+  return format_of_extension(file.extension().string());
 }
 
 std::string_view without_byte_order_mark(std::string_view bytes) {
@@ -85,6 +90,10 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
 
 }  // namespace
 
+bool is_mesh_extension(std::string_view extension) {
+  return format_of_extension(extension) != nullptr;
+}
+
 bool is_gltf(std::string_view bytes, const std::filesystem::path& file) {
   return find_format(Content(without_byte_order_mark(bytes)), file) == &kFormats[0];
 }
@@ -92,14 +101,20 @@ bool is_gltf(std::string_view bytes, const std::filesystem::path& file) {
 PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file) {
   const Content content(without_byte_order_mark(bytes));
   const Format* format = find_format(content, file);
-  if (format == nullptr) {
-    std::vector<std::string_view> names;
-    for (const Format& known : kFormats) names.push_back(known.names);
-    throw Error(fmt::format("unknown format; {} are supported", fmt::join(names, ", ")));
-  }
+  if (format == nullptr) throw Error(fmt::format("unknown format; {} are supported", mesh_format_names()));
   if (format->text_only && !content.text)
     throw Error("holds binary data where text is expected; it is damaged or has another format");
   return format->read(content.bytes, file);
 }
 
 }  // namespace sdm::io
+
+namespace sdm {
+
+std::string mesh_format_names() {
+  std::vector<std::string_view> names;
+  for (const io::Format& format : io::kFormats) names.push_back(format.names);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace sdm

@@ -12,6 +12,9 @@
 
 namespace sdm::io {
 
+/// Returns whether files with this extension, such as ".obj", in any case, are mesh files.
+[[nodiscard]] bool is_mesh_extension(std::string_view extension);
+
 /// Returns whether a mesh file is glTF, from the contents, or else from the file name's extension.
 [[nodiscard]] bool is_gltf(std::string_view bytes, const std::filesystem::path& file);
 

@@ -10,6 +10,8 @@
 #include <optional>
 #include <string_view>
 
+#include "io/read/read_polygons.h"
+
 namespace sdm::io {
 namespace {
 
@@ -87,13 +89,6 @@ void for_each_file(const fs::path& folder, const Visit& visit) {
     if (entry->is_regular_file(ignored)) visit(entry->path());
   }
   if (error) throw Error(fmt::format("the folder {} cannot be read: {}", folder.string(), error.message()));
-}
-
-bool is_mesh_extension(std::string_view extension) {
-  std::string lower(extension);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return std::ranges::count(std::array{".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".3ds"}, lower) > 0;
 }
 
 }  // namespace
