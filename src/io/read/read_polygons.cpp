@@ -5,7 +5,7 @@
 #include <sdm/io.h>
 
 #include <algorithm>
-#include <ranges>
+#include <array>
 #include <vector>
 
 #include "io/read/formats.h"
@@ -41,8 +41,8 @@ PolygonMesh read_stl(std::string_view bytes) {
 }
 
 struct Format {
-  std::string_view names;       ///< for messages
-  std::string_view extensions;  ///< in lower case
+  std::string_view names;                      ///< for messages
+  std::array<std::string_view, 2> extensions;  ///< in lower case
   bool text_only;
   bool (*matches)(const Content& content);
   PolygonMesh (*read)(std::string_view bytes, const std::filesystem::path& file);
@@ -50,20 +50,33 @@ struct Format {
 
 // The table of formats. The first that matches the content is taken, else the one with the extension.
 constexpr Format kFormats[] = {
-    {"glTF, GLB", ".gltf .glb", false,
+    {"glTF, GLB",
+     {".gltf", ".glb"},
+     false,
      [](const Content& c) { return c.bytes.starts_with("glTF") || c.first_word.starts_with('{'); },
      read_gltf},
-    {"STL", ".stl", false,
+    {"STL",
+     {".stl"},
+     false,
      [](const Content& c) {
        return is_stl_binary(c.bytes) || c.first_word == "solid" || c.first_word == "SOLID";
      },
      [](std::string_view bytes, const auto&) { return read_stl(bytes); }},
-    {"PLY", ".ply", false, [](const Content& c) { return TextScanner(c.bytes).accept("ply"); },
+    {"PLY",
+     {".ply"},
+     false,
+     [](const Content& c) { return TextScanner(c.bytes).accept("ply"); },
      [](std::string_view bytes, const auto&) { return read_ply(bytes); }},
-    {"OFF", ".off", true, [](const Content& c) { return is_off_header(c.first_word); },
+    {"OFF",
+     {".off"},
+     true,
+     [](const Content& c) { return is_off_header(c.first_word); },
      [](std::string_view bytes, const auto&) { return read_off(bytes); }},
-    {"OBJ", ".obj", true, is_obj, [](std::string_view bytes, const auto&) { return read_obj(bytes); }},
-    {"3DS", ".3ds", false, [](const Content& c) { return !c.text && c.bytes.starts_with("MM"); },
+    {"OBJ", {".obj"}, true, is_obj, [](std::string_view bytes, const auto&) { return read_obj(bytes); }},
+    {"3DS",
+     {".3ds"},
+     false,
+     [](const Content& c) { return !c.text && c.bytes.starts_with("MM"); },
      [](std::string_view bytes, const auto&) { return read_3ds(bytes); }},
 };
 
@@ -71,10 +84,10 @@ const Format* format_of_extension(std::string_view extension) {
   std::string lower(extension);
   for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  for (const Format& format : kFormats)
-    for (const auto word : std::views::split(format.extensions, ' '))
-      if (std::ranges::equal(word, lower)) return &format;
-  return nullptr;
+  const Format* format = std::ranges::find_if(kFormats, [&](const Format& f) {
+    return std::ranges::count(f.extensions, std::string_view(lower)) > 0;
+  });
+  return lower.empty() || format == std::end(kFormats) ? nullptr : format;
 }
 
 const Format* find_format(const Content& content, const std::filesystem::path& file) {
