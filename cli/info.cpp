@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <sdm/io.h>
 #include <sdm/mesh.h>
+#include <sdm/self_intersections.h>
+#include <sdm/solid.h>
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -11,15 +13,35 @@
 #include <string>
 
 #include "format.h"
+#include "output_folder.h"
 
 namespace {
 
 struct Options {
   std::string file;
+  std::string self_intersections;  ///< file for the pairs; empty: none
   bool json = false;
 };
 
-nlohmann::ordered_json to_json(const std::string& file, const sdm::MeshInfo& info) {
+struct Info {
+  sdm::MeshInfo mesh;
+  std::vector<std::array<std::uint32_t, 2>> self_intersections{};
+  std::optional<sdm::VolumeBounds> volume{};  ///< if closed and orientable
+};
+
+Info collect(const std::string& file) {
+  sdm::Mesh mesh = sdm::read_mesh(file);
+  Info info{sdm::inspect(mesh)};
+  const sdm::Sites sites(std::move(mesh));
+  info.self_intersections = sdm::self_intersections(sites);
+  if (info.mesh.closed && info.mesh.orientable) info.volume = sdm::solid_volume(sites);
+  return info;
+}
+
+constexpr std::size_t kShown = 3;  // pairs of intersecting faces
+
+nlohmann::ordered_json to_json(const std::string& file, const Info& all) {
+  const sdm::MeshInfo& info = all.mesh;
   return {{"file", file},
           {"vertices", info.vertices},
           {"edges", info.edges},
@@ -36,9 +58,12 @@ nlohmann::ordered_json to_json(const std::string& file, const sdm::MeshInfo& inf
           {"degenerate_faces", info.degenerate_faces},
           {"duplicate_faces", info.duplicate_faces},
           {"unused_vertices", info.unused_vertices},
+          {"self_intersections", all.self_intersections.size()},
           {"uvs", info.has_uvs},
           {"area", info.area},
-          {"volume", info.closed && info.orientable ? nlohmann::ordered_json(info.volume) : nullptr}};
+          {"volume", all.volume
+                         ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
+                         : nlohmann::ordered_json()}};
 }
 
 std::string text(bool value) {
@@ -51,9 +76,23 @@ std::string text(const sdm::Vec3& value) {
   return fmt::format("{}  {}  {}", text(value[0]), text(value[1]), text(value[2]));
 }
 
-void print_table(std::ostream& out, const std::string& file, const sdm::MeshInfo& info) {
+std::string text(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+  if (pairs.empty()) return "none";
+  std::string result = fmt::format("{} pair{} of faces: ", pairs.size(), pairs.size() == 1 ? "" : "s");
+  for (std::size_t i = 0; i < std::min(kShown, pairs.size()); ++i)
+    result += fmt::format("{}{} and {}", i == 0 ? "" : ", ", pairs[i][0], pairs[i][1]);
+  return result + (pairs.size() > kShown ? ", ..." : "");
+}
+std::string text(const std::optional<sdm::VolumeBounds>& volume) {
+  if (!volume) return "none: not closed and orientable";
+  if (volume->lower == volume->upper) return text(volume->lower);
+  return fmt::format("between {} and {}", text(volume->lower), text(volume->upper));
+}
+
+void print_table(std::ostream& out, const std::string& file, const Info& all) {
+  const sdm::MeshInfo& info = all.mesh;
   const auto row = [&](const char* name, const std::string& value) {
-    out << fmt::format("{:<18}{}\n", name, value);
+    out << fmt::format("{:<20}{}\n", name, value);
   };
   const sdm::Vec3 &lo = info.bounds.lo, &hi = info.bounds.hi;
   row("file", file);
@@ -74,13 +113,23 @@ void print_table(std::ostream& out, const std::string& file, const sdm::MeshInfo
                                               info.nonmanifold_edges, info.nonmanifold_vertices));
   row("degenerate faces", fmt::to_string(info.degenerate_faces));
   row("duplicate faces", fmt::to_string(info.duplicate_faces));
+  row("self-intersections", text(all.self_intersections));
   row("uvs", text(info.has_uvs));
   row("area", text(info.area));
-  row("volume", info.closed && info.orientable ? text(info.volume) : "none: not closed and orientable");
+  row("volume", text(all.volume));
+}
+
+// One pair of face numbers a line.
+std::string to_csv(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+  std::string csv = "face1,face2\n";
+  for (const auto& [a, b] : pairs) csv += fmt::format("{},{}\n", a, b);
+  return csv;
 }
 
 void run(const Options& options) {
-  const sdm::MeshInfo info = sdm::inspect(sdm::read_mesh(options.file));
+  const Info info = collect(options.file);
+  if (!options.self_intersections.empty())
+    write_text(options.self_intersections, to_csv(info.self_intersections));
   if (options.json)
     std::cout << to_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
               << '\n';
@@ -91,11 +140,16 @@ void run(const Options& options) {
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("info", "Print counts, bounds, topology, area and volume of a mesh");
+  CLI::App* command = app.add_subcommand(
+      "info", "Print counts, bounds, topology, self-intersections, area and volume of a mesh");
   const auto options = std::make_shared<Options>();
   command->add_option("MESH", options->file, fmt::format("The mesh ({})", sdm::mesh_format_names()))
       ->required();
   command->add_flag("--json", options->json, "Print JSON");
+  command
+      ->add_option("--self-intersections", options->self_intersections,
+                   "Write all pairs of faces that intersect, numbered from 0, to this CSV file")
+      ->type_name("FILE");
   command->footer("Example:\n  sdm info scan.ply");
   command->callback([options] { run(*options); });
 }

@@ -49,7 +49,7 @@ void add_options(CLI::App& app, MapCommand& c) {
                               "closed and orientable, otherwise none",
                               {{"auto", sdm::SignMethod::automatic},
                                {"none", sdm::SignMethod::none},
-                               {"pseudonormal", sdm::SignMethod::pseudonormal},
+                               {"exact", sdm::SignMethod::exact},
                                {"winding", sdm::SignMethod::winding}});
   add_engine_option(app, c.engine);
   app.add_option("--gl-device", c.gl.device,

@@ -15,8 +15,8 @@ const char* name(sdm::AtlasKind kind) {
 
 const char* name(sdm::SignMethod method) {
   switch (method) {
-    case sdm::SignMethod::pseudonormal:
-      return "pseudonormal";
+    case sdm::SignMethod::exact:
+      return "exact";
     case sdm::SignMethod::winding:
       return "winding";
     default:

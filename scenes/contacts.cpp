@@ -28,7 +28,7 @@ std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sit
     if (contains(reach, points[i])) indices.push_back(i), near.push_back(points[i]);
 
   const SignMethod method =
-      solid.closed() && solid.orientable() ? SignMethod::pseudonormal : SignMethod::winding;
+      solid.closed() && solid.orientable() ? SignMethod::exact : SignMethod::winding;
   const std::vector<ClosestPoint> closest = closest_points(solid, near);
   const std::vector<std::uint8_t> is_inside = inside_flags(solid, near, closest, method);
   std::vector<VertexContact> contacts;

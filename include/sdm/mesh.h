@@ -43,7 +43,6 @@ struct MeshInfo {
   bool manifold = false;                 ///< no non-manifold edge or vertex
   bool has_uvs = false;
   double area = 0;
-  double volume = 0;  ///< enclosed; 0 unless closed and orientable
 };
 
 /// Computes the counts and the topology of a mesh. Duplicate faces, and degenerate faces with repeated

@@ -13,9 +13,11 @@
 #include <sdm/progress.h>
 #include <sdm/proximity_query.h>
 #include <sdm/sampling_bound.h>
+#include <sdm/self_intersections.h>
 #include <sdm/self_proximity_query.h>
 #include <sdm/sign.h>
 #include <sdm/sites.h>
+#include <sdm/solid.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>

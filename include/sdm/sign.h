@@ -13,11 +13,15 @@ namespace sdm {
 
 /// How inside and outside of O2 are distinguished. Negative distances are inside.
 enum class SignMethod {
-  automatic,     ///< pseudonormal where O2 is closed and orientable, else none
-  none,          ///< unsigned distances
-  pseudonormal,  ///< the closest site's angle-weighted pseudonormal (Bærentzen & Aanæs 2005); correct for
-                 ///< closed O2, except at walls thinner than 1e-7 of the distance to them
-  winding,       ///< generalised winding number above 1/2 (Jacobson et al. 2013): an estimate for open O2
+  automatic,  ///< exact where O2 is closed and orientable, else none
+  none,       ///< unsigned distances
+  /// For closed, orientable O2: inside are the points with a winding number other than 0, with all shells
+  /// oriented outwards, whether O2 intersects itself or not. Exact at points farther from O2 than 1e-6 of
+  /// the diagonal.
+  exact,
+  /// For any O2: inside are the points with a generalised winding number above 1/2 (Jacobson et al. 2013).
+  /// An estimate for open O2; for closed, orientable O2 the same as exact.
+  winding,
 };
 
 /// The method that was used, and the reason in words, for reports.
@@ -32,7 +36,7 @@ struct SignUsed {
 
 /// Returns, for each query, whether it lies inside O2 (1) or not (0) according to `method`; all are 0 if no
 /// method is used. `closest` are the closest points of the queries, from closest_points with the same sites;
-/// pseudonormal returns 0 where there is no site. Throws sdm::Error for a method that O2 does not allow, if
+/// exact returns 0 where there is no site. Throws sdm::Error for a method that O2 does not allow, if
 /// the numbers of queries and closest points differ, or if there is not enough memory.
 [[nodiscard]] SDM_API std::vector<std::uint8_t> inside_flags(const Sites& sites,
                                                              std::span<const Vec3> queries,

@@ -77,6 +77,42 @@ void traverse_best_first(const AabbTree& tree, const LowerBound& lower_bound, co
   }
 }
 
+/// Two nodes of one tree, or twice the same node.
+using NodePair = std::array<std::uint32_t, 2>;
+
+/// The pairs of children to visit in place of a pair of nodes: those of the node with the larger box, or of
+/// both if it is one node. Calls put(pair) for each; not for a pair of leaves.
+template <class Put>
+void for_each_child_pair(const AabbTree& tree, const NodePair& pair, const Put& put) {
+  const auto [a, b] = pair;
+  const auto children = [&](std::uint32_t i) { return NodePair{i + 1, tree.nodes[i].right}; };
+  if (a == b) {
+    if (tree.nodes[a].leaf()) return;
+    const auto [left, right] = children(a);
+    put(NodePair{left, left}), put(NodePair{right, right}), put(NodePair{left, right});
+    return;
+  }
+  const auto size = [&](std::uint32_t i) {
+    const FloatBox& box = tree.nodes[i].box;
+    return box.hi[0] - box.lo[0] + box.hi[1] - box.lo[1] + box.hi[2] - box.lo[2];
+  };
+  if (tree.nodes[b].leaf() || (!tree.nodes[a].leaf() && size(a) >= size(b))) {
+    if (tree.nodes[a].leaf()) return;
+    for (const std::uint32_t child : children(a)) put(NodePair{child, b});
+  } else {
+    for (const std::uint32_t child : children(b)) put(NodePair{a, child});
+  }
+}
+
+/// Visits the pairs of leaves of one tree, each once, and each leaf with itself. enter(pair) returns whether
+/// to descend into a pair of nodes.
+template <class Enter, class Visit>
+void traverse_pairs(const AabbTree& tree, const NodePair& pair, const Enter& enter, const Visit& visit) {
+  if (!enter(pair)) return;
+  if (tree.nodes[pair[0]].leaf() && tree.nodes[pair[1]].leaf()) return visit(pair);
+  for_each_child_pair(tree, pair, [&](const NodePair& below) { traverse_pairs(tree, below, enter, visit); });
+}
+
 /// The value of a subtree: summary(node), an optional, if it is set; otherwise leaf(node) or merge(left
 /// value, right value).
 template <class Summary, class Leaf, class Merge>

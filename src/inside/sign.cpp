@@ -33,19 +33,20 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
     case SignMethod::none:
       return {SignMethod::none, "asked for"};
     case SignMethod::winding:
-      return {SignMethod::winding, open.empty() ? "requested; O2 is closed and orientable"
-                                                : "requested; an estimate, because " + open};
-    case SignMethod::pseudonormal:
+      if (open.empty())
+        return {SignMethod::exact, "requested by winding number; O2 is closed and orientable"};
+      return {SignMethod::winding, "requested; an estimate, because " + open};
+    case SignMethod::exact:
       if (!open.empty())
-        throw Error("distances cannot be signed by pseudonormals: " + open +
-                        "; use sign none, or winding for an estimate",
-                    Remedy::sign_method);
-      return {SignMethod::pseudonormal, "requested; O2 is closed and orientable"};
+        throw Error(
+            "the inside of O2 is not defined: " + open + "; use sign none, or winding for an estimate",
+            Remedy::sign_method);
+      return {SignMethod::exact, "requested; O2 is closed and orientable"};
     case SignMethod::automatic:
       break;
   }
   if (!open.empty()) return {SignMethod::none, open};
-  return {SignMethod::pseudonormal, "O2 is closed and orientable"};
+  return {SignMethod::exact, "O2 is closed and orientable"};
 }
 
 std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3> queries,

@@ -1,6 +1,7 @@
 #include "inside/solid.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/geometry/predicates.h"
 #include "hierarchy/traverse.h"
@@ -8,46 +9,40 @@
 namespace sdm::inside {
 namespace {
 
-// A box of the tree in the coordinates of the mesh, enlarged by much more than the rounding error of double
-// precision.
-Box posed(const hierarchy::FloatBox& box, const UnitFrame& frame, const Affine& pose) {
-  constexpr double kRounding = 1e-13;
-  Vec3 centre, half;
-  for (int k = 0; k < 3; ++k) {
-    centre[k] = frame.origin[k] + (0.5 * box.lo[k] + 0.5 * box.hi[k]) / frame.scale;
-    half[k] = (0.5 * box.hi[k] - 0.5 * box.lo[k]) / frame.scale;
-  }
-  const Vec3 middle = pose(centre);
-  Vec3 reach{};
-  for (int i = 0; i < 3; ++i) {
-    double magnitude = std::abs(pose.offset[i]);
-    for (int j = 0; j < 3; ++j) {
-      reach[i] += std::abs(pose.rows[i][j]) * half[j];
-      magnitude += std::abs(pose.rows[i][j]) * (std::abs(frame.origin[j]) + 1 / frame.scale);
-    }
-    reach[i] += kRounding * magnitude;
-  }
-  return {middle - reach, middle + reach};
-}
+constexpr double kMargin = 1e-9;  // of the unit frame, far above rounding
 
-bool segment_meets(const Box& box, const Vec3& start, const Vec3& along) {
-  constexpr double kRounding = 1e-12;
-  double first = 0, last = 1;
-  for (int k = 0; k < 3; ++k) {
-    if (along[k] == 0) {
-      if (start[k] < box.lo[k] || start[k] > box.hi[k]) return false;
-      continue;
-    }
-    const auto [enter, leave] =
-        std::minmax({(box.lo[k] - start[k]) / along[k], (box.hi[k] - start[k]) / along[k]});
-    first = std::max(first, enter);
-    last = std::min(last, leave);
-  }
-  return first <= last + kRounding;
-}
+// A segment in the unit frame, and a bound on the rounding errors of its coordinates.
+struct Segment {
+  Vec3 start, along;
+  double rounding;
 
-// ±1 if the segment pq crosses the triangle, depending on the side that it comes from, otherwise 0; empty if
-// it meets an edge of the triangle. Neither p nor q lies on the triangle.
+  Segment(const UnitFrame& frame, const Affine& pose, const Vec3& p, const Vec3& q) {
+    constexpr double kRounding = 1e-12;  // far above that of double precision
+    const Affine back = inverse(pose);
+    start = frame.to_unit(back(p));
+    along = frame.to_unit(back(q)) - start;
+    rounding = kRounding * (1 + norm(start) + norm(along));
+  }
+
+  [[nodiscard]] bool meets(const hierarchy::FloatBox& box) const {
+    double first = 0, last = 1;
+    for (int k = 0; k < 3; ++k) {
+      const double lo = box.lo[k] - rounding - start[k], hi = box.hi[k] + rounding - start[k];
+      if (along[k] == 0) {
+        if (lo > 0 || hi < 0) return false;
+        continue;
+      }
+      const auto [enter, leave] = std::minmax({lo / along[k], hi / along[k]});
+      first = std::max(first, enter);
+      last = std::min(last, leave);
+    }
+    constexpr double kQuotient = 1e-12;
+    return first <= last + kQuotient;
+  }
+};
+
+// If the segment pq crosses the triangle: 1 if it leaves through it (p is on the inner side), −1 if it
+// enters. Otherwise 0; empty if it meets an edge of the triangle. Neither p nor q lies on the triangle.
 std::optional<int> crossing(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
   const bool above_p = orientation(t[0], t[1], t[2], p) > 0, above_q = orientation(t[0], t[1], t[2], q) > 0;
   if (above_p == above_q) return 0;
@@ -56,18 +51,17 @@ std::optional<int> crossing(const Vec3& p, const Vec3& q, const std::array<Vec3,
   const bool left = a > 0 || b > 0 || c > 0, right = a < 0 || b < 0 || c < 0;
   if (left && right) return 0;
   if (a * b * c == 0) return std::nullopt;
-  return above_p ? 1 : -1;
+  return above_p ? -1 : 1;
 }
 
 }  // namespace
 
 std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p, const Vec3& q) {
+  const Segment segment(sites.frame, pose, p, q);
   std::optional<int> turns = 0;
   traverse(
       sites.tree, whole(sites.tree),
-      [&](hierarchy::Subtree below) {
-        return turns && segment_meets(posed(sites.tree.box(below.root), sites.frame, pose), p, q - p);
-      },
+      [&](hierarchy::Subtree below) { return turns && segment.meets(sites.tree.box(below.root)); },
       [&](std::uint32_t leaf) {
         for (const std::uint32_t face : sites.tree.items_of(leaf)) {
           const auto [a, b, c] = sites.mesh.triangles[face];
@@ -80,15 +74,28 @@ std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, co
   return turns;
 }
 
-bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point) {
-  const Box box = posed(solid.tree.box(0), solid.frame, pose);
-  if (!sdm::contains(box, point)) return false;
-  const double length = 2 * diagonal(box);
+int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point) {
+  if (solid.tree.nodes.empty()) return 0;
+  // In the frame of the solid, where the way out is shortest along one of the axes.
+  const hierarchy::FloatBox& box = solid.tree.box(0);
+  const Vec3 p = solid.frame.to_unit(inverse(pose)(point));
+  int axis = 0;
+  double way = std::numeric_limits<double>::infinity();
+  bool up = false;
+  for (int k = 0; k < 3; ++k) {
+    const double below = p[k] - box.lo[k], above = box.hi[k] - p[k];
+    if (below < -kMargin || above < -kMargin) return 0;
+    if (below < way) way = below, axis = k, up = false;
+    if (above < way) way = above, axis = k, up = true;
+  }
+  const double length = (up ? 1 : -1) * (std::abs(way) + 0.01) / solid.frame.scale;
   // Segments along (1, t, t²) that intersect an edge are skipped. Those that meet the same edge lie in one
   // plane through the point, and no such plane contains more than two of them, so the loop terminates.
-  for (double t = 0.0137035999;; t += 0.0072973525)
-    if (const auto turns = winding(solid, pose, point, point + length * Vec3{1, t, t * t}))
-      return *turns != 0;
+  for (double t = 0.0137035999;; t += 0.0072973525) {
+    Vec3 along;
+    along[axis] = length, along[(axis + 1) % 3] = t * length, along[(axis + 2) % 3] = t * t * length;
+    if (const auto turns = winding(solid, pose, point, point + pose.linear(along))) return *turns;
+  }
 }
 
 }  // namespace sdm::inside

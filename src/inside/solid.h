@@ -1,4 +1,4 @@
-// Meshes as solids.
+// The winding number of closed meshes, decided exactly.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,14 @@ namespace sdm::inside {
 [[nodiscard]] std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p,
                                          const Vec3& q);
 
+/// The winding number of a solid moved by `pose` around a point that does not lie on its surface: 0 outside.
+/// Exact. Cost: usually one call of the above.
+[[nodiscard]] int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
+
 /// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its winding
-/// number around the point is not 0. Exact. Cost: usually one call of winding().
-[[nodiscard]] bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
+/// number around the point is not 0.
+[[nodiscard]] inline bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point) {
+  return winding(solid, pose, point) != 0;
+}
 
 }  // namespace sdm::inside

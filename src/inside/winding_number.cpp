@@ -12,9 +12,6 @@
 namespace sdm::inside {
 namespace {
 
-// Beyond this many radii, a dipole replaces its faces.
-constexpr double kFar = 3;
-
 std::array<Vec3, 3> corners(const sites::SitesData& sites, std::uint32_t face) {
   const Triangle& t = sites.mesh.triangles[face];
   const auto& p = sites.mesh.positions;
@@ -58,14 +55,21 @@ WindingNumber::WindingNumber(const sites::SitesData& sites)
       });
 }
 
-double WindingNumber::operator()(const Vec3& q) const {
+// The solid angle of a subtree is the integral of n·K(x − q) over its faces, K(r) = r / |r|³. The dipole
+// takes K at the centre c. By the mean value theorem K(x − q) differs from that by at most |x − c| times the
+// largest norm of K's derivative on the way, which is 2 / |r|³; thus the error is at most 2·area·radius /
+// (distance − radius)³.
+double WindingNumber::operator()(const Vec3& q, double error) const {
+  constexpr double kSphere = 4 * std::numbers::pi;
+  if (sites_.tree.nodes.empty()) return 0;
+  const double error_per_area = kSphere * error / dipoles_[0].area;
   const double angle = reduce(
       sites_.tree, 0,
       [&](std::uint32_t node) -> std::optional<double> {
         const Dipole& d = dipoles_[node];
         const Vec3 r = d.centre - q;
-        const double distance = norm(r);
-        if (!(distance > kFar * d.radius)) return std::nullopt;
+        const double distance = norm(r), gap = distance - d.radius;
+        if (!(gap > 0 && 2 * d.radius <= error_per_area * gap * gap * gap)) return std::nullopt;
         return dot(d.moment, r) / (distance * distance * distance);
       },
       [&](std::uint32_t leaf) {
@@ -77,7 +81,13 @@ double WindingNumber::operator()(const Vec3& q) const {
         return sum;
       },
       std::plus<>());
-  return angle / (4 * std::numbers::pi);
+  return angle / kSphere;
+}
+
+bool WindingNumber::above_half(const Vec3& q) const {
+  for (const double error : {0.2, 0.02, 1e-3, 1e-5})
+    if (const double number = (*this)(q, error); std::abs(number - 0.5) > error) return number > 0.5;
+  return (*this)(q, 0) > 0.5;
 }
 
 }  // namespace sdm::inside

@@ -10,12 +10,17 @@
 namespace sdm::inside {
 
 /// How many times the mesh winds around a point (Jacobson, Kavan & Sorkine 2013): 1 inside and 0 outside a
-/// closed mesh, in between around an open one. Distant subtrees are approximated by dipoles (Barill et al.
-/// 2018), with an error of about 10⁻².
+/// closed mesh, in between around an open one. Distant subtrees are replaced by dipoles (Barill et al. 2018),
+/// with a bound on the error of each.
 class WindingNumber {
  public:
   explicit WindingNumber(const sites::SitesData& sites);
-  [[nodiscard]] double operator()(const Vec3& q) const;
+
+  /// The winding number around q to within `error` (and rounding, 1e-12). Cost: logarithmic for large errors,
+  /// linear for 0.
+  [[nodiscard]] double operator()(const Vec3& q, double error) const;
+  /// Whether it is above 1/2. Computed only as accurately as this takes.
+  [[nodiscard]] bool above_half(const Vec3& q) const;
 
  private:
   struct Dipole {

@@ -86,6 +86,24 @@ std::vector<Neighbours> find_neighbours(std::span<const Triangle> triangles, con
   return neighbours;
 }
 
+// Walks from face to face around a vertex, from `face` across its edge `edge`, until it reaches a boundary
+// edge or `face` again; returns the number of faces entered. Requires that no edge at the vertex has more
+// than two faces.
+std::size_t walk(const Topology& topology, std::uint32_t vertex, std::uint32_t face, std::uint32_t edge) {
+  std::size_t entered = 0;
+  for (std::uint32_t f = face;;) {
+    const auto faces = topology.edge_faces(edge);
+    if (faces.size() < 2) return entered;
+    f = faces[0] == f ? faces[1] : faces[0];
+    if (f == face) return entered;
+    ++entered;
+    const auto& edges = topology.face_edges[f];
+    edge = *std::find_if(edges.begin(), edges.end(), [&](std::uint32_t e) {
+      return e != edge && (topology.edges[e][0] == vertex || topology.edges[e][1] == vertex);
+    });
+  }
+}
+
 }  // namespace
 
 bool Topology::closed() const {
@@ -172,6 +190,21 @@ VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> tri
       if (!topology.ignored(f))
         for (const std::uint32_t v : triangles[f]) put(v, f);
   });
+}
+
+bool is_fan(const Topology& topology, std::uint32_t vertex, std::span<const std::uint32_t> faces) {
+  std::array<std::uint32_t, 2> first_edges{};
+  for (const std::uint32_t f : faces) {
+    int k = 0;
+    for (const std::uint32_t e : topology.face_edges[f]) {
+      if (topology.edges[e][0] != vertex && topology.edges[e][1] != vertex) continue;
+      if (topology.edge_faces(e).size() > 2) return false;
+      if (f == faces[0]) first_edges[k++] = e;
+    }
+  }
+  const std::size_t ahead = walk(topology, vertex, faces[0], first_edges[0]);
+  if (ahead + 1 == faces.size()) return true;
+  return ahead + 1 + walk(topology, vertex, faces[0], first_edges[1]) == faces.size();
 }
 
 }  // namespace sdm::mesh

@@ -47,6 +47,11 @@ using VertexFaces = CompressedRows<std::uint32_t>;
 [[nodiscard]] VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> triangles,
                                        const Topology& topology);
 
+/// Whether the faces of a vertex form one fan, open or closed: each edge at the vertex has at most two of
+/// them, and a walk from any of them across both of its edges reaches them all.
+[[nodiscard]] bool is_fan(const Topology& topology, std::uint32_t vertex,
+                          std::span<const std::uint32_t> faces);
+
 /// Whether the face traverses its k-th edge from the smaller to the larger vertex.
 inline bool runs_forward(const Triangle& triangle, int k) {
   return triangle[k] < triangle[k < 2 ? k + 1 : 0];

@@ -13,9 +13,9 @@ using Shells = CompressedRows<std::uint32_t>;
 [[nodiscard]] Shells find_shells(const mesh::Orientation& orientation);
 
 /// For a closed, orientable mesh: sets `inverted` for the faces that run clockwise seen from outside. A shell
-/// bounds a solid if it lies inside an even number of the others, and a cavity if inside an odd number: a
-/// point is inside when a ray from it meets the mesh an odd number of times. Shells that touch or overlap
-/// each other bound solids. Cost: linear, all cores, plus a few rays per shell if there are several.
+/// bounds a solid if it lies inside an even number of other shells, and a cavity if inside an odd number;
+/// shells that it touches or intersects do not count. Cost: linear, all cores, plus a ray for each shell and
+/// the pairs of faces of different shells whose boxes overlap, if there are several.
 void orient_outward(const inside::FaceTree& faces, const mesh::Orientation& orientation, const Shells& shells,
                     std::vector<std::uint8_t>& inverted);
 

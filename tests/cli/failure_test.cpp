@@ -136,8 +136,8 @@ TEST_F(Failure, OptionsThatTheMeshesDoNotAllow) {
   Mesh open = ring(16);
   open.triangles.resize(100);
   write_obj(o2, open);
-  expect_failure(run_sdm(map({"--sign", "pseudonormal"})), "O2 is open");
-  expect_failure(run_sdm(map({"--sign", "pseudonormal"})), "(--sign)");
+  expect_failure(run_sdm(map({"--sign", "exact"})), "O2 is open");
+  expect_failure(run_sdm(map({"--sign", "exact"})), "(--sign)");
 }
 
 TEST_F(Failure, AnInterruptedRunLeavesNoTrace) {

@@ -57,7 +57,7 @@ TEST_F(MapCommand, ReportHasTheNumbersOfTheLibrary) {
   EXPECT_EQ(report["atlas"]["texels"], surface.sample_texels().size());
   EXPECT_EQ(report["atlas"]["utilisation"], surface.utilisation());
   EXPECT_EQ(report["atlas"]["max_stretch"], surface.max_stretch());
-  EXPECT_EQ(report["sign"]["method"], "pseudonormal");
+  EXPECT_EQ(report["sign"]["method"], "exact");
   EXPECT_EQ(report["sign"]["reason"], map.sign.reason);
   EXPECT_EQ(report["distance"]["kind"], "estimate");
   const std::vector<std::pair<std::string, double>> distances{

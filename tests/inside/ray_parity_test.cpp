@@ -57,7 +57,10 @@ bool odd_from_origin(const Cone& cone) {
     for (const std::uint32_t v : {a, b, c}) extend(box, cone.positions[v]);
   }
   const hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, faces, 4);
-  return inside::odd_crossings({cone.positions, cone.triangles, UnitFrame{}, tree}, {0, 0, 0});
+  bool odd = false;
+  inside::for_each_crossing({cone.positions, cone.triangles, UnitFrame{}, tree}, {0, 0, 0},
+                            [&](std::uint32_t) { odd = !odd; });
+  return odd;
 }
 
 // The ray passes through a vertex exactly: from outside into the cone and out of its base, or from inside

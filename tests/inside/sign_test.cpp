@@ -30,7 +30,7 @@ void expect_signs(const Mesh& o1, const Mesh& o2, SignMethod method = SignMethod
   for (const std::string& engine : test::engine_names()) {
     SCOPED_TRACE(engine);
     const DistanceMap map = compute_map(surface, sites, {.engine = make_engine(engine), .sign = method});
-    EXPECT_EQ(map.sign.method, method == SignMethod::automatic ? SignMethod::pseudonormal : method);
+    EXPECT_EQ(map.sign.method, SignMethod::exact) << "also where winding numbers are asked for";
     std::size_t counts[2] = {0, 0}, wrong = 0;
     for (std::size_t i = 0; i < inside.size(); ++i) {
       const double distance = map.distance[surface.sample_texels()[i]];
@@ -112,7 +112,7 @@ std::size_t count_inside(const Sites& sites, const std::vector<Vec3>& points) {
   for (const std::string& engine : test::engine_names())
     for (const std::uint8_t in :
          inside_flags(sites, points, closest_points(sites, points, {.engine = make_engine(engine)}),
-                      SignMethod::pseudonormal))
+                      SignMethod::exact))
       count += in;
   return count;
 }
@@ -133,7 +133,7 @@ TEST(Sign, SliversAtSharpEdges) {
         within.push_back({x, c * (0.05 + 0.9 * m), 0.9 * s * (0.05 + 0.9 * m) * (2 * n - 1)});
       }
       const Sites sites(test::placed(wedge, steps));
-      ASSERT_EQ(choose_sign(sites, SignMethod::automatic).method, SignMethod::pseudonormal);
+      ASSERT_EQ(choose_sign(sites, SignMethod::automatic).method, SignMethod::exact);
       EXPECT_EQ(count_inside(sites, test::placed(outside, steps)), 0u);
       EXPECT_EQ(count_inside(sites, test::placed(within, steps)), 1000u);
     }
@@ -185,7 +185,7 @@ TEST(Sign, OpenMeshIsUnsignedWithAReason) {
   EXPECT_EQ(map.sign.method, SignMethod::none);
   EXPECT_FALSE(map.sign.reason.empty());
   for (const std::uint32_t t : surface.sample_texels()) ASSERT_GE(map.distance[t], 0);
-  EXPECT_THROW((void)compute_map(surface, open, {.sign = SignMethod::pseudonormal}), Error);
+  EXPECT_THROW((void)compute_map(surface, open, {.sign = SignMethod::exact}), Error);
 }
 
 TEST(Sign, NoneIsUnsigned) {

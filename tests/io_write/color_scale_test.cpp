@@ -34,7 +34,7 @@ TEST(ColorScale, SpansTheUnsignedMapWithViridis) {
 }
 
 TEST(ColorScale, IsSymmetricAboutZeroForSignedMaps) {
-  const ColorScale scale = color_scale(map_with({-1, 4, kNaN}, SignMethod::pseudonormal), {});
+  const ColorScale scale = color_scale(map_with({-1, 4, kNaN}, SignMethod::exact), {});
   EXPECT_EQ(scale.lo, -4);
   EXPECT_EQ(scale.hi, 4);
   EXPECT_EQ(scale(0), (Rgb{255, 255, 255}));
@@ -44,7 +44,7 @@ TEST(ColorScale, IsSymmetricAboutZeroForSignedMaps) {
 
 TEST(ColorScale, SpansMapsOfOneSignCompletely) {
   for (const auto& distances : {std::vector<float>{0.5f, 4}, std::vector<float>{-4, -0.5f}}) {
-    const ColorScale scale = color_scale(map_with(distances, SignMethod::pseudonormal), {});
+    const ColorScale scale = color_scale(map_with(distances, SignMethod::exact), {});
     EXPECT_EQ(scale.map, Colormap::viridis);
     EXPECT_EQ(scale.lo, distances[0]);
     EXPECT_EQ(scale.hi, distances[1]);
@@ -52,13 +52,13 @@ TEST(ColorScale, SpansMapsOfOneSignCompletely) {
 }
 
 TEST(ColorScale, StaysCentredOnZeroInAsymmetricRanges) {
-  const ColorScale scale = color_scale(map_with({-1, 2}, SignMethod::pseudonormal), {.range = {{-1, 3}}});
+  const ColorScale scale = color_scale(map_with({-1, 2}, SignMethod::exact), {.range = {{-1, 3}}});
   EXPECT_EQ(scale(0), (Rgb{255, 255, 255}));
   EXPECT_EQ(scale(3), (Rgb{103, 0, 31}));
 }
 
 TEST(ColorScale, ToleranceBandsChangeExactlyAtTheTolerance) {
-  const ColorScale scale = color_scale(map_with({-3, 3}, SignMethod::pseudonormal), {.tolerance = 0.5});
+  const ColorScale scale = color_scale(map_with({-3, 3}, SignMethod::exact), {.tolerance = 0.5});
   const double above = std::nextafter(0.5, 1);
   EXPECT_EQ(scale(0.5), scale(0));
   EXPECT_EQ(scale(-0.5), scale(0));
@@ -75,8 +75,8 @@ TEST(ColorScale, ExplicitColormapOverridesTheBands) {
 }
 
 TEST(ColorScale, HasARangeForMapsWithoutValues) {
-  for (const auto& map : {map_with({kNaN}, SignMethod::none), map_with({}, SignMethod::pseudonormal),
-                          map_with({0, 0}, SignMethod::none), map_with({-2}, SignMethod::pseudonormal),
+  for (const auto& map : {map_with({kNaN}, SignMethod::none), map_with({}, SignMethod::exact),
+                          map_with({0, 0}, SignMethod::none), map_with({-2}, SignMethod::exact),
                           map_with({7}, SignMethod::none)})
     for (const std::optional<double> tolerance : {std::optional<double>(), std::optional<double>(0)})
       for (const Colormap colors :

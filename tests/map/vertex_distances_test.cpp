@@ -50,7 +50,7 @@ TEST(DistancesAtVertices, UseTheCpuEngineForGl) {
 TEST(DistancesAtVertices, RejectASignThatO2DoesNotAllow) {
   const Sites open(square(2, 1));
   EXPECT_THROW(
-      static_cast<void>(distances_at_vertices(tetrahedron(), open, {.sign = SignMethod::pseudonormal})),
+      static_cast<void>(distances_at_vertices(tetrahedron(), open, {.sign = SignMethod::exact})),
       Error);
 }
 

@@ -202,11 +202,56 @@ TEST(Proximity, OpenMeshesHaveNoInside) {
   const Mesh open = band(30, false);
   ProximityQuery query(open, moved(open, {0.5, 0, 0.2}), at_resolution(128));
   EXPECT_FALSE(query.penetration_depth());
-  EXPECT_EQ(query.separation().lower, 0);
-  EXPECT_EQ(query.colliding().certainty, Certainty::estimate);
+  EXPECT_EQ(query.separation().value, 0);
+  EXPECT_EQ(query.separation().certainty, Certainty::exact);
+  EXPECT_TRUE(query.colliding().value);
   // Of a pair with one solid the other's surface can be inside of it.
   ProximityQuery solid(cube(), moved(open, {0, 0, 0.8}), at_resolution(128));
   ASSERT_TRUE(solid.penetration_depth());
+}
+
+// Two cubes, [0, 1]³ and [0.5, 1.5] × [0.25, 0.75]², overlap; a small one lies inside the first. The walls of
+// the second one inside of the first are nearer to it than any part of the boundary.
+class OverlappingShells : public testing::TestWithParam<bool> {};
+TEST_P(OverlappingShells, AreOneSolid) {
+  const auto box = [](const Vec3& lo, const Vec3& hi) {
+    Mesh mesh = cube(1);
+    for (Vec3& p : mesh.positions)
+      for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
+    return mesh;
+  };
+  const Mesh two = joined(box({0, 0, 0}, {1, 1, 1}), box({0.5, 0.25, 0.25}, {1.5, 0.75, 0.75}));
+  struct Case {
+    Vec3 lo, hi;
+    double depth;  // of the deepest point of the surface
+  };
+  for (const auto& [lo, hi, depth] :
+       {Case{{0.4, 0.45, 0.45}, {0.45, 0.5, 0.5}, 0.45}, Case{{1.2, 0.45, 0.45}, {1.25, 0.55, 0.55}, 0.25}}) {
+    SCOPED_TRACE(depth);
+    ProximityOptions options = at_resolution(64);
+    options.exact = GetParam();
+    for (const bool swapped : {false, true}) {
+      ProximityQuery query(swapped ? two : box(lo, hi), swapped ? box(lo, hi) : two, options);
+      EXPECT_TRUE(query.colliding().value);
+      EXPECT_EQ(query.colliding().certainty, Certainty::exact);
+      const BoundedLength found = *query.penetration_depth();
+      EXPECT_LE(found.lower, depth);
+      EXPECT_GE(found.upper, depth);
+      EXPECT_LT(found.upper - found.lower, 0.01);
+      ASSERT_FALSE(query.contacts().empty());
+      EXPECT_NEAR(query.contacts().front().depth, depth, 0.01);
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Both, OverlappingShells, testing::Bool());
+
+// Regression: the separation of bodies that intersect was that of the nearest samples.
+TEST(Proximity, SeparationOfIntersectingBodiesIsZero) {
+  ProximityQuery query(sphere(3), moved(sphere(3), {0.9, 0.1, 0.2}), at_resolution(64));
+  EXPECT_TRUE(query.colliding().value);
+  EXPECT_EQ(query.separation().value, 0);
+  EXPECT_EQ(query.separation().upper, 0);
+  EXPECT_EQ(query.separation().certainty, Certainty::exact);
 }
 
 // Completely inside, without contact.

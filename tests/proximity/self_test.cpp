@@ -20,7 +20,6 @@
 namespace sdm::test {
 namespace {
 
-using exact::Corners;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
@@ -73,7 +72,7 @@ Relation touching(const Mesh& mesh) {
 }
 
 bool within(double length, const Corners& a, const Corners& b) {
-  return exact::squared_box_distance(a, b) < length * length && oracle::distance(a, b) < length;
+  return squared_box_distance(a, b) < length * length && oracle::distance(a, b) < length;
 }
 
 // All pairs of faces, by the definition of the rule.
@@ -301,7 +300,7 @@ struct Pairs {
       for (std::size_t g = 0; g < f; ++g) {
         const Corners a = corners(mesh, f), b = corners(mesh, g);
         const double most = std::max(nearest[f], nearest[g]);
-        if (out[f][g] || exact::squared_box_distance(a, b) > most * most) continue;
+        if (out[f][g] || squared_box_distance(a, b) > most * most) continue;
         const double d = oracle::distance(a, b);
         nearest[f] = std::min(nearest[f], d), nearest[g] = std::min(nearest[g], d);
         least = std::min(least, d);

@@ -1,5 +1,5 @@
 // Two triangles of every kind against exact arithmetic.
-#include "proximity/exact/triangle_pair.h"
+#include "core/geometry/triangle_pair.h"
 
 #include <gtest/gtest.h>
 
@@ -41,16 +41,16 @@ double distance_from(const Vec3& point, const Corners& t) {
 
 void expect_right(const Corners& a, const Corners& b) {
   const bool intersecting = oracle::intersect(a, b);
-  ASSERT_EQ(exact::triangles_intersect(a, b), intersecting);
-  ASSERT_EQ(exact::triangles_intersect(b, a), intersecting);
+  ASSERT_EQ(triangles_intersect(a, b), intersecting);
+  ASSERT_EQ(triangles_intersect(b, a), intersecting);
   const double tolerance = 1e-14 * largest(a, b);
   if (intersecting) {
-    const Vec3 p = exact::common_point(a, b);
+    const Vec3 p = common_point(a, b);
     EXPECT_LE(distance_from(p, a), 1e3 * tolerance);
     EXPECT_LE(distance_from(p, b), 1e3 * tolerance);
     return;
   }
-  const exact::PointPair closest = closest_points(a, b);
+  const PointPair closest = closest_points(a, b);
   EXPECT_NEAR(std::sqrt(closest.squared), oracle::distance(a, b), tolerance);
   EXPECT_DOUBLE_EQ(closest.squared, squared_norm(closest.point2 - closest.point1));
   EXPECT_LE(distance_from(closest.point1, a), tolerance);
@@ -67,7 +67,7 @@ TEST(TrianglePair, OnAGrid) {
     SCOPED_TRACE(i);
     expect_right(a, b);
     if (HasFatalFailure()) return;
-    intersecting += exact::triangles_intersect(a, b);
+    intersecting += triangles_intersect(a, b);
     degenerate += cross(a[1] - a[0], a[2] - a[0]) == Vec3{};
   }
   EXPECT_GT(intersecting, 1000);
@@ -135,8 +135,8 @@ TEST(TrianglePair, DecidesDifferencesOfOneUlp) {
   for (int step = -20; step <= 20; ++step) {
     Corners b{{inside, inside + Vec3{0.1, 0.1, 1}, inside + Vec3{-0.1, 0.2, 1}}};
     b[0][2] += step * 5e-17;
-    ASSERT_EQ(exact::triangles_intersect(a, b), oracle::intersect(a, b)) << step;
-    sides |= exact::triangles_intersect(a, b) ? 1 : 2;
+    ASSERT_EQ(triangles_intersect(a, b), oracle::intersect(a, b)) << step;
+    sides |= triangles_intersect(a, b) ? 1 : 2;
   }
   EXPECT_EQ(sides, 3);
 }
@@ -147,7 +147,7 @@ TEST(TrianglePair, ExtremeCoordinates) {
     Corners a = shape, b = other;
     for (int k = 0; k < 3; ++k) a[k] = scale * a[k], b[k] = scale * b[k];
     SCOPED_TRACE(scale);
-    EXPECT_EQ(exact::triangles_intersect(a, b), exact::triangles_intersect(shape, other));
+    EXPECT_EQ(triangles_intersect(a, b), triangles_intersect(shape, other));
     EXPECT_NEAR(std::sqrt(closest_points(a, b).squared) / scale,
                 std::sqrt(closest_points(shape, other).squared), 1e-14);
   }

@@ -14,7 +14,7 @@ DistanceMap map_of(const Surface& surface, const Field& field) {
   map.vector.assign(texels, {kNaN, kNaN, kNaN});
   map.site.assign(texels, kNone);
   map.site_type.assign(texels, SiteType::none);
-  map.sign = {SignMethod::pseudonormal, "made up"};
+  map.sign = {SignMethod::exact, "made up"};
   for (const std::uint32_t texel : surface.sample_texels()) {
     const double d = field(surface.texel_point(texel));
     if (std::isnan(d)) {

@@ -156,4 +156,16 @@ double brute_force(const Mesh& mesh, const Vec3& point) {
   return least;
 }
 
+int winding_number(const Mesh& mesh, const Vec3& point) {
+  Real sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Real3 a = minus(mesh.positions[t[0]], point), b = minus(mesh.positions[t[1]], point),
+                c = minus(mesh.positions[t[2]], point);
+    const Real la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), lc = std::sqrt(dot(c, c));
+    sum +=
+        2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  }
+  return static_cast<int>(std::lround(sum / (4 * std::numbers::pi_v<Real>)));
+}
+
 }  // namespace sdm::oracle

@@ -53,4 +53,8 @@ class CgalPoints {
 /// The least of the distances to all triangles of a mesh.
 [[nodiscard]] double brute_force(const Mesh& mesh, const Vec3& point);
 
+/// How many times a closed mesh, with its faces as they are oriented, winds around a point: the sum of the
+/// solid angles of all triangles.
+[[nodiscard]] int winding_number(const Mesh& mesh, const Vec3& point);
+
 }  // namespace sdm::oracle

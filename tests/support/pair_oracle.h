@@ -5,11 +5,9 @@
 
 #include <memory>
 
-#include "proximity/exact/triangle_pair.h"
+#include "core/geometry/triangle_pair.h"
 
 namespace sdm::oracle {
-
-using exact::Corners;
 
 /// The distance of two triangles, degenerate ones included: exact, but for the last rounding.
 [[nodiscard]] double distance(const Corners& a, const Corners& b);

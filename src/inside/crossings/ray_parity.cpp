@@ -4,7 +4,6 @@
 #include <array>
 
 #include "core/geometry/vec.h"
-#include "hierarchy/traverse.h"
 
 namespace sdm::inside {
 namespace {
@@ -23,15 +22,6 @@ Seen seen(const Vec3& p, const Vec3& origin) {
   return {r[0], {r[1] - kSlopeY * r[0], r[2] - kSlopeZ * r[0]}};
 }
 
-bool meets(const hierarchy::FloatBox& box, const Vec3& origin) {
-  // The part of the ray at 0 ≤ x ≤ hi: the slopes are positive, so that y and z grow with x.
-  const double end = box.hi[0] - origin[0];
-  if (end < 0) return false;
-  const double begin = std::max(0.0, box.lo[0] - origin[0]);
-  return origin[1] + kSlopeY * begin <= box.hi[1] && origin[1] + kSlopeY * end >= box.lo[1] &&
-         origin[2] + kSlopeZ * begin <= box.hi[2] && origin[2] + kSlopeZ * end >= box.lo[2];
-}
-
 // The sign gives the side of the ray on which an edge passes: that of twice the area spanned by its ends and
 // the ray or, where the area is 0, that of its value after the ray is moved by ε in y and by ε² in z, for
 // infinitesimal ε. No vertex lies on the moved ray.
@@ -40,7 +30,19 @@ double side_of_ray(const Vec2& from, const Vec2& to, double area) {
   return from[1] != to[1] ? from[1] - to[1] : to[0] - from[0];
 }
 
-bool meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& frame, const Vec3& origin) {
+}  // namespace
+
+bool ray_meets(const hierarchy::FloatBox& box, const Vec3& origin) {
+  // The part of the ray at 0 ≤ x ≤ hi: the slopes are positive, so that y and z grow with x.
+  const double end = box.hi[0] - origin[0];
+  if (end < 0) return false;
+  const double begin = std::max(0.0, box.lo[0] - origin[0]);
+  return origin[1] + kSlopeY * begin <= box.hi[1] && origin[1] + kSlopeY * end >= box.lo[1] &&
+         origin[2] + kSlopeZ * begin <= box.hi[2] && origin[2] + kSlopeZ * end >= box.lo[2];
+}
+
+bool ray_meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& frame,
+               const Vec3& origin) {
   std::array<Seen, 3> corner;
   for (int k = 0; k < 3; ++k) corner[k] = seen(frame.to_unit(positions[t[k]]), origin);
   // An edge is evaluated from its smaller vertex to its larger: its two faces always agree on the side.
@@ -59,22 +61,6 @@ bool meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& 
   if (sum == 0) return false;
   const double along = area[1] * corner[0].along + area[2] * corner[1].along + area[0] * corner[2].along;
   return along / sum > 0;
-}
-
-}  // namespace
-
-bool odd_crossings(const FaceTree& faces, const Vec3& origin, std::span<const std::uint32_t> component,
-                   std::uint32_t left_out) {
-  bool odd = false;
-  traverse(
-      faces.tree, whole(faces.tree),
-      [&](hierarchy::Subtree below) { return meets(faces.tree.box(below.root), origin); },
-      [&](std::uint32_t leaf) {
-        for (const std::uint32_t face : faces.tree.items_of(leaf))
-          odd ^= (left_out == kNone || component[face] != left_out) &&
-                 meets(faces.triangles[face], faces.positions, faces.frame, origin);
-      });
-  return odd;
 }
 
 }  // namespace sdm::inside

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "hierarchy/aabb_tree.h"
+#include "hierarchy/traverse.h"
 #include "mesh/topology.h"
 
 namespace sdm::inside {
@@ -18,11 +18,23 @@ struct FaceTree {
   const hierarchy::AabbTree& tree;  ///< in the frame
 };
 
-/// Whether a ray from `origin`, a point in the unit frame, meets the faces of the tree an odd number of
-/// times, leaving out the faces of one component (kNone: none). Undefined for points on the mesh. Allocates
-/// nothing. Cost: O(log n), plus linear in the faces met.
-[[nodiscard]] bool odd_crossings(const FaceTree& faces, const Vec3& origin,
-                                 std::span<const std::uint32_t> component = {},
-                                 std::uint32_t left_out = kNone);
+/// Whether the ray from `origin` meets a box, or a triangle.
+[[nodiscard]] bool ray_meets(const hierarchy::FloatBox& box, const Vec3& origin);
+[[nodiscard]] bool ray_meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& frame,
+                             const Vec3& origin);
+
+/// Calls visit(face) for each face of the tree that a ray from `origin`, a point in the unit frame, meets: of
+/// each closed shell, an odd number if the point is inside and an even number if it is outside. Undefined for
+/// shells that contain the point. Allocates nothing. Cost: O(log n), plus linear in the faces met.
+template <class Visit>
+void for_each_crossing(const FaceTree& faces, const Vec3& origin, const Visit& visit) {
+  traverse(
+      faces.tree, whole(faces.tree),
+      [&](hierarchy::Subtree below) { return ray_meets(faces.tree.box(below.root), origin); },
+      [&](std::uint32_t leaf) {
+        for (const std::uint32_t face : faces.tree.items_of(leaf))
+          if (ray_meets(faces.triangles[face], faces.positions, faces.frame, origin)) visit(face);
+      });
+}
 
 }  // namespace sdm::inside

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/geometry/affine.h"
-#include "proximity/exact/triangle_pair.h"
+#include "core/geometry/triangle_pair.h"
 #include "sites/sites_data.h"
 
 namespace sdm::exact {

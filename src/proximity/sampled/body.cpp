@@ -13,12 +13,20 @@ void Body::refit(std::span<const Vec3> positions) {
 }
 
 void Body::require_pieces() const {
-  std::call_once(pieces_->built, [this] { pieces_->assignment.emplace(surface_); });
+  std::call_once(pieces_->built, [this] { pieces_->value.emplace(surface_); });
+}
+
+void Body::require_boundary() const {
+  std::call_once(boundary_->built, [this] { boundary_->value.emplace(internals(sites_), inside_->sides()); });
 }
 
 void Body::follow_positions() {
   box_ = bounds(sites_.mesh());
-  inside_.emplace(internals(sites_), solid() ? SignMethod::pseudonormal : SignMethod::none);
+  if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
+  if (inside_)
+    inside_->refit();
+  else
+    inside_.emplace(internals(sites_), solid() ? SignMethod::exact : SignMethod::none);
 }
 
 }  // namespace sdm::sampled

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "inside/inside.h"
+#include "inside/solid_boundary.h"
 #include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm::sampled {
@@ -30,11 +31,17 @@ class Body {
   [[nodiscard]] bool solid() const { return internals(sites_).is_solid(); }
   [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
 
+  /// Builds boundary() for the current shape unless already built: only solids that intersect themselves need
+  /// it. Thread-safe.
+  void require_boundary() const;
+  /// The boundary of the solid. Requires a call of require_boundary().
+  [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
+
   /// Builds pieces() for the current shape unless already built: queries answered from the triangles alone do
   /// not need them. Thread-safe.
   void require_pieces() const;
   /// The pieces of the surface. Requires a call of require_pieces().
-  [[nodiscard]] const surface::PieceAssignment& pieces() const { return *pieces_->assignment; }
+  [[nodiscard]] const surface::PieceAssignment& pieces() const { return *pieces_->value; }
 
  private:
   void follow_positions();
@@ -44,11 +51,15 @@ class Body {
   Box box_;
   std::optional<inside::InsideTest> inside_;
 
-  struct Pieces {
+  /// A value that queries build when they need it.
+  template <class Value>
+  struct Lazy {
     std::once_flag built;
-    std::optional<surface::PieceAssignment> assignment;
+    std::optional<Value> value;
   };
-  std::unique_ptr<Pieces> pieces_ = std::make_unique<Pieces>();
+  std::unique_ptr<Lazy<surface::PieceAssignment>> pieces_ =
+      std::make_unique<Lazy<surface::PieceAssignment>>();
+  std::unique_ptr<Lazy<inside::SolidBoundary>> boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
 };
 
 }  // namespace sdm::sampled

@@ -35,7 +35,7 @@ std::span<const Contact> ContactFinder::find(const std::array<MeasuredBody, 2>& 
 }
 
 void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
-  const Surface& surface = body.surface;
+  const Surface& surface = body.body.surface();
   const std::span<const float> distances = body.distances.distances(), radii = body.distances.radii();
   parts_.clear();
   for (std::size_t b = 0; b < surface::block_count(distances.size()); ++b) {
@@ -59,7 +59,7 @@ void ContactFinder::find_parts(const MeasuredBody& body, double margin) {
 
 void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length) {
   const MeasuredBody &on = bodies[body], &to = bodies[1 - body];
-  const sites::SitesData& sites = internals(to.sites);
+  const sites::SitesData& sites = internals(to.body.sites());
   points_.clear();
   for (const Part& part : parts_) {
     points_.push_back(on.distances.points()[part.deepest]);
@@ -67,11 +67,16 @@ void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int 
   }
   const auto add = [&](std::size_t first, const sites::ClosestPacket& closest) {
     for (std::size_t i = 0; i < closest.count; ++i) {
-      const Vec3 vector{closest.vector[0][i], closest.vector[1][i], closest.vector[2][i]};
+      Vec3 vector{closest.vector[0][i], closest.vector[1][i], closest.vector[2][i]};
       const bool inside = on.distances.distances()[parts_[first + i].deepest] < 0;
+      if (inside && !to.body.inside().at_boundary(points_[first + i], closest.get(i, points_[first + i]))) {
+        to.body.require_boundary();
+        const auto boundary = to.body.boundary().closest(points_[first + i]);
+        if (boundary.point) vector = *boundary.point - points_[first + i];
+      }
       const std::uint32_t face = sites.face_of(closest.type[i], closest.site[i]);
       if (!inside) extend(boxes_[contacts_.size()], points_[first + i] + vector);  // across the gap
-      const double depth = inside ? closest.distance[i] : -closest.distance[i];
+      const double depth = inside ? norm(vector) : -closest.distance[i];
       const Vec3 outwards = std::abs(depth) > length ? (1 / depth) * vector : sites.normals.face[face];
       contacts_.push_back(contact_of(body, points_[first + i], vector, depth, outwards));
     }

@@ -14,8 +14,7 @@ namespace sdm::sampled {
 
 /// A body with its measured samples.
 struct MeasuredBody {
-  const Surface& surface;
-  const Sites& sites;
+  const Body& body;
   const LocalDistances& distances;  ///< to the other body
 };
 

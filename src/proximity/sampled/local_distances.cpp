@@ -13,13 +13,13 @@
 namespace sdm::sampled {
 namespace {
 
-// Calls take(index, signed distance) for each point; the points are in spatial order.
+// Calls take(index, signed distance, packet, lane) for each point; the points are in spatial order.
 template <class Take>
 void find_distances(const Body& body, std::span<const Vec3> points, const Take& take) {
   const auto deliver = [&](std::size_t first, const sites::ClosestPacket& closest) {
     const std::uint32_t inside = body.inside()(points.subspan(first, closest.count), closest);
     for (std::size_t i = 0; i < closest.count; ++i)
-      take(first + i, inside >> i & 1 ? -closest.distance[i] : closest.distance[i]);
+      take(first + i, inside >> i & 1 ? -closest.distance[i] : closest.distance[i], closest, i);
   };
   cpu::cpu_search(internals(body.sites()), points, std::numeric_limits<double>::infinity(),
                   std::ref(deliver));
@@ -54,7 +54,9 @@ void LocalDistances::probe(std::size_t blocks_per_probe) {
                                            : pieces.face_radius_about(surface, probe.blocks, point);
     }
     find_distances(*to_, std::span(probe_points_).subspan(begin, end - begin),
-                   [&](std::size_t i, double distance) { probes_[begin + i].distance = distance; });
+                   [&](std::size_t i, double distance, const sites::ClosestPacket&, std::size_t) {
+                     probes_[begin + i].distance = distance;
+                   });
   };
   parallel_for(probes_.size(), kGrain, probe_some);
   for (const Probe& probe : probes_) least_probed_ = std::min(least_probed_, std::abs(probe.distance));
@@ -68,7 +70,7 @@ void LocalDistances::measure() {
   const std::size_t samples = on_->surface().sample_texels().size();
   std::size_t count = 0;
   for (const Probe& probe : probes_) count += surface::SampleBlock(probe.blocks.first, samples).size();
-  points_.resize(count), radii_.resize(count), distances_.resize(count);
+  points_.resize(count), radii_.resize(count), distances_.resize(count), at_boundary_.resize(count);
   constexpr std::size_t kGrain = 16;
   const auto measure = [&](std::size_t begin, std::size_t end) {
     while (begin < end) {  // consecutive blocks share a search
@@ -79,6 +81,9 @@ void LocalDistances::measure() {
     }
   };
   parallel_for(probes_.size(), kGrain, measure);
+  buried_.clear();
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (!at_boundary_[i]) buried_.push_back(i);
 }
 
 void LocalDistances::measure_blocks(std::size_t begin, std::size_t end) {
@@ -94,9 +99,12 @@ void LocalDistances::measure_blocks(std::size_t begin, std::size_t end) {
                          std::span(points_).subspan(block.first, block.size()),
                          std::span(radii_).subspan(block.first, block.size()));
   }
-  find_distances(*to_, points, [&](std::size_t i, double distance) {
-    distances_[first + i] = static_cast<float>(distance);
-  });
+  find_distances(*to_, points,
+                 [&](std::size_t i, double distance, const sites::ClosestPacket& closest, std::size_t lane) {
+                   distances_[first + i] = static_cast<float>(distance);
+                   at_boundary_[first + i] =
+                       !(distance < 0) || to_->inside().at_boundary(points[i], closest.get(lane, points[i]));
+                 });
 }
 
 std::size_t LocalDistances::sample(std::size_t i) const {

@@ -35,6 +35,9 @@ class LocalDistances {
   [[nodiscard]] std::span<const Vec3> points() const { return points_; }
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
   [[nodiscard]] std::span<const float> distances() const { return distances_; }
+  /// The measured samples inside a solid whose closest face may not be part of its boundary, because the
+  /// solid intersects itself: the boundary may be farther away. In increasing order.
+  [[nodiscard]] std::span<const std::uint32_t> buried() const { return buried_; }
   /// The index on the surface of the i-th measured sample.
   [[nodiscard]] std::size_t sample(std::size_t i) const;
 
@@ -54,6 +57,8 @@ class LocalDistances {
   double least_probed_ = 0;
   std::vector<Vec3> points_;
   std::vector<float> radii_, distances_;
+  std::vector<std::uint8_t> at_boundary_;  // of each measured sample
+  std::vector<std::uint32_t> buried_;
 };
 
 }  // namespace sdm::sampled

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/geometry/vec.h"
+#include "core/parallel.h"
 #include "engine/cpu/cpu_engine.h"
 #include "proximity/exact/collision.h"
 
@@ -22,7 +23,8 @@ void PairAnswers::begin(const Body& o1, const Body& o2) {
   extend(box, o2.box());
   precision_ = 1e-6 * diagonal(box);
   measured_ = depth_found_ = false;
-  closest_.reset(), separation_.reset(), depth_.reset(), colliding_.reset(), contacts_.reset();
+  closest_.reset(), intersection_.reset(), separation_.reset(), depth_.reset(), colliding_.reset(),
+      contacts_.reset();
 }
 
 const BoundedLength& PairAnswers::separation() {
@@ -31,7 +33,8 @@ const BoundedLength& PairAnswers::separation() {
 }
 
 BoundedBool PairAnswers::colliding() {
-  if (!colliding_) colliding_ = options_.exact ? exact_collision() : sampled_collision();
+  if (!colliding_)
+    colliding_ = {surfaces_intersect() || exact::one_contains_part_of_other(meshes()), Certainty::exact};
   return *colliding_;
 }
 
@@ -43,9 +46,8 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 std::span<const Contact> PairAnswers::contacts() {
   measure();
   if (!contacts_) {
-    const std::array<MeasuredBody, 2> measured{
-        MeasuredBody{bodies_[0]->surface(), bodies_[0]->sites(), distances_[0]},
-        MeasuredBody{bodies_[1]->surface(), bodies_[1]->sites(), distances_[1]}};
+    const std::array<MeasuredBody, 2> measured{MeasuredBody{*bodies_[0], distances_[0]},
+                                               MeasuredBody{*bodies_[1], distances_[1]}};
     contacts_ = finder_.find(measured, options_.contact_margin, precision_);
   }
   return *contacts_;
@@ -112,14 +114,20 @@ BoundedLength PairAnswers::exact_separation() {
           .witness = std::array{c.point1, c.point2}};
 }
 
-BoundedBool PairAnswers::exact_collision() {
-  return {closest_triangles().intersecting || exact::one_contains_part_of_other(meshes()), Certainty::exact};
+// Decided exactly, by the closest triangles if they are known.
+bool PairAnswers::surfaces_intersect() {
+  if (closest_ || options_.exact) return closest_triangles().intersecting;
+  if (!intersection_) intersection_ = exact::find_intersection(meshes(), workspace_);
+  return intersection_->intersecting;
 }
 
 BoundedLength PairAnswers::bounded_separation() {
   measure();
   const auto [value, sample] = least([](double d, double) { return std::abs(d); });
   const double lower = least([](double d, double radius) { return std::abs(d) - radius; }).first;
+  if (lower <= precision_ && surfaces_intersect())
+    return {.certainty = Certainty::exact,
+            .witness = std::array{intersection_->point1, intersection_->point2}};
   return {.value = value,
           .certainty = Certainty::bounded,
           .lower = std::max(0.0, lower - precision_),
@@ -127,30 +135,88 @@ BoundedLength PairAnswers::bounded_separation() {
           .witness = witness(sample)};
 }
 
-BoundedBool PairAnswers::sampled_collision() {
-  measure();
-  if (least([](double d, double) { return d; }).first < -precision_) return {true, Certainty::exact};
-  if (separation().lower > 0) return {false, Certainty::exact};
-  return {true, Certainty::estimate};  // the samples cannot distinguish this from contact
-}
-
 std::optional<BoundedLength> PairAnswers::depth() {
   if (!bodies_[0]->solid() && !bodies_[1]->solid()) return {};
-  if (options_.exact && !colliding().value) return BoundedLength{.certainty = Certainty::exact};
+  if (!colliding().value) return BoundedLength{.certainty = Certainty::exact};
   return bounded_depth();
 }
 
 BoundedLength PairAnswers::bounded_depth() {
   measure();
-  const auto [value, sample] = least([](double d, double) { return d; });
-  const double most = -least([](double d, double radius) { return d - radius; }).first;
-  BoundedLength found{.certainty = Certainty::bounded, .upper = std::max(0.0, most + precision_)};
-  if (value < 0) {
-    found.value = -value;
-    found.lower = std::max(0.0, found.value - precision_);
-    found.witness = witness(sample);
+  Depth deepest;
+  for (int b = 0; b < 2; ++b) deepest = deeper(deepest, depth_at_faces(b));
+  for (int b = 0; b < 2; ++b)
+    if (!distances_[b].buried().empty()) deepest = deeper(deepest, depth_of_buried(b, deepest));
+  return {.value = std::max(0.0, deepest.value),
+          .certainty = Certainty::bounded,
+          .lower = std::max(0.0, deepest.lower - precision_),
+          .upper = std::max(0.0, deepest.upper + precision_),
+          .witness = deepest.points};
+}
+
+PairAnswers::Depth PairAnswers::deeper(const Depth& a, const Depth& b) {
+  Depth result = b.lower > a.lower ? b : a;
+  result.upper = std::max(a.upper, b.upper);
+  return result;
+}
+
+// Over the samples whose closest faces are part of the boundary.
+PairAnswers::Depth PairAnswers::depth_at_faces(int body) const {
+  const LocalDistances& on = distances_[body];
+  const std::span<const float> distances = on.distances(), radii = on.radii();
+  Depth deepest;
+  Sample sample{.body = body};
+  std::span<const std::uint32_t> buried = on.buried();
+  for (std::uint32_t i = 0; i < distances.size(); ++i) {
+    if (!buried.empty() && buried.front() == i) {
+      buried = buried.subspan(1);
+      continue;
+    }
+    deepest.upper = std::max(deepest.upper, double{radii[i]} - distances[i]);
+    if (-distances[i] > deepest.lower) deepest.lower = deepest.value = -distances[i], sample.index = i;
   }
-  return found;
+  deepest.points = witness(sample);
+  return deepest;
+}
+
+// Over the other samples, as far as they may be deeper than `known`. Distances to the boundary are
+// 1-Lipschitz: samples every kStrides[0] tell which others need to be measured, these which more.
+PairAnswers::Depth PairAnswers::depth_of_buried(int body, Depth known) {
+  constexpr std::array<std::size_t, 3> kStrides{64, 8, 1};
+  const Body& solid = *bodies_[1 - body];
+  solid.require_boundary();
+  const LocalDistances& on = distances_[body];
+  const std::span<const std::uint32_t> samples = on.buried();
+  std::vector<std::optional<inside::SolidBoundary::Closest>>& closest = closest_boundary_;
+  closest.assign(samples.size(), {});
+  Depth deepest;
+  for (const std::size_t stride : kStrides) {
+    const std::size_t coarser = stride == kStrides[0] ? 0 : 8 * stride;  // decided before
+    parallel_for((samples.size() + stride - 1) / stride, 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t i = k * stride;
+        const Vec3& p = on.points()[samples[i]];
+        if (coarser > 0) {
+          if (i % coarser == 0) continue;
+          const std::size_t before =
+              closest[i / coarser * coarser] ? i / coarser * coarser : i / kStrides[0] * kStrides[0];
+          const double most = closest[before]->upper + norm(p - on.points()[samples[before]]);
+          if (most <= known.lower && most + on.radii()[samples[i]] <= known.upper) continue;
+        }
+        closest[i] = solid.boundary().closest(p);
+      }
+    });
+    for (std::size_t i = 0; i < samples.size(); i += stride) {
+      if (!closest[i]) continue;
+      const auto& [lower, upper, point] = *closest[i];
+      const Vec3& p = on.points()[samples[i]];
+      Depth here{.lower = lower, .value = upper, .upper = upper + on.radii()[samples[i]]};
+      if (point) here.points = body == 0 ? std::array{p, *point} : std::array{*point, p};
+      deepest = deeper(deepest, here);
+    }
+    known = deeper(known, deepest);
+  }
+  return deepest;
 }
 
 }  // namespace sdm::sampled

@@ -42,6 +42,12 @@ class PairAnswers {
     std::size_t index = kNone;
   };
 
+  /// The depth of some samples: lower ≤ depth ≤ upper; `value` is attained by `points`.
+  struct Depth {
+    double lower = 0, value = 0, upper = 0;
+    std::optional<std::array<Vec3, 2>> points{};
+  };
+
   void measure();
   template <class Value>
   [[nodiscard]] std::pair<double, Sample> least(const Value& value) const;
@@ -49,11 +55,13 @@ class PairAnswers {
   [[nodiscard]] exact::MeshPair meshes() const;
   const exact::Separation& closest_triangles();
   [[nodiscard]] BoundedLength exact_separation();
-  [[nodiscard]] BoundedBool exact_collision();
+  [[nodiscard]] bool surfaces_intersect();
   [[nodiscard]] BoundedLength bounded_separation();
-  [[nodiscard]] BoundedBool sampled_collision();
   [[nodiscard]] std::optional<BoundedLength> depth();
   [[nodiscard]] BoundedLength bounded_depth();
+  [[nodiscard]] static Depth deeper(const Depth& a, const Depth& b);
+  [[nodiscard]] Depth depth_at_faces(int body) const;
+  [[nodiscard]] Depth depth_of_buried(int body, Depth known);
 
   Options options_;
   std::array<const Body*, 2> bodies_{};
@@ -61,10 +69,11 @@ class PairAnswers {
   std::array<LocalDistances, 2> distances_;  // of each body to the other
   ContactFinder finder_;
   exact::PairWorkspace workspace_;
+  std::vector<std::optional<inside::SolidBoundary::Closest>> closest_boundary_;  // of the buried samples
 
   // Results for the current bodies.
   bool measured_ = false, depth_found_ = false;
-  std::optional<exact::Separation> closest_;  // from the triangles
+  std::optional<exact::Separation> closest_, intersection_;  // from the triangles
   std::optional<BoundedLength> separation_, depth_;
   std::optional<BoundedBool> colliding_;
   std::optional<std::span<const Contact>> contacts_;

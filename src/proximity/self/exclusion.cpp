@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rows.h"
-#include "proximity/exact/triangle_pair.h"
+#include "core/geometry/triangle_pair.h"
 
 namespace sdm {
 namespace {
@@ -67,18 +67,18 @@ class Neighbours {
   }
 
  private:
-  [[nodiscard]] exact::Corners corners(std::uint32_t face) const {
+  [[nodiscard]] Corners corners(std::uint32_t face) const {
     const Triangle& t = mesh_.triangles[face];
     return {mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]};
   }
   [[nodiscard]] bool within(double length, std::uint32_t f, std::uint32_t g) const {
-    const exact::Corners a = corners(f), b = corners(g);
+    const Corners a = corners(f), b = corners(g);
     const double most = length * length;
     // Corners or boxes decide in nearly all cases.
     for (const Vec3& p : a)
       for (const Vec3& q : b)
         if (squared_norm(q - p) < most) return true;
-    return exact::squared_box_distance(a, b) < most && exact::closest_or_common(a, b).squared < most;
+    return squared_box_distance(a, b) < most && closest_or_common(a, b).squared < most;
   }
 
   const Mesh& mesh_;

@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec.h"
 #include "hierarchy/traverse_wide.h"
-#include "proximity/exact/triangle_pair.h"
+#include "core/geometry/triangle_pair.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::self {
@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kAbove = 1 + 1e-12;  // larger than the rounding error of squares: ties must be compared
 
-exact::Corners corners(const Mesh& mesh, std::uint32_t face) {
+Corners corners(const Mesh& mesh, std::uint32_t face) {
   const Triangle& t = mesh.triangles[face];
   return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
@@ -105,7 +105,7 @@ ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
   const double from_centre = norm(q - centre_);
   for (const auto& [at_centre, face] : scratch_.candidates) {
     if (at_centre - from_centre > limit) break;  // d(q, g) ≥ d(c, g) − |q − c|
-    if (exact::squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit) continue;
+    if (squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit) continue;
     const ClosestPoint c = sites::closest_on_face(sites_, face, q);
     if (c.distance < best.distance && c.distance <= limit) best = c, limit = c.distance;
   }
@@ -115,15 +115,15 @@ ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
 FacePair SelfSearch::nearest(double max_distance) const {
   FacePair best;
   double limit = max_distance;
-  const exact::Corners own = corners(sites_.mesh, face_);
+  const Corners own = corners(sites_.mesh, face_);
   Box box;
   for (const Vec3& p : own) extend(box, p);
   visit_near(box, limit, [&](std::uint32_t other) {
-    const exact::Corners others = corners(sites_.mesh, other);
-    if (exact::squared_box_distance(own, others) > kAbove * limit * limit) return;
+    const Corners others = corners(sites_.mesh, other);
+    if (squared_box_distance(own, others) > kAbove * limit * limit) return;
     const bool first = face_ < other;  // the same order, and so the same rounding, from either face
-    const exact::PointPair c =
-        first ? exact::closest_or_common(own, others) : exact::closest_or_common(others, own);
+    const PointPair c =
+        first ? closest_or_common(own, others) : closest_or_common(others, own);
     const FacePair pair{std::sqrt(c.squared), std::min(face_, other), std::max(face_, other), c.point1,
                         c.point2};
     if (pair.distance <= limit && pair.before(best)) best = pair, limit = pair.distance;

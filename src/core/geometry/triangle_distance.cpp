@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "core/geometry/vec.h"
-#include "proximity/exact/triangle_pair.h"
+#include "core/geometry/triangle_pair.h"
 
-namespace sdm::exact {
+namespace sdm::core {
 namespace {
 
 void offer(PointPair& best, const Vec3& point1, const Vec3& point2) {
@@ -110,4 +110,4 @@ PointPair closest_or_common(const Corners& a, const Corners& b) {
   return {0, point, point};
 }
 
-}  // namespace sdm::exact
+}  // namespace sdm::core

@@ -3,7 +3,7 @@
 
 #include <sdm/types.h>
 
-namespace sdm::exact {
+namespace sdm::core {
 
 using Corners = std::array<Vec3, 3>;
 
@@ -31,4 +31,8 @@ struct PointPair {
 /// are so close that the square underflows.
 [[nodiscard]] PointPair closest_or_common(const Corners& a, const Corners& b);
 
-}  // namespace sdm::exact
+}  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // used unqualified in every folder
+}

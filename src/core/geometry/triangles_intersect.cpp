@@ -1,9 +1,9 @@
 // Intersection of triangles, decided by the signs of orientations only, which are exact.
 #include "core/geometry/predicates.h"
 #include "core/geometry/vec.h"
-#include "proximity/exact/triangle_pair.h"
+#include "core/geometry/triangle_pair.h"
 
-namespace sdm::exact {
+namespace sdm::core {
 namespace {
 
 using Signs = std::array<int, 3>;
@@ -97,4 +97,4 @@ bool triangles_intersect(const Corners& a, const Corners& b) {
   return any_edge_meets(b, b_sides, a) || any_edge_meets(a, a_sides, b);
 }
 
-}  // namespace sdm::exact
+}  // namespace sdm::core

@@ -1,0 +1,66 @@
+#include "inside/face_sides.h"
+
+#include <algorithm>
+
+#include "core/geometry/vec.h"
+#include "inside/near_faces.h"
+#include "inside/solid.h"
+
+namespace sdm::inside {
+
+FaceSides::FaceSides(const sites::SitesData& solid)
+    : solid_(&solid),
+      count_(solid.mesh.triangles.size()),
+      sides_(std::make_unique<std::atomic<Sides>[]>(count_)) {
+  forget();
+}
+
+void FaceSides::forget() {
+  for (std::size_t f = 0; f < count_; ++f) sides_[f].store(Sides::unknown, std::memory_order_relaxed);
+}
+
+Sides FaceSides::of_face(std::uint32_t face) const {
+  Sides sides = sides_[face].load(std::memory_order_relaxed);
+  if (sides == Sides::unknown) sides_[face].store(sides = find(face), std::memory_order_relaxed);
+  return sides;
+}
+
+Sides FaceSides::of_site(SiteType type, std::uint32_t site) const {
+  if (type == SiteType::face) return of_face(site);
+  const std::span<const std::uint32_t> faces =
+      type == SiteType::edge ? solid_->topology.edge_faces(site) : solid_->vertex_faces.of(site);
+  const Sides first = of_face(faces.front());
+  for (const std::uint32_t face : faces.subspan(1))
+    if (first == Sides::mixed || of_face(face) != first) return Sides::mixed;
+  return type == SiteType::vertex && !mesh::is_fan(solid_->topology, site, faces) ? Sides::mixed : first;
+}
+
+Sides FaceSides::find(std::uint32_t face) const {
+  if (solid_->sliver[face] || solid_->topology.ignored(face)) return Sides::mixed;
+  thread_local std::vector<std::uint32_t> near;
+  find_near_faces(*solid_, face, near);
+  if (!near.empty()) return Sides::mixed;
+  if (const Sides sides = known_to_neighbour(face); sides != Sides::unknown) return sides;
+  const auto& [a, b, c] = solid_->mesh.triangles[face];
+  const std::vector<Vec3>& p = solid_->mesh.positions;
+  return sides_at(*solid_, face, (1.0 / 3) * (p[a] + p[b] + p[c]));
+}
+
+// No face comes between those of an edge if one of them is met by none.
+Sides FaceSides::known_to_neighbour(std::uint32_t face) const {
+  for (const std::uint32_t edge : solid_->topology.face_edges[face])
+    for (const std::uint32_t other : solid_->topology.edge_faces(edge)) {
+      const Sides sides = sides_[other].load(std::memory_order_relaxed);
+      if (sides != Sides::unknown && sides != Sides::mixed) return sides;
+    }
+  return Sides::unknown;
+}
+
+Sides sides_at(const sites::SitesData& solid, std::uint32_t face, const Vec3& point) {
+  constexpr double kOffset = 1e-9;  // of the unit frame: far less than kClearance, far more than rounding
+  const Vec3 beside = point + kOffset / solid.frame.scale * solid.normals.face[face];
+  const int outer = winding(solid, {}, beside), inner = outer + 1;
+  return outer == 0 ? Sides::boundary : inner == 0 ? Sides::reversed : Sides::buried;
+}
+
+}  // namespace sdm::inside

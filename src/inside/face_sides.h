@@ -1,0 +1,50 @@
+// On which sides of its surface a solid lies.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sites/sites_data.h"
+
+namespace sdm::inside {
+
+/// The sides of a piece of surface that lie inside the solid: those of a non-zero winding number.
+enum class Sides : std::uint8_t {
+  unknown,
+  boundary,  ///< the inner side, as of every face of a mesh that does not intersect itself
+  reversed,  ///< the outer side
+  buried,    ///< both
+  mixed      ///< not the same everywhere, because other faces intersect the piece or are too near
+};
+
+/// The sides of the faces of a solid, each found on first use. The winding number is constant on one side of
+/// a face that no other face meets, and passes to neighbours across their common edge. Thread-safe; results
+/// do not depend on the order of calls.
+class FaceSides {
+ public:
+  /// `solid` must be a solid, outlive this object, and not change until forget().
+  explicit FaceSides(const sites::SitesData& solid);
+  /// Starts anew, for new positions. Reuses the memory.
+  void forget();
+
+  /// Cost: O(log n) for the first call, constant for others.
+  [[nodiscard]] Sides of_face(std::uint32_t face) const;
+  /// The sides of the faces around a site, if they are all the same: then the pseudonormal of the site
+  /// separates these sides. Otherwise `mixed`, also for a vertex where several fans of faces touch.
+  [[nodiscard]] Sides of_site(SiteType type, std::uint32_t site) const;
+
+ private:
+  [[nodiscard]] Sides find(std::uint32_t face) const;
+  [[nodiscard]] Sides known_to_neighbour(std::uint32_t face) const;
+
+  const sites::SitesData* solid_;
+  std::size_t count_;
+  std::unique_ptr<std::atomic<Sides>[]> sides_;
+};
+
+/// The sides of a face that no other face meets, by the winding number just outside of a point on it.
+[[nodiscard]] Sides sides_at(const sites::SitesData& solid, std::uint32_t face, const Vec3& point);
+
+}  // namespace sdm::inside

@@ -1,0 +1,81 @@
+#include "sites/intersecting_faces.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/geometry/predicates.h"
+#include "core/geometry/vec.h"
+
+namespace sdm::sites {
+namespace {
+
+// The corners of two triangles: first the shared ones, in the same order, then the others.
+struct SharedFirst {
+  std::array<std::uint32_t, 3> a, b;
+  int shared = 0;
+
+  SharedFirst(const Triangle& first, const Triangle& second) : a(first), b(second) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = shared; j < 3; ++j)
+        if (a[i] == b[j]) {
+          std::swap(a[shared], a[i]);
+          std::swap(b[shared], b[j]);
+          ++shared;
+          break;
+        }
+  }
+};
+
+bool boxes_apart(const Corners& a, const Corners& b) {
+  for (int k = 0; k < 3; ++k)
+    if (std::max({a[0][k], a[1][k], a[2][k]}) < std::min({b[0][k], b[1][k], b[2][k]}) ||
+        std::max({b[0][k], b[1][k], b[2][k]}) < std::min({a[0][k], a[1][k], a[2][k]}))
+      return true;
+  return false;
+}
+
+bool has_area(const Corners& t) {
+  for (int k = 0; k < 3; ++k) {
+    const auto flat = [&](const Vec3& p) { return Vec2{p[(k + 1) % 3], p[(k + 2) % 3]}; };
+    if (orientation(flat(t[0]), flat(t[1]), flat(t[2])) != 0) return true;
+  }
+  return false;
+}
+
+// Triangles pqa and pqb: whether they lie in one plane, on the same side of pq.
+bool folded(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+  if (orientation(p, q, a, b) != 0) return false;
+  for (int k = 0; k < 3; ++k) {
+    const auto flat = [&](const Vec3& v) { return Vec2{v[(k + 1) % 3], v[(k + 2) % 3]}; };
+    if (const int side = orientation(flat(p), flat(q), flat(a)))
+      return side == orientation(flat(p), flat(q), flat(b));
+  }
+  return false;
+}
+
+}  // namespace
+
+// Triangles that share one corner and another point share the segment between the two; its continuation
+// leaves one of the triangles first, through the side opposite to the corner, and there is still in the
+// other.
+bool faces_intersect(const FaceSoup& mesh, std::uint32_t a, std::uint32_t b) {
+  const SharedFirst v(mesh.triangles[a], mesh.triangles[b]);
+  const auto at = [&](const std::array<std::uint32_t, 3>& t) {
+    return Corners{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+  };
+  const Corners p = at(v.a), q = at(v.b);
+  if (boxes_apart(p, q)) return false;
+  switch (v.shared) {
+    case 0:
+      return triangles_intersect(p, q) && has_area(p) && has_area(q);
+    case 1:
+      return (triangles_intersect({p[1], p[2], p[2]}, q) || triangles_intersect({q[1], q[2], q[2]}, p)) &&
+             has_area(p) && has_area(q);
+    case 2:
+      return folded(p[0], p[1], p[2], q[2]);
+    default:
+      return has_area(p);  // duplicates
+  }
+}
+
+}  // namespace sdm::sites

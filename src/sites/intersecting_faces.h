@@ -1,0 +1,46 @@
+// Intersections of the faces of one mesh.
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/triangle_pair.h"
+#include "hierarchy/traverse.h"
+#include "mesh/topology.h"
+
+namespace sdm::sites {
+
+/// The faces of a mesh, with a tree over them.
+struct FaceSoup {
+  std::span<const Vec3> positions;
+  std::span<const Triangle> triangles;
+  const hierarchy::AabbTree& tree;
+
+  [[nodiscard]] Corners corners(std::uint32_t face) const {
+    const Triangle& t = triangles[face];
+    return {positions[t[0]], positions[t[1]], positions[t[2]]};
+  }
+};
+
+/// Whether two different faces have a point in common beyond the corners and edges that they share. Faces
+/// without area have no such points. Exact.
+[[nodiscard]] bool faces_intersect(const FaceSoup& mesh, std::uint32_t a, std::uint32_t b);
+
+/// Whether the boxes of two nodes overlap.
+[[nodiscard]] inline bool overlap(const hierarchy::AabbTree& tree, const hierarchy::NodePair& pair) {
+  const hierarchy::FloatBox &a = tree.box(pair[0]), &b = tree.box(pair[1]);
+  for (int k = 0; k < 3; ++k)
+    if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
+  return true;
+}
+
+/// Calls take(face, face) for each pair of faces of two leaves, each once.
+template <class Take>
+void for_each_face_pair(const hierarchy::AabbTree& tree, const hierarchy::NodePair& leaves,
+                        const Take& take) {
+  const auto first = tree.items_of(leaves[0]), second = tree.items_of(leaves[1]);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t j = leaves[0] == leaves[1] ? i + 1 : 0; j < second.size(); ++j)
+      take(first[i], second[j]);
+}
+
+}  // namespace sdm::sites

@@ -1,0 +1,114 @@
+// Intersections of the faces of a mesh, against CGAL and brute force.
+#include <gtest/gtest.h>
+#include <sdm/self_intersections.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <vector>
+
+#include "core/geometry/vec.h"
+#include "support/meshes.h"
+#include "support/pair_oracle.h"
+#include "support/shapes.h"
+
+namespace sdm {
+namespace {
+
+using Pairs = std::vector<std::array<std::uint32_t, 2>>;
+
+std::size_t shared_corners(const Triangle& a, const Triangle& b) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(a, [&](std::uint32_t v) { return std::ranges::find(b, v) != b.end(); }));
+}
+
+/// The pairs without shared corners, by exact arithmetic.
+Pairs disjoint_pairs(const Mesh& mesh) {
+  const auto corners = [&](const Triangle& t) {
+    return Corners{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+  };
+  Pairs pairs;
+  for (std::uint32_t a = 0; a < mesh.triangles.size(); ++a)
+    for (std::uint32_t b = a + 1; b < mesh.triangles.size(); ++b)
+      if (shared_corners(mesh.triangles[a], mesh.triangles[b]) == 0 &&
+          oracle::intersect(corners(mesh.triangles[a]), corners(mesh.triangles[b])))
+        pairs.push_back({a, b});
+  return pairs;
+}
+
+void expect_disjoint_pairs(const Mesh& mesh) {
+  const Sites sites(mesh);
+  Pairs found = self_intersections(sites);
+  EXPECT_TRUE(std::ranges::is_sorted(found));
+  EXPECT_EQ(is_embedded(sites), found.empty());
+  std::erase_if(found, [&](const auto& pair) {
+    return shared_corners(mesh.triangles[pair[0]], mesh.triangles[pair[1]]) > 0;
+  });
+  EXPECT_EQ(found, disjoint_pairs(mesh));
+}
+
+TEST(SelfIntersections, AgreeWithExactArithmetic) {
+  std::mt19937 random(1);
+  expect_disjoint_pairs(test::soup(300, random));
+  const Mesh cube = test::cube(1);
+  for (const char* steps : {"translate:1:0:0", "translate:2:0:0", "translate:2:2:2", "translate:2.001:0:0",
+                            "rotate:45:0:0", "scale:0.5", "scale:0.5,translate:0.5:0:0"}) {
+    SCOPED_TRACE(steps);
+    expect_disjoint_pairs(test::joined(cube, test::placed(cube, steps)));
+  }
+  Mesh noisy = test::sphere(2);
+  std::uniform_real_distribution<double> u(-0.2, 0.2);
+  for (Vec3& p : noisy.positions) p = p + Vec3{u(random), u(random), u(random)};
+  expect_disjoint_pairs(noisy);
+}
+
+TEST(SelfIntersections, EmbeddedMeshesHaveNone) {
+  for (const char* name : {"elephant.off", "knot1.off", "fandisk.off", "hand.off"}) {
+    SCOPED_TRACE(name);
+    const Sites sites(test::load(name));
+    EXPECT_TRUE(is_embedded(sites));
+    EXPECT_TRUE(self_intersections(sites).empty());
+  }
+  EXPECT_TRUE(is_embedded(Sites(test::height_field(20))));
+  EXPECT_TRUE(is_embedded(Sites(test::sphere(3))));
+}
+
+// Faces 0 1 2 and 0 3 4 share corner 0.
+TEST(SelfIntersections, OfFacesThatShareACorner) {
+  const auto embedded = [](const Vec3& three, const Vec3& four) {
+    return is_embedded(
+        Sites(Mesh{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, three, four}, {{0, 1, 2}, {0, 3, 4}}, {}}));
+  };
+  EXPECT_TRUE(embedded({0, 0, 1}, {1, 1, 1})) << "above";
+  EXPECT_TRUE(embedded({-1, 0, 0}, {0, -1, 0})) << "beside, in one plane";
+  EXPECT_TRUE(embedded({2, -1, 1}, {2, -1, -1})) << "through the plane, beside";
+  EXPECT_FALSE(embedded({1, 1, 1}, {1, 1, -1})) << "through the face";
+  EXPECT_FALSE(embedded({0.2, 0.2, 1}, {0.2, 0.2, -1})) << "through the face, smaller";
+  EXPECT_FALSE(embedded({9, 9, 1}, {9, 9, -1})) << "through the face, larger";
+  EXPECT_FALSE(embedded({1, 0.5, 0}, {0.5, 1, 0})) << "within, in one plane";
+  EXPECT_FALSE(embedded({4, -1, 0}, {-1, 4, 0})) << "around, in one plane";
+  EXPECT_FALSE(embedded({1, 0, 0}, {0, 0, 1})) << "on a side";
+  EXPECT_FALSE(embedded({3, 0, 0}, {0, 0, 1})) << "on a side, longer";
+}
+
+// Faces 0 1 2 and 1 0 3 share an edge.
+TEST(SelfIntersections, OfFacesThatShareAnEdge) {
+  const auto embedded = [](const Vec3& three) {
+    return is_embedded(Sites(Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, three}, {{0, 1, 2}, {1, 0, 3}}, {}}));
+  };
+  EXPECT_TRUE(embedded({0, -1, 0}));
+  EXPECT_TRUE(embedded({0, 1, 1e-300})) << "almost folded";
+  EXPECT_TRUE(embedded({0, 0, 1}));
+  EXPECT_FALSE(embedded({0, 0.5, 0}));
+  EXPECT_FALSE(embedded({5, 2, 0}));
+}
+
+TEST(SelfIntersections, IgnoreFacesWithoutSites) {
+  Mesh mesh = test::tetrahedron();
+  mesh.triangles.push_back({2, 1, 0});  // a duplicate
+  mesh.triangles.push_back({0, 1, 1});
+  EXPECT_TRUE(is_embedded(Sites(mesh)));
+}
+
+}  // namespace
+}  // namespace sdm
