@@ -1,6 +1,6 @@
 #include "inside/inside.h"
 
-#include <algorithm>
+#include <array>
 #include <atomic>
 
 #include "core/geometry/vec.h"
@@ -14,12 +14,34 @@ std::uint64_t unique_number() {
   return ++last;
 }
 
-// A ball that the surface does not meet: all its points are inside, or all are outside.
-struct Ball {
-  std::uint64_t shape = 0;
-  Vec3 centre{};
-  double squared_radius = 0;
-  bool inside = false;
+// Balls that the surface does not meet: all points of one are inside, or all are outside, and so are those of
+// balls that overlap.
+class Balls {
+ public:
+  // Whether a ball of this shape is inside, if it overlaps a known one.
+  [[nodiscard]] std::optional<bool> find(std::uint64_t shape, const Vec3& centre, double radius) const {
+    if (shape != shape_) return {};
+    for (const Ball& ball : balls_) {
+      const double reach = radius + ball.radius;
+      if (squared_norm(centre - ball.centre) < reach * reach && ball.radius > 0) return ball.inside;
+    }
+    return {};
+  }
+  void add(std::uint64_t shape, const Vec3& centre, double radius, bool inside) {
+    if (shape != shape_) balls_ = {}, shape_ = shape;
+    next_ = (next_ + 1) % balls_.size();
+    balls_[next_] = {centre, radius, inside};
+  }
+
+ private:
+  struct Ball {
+    Vec3 centre{};
+    double radius = 0;
+    bool inside = false;
+  };
+  std::uint64_t shape_ = 0;
+  std::size_t next_ = 0;
+  std::array<Ball, 8> balls_{};
 };
 
 }  // namespace
@@ -87,20 +109,19 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
       inside |= static_cast<std::uint32_t>((*this)(queries[i], closest.get(i, queries[i]))) << i;
     return inside;
   }
-  thread_local Ball last;
+  thread_local Balls balls;
   for (std::size_t i = 0; i < closest.count; ++i) {
     const Vec3& query = queries[i];
     if (!sdm::contains(box_, query)) continue;
-    if (last.shape != shape_ || !(squared_norm(query - last.centre) < last.squared_radius)) {
-      if (closest.type[i] == SiteType::none) continue;
-      const double radius = std::max(0.0, closest.distance[i] - clearance_);
-      last = {shape_, query, radius * radius, inside_solid(query, closest.get(i, query))};
-      if (radius == 0) {  // not even the query itself is in the ball
-        inside |= static_cast<std::uint32_t>(last.inside) << i;
-        continue;
-      }
+    if (closest.type[i] == SiteType::none) continue;
+    const double radius = closest.distance[i] - clearance_;
+    std::optional<bool> is_inside;
+    if (radius > 0) is_inside = balls.find(shape_, query, radius);
+    if (!is_inside) {
+      is_inside = inside_solid(query, closest.get(i, query));
+      if (radius > 0) balls.add(shape_, query, radius, *is_inside);
     }
-    inside |= static_cast<std::uint32_t>(last.inside) << i;
+    inside |= static_cast<std::uint32_t>(*is_inside) << i;
   }
   return inside;
 }

@@ -19,16 +19,21 @@ std::pair<double, double> extent(const std::array<Vec3, N>& points, const Vec3& 
   return range;
 }
 
-// Triangles that share a corner, as unit vectors from there to the others: whether a plane through the
-// corner separates them by kClearAngle.
+// Triangles that share a corner, as vectors from there to the others: whether a plane through the corner
+// separates them by kClearAngle.
 bool apart_at_corner(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) {
   constexpr double kRounding = 1e-12;
-  const auto separates = [&](const Vec3& direction) {
-    const Vec3 axis = normalized(direction);
-    const auto [a_least, a_most] = extent(a, axis);
-    const auto [b_least, b_most] = extent(b, axis);
-    return (a_least > -kRounding && b_most < -kClearAngle) || (a_least > kClearAngle && b_most < kRounding) ||
-           (b_least > -kRounding && a_most < -kClearAngle) || (b_least > kClearAngle && a_most < kRounding);
+  const std::array<double, 4> length{norm(a[0]), norm(a[1]), norm(b[0]), norm(b[1])};
+  const auto separates = [&](const Vec3& axis) {
+    const double size = norm(axis);
+    // Sines of the angles between the plane and the vectors, times size.
+    const double a0 = dot(a[0], axis) / length[0], a1 = dot(a[1], axis) / length[1],
+                 b0 = dot(b[0], axis) / length[2], b1 = dot(b[1], axis) / length[3];
+    const double far = kClearAngle * size, none = kRounding * size;
+    const double a_least = std::min(a0, a1), a_most = std::max(a0, a1), b_least = std::min(b0, b1),
+                 b_most = std::max(b0, b1);
+    return (a_least > -none && b_most < -far) || (a_least > far && b_most < none) ||
+           (b_least > -none && a_most < -far) || (b_least > far && a_most < none);
   };
   if (separates(a[0] + a[1] - b[0] - b[1])) return true;
   const Vec3 a_normal = cross(a[0], a[1]), b_normal = cross(b[0], b[1]);
@@ -52,41 +57,39 @@ bool unfolded(const Vec3& p, const Vec3& q, const Vec3& c, const Vec3& d) {
   return norm(inward(c) - inward(d)) > kClearAngle;
 }
 
-bool boxes_apart(const Corners& a, const Corners& b) {
-  for (int k = 0; k < 3; ++k)
-    if (std::max({a[0][k], a[1][k], a[2][k]}) + kClearance < std::min({b[0][k], b[1][k], b[2][k]}) ||
-        std::max({b[0][k], b[1][k], b[2][k]}) + kClearance < std::min({a[0][k], a[1][k], a[2][k]}))
-      return true;
-  return false;
-}
+// Neither face of an edge is turned over more than this, by their unit normals.
+constexpr double kUnfolded = -0.99;
 
-bool faces_apart(const sites::SitesData& sites, std::uint32_t face, const Corners& at, std::uint32_t other) {
-  const Corners other_at = unit_corners(sites, other);
-  if (boxes_apart(at, other_at)) return true;
+// Whether `face` has the clearance from `other`, whose box overlaps its enlarged one.
+bool clear_of(const sites::SitesData& sites, std::uint32_t face, std::uint32_t other) {
   const Triangle &a = sites.mesh.triangles[face], &b = sites.mesh.triangles[other];
   std::array<int, 3> mine{}, theirs{};  // the shared corners, then the others
   int shared = 0, own = 2;
+  bool taken[3] = {};
   for (int i = 0; i < 3; ++i) {
-    const auto j = std::find(b.begin(), b.end(), a[i]) - b.begin();
+    const int j = a[i] == b[0] ? 0 : a[i] == b[1] ? 1 : a[i] == b[2] ? 2 : 3;
     if (j == 3)
       mine[own--] = i;
     else
-      mine[shared] = i, theirs[shared++] = static_cast<int>(j);
+      mine[shared] = i, theirs[shared++] = j, taken[j] = true;
   }
   own = 2;
   for (int j = 0; j < 3; ++j)
-    if (std::find(theirs.begin(), theirs.begin() + shared, j) == theirs.begin() + shared) theirs[own--] = j;
+    if (!taken[j]) theirs[own--] = j;
+  const std::vector<Vec3>& at = sites.mesh.positions;
   switch (shared) {
     case 0:
-      return apart(at, other_at);
+      return apart(unit_corners(sites, face), unit_corners(sites, other));
     case 1: {
-      const Vec3& corner = at[mine[0]];
-      const auto from_corner = [&](const Vec3& p) { return normalized(p - corner); };
-      return apart_at_corner({from_corner(at[mine[1]]), from_corner(at[mine[2]])},
-                             {from_corner(other_at[theirs[1]]), from_corner(other_at[theirs[2]])});
+      const Vec3& corner = at[a[mine[0]]];
+      return apart_at_corner({at[a[mine[1]]] - corner, at[a[mine[2]]] - corner},
+                             {at[b[theirs[1]]] - corner, at[b[theirs[2]]] - corner});
     }
     case 2:
-      return unfolded(at[mine[0]], at[mine[1]], at[mine[2]], other_at[theirs[2]]);
+      if (!sites.sliver[face] && !sites.sliver[other] &&
+          dot(sites.normals.face[face], sites.normals.face[other]) > kUnfolded)
+        return true;
+      return unfolded(at[a[mine[0]]], at[a[mine[1]]], at[a[mine[2]]], at[b[theirs[2]]]);
     default:
       return false;
   }
@@ -122,24 +125,32 @@ bool apart(const Corners& a, const Corners& b) {
 
 void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vector<std::uint32_t>& near) {
   near.clear();
-  const Corners at = unit_corners(sites, face);
-  std::array<float, 3> lo, hi;
-  for (int k = 0; k < 3; ++k) {
-    constexpr double kMargin = 2 * kClearance;  // with rounding to float
-    lo[k] = static_cast<float>(std::min({at[0][k], at[1][k], at[2][k]}) - kMargin);
-    hi[k] = static_cast<float>(std::max({at[0][k], at[1][k], at[2][k]}) + kMargin);
-  }
+  const auto box_of = [&](std::uint32_t f) {
+    const Triangle& t = sites.mesh.triangles[f];
+    const Vec3 &a = sites.mesh.positions[t[0]], &b = sites.mesh.positions[t[1]],
+               &c = sites.mesh.positions[t[2]];
+    Box box;
+    for (int k = 0; k < 3; ++k)
+      box.lo[k] = std::min(std::min(a[k], b[k]), c[k]), box.hi[k] = std::max(std::max(a[k], b[k]), c[k]);
+    return box;
+  };
+  const double margin = kClearance / sites.frame.scale;
+  const Box box = box_of(face);
+  const Box reach{box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
+  const auto unit =
+      hierarchy::FloatBox::around({sites.frame.to_unit(reach.lo), sites.frame.to_unit(reach.hi)});
   traverse(
       sites.tree, whole(sites.tree),
       [&](hierarchy::Subtree below) {
-        const hierarchy::FloatBox& box = sites.tree.box(below.root);
-        for (int k = 0; k < 3; ++k)
-          if (box.hi[k] < lo[k] || hi[k] < box.lo[k]) return false;
-        return true;
+        const hierarchy::FloatBox& of = sites.tree.box(below.root);
+        bool apart = false;
+        for (int k = 0; k < 3; ++k) apart |= (of.hi[k] < unit.lo[k]) | (unit.hi[k] < of.lo[k]);
+        return !apart;
       },
       [&](std::uint32_t leaf) {
         for (const std::uint32_t other : sites.tree.items_of(leaf))
-          if (other != face && !faces_apart(sites, face, at, other)) near.push_back(other);
+          if (other != face && overlap(reach, box_of(other)) && !clear_of(sites, face, other))
+            near.push_back(other);
       });
 }
 
