@@ -23,6 +23,29 @@ struct Result {
   nlohmann::ordered_json report;
 };
 
+/// What suggests that the meshes are not those, or not in the units, that the user meant.
+std::vector<std::string> notes(const sdm::Mesh& on, const sdm::Mesh& to, const Outcome& outcome) {
+  constexpr double kScale = 1000, kFar = 100;
+  std::vector<std::string> result;
+  const sdm::Box on_box = sdm::bounds(on), to_box = sdm::bounds(to);
+  const auto length = [](const sdm::Vec3& v) { return std::hypot(v[0], v[1], v[2]); };
+  const auto size = [&](const sdm::Box& box) {
+    return length({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+  };
+  const double on_size = size(on_box), to_size = size(to_box);
+  sdm::Vec3 gap;  // between the boxes
+  for (int k = 0; k < 3; ++k)
+    gap[k] = std::max({0.0, on_box.lo[k] - to_box.hi[k], to_box.lo[k] - on_box.hi[k]});
+  if (on_size > kScale * to_size || to_size > kScale * on_size)
+    result.push_back(fmt::format("one mesh is {} times as large as the other; are both in the same units?",
+                                 number(std::max(on_size / to_size, to_size / on_size), 2)));
+  if (length(gap) > kFar * std::max(on_size, to_size))
+    result.push_back(fmt::format("the meshes are {} times their size apart; are both in the same place?",
+                                 number(length(gap) / std::max(on_size, to_size), 2)));
+  if (outcome.distance.texels == 0) result.push_back("no texel is within --max-distance; the map is empty");
+  return result;
+}
+
 /// Computes the map on `on` of the distances to `to`, and writes all files of it into `folder`.
 Result measure(const MapCommand& command, const Input& on, const Input& to, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
@@ -45,6 +68,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
         Stopwatch watch;
         sites = std::make_unique<sdm::Sites>(to.mesh);
         outcome.time.sites = watch.lap();
+        outcome.embedded = sdm::is_embedded(*sites);
       },
   });
 
@@ -54,22 +78,26 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
+  outcome.accuracy = sdm::engine_accuracy(command.engine, on.mesh, to.mesh);
+  outcome.extremes = sdm::extremes(*surface, map, at_vertices);
   outcome.raster = sdm::gl_report(*command.map.engine);
 
   progress.step("export");
   Stopwatch export_watch;
+  sdm::PictureOptions picture = command.picture;
+  picture.accuracy = outcome.accuracy;
   sdm::run_concurrently({
-      [&] { write_map_files(folder, *surface, map, at_vertices, command.picture); },
+      [&] { write_map_files(folder, *surface, map, at_vertices, picture); },
       [&] {
         outcome.distance = sdm::statistics(*surface, map);
         outcome.error_bound = sdm::SamplingBound(*surface).value();
       },
   });
   if (command.picture.tolerance) {
-    const double accuracy = sdm::engine_accuracy(command.engine, on.mesh, to.mesh);
-    outcome.tolerance = sdm::check_tolerance(*surface, map, at_vertices, outcome.error_bound + accuracy,
-                                             *command.picture.tolerance);
+    outcome.tolerance = sdm::check_tolerance(*surface, map, at_vertices, outcome.error_bound,
+                                             outcome.accuracy, *command.picture.tolerance);
   }
+  outcome.notes = notes(on.mesh, to.mesh, outcome);
   outcome.time.output = export_watch.lap();
   outcome.time.total = import_ms + total.lap();
 
@@ -79,6 +107,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   report["version"] = sdm::kVersion;
   report["o1"] = to_json(o1);
   report["o2"] = to_json(o2);
+  report[to.role]["embedded"] = outcome.embedded;
   report["measured_on"] = on.role;
   report["units"] = command.picture.units;
   report["atlas"] = to_json(*surface);
@@ -90,11 +119,21 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   return result;
 }
 
+/// All files that any run of the command writes.
+std::vector<std::filesystem::path> stale_files() {
+  std::vector<std::filesystem::path> files;
+  for (const char* folder : {"", "o1", "o2"})
+    for (const char* file :
+         {"map.exr", "distance.png", "voronoi.png", "direction.png", "model.glb", "report.json"})
+      files.push_back(std::filesystem::path(folder) / file);
+  return files;
+}
+
 /// Returns the exit code.
 int run(MapCommand command) {
   Stopwatch total;
   const sdm::ThreadLimit limit(command.threads);
-  OutputFolder out(command.out);
+  OutputFolder out(command.out, stale_files());
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.map.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};

@@ -4,6 +4,7 @@
 #include <sdm/error.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <exception>
 #include <fstream>
 #include <new>
@@ -34,8 +35,12 @@ fs::path without_trailing_slash(fs::path path) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& folder)
-    : folder_(without_trailing_slash(folder)), staging_(folder_ / fmt::format(".sdm-{}.part", getpid())) {
+OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier)
+    : folder_(without_trailing_slash(folder)),
+      staging_(folder_ / fmt::format(".sdm-{}.part", getpid())),
+      earlier_(std::move(earlier)) {
+  if (folder == "-")
+    throw sdm::Error("results are files and cannot go to standard output; give a folder with -o");
   std::error_code ignored;
   existing_ = folder_;
   while (!fs::exists(existing_, ignored) && existing_.has_relative_path())
@@ -102,6 +107,13 @@ void OutputFolder::commit() {
     std::error_code error;
     fs::rename(from, to, error);
     if (error) fail(to, error.message());
+  }
+  for (const fs::path& file : earlier_) {
+    const fs::path stale = folder_ / file;
+    if (std::ranges::find(moves, stale, &std::pair<fs::path, fs::path>::second) != moves.end()) continue;
+    std::error_code ignored;
+    fs::remove(stale, ignored);
+    if (stale.parent_path() != folder_) fs::remove(stale.parent_path(), ignored);  // if it is empty
   }
 }
 

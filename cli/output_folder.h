@@ -4,13 +4,16 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 /// Files are first written to a hidden staging folder inside the output folder, and moved into place at the
 /// end. After a failure no file remains, and no folder that did not exist before.
 class OutputFolder {
  public:
-  /// Throws sdm::Error if `folder` is a file, or cannot be created or written to.
-  explicit OutputFolder(const std::filesystem::path& folder);
+  /// `earlier`: files that earlier runs may have left, relative to the folder; those that this run does not
+  /// write are removed with its success, so that results never mix. Throws sdm::Error if `folder` is a file,
+  /// or cannot be created or written to.
+  explicit OutputFolder(const std::filesystem::path& folder, std::vector<std::filesystem::path> earlier = {});
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -28,6 +31,7 @@ class OutputFolder {
   void remove_traces();
 
   std::filesystem::path folder_, staging_;
+  std::vector<std::filesystem::path> earlier_;
   std::filesystem::path existing_;  ///< the closest ancestor of folder_, or itself, that existed before
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <csignal>
 #include <iostream>
+#include <utility>
 
 namespace {
 
@@ -36,17 +37,16 @@ void ProgressLine::end_by_interrupt() {
 }
 
 sdm::Progress ProgressLine::callback() {
-  return [this](std::string_view step, double fraction) { return show(step, fraction); };
+  return [this](std::string_view step, double fraction) {
+    return show(fmt::format("{} {} %", step, static_cast<int>(100 * fraction)));
+  };
 }
 
 void ProgressLine::step(std::string_view name) {
-  if (!show(name, 0)) throw sdm::Cancelled();
+  if (!show(std::string(name))) throw sdm::Cancelled();
 }
 
-bool ProgressLine::show(std::string_view step, double fraction) {
-  if (visible_) {
-    const std::string line = fmt::format("{} {} %", step, static_cast<int>(100 * fraction));
-    if (line != shown_) std::cerr << "\r\033[K" << (shown_ = line) << std::flush;
-  }
+bool ProgressLine::show(std::string line) {
+  if (visible_ && line != shown_) std::cerr << "\r\033[K" << (shown_ = std::move(line)) << std::flush;
   return interrupted_by == 0;
 }

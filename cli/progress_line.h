@@ -25,7 +25,7 @@ class ProgressLine {
   static void end_by_interrupt();
 
  private:
-  bool show(std::string_view step, double fraction);
+  bool show(std::string line);
 
   bool visible_;
   std::string shown_;

@@ -99,15 +99,29 @@ Json to_json(const sdm::Surface& surface) {
 
 Json to_json(const sdm::DistanceStatistics& d) {
   // NaN, if no texel has a value, becomes null.
-  return {{"kind", "estimate"}, {"min", d.min}, {"max", d.max}, {"mean", d.mean},
-          {"rms", d.rms},       {"p50", d.p50}, {"p95", d.p95}, {"p99", d.p99}};
+  return {{"kind", "estimate"},  {"min", d.min},           {"max", d.max},         {"mean", d.mean},
+          {"rms", d.rms},        {"stddev", d.stddev},     {"p50", d.p50},         {"p95", d.p95},
+          {"p99", d.p99},        {"mean_abs", d.mean_abs}, {"p50_abs", d.p50_abs}, {"p95_abs", d.p95_abs},
+          {"p99_abs", d.p99_abs}};
 }
+
+namespace {
+
+Json to_json(const sdm::Extreme& extreme) {
+  if (std::isnan(extreme.distance)) return nullptr;
+  return {{"distance", extreme.distance},
+          {"point", extreme.point},
+          {"at", extreme.at_vertex ? "vertex" : "texel"}};
+}
+
+}  // namespace
 
 Json to_json(const Outcome& outcome) {
   const sdm::DistanceStatistics& d = outcome.distance;
   Json json;
   json["sign"] = {{"method", name(outcome.sign.method)}, {"reason", outcome.sign.reason}};
   json["distance"] = to_json(d);
+  json["extremes"] = {{"min", to_json(outcome.extremes.min)}, {"max", to_json(outcome.extremes.max)}};
   json["texels_with_value"] = d.texels;
   json["negative_texels"] = d.negative_texels;
   json["beyond_max_distance"] = outcome.beyond_max_distance;
@@ -118,6 +132,7 @@ Json to_json(const Outcome& outcome) {
                          {"exceeded_area_fraction", outcome.tolerance->exceeded_area_fraction},
                          {"within", outcome.tolerance->within},
                          {"certified", outcome.tolerance->certified}};
+  json["notes"] = outcome.notes;
   if (outcome.raster) json["raster"] = to_json(*outcome.raster);
   const Times& t = outcome.time;
   json["time_ms"] = {{"import", t.import}, {"atlas", t.atlas},   {"sites", t.sites},
@@ -129,6 +144,20 @@ std::string to_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::ignore) + "\n";
 }
 
+namespace {
+
+// The texel or vertex that exceeds a tolerance most.
+std::string farthest(const sdm::Extremes& extremes, const std::string& unit) {
+  const auto& [min, max] = extremes;
+  const sdm::Extreme& most = std::abs(min.distance) > std::abs(max.distance) ? min : max;
+  if (std::isnan(most.distance)) return "no texel has a value";
+  return fmt::format("{}{} at {} ({} {} {})", number(most.distance), unit,
+                     most.at_vertex ? "vertex" : "texel", number(most.point[0]), number(most.point[1]),
+                     number(most.point[2]));
+}
+
+}  // namespace
+
 std::string summary(const Input& on, const Input& to, const Outcome& outcome, const std::string& units) {
   const sdm::DistanceStatistics& d = outcome.distance;
   const std::string unit = unit_suffix(units);
@@ -139,7 +168,9 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
   if (d.texels == 0) {
     add("  distance  no texel is within the maximum distance\n");
   } else {
-    add("  distance  min {}   mean {}   max {}{}\n", number(d.min), number(d.mean), number(d.max), unit);
+    const auto& [min, max] = outcome.extremes;
+    add("  distance  min {}   mean {}   max {}{}\n", number(min.distance), number(d.mean),
+        number(max.distance), unit);
     if (outcome.sign.method != sdm::SignMethod::none)
       add("            {} % of the texels are inside (negative)\n",
           number(100.0 * static_cast<double>(d.negative_texels) / static_cast<double>(d.texels)));
@@ -151,12 +182,14 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
       unit);
   if (const auto& verdict = outcome.tolerance) {
     if (!verdict->within)
-      add("  tolerance exceeded on {} % of the area\n", number(100 * verdict->exceeded_area_fraction));
+      add("  tolerance exceeded on {} % of the area; {}\n", number(100 * verdict->exceeded_area_fraction),
+          farthest(outcome.extremes, unit));
     else if (verdict->certified)
       add("  tolerance met\n");
     else
       add("  tolerance met at the samples, but not certified between them\n");
   }
+  for (const std::string& note : outcome.notes) add("  note      {}\n", note);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,
         number(overdraw(*outcome.raster)));

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 /// A mesh of the command line, after its transform.
 struct Input {
@@ -29,9 +30,13 @@ struct Times {
 /// The numbers of one map.
 struct Outcome {
   sdm::DistanceStatistics distance;
+  sdm::Extremes extremes;
   sdm::SignUsed sign;
   std::size_t beyond_max_distance = 0;
   double error_bound = 0;
+  double accuracy = 0;             ///< of the engine
+  bool embedded = true;            ///< the other mesh does not intersect itself
+  std::vector<std::string> notes;  ///< what the user probably did not intend
   std::optional<sdm::ToleranceVerdict> tolerance;
   std::optional<sdm::GlReport> raster;
   Times time;

@@ -42,6 +42,7 @@ struct PictureOptions {
       range{};                        ///< of the colour scale; default: from the map, symmetric if diverging
   std::optional<double> tolerance{};  ///< bands: green within ±tolerance, beyond it by sign
   std::string units{};                ///< shown in the legend: "mm", ...
+  double accuracy = 0;                ///< error of the distances: a range from the map is at least as long
 };
 
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Values

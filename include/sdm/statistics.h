@@ -16,12 +16,33 @@ struct DistanceStatistics {
   std::size_t texels = 0;  ///< with a value
   std::size_t negative_texels = 0;
   double min = 0, max = 0, mean = 0, rms = 0;
+  double stddev = 0;                 ///< about the mean
   double p50 = 0, p95 = 0, p99 = 0;  ///< area-weighted percentiles
+  // Of |distance|.
+  double mean_abs = 0;
+  double p50_abs = 0, p95_abs = 0, p99_abs = 0;
 };
 
 /// Computes statistics of `map.distance` as it is, signed or not. Throws sdm::Error if the map does not
 /// belong to this surface. Cost: O(n log n) in texels.
 [[nodiscard]] SDM_API DistanceStatistics statistics(const Surface& surface, const DistanceMap& map);
+
+/// Where a distance was measured.
+struct Extreme {
+  double distance = 0;     ///< NaN if there is none
+  Vec3 point{};            ///< on the surface
+  bool at_vertex = false;  ///< at a vertex of the mesh; otherwise at a texel
+};
+
+/// The smallest and the largest distance of all texels and of all vertices of faces that have a value.
+struct Extremes {
+  Extreme min, max;
+};
+
+/// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value. Throws
+/// sdm::Error if the map or the distances belong to another surface. Cost: linear in texels and faces.
+[[nodiscard]] SDM_API Extremes extremes(const Surface& surface, const DistanceMap& map,
+                                        std::span<const float> vertex_distances);
 
 /// Returns the fraction of the area, in [0, 1], whose |distance| is above `limit`; texels beyond the map's
 /// maximum distance count as above. 0 for a map without texels. Cost: O(n) in texels.

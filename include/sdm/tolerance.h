@@ -16,22 +16,23 @@ struct ToleranceVerdict {
   double tolerance = 0;
   /// Of |distance|, over all samples and all vertices of faces; infinite if one of them has no value.
   double largest = 0;
-  /// Fraction of the area, in [0, 1], of texels whose |distance| is greater than the tolerance or that have
-  /// no value.
+  /// Fraction of the area, in [0, 1], of texels whose |distance| exceeds the tolerance by more than the error
+  /// of the engine, or that have no value.
   double exceeded_area_fraction = 0;
-  bool within = true;  ///< largest ≤ tolerance
+  bool within = true;  ///< largest ≤ tolerance, but for the error of the engine
   /// The verdict holds for the whole surface. If within: largest + error_bound ≤ tolerance, since distances
   /// are 1-Lipschitz. Always true otherwise, as one sample or vertex is enough to exceed a tolerance.
   bool certified = true;
 };
 
-/// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value. `error_bound`:
-/// upper bound on how much |distance| at any point of the surface can exceed the largest at samples and
-/// vertices: SamplingBound::value() plus engine_accuracy(). Throws sdm::Error if the map or the distances
-/// belong to another surface. Cost: linear in texels and faces.
+/// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value. `accuracy`:
+/// the error of a distance, as of engine_accuracy(): rounding exceeds no tolerance. `error_bound`: upper
+/// bound on how much |distance| at any point of the surface can exceed the largest at samples and vertices,
+/// as of SamplingBound::value(), without that error. Throws sdm::Error if the map or the distances belong to
+/// another surface. Cost: linear in texels and faces.
 [[nodiscard]] SDM_API ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
                                                        std::span<const float> vertex_distances,
-                                                       double error_bound, double tolerance);
+                                                       double error_bound, double accuracy, double tolerance);
 
 /// Returns an upper bound on the error of any distance that the engine computes from points of `on` to `to`,
 /// in units of the meshes, including the rounding to float: EngineInfo::relative_error times the diagonal of

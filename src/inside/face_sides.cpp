@@ -16,6 +16,12 @@ FaceSides::FaceSides(const sites::SitesData& solid)
 }
 
 void FaceSides::forget() {
+  const Box box = bounds(solid_->mesh);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  const double unit = 1 / solid_->frame.scale, rounding = 1e-14 * largest;
+  offset_ = std::max(1e-9 * unit, rounding);
+  if (offset_ > 0.25 * kClearance * unit) offset_ = 0;
   for (std::size_t f = 0; f < count_; ++f) sides_[f].store(Sides::unknown, std::memory_order_relaxed);
 }
 
@@ -36,14 +42,16 @@ Sides FaceSides::of_site(SiteType type, std::uint32_t site) const {
 }
 
 Sides FaceSides::find(std::uint32_t face) const {
-  if (solid_->sliver[face] || solid_->topology.ignored(face)) return Sides::mixed;
+  if (offset_ == 0 || solid_->sliver[face] || solid_->topology.ignored(face)) return Sides::mixed;
   thread_local std::vector<std::uint32_t> near;
   find_near_faces(*solid_, face, near);
   if (!near.empty()) return Sides::mixed;
   if (const Sides sides = known_to_neighbour(face); sides != Sides::unknown) return sides;
   const auto& [a, b, c] = solid_->mesh.triangles[face];
   const std::vector<Vec3>& p = solid_->mesh.positions;
-  return sides_at(*solid_, face, (1.0 / 3) * (p[a] + p[b] + p[c]));
+  const Vec3 beside = (1.0 / 3) * (p[a] + p[b] + p[c]) + offset_ * solid_->normals.face[face];
+  const int outer = winding(*solid_, {}, beside), inner = outer + 1;
+  return outer == 0 ? Sides::boundary : inner == 0 ? Sides::reversed : Sides::buried;
 }
 
 // No face comes between those of an edge if one of them is met by none.
@@ -54,13 +62,6 @@ Sides FaceSides::known_to_neighbour(std::uint32_t face) const {
       if (sides != Sides::unknown && sides != Sides::mixed) return sides;
     }
   return Sides::unknown;
-}
-
-Sides sides_at(const sites::SitesData& solid, std::uint32_t face, const Vec3& point) {
-  constexpr double kOffset = 1e-9;  // of the unit frame: far less than kClearance, far more than rounding
-  const Vec3 beside = point + kOffset / solid.frame.scale * solid.normals.face[face];
-  const int outer = winding(solid, {}, beside), inner = outer + 1;
-  return outer == 0 ? Sides::boundary : inner == 0 ? Sides::reversed : Sides::buried;
 }
 
 }  // namespace sdm::inside

@@ -41,10 +41,10 @@ class FaceSides {
 
   const sites::SitesData* solid_;
   std::size_t count_;
+  /// How far beside a face its sides are determined: more than rounding, less than the distance of other
+  /// faces. 0 if no such length exists, in a mesh that is far from the origin: then all sides are `mixed`.
+  double offset_ = 0;
   std::unique_ptr<std::atomic<Sides>[]> sides_;
 };
-
-/// The sides of a face that no other face meets, by the winding number just outside of a point on it.
-[[nodiscard]] Sides sides_at(const sites::SitesData& solid, std::uint32_t face, const Vec3& point);
 
 }  // namespace sdm::inside

@@ -11,13 +11,13 @@
 namespace sdm {
 
 ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
-                                 std::span<const float> vertex_distances, double error_bound,
+                                 std::span<const float> vertex_distances, double error_bound, double accuracy,
                                  double tolerance) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (vertex_distances.size() != surface.mesh().positions.size())
     throw Error("check_tolerance() needs one distance for each vertex of the surface's mesh");
   ToleranceVerdict verdict{.tolerance = tolerance};
-  verdict.exceeded_area_fraction = area_fraction_beyond(surface, map, tolerance);
+  verdict.exceeded_area_fraction = area_fraction_beyond(surface, map, tolerance + accuracy);
   verdict.largest = map.beyond_max_distance > 0 ? kInfinity : 0;
   for (const std::uint32_t texel : surface.sample_texels())
     verdict.largest = std::fmax(verdict.largest, std::abs(map.distance[texel]));
@@ -26,8 +26,8 @@ ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
       const double d = std::abs(vertex_distances[vertex]);
       verdict.largest = std::isnan(d) ? kInfinity : std::max(verdict.largest, d);
     }
-  verdict.within = verdict.largest <= tolerance;
-  verdict.certified = !verdict.within || verdict.largest + error_bound <= tolerance;
+  verdict.within = verdict.largest <= tolerance + accuracy;
+  verdict.certified = !verdict.within || verdict.largest + error_bound + accuracy <= tolerance;
   return verdict;
 }
 

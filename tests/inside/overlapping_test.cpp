@@ -248,5 +248,19 @@ TEST_P(Overlapping, SignsAreThoseOfTheWindingNumber) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Overlapping, testing::ValuesIn(kScenes),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
+// Regression: beside a small mesh far from the origin, rounding moved the points at which its sides are
+// determined back onto its faces.
+TEST(Sides, OfSmallMeshesFarFromTheOrigin) {
+  for (const char* steps : {"scale:0.001,translate:100000:-100000:100000", "translate:1e7:1e7:1e7",
+                            "scale:0.001,translate:1e7:0:0", "scale:1e-8", "scale:1e8"}) {
+    SCOPED_TRACE(steps);
+    const Mesh ball = test::placed(test::sphere(2), steps),
+               small = test::placed(test::sphere(3), std::string("scale:0.9,") + steps);
+    const Surface surface(small, {.resolution = 32});
+    const DistanceMap map = compute_map(surface, Sites(ball));
+    for (const std::uint32_t t : surface.sample_texels()) ASSERT_LT(map.distance[t], 0);
+  }
+}
+
 }  // namespace
 }  // namespace sdm

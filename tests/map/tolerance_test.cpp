@@ -22,7 +22,7 @@ struct Tolerance : ::testing::Test {
 };
 
 TEST_F(Tolerance, IsCertifiedWithTheErrorBoundToSpare) {
-  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.25, 1.25);
+  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.25, 0, 1.25);
   EXPECT_EQ(verdict.largest, 1);
   EXPECT_EQ(verdict.exceeded_area_fraction, 0);
   EXPECT_TRUE(verdict.within);
@@ -30,13 +30,13 @@ TEST_F(Tolerance, IsCertifiedWithTheErrorBoundToSpare) {
 }
 
 TEST_F(Tolerance, IsNotCertifiedIfTheErrorBoundReachesBeyond) {
-  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.26, 1.25);
+  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.26, 0, 1.25);
   EXPECT_TRUE(verdict.within);
   EXPECT_FALSE(verdict.certified);
 }
 
 TEST_F(Tolerance, IsCertainlyExceeded) {
-  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.25, 0.99);
+  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.25, 0, 0.99);
   EXPECT_FALSE(verdict.within);
   EXPECT_TRUE(verdict.certified);
   EXPECT_EQ(verdict.exceeded_area_fraction, 1);
@@ -45,10 +45,10 @@ TEST_F(Tolerance, IsCertainlyExceeded) {
 TEST_F(Tolerance, IsExceededByASingleVertexOrSample) {
   std::vector<float> one_vertex = at_vertices;
   one_vertex[2] = -3;
-  EXPECT_EQ(check_tolerance(surface, map, one_vertex, 0, 2).largest, 3);
-  EXPECT_FALSE(check_tolerance(surface, map, one_vertex, 0, 2).within);
+  EXPECT_EQ(check_tolerance(surface, map, one_vertex, 0, 0, 2).largest, 3);
+  EXPECT_FALSE(check_tolerance(surface, map, one_vertex, 0, 0, 2).within);
   map.distance[surface.sample_texels()[5]] = -3;
-  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0, 2);
+  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0, 0, 2);
   EXPECT_FALSE(verdict.within);
   EXPECT_GT(verdict.exceeded_area_fraction, 0);
   EXPECT_LT(verdict.exceeded_area_fraction, 0.1);
@@ -57,15 +57,15 @@ TEST_F(Tolerance, IsExceededByASingleVertexOrSample) {
 TEST_F(Tolerance, IsExceededWhereThereIsNoValue) {
   std::vector<float> unknown = at_vertices;
   unknown[0] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_FALSE(check_tolerance(surface, map, unknown, 0, 2).within);
+  EXPECT_FALSE(check_tolerance(surface, map, unknown, 0, 0, 2).within);
   const MapOptions near{.max_distance = 0.5};
   map = compute_map(surface, sites, near);
-  EXPECT_FALSE(check_tolerance(surface, map, at_vertices, 0, 2).within);
+  EXPECT_FALSE(check_tolerance(surface, map, at_vertices, 0, 0, 2).within);
 }
 
 TEST_F(Tolerance, RejectsDistancesOfOtherVertices) {
   at_vertices.pop_back();
-  EXPECT_THROW(static_cast<void>(check_tolerance(surface, map, at_vertices, 0, 2)), Error);
+  EXPECT_THROW(static_cast<void>(check_tolerance(surface, map, at_vertices, 0, 0, 2)), Error);
 }
 
 TEST(EngineAccuracy, IsRelativeToTheDiagonalOfBothMeshes) {

@@ -75,7 +75,7 @@ std::uint32_t scramble(std::uint32_t x) {
 Rgb ColorScale::operator()(double distance) const {
   if (!std::isfinite(distance)) return kNoValue;
   if (tolerance) {
-    if (std::abs(distance) <= *tolerance) return kWithin;
+    if (std::abs(distance) <= *tolerance + accuracy) return kWithin;
     return distance > 0 ? gradient(kAbove, fraction(distance, *tolerance, hi))
                         : gradient(kBelow, fraction(-distance, *tolerance, -lo));
   }
@@ -94,6 +94,9 @@ ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
     scale.lo = std::min<double>(scale.lo, d), scale.hi = std::max<double>(scale.hi, d);
   }
   if (scale.lo > scale.hi) scale.lo = scale.hi = 0;
+  scale.accuracy = options.accuracy;
+  if (std::max(std::abs(scale.lo), std::abs(scale.hi)) <= options.accuracy)  // rounding
+    scale.lo = 0, scale.hi = options.accuracy;
   if (options.colormap == Colormap::automatic) {
     scale.map = scale.lo < 0 && scale.hi > 0 ? Colormap::diverging : Colormap::viridis;
     scale.tolerance = options.tolerance;

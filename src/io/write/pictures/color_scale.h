@@ -22,6 +22,7 @@ struct ColorScale {
   Colormap map = Colormap::viridis;   ///< never automatic
   double lo = 0, hi = 1;              ///< lo < hi; colours are constant outside
   std::optional<double> tolerance{};  ///< if set, bands instead of the map
+  double accuracy = 0;                ///< distances that exceed the tolerance by less are within it
 
   [[nodiscard]] Rgb operator()(double distance) const;
 };
