@@ -16,7 +16,8 @@ namespace sdm {
 
 struct MultiBodyOptions {
   AtlasOptions atlas{.resolution = 128};  ///< of each body; distances are measured at its samples
-  /// Compute separation and collision from the triangles; otherwise from the samples, with bounds.
+  /// Compute separation from the triangles; otherwise from the samples, with bounds. Collision is always
+  /// computed from the triangles.
   bool exact = false;
   /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
   double max_distance = std::numeric_limits<double>::infinity();
@@ -63,9 +64,10 @@ class SDM_API MultiBodyQuery {
   /// Returns all pairs that collide or whose separation is at most max_distance, and those for which the
   /// samples cannot rule this out. No pair has separation.lower > max_distance unless it collides. Sorted by
   /// first, then by second body. The results of a pair are those of ProximityQuery. Computed by the first
-  /// call after a refit and valid until the next one. Neither this nor refit() allocates memory once
-  /// the bodies have been through similar poses. Cost: a sweep over the boxes of the bodies, then that of
-  /// ProximityQuery for each candidate pair, the pairs distributed over all cores.
+  /// call after a refit and valid until the next one. Neither this nor refit() allocates memory once the
+  /// bodies have been through similar poses, unless a solid intersects itself. Cost: a sweep over the boxes
+  /// of the bodies, then that of ProximityQuery for each candidate pair, the pairs distributed over all
+  /// cores.
   [[nodiscard]] std::span<const PairProximity> pairs();
   /// The number of pairs whose boxes were within max_distance of each other when pairs() was last computed.
   [[nodiscard]] std::size_t candidate_pairs() const;

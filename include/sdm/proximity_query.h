@@ -16,7 +16,7 @@ namespace sdm {
 enum class Certainty {
   exact,    ///< from the triangles, accurate to 1e-6 of the diagonal of both bodies' box
   bounded,  ///< the true value lies between the given bounds
-  estimate  ///< no guarantee
+  estimate  ///< no guarantee; no query returns it
 };
 
 /// A length with its bounds.
@@ -34,7 +34,8 @@ struct BoundedBool {
   Certainty certainty = Certainty::estimate;
 };
 
-/// A sampled point of one body and its closest point on the surface of the other.
+/// A sampled point of one body and a closest point of the other: outside, the closest point of its surface;
+/// inside, of the boundary of the solid, as far as it was found (see ProximityQuery::contacts).
 struct Contact {
   Vec3 point1{}, point2{};  ///< on O1 and on O2
   /// Unit vector along which moving O1 separates it from O2: (point2 − point1) / depth, for depth of either
@@ -46,7 +47,8 @@ struct Contact {
 
 struct ProximityOptions {
   AtlasOptions atlas{.resolution = 512};  ///< of both bodies; distances are measured at its samples
-  /// Compute separation and collision from the triangles; otherwise from the samples, with bounds.
+  /// Compute separation from the triangles; otherwise from the samples, with bounds. Collision is always
+  /// computed from the triangles.
   bool exact = false;
   /// Contacts are reported for samples inside the other body or within this distance of it; ≥ 0, in units of
   /// the meshes.
@@ -55,10 +57,14 @@ struct ProximityOptions {
 
 /// Proximity of two deforming bodies, for simulation loops.
 ///
-/// A closed, orientable body is a solid; any other body is a surface without an inside. Distances are
-/// measured at those samples of both bodies' atlases that can affect a result. As distances are 1-Lipschitz,
-/// they and the covering radii R of the samples (SamplingBound::sample_radii) bound the distance everywhere:
-///     min (d − R) ≤ separation ≤ min d,    max (−d) ≤ penetration depth ≤ max (R − d).
+/// A closed, orientable body is a solid, with the inside of SignMethod::exact; any other body is a surface
+/// without an inside. Distances are measured at those samples of both bodies' atlases that can affect a
+/// result. As distances are 1-Lipschitz, they and the covering radii R of the samples
+/// (SamplingBound::sample_radii) bound the distance everywhere:
+///     min (|d| − R) ≤ separation ≤ min |d|,    max (−d) ≤ penetration depth ≤ max (R − d).
+/// d is negative inside a solid; for the depth it is there the distance to the boundary of the solid: the
+/// parts of its surface that have the inside on one side only. Where the solid intersects itself, that
+/// distance has bounds of its own.
 class SDM_API ProximityQuery {
  public:
   /// Throws sdm::Error as Surface and Sites do, and for a margin that is negative or not finite. Cost: that
@@ -70,24 +76,27 @@ class SDM_API ProximityQuery {
 
   /// Moves the vertices of the bodies, keeping their triangles; other triangles need a new ProximityQuery. An
   /// empty span leaves a body unchanged. Throws sdm::Error, and changes nothing, for a wrong number of
-  /// positions or a coordinate that is not finite. Cost: linear. Neither this nor the queries allocate memory
-  /// once the bodies have been through similar poses.
+  /// positions or a coordinate that is not finite. Cost: that of Sites::refit. Neither this nor the queries
+  /// allocate memory once the bodies have been through similar poses, unless a solid intersects itself.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
   // Results are computed by the first call after a refit.
 
-  /// The smallest distance between the two surfaces; 0 if they intersect.
+  /// The smallest distance between the two surfaces; exactly 0 if they intersect.
   [[nodiscard]] const BoundedLength& separation();
-  /// Whether the surfaces intersect or one body is a solid that contains part of the other.
+  /// Whether the surfaces intersect or one body is a solid that contains part of the other. Always exact,
+  /// from the triangles.
   [[nodiscard]] BoundedBool colliding();
-  /// The largest distance from a surface point of either body that lies inside the other to the surface of
-  /// that other body. Empty if neither body is a solid.
+  /// The largest distance from a surface point of either body that lies inside the other to the boundary of
+  /// that other body. Exactly 0 if they do not collide, otherwise bounded. Empty if neither body is a solid.
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
   /// The contacts of both bodies. The samples of each chart in each block (256 consecutive samples) that lie
-  /// inside the other body or within the margin have one contact, at the deepest of them. Sorted by patch,
-  /// the patch with the deepest contact first, and by decreasing depth within a patch. Contacts belong to the
-  /// same patch if the boxes of their samples, grown by the covering radii, intersect: a connected contact
-  /// region is never divided.
+  /// inside the other body or within the margin have one contact, at the one with the least signed distance
+  /// to the surface of the other body. If that body intersects itself, the contact is with a point of its
+  /// boundary, closest to about 1/1000 of its size, or else with the closest point of its surface. Sorted by
+  /// patch, the patch with the deepest contact first, and by decreasing depth within a patch. Contacts belong
+  /// to the same patch if the boxes of their samples, grown by the covering radii, intersect: a connected
+  /// contact region is never divided.
   [[nodiscard]] std::span<const Contact> contacts();
 
   /// O1 for 0, O2 for 1.

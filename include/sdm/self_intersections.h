@@ -13,8 +13,8 @@ namespace sdm {
 
 /// Returns the pairs of faces that have a point in common beyond the corners and edges that they share, each
 /// once, the smaller face first, in lexicographic order. Empty for an embedded mesh. Touching counts; faces
-/// without area and duplicate faces, which have no sites, do not. Exact, for coordinates as they are. Throws
-/// Cancelled, and sdm::Error if there is not enough memory. Cost: O(n log n) for n faces, plus linear in the
+/// without area and duplicate faces do not. Exact, for coordinates as they are. Throws Cancelled, and
+/// sdm::Error if there is not enough memory. Cost: O(n log n) for n faces, plus linear in the
 /// pairs of faces whose boxes overlap; all cores.
 [[nodiscard]] SDM_API std::vector<std::array<std::uint32_t, 2>> self_intersections(
     const Sites& sites, const Progress& progress = {});

@@ -38,9 +38,10 @@ class SDM_API Sites {
   Sites(Sites&&) noexcept;
   Sites& operator=(Sites&&) noexcept;
 
-  /// Moves the vertices and keeps the triangles. Cost: linear, plus a few rays per component of a closed
-  /// mesh. Throws sdm::Error, and changes nothing, when the count differs or a coordinate is not finite or
-  /// beyond 1e37.
+  /// Moves the vertices and keeps the triangles. Cost: linear; for a closed mesh of several components also a
+  /// ray for each of them, and tests of the pairs of faces of different components whose boxes overlap.
+  /// Throws sdm::Error, and changes nothing, when the count differs or a coordinate is not finite or beyond
+  /// 1e37.
   void refit(std::span<const Vec3> positions);
 
   [[nodiscard]] const Mesh& mesh() const;

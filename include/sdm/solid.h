@@ -13,8 +13,8 @@ struct VolumeBounds {
 
 /// The volume of the points that a closed, orientable mesh winds around, with its shells oriented outwards:
 /// parts that several shells cover count once. Exact for an embedded mesh (see is_embedded). Throws
-/// sdm::Error for other meshes, or if there is not enough memory. Cost: that of is_embedded(); if the mesh is
-/// not embedded, also that of dividing the faces that intersect others.
+/// sdm::Error for a mesh that is not closed and orientable, or if there is not enough memory. Cost: that of
+/// is_embedded(); if the mesh is not embedded, also that of dividing the faces that intersect others.
 [[nodiscard]] SDM_API VolumeBounds solid_volume(const Sites& sites);
 
 }  // namespace sdm
