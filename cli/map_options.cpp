@@ -45,7 +45,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->check(positive)
       ->type_name("D");
   add_choice<sdm::SignMethod>(app, "--sign", c.map.sign,
-                              "How the inside of O2 (negative) is determined; auto: pseudonormal if O2 is "
+                              "How the inside of O2 (negative) is determined; auto: exact if O2 is "
                               "closed and orientable, otherwise none",
                               {{"auto", sdm::SignMethod::automatic},
                                {"none", sdm::SignMethod::none},

@@ -53,7 +53,7 @@ void add_proximity_command(CLI::App& app) {
   CLI::App* proximity = app.add_subcommand(
       "proximity", "Compute separation, collision, penetration depth and contacts of two meshes");
   proximity->footer(
-      "Every number is marked as exact, bounded (with its bounds) or an estimate.\n\n"
+      "Every number is marked as exact or bounded, with its bounds.\n\n"
       "Example, two meshes in contact:\n"
       "  sdm proximity bunny.obj armadillo.off --transform-o1 fit --transform-o2 fit,translate:0.1:0:0");
   const auto command = std::make_shared<PairCommand>();

@@ -50,7 +50,7 @@ TEST_F(GlCommandOptions, RequireTheGlEngine) {
       more.insert(more.end(), engine.begin(), engine.end());
       const Outcome run = run_sdm(map(more));
       EXPECT_EQ(run.code, 2);
-      EXPECT_THAT(run.err, StartsWith(option[0] + ": needs --engine gl\n"));
+      EXPECT_THAT(run.err, StartsWith("sdm: error: " + option[0] + ": needs --engine gl\n"));
       EXPECT_EQ(run.out, "");
     }
   EXPECT_FALSE(std::filesystem::exists(out));
@@ -58,7 +58,7 @@ TEST_F(GlCommandOptions, RequireTheGlEngine) {
 
 TEST_F(GlCommandOptions, StencilValuesRequireStencilAndRangeFrom1To255) {
   EXPECT_THAT(run_sdm(map({"--engine", "gl", "--stencil-values", "3"})).err,
-              StartsWith("--stencil-values: needs --clip stencil\n"));
+              StartsWith("sdm: error: --stencil-values: needs --clip stencil\n"));
   for (const char* values : {"0", "256", "-1", "many", "1.5"}) {
     const Outcome run = run_sdm(map({"--engine", "gl", "--clip", "stencil", "--stencil-values", values}));
     EXPECT_EQ(run.code, 2) << values;

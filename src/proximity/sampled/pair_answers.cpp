@@ -210,7 +210,7 @@ PairAnswers::Depth PairAnswers::depth_of_buried(int body, Depth known) {
       if (!closest[i]) continue;
       const auto& [lower, upper, point] = *closest[i];
       const Vec3& p = on.points()[samples[i]];
-      Depth here{.lower = lower, .value = upper, .upper = upper + on.radii()[samples[i]]};
+      Depth here{.lower = lower, .value = point ? upper : lower, .upper = upper + on.radii()[samples[i]]};
       if (point) here.points = body == 0 ? std::array{p, *point} : std::array{*point, p};
       deepest = deeper(deepest, here);
     }
