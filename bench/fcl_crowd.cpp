@@ -61,6 +61,7 @@ FclCrowd::FclCrowd(std::span<const Mesh> meshes) : impl_(new Impl) {
     body.model->addSubModel(impl_->vertices, triangles);
     body.model->endModel();
     body.object = std::make_unique<Object>(body.model);
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): a number as user data; nothing dereferences it
     body.object->setUserData(reinterpret_cast<void*>(impl_->bodies.size() - 1));
     impl_->manager.registerObject(body.object.get());
   }

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -70,7 +71,7 @@ ColorScale common_scale(const Side& a, const Side& b) {
 
 /// The pixels of a panel: averages of the camera's samples, each the colour of its texel times its light.
 Picture paint(std::span<const Seen> seen, const std::function<Rgb(const Seen&)>& color) {
-  Picture panel{kPanelWidth, kPanelHeight, std::vector<Rgb>(kPanelWidth * kPanelHeight)};
+  Picture panel{kPanelWidth, kPanelHeight, std::vector<Rgb>(std::size_t{kPanelWidth} * kPanelHeight)};
   for (std::uint32_t y = 0; y < kPanelHeight; ++y)
     for (std::uint32_t x = 0; x < kPanelWidth; ++x) {
       std::array<float, 3> sum{};
@@ -83,7 +84,7 @@ Picture paint(std::span<const Seen> seen, const std::function<Rgb(const Seen&)>&
         sum[0] += light * c.r, sum[1] += light * c.g, sum[2] += light * c.b;
       }
       const auto mean = [](float total) {
-        return static_cast<std::uint8_t>(total / (kSubsamples * kSubsamples) + 0.5f);
+        return static_cast<std::uint8_t>(std::floor(total / (kSubsamples * kSubsamples) + 0.5f));
       };
       panel.pixels[y * kPanelWidth + x] = {mean(sum[0]), mean(sum[1]), mean(sum[2])};
     }

@@ -99,16 +99,17 @@ std::vector<Case> cases(const std::string& device) {
   std::vector<Case> result;
   const auto add = [&](const std::string& name, const std::string& what, const Meshes& meshes) {
     for (const GlClip clip : {GlClip::planes, GlClip::stencil}) {
-      const std::string by = clip == GlClip::planes ? "planes" : "stencil";
-      result.push_back({.name = name + "-" + by,
-                        .description = what + ", 256², clipped by " + by,
-                        .run =
-                            [&device, clip, meshes](const Trial& trial) {
-                              const auto [o1, o2] = meshes();
-                              return measure(trial, o1, o2, {.device = device, .clip = clip});
-                            },
-                        .repetitions = 3,
-                        .threads = 0});
+      const bool planes = clip == GlClip::planes;
+      result.push_back(
+          {.name = name + (planes ? "-planes" : "-stencil"),
+           .description = what + (planes ? ", 256², clipped by planes" : ", 256², clipped by stencil"),
+           .run =
+               [&device, clip, meshes](const Trial& trial) {
+                 const auto [o1, o2] = meshes();
+                 return measure(trial, o1, o2, {.device = device, .clip = clip});
+               },
+           .repetitions = 3,
+           .threads = 0});
     }
   };
   add("figure-to-box", "the figure to its box", [] {

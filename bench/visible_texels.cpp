@@ -54,8 +54,9 @@ std::vector<Seen> visible_texels(const View& view, std::span<const Shown> object
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     for (std::size_t i = first_row * view.width; i < last_row * view.width; ++i) {
-      const double x = static_cast<double>(i % view.width) + 0.5 - 0.5 * view.width;
-      const double y = 0.5 * view.height - static_cast<double>(i / view.width) - 0.5;
+      const std::size_t column = i % view.width, row = i / view.width;
+      const double x = static_cast<double>(column) + 0.5 - 0.5 * view.width;
+      const double y = 0.5 * view.height - static_cast<double>(row) - 0.5;
       const Vec3 ray = normalized(forward + pixel * (x * right + y * up));
 
       RTCRayHit query{};

@@ -18,6 +18,7 @@
 
 namespace {
 
+// NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw
 struct Result {
   Outcome outcome;
   nlohmann::ordered_json report;

@@ -83,7 +83,7 @@ void OutputFolder::fill(const std::function<void()>& work) {
 }
 
 fs::path OutputFolder::staging(const fs::path& subfolder) {
-  const fs::path path = staging_ / subfolder;
+  fs::path path = staging_ / subfolder;
   create_folder(path);
   return path;
 }

@@ -108,7 +108,7 @@ class FrameLoop {
 
  private:
   [[nodiscard]] std::string status(std::size_t frame, double seconds) const {
-    const std::string text = fmt::format("frame {} of {}", frame + 1, count_);
+    std::string text = fmt::format("frame {} of {}", frame + 1, count_);
     if (frame == 0) return text;
     return fmt::format("{}, {:.1f} per second", text, static_cast<double>(frame) / seconds);
   }

@@ -32,6 +32,7 @@ std::vector<double> curve(const std::vector<Frame>& frames, std::size_t count, c
 template <class Value>
 double median(const std::vector<Frame>& frames, const Value& value) {
   std::vector<double> values;
+  values.reserve(frames.size());
   for (const Frame& frame : frames) values.push_back(value(frame));
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);

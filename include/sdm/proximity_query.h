@@ -69,7 +69,7 @@ class SDM_API ProximityQuery {
  public:
   /// Throws sdm::Error as Surface and Sites do, and for a margin that is negative or not finite. Cost: that
   /// of the atlases and sites of both bodies.
-  ProximityQuery(Mesh o1, Mesh o2, const ProximityOptions& options = {});
+  ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options = {});
   ~ProximityQuery();
   ProximityQuery(ProximityQuery&&) noexcept;
   ProximityQuery& operator=(ProximityQuery&&) noexcept;

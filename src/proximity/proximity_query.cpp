@@ -34,7 +34,7 @@ const ProximityOptions& checked(const ProximityOptions& options) {
 
 }  // namespace
 
-ProximityQuery::ProximityQuery(Mesh o1, Mesh o2, const ProximityOptions& options) try
+ProximityQuery::ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options) try
     : impl_(std::make_unique<Impl>(o1, o2, checked(options))) {
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a proximity query");

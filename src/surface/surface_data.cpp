@@ -50,7 +50,7 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   if (samples.empty())
     throw atlas::TooSmall(
         "no face of the mesh is large enough in the texture to own a texel; use a larger resolution",
-        2 * resolution);
+        std::uint64_t{2} * resolution);
   mesh = std::move(laid_out);
   chart_count = layout.charts.size();
   max_stretch = layout.max_stretch;

@@ -29,7 +29,8 @@ class SurfaceData {
   }
   /// The surface point of the centre of a texel that the face owns.
   [[nodiscard]] Vec3 texel_point(std::uint32_t face, std::uint32_t texel) const {
-    return to_surface(face, {texel % resolution + 0.5, texel / resolution + 0.5});
+    const std::uint32_t column = texel % resolution, row = texel / resolution;
+    return to_surface(face, {column + 0.5, row + 0.5});
   }
   /// Sets `points` to those of the samples from `first` on.
   void place_samples(std::size_t first, std::span<Vec3> points) const;

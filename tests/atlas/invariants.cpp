@@ -115,7 +115,8 @@ void expect_owners(const Surface& surface) {
   }
   for (const std::uint32_t texel : surface.sample_texels()) {
     const std::uint32_t f = surface.texel_faces()[texel];
-    const Vec2 centre = {static_cast<double>(texel % n) + 0.5, static_cast<double>(texel / n) + 0.5};
+    const std::int64_t x = texel % n, y = texel / n;
+    const Vec2 centre = {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
     strays += depth(mapped(surface, f), centre) < -kTexels;
     off += !(distance_to_triangle(surface.texel_point(texel), corners(surface.mesh(), f)) <= 1e-9 * length);
   }
@@ -128,7 +129,7 @@ void expect_gutters(const Surface& surface, std::uint32_t gutter) {
   const auto n = surface.resolution();
   std::size_t close = 0;
   for (const std::uint32_t texel : surface.sample_texels())
-    close += strangers_near(surface, texel % n, texel / n, 2 * gutter,
+    close += strangers_near(surface, texel % n, texel / n, std::int64_t{2} * gutter,
                             surface.face_charts()[surface.texel_faces()[texel]]);
   EXPECT_EQ(close, 0u);
   // A corner's texel need not be owned, but keeps the distance.

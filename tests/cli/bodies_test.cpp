@@ -46,7 +46,8 @@ TEST_F(BodiesCommand, PrintsThePairsOfTheLibrary) {
       EXPECT_EQ(json["pairs"][i]["second"], pair.second);
       EXPECT_EQ(json["pairs"][i]["separation"]["value"], pair.separation.value);
       EXPECT_EQ(json["pairs"][i]["separation"]["lower"], pair.separation.lower);
-      EXPECT_EQ(json["pairs"][i]["separation"]["kind"], exact ? "exact" : "bounded");
+      EXPECT_EQ(json["pairs"][i]["separation"]["kind"],
+                pair.separation.certainty == Certainty::exact ? "exact" : "bounded");
       EXPECT_EQ(json["pairs"][i]["colliding"]["value"], pair.colliding.value);
       EXPECT_EQ(json["pairs"][i]["penetration_depth"]["upper"], pair.penetration_depth->upper);
     }

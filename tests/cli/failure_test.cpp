@@ -38,7 +38,7 @@ TEST_F(Failure, BadInputIsNamed) {
       {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
       {"infinite.obj", "v inf 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
       {"flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"},
-      {"garbage.stl", std::string("\x01\x02\xff\x00\x7f garbage", 14)},
+      {"garbage.stl", std::string("\x01\x02\xff\x00\x7f garbage\0", 14)},
       {"truncated.ply",
        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n"},

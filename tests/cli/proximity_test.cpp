@@ -30,7 +30,7 @@ TEST_F(ProximityCommand, PrintsTheAnswersOfTheLibrary) {
   EXPECT_EQ(json["separation"]["value"], query.separation().value);
   EXPECT_EQ(json["separation"]["lower"], query.separation().lower);
   EXPECT_EQ(json["separation"]["upper"], query.separation().upper);
-  EXPECT_EQ(json["separation"]["kind"], "bounded");
+  EXPECT_EQ(json["separation"]["kind"], "exact") << "they intersect";
   EXPECT_EQ(json["colliding"]["value"], true);
   EXPECT_EQ(json["colliding"]["kind"], "exact");
   ASSERT_TRUE(query.penetration_depth());

@@ -179,6 +179,7 @@ TEST_P(HardCases, RandomQueries) {
   const Mesh mesh = test::soup(1000, random);
   const Sites sites(mesh);
   std::vector<Vec3> queries;  // scattered, so that neighbours share nothing
+  queries.reserve(5000);
   for (int i = 0; i < 5000; ++i) queries.push_back(test::random_point({{-2, -2, -2}, {3, 3, 3}}, random));
   const auto expected = test::evaluate([&](const Vec3& p) { return oracle::brute_force(mesh, p); }, queries);
   test::expect_closest_points(sites, queries,

@@ -48,7 +48,8 @@ TEST(GridSlice, ContainsTheClosestFaces) {
     test::Disagreements wrong(1e-6 / impl.frame.scale);
     for (std::uint32_t texel = 0; texel < faces.size(); ++texel) {
       ASSERT_NE(faces[texel], kNone);
-      const Vec3 unit = domain.point({texel % kSide + 0.5, texel / kSide + 0.5});
+      const std::uint32_t column = texel % kSide, row = texel / kSide;
+      const Vec3 unit = domain.point({column + 0.5, row + 0.5});
       const Vec3 q = (1 / impl.frame.scale) * unit + impl.frame.origin;
       const ClosestPoint expected = reference::reference_closest(impl, q, 1e30);
       wrong.compare(texel, sites::closest_on_face(impl, faces[texel], q).distance, expected.distance);

@@ -75,7 +75,8 @@ TEST(Tiles, DomainsContainTheirSamples) {
         const PlanarDomain domain = face_domain(surface, tiles, tile, frame, clip);
         ASSERT_EQ(domain.id, tiles.faces[tile]);
         for (const std::uint32_t texel : tiles.of(tile)) {
-          const Vec2 centre{texel % 256 + 0.5, texel / 256 + 0.5};
+          const std::uint32_t column = texel % 256, row = texel / 256;
+          const Vec2 centre{column + 0.5, row + 0.5};
           ASSERT_NEAR(norm(domain.point(centre) - frame.to_unit(surface.texel_point(texel))), 0, 1e-12);
           // Inside by the margin, which exceeds the rasteriser's displacement of a side, up to rounding.
           const std::span<const Vec2> corners = domain.outline.corners();

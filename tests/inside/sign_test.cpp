@@ -159,6 +159,7 @@ TEST(Sign, ThinPlatesAreThinFromFarAway) {
       Mesh plate = test::cube(1);
       for (Vec3& p : plate.positions) p[2] *= thickness / 2;
       std::vector<Vec3> points;
+      points.reserve(100);
       for (int i = 0; i < 100; ++i) points.push_back({0.01 * i - 0.5, 0.3, i % 2 ? away : -away});
       EXPECT_EQ(count_inside(Sites(plate), points), 0u) << thickness << ' ' << away;
     }

@@ -113,8 +113,8 @@ TEST(Errors, IndicesOutOfRange) {
   expect_fault("a.ply", ply_binary(mesh, std::endian::little),
                "index out of range: row 9 of element face refers to vertex -1");
   std::string contents = tds(torus(4, 4));
-  contents[contents.size() - 6 - 2 - 96 * 8 - 8] =
-      '\x7F';  // the last face of the chunk before the texture coordinates
+  // The last face of the chunk before the texture coordinates.
+  contents[contents.size() - 6 - 2 - std::size_t{96} * 8 - 8] = '\x7F';
   expect_fault("a.3ds", contents, "index out of range");
   std::string buffer = gltf_buffer(torus(4, 4));
   buffer[buffer.size() - 2] = 1;

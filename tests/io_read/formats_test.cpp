@@ -196,17 +196,18 @@ TEST(Ply, AllTypesAndSkippedPropertiesAndElements) {
       {"float32", [](std::string& s, double x, std::endian o) { put(s, static_cast<float>(x), o); }},
       {"double", [](std::string& s, double x, std::endian o) { put(s, x, o); }},
   };
+  const auto header = [](const std::string& format, const std::string& t) {
+    return "ply\nformat " + format + " 1.0\nobj_info nothing\nelement camera 1\nproperty list uchar " + t +
+           " values\nproperty short id\nelement vertex 4\nproperty uchar red\nproperty " + t +
+           " z\nproperty list uchar uchar names\nproperty " + t + " x\nproperty " + t +
+           " y\nelement face 1\nproperty float quality\nproperty list " + t + " " + t +
+           " vertex_index\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+  };
   for (const Type& type : types)
     for (const std::endian order : {std::endian::little, std::endian::big}) {
       const std::string t = type.name;
       std::string contents =
-          "ply\nformat " +
-          std::string(order == std::endian::little ? "binary_little_endian" : "binary_big_endian") +
-          " 1.0\nobj_info nothing\nelement camera 1\nproperty list uchar " + t +
-          " values\nproperty short id\nelement vertex 4\nproperty uchar red\nproperty " + t +
-          " z\nproperty list uchar uchar names\nproperty " + t + " x\nproperty " + t +
-          " y\nelement face 1\nproperty float quality\nproperty list " + t + " " + t +
-          " vertex_index\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+          header(order == std::endian::little ? "binary_little_endian" : "binary_big_endian", t);
       put(contents, std::uint8_t{2});
       type.put(contents, 1, order);
       type.put(contents, 2, order);
@@ -228,15 +229,16 @@ TEST(Ply, AllTypesAndSkippedPropertiesAndElements) {
 }
 
 TEST(Ply, TextureCoordinatesOfVertices) {
+  const auto contents = [](const std::string& u, const std::string& v) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "property float " +
+           u + "\nproperty float " + v +
+           "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0 0.25 0.5\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+  };
   for (const char* names : {"s t", "u v", "texture_u texture_v"}) {
-    const std::string n = names, u = n.substr(0, n.find(' ')), v = n.substr(n.find(' ') + 1);
-    const Mesh read = read_as(
-        "a.ply",
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-        "property float " +
-            u + "\nproperty float " + v +
-            "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-            "0 0 0 0.25 0.5\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
+    const std::string n = names;
+    const Mesh read = read_as("a.ply", contents(n.substr(0, n.find(' ')), n.substr(n.find(' ') + 1)));
     ASSERT_EQ(read.corner_uvs.size(), 1u);
     EXPECT_EQ(read.corner_uvs[0], (std::array<Vec2, 3>{{{0.25, 0.5}, {1, 0}, {0, 1}}}));
   }

@@ -338,7 +338,7 @@ TEST(SequenceGltf, ErrorsNameTheFault) {
   refuse({"LINEAR", {0, 1}, {0, 0, 0}}, "3 weights for 2 keys of 2 targets");
   refuse({"CUBICSPLINE", {0, 1}, {0, 0, 0, 0}}, "4 weights for 2 keys of 2 targets");
   const std::string good = morph_gltf(tetrahedron(), kTargets, {"LINEAR", {0, 1}, {0, 0, 1, 1}});
-  const auto refuse_with = [&](std::string from, std::string to, const std::string& fault) {
+  const auto refuse_with = [&](const std::string& from, std::string to, const std::string& fault) {
     std::string contents = good;
     to.resize(from.size(), ' ');
     contents.replace(contents.find(from), from.size(), to);

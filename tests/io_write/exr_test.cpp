@@ -35,8 +35,8 @@ Channels read_exr(const std::filesystem::path& file, std::uint32_t n) {
     const std::string name = channel.name();
     const bool is_id = name == "site.id" || name == "site.type" || name == "face.id";
     EXPECT_EQ(channel.channel().type, is_id ? Imf::UINT : Imf::FLOAT) << name;
-    frame.insert(channel.name(),
-                 Imf::Slice(channel.channel().type, reinterpret_cast<char*>(values.data()), 4, 4 * n));
+    frame.insert(channel.name(), Imf::Slice(channel.channel().type, reinterpret_cast<char*>(values.data()), 4,
+                                            std::size_t{4} * n));
   }
   exr.setFrameBuffer(frame);
   exr.readPixels(0, static_cast<int>(n) - 1);

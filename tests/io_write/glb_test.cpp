@@ -46,9 +46,8 @@ std::array<double, 3> sample(const tinygltf::Image& image, const std::array<floa
     const int ix = std::clamp(x0 + k % 2, 0, image.width - 1),
               iy = std::clamp(y0 + k / 2, 0, image.height - 1);
     const double weight = (k % 2 ? x - x0 : 1 - (x - x0)) * (k / 2 ? y - y0 : 1 - (y - y0));
-    for (int c = 0; c < 3; ++c)
-      color[c] +=
-          weight * image.image[static_cast<std::size_t>((iy * image.width + ix) * image.component + c)];
+    const int first = (iy * image.width + ix) * image.component;
+    for (int c = 0; c < 3; ++c) color[c] += weight * image.image[first + c];
   }
   return color;
 }

@@ -67,7 +67,7 @@ TEST_P(Poses, AgreeWithFclAndCgal) {
   int apart = 0, intersecting = 0;
   test::Disagreements distances(1e-6 * size);
   for (const Affine& pose : bench::random_poses(o1, o2, 200, random)) {
-    const std::size_t number = static_cast<std::size_t>(apart + intersecting);
+    const int number = apart + intersecting;
     SCOPED_TRACE(number);
     const MeshPair pair{internals(o1), internals(o2), pose};
     const Separation found = find_closest(pair, 10 * size, workspace);

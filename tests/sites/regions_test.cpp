@@ -89,11 +89,13 @@ TEST_P(Regions, OfFacesWithoutArea) {
                     .corner_uvs = {}};
     const Sites sites(mesh);
     std::vector<Vec3> queries;
+    queries.reserve(303);
     for (int i = 0; i < 300; ++i) queries.push_back(test::random_point({{-5, -5, -5}, {8, 11, 14}}, random));
     queries.push_back({0.5, 1, 1.5});
     queries.push_back({-1, -2, -3});
     queries.push_back({4, 8, 12});
     std::vector<double> expected;
+    expected.reserve(queries.size());
     for (const Vec3& q : queries)
       expected.push_back(oracle::distance(q, mesh.positions[0], mesh.positions[2]));
     const auto found = closest_points(sites, queries, {.engine = make_engine(GetParam())});
@@ -112,6 +114,7 @@ TEST_P(Regions, CollapsedAndDuplicateFacesAddNothing) {
   EXPECT_TRUE(sites.closed());
   std::mt19937 random(4);
   std::vector<Vec3> queries;
+  queries.reserve(1000);
   for (int i = 0; i < 1000; ++i) queries.push_back(test::random_point({{-3, -3, -3}, {3, 3, 3}}, random));
   const auto expected = closest_points(clean, queries, {.engine = make_engine(GetParam())});
   const auto found = closest_points(sites, queries, {.engine = make_engine(GetParam())});

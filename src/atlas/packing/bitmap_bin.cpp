@@ -69,7 +69,7 @@ std::optional<std::uint32_t> BitmapBin::fit_in_row(const Stamp& stamp, std::uint
   for (const Run& run : stamp.runs) {
     const std::uint32_t level = level_of(run.length);
     const std::uint64_t* words = row(level, y + run.row);
-    const std::size_t second = run.begin + run.length - (std::size_t{1} << level);
+    const std::size_t second = run.begin + run.length - std::bit_floor(std::size_t{run.length});
     for (std::size_t i = first; i < last; ++i)
       blocked[i] |= load(words, 64 * i + run.begin) | load(words, 64 * i + second);
     while (first < last && blocked[first] == kFull) ++first;

@@ -124,7 +124,8 @@ Stamp half_turned(Stamp stamp) {
 }  // namespace
 
 Footprint make_footprint(const Shape& shape, const FootprintOptions& options) {
-  const auto [scale, gutter, cell] = options;
+  const double scale = options.scale;
+  const std::uint32_t gutter = options.gutter, cell = options.cell;
   const std::uint32_t reach = (gutter + cell - 1) / cell;  // of the gutter, in cells
   Footprint result;
   if (!owns_texel(shape, scale, {0, 0})) result.shift = centring_shift(shape, scale);

@@ -97,6 +97,7 @@ uint32_t on_face(const sites::SitesData& sites, uint32_t face, Packet& p, uint32
 uint32_t on_edge(const sites::SitesData& sites, uint32_t edge, Packet& p, uint32_t lanes) {
   const auto [a, b] = sites.topology.edges[edge];
   const Vec3 &start = sites.mesh.positions[a], along = sites.mesh.positions[b] - start;
+  const std::uint32_t ends = a ^ b;
   const double inverse = 1 / squared_norm(along);
   const auto faces = sites.topology.edge_faces(edge);
   return for_lanes(p, lanes, [&](const Vec3v& query, Vec3v& from) HWY_ATTR {
@@ -107,7 +108,7 @@ uint32_t on_edge(const sites::SitesData& sites, uint32_t edge, Packet& p, uint32
     auto inside = hn::And(hn::Gt(t, hn::Zero(d)), hn::Lt(t, hn::Set(d, 1.0)));
     for (const std::uint32_t face : faces) {
       const Triangle& corners = sites.mesh.triangles[face];
-      const Vec3 opposite = sites.mesh.positions[corners[0] ^ corners[1] ^ corners[2] ^ a ^ b] - start;
+      const Vec3 opposite = sites.mesh.positions[corners[0] ^ corners[1] ^ corners[2] ^ ends] - start;
       const Vec3 inward = opposite - sdm::dot(opposite, along) * inverse * along;
       inside = hn::And(inside, hn::Le(dot(from, splat(inward)), hn::Zero(d)));
     }

@@ -62,11 +62,11 @@ HWY_INLINE hn::Vec<hn::RebindToUnsigned<Block>> positions(uint64_t bytes_in_orde
 
 // Appends those of eight numbers whose bit is set.
 HWY_INLINE void append(std::vector<uint32_t>& to, const uint32_t* numbers, uint32_t bits) {
-  const size_t size = to.size();
   if constexpr (hn::MaxLanes(Block()) < SiteBlock::kWidth) {
     for (; bits != 0; bits &= bits - 1) to.push_back(numbers[std::countr_zero(bits)]);
   } else {
     const hn::RebindToUnsigned<Block> d;
+    const size_t size = to.size();
     to.resize(size + SiteBlock::kWidth);
     const auto indices = hn::IndicesFromVec(d, positions(kPositions[bits]));
     hn::StoreU(hn::TableLookupLanes(hn::LoadU(d, numbers), indices), d, to.data() + size);

@@ -114,9 +114,9 @@ RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlR
     watch.lap();
     block.domains = domains_of(block, tree, surface, tiles, sites.frame, gl.clip);
     report.time_ms.refit += watch.lap();
-    stream.draw(block, [&](double fraction) {
+    stream.draw(block, [&, &progress = options.progress](double fraction) {
       const double done = (static_cast<double>(b) + fraction) / static_cast<double>(blocks.size());
-      if (options.progress && !options.progress("raster", done)) throw Cancelled();
+      if (progress && !progress("raster", done)) throw Cancelled();
     });
     block.domains = {};
   }

@@ -7,7 +7,8 @@ namespace sdm::gl {
 namespace {
 
 Vec2 centre(std::uint32_t texel, std::uint32_t resolution) {
-  return {texel % resolution + 0.5, texel / resolution + 0.5};
+  const std::uint32_t column = texel % resolution, row = texel / resolution;
+  return {column + 0.5, row + 0.5};
 }
 
 // The corners of the face in the atlas.

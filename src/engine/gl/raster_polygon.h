@@ -20,7 +20,7 @@ struct RasterPolygon {
   std::uint32_t domain;
 };
 inline constexpr int kTexelsPerPolygon = 7;
-static_assert(sizeof(RasterPolygon) == kTexelsPerPolygon * 4 * sizeof(float));
+static_assert(sizeof(RasterPolygon) == kTexelsPerPolygon * sizeof(float[4]));
 
 struct RasterCorner {
   float u, v;

@@ -43,6 +43,7 @@ void upload(GLuint buffer, std::span<const T> data) {
 }
 
 const void* offset(std::size_t bytes) {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes offsets as pointers
   return reinterpret_cast<const void*>(bytes);
 }
 

@@ -91,6 +91,7 @@ class PlyReader {
     std::size_t row_bytes = 0;
     for (const Property& p : element.properties)
       row_bytes += Source::least_bytes(p.count_type.value_or(p.type));
+    // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): there are properties, each with bytes
     if (element.count > in_.remaining() / row_bytes)
       throw Error(
           fmt::format("the header declares {} rows of element {}, more than the file can hold; it is "
@@ -110,7 +111,8 @@ class PlyReader {
       }
       lists_[p].clear();
       const double count = in_.number(*property.count_type);
-      for (double k = 0; k < count; ++k) lists_[p].push_back(in_.number(property.type));
+      for (std::size_t k = 0; static_cast<double>(k) < count; ++k)
+        lists_[p].push_back(in_.number(property.type));
     }
   }
 

@@ -31,8 +31,8 @@ NearSamples::Choice NearSamples::choose(std::uint32_t face, double x, double y, 
     if (distance < best.distance) best = {texel, distance};
   };
   consider(texel_at(x, y));
-  for (double j = y - 1; j <= y + 1 && best.distance > enough; ++j)
-    for (double i = x - 1; i <= x + 1; ++i) consider(texel_at(i, j));
+  for (int j = -1; j <= 1 && best.distance > enough; ++j)
+    for (int i = -1; i <= 1; ++i) consider(texel_at(x + i, y + j));
   if (best.distance > enough) {
     const std::uint32_t texel = nearest_texel(outline);
     if (best.texel == kNone || same_side(face, surface_.texel_faces()[texel])) consider(texel);

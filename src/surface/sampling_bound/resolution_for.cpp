@@ -44,7 +44,7 @@ double needed_factor(const Mesh& mesh, AtlasOptions options, double resolution, 
 
 }  // namespace
 
-std::uint32_t resolution_for(const Mesh& mesh, AtlasOptions options, double precision) {
+std::uint32_t resolution_for(const Mesh& mesh, const AtlasOptions& options, double precision) {
   if (!(precision > 0 && std::isfinite(precision)))
     throw Error("a precision of " + std::to_string(precision) +
                 " is out of range; use a length above 0 in the units of the mesh");

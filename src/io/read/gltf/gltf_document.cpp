@@ -49,7 +49,9 @@ FileBytes decode_base64(std::string_view text) {
     throw Error("an embedded buffer is not valid base64");
   };
   while (text.ends_with('=')) text.remove_suffix(1);
-  FileBytes bytes{std::make_unique_for_overwrite<char[]>(text.size() * 3 / 4 + 1), text.size() * 3 / 4};
+  FileBytes bytes;
+  bytes.size = text.size() * 3 / 4;
+  bytes.data = std::make_unique_for_overwrite<char[]>(bytes.size + 1);
   std::uint32_t bits = 0;
   for (std::size_t i = 0, out = 0; i < text.size(); ++i) {
     bits = bits << 6 | static_cast<std::uint32_t>(digit(text[i]));

@@ -15,7 +15,7 @@ GltfTransform node_transform(const json& node) {
   GltfTransform t;
   if (node.contains("matrix")) {
     const auto m = node["matrix"].get<std::array<double, 16>>();
-    for (int c = 0; c < 3; ++c) t.linear[c] = {m[4 * c], m[4 * c + 1], m[4 * c + 2]};
+    for (std::size_t c = 0; c < 3; ++c) t.linear[c] = {m[4 * c], m[4 * c + 1], m[4 * c + 2]};
     t.offset = {m[12], m[13], m[14]};
     return t;
   }

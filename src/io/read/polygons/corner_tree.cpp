@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ranges>
+#include <limits>
 
 #include "core/geometry/spatial_order.h"
 
@@ -15,8 +15,11 @@ namespace {
 std::vector<Vec3> to_unit_square(std::span<const Vec2> points) {
   std::vector<Vec3> result(points.size());
   for (int k = 0; k < 2; ++k) {
-    const auto [low, high] =
-        std::ranges::minmax(points | std::views::transform([k](const Vec2& p) { return p[k] / 2; }));
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec2& p : points) {
+      low = std::min(low, p[k] / 2);
+      high = std::max(high, p[k] / 2);
+    }
     const double size = std::max(high - low, std::numeric_limits<double>::min());
     for (std::size_t p = 0; p < points.size(); ++p) result[p][k] = (points[p][k] / 2 - low) / size;
   }
