@@ -90,12 +90,16 @@ int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point
   }
   const double length = (up ? 1 : -1) * (std::abs(way) + 0.01) / solid.frame.scale;
   // Segments along (1, t, t²) that intersect an edge are skipped. Those that meet the same edge lie in one
-  // plane through the point, and no such plane contains more than two of them, so the loop terminates.
-  for (double t = 0.0137035999;; t += 0.0072973525) {
+  // plane through the point, and no such plane contains more than two of them, so that only points on an edge
+  // need more than a few.
+  constexpr int kMostSegments = 100;
+  double t = 0.0137035999;
+  for (int i = 0; i < kMostSegments; ++i, t += 0.0072973525) {
     Vec3 along;
     along[axis] = length, along[(axis + 1) % 3] = t * length, along[(axis + 2) % 3] = t * t * length;
     if (const auto turns = winding(solid, pose, point, point + pose.linear(along))) return *turns;
   }
+  return 0;
 }
 
 }  // namespace sdm::inside

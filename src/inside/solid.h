@@ -15,7 +15,7 @@ namespace sdm::inside {
                                          const Vec3& q);
 
 /// The winding number of a solid moved by `pose` around a point that does not lie on its surface: 0 outside.
-/// Exact. Cost: usually one call of the above.
+/// Exact; 0 for a point on an edge. Cost: usually one call of the above.
 [[nodiscard]] int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
 
 /// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its winding

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "cli/samples.h"
 #include "support/meshes.h"
@@ -111,11 +110,11 @@ TEST_F(Consistency, ResultsOfEarlierRunsDoNotMix) {
   std::vector<std::string> both = one;
   both.emplace_back("--both");
   ASSERT_EQ(run_sdm(both).code, 0);
-  EXPECT_EQ(names_in(out), (std::set<std::string>{"o1", "o2"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"o1", "o2"}));
   ASSERT_EQ(run_sdm(one).code, 0);
   EXPECT_EQ(names_in(out), kResults);
   ASSERT_EQ(run_sdm(both).code, 0);
-  EXPECT_EQ(names_in(out), (std::set<std::string>{"o1", "o2"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"o1", "o2"}));
 }
 
 TEST_F(Consistency, NotesSuggestWrongUnits) {
