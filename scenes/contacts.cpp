@@ -27,8 +27,7 @@ std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sit
   for (std::uint32_t i = 0; i < points.size(); ++i)
     if (contains(reach, points[i])) indices.push_back(i), near.push_back(points[i]);
 
-  const SignMethod method =
-      solid.closed() && solid.orientable() ? SignMethod::exact : SignMethod::winding;
+  const SignMethod method = solid.closed() && solid.orientable() ? SignMethod::exact : SignMethod::winding;
   const std::vector<ClosestPoint> closest = closest_points(solid, near);
   const std::vector<std::uint8_t> is_inside = inside_flags(solid, near, closest, method);
   std::vector<VertexContact> contacts;

@@ -77,8 +77,7 @@ DistanceStatistics statistics(const Surface& surface, const DistanceMap& map) {
   const auto percentiles = [&](double& p50, double& p95, double& p99) {
     double below = 0;
     auto value = values.begin();
-    for (const auto& [share, to] :
-         {std::pair{0.50, &p50}, std::pair{0.95, &p95}, std::pair{0.99, &p99}}) {
+    for (const auto& [share, to] : {std::pair{0.50, &p50}, std::pair{0.95, &p95}, std::pair{0.99, &p99}}) {
       while (value + 1 != values.end() && below + value->weight < share * area) below += (value++)->weight;
       *to = value->distance;
     }

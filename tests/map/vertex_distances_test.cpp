@@ -49,9 +49,8 @@ TEST(DistancesAtVertices, UseTheCpuEngineForGl) {
 
 TEST(DistancesAtVertices, RejectASignThatO2DoesNotAllow) {
   const Sites open(square(2, 1));
-  EXPECT_THROW(
-      static_cast<void>(distances_at_vertices(tetrahedron(), open, {.sign = SignMethod::exact})),
-      Error);
+  EXPECT_THROW(static_cast<void>(distances_at_vertices(tetrahedron(), open, {.sign = SignMethod::exact})),
+               Error);
 }
 
 TEST(NearestDistancesAtVertices, AreToTheNearestOtherBody) {

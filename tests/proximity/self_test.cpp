@@ -20,7 +20,6 @@
 namespace sdm::test {
 namespace {
 
-
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // A strip of n × m squares along x, `length` long and 1 wide, bent about the y axis as `place` says.

@@ -4,8 +4,8 @@
 #include <limits>
 #include <tuple>
 
-#include "core/geometry/vec.h"
 #include "core/geometry/triangle_pair.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::core {
 namespace {

@@ -1,7 +1,7 @@
 // Intersection of triangles, decided by the signs of orientations only, which are exact.
 #include "core/geometry/predicates.h"
-#include "core/geometry/vec.h"
 #include "core/geometry/triangle_pair.h"
+#include "core/geometry/vec.h"
 
 namespace sdm::core {
 namespace {

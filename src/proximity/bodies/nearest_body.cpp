@@ -85,9 +85,9 @@ class BlockSearch {
 SignUsed signs_of_others(std::span<const sampled::Body> bodies, std::size_t on) {
   const auto solids = static_cast<std::size_t>(std::ranges::count_if(bodies, &sampled::Body::solid)) -
                       (bodies[on].solid() ? 1 : 0);
-  return {solids > 0 ? SignMethod::exact : SignMethod::none,
-          std::to_string(solids) + " of " + std::to_string(bodies.size() - 1) +
-              " other bodies are closed and orientable"};
+  return {solids > 0 ? SignMethod::exact : SignMethod::none, std::to_string(solids) + " of " +
+                                                                 std::to_string(bodies.size() - 1) +
+                                                                 " other bodies are closed and orientable"};
 }
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <new>
 
+#include "core/geometry/triangle_pair.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rows.h"
-#include "core/geometry/triangle_pair.h"
 
 namespace sdm {
 namespace {

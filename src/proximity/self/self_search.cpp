@@ -5,9 +5,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/geometry/triangle_pair.h"
 #include "core/geometry/vec.h"
 #include "hierarchy/traverse_wide.h"
-#include "core/geometry/triangle_pair.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::self {
@@ -122,8 +122,7 @@ FacePair SelfSearch::nearest(double max_distance) const {
     const Corners others = corners(sites_.mesh, other);
     if (squared_box_distance(own, others) > kAbove * limit * limit) return;
     const bool first = face_ < other;  // the same order, and so the same rounding, from either face
-    const PointPair c =
-        first ? closest_or_common(own, others) : closest_or_common(others, own);
+    const PointPair c = first ? closest_or_common(own, others) : closest_or_common(others, own);
     const FacePair pair{std::sqrt(c.squared), std::min(face_, other), std::max(face_, other), c.point1,
                         c.point2};
     if (pair.distance <= limit && pair.before(best)) best = pair, limit = pair.distance;
