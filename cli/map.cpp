@@ -85,10 +85,15 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
 
   progress.step("export");
   Stopwatch export_watch;
+  std::vector<std::uint8_t> boundary;
+  if (!sites->closed()) {
+    boundary = sdm::boundary_mask(*sites, map);
+    outcome.boundary_texels = static_cast<std::size_t>(std::ranges::count(boundary, 1));
+  }
   sdm::PictureOptions picture = command.picture;
   picture.accuracy = outcome.accuracy;
   sdm::run_concurrently({
-      [&] { write_map_files(folder, *surface, map, at_vertices, picture); },
+      [&] { write_map_files(folder, *surface, map, at_vertices, picture, boundary); },
       [&] {
         outcome.distance = sdm::statistics(*surface, map);
         outcome.error_bound = sdm::SamplingBound(*surface).value();

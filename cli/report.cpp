@@ -125,6 +125,7 @@ Json to_json(const Outcome& outcome) {
   json["texels_with_value"] = d.texels;
   json["negative_texels"] = d.negative_texels;
   json["beyond_max_distance"] = outcome.beyond_max_distance;
+  json["boundary_texels"] = outcome.boundary_texels;
   json["error_bound"] = outcome.error_bound;
   json["error_bound_kind"] = "bounded";
   if (outcome.tolerance)

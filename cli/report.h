@@ -33,6 +33,7 @@ struct Outcome {
   sdm::Extremes extremes;
   sdm::SignUsed sign;
   std::size_t beyond_max_distance = 0;
+  std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh
   double error_bound = 0;
   double accuracy = 0;             ///< of the engine
   bool embedded = true;            ///< the other mesh does not intersect itself

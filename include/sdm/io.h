@@ -48,7 +48,9 @@ struct PictureOptions {
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Values
 /// are dilated into the gutters; coverage.A is the coverage before dilation. Texels without a value hold NaN
 /// and 0xFFFFFFFF; in self maps, texels with nothing in range hold +∞, 0 and 0xFFFFFFFF.
-SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map);
+/// `boundary`, of boundary_mask() or empty: written as a channel boundary.M (FLOAT, 0 or 1).
+SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                       std::span<const std::uint8_t> boundary = {});
 /// The same for statistics over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
 

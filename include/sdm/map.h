@@ -50,4 +50,10 @@ struct DistanceMap {
 SDM_API void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,
                          DistanceMap& map);
 
+/// Returns, for each texel, 1 if its closest site is a boundary edge of an open O2 or a vertex of one,
+/// otherwise 0. Such texels may lie beside the part that O2 covers, where distances do not compare the two
+/// surfaces. The map must be one to these sites. Throws sdm::Error if it names a site that does not exist.
+/// Cost: linear.
+[[nodiscard]] SDM_API std::vector<std::uint8_t> boundary_mask(const Sites& sites, const DistanceMap& map);
+
 }  // namespace sdm

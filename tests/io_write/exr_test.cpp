@@ -133,6 +133,33 @@ TEST(Exr, KeepsEveryBitAndFillsGutters) {
   }
 }
 
+// A sphere around a square: its texels are closest to the square's inside near the axis, to its sides
+// elsewhere.
+TEST(Exr, MarksTheBoundaryOfAnOpenMesh) {
+  const Surface surface(sphere(3), {.resolution = 64});
+  const Sites square_sites(square(1, 0));
+  const DistanceMap map = compute_map(surface, square_sites);
+  const std::vector<std::uint8_t> mask = boundary_mask(square_sites, map);
+  const TemporaryFolder folder;
+  write_exr(folder / "map.exr", surface, map, mask);
+  const Channels channels = read_exr(folder / "map.exr", map.resolution);
+  EXPECT_EQ(channels.size(), 9u);
+  std::size_t marked = 0;
+  for (const std::uint32_t t : surface.sample_texels()) {
+    const Vec3 p = surface.texel_point(t);
+    const double beyond = std::max(std::abs(p[0]), std::abs(p[1])) - 0.5;  // of the square's sides
+    const bool is_marked = std::bit_cast<float>(channels.at("boundary.M")[t]) == 1;
+    if (std::abs(beyond) > 1e-6) {
+      ASSERT_EQ(is_marked, beyond > 0);
+    }
+    marked += is_marked;
+  }
+  EXPECT_GT(marked, 0u);
+  EXPECT_LT(marked, surface.sample_texels().size());
+  EXPECT_THROW(write_exr(folder / "other.exr", surface, map, std::vector<std::uint8_t>(3)), Error);
+  EXPECT_THROW(static_cast<void>(boundary_mask(Sites(single_triangle()), map)), Error);
+}
+
 TEST(Exr, MissingValuesAreNaNAndNone) {
   const Surface surface(ring(6), {.kind = AtlasKind::triangles, .resolution = 300});
   const DistanceMap map = map_of(surface, [](const Vec3& p) { return p[0] < 0 ? p[1] : std::nan(""); });

@@ -111,7 +111,7 @@ struct MapTexel {
   float distance = kNaN;
   Vec3f vector{kNaN, kNaN, kNaN};
   std::uint32_t site = kNone, site_type = kNone, face = kNone;
-  float coverage = 0;
+  float coverage = 0, boundary = 0;
 };
 
 struct TemporalTexel {
@@ -120,7 +120,10 @@ struct TemporalTexel {
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map) try {
+void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+               std::span<const std::uint8_t> boundary) try {
+  if (!boundary.empty() && boundary.size() != map.distance.size())
+    throw Error("cannot write " + file.string() + ": the mask of the boundary belongs to another map");
   constexpr std::size_t kVector = offsetof(MapTexel, vector);
   const Channel channels[] = {{"distance.D", Imf::FLOAT, offsetof(MapTexel, distance)},
                               {"vector.X", Imf::FLOAT, kVector},
@@ -129,14 +132,20 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
                               {"site.id", Imf::UINT, offsetof(MapTexel, site)},
                               {"site.type", Imf::UINT, offsetof(MapTexel, site_type)},
                               {"face.id", Imf::UINT, offsetof(MapTexel, face)},
-                              {"coverage.A", Imf::FLOAT, offsetof(MapTexel, coverage)}};
+                              {"coverage.A", Imf::FLOAT, offsetof(MapTexel, coverage)},
+                              {"boundary.M", Imf::FLOAT, offsetof(MapTexel, boundary)}};
+  const std::span used = std::span(channels).first(std::size(channels) - (boundary.empty() ? 1 : 0));
   const auto owners = surface.texel_faces();
-  write_texels<MapTexel>(file, surface, channels, [&](std::uint32_t source, bool covered) -> MapTexel {
+  write_texels<MapTexel>(file, surface, used, [&](std::uint32_t source, bool covered) -> MapTexel {
     if (source == kNone) return {};
     const SiteType type = map.site_type[source];
-    return {map.distance[source], map.vector[source],
-            map.site[source],     type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
-            owners[source],       covered ? 1.f : 0.f};
+    return {map.distance[source],
+            map.vector[source],
+            map.site[source],
+            type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
+            owners[source],
+            covered ? 1.f : 0.f,
+            !boundary.empty() && boundary[source] ? 1.f : 0.f};
   });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
