@@ -3,6 +3,7 @@
 #include "devices.h"
 #include "info.h"
 #include "map.h"
+#include "output_folder.h"
 #include "progress_line.h"
 #include "proximity.h"
 #include "scene.h"
@@ -14,6 +15,7 @@
 #include <sdm/version.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -38,6 +40,13 @@ const char* advice(sdm::Remedy remedy) {
       return " (--sign)";
   }
   return "";
+}
+
+/// Ends the process after an exception that cannot be caught: oneTBB throws one while it creates a thread.
+[[noreturn]] void end_by_uncaught_exception() {
+  std::cerr << "sdm: error: the system refused memory or a thread; allow more, or use --threads 1\n";
+  OutputFolder::discard_current();
+  std::_Exit(1);
 }
 
 /// Returns the exit code.
@@ -78,6 +87,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::set_terminate(end_by_uncaught_exception);
   try {
     return run(argc, argv);
   } catch (const sdm::Cancelled& error) {

@@ -2,13 +2,19 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
 #include <exception>
 #include <fstream>
+#include <functional>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -28,6 +34,26 @@ void create_folder(const fs::path& path) {
   if (error) fail(path, error.message());
 }
 
+constexpr std::string_view kPrefix = ".sdm-", kSuffix = ".part";  // around the number of the process
+
+// Removes the staging folders of processes that were killed: those that no longer run on this machine. Others
+// may share the folder, so staging folders that were written to a short time ago remain.
+void remove_abandoned(const fs::path& folder) {
+  constexpr auto kShort = std::chrono::minutes(1);
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
+    pid_t process = 0;
+    const char* number = name.data() + kPrefix.size();
+    const char* end = name.data() + name.size() - kSuffix.size();
+    if (number >= end || std::from_chars(number, end, process).ptr != end || process <= 0) continue;
+    if (kill(process, 0) == 0 || errno != ESRCH) continue;
+    const auto written = fs::last_write_time(entry.path(), error);
+    if (!error && fs::file_time_type::clock::now() - written > kShort) fs::remove_all(entry.path(), error);
+  }
+}
+
 fs::path without_trailing_slash(fs::path path) {
   path = fs::absolute(path).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
@@ -37,7 +63,7 @@ fs::path without_trailing_slash(fs::path path) {
 
 OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier)
     : folder_(without_trailing_slash(folder)),
-      staging_(folder_ / fmt::format(".sdm-{}.part", getpid())),
+      staging_(folder_ / fmt::format("{}{}{}", kPrefix, getpid(), kSuffix)),
       earlier_(std::move(earlier)) {
   if (folder == "-")
     throw sdm::Error("results are files and cannot go to standard output; give a folder with -o");
@@ -46,17 +72,24 @@ OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier
   while (!fs::exists(existing_, ignored) && existing_.has_relative_path())
     existing_ = existing_.parent_path();
   if (!fs::is_directory(existing_, ignored)) fail(existing_, "it is not a folder");
+  if (existing_ == folder_) remove_abandoned(folder_);
   try {
     std::error_code error;
     fs::create_directories(staging_, error);
     if (error) fail(folder_, error.message());
+    current_ = this;
   } catch (...) {
     remove_traces();
     throw;
   }
 }
 
+void OutputFolder::discard_current() {
+  if (current_) current_->remove_traces();
+}
+
 OutputFolder::~OutputFolder() {
+  current_ = nullptr;
   remove_traces();
 }
 
@@ -102,7 +135,14 @@ void OutputFolder::commit() {
     if (fs::is_directory(moves.back().second))
       fail(moves.back().second, "a folder with the name of an output file exists");
   }
+  // The report is absent while files are moved: where there is one, the results are complete and of one run,
+  // even if the process is killed here.
+  const auto is_report = [](const auto& move) { return move.second.filename() == "report.json"; };
+  std::ranges::stable_partition(moves, std::not_fn(is_report));
   for (const auto& [from, to] : moves) create_folder(to.parent_path());
+  std::error_code ignored;
+  for (const auto& move : moves)
+    if (is_report(move)) fs::remove(move.second, ignored);
   for (const auto& [from, to] : moves) {
     std::error_code error;
     fs::rename(from, to, error);
@@ -111,7 +151,6 @@ void OutputFolder::commit() {
   for (const fs::path& file : earlier_) {
     const fs::path stale = folder_ / file;
     if (std::ranges::find(moves, stale, &std::pair<fs::path, fs::path>::second) != moves.end()) continue;
-    std::error_code ignored;
     fs::remove(stale, ignored);
     if (stale.parent_path() != folder_) fs::remove(stale.parent_path(), ignored);  // if it is empty
   }

@@ -7,7 +7,8 @@
 #include <vector>
 
 /// Files are first written to a hidden staging folder inside the output folder, and moved into place at the
-/// end. After a failure no file remains, and no folder that did not exist before.
+/// end, report.json last. After a failure no file remains, and no folder that did not exist before. A process
+/// that is killed leaves its staging folder, which a later run into the same folder removes.
 class OutputFolder {
  public:
   /// `earlier`: files that earlier runs may have left, relative to the folder; those that this run does not
@@ -17,6 +18,9 @@ class OutputFolder {
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Removes what the folder in use, if any, has written: for a process that must end at once.
+  static void discard_current();
 
   /// Calls `work`, which writes its files below staging(), then moves them to the output folder, replacing
   /// those of an earlier run. Error messages contain a file's final path instead of its staged one. Throws
@@ -29,6 +33,8 @@ class OutputFolder {
   [[nodiscard]] std::string with_final_path(std::string message) const;
   void commit();
   void remove_traces();
+
+  static inline OutputFolder* current_ = nullptr;
 
   std::filesystem::path folder_, staging_;
   std::vector<std::filesystem::path> earlier_;

@@ -70,10 +70,11 @@ Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& opt
   close(err[1]);
 
   std::thread interrupter;
-  if (options.interrupt_after_ms > 0)
-    interrupter = std::thread([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(options.interrupt_after_ms));
-      kill(child, SIGINT);
+  const bool to_kill = options.kill_after_ms > 0;
+  if (const int ms = to_kill ? options.kill_after_ms : options.interrupt_after_ms; ms > 0)
+    interrupter = std::thread([=] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+      kill(child, to_kill ? SIGKILL : SIGINT);
     });
   Outcome run;
   drain({out[0], err[0]}, {&run.out, &run.err});

@@ -19,6 +19,7 @@ struct Conditions {
   std::vector<std::string> environment{};    ///< NAME=value, besides that of this program
   bool terminal = false;                     ///< stderr is a terminal
   int interrupt_after_ms = 0;                ///< send SIGINT then, unless 0
+  int kill_after_ms = 0;                     ///< send SIGKILL then, unless 0
 };
 
 [[nodiscard]] Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& options = {});
