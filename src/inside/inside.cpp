@@ -1,5 +1,6 @@
 #include "inside/inside.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 
@@ -46,7 +47,8 @@ class Balls {
 
 }  // namespace
 
-InsideTest::InsideTest(const sites::SitesData& sites, SignMethod method) : sites_(sites), method_(method) {
+InsideTest::InsideTest(const sites::SitesData& sites, SignMethod method, double error)
+    : sites_(sites), method_(method), error_(error) {
   if (method == SignMethod::exact) sides_.emplace(sites);
   refit();
 }
@@ -114,7 +116,7 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
     const Vec3& query = queries[i];
     if (!sdm::contains(box_, query)) continue;
     if (closest.type[i] == SiteType::none) continue;
-    const double radius = closest.distance[i] - clearance_;
+    const double radius = closest.distance[i] - std::max(clearance_, error_);
     std::optional<bool> is_inside;
     if (radius > 0) is_inside = balls.find(shape_, query, radius);
     if (!is_inside) {

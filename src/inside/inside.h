@@ -25,8 +25,9 @@ namespace sdm::inside {
 /// is to the surface need none of this: no face lies between the two.
 class InsideTest {
  public:
-  /// `method` as chosen by choose_sign; `none` makes every answer "outside".
-  InsideTest(const sites::SitesData& sites, SignMethod method);
+  /// `method` as chosen by choose_sign; `none` makes every answer "outside". `error`: the closest points of
+  /// packets are closest to within this length.
+  InsideTest(const sites::SitesData& sites, SignMethod method, double error = 0);
   /// Adapts to new positions of the sites. Reuses the memory.
   void refit();
 
@@ -49,8 +50,9 @@ class InsideTest {
 
   const sites::SitesData& sites_;
   SignMethod method_;
-  Box box_;                  ///< of O2: no point outside it is inside O2, even where rounding would decide
-  double clearance_ = 0;     ///< closest points are exact to this length
+  Box box_;  ///< of O2: no point outside it is inside O2, even where rounding would decide
+  double error_;
+  double clearance_ = 0;     ///< kClearance in units of the mesh
   std::uint64_t shape_ = 0;  ///< unique, over all objects, for these positions
   std::optional<FaceSides> sides_;
   std::optional<WindingNumber> winding_;

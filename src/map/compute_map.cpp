@@ -1,4 +1,5 @@
 #include <sdm/map.h>
+#include <sdm/tolerance.h>
 
 #include <array>
 #include <atomic>
@@ -21,7 +22,8 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
                  DistanceMap& map) try {
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
   const SignUsed sign = choose_sign(sites, options.sign);
-  const inside::InsideTest is_inside(internals(sites), sign.method);
+  const inside::InsideTest is_inside(internals(sites), sign.method,
+                                     engine_accuracy(engine->info(), surface.mesh(), sites.mesh()));
 
   const map::MapWriter writer(map, surface);
   map.sign = sign;
