@@ -1,6 +1,6 @@
-// The paper's Figure 1: surface distance maps of a figure in a box, in both directions, at 256² texels.
-// Writes to DIR the meshes, three pictures of each map, and figure1.png, which shows the figure in its box
-// with the distances, Voronoi diagrams and directions of both maps.
+// A scene like the paper's Figure 1: surface distance maps of a figure in a box, in both directions, at 256²
+// texels. Writes to DIR the meshes, three pictures of each map, and figure1.png, which shows the figure in
+// its box with the distances, Voronoi diagrams and directions of both maps.
 //
 //   build/release/bench/figure1 [--engine gl|cpu] [DIR]
 #include <sdm/error.h>
@@ -132,7 +132,8 @@ void draw(const std::filesystem::path& path, const Side& figure, const Side& box
 
 int run(int argc, char** argv) {
   std::filesystem::path folder = "out/figure1";
-  CLI::App app{"The paper's Figure 1: surface distance maps of a figure in a box, in both directions"};
+  CLI::App app{
+      "A scene like the paper's Figure 1: surface distance maps of a figure in a box, in both directions"};
   std::string engine_name = "gl";
   app.add_option("--engine", engine_name, "The engine that computes the maps")
       ->check(CLI::IsMember({"gl", "cpu"}))

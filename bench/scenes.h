@@ -10,11 +10,11 @@ namespace sdm::bench {
 /// Reads a mesh by its file name, and applies the steps of scenes::parse_placement.
 [[nodiscard]] Mesh load(std::string_view name, std::string_view steps = "");
 
-/// The figure of the paper's Figure 1: a standing man, 1 high, with the z axis up; CGAL's man.off reduced to
+/// A figure as in the paper's Figure 1: a standing man, 1 high, with the z axis up; CGAL's man.off reduced to
 /// 17,200 triangles.
 [[nodiscard]] Mesh paper_figure();
 
-/// The box of Figure 1: 12 triangles, 0.12 larger than the figure's bounds on each side.
+/// A box around it as there: 12 triangles, 0.12 larger than the figure's bounds on each side.
 [[nodiscard]] Mesh paper_box(const Mesh& figure);
 
 }  // namespace sdm::bench

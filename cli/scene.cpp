@@ -125,7 +125,7 @@ void run(const SceneCommand& command) {
 }  // namespace
 
 void add_scene_command(CLI::App& app) {
-  CLI::App* scene = app.add_subcommand("scene", "Generate one of the paper's deforming scenes");
+  CLI::App* scene = app.add_subcommand("scene", "Generate a deforming scene like those of the paper");
   const auto command = std::make_shared<SceneCommand>();
   scene
       ->add_option("SCENE", command->kind,

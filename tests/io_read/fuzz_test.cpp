@@ -1,12 +1,14 @@
 // Any input gives a valid mesh or sequence, or an sdm::Error.
 #include <gtest/gtest.h>
-#include <sdm/error.h>
-#include <sdm/sequence.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <vector>
 
 #include "io_read/sequences.h"
+#include "io_read/try_read.h"
 #include "io_read/writers.h"
 #include "support/shapes.h"
 
@@ -43,20 +45,8 @@ std::vector<Seed> seeds() {
                                    {"CUBICSPLINE", {0, 1}, std::vector<float>(12, 0.5f)}, "", true)}};
 }
 
-// Whether the file is read; fails the test unless it is read or rejected with an Error.
 bool try_read(const Seed& seed) {
-  static const std::filesystem::path rest = write_file("rest.off", off(tetrahedron()));
-  const std::filesystem::path file = write_file(seed.name, seed.contents);
-  try {
-    MeshSequence sequence(file.extension() == ".npy" ? rest.string() + "+" + file.string() : file.string());
-    EXPECT_NO_THROW(validate(sequence.mesh()));
-    for (std::size_t frame = 0; frame < sequence.frame_count(); ++frame)
-      EXPECT_EQ(sequence.positions(frame).size(), sequence.mesh().positions.size());
-    return true;
-  } catch (const Error& fault) {
-    EXPECT_EQ(std::string(fault.what()).find('\n'), std::string::npos) << fault.what();
-    return false;
-  }
+  return test::try_read(write_file(seed.name, seed.contents));
 }
 
 class Mutator {
@@ -111,6 +101,16 @@ TEST(Fuzz, MutatedFiles) {
     }
     EXPECT_GT(refused, 100u) << seed.name;   // mutations damage files
     EXPECT_LT(refused, 3000u) << seed.name;  // but not always
+  }
+}
+
+// Of the fuzzers (tests/fuzz): files to start from, and files that once failed.
+TEST(Fuzz, Corpus) {
+  for (const auto& entry : std::filesystem::directory_iterator(SDM_FUZZ_CORPUS)) {
+    SCOPED_TRACE(entry.path());
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string contents{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_NO_THROW(try_read({entry.path().filename(), contents}));
   }
 }
 

@@ -1,7 +1,6 @@
 // Sorts the pieces of a surface into the order in which a PieceAssignment uses them: by block, then by face.
 #include <algorithm>
 #include <numeric>
-#include <ranges>
 
 #include "core/parallel.h"
 #include "surface/sample_blocks.h"
@@ -121,9 +120,9 @@ class PieceAssignmentBuilder {
     }
     block_ends.push_back(static_cast<std::uint32_t>(faces.size()));
     squares.insert(squares.end(), block.squares.begin(), block.squares.end());
-    for (Piece piece : pieces | std::views::transform(&FacePiece::piece)) {
-      piece.sample %= kBlockSize;
-      all_pieces.push_back(piece);
+    for (const FacePiece& of : pieces) {
+      all_pieces.push_back(of.piece);
+      all_pieces.back().sample %= kBlockSize;
     }
   }
 

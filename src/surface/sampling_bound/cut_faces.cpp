@@ -146,7 +146,7 @@ class Cutter {
   void store(Pieces& pieces, const Face& face, const Polygon& polygon, std::uint32_t texel) const {
     const auto corners = polygon.corners();
     for (std::size_t first = 0; first < corners.size(); first += 4) {
-      Piece& piece = pieces.emplace_back(face.index).piece;
+      Piece& piece = pieces.emplace_back(FacePiece{face.index, {}}).piece;
       piece.sample = sample_of_[texel];
       for (std::size_t k = 0; k < 4; ++k)
         for (int i = 0; i < 2; ++i)

@@ -127,7 +127,7 @@ class GltfFrames : public FrameSource {
     for (const WeightTrack& track : tracks_)
       key_times_.insert(key_times_.end(), track.times().begin(), track.times().end());
     std::ranges::sort(key_times_);
-    key_times_.erase(std::ranges::unique(key_times_).begin(), key_times_.end());
+    key_times_.erase(std::unique(key_times_.begin(), key_times_.end()), key_times_.end());
     count_ = key_times_.size();
     if (rate == 0) return;
     interval_ = 1 / rate;
