@@ -28,6 +28,16 @@ void report(const Progress& progress, double fraction) {
   if (progress && !progress("atlas", fraction)) throw Cancelled();
 }
 
+// Shares of the time at which the steps end, roughly.
+constexpr double kClustered = 0.3, kSplit = 0.4, kPacked = 0.95;
+
+Progress packing_progress(const Progress& progress) {
+  if (!progress) return {};
+  return [&progress](std::string_view, double fraction) {
+    return progress("atlas", kSplit + fraction * (kPacked - kSplit));
+  };
+}
+
 // The projection of a chart followed by its placement maps onto the unit vectors right and down of the
 // chart's plane, times the scale s. For the inverse, p moves in the face's plane, with normal n, so that its
 // projection along the axis moves by right / s: ∂p/∂u = (right − axis (n·right)/(n·axis)) / s, and ∂p/∂v
@@ -50,13 +60,13 @@ Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
     charts = single_faces(faces);
   } else {
     charts = cluster_faces(mesh, faces, 1 / std::min(options.max_stretch, kMaxStretch));
-    report(options.progress, 0.3);
+    report(options.progress, kClustered);
     charts = split_overlaps(mesh, faces, std::move(charts));
   }
-  report(options.progress, 0.4);
+  report(options.progress, kSplit);
   const std::vector<Shape> shapes = chart_shapes(mesh, faces, charts);
   const std::vector<Placement> placements =
-      pack(shapes, options.resolution, options.gutter, options.progress);
+      pack(shapes, options.resolution, options.gutter, packing_progress(options.progress));
 
   Layout layout;
   layout.maps.resize(mesh.triangles.size());
@@ -82,6 +92,7 @@ Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
     }
   });
   for (const double cos : least_cos) layout.max_stretch = std::max(layout.max_stretch, 1 / cos);
+  report(options.progress, 1);
   return layout;
 }
 

@@ -110,16 +110,21 @@ TEST(ResolutionFor, IsAboutTheSmallestSufficient) {
     for (const double share : {0.05, 0.01, 0.002}) {
       const Mesh mesh = test::load("elephant-with-holes.off");
       const double precision = share * diagonal(bounds(mesh));
-      int layouts = 0;
+      double done = 0;
       AtlasOptions options{.kind = kind};
-      options.progress = [&](std::string_view, double fraction) { return layouts += fraction == 0, true; };
+      options.progress = [&](std::string_view step, double fraction) {
+        EXPECT_EQ(step, "resolution");
+        EXPECT_GE(fraction, done);
+        done = fraction;
+        return true;
+      };
       const std::uint32_t resolution = resolution_for(mesh, options, precision);
       options.progress = {};
       options.resolution = resolution;
       const double bound = bound_or_none(mesh, options);
       EXPECT_LE(bound, precision);
       EXPECT_EQ(resolution % 16, 0u);
-      EXPECT_LE(layouts, 6);
+      EXPECT_LE(done, 1 - std::exp2(-6)) << "more than 6 trials, each of half of what remains";
       options.resolution = resolution - std::max(16u, resolution / 8 / 16 * 16);
       if (bound <= 0.9 * precision) {
         EXPECT_GT(bound_or_none(mesh, options), precision);

@@ -161,6 +161,27 @@ TEST(Progress, CanCancel) {
   EXPECT_THROW(Surface(test::load("cube.off"), options), Cancelled);
 }
 
+// Regression: every round of the packing was a step of its own, and the fraction went back.
+TEST(Progress, IsOneStepThatNeverGoesBack) {
+  for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles})
+    for (const char* file : {"cube.off", "elephant-with-holes.off"})
+      for (const std::uint32_t resolution : {64u, 512u}) {
+        if (kind == AtlasKind::triangles && resolution == 64) continue;  // too small
+        std::vector<double> fractions;
+        AtlasOptions options{.kind = kind, .resolution = resolution};
+        options.progress = [&](std::string_view step, double fraction) {
+          EXPECT_EQ(step, "atlas");
+          fractions.push_back(fraction);
+          return true;
+        };
+        (void)Surface(test::load(file), options);
+        EXPECT_TRUE(std::ranges::is_sorted(fractions)) << file << ' ' << resolution;
+        EXPECT_EQ(fractions.front(), 0);
+        EXPECT_EQ(fractions.back(), 1);
+        EXPECT_GT(std::ranges::count_if(fractions, [](double f) { return f > 0.4 && f < 0.9; }), 2);
+      }
+}
+
 // Texels move with the vertices of their faces.
 TEST(SurfaceRefit, MovesTexelsWithTheirFaces) {
   for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {

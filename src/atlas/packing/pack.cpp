@@ -151,15 +151,29 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
   double low = 0.66, high = 1.0;
   std::optional<std::vector<Placement>> best;
   const double precision = shapes.size() > kManyCharts ? kPrecisionOfMany : kPrecision;
+  // A round in which something fits divides the gap by about kTrials + 1. Others achieve less: their
+  // successor then reports nothing new until it is ahead.
+  const double first_gap = high - low;
+  const auto done_at = [&](double gap) {
+    return std::log(first_gap / gap) / std::log(first_gap / precision);
+  };
+  double done = 0;
+  const auto report = [&](std::string_view step, double of_round) {
+    const double begin = done_at(high - low), end = done_at((high - low) / (kTrials + 1));
+    done = std::max(done, std::min(1.0, begin + of_round * (end - begin)));
+    return progress(step, done);
+  };
   while (!best || high - low > precision) {
     std::array<double, kTrials> shares{};
     std::array<std::optional<std::vector<Placement>>, kTrials> packings;
     for (int k = 0; k < kTrials; ++k)
       shares[k] = best ? low + (high - low) * (k + 1) / (kTrials + 1) : low + (high - low) * k / kTrials;
-    parallel_for(kTrials, 1, progress, "atlas: packing", [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        if (const auto scale = packer.scale_for(shares[k])) packings[k] = packer.try_scale(*scale);
-    });
+    parallel_for(kTrials, 1, progress ? Progress(report) : Progress(), "packing",
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t k = begin; k < end; ++k)
+                     if (const auto scale = packer.scale_for(shares[k]))
+                       packings[k] = packer.try_scale(*scale);
+                 });
     int fitting = kTrials - 1;
     while (fitting >= 0 && !packings[fitting]) --fitting;
     if (fitting + 1 < kTrials) high = shares[fitting + 1];

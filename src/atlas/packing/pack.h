@@ -20,8 +20,8 @@ struct Placement {
 
 /// Places all shapes at one scale, the largest that is found to fit, each with its own ring of `gutter` free
 /// texels and owning at least one texel. Throws sdm::Error if the resolution is too small for so many charts,
-/// or if there is not enough memory. Deterministic. Cost: several packings, each about linear in texels and
-/// faces.
+/// or if there is not enough memory. Deterministic. `progress` receives fractions that never decrease. Cost:
+/// several packings, each about linear in texels and faces.
 [[nodiscard]] std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolution,
                                           std::uint32_t gutter, const Progress& progress);
 

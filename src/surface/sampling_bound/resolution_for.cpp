@@ -33,6 +33,14 @@ double needed_factor(const Mesh& mesh, AtlasOptions options, double resolution, 
   return static_cast<double>(error.enough()) / resolution;
 }
 
+/// The number of trials is not known in advance: each takes half of what remains.
+Progress trial_progress(const Progress& progress, int trial) {
+  if (!progress) return {};
+  return [&progress, left = std::exp2(-trial)](std::string_view, double fraction) {
+    return progress("resolution", 1 - left * (1 - fraction / 2));
+  };
+}
+
 [[noreturn]] void throw_unreachable(double precision, double resolution) {
   std::ostringstream message;
   message.precision(2);
@@ -57,8 +65,10 @@ std::uint32_t resolution_for(const Mesh& mesh, const AtlasOptions& options, doub
 
   // Trials that are too coarse and fine enough, with their factors.
   double coarse = 0, coarse_factor = 0, fine = 0, fine_factor = 0, resolution = stepped(usual);
-  for (;;) {
-    const double factor = needed_factor(mesh, options, resolution, precision);
+  AtlasOptions of_trial = options;
+  for (int trial = 0;; ++trial) {
+    of_trial.progress = trial_progress(options.progress, trial);
+    const double factor = needed_factor(mesh, of_trial, resolution, precision);
     (factor <= 1 ? fine : coarse) = resolution;
     (factor <= 1 ? fine_factor : coarse_factor) = factor;
     const double gap = std::max(kStep, kStep * std::floor(fine / 8 / kStep));
