@@ -15,22 +15,33 @@ namespace sdm {
 /// latter by +∞ instead: the minimum is then that over the other maps.
 class SDM_API TemporalMaps {
  public:
+  /// What a later process needs in order to continue.
+  struct State {
+    std::size_t maps = 0;
+    std::uint32_t resolution = 0;
+    std::vector<float> least{}, largest{};  ///< of resolution² texels, none before the first map
+    std::vector<double> sum{};              ///< of the distances, likewise
+  };
+
+  TemporalMaps() = default;
+  /// Continues from an earlier state: the results are bit for bit those without the interruption. Throws
+  /// sdm::Error if the sizes do not match.
+  explicit TemporalMaps(State state);
+
   /// Adds a map. Throws sdm::Error if its resolution differs from that of earlier maps. Cost: O(n) in texels,
   /// all cores.
   void add(const DistanceMap& map);
 
-  [[nodiscard]] std::size_t maps() const { return maps_; }
-  [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
-  [[nodiscard]] std::span<const float> least() const { return least_; }
-  [[nodiscard]] std::span<const float> largest() const { return largest_; }
+  [[nodiscard]] std::size_t maps() const { return state_.maps; }
+  [[nodiscard]] std::uint32_t resolution() const { return state_.resolution; }
+  [[nodiscard]] std::span<const float> least() const { return state_.least; }
+  [[nodiscard]] std::span<const float> largest() const { return state_.largest; }
   /// Cost: O(n) in texels.
   [[nodiscard]] std::vector<float> mean() const;
+  [[nodiscard]] const State& state() const { return state_; }
 
  private:
-  std::size_t maps_ = 0;
-  std::uint32_t resolution_ = 0;
-  std::vector<float> least_, largest_;
-  std::vector<double> sum_;
+  State state_;
 };
 
 }  // namespace sdm

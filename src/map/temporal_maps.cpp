@@ -4,40 +4,49 @@
 #include <cmath>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "core/memory.h"
 #include "core/parallel.h"
 
 namespace sdm {
 
+TemporalMaps::TemporalMaps(State state) : state_(std::move(state)) {
+  const std::size_t n = state_.maps == 0 ? 0 : std::size_t{state_.resolution} * state_.resolution;
+  if (state_.least.size() != n || state_.largest.size() != n || state_.sum.size() != n)
+    throw Error("maps over time of " + std::to_string(state_.resolution) +
+                "² texels cannot continue from a state of another size; give a complete one");
+}
+
 void TemporalMaps::add(const DistanceMap& map) try {
-  if (maps_ == 0) {
-    resolution_ = map.resolution;
-    least_ = largest_ = map.distance;
-    sum_.assign(map.distance.begin(), map.distance.end());
-  } else if (map.resolution != resolution_) {
+  State& state = state_;
+  if (state.maps == 0) {
+    state.resolution = map.resolution;
+    state.least = state.largest = map.distance;
+    state.sum.assign(map.distance.begin(), map.distance.end());
+  } else if (map.resolution != state.resolution) {
     throw Error("a map of " + std::to_string(map.resolution) + "² texels cannot be added to maps of " +
-                std::to_string(resolution_) + "²");
+                std::to_string(state.resolution) + "²");
   } else {
-    parallel_for(sum_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    parallel_for(state.sum.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const float d = map.distance[i];
-        sum_[i] += d;  // NaN if either is
+        state.sum[i] += d;  // NaN if either is
         // NaN in either operand makes the minimum and maximum NaN as well.
-        if (d < least_[i] || std::isnan(d)) least_[i] = d;
-        if (d > largest_[i] || std::isnan(d)) largest_[i] = d;
+        if (d < state.least[i] || std::isnan(d)) state.least[i] = d;
+        if (d > state.largest[i] || std::isnan(d)) state.largest[i] = d;
       }
     });
   }
-  ++maps_;
+  ++state.maps;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("maps over time");
 }
 
 std::vector<float> TemporalMaps::mean() const try {
-  std::vector<float> mean(sum_.size());
-  for (std::size_t i = 0; i < sum_.size(); ++i)
-    mean[i] = static_cast<float>(sum_[i] / static_cast<double>(maps_));
+  std::vector<float> mean(state_.sum.size());
+  for (std::size_t i = 0; i < mean.size(); ++i)
+    mean[i] = static_cast<float>(state_.sum[i] / static_cast<double>(state_.maps));
   return mean;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("maps over time");

@@ -74,6 +74,26 @@ TEST(Temporal, NothingInRangeIsInfinitelyFar) {
   }
 }
 
+TEST(Temporal, ContinuesFromAState) {
+  const Surface surface(ring(12), {.resolution = 64});
+  TemporalMaps all, some;
+  for (int t = 0; t < 9; ++t) {
+    if (t == 0 || t == 4) some = TemporalMaps(some.state());
+    const DistanceMap map = map_of(surface, [&](const Vec3& p) { return p[0] + std::cos(t * p[1]) / 3; });
+    all.add(map);
+    some.add(map);
+  }
+  EXPECT_EQ(some.maps(), 9u);
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    ASSERT_EQ(some.least()[texel], all.least()[texel]);
+    ASSERT_EQ(some.largest()[texel], all.largest()[texel]);
+    ASSERT_EQ(some.state().sum[texel], all.state().sum[texel]);
+  }
+  TemporalMaps::State damaged = all.state();
+  damaged.largest.pop_back();
+  EXPECT_THROW(TemporalMaps{damaged}, Error);
+}
+
 TEST(Temporal, RejectsMapsOfOtherSizes) {
   TemporalMaps maps;
   maps.add(map_of(Surface(ring(12), {.resolution = 64}), [](const Vec3&) { return 1; }));
