@@ -74,7 +74,7 @@ std::string summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
 }
 
 void run(BodiesCommand command) {
-  const sdm::ThreadLimit limit(command.threads);
+  limit_threads(command.threads);
   std::optional<OutputFolder> out;
   if (!command.out.empty()) out.emplace(command.out);
   ProgressLine progress(command.quiet);

@@ -1,5 +1,7 @@
 #include "common_options.h"
 
+#include <sdm/threads.h>
+
 #include "option_checks.h"
 
 CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder) {
@@ -68,6 +70,11 @@ void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
       ->capture_default_str();
   app.add_flag("--json", json, "Print " + json_prints);
   app.add_flag("--quiet", quiet, "Print only errors, and the JSON if requested");
+}
+
+void limit_threads(unsigned count) {
+  static const auto* const limit = new sdm::ThreadLimit(count);
+  (void)limit;
 }
 
 void check_range(const std::vector<double>& range) {

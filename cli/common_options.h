@@ -27,5 +27,9 @@ void add_proximity_options(CLI::App& app, bool& exact, std::string& units);
 void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
                      const std::string& json_prints);
 
+/// Limits the threads of this process to `count`, 0: all cores. Never lifted: oneTBB would start threads
+/// then, which fails if memory is short, although the results are complete.
+void limit_threads(unsigned count);
+
 /// Throws CLI::ValidationError unless the range is empty or increasing.
 void check_range(const std::vector<double>& range);

@@ -1,5 +1,6 @@
 #include "map.h"
 
+#include "common_options.h"
 #include "format.h"
 #include "map_files.h"
 #include "map_options.h"
@@ -138,7 +139,7 @@ std::vector<std::filesystem::path> stale_files() {
 /// Returns the exit code.
 int run(MapCommand command) {
   Stopwatch total;
-  const sdm::ThreadLimit limit(command.threads);
+  limit_threads(command.threads);
   OutputFolder out(command.out, stale_files());
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.map.progress = progress.callback();

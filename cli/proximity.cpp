@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 
+#include "common_options.h"
 #include "pair_options.h"
 #include "progress_line.h"
 #include "proximity_report.h"
@@ -16,7 +17,7 @@
 namespace {
 
 void run(PairCommand command) {
-  const sdm::ThreadLimit limit(command.threads);
+  limit_threads(command.threads);
   ProgressLine progress(command.quiet);
   command.options.atlas.progress = progress.callback();
 

@@ -94,7 +94,7 @@ nlohmann::ordered_json describe(const SceneCommand& command, const Scene& scene,
 }
 
 void run(const SceneCommand& command) {
-  const sdm::ThreadLimit limit(command.threads);
+  limit_threads(command.threads);
   OutputFolder out(command.out);
   ProgressLine progress(command.quiet);
   const sdm::Progress report = progress.callback();

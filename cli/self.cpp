@@ -95,7 +95,7 @@ std::string summary(const SelfCommand& command, const Json& report) {
 
 void run(SelfCommand command) {
   Stopwatch total;
-  const sdm::ThreadLimit limit(command.threads);
+  limit_threads(command.threads);
   OutputFolder out(command.out);
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.self.progress = progress.callback();

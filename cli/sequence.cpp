@@ -251,7 +251,7 @@ void add_sequence_command(CLI::App& app) {
   sequence->add_flag("--no-temporal", command->no_temporal,
                      "Do not compute maps over time; faster, because frames then need no complete map");
   sequence->callback([command] {
-    const sdm::ThreadLimit limit(command->pair.threads);
+    limit_threads(command->pair.threads);
     FrameLoop(*command).process();
   });
 }
