@@ -76,7 +76,7 @@ std::string summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
 void run(BodiesCommand command) {
   limit_threads(command.threads);
   std::optional<OutputFolder> out;
-  if (!command.out.empty()) out.emplace(command.out);
+  if (!command.out.empty()) out.emplace(command.out, std::vector<std::filesystem::path>{"report.json"});
   ProgressLine progress(command.quiet);
   command.options.atlas.progress = progress.callback();
 

@@ -7,6 +7,7 @@
 #include <sdm/solid.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,8 @@
 
 #include "format.h"
 #include "output_folder.h"
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -126,10 +129,18 @@ std::string to_csv(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
   return csv;
 }
 
+// Whole or not at all; directly into what is not a file, such as /dev/stdout.
+void write_whole(const fs::path& path, const std::string& text) {
+  if (fs::exists(path) && !fs::is_regular_file(path)) return write_text(path, text);
+  const fs::path file = fs::weakly_canonical(path);  // a link remains one
+  OutputFolder out(file.parent_path());
+  out.fill([&] { write_text(out.staging() / file.filename(), text); });
+}
+
 void run(const Options& options) {
   const Info info = collect(options.file);
   if (!options.self_intersections.empty())
-    write_text(options.self_intersections, to_csv(info.self_intersections));
+    write_whole(options.self_intersections, to_csv(info.self_intersections));
   if (options.json)
     std::cout << to_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
               << '\n';

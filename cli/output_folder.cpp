@@ -1,21 +1,24 @@
 #include "output_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <signal.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
-#include <charconv>
-#include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -34,24 +37,62 @@ void create_folder(const fs::path& path) {
   if (error) fail(path, error.message());
 }
 
-constexpr std::string_view kPrefix = ".sdm-", kSuffix = ".part";  // around the number of the process
+constexpr const char* kPrefix = ".sdm-part-";
 
-// Removes the staging folders of processes that were killed: those that no longer run on this machine. Others
-// may share the folder, so staging folders that were written to a short time ago remain.
-void remove_abandoned(const fs::path& folder) {
-  constexpr auto kShort = std::chrono::minutes(1);
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
-    pid_t process = 0;
-    const char* number = name.data() + kPrefix.size();
-    const char* end = name.data() + name.size() - kSuffix.size();
-    if (number >= end || std::from_chars(number, end, process).ptr != end || process <= 0) continue;
-    if (kill(process, 0) == 0 || errno != ESRCH) continue;
-    const auto written = fs::last_write_time(entry.path(), error);
-    if (!error && fs::file_time_type::clock::now() - written > kShort) fs::remove_all(entry.path(), error);
+// A lock on a staging folder, which the system releases when its process ends, however it ends. Processes on
+// other machines and in other containers see it too, which is not true of the number of the process.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder)
+      : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
+        error_(file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0 ? 0 : errno) {}
+  ~FolderLock() {
+    if (file_ >= 0) close(file_);
   }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+  [[nodiscard]] bool held() const { return error_ == 0; }
+  /// Another process holds it, or has removed the folder.
+  [[nodiscard]] bool lost() const { return error_ == EWOULDBLOCK || error_ == ENOENT; }
+
+ private:
+  int file_, error_;
+};
+
+// Removes the staging folders of processes that were killed. Where the file system has no locks they remain.
+void remove_abandoned(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().filename().string().starts_with(kPrefix)) found.push_back(entry.path());
+  for (const fs::path& staging : found)
+    if (const FolderLock lock(staging); lock.held()) fs::remove_all(staging, error);
+}
+
+/// Creates a staging folder with a name of its own, and locks it. The lock is held until it is destroyed.
+std::pair<fs::path, std::shared_ptr<const void>> make_staging(const fs::path& folder) {
+  for (;;) {
+    std::string name = (folder / fmt::format("{}XXXXXX", kPrefix)).string();
+    if (mkdtemp(name.data()) == nullptr) fail(folder, std::generic_category().message(errno));
+    try {
+      fs::path path = name;
+      auto lock = std::make_shared<const FolderLock>(path);
+      // A process that starts now may have taken it for abandoned before it was locked.
+      std::error_code ignored;
+      if (!lock->lost() && fs::exists(path, ignored)) return {std::move(path), std::move(lock)};
+    } catch (...) {  // for lack of memory
+      rmdir(name.c_str());
+      throw;
+    }
+  }
+}
+
+/// Files that show that results are complete, or that they can be completed.
+bool concludes(const fs::path& file) {
+  constexpr std::array<std::string_view, 4> kNames{"report.json", "frames.jsonl", "scene.json",
+                                                   "resume.state"};
+  return std::ranges::find(kNames, file.filename().string()) != kNames.end();
 }
 
 fs::path without_trailing_slash(fs::path path) {
@@ -62,9 +103,7 @@ fs::path without_trailing_slash(fs::path path) {
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier)
-    : folder_(without_trailing_slash(folder)),
-      staging_(folder_ / fmt::format("{}{}{}", kPrefix, getpid(), kSuffix)),
-      earlier_(std::move(earlier)) {
+    : folder_(without_trailing_slash(folder)), earlier_(std::move(earlier)) {
   if (folder == "-")
     throw sdm::Error("results are files and cannot go to standard output; give a folder with -o");
   std::error_code ignored;
@@ -74,9 +113,8 @@ OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier
   if (!fs::is_directory(existing_, ignored)) fail(existing_, "it is not a folder");
   if (existing_ == folder_) remove_abandoned(folder_);
   try {
-    std::error_code error;
-    fs::create_directories(staging_, error);
-    if (error) fail(folder_, error.message());
+    create_folder(folder_);
+    std::tie(staging_, lock_) = make_staging(folder_);
     current_ = this;
   } catch (...) {
     remove_traces();
@@ -94,6 +132,7 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::remove_traces() {
+  reserve_.reset();
   std::error_code ignored;
   fs::remove_all(staging_, ignored);
   // Folders that contain results are not empty, so they remain.
@@ -135,14 +174,14 @@ void OutputFolder::commit() {
     if (fs::is_directory(moves.back().second))
       fail(moves.back().second, "a folder with the name of an output file exists");
   }
-  // The report is absent while files are moved: where there is one, the results are complete and of one run,
+  // Those of earlier runs are absent while files are moved: where there is one, the results are of one run,
   // even if the process is killed here.
-  const auto is_report = [](const auto& move) { return move.second.filename() == "report.json"; };
-  std::ranges::stable_partition(moves, std::not_fn(is_report));
+  const auto is_last = [](const auto& move) { return concludes(move.second); };
+  std::ranges::stable_partition(moves, std::not_fn(is_last));
   for (const auto& [from, to] : moves) create_folder(to.parent_path());
   std::error_code ignored;
-  for (const auto& move : moves)
-    if (is_report(move)) fs::remove(move.second, ignored);
+  for (const fs::path& file : earlier_)
+    if (concludes(file)) fs::remove(folder_ / file, ignored);
   for (const auto& [from, to] : moves) {
     std::error_code error;
     fs::rename(from, to, error);

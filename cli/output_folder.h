@@ -3,16 +3,19 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 /// Files are first written to a hidden staging folder inside the output folder, and moved into place at the
-/// end, report.json last. After a failure no file remains, and no folder that did not exist before. A process
-/// that is killed leaves its staging folder, which a later run into the same folder removes.
+/// end; those that show that results are complete, such as report.json, come last. After a failure no file
+/// remains, and no folder that did not exist before. A process that is killed leaves its staging folder,
+/// which the next run into the same folder removes.
 class OutputFolder {
  public:
-  /// `earlier`: files that earlier runs may have left, relative to the folder; those that this run does not
-  /// write are removed with its success, so that results never mix. Throws sdm::Error if `folder` is a file,
+  /// `earlier`: files that earlier runs may have left, relative to the folder. With the success of this run,
+  /// those that show that results are complete are removed before any file is moved, and in the end all that
+  /// this run does not write, so that results never mix. Throws sdm::Error if `folder` is a file,
   /// or cannot be created or written to.
   explicit OutputFolder(const std::filesystem::path& folder, std::vector<std::filesystem::path> earlier = {});
   ~OutputFolder();
@@ -37,6 +40,9 @@ class OutputFolder {
   static inline OutputFolder* current_ = nullptr;
 
   std::filesystem::path folder_, staging_;
+  std::shared_ptr<const void> lock_;  ///< on the staging folder
+  /// Memory for remove_traces(), released before: too little for a mapping of its own, so it stays available.
+  std::unique_ptr<char[]> reserve_{new char[100'000]};
   std::vector<std::filesystem::path> earlier_;
   std::filesystem::path existing_;  ///< the closest ancestor of folder_, or itself, that existed before
 };

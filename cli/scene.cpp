@@ -95,7 +95,7 @@ nlohmann::ordered_json describe(const SceneCommand& command, const Scene& scene,
 
 void run(const SceneCommand& command) {
   limit_threads(command.threads);
-  OutputFolder out(command.out);
+  OutputFolder out(command.out, {"scene.json"});
   ProgressLine progress(command.quiet);
   const sdm::Progress report = progress.callback();
   nlohmann::ordered_json description;

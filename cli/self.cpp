@@ -96,7 +96,7 @@ std::string summary(const SelfCommand& command, const Json& report) {
 void run(SelfCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.out);
+  OutputFolder out(command.out, {"report.json"});
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.self.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};

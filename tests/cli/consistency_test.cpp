@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 #include <sdm/io.h>
 
-#include <chrono>
 #include <cmath>
-#include <csignal>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
@@ -157,49 +154,6 @@ TEST_F(Consistency, ResultsDoNotGoToStandardOutput) {
   const Outcome run = run_sdm({"map", small, two, "-o", "-"});
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("give a folder with -o"));
-}
-
-// At whatever moment: no report without all results of its run, and only a hidden folder is left, which a
-// later run removes.
-TEST_F(Consistency, KilledRunsLeaveNothingThatLooksLikeAResult) {
-  const std::vector<std::string> map{"map", small, two, "-o", out, "--resolution", "128"};
-  int killed = 0;
-  for (int ms = 5; ms < 200; ms += 13) {
-    std::filesystem::remove_all(out);
-    killed += run_sdm(map, {.kill_after_ms = ms}).code == 128 + SIGKILL;
-    if (!std::filesystem::exists(out)) continue;
-    std::vector<std::string> names = names_in(out);
-    if (std::filesystem::exists(out + "/report.json")) {
-      EXPECT_EQ(names, kResults);
-    }
-  }
-  EXPECT_GT(killed, 0);
-  std::filesystem::create_directories(out + "/.sdm-99999999.part/o1");
-  std::filesystem::last_write_time(out + "/.sdm-99999999.part",
-                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
-  ASSERT_EQ(run_sdm(map).code, 0);
-  EXPECT_FALSE(std::filesystem::exists(out + "/.sdm-99999999.part"));
-}
-
-// At any limit: an error or a complete result.
-TEST_F(Consistency, LittleMemoryIsAnErrorWithoutFiles) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "a limit on memory leaves AddressSanitizer no room for its shadow";
-#endif
-  const std::vector<std::string> map{"map", small, two, "-o", out, "--resolution", "1024", "--threads", "1"};
-  int failed = 0;
-  for (std::uint64_t mib = 20; mib < 160; mib += 9) {
-    std::filesystem::remove_all(out);
-    const Outcome run = run_sdm(map, {.memory = mib << 20});
-    if (run.code == 0) {
-      EXPECT_EQ(names_in(out), kResults);
-      continue;
-    }
-    ++failed;
-    EXPECT_TRUE(run.code == 1 || run.code == 127) << run.code << " at " << mib << " MiB: " << run.err;
-    EXPECT_FALSE(std::filesystem::exists(out)) << mib;
-  }
-  EXPECT_GT(failed, 0);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST_F(Failure, AFullDiskLeavesNoTraceOfAnyCommand) {
     for (const std::uint64_t bytes : {0, 500}) {
       const Outcome run = run_sdm(command, {.file_size = bytes});
       expect_failure(run, "cannot write " + out + "/");  // the final path, not that of the staged file
-      EXPECT_THAT(run.err, Not(HasSubstr(".part")));
+      EXPECT_THAT(run.err, Not(HasSubstr(".sdm-part")));
     }
   }
 }
