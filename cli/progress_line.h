@@ -1,10 +1,22 @@
 // Progress on a terminal, and clean termination on Ctrl-C.
 #pragma once
 
+#include <sdm/error.h>
 #include <sdm/progress.h>
 
 #include <string>
 #include <string_view>
+#include <utility>
+
+/// An interrupt after which results have been kept. The message is one sentence that says what and where.
+class Interrupted : public sdm::Cancelled {
+ public:
+  explicit Interrupted(std::string message) : message_(std::move(message)) {}
+  [[nodiscard]] const char* what() const noexcept override { return message_.c_str(); }
+
+ private:
+  std::string message_;
+};
 
 /// A line on stderr that is rewritten, and removed at the end. Shown only if stderr is a terminal. During its
 /// lifetime, the first interrupt (Ctrl-C, SIGTERM or SIGHUP) cancels the work, and the second one terminates

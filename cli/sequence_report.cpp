@@ -39,6 +39,26 @@ double median(const std::vector<Frame>& frames, const Value& value) {
   return *middle;
 }
 
+double number_from(const Json& json) {
+  return json.is_null() ? kNaN : json.get<double>();  // JSON has no NaN
+}
+
+sdm::Certainty certainty(const std::string& text) {
+  for (const sdm::Certainty kind : {sdm::Certainty::exact, sdm::Certainty::bounded})
+    if (text == name(kind)) return kind;
+  return sdm::Certainty::estimate;
+}
+
+// Without the witness, which only lines of JSON have.
+sdm::BoundedLength length_from(const Json& json) {
+  sdm::BoundedLength length;
+  length.value = number_from(json.at("value"));
+  length.lower = number_from(json.at("lower"));
+  length.upper = number_from(json.at("upper"));
+  length.certainty = certainty(json.at("kind"));
+  return length;
+}
+
 }  // namespace
 
 Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
@@ -62,6 +82,33 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
 
 Json to_json(const BadFrame& frame) {
   return {{"frame", frame.index}, {"error", frame.fault}};
+}
+
+bool is_bad(const Json& line) {
+  return line.contains("error");
+}
+
+BadFrame bad_frame_from(const Json& line) {
+  return {line.at("frame"), line.at("error")};
+}
+
+Frame frame_from(const Json& line) {
+  Frame frame;
+  frame.index = line.at("frame");
+  frame.separation = length_from(line.at("separation"));
+  const Json& colliding = line.at("colliding");
+  frame.colliding = {colliding.at("value"), certainty(colliding.at("kind"))};
+  if (const Json& depth = line.at("penetration_depth"); !depth.is_null()) frame.depth = length_from(depth);
+  frame.contacts = line.at("contacts");
+  frame.patches = line.at("patches").size();
+  const auto of_bodies = [&](const char* key) -> std::array<double, 2> {
+    return {number_from(line.at(key).at("o1")), number_from(line.at(key).at("o2"))};
+  };
+  frame.error_bound = of_bodies("error_bound");
+  frame.relative_error = of_bodies("relative_error");
+  const Json& t = line.at("time_ms");
+  frame.time = {t.at("read"), t.at("update"), t.at("query"), t.at("error"), t.at("map"), t.at("write")};
+  return frame;
 }
 
 std::string to_csv(const std::vector<Frame>& frames) {

@@ -1,5 +1,5 @@
 // The results of a sequence, as lines of JSON, as a table and as a plot. The keys and columns are documented
-// in docs/sequences.md.
+// in docs/proximity.md.
 #pragma once
 
 #include <sdm/sdm.h>
@@ -36,6 +36,11 @@ struct BadFrame {
 /// One line of JSON. `contacts` are those of the frame; the deepest of each contact patch is reported.
 [[nodiscard]] nlohmann::ordered_json to_json(const Frame& frame, std::span<const sdm::Contact> contacts);
 [[nodiscard]] nlohmann::ordered_json to_json(const BadFrame& frame);
+
+/// The inverse of to_json(frame, ...).
+[[nodiscard]] Frame frame_from(const nlohmann::ordered_json& line);
+[[nodiscard]] BadFrame bad_frame_from(const nlohmann::ordered_json& line);
+[[nodiscard]] bool is_bad(const nlohmann::ordered_json& line);
 
 /// frames.csv: one row for each frame that was used.
 [[nodiscard]] std::string to_csv(const std::vector<Frame>& frames);

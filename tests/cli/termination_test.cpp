@@ -34,6 +34,7 @@ const std::vector<Command> kCommands{
     {"map_both", {"map", "O1", "O2", "--both", "-o", "OUT"}, "report.json"},
     {"self", {"self", "O1", "-o", "OUT"}, "report.json"},
     {"bodies", {"bodies", "O1", "O2", "-o", "OUT"}, "report.json"},
+    {"sequence", {"sequence", "FRAMES", "O2", "--maps", "2", "-o", "OUT"}, "frames.jsonl"},
     {"scene", {"scene", "letters", "--frames", "4", "-o", "OUT"}, "scene.json"},
     {"scene_ply", {"scene", "letters", "--frames", "4", "--format", "ply", "-o", "OUT"}, "scene.json"},
     {"info", {"info", "O1", "--self-intersections", "OUT/pairs.csv"}, "pairs.csv"}};

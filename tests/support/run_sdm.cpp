@@ -6,10 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <stdexcept>
 #include <thread>
 
@@ -22,8 +24,9 @@ void set_limit(__rlimit_resource resource, std::optional<std::uint64_t> value) {
   setrlimit(resource, &limit);
 }
 
-/// Reads both ends until they are closed.
-void drain(std::array<int, 2> ends, std::array<std::string*, 2> texts) {
+/// Reads both ends until they are closed. Calls `read_some` after each part.
+void drain(std::array<int, 2> ends, std::array<std::string*, 2> texts,
+           const std::function<void()>& read_some) {
   for (int open = 2; open > 0;) {
     std::array<pollfd, 2> polls{{{ends[0], POLLIN, 0}, {ends[1], POLLIN, 0}}};
     poll(polls.data(), polls.size(), -1);
@@ -33,6 +36,7 @@ void drain(std::array<int, 2> ends, std::array<std::string*, 2> texts) {
       const ssize_t count = read(ends[i], buffer.data(), buffer.size());
       if (count > 0) {
         texts[i]->append(buffer.data(), static_cast<std::size_t>(count));
+        read_some();
       } else {
         close(ends[i]);
         ends[i] = -1;  // poll skips it
@@ -72,12 +76,17 @@ Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& opt
   std::thread interrupter;
   const bool to_kill = options.kill_after_ms > 0;
   if (const int ms = to_kill ? options.kill_after_ms : options.interrupt_after_ms; ms > 0)
-    interrupter = std::thread([=] {
+    interrupter = std::thread([=, &options] {
       std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-      kill(child, to_kill ? SIGKILL : SIGINT);
+      kill(child, to_kill ? SIGKILL : options.signal);
     });
   Outcome run;
-  drain({out[0], err[0]}, {&run.out, &run.err});
+  bool sent = options.interrupt_after_lines == 0;
+  drain({out[0], err[0]}, {&run.out, &run.err}, [&] {
+    if (sent || std::ranges::count(run.out, '\n') < options.interrupt_after_lines) return;
+    sent = true;
+    kill(child, options.signal);
+  });
   if (interrupter.joinable()) interrupter.join();
   int status = 0;
   waitpid(child, &status, 0);

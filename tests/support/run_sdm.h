@@ -1,6 +1,7 @@
 // Runs the command sdm in a process of its own.
 #pragma once
 
+#include <csignal>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,8 +19,10 @@ struct Conditions {
   std::optional<std::uint64_t> memory{};     ///< address space
   std::vector<std::string> environment{};    ///< NAME=value, besides that of this program
   bool terminal = false;                     ///< stderr is a terminal
-  int interrupt_after_ms = 0;                ///< send SIGINT then, unless 0
-  int kill_after_ms = 0;                     ///< send SIGKILL then, unless 0
+  int interrupt_after_ms = 0;                ///< send `signal` then, unless 0
+  int interrupt_after_lines = 0;             ///< send `signal` once stdout has that many, unless 0
+  int signal = SIGINT;
+  int kill_after_ms = 0;  ///< send SIGKILL then, unless 0
 };
 
 [[nodiscard]] Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& options = {});

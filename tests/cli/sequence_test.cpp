@@ -1,0 +1,315 @@
+// `sdm sequence`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/proximity_query.h>
+#include <sdm/sampling_bound.h>
+
+#include <cmath>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/samples.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+/// The first torus passes the second one in twelve frames.
+struct SequenceCommand : ::testing::Test, TwoTori {
+  std::string moving = folder / "moving";
+
+  SequenceCommand() {
+    std::filesystem::create_directory(moving);
+    for (int i = 0; i < 12; ++i) write_frame(i, ring(12, 1, {0.5 * i - 3.2, 0, 0}));
+  }
+  void write_frame(int i, const Mesh& mesh) const {
+    write_obj(std::filesystem::path(moving) / (std::to_string(i) + ".obj"), mesh);
+  }
+  [[nodiscard]] std::vector<std::string> sequence(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"sequence", moving, o2, "-o", out, "--resolution", "64"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  [[nodiscard]] std::vector<Json> lines() const {
+    std::istringstream text(contents(out + "/frames.jsonl"));
+    std::vector<Json> lines;
+    for (std::string line; std::getline(text, line);) lines.push_back(Json::parse(line));
+    return lines;
+  }
+  [[nodiscard]] std::size_t csv_rows() const {
+    const std::string text = contents(out + "/frames.csv");
+    return static_cast<std::size_t>(std::ranges::count(text, '\n')) - 1;
+  }
+};
+
+TEST_F(SequenceCommand, FollowsTheBodies) {
+  const Outcome run = run_sdm(sequence({"--maps", "5"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"frames.csv", "frames.jsonl", "maps", "max.png",
+                                                     "mean.png", "min.png", "plot.png", "temporal.exr"}));
+  EXPECT_EQ(names_in(out + "/maps"), (std::vector<std::string>{"0000.exr", "0000.png", "0005.exr", "0005.png",
+                                                               "0010.exr", "0010.png"}));
+  const std::vector<Json> all = lines();
+  ASSERT_EQ(all.size(), 12u);
+  EXPECT_EQ(csv_rows(), 12u);
+  ProximityQuery query(ring(12, 1, {-3.2, 0, 0}), read_mesh(o2), {.atlas = {.resolution = 64}});
+  SamplingBound bound(query.surface(0));
+  const RelativeError error(query.surface(0), bound);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    SCOPED_TRACE(i);
+    EXPECT_EQ(all[i]["frame"], i);
+    query.refit(read_mesh(std::filesystem::path(moving) / (std::to_string(i) + ".obj")).positions, {});
+    EXPECT_EQ(all[i]["separation"]["value"], query.separation().value);
+    EXPECT_EQ(all[i]["colliding"]["value"], query.colliding().value);
+    EXPECT_EQ(all[i]["penetration_depth"]["value"], query.penetration_depth()->value);
+    EXPECT_EQ(all[i]["contacts"], query.contacts().size());
+    bound.refit(query.surface(0));
+    EXPECT_EQ(all[i]["error_bound"]["o1"], bound.value());
+    EXPECT_EQ(all[i]["relative_error"]["o1"], error.of(bound));
+    EXPECT_GT(all[i]["time_ms"]["total"], 0);
+  }
+  EXPECT_GT(all[6]["penetration_depth"]["value"], 0.1);
+  EXPECT_THAT(run.out, HasSubstr("frames     12"));
+}
+
+TEST_F(SequenceCommand, PrintsLinesAsJson) {
+  const Outcome run = run_sdm(sequence({"--json", "--no-temporal"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, contents(out + "/frames.jsonl"));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"frames.csv", "frames.jsonl", "plot.png"}));
+}
+
+// Completed frames are kept, and the message mentions them.
+TEST_F(SequenceCommand, StopsAtABadFrame) {
+  std::filesystem::remove(moving + "/4.obj");
+  Outcome run = run_sdm(sequence());
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("frame 4"));
+  EXPECT_THAT(run.err, HasSubstr("4 earlier frames are in " + out));
+  std::vector<Json> all = lines();
+  ASSERT_EQ(all.size(), 5u);
+  EXPECT_THAT(all[4]["error"].get<std::string>(), HasSubstr("frame 4"));
+  EXPECT_EQ(csv_rows(), 4u);
+
+  write_frame(4, ring(10));  // another mesh
+  write_obj(std::filesystem::path(moving) / "7.obj", ring(12, 1, {std::nan(""), 0, 0}));
+  run = run_sdm(sequence({"--keep-going"}));
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("frames     10, and 2 that could not be used"));
+  all = lines();
+  ASSERT_EQ(all.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(all[i].contains("error"), i == 4 || i == 7) << i;
+  EXPECT_EQ(csv_rows(), 10u);
+}
+
+TEST_F(SequenceCommand, PlacesAllFramesAsTheFirst) {
+  const Outcome run =
+      run_sdm(sequence({"--json", "--no-temporal", "--transform-o1", "scale:2,fit,translate:5:0:0"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::vector<Json> all = lines();
+  // The torus moves by 0.5 a frame; fitted, its width is 1.
+  const Box box = inspect(ring(12)).bounds;
+  const double first = all[0]["separation"]["value"], last = all[11]["separation"]["value"];
+  EXPECT_NEAR(last - first, 11 * 0.5 / (box.hi[0] - box.lo[0]), 0.1);
+}
+
+TEST_F(SequenceCommand, RefusesSequencesThatDoNotFit) {
+  const std::string other = folder / "other";
+  std::filesystem::create_directory(other);
+  for (int i = 0; i < 3; ++i)
+    write_obj(std::filesystem::path(other) / (std::to_string(i) + ".obj"), ring(12));
+  const Outcome run = run_sdm({"sequence", moving, other, "-o", out});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("12 frames and"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_EQ(run_sdm({"sequence", moving, o2}).code, 2);
+  EXPECT_THAT(run_sdm({"sequence", moving, o2, "-o", ""}).err, HasSubstr("the name of the folder is empty"));
+  EXPECT_EQ(run_sdm(sequence({"--maps", "0"})).code, 2);
+}
+
+// Regression: pictures of an earlier run remained beside the new results.
+TEST_F(SequenceCommand, ReplacesAllFilesOfAnEarlierRun) {
+  ASSERT_EQ(run_sdm(sequence({"--maps", "5"})).code, 0);
+  ASSERT_EQ(run_sdm(sequence({"--no-temporal"})).code, 0);
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"frames.csv", "frames.jsonl", "plot.png"}));
+}
+
+/// The first torus passes the second one four times, stretched more and more: some results depend on shapes
+/// and places of earlier frames.
+struct Resume : SequenceCommand {
+  static constexpr int kFrames = 48;
+  std::string whole = folder / "whole";
+
+  Resume() {
+    for (int i = 0; i < kFrames; ++i) write_frame(i, shape(i));
+  }
+  static Mesh shape(int i) {
+    Mesh mesh = ring(12, 1, {0.5 * (i % 12) - 3.2, 0, 0});
+    for (Vec3& p : mesh.positions) p[2] *= 1 + 0.2 * (i % 12) * std::abs(p[1]);
+    return mesh;
+  }
+  [[nodiscard]] std::vector<std::string> into(const std::string& to,
+                                              const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"sequence",     moving, o2,       "-o",     to,
+                                       "--resolution", "128",  "--json", "--maps", "7"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  /// The number of frames that were kept.
+  std::size_t interrupt(std::vector<std::string> more = {}, int after_lines = 5, int signal = SIGINT) const {
+    const Outcome run = run_sdm(into(out, more), {.interrupt_after_lines = after_lines, .signal = signal});
+    EXPECT_EQ(run.code, 128 + signal) << run.err;
+    const std::size_t kept = lines().size();
+    EXPECT_GE(kept, static_cast<std::size_t>(after_lines));
+    EXPECT_LT(kept, std::size_t{kFrames}) << "finished before the interrupt";
+    EXPECT_EQ(run.err, "sdm: error: interrupted; " + std::to_string(kept) + " of 48 frames are in " + out +
+                           " (--resume continues)\n");
+    EXPECT_EQ(run.out, contents(out + "/frames.jsonl"));
+    return kept;
+  }
+  /// Times apart, the files are those of a run that was not interrupted.
+  void expect_whole(const std::vector<std::string>& more = {}) const {
+    ASSERT_EQ(run_sdm(into(whole, more)).code, 0);
+    EXPECT_EQ(names_in(out), names_in(whole));
+    EXPECT_EQ(names_in(out + "/maps"), names_in(whole + "/maps"));
+    EXPECT_EQ(without_times(out), without_times(whole));
+    EXPECT_EQ(columns(out), columns(whole));
+    for (const std::string& name : names_in(whole))
+      if (name != "maps" && !name.starts_with("frames") && name != "plot.png") {
+        EXPECT_EQ(contents(out + "/" + name), contents(whole + "/" + name)) << name;
+      }
+    for (const std::string& name : names_in(whole + "/maps"))
+      EXPECT_EQ(contents(out + "/maps/" + name), contents(whole + "/maps/" + name)) << name;
+  }
+  void expect_refusal(const std::vector<std::string>& arguments, const std::string& reason) const {
+    const auto names = names_in(out);
+    const std::string lines = contents(out + "/frames.jsonl");
+    const Outcome run = run_sdm(arguments);
+    EXPECT_EQ(run.code, 1);
+    EXPECT_THAT(run.err, HasSubstr("cannot resume in " + out + ": "));
+    EXPECT_THAT(run.err, HasSubstr(reason));
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+    EXPECT_EQ(names_in(out), names);
+    EXPECT_EQ(contents(out + "/frames.jsonl"), lines);
+  }
+
+ private:
+  static std::string without_times(const std::string& in) {
+    std::istringstream text(contents(in + "/frames.jsonl"));
+    std::string result;
+    for (std::string line; std::getline(text, line);)
+      result += line.substr(0, line.find("\"time_ms\"")) + "\n";
+    return result;
+  }
+  static std::vector<std::string> columns(const std::string& in) {
+    std::istringstream text(contents(in + "/frames.csv"));
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(text, line);) {
+      std::size_t end = line.size();
+      for (int times = 0; times < 7; ++times) end = line.rfind(',', end - 1);
+      rows.push_back(line.substr(0, end));
+    }
+    return rows;
+  }
+};
+
+TEST_F(Resume, AnInterruptKeepsFinishedFrames) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const std::size_t kept = interrupt({}, 5, signal);
+    EXPECT_EQ(csv_rows(), kept);
+    EXPECT_EQ(names_in(out),
+              (std::vector<std::string>{"frames.csv", "frames.jsonl", "maps", "max.png", "mean.png",
+                                        "min.png", "plot.png", "resume.state", "temporal.exr"}));
+  }
+}
+
+TEST_F(Resume, EndsWithTheFilesOfAnUninterruptedRun) {
+  const std::size_t first = interrupt();
+  const std::size_t second = interrupt({"--resume"}, static_cast<int>(first) + 3);
+  EXPECT_GT(second, first);
+  const Outcome run = run_sdm(into(out, {"--resume"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, contents(out + "/frames.jsonl"));
+  expect_whole();
+}
+
+TEST_F(Resume, WithoutMapsOverTime) {
+  interrupt({"--no-temporal"});
+  ASSERT_EQ(run_sdm(into(out, {"--resume", "--no-temporal", "--threads", "1"})).code, 0);
+  expect_whole({"--no-temporal"});
+}
+
+TEST_F(Resume, WithNothingToResumeStartsFromTheFirstFrame) {
+  ASSERT_EQ(run_sdm(into(out, {"--resume"})).code, 0);
+  expect_whole();
+  ASSERT_EQ(run_sdm(into(out, {"--resume"})).code, 0);
+  expect_whole();
+}
+
+TEST_F(Resume, WithoutTheOptionStartsFromTheFirstFrame) {
+  interrupt();
+  ASSERT_EQ(run_sdm(into(out)).code, 0);
+  expect_whole();
+}
+
+TEST_F(Resume, ContinuesAfterABadFrame) {
+  std::filesystem::remove(moving + "/20.obj");
+  Outcome run = run_sdm(into(out));
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("20 earlier frames are in " + out));
+  run = run_sdm(into(out, {"--resume"}));
+  EXPECT_EQ(run.code, 1) << "the file is still missing";
+  EXPECT_THAT(run.err, HasSubstr("20 earlier frames are in " + out));
+  EXPECT_EQ(lines().size(), 21u);
+  write_frame(20, shape(20));
+  ASSERT_EQ(run_sdm(into(out, {"--resume"})).code, 0);
+  expect_whole();
+}
+
+TEST_F(Resume, KeepsSkippedFrames) {
+  write_frame(2, ring(10));  // another mesh
+  std::filesystem::remove(moving + "/40.obj");
+  interrupt({"--keep-going"}, 10);
+  ASSERT_EQ(run_sdm(into(out, {"--resume", "--keep-going"})).code, 0);
+  expect_whole({"--keep-going"});
+}
+
+TEST_F(Resume, RefusesOtherOptionsAndInputs) {
+  interrupt();
+  for (const auto& [option, value] :
+       std::vector<std::pair<std::string, std::string>>{{"--resolution", "64"},
+                                                        {"--margin", "0.1"},
+                                                        {"--maps", "5"},
+                                                        {"--units", "mm"},
+                                                        {"--transform-o2", "translate:1:0:0"}}) {
+    std::vector<std::string> arguments = into(out, {"--resume"});
+    if (const auto at = std::ranges::find(arguments, option); at != arguments.end())
+      at[1] = value;
+    else
+      arguments.insert(arguments.end(), {option, value});
+    expect_refusal(arguments, "the interrupted run had another " + option);
+  }
+  expect_refusal(into(out, {"--resume", "--exact"}), "--exact");
+  expect_refusal(into(out, {"--resume", "--no-temporal"}), "--no-temporal");
+  std::vector<std::string> other = into(out, {"--resume"});
+  other[2] = o1;
+  expect_refusal(other, o1 + " is not the mesh of the interrupted run");
+  write_frame(3, ring(12, 1, {0, 0, 0.125}));
+  expect_refusal(into(out, {"--resume"}), "frame 3 is not that of the interrupted run");
+}
+
+TEST_F(Resume, RefusesADamagedState) {
+  interrupt();
+  std::filesystem::resize_file(out + "/resume.state", std::filesystem::file_size(out + "/resume.state") - 1);
+  const Outcome run = run_sdm(into(out, {"--resume"}));
+  EXPECT_EQ(run.code, 1);
+  EXPECT_EQ(run.err, "sdm: error: " + out + "/resume.state is damaged; omit --resume to start again\n");
+}
+
+}  // namespace
+}  // namespace sdm::test
