@@ -116,8 +116,7 @@ TEST(Agreement, WithinAMaximumDistance) {
   for (const GlClip clip : {GlClip::planes, GlClip::stencil})
     for (const double limit : {0.02, 0.2, 1e-9}) {
       SCOPED_TRACE(limit);
-      const auto engine = make_gl_engine({.clip = clip});
-      const DistanceMap near = compute_map(surface, sites, {.engine = engine, .max_distance = limit});
+      const test::GlMap near = test::gl_map(surface, sites, GlOptions{.clip = clip}, limit);
       Disagreements distances(tolerance);
       std::size_t beyond = 0, wrong = 0;
       for (const std::uint32_t t : surface.sample_texels()) {
@@ -137,7 +136,7 @@ TEST(Agreement, WithinAMaximumDistance) {
       if (limit > 1e-3) {
         EXPECT_LT(beyond, surface.sample_texels().size());
       }
-      const GlReport r = gl_report(*engine).value();
+      const GlReport& r = near.report;
       EXPECT_EQ(r.pairs, r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons);
       EXPECT_GE(r.fragments, r.texels - beyond);
     }

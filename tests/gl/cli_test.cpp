@@ -40,6 +40,7 @@ void expect_laws(const Json& r) {
   EXPECT_EQ(count(r, "sites"), 512u + 768u + 256u);
   EXPECT_EQ(count(r, "texels"), r["atlas"]["texels"]);
   EXPECT_GE(count(r, "fragments"), count(r, "texels"));
+  EXPECT_EQ(count(r, "unconfirmed"), 0u);
   EXPECT_EQ(count(r, "stencil_lookups"), count(r, "stencil_hits") + count(r, "stencil_misses"));
 }
 

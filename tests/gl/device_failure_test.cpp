@@ -77,7 +77,7 @@ TEST_P(DeviceFailure, WrongDepthsAreReportedAndCorrected) {
                          if (format == GL_DEPTH_COMPONENT)
                            std::memset(out, 0, static_cast<std::size_t>(size));
                        }));
-  const test::GlMap found = map();
+  const test::GlMap found = test::unconfirmed_gl_map(surface_, sites_, {.clip = GetParam()});
   EXPECT_GT(found.report.unconfirmed, surface_.sample_texels().size() / 2);
   test::Disagreements distances(1e-6);
   for (const std::uint32_t t : surface_.sample_texels())

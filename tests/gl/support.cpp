@@ -30,13 +30,28 @@ std::size_t count_owners(const Surface& surface) {
   return owners.size();
 }
 
-}  // namespace
-
-GlMap gl_map(const Surface& surface, const Sites& sites, const GlOptions& options) {
-  const auto engine = make_gl_engine(options);
-  GlMap map{compute_map(surface, sites, {.engine = engine})};
+GlMap draw(const Surface& surface, const Sites& sites, const std::shared_ptr<const Engine>& engine,
+           double max_distance) {
+  GlMap map{compute_map(surface, sites, {.engine = engine, .max_distance = max_distance})};
   map.report = gl_report(*engine).value();
   return map;
+}
+
+}  // namespace
+
+GlMap gl_map(const Surface& surface, const Sites& sites, const GlOptions& options, double max_distance) {
+  return gl_map(surface, sites, make_gl_engine(options), max_distance);
+}
+
+GlMap gl_map(const Surface& surface, const Sites& sites, const std::shared_ptr<const Engine>& engine,
+             double max_distance) {
+  GlMap map = draw(surface, sites, engine, max_distance);
+  EXPECT_EQ(map.report.unconfirmed, 0u) << "of " << map.report.texels << " texels";
+  return map;
+}
+
+GlMap unconfirmed_gl_map(const Surface& surface, const Sites& sites, const GlOptions& options) {
+  return draw(surface, sites, make_gl_engine(options), std::numeric_limits<double>::infinity());
 }
 
 testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b) {

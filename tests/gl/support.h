@@ -1,6 +1,9 @@
 // Maps of the gl engine, and the invariants of a map and its report.
 #pragma once
 
+#include <limits>
+#include <memory>
+
 #include "gl/scenes.h"
 
 namespace sdm::test {
@@ -9,7 +12,17 @@ struct GlMap : DistanceMap {
   GlReport report{};
 };
 
-[[nodiscard]] GlMap gl_map(const Surface& surface, const Sites& sites, const GlOptions& options = {});
+/// Fails if any winner was not confirmed. All tests of maps use it, so that none can forget this check.
+[[nodiscard]] GlMap gl_map(const Surface& surface, const Sites& sites, const GlOptions& options = {},
+                           double max_distance = std::numeric_limits<double>::infinity());
+
+/// The same by an engine that draws several maps.
+[[nodiscard]] GlMap gl_map(const Surface& surface, const Sites& sites,
+                           const std::shared_ptr<const Engine>& engine,
+                           double max_distance = std::numeric_limits<double>::infinity());
+
+/// A map for which winners may remain unconfirmed: by a faulty device.
+[[nodiscard]] GlMap unconfirmed_gl_map(const Surface& surface, const Sites& sites, const GlOptions& options);
 
 /// Whether two maps are bit-identical in every value.
 [[nodiscard]] testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b);
