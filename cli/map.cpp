@@ -80,7 +80,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
-  outcome.accuracy = sdm::engine_accuracy(command.engine, on.mesh, to.mesh);
+  outcome.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), on.mesh, to.mesh);
   outcome.extremes = sdm::extremes(*surface, map, at_vertices);
   outcome.raster = sdm::gl_report(*command.map.engine);
 
@@ -92,7 +92,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
     outcome.boundary_texels = static_cast<std::size_t>(std::ranges::count(boundary, 1));
   }
   sdm::PictureOptions picture = command.picture;
-  picture.accuracy = outcome.accuracy;
+  if (std::isfinite(outcome.accuracy)) picture.accuracy = outcome.accuracy;
   sdm::run_concurrently({
       [&] { write_map_files(folder, *surface, map, at_vertices, picture, boundary); },
       [&] {

@@ -66,6 +66,9 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_flag_callback(
       "--no-bound-culling", [&c] { c.gl.bound_culling = false; },
       "gl: do not cull sites by upper bounds on the distance; the map is unchanged");
+  app.add_flag("--paper-literal", c.gl.paper_literal,
+               "gl: run the algorithm of the paper as it is printed, without corrections; the map is an "
+               "estimate of unknown accuracy");
   app.add_option("--tolerance", c.picture.tolerance,
                  "Draw colour bands, and exit with code 3 if any distance exceeds D, inside or outside")
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
@@ -80,9 +83,14 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
   if (c.picture.tolerance && *c.picture.tolerance > c.map.max_distance)
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which texels have no value");
-  for (const char* option : {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling"})
+  for (const char* option :
+       {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling", "--paper-literal"})
     if (app.count(option) > 0 && c.engine.name != "gl")
       throw CLI::ValidationError(option, "needs --engine gl");
-  if (app.count("--stencil-values") > 0 && c.gl.clip != sdm::GlClip::stencil)
+  if (c.gl.paper_literal && app.count("--clip") > 0 && c.gl.clip != sdm::GlClip::stencil)
+    throw CLI::ValidationError("--paper-literal", "clips by the stencil: omit --clip planes");
+  if (c.gl.paper_literal && c.picture.tolerance)
+    throw CLI::ValidationError("--tolerance", "needs a known accuracy: omit --paper-literal");
+  if (app.count("--stencil-values") > 0 && !c.gl.paper_literal && c.gl.clip != sdm::GlClip::stencil)
     throw CLI::ValidationError("--stencil-values", "needs --clip stencil");
 }

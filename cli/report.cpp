@@ -41,6 +41,7 @@ Json to_json(const sdm::GlReport& r) {
   const sdm::GlReport::Times& t = r.time_ms;
   return {{"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
           {"clip", name(r.clip)},
+          {"paper_literal", r.paper_literal},
           {"sites", r.sites},
           {"sites_dropped", r.sites_dropped},
           {"faces", r.faces},
@@ -126,8 +127,11 @@ Json to_json(const Outcome& outcome) {
   json["negative_texels"] = d.negative_texels;
   json["beyond_max_distance"] = outcome.beyond_max_distance;
   json["boundary_texels"] = outcome.boundary_texels;
-  json["error_bound"] = outcome.error_bound;
-  json["error_bound_kind"] = "bounded";
+  const bool known = std::isfinite(outcome.accuracy);
+  json["accuracy"] = outcome.accuracy;  // null: unknown
+  json["accuracy_kind"] = known ? "bounded" : "unknown";
+  json["error_bound"] = known ? Json(outcome.error_bound) : Json();
+  json["error_bound_kind"] = known ? "bounded" : "unknown";
   if (outcome.tolerance)
     json["tolerance"] = {{"value", outcome.tolerance->tolerance},
                          {"exceeded_area_fraction", outcome.tolerance->exceeded_area_fraction},
@@ -179,8 +183,11 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
   if (outcome.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", outcome.sign.reason);
   if (outcome.beyond_max_distance > 0)
     add("            {} texels are farther than --max-distance\n", outcome.beyond_max_distance);
-  add("  error     at most {}{} between the texels, whose values are exact\n", number(outcome.error_bound),
-      unit);
+  if (std::isfinite(outcome.accuracy))
+    add("  error     at most {}{} between the texels, whose values are exact\n", number(outcome.error_bound),
+        unit);
+  else
+    add("  error     unknown: the paper's algorithm as printed gives an estimate\n");
   if (const auto& verdict = outcome.tolerance) {
     if (!verdict->within)
       add("  tolerance exceeded on {} % of the area; {}\n", number(100 * verdict->exceeded_area_fraction),

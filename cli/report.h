@@ -35,7 +35,7 @@ struct Outcome {
   std::size_t beyond_max_distance = 0;
   std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh
   double error_bound = 0;
-  double accuracy = 0;             ///< of the engine
+  double accuracy = 0;             ///< of the engine; infinite if unknown
   bool embedded = true;            ///< the other mesh does not intersect itself
   std::vector<std::string> notes;  ///< what the user probably did not intend
   std::optional<sdm::ToleranceVerdict> tolerance;

@@ -7,11 +7,13 @@ uniform usamplerBuffer polygons;  // seven texels per polygon (RasterPolygon), a
 
 layout(location = 0) in vec2 corner;
 layout(location = 1) in uint polygon;
+layout(location = 2) in vec3 corner_vector;  // if vectors are interpolated
 
 flat out vec2 origin;
 flat out vec3 distance_vector, vector_du, vector_dv;
 flat out vec3 walls[5];
-flat out uint face, domain;
+flat out uint winner, domain;
+noperspective out vec3 interpolated_vector;
 
 void main() {
   const int first = 7 * int(polygon - first_polygon);
@@ -31,7 +33,8 @@ void main() {
   walls[3] = uintBitsToFloat(f.yzw);
   walls[4] = uintBitsToFloat(g.xyz);
   origin = uintBitsToFloat(uvec2(a.w, b.w));
-  face = c.w;
+  winner = c.w;
   domain = g.w;
+  interpolated_vector = corner_vector;
   gl_Position = vec4(2.0 * corner / resolution - 1.0, 0.0, 1.0);
 }

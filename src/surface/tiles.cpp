@@ -24,21 +24,22 @@ void sort_by_face(const Surface& surface, Tiles& tiles) {
 
 // The squares of a face's bounding rectangle, and which of them contains a texel.
 struct TileGrid {
-  std::uint32_t resolution, left = kNone, top = kNone, right = 0;
+  std::uint32_t resolution, side, left = kNone, top = kNone, right = 0;
 
-  TileGrid(std::uint32_t n, std::span<const std::uint32_t> texels) : resolution(n), top(texels.front() / n) {
+  TileGrid(std::uint32_t n, std::uint32_t s, std::span<const std::uint32_t> texels)
+      : resolution(n), side(s), top(texels.front() / n) {
     for (const std::uint32_t texel : texels) {
       left = std::min(left, texel % n);
       right = std::max(right, texel % n);
     }
   }
   [[nodiscard]] std::uint32_t operator()(std::uint32_t texel) const {
-    const std::uint32_t columns = (right - left) / Tiles::kSide + 1;
-    return (texel / resolution - top) / Tiles::kSide * columns + (texel % resolution - left) / Tiles::kSide;
+    const std::uint32_t columns = (right - left) / side + 1;
+    return (texel / resolution - top) / side * columns + (texel % resolution - left) / side;
   }
 };
 
-void cut(const Surface& surface, Tiles& tiles) {
+void cut(const Surface& surface, std::uint32_t side, Tiles& tiles) {
   const std::size_t face_count = surface.mesh().triangles.size();
   std::vector<std::uint32_t> tile_of(tiles.texels.size());  // within its face
   parallel_for(face_count, kGrain, [&](std::size_t begin, std::size_t end) {
@@ -46,7 +47,7 @@ void cut(const Surface& surface, Tiles& tiles) {
       const std::uint32_t first = tiles.face_offsets[face], last = tiles.face_offsets[face + 1];
       if (first == last) continue;
       const std::span<std::uint32_t> texels(tiles.texels.data() + first, last - first);
-      const TileGrid grid(surface.resolution(), texels);
+      const TileGrid grid(surface.resolution(), side, texels);
       std::ranges::stable_sort(texels, {}, grid);
       std::ranges::transform(texels, tile_of.begin() + first, grid);
     }
@@ -62,9 +63,9 @@ void cut(const Surface& surface, Tiles& tiles) {
 
 }  // namespace
 
-Tiles::Tiles(const Surface& surface) {
+Tiles::Tiles(const Surface& surface, std::uint32_t side) {
   sort_by_face(surface, *this);
-  cut(surface, *this);
+  cut(surface, side, *this);
 }
 
 }  // namespace sdm::surface

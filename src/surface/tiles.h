@@ -7,13 +7,13 @@
 
 namespace sdm::surface {
 
-/// A tile holds texels of one face in a square of kSide texels; most faces are one tile. Refits do not change
-/// them.
+/// A tile holds texels of one face in a square of `side` texels; most faces are one tile. Refits do not
+/// change them.
 struct Tiles {
   static constexpr std::uint32_t kSide = 16;
 
   /// Cost: linear in texels, plus sorting those of faces with more than one tile; all cores.
-  explicit Tiles(const Surface& surface);
+  explicit Tiles(const Surface& surface, std::uint32_t side = kSide);
 
   std::vector<std::uint32_t> texels;        ///< owned texels, by face, then by tile
   std::vector<std::uint32_t> face_offsets;  ///< texels of each face of the mesh, and the end

@@ -34,12 +34,14 @@ TEST(GridSlice, ContainsTheClosestFaces) {
     RasterBatch batch;
     for (std::size_t leaf = 0; leaf + 1 < impl.regions.leaves.size(); ++leaf)
       for_each_site(impl.regions, leaf, [&](const auto& site, std::size_t index) {
-        if (has_interior(site)) add_polygon(batch, region_of(impl, site, index), domain, {1e-5, 0.125});
+        if (!has_interior(site)) return;
+        const SiteRegion region = region_of(impl, site, index);
+        add_polygon(batch, region, oriented_box(region, 4, 1e-5), domain, {1e-5, 0.125});
       });
     ASSERT_GT(batch.size(), 100u);
     Rasteriser rasteriser(device, kSide, WholeImage{});
     rasteriser.draw(batch);
-    const std::vector<std::uint32_t> faces = rasteriser.read_back().faces;
+    const std::vector<std::uint32_t> faces = rasteriser.read_back().winners;
     GlReport report;
     rasteriser.count_into(report);
     EXPECT_GE(report.fragments, faces.size());

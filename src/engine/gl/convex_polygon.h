@@ -21,8 +21,9 @@ struct HalfPlane {
 /// Corners in order around the polygon; none for the empty polygon.
 class ConvexPolygon {
  public:
-  /// A cut adds at most one corner, so this fits seven of a domain's outline and five walls of a region.
-  static constexpr int kMaxCorners = 12;
+  /// A cut adds at most one corner, so this fits seven of a domain's outline and five walls of a region, or
+  /// the six sides of its box.
+  static constexpr int kMaxCorners = 13;
 
   ConvexPolygon() = default;
   static ConvexPolygon rectangle(const Vec2& lo, const Vec2& hi) {

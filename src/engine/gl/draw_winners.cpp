@@ -69,9 +69,23 @@ std::vector<PlanarDomain> domains_of(const DomainBlock& block, const DomainTree&
   return domains;
 }
 
-void expect_no_cracks(const Surface& surface, std::span<const std::uint32_t> faces, const GlReport& report) {
+// The corners of the faces in the atlas, if their triangles are drawn into the stencil.
+std::vector<std::array<float, 2>> stencil_corners(const Surface& surface) {
+  std::vector<std::array<float, 2>> corners;
+  const Mesh& mesh = surface.mesh();
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face)
+    for (const std::uint32_t vertex : mesh.triangles[face]) {
+      const bool mapped = surface.face_charts()[face] != kNone;
+      const Vec2 uv = mapped ? surface.to_atlas(face, mesh.positions[vertex]) : Vec2{};
+      corners.push_back({static_cast<float>(uv[0]), static_cast<float>(uv[1])});
+    }
+  return corners;
+}
+
+void expect_no_cracks(const Surface& surface, std::span<const std::uint32_t> winners,
+                      const GlReport& report) {
   for (const std::uint32_t texel : surface.sample_texels())
-    if (faces[texel] == kNone)
+    if (winners[texel] == kNone)
       throw Error(report.device.name + " left texel " + std::to_string(texel) +
                   " without a value, which OpenGL does not allow; use another device or engine");
 }
@@ -79,7 +93,7 @@ void expect_no_cracks(const Surface& surface, std::span<const std::uint32_t> fac
 }  // namespace
 
 RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlReport& report) {
-  const auto& [surface, tile_tree, sites, gl, options] = task;
+  const auto& [surface, tile_tree, sites, gl, corrections, options] = task;
   const surface::Tiles& tiles = tile_tree.tiles;
   Stopwatch watch;
   DomainTree tree(surface, tile_tree, sites.frame);
@@ -100,12 +114,17 @@ RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlR
   const double reach = tree.bound[0];
   report.time_ms.bounds = watch.lap();
 
-  const RasterScale scale{kRegionSlack * extent.size, std::exp2(-std::ceil(std::log2(reach)))};
-  const Ownership owned = gl.clip == GlClip::planes
-                              ? Ownership(OwnerTable{surface.texel_faces()})
-                              : Ownership(StencilValues{tiles.face_offsets, tiles.texels, gl.stencil_values});
-  Rasteriser rasteriser(device, surface.resolution(), owned);
-  PairStream stream(index, tree, reach, scale, rasteriser, report.time_ms);
+  // Vectors to sites are longer beyond their regions: within a box, up to √3 times its reach, twice.
+  const double longest = corrections.region_walls ? reach : 4 * reach;
+  const RasterRules rules{kRegionSlack * extent.size, std::exp2(-std::ceil(std::log2(longest))), corrections};
+  const std::vector<std::array<float, 2>> corners =
+      corrections.stencil_points ? std::vector<std::array<float, 2>>() : stencil_corners(surface);
+  const Ownership owned =
+      gl.clip == GlClip::planes
+          ? Ownership(OwnerTable{surface.texel_faces()})
+          : Ownership(StencilValues{tiles.face_offsets, tiles.texels, gl.stencil_values, corners});
+  Rasteriser rasteriser(device, surface.resolution(), owned, corrections);
+  PairStream stream(index, tree, reach, rules, rasteriser, report.time_ms);
   report.time_ms.draw = watch.lap();
 
   std::vector<DomainBlock> blocks = cut_into_blocks(tree, kBlockTiles);
@@ -128,12 +147,15 @@ RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlR
   RasterImage image = rasteriser.read_back();
   rasteriser.count_into(report);
   report.time_ms.read_back = watch.lap();
-  if (options.max_distance == std::numeric_limits<double>::infinity())
-    expect_no_cracks(surface, image.faces, report);
-  return {.faces = std::move(image.faces),
+  const bool complete = corrections.margins && corrections.stencil_points;
+  if (complete && options.max_distance == std::numeric_limits<double>::infinity())
+    expect_no_cracks(surface, image.winners, report);
+  return {.winners = std::move(image.winners),
           .depths = std::move(image.depths),
-          .depth_unit = 1 / scale.to_depth / sites.frame.scale,
-          .tolerance = 1.5 * scale.slack / sites.frame.scale};
+          .vectors = std::move(image.vectors),
+          .complete = complete,
+          .depth_unit = 1 / rules.to_depth / sites.frame.scale,
+          .tolerance = 1.5 * rules.slack / sites.frame.scale};
 }
 
 }  // namespace sdm::gl

@@ -3,6 +3,7 @@
 
 #include <sdm/gl.h>
 
+#include <array>
 #include <vector>
 
 #include "engine/engine.h"
@@ -14,13 +15,15 @@ namespace sdm::gl {
 
 /// The result of drawing at each texel of a surface, in single precision.
 struct RasterWinners {
-  /// A face of O2 to which the closest site belongs; kNone where no face of O1 owns the texel, or nothing
-  /// lies within the maximum distance.
-  std::vector<std::uint32_t> faces;
+  /// A face of O2 to which the closest site belongs, or site_code() without confirmation; kNone where no face
+  /// of O1 owns the texel, or nothing lies within the maximum distance.
+  std::vector<std::uint32_t> winners;
   /// The distance drawn, in units of `depth_unit`. All sites that are closest to some texel were drawn there,
   /// so no site is nearer than this: a face whose distance is at most this, up to the tolerance, is
   /// confirmed.
   std::vector<float> depths;
+  std::vector<std::array<float, 4>> vectors;  ///< the distance vectors drawn; empty with confirmation
+  bool complete = true;  ///< nothing was drawn only where nothing lies within the maximum distance
   double depth_unit = 1;
   double tolerance = 0;  ///< error of depths from single precision and from enlarging the regions
 
@@ -35,6 +38,7 @@ struct DrawTask {
   const TileTree& tile_tree;  ///< of the surface
   const sites::SitesData& sites;
   const GlOptions& gl;
+  const Corrections& corrections;
   const engine::EngineOptions& options;
 };
 

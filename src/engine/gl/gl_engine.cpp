@@ -3,11 +3,13 @@
 #include <sdm/error.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "core/stopwatch.h"
@@ -31,6 +33,7 @@ struct Devices {
   std::mutex drawing;
   std::map<std::string, std::unique_ptr<RasterDevice>, std::less<>> open;
   TileTreeCache tiles;  // of the surfaces mapped on any of them
+  TileTreeCache whole_faces{true};
 };
 
 Devices& devices() {
@@ -68,10 +71,10 @@ std::size_t confirm(const sites::SitesData& sites, const RasterWinners& winners,
   for (std::size_t first = 0; first < texels.size(); first += packet.count) {
     packet.count = std::min(sites::ClosestPacket::kSize, texels.size() - first);
     for (std::size_t i = 0; i < packet.count; ++i) {
-      const std::uint32_t texel = texels[first + i], face = winners.faces[texel];
+      const std::uint32_t texel = texels[first + i], face = winners.winners[texel];
       ClosestPoint closest;
       if (face != kNone) closest = sites::closest_around_face(sites, face, points[first + i]);
-      const bool confirmed = face == kNone || winners.confirms(texel, closest.distance);
+      const bool confirmed = face == kNone ? winners.complete : winners.confirms(texel, closest.distance);
       packet.set(i, points[first + i], closest.distance <= max_distance ? closest : ClosestPoint{});
       if (confirmed) continue;
       ++unconfirmed;
@@ -85,12 +88,39 @@ std::size_t confirm(const sites::SitesData& sites, const RasterWinners& winners,
   return unconfirmed;
 }
 
+// Passes on the distances and vectors that were drawn, as the paper does.
+void pass_on(const RasterWinners& winners, std::span<const std::uint32_t> texels,
+             std::span<const Vec3> points, double max_distance, const engine::ClosestSink& sink) {
+  sites::ClosestPacket packet;
+  for (std::size_t first = 0; first < texels.size(); first += packet.count) {
+    packet.count = std::min(sites::ClosestPacket::kSize, texels.size() - first);
+    for (std::size_t i = 0; i < packet.count; ++i) {
+      const std::uint32_t texel = texels[first + i];
+      const Vec3& point = points[first + i];
+      ClosestPoint drawn;
+      if (winners.winners[texel] != kNone) {
+        std::tie(drawn.type, drawn.site) = site_of(winners.winners[texel]);
+        const std::array<float, 4>& v = winners.vectors[texel];
+        drawn.point = point + winners.depth_unit * Vec3{v[0], v[1], v[2]};
+        drawn.distance = winners.depth_unit * static_cast<double>(winners.depths[texel]);
+      }
+      packet.set(i, point, drawn.distance <= max_distance ? drawn : ClosestPoint{});
+    }
+    sink(first, packet);
+  }
+}
+
 // Draws the winners in single precision, then confirms them in double.
 class GlEngine final : public Engine {
  public:
-  explicit GlEngine(const GlOptions& options) : options_(options) { check(options_); }
+  GlEngine(const GlOptions& options, const Corrections& corrections)
+      : options_(options), corrections_(corrections) {
+    check(options_);
+  }
 
-  [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
+  [[nodiscard]] const EngineInfo& info() const override {
+    return corrections_.confirmation ? kInfo : kUnconfirmedInfo;
+  }
   void map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
            const engine::SampleSink& sink) const override;
   void closest_points(const Sites&, std::span<const Vec3>, double,
@@ -105,6 +135,7 @@ class GlEngine final : public Engine {
 
  private:
   const GlOptions options_;
+  const Corrections corrections_;
   mutable std::mutex mutex_;
   mutable std::optional<GlReport> last_report_;
 };
@@ -115,21 +146,26 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
   const RasterWinners winners = with_device(options_.device, [&](const RasterDevice& device, double ms) {
     report.device = device.context().device();
     report.clip = options_.clip;
+    report.paper_literal = options_.paper_literal;
     report.texels = surface.sample_texels().size();
     report.time_ms.context = ms;
-    const TileTree& tile_tree = devices().tiles.of(surface);
-    return draw_winners(device, {surface, tile_tree, internals(sites), options_, options}, report);
+    TileTreeCache& trees = corrections_.tiles ? devices().tiles : devices().whole_faces;
+    return draw_winners(
+        device, {surface, trees.of(surface), internals(sites), options_, corrections_, options}, report);
   });
 
   Stopwatch watch;
   std::atomic<std::size_t> unconfirmed{0};
   engine::for_each_sample_block(
       surface, options.progress, "finish", [&](std::size_t begin, std::span<const Vec3> points) {
-        unconfirmed +=
-            confirm(internals(sites), winners, surface.sample_texels().subspan(begin, points.size()), points,
-                    options.max_distance, [&](std::size_t first, const sites::ClosestPacket& closest) {
-                      sink(begin + first, points.subspan(first, closest.count), closest);
-                    });
+        const std::span<const std::uint32_t> texels = surface.sample_texels().subspan(begin, points.size());
+        const auto pass = [&](std::size_t first, const sites::ClosestPacket& closest) {
+          sink(begin + first, points.subspan(first, closest.count), closest);
+        };
+        if (corrections_.confirmation)
+          unconfirmed += confirm(internals(sites), winners, texels, points, options.max_distance, pass);
+        else
+          pass_on(winners, texels, points, options.max_distance, pass);
       });
   report.unconfirmed = unconfirmed;
   report.time_ms.finish = watch.lap();
@@ -138,6 +174,13 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
 }
 
 }  // namespace
+
+std::shared_ptr<const Engine> make_gl_engine(const GlOptions& options, const Corrections& corrections) {
+  if (corrections.fragment_vectors && !corrections.affine_vectors)
+    throw Error("fragments can evaluate affine vectors only");
+  return std::make_shared<const GlEngine>(options, corrections);
+}
+
 }  // namespace gl
 
 GlDevice gl_device(const GlOptions& options, std::uint32_t resolution) {
@@ -149,7 +192,10 @@ GlDevice gl_device(const GlOptions& options, std::uint32_t resolution) {
 }
 
 std::shared_ptr<const Engine> make_gl_engine(const GlOptions& options) {
-  return std::make_shared<const gl::GlEngine>(options);
+  if (!options.paper_literal) return gl::make_gl_engine(options, gl::Corrections{});
+  GlOptions literal = options;
+  literal.clip = GlClip::stencil;
+  return gl::make_gl_engine(literal, gl::Corrections::none());
 }
 
 std::optional<GlReport> gl_report(const Engine& engine) {

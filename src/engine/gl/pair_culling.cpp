@@ -15,15 +15,15 @@ bool beyond(const hierarchy::FloatBox& site, const DomainTree& tree, std::uint32
 class Descent {
  public:
   Descent(const DomainTree& tree, const DomainBlock& block, const SiteRegion& region, double reach,
-          const RasterScale& scale, RasterBatch& batch, PairCounts& counts)
+          const RasterRules& rules, RasterBatch& batch, PairCounts& counts)
       : tree_(tree),
         block_(block),
         region_(region),
-        scale_(scale),
+        rules_(rules),
         batch_(batch),
         counts_(counts),
         box_(hierarchy::FloatBox::around(region.box())),
-        oriented_(oriented_box(region, reach, scale.slack)) {}
+        oriented_(oriented_box(region, reach, rules.corrections.margins ? rules.slack : 0)) {}
 
   void run() {
     traverse(
@@ -45,14 +45,14 @@ class Descent {
 
   void draw(std::uint32_t leaf) {
     const std::uint32_t position = tree_.leaves.count(block_.node, leaf);
-    const bool drawn = add_polygon(batch_, region_, block_.domains[position], scale_);
+    const bool drawn = add_polygon(batch_, region_, oriented_, block_.domains[position], rules_);
     ++(drawn ? counts_.polygons : counts_.clipped_away);
   }
 
   const DomainTree& tree_;
   const DomainBlock& block_;
   const SiteRegion& region_;
-  const RasterScale& scale_;
+  const RasterRules& rules_;
   RasterBatch& batch_;
   PairCounts& counts_;
   hierarchy::FloatBox box_;
@@ -113,11 +113,11 @@ std::vector<std::uint32_t> leaves_within_bound(const SiteIndex& index, const Dom
 }
 
 void draw_leaf(const SiteIndex& index, std::uint32_t leaf, const DomainTree& tree, const DomainBlock& block,
-               double reach, const RasterScale& scale, RasterBatch& batch, PairCounts& counts) {
+               double reach, const RasterRules& rules, RasterBatch& batch, PairCounts& counts) {
   for_each_site(index.sites.regions, leaf, [&](const auto& site, std::size_t at) {
     if (!has_interior(site)) return;
     const SiteRegion region = region_of(index.sites, site, at);
-    Descent(tree, block, region, reach, scale, batch, counts).run();
+    Descent(tree, block, region, reach, rules, batch, counts).run();
   });
 }
 

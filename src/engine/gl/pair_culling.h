@@ -46,6 +46,6 @@ struct DomainBlock {
 /// Adds the polygons of all sites of a leaf of O2's tree on the block's domains. `reach`: the largest
 /// distance of interest.
 void draw_leaf(const SiteIndex& index, std::uint32_t leaf, const DomainTree& tree, const DomainBlock& block,
-               double reach, const RasterScale& scale, RasterBatch& batch, PairCounts& counts);
+               double reach, const RasterRules& rules, RasterBatch& batch, PairCounts& counts);
 
 }  // namespace sdm::gl

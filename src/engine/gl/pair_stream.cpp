@@ -18,12 +18,12 @@ constexpr std::size_t kFirstLeaves = 4, kMostLeaves = 64;
 
 }  // namespace
 
-PairStream::PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterScale& scale,
+PairStream::PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterRules& rules,
                        Rasteriser& rasteriser, GlReport::Times& time)
     : sites_(sites),
       tree_(tree),
       reach_(reach),
-      scale_(scale),
+      rules_(rules),
       rasteriser_(rasteriser),
       time_(time),
       parts_(kMostLeaves),
@@ -50,7 +50,7 @@ void PairStream::cull(std::span<const std::uint32_t> leaves, const DomainBlock& 
   Stopwatch watch;
   parallel_for(leaves.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      draw_leaf(sites_, leaves[i], tree_, block, reach_, scale_, parts_[i], counts_[i]);
+      draw_leaf(sites_, leaves[i], tree_, block, reach_, rules_, parts_[i], counts_[i]);
   });
   for (std::size_t i = 0; i < leaves.size(); ++i) total_ += std::exchange(counts_[i], {});
   time_.cull += watch.lap();

@@ -14,7 +14,7 @@ namespace sdm::gl {
 class PairStream {
  public:
   /// `reach`: the largest distance of interest. All references must outlive it.
-  PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterScale& scale,
+  PairStream(const SiteIndex& sites, const DomainTree& tree, double reach, const RasterRules& rules,
              Rasteriser& rasteriser, GlReport::Times& time);
 
   /// `progress` receives the completed fraction of the block, and may throw.
@@ -32,7 +32,7 @@ class PairStream {
   const SiteIndex& sites_;
   const DomainTree& tree_;
   double reach_;
-  const RasterScale& scale_;
+  const RasterRules& rules_;
   Rasteriser& rasteriser_;
   GlReport::Times& time_;
   std::vector<RasterBatch> parts_;  ///< one for each leaf of O2's tree

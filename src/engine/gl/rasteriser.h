@@ -3,6 +3,7 @@
 
 #include <sdm/gl.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -22,13 +23,16 @@ struct OwnerTable {
 struct StencilValues {
   std::span<const std::uint32_t> offsets, texels;  ///< texels of each domain, in compressed rows
   int values;                                      ///< stencil values that domains share, in [1, 255] (4.1)
+  /// Three of each domain's triangle, which is drawn in place of its texels, as in the paper; may be empty.
+  std::span<const std::array<float, 2>> corners{};
 };
 using Ownership = std::variant<WholeImage, OwnerTable, StencilValues>;
 
 /// Row 0 first.
 struct RasterImage {
-  std::vector<std::uint32_t> faces;  ///< of O2: the face of the closest site, or kNone
-  std::vector<float> depths;  ///< the distance drawn, in units of RasterScale; 1 where nothing was drawn
+  std::vector<std::uint32_t> winners;  ///< RasterPolygon::winner of the closest site, or kNone
+  std::vector<float> depths;  ///< the distance drawn, in units of RasterRules; 1 where nothing was drawn
+  std::vector<std::array<float, 4>> vectors;  ///< the distance vector drawn; empty with confirmation
 };
 
 /// Per-device state: the context and the programs.
@@ -53,7 +57,8 @@ class Rasteriser {
  public:
   /// Clears all texels to infinite distance. `owned` must outlive it. Throws sdm::Error if the device cannot
   /// allocate the image.
-  Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned);
+  Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned,
+             const Corrections& corrections = {});
   ~Rasteriser();
 
   /// Throws sdm::Error if the resolution exceeds the device's largest image.

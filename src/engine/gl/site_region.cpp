@@ -32,7 +32,28 @@ void add_end_planes(SiteRegion& region) {
   add_wall(region, -direction, -dot(direction, b));
 }
 
+Vec3 vector_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
+  const Vec3 side = b - a;
+  const double length = squared_norm(side);
+  const double t = length > 0 ? std::clamp(dot(x - a, side) / length, 0.0, 1.0) : 0;
+  return a + t * side - x;
+}
+
 }  // namespace
+
+Vec3 SiteRegion::vector_to_site(const Vec3& x) const {
+  const auto over_face = [&] {
+    return std::all_of(walls.begin(), walls.begin() + 3,
+                       [&](const HalfSpace& wall) { return dot(wall.normal, x) >= wall.offset; });
+  };
+  if (type == SiteType::vertex || (type == SiteType::face && over_face())) return distance_vector(x);
+  Vec3 closest = vector_to_segment(x, corners[0], corners[1]);
+  for (int k = 1; k < corner_count && type == SiteType::face; ++k)
+    if (const Vec3 other = vector_to_segment(x, corners[k], corners[(k + 1) % 3]);
+        squared_norm(other) < squared_norm(closest))
+      closest = other;
+  return closest;
+}
 
 bool has_interior(const sites::FaceRegion& region) {
   return region.wall[0][3] < std::numeric_limits<float>::infinity();
@@ -53,7 +74,7 @@ bool has_interior(const sites::VertexRegion&) {
 SiteRegion region_of(const sites::SitesData& sites, const sites::FaceRegion& face, std::size_t index) {
   SiteRegion region;
   region.type = SiteType::face;
-  region.face = sites.regions.owners[index].face;
+  region.site = region.face = sites.regions.owners[index].face;
   region.axis = get3(face.plane);
   const Triangle& t = sites.mesh.triangles[region.face];
   for (const std::uint32_t vertex : t)
@@ -68,6 +89,7 @@ SiteRegion region_of(const sites::SitesData& sites, const sites::FaceRegion& fac
 SiteRegion region_of(const sites::SitesData& sites, const sites::EdgeRegion& edge, std::size_t) {
   SiteRegion region;
   region.type = SiteType::edge;
+  region.site = edge.edge;
   region.face = sites.face_of(SiteType::edge, edge.edge);
   region.anchor = get3(edge.start);
   region.axis = get3(edge.direction);
@@ -89,6 +111,7 @@ SiteRegion region_of(const sites::SitesData& sites, const sites::EdgeRegion& edg
 SiteRegion region_of(const sites::SitesData& sites, const sites::VertexRegion& vertex, std::size_t index) {
   SiteRegion region;
   region.type = SiteType::vertex;
+  region.site = vertex.vertex;
   region.face = sites.face_of(SiteType::vertex, vertex.vertex);
   const auto position = [&](std::uint32_t v) { return sites.frame.to_unit(sites.mesh.positions[v]); };
   region.anchor = position(vertex.vertex);

@@ -22,6 +22,7 @@ struct SiteRegion {
   static constexpr int kMostWalls = 5;
 
   SiteType type = SiteType::none;
+  std::uint32_t site = kNone;  ///< its index among those of its type
   std::uint32_t face = kNone;  ///< a face to which the site belongs
   Vec3 anchor{};               ///< a point of the site's plane or line, or the vertex itself
   Vec3 axis{};                 ///< face: its normal; edge: its direction; vertex: none
@@ -44,6 +45,9 @@ struct SiteRegion {
     }
   }
   [[nodiscard]] Vec3 distance_vector(const Vec3& x) const { return change(x - anchor); }
+  /// The vector from any x to the closest point of the closed site: affine only where it is
+  /// distance_vector().
+  [[nodiscard]] Vec3 vector_to_site(const Vec3& x) const;
   [[nodiscard]] Box box() const {
     Box b;
     for (int k = 0; k < corner_count; ++k) extend(b, corners[k]);

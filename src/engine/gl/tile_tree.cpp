@@ -26,11 +26,13 @@ hierarchy::AabbTree build_tree(const Surface& surface, const surface::Tiles& til
 
 }  // namespace
 
-TileTree::TileTree(const Surface& surface) : tiles(surface), tree(build_tree(surface, tiles)) {}
+TileTree::TileTree(const Surface& surface, std::uint32_t side)
+    : tiles(surface, side), tree(build_tree(surface, tiles)) {}
 
 const TileTree& TileTreeCache::of(const Surface& surface) {
   std::erase_if(trees_, [](const auto& entry) { return entry.first.expired(); });
-  return trees_.try_emplace(internals(surface).identity, surface).first->second;
+  const std::uint32_t side = whole_faces_ ? surface.resolution() : surface::Tiles::kSide;
+  return trees_.try_emplace(internals(surface).identity, surface, side).first->second;
 }
 
 }  // namespace sdm::gl

@@ -12,7 +12,7 @@ namespace sdm::gl {
 
 struct TileTree {
   /// Cost: O(n log n) in tiles, linear in texels, all cores.
-  explicit TileTree(const Surface& surface);
+  explicit TileTree(const Surface& surface, std::uint32_t side = surface::Tiles::kSide);
 
   surface::Tiles tiles;
   hierarchy::AabbTree tree;  ///< one tile per leaf; its boxes are those of the shape it was built for
@@ -22,10 +22,14 @@ struct TileTree {
 /// a map of a small mesh. Entries of surfaces that no longer exist are dropped at the next call.
 class TileTreeCache {
  public:
+  /// `whole_faces`: every face is one tile.
+  explicit TileTreeCache(bool whole_faces = false) : whole_faces_(whole_faces) {}
+
   /// Returns the tree of a surface, built on the first call. Valid until the next call.
   [[nodiscard]] const TileTree& of(const Surface& surface);
 
  private:
+  bool whole_faces_;
   std::map<std::weak_ptr<const surface::Identity>, TileTree, std::owner_less<>> trees_;
 };
 
