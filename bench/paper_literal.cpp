@@ -1,0 +1,220 @@
+// The paper's Algorithm 1 as it is printed, and each correction of the gl engine (engine/gl/corrections.h)
+// added to it alone, and removed alone from the engine. Errors are those of |distance|, in millionths of the
+// diagonal of the bounding box of both meshes, over texels with a value; "wrong" is the percentage of texels
+// whose distance, site or vector is wrong by more than the accuracy of the engine, or that have no value;
+// "none" that of the latter; "repaired" that of texels that the cpu engine recomputed. Verifies that the
+// engine with all corrections agrees with the reference engine. All rows clip by the stencil.
+//
+//   build/dev/bench/paper_literal [--device NAME]
+//                                 [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
+#include <sdm/sdm.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/vec.h"
+#include "engine/gl/gl_engine.h"
+#include "harness.h"
+#include "scenes.h"
+#include "scenes/reduce_mesh.h"
+#include "scenes/scene.h"
+#include "sites/closest_on_face.h"
+#include "timing.h"
+
+namespace sdm::bench {
+namespace {
+
+using gl::Corrections;
+
+struct Variant {
+  std::string name;
+  Corrections corrections;
+};
+
+/// A correction, and what else must change with it.
+struct Switch {
+  const char* name;
+  void (*set)(Corrections&, bool on);
+};
+constexpr Switch kSwitches[] = {
+    {"region walls", [](Corrections& c, bool on) { c.region_walls = on; }},
+    {"affine vectors",
+     [](Corrections& c, bool on) {
+       c.affine_vectors = on;
+       c.fragment_vectors &= on;
+     }},
+    {"fragment vectors",
+     [](Corrections& c, bool on) {
+       c.fragment_vectors = on;
+       c.affine_vectors |= on;
+     }},
+    {"margins", [](Corrections& c, bool on) { c.margins = on; }},
+    {"tiles", [](Corrections& c, bool on) { c.tiles = on; }},
+    {"stencil points", [](Corrections& c, bool on) { c.stencil_points = on; }},
+};
+
+std::vector<Variant> variants() {
+  const Corrections all{}, none = Corrections::none();
+  Corrections drawn = all, confirmed = none;
+  drawn.confirmation = false;
+  confirmed.confirmation = true;
+  std::vector<Variant> result{{"all corrections", all}, {"as printed", none}};
+  const auto add = [&](const std::string& prefix, Corrections from, const Switch& which, bool on) {
+    which.set(from, on);
+    result.push_back({prefix + which.name, from});
+  };
+  for (const Switch& which : kSwitches) add("printed + ", none, which, true);
+  Corrections tiled = none;
+  tiled.tiles = true;
+  add("printed + tiles + ", tiled, kSwitches[0], true);
+  add("printed + tiles + ", tiled, kSwitches[1], true);
+  result.push_back({"printed + confirmation", confirmed});
+  for (const Switch& which : kSwitches) add("all - ", all, which, false);
+  result.push_back({"all - confirmation", drawn});
+  for (const Switch& which : kSwitches) add("all - confirmation - ", drawn, which, false);
+  return result;
+}
+
+double distance_to_site(const Sites& sites, SiteType type, std::uint32_t site, const Vec3& x) {
+  const std::vector<Vec3>& p = sites.mesh().positions;
+  if (type == SiteType::face) return sites::closest_on_face(internals(sites), site, x).distance;
+  if (type == SiteType::vertex) return norm(x - p[site]);
+  const auto [i, j] = sites.edges()[site];
+  const Vec3 side = p[j] - p[i];
+  const double length = squared_norm(side);
+  const double t = length > 0 ? std::clamp(dot(x - p[i], side) / length, 0.0, 1.0) : 0;
+  return norm(p[i] + t * side - x);
+}
+
+struct Errors {
+  double largest = 0, mean = 0;  // relative to the diagonal
+  double wrong = 0, none = 0;    // percentages of texels
+};
+
+Errors errors_of(const DistanceMap& map, const DistanceMap& reference, const Surface& surface,
+                 const Sites& sites) {
+  Box box = bounds(surface.mesh());
+  extend(box, bounds(sites.mesh()));
+  const double unit = diagonal(box), tolerance = gl::kInfo.relative_error * unit;
+  Errors e;
+  for (const std::uint32_t t : surface.sample_texels()) {
+    if (map.site_type[t] == SiteType::none) {
+      ++e.none, ++e.wrong;
+      continue;
+    }
+    const double expected = std::abs(reference.distance[t]);
+    const double error = std::abs(std::abs(map.distance[t]) - expected);
+    e.largest = std::max(e.largest, error / unit);
+    e.mean += error / unit;
+    const Vec3 q = surface.texel_point(t),
+               end = q + Vec3{map.vector[t][0], map.vector[t][1], map.vector[t][2]};
+    const auto to_site = [&](const Vec3& x) {
+      return distance_to_site(sites, map.site_type[t], map.site[t], x);
+    };
+    e.wrong += error > tolerance || to_site(q) > expected + tolerance || to_site(end) > tolerance;
+  }
+  const auto texels = static_cast<double>(surface.sample_texels().size());
+  e.mean /= std::max(texels - e.none, 1.0);
+  e.wrong *= 100 / texels;
+  e.none *= 100 / texels;
+  return e;
+}
+
+Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, std::uint32_t resolution,
+                const std::string& device) {
+  const Surface surface(o1, {.resolution = resolution});
+  const Sites sites(o2);
+  const auto map_by = [&](const std::shared_ptr<const Engine>& engine) {
+    return compute_map(surface, sites, {.engine = engine, .sign = SignMethod::none});
+  };
+  const DistanceMap reference = map_by(make_engine("reference"));
+  Outcome outcome{.verified = true};
+  std::vector<Contender> contenders;
+  for (const Variant& variant : variants()) {
+    const auto engine = gl::make_gl_engine({.device = device, .clip = GlClip::stencil}, variant.corrections);
+    const Errors e = errors_of(map_by(engine), reference, surface, sites);
+    const GlReport report = gl_report(*engine).value();
+    const auto texels = static_cast<double>(report.texels);
+    if (outcome.rows.empty() && e.wrong > 0) {
+      std::fprintf(stderr, "the map with all corrections is wrong\n");
+      return {};
+    }
+    contenders.push_back({[&map_by, engine] { (void)map_by(engine); }, trial.threads});
+    outcome.rows.push_back({variant.name,
+                            {{"max_error_ppm", 1e6 * e.largest},
+                             {"mean_error_ppm", 1e6 * e.mean},
+                             {"wrong_percent", e.wrong},
+                             {"none_percent", e.none},
+                             {"repaired_percent", 100 * static_cast<double>(report.unconfirmed) / texels},
+                             {"polygons", static_cast<double>(report.polygons) / texels}}});
+  }
+  const auto times = take_turns(contenders, trial.repetitions, 0);
+  for (std::size_t i = 0; i < times.size(); ++i) outcome.rows[i].figures.push_back({"ms", median(times[i])});
+  return outcome;
+}
+
+std::vector<Case> cases(const std::string& device) {
+  using Meshes = std::function<std::pair<Mesh, Mesh>()>;
+  std::vector<Case> result;
+  const auto add = [&](const std::string& name, const std::string& what, std::uint32_t resolution,
+                       const Meshes& meshes) {
+    result.push_back({.name = name,
+                      .description = what + ", " + std::to_string(resolution) + "²",
+                      .run =
+                          [&device, resolution, meshes](const Trial& trial) {
+                            const auto [o1, o2] = meshes();
+                            return measure(trial, o1, o2, resolution, device);
+                          },
+                      .repetitions = 3,
+                      .threads = 0});
+  };
+  const auto first_frame = [](scenes::SceneKind kind) {
+    return [kind] {
+      const scenes::Scene scene(kind);
+      return std::pair(scene.bodies()[0].mesh, scene.bodies()[1].mesh);
+    };
+  };
+  add("letters", "letter E to letter G", 256, first_frame(scenes::SceneKind::letters));
+  add("bunnies", "one bunny of 2k triangles to the other", 256, first_frame(scenes::SceneKind::bunnies));
+  add("figure-to-box", "the figure to its box", 256, [] {
+    const Mesh figure = paper_figure();
+    return std::pair(figure, paper_box(figure));
+  });
+  add("box-to-figure", "the box to its figure", 128, [] {
+    const Mesh figure = paper_figure();
+    return std::pair(paper_box(figure), figure);
+  });
+  const auto armadillo = [](const char* steps) {
+    return scenes::reduce_mesh(load("armadillo.off", steps), 10000);
+  };
+  add("apart", "bunny to armadillo of 10k triangles, side by side", 256,
+      [armadillo] { return std::pair(load("bunny.obj", "fit"), armadillo("fit,translate:0.8:0:0")); });
+  add("penetrating", "bunny of 2k triangles to armadillo of 10k inside it", 256, [armadillo] {
+    return std::pair(scenes::reduce_mesh(load("bunny.obj", "fit"), 2000), armadillo("fit"));
+  });
+  return result;
+}
+
+}  // namespace
+}  // namespace sdm::bench
+
+int main(int argc, char** argv) {
+  using namespace sdm::bench;
+  static std::string device;
+  return run_program(
+      argc, argv,
+      {.name = "paper_literal",
+       .description = "The paper's Algorithm 1 as it is printed, and the effect of each correction",
+       .repetition = "repetitions",
+       .cases = cases(device),
+       .add_options = [](CLI::App& app) {
+         app.add_option("--device", device, "A part of the name of the device that draws");
+       }});
+}
