@@ -1,9 +1,10 @@
-// The paper's Algorithm 1 as it is printed, and each correction of the gl engine (engine/gl/corrections.h)
-// added to it alone, and removed alone from the engine. Errors are those of |distance|, in millionths of the
-// diagonal of the bounding box of both meshes, over texels with a value; "wrong" is the percentage of texels
-// whose distance, site or vector is wrong by more than the accuracy of the engine, or that have no value;
-// "none" that of the latter; "repaired" that of texels that the cpu engine recomputed. Verifies that the
-// engine with all corrections agrees with the reference engine. All rows clip by the stencil.
+// The paper's Algorithm 1 as it is printed, and each correction of the gl engine
+// (engine/gl/polygons/corrections.h) added to it alone, and removed alone from the engine. Errors are those
+// of |distance|, in millionths of the diagonal of the bounding box of both meshes, over texels with a value;
+// "wrong" is the percentage of texels whose distance, site or vector is wrong by more than the accuracy of
+// the engine, or that have no value; "none" that of the latter; "repaired" that of texels that the cpu engine
+// recomputed. Verifies that the engine with all corrections agrees with the reference engine. All rows clip
+// by the stencil.
 //
 //   build/dev/bench/paper_literal [--device NAME]
 //                                 [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]

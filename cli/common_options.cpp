@@ -72,9 +72,11 @@ void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
   app.add_flag("--quiet", quiet, "Print only errors, and the JSON if requested");
 }
 
+// Has external linkage, so that the compiler keeps it, and the limit is not a leak.
+sdm::ThreadLimit* limit_of_process = nullptr;
+
 void limit_threads(unsigned count) {
-  static const auto* const limit = new sdm::ThreadLimit(count);
-  (void)limit;
+  limit_of_process = new sdm::ThreadLimit(count);
 }
 
 void check_range(const std::vector<double>& range) {

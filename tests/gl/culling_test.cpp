@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "engine/gl/oriented_box.h"
 #include "engine/gl/pair_culling.h"
+#include "engine/gl/polygons/oriented_box.h"
 #include "engine/reference/reference_engine.h"
 #include "support/meshes.h"
 #include "support/points.h"

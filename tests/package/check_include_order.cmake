@@ -19,6 +19,7 @@ set(order
   engine/reference
   engine/cpu
   engine/gl/device
+  engine/gl/polygons
   engine/gl
   engine/table
   map

@@ -5,7 +5,7 @@
 #include <sdm/gl.h>
 #include <sdm/surface.h>
 
-#include "engine/gl/planar_domain.h"
+#include "engine/gl/polygons/planar_domain.h"
 #include "hierarchy/aabb_tree.h"
 #include "surface/tiles.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "engine/engine.h"
-#include "engine/gl/corrections.h"
+#include "engine/gl/polygons/corrections.h"
 
 namespace sdm::gl {
 

@@ -1,6 +1,6 @@
 #include "engine/gl/pair_culling.h"
 
-#include "engine/gl/oriented_box.h"
+#include "engine/gl/polygons/oriented_box.h"
 
 namespace sdm::gl {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/gl/domain_tree.h"
-#include "engine/gl/raster_polygon.h"
+#include "engine/gl/polygons/raster_polygon.h"
 
 namespace sdm::gl {
 

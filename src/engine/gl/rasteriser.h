@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/gl/device/context.h"
-#include "engine/gl/raster_polygon.h"
+#include "engine/gl/polygons/raster_polygon.h"
 
 namespace sdm::gl {
 

@@ -5,7 +5,7 @@
 #include <sdm/types.h>
 
 #include "core/geometry/vec.h"
-#include "engine/gl/convex_polygon.h"
+#include "engine/gl/polygons/convex_polygon.h"
 
 namespace sdm::gl {
 

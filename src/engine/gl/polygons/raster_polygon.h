@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/gl/corrections.h"
-#include "engine/gl/oriented_box.h"
-#include "engine/gl/planar_domain.h"
-#include "engine/gl/site_region.h"
+#include "engine/gl/polygons/corrections.h"
+#include "engine/gl/polygons/oriented_box.h"
+#include "engine/gl/polygons/planar_domain.h"
+#include "engine/gl/polygons/site_region.h"
 
 namespace sdm::gl {
 

@@ -1,4 +1,4 @@
-#include "engine/gl/site_region.h"
+#include "engine/gl/polygons/site_region.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "engine/gl/oriented_box.h"
+#include "engine/gl/polygons/oriented_box.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "engine/gl/site_region.h"
+#include "engine/gl/polygons/site_region.h"
 #include "hierarchy/aabb_tree.h"
 
 namespace sdm::gl {

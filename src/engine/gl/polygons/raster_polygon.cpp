@@ -1,4 +1,4 @@
-#include "engine/gl/raster_polygon.h"
+#include "engine/gl/polygons/raster_polygon.h"
 
 #include <algorithm>
 #include <cmath>
