@@ -88,10 +88,7 @@ double distance_to_site(const Sites& sites, SiteType type, std::uint32_t site, c
   if (type == SiteType::face) return sites::closest_on_face(internals(sites), site, x).distance;
   if (type == SiteType::vertex) return norm(x - p[site]);
   const auto [i, j] = sites.edges()[site];
-  const Vec3 side = p[j] - p[i];
-  const double length = squared_norm(side);
-  const double t = length > 0 ? std::clamp(dot(x - p[i], side) / length, 0.0, 1.0) : 0;
-  return norm(p[i] + t * side - x);
+  return norm(closest_on_segment(x, p[i], p[j]) - x);
 }
 
 struct Errors {
@@ -184,14 +181,8 @@ std::vector<Case> cases(const std::string& device) {
   };
   add("letters", "letter E to letter G", 256, first_frame(scenes::SceneKind::letters));
   add("bunnies", "one bunny of 2k triangles to the other", 256, first_frame(scenes::SceneKind::bunnies));
-  add("figure-to-box", "the figure to its box", 256, [] {
-    const Mesh figure = paper_figure();
-    return std::pair(figure, paper_box(figure));
-  });
-  add("box-to-figure", "the box to its figure", 128, [] {
-    const Mesh figure = paper_figure();
-    return std::pair(paper_box(figure), figure);
-  });
+  add("figure-to-box", "the figure to its box", 256, figure_to_box);
+  add("box-to-figure", "the box to its figure", 128, box_to_figure);
   const auto armadillo = [](const char* steps) {
     return scenes::reduce_mesh(load("armadillo.off", steps), 10000);
   };

@@ -112,14 +112,8 @@ std::vector<Case> cases(const std::string& device) {
            .threads = 0});
     }
   };
-  add("figure-to-box", "the figure to its box", [] {
-    const Mesh figure = paper_figure();
-    return std::pair(figure, paper_box(figure));
-  });
-  add("box-to-figure", "the box to its figure", [] {
-    const Mesh figure = paper_figure();
-    return std::pair(paper_box(figure), figure);
-  });
+  add("figure-to-box", "the figure to its box", figure_to_box);
+  add("box-to-figure", "the box to its figure", box_to_figure);
   for (const std::size_t thousands : {1u, 10u, 50u}) {
     const std::string size = std::to_string(thousands) + "k";
     add("bunny-to-armadillo-" + size, "bunny to armadillo of " + size + " triangles", [thousands] {

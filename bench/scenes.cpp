@@ -27,4 +27,14 @@ Mesh paper_box(const Mesh& figure) {
   return scenes::box_mesh(box);
 }
 
+std::pair<Mesh, Mesh> figure_to_box() {
+  Mesh figure = paper_figure(), box = paper_box(figure);
+  return {std::move(figure), std::move(box)};
+}
+
+std::pair<Mesh, Mesh> box_to_figure() {
+  auto [figure, box] = figure_to_box();
+  return {std::move(box), std::move(figure)};
+}
+
 }  // namespace sdm::bench

@@ -4,6 +4,7 @@
 #include <sdm/mesh.h>
 
 #include <string_view>
+#include <utility>
 
 namespace sdm::bench {
 
@@ -16,5 +17,9 @@ namespace sdm::bench {
 
 /// A box around it as there: 12 triangles, 0.12 larger than the figure's bounds on each side.
 [[nodiscard]] Mesh paper_box(const Mesh& figure);
+
+/// O1 and O2 of the maps between the two.
+[[nodiscard]] std::pair<Mesh, Mesh> figure_to_box();
+[[nodiscard]] std::pair<Mesh, Mesh> box_to_figure();
 
 }  // namespace sdm::bench

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <fstream>
@@ -95,7 +96,8 @@ SequenceState SequenceState::read(const std::filesystem::path& file) try {
   const std::size_t texels = maps.maps == 0 ? 0 : std::size_t{maps.resolution} * maps.resolution;
   constexpr std::size_t kBytesPerTexel = 2 * sizeof(float) + sizeof(double);
   const std::uintmax_t size = std::filesystem::file_size(file);
-  if (size != line.size() + 1 + kBytesPerTexel * texels) throw sdm::Error("size");
+  const std::uintmax_t rest = size - std::min<std::uintmax_t>(size, line.size() + 1);
+  if (rest % kBytesPerTexel != 0 || rest / kBytesPerTexel != texels) throw sdm::Error("size");
   read_array(in, maps.least, texels);
   read_array(in, maps.largest, texels);
   read_array(in, maps.sum, texels);

@@ -77,6 +77,16 @@ TEST_F(Consistency, InfoWritesTheIntersectingFaces) {
   EXPECT_EQ(json({"info", small})["volume"]["lower"], json({"info", small})["volume"]["upper"]);
 }
 
+// Regression: a file name without a folder was refused.
+TEST_F(Consistency, InfoWritesIntoTheCurrentFolder) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const Outcome run = run_sdm({"info", two, "--self-intersections", "here.csv"});
+  std::filesystem::current_path(before);
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(contents(folder / "here.csv"), StartsWith("face1,face2\n"));
+}
+
 // Regression: a vertex that no number showed decided the verdict.
 TEST_F(Consistency, TheVerdictIsThatOfTheExtremesShown) {
   const std::string o1 = folder / "o1.ply";

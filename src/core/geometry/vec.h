@@ -95,6 +95,13 @@ inline double diagonal(const Box& box) {
   return norm(box.hi - box.lo);
 }
 
+/// The point of the segment from a to b that is closest to x, for a = b as well.
+inline Vec3 closest_on_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
+  const Vec3 side = b - a;
+  const double length = squared_norm(side);
+  return length > 0 ? a + std::clamp(dot(x - a, side) / length, 0.0, 1.0) * side : a;
+}
+
 }  // namespace sdm::core
 
 namespace sdm {

@@ -32,13 +32,6 @@ void add_end_planes(SiteRegion& region) {
   add_wall(region, -direction, -dot(direction, b));
 }
 
-Vec3 vector_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
-  const Vec3 side = b - a;
-  const double length = squared_norm(side);
-  const double t = length > 0 ? std::clamp(dot(x - a, side) / length, 0.0, 1.0) : 0;
-  return a + t * side - x;
-}
-
 }  // namespace
 
 Vec3 SiteRegion::vector_to_site(const Vec3& x) const {
@@ -47,9 +40,9 @@ Vec3 SiteRegion::vector_to_site(const Vec3& x) const {
                        [&](const HalfSpace& wall) { return dot(wall.normal, x) >= wall.offset; });
   };
   if (type == SiteType::vertex || (type == SiteType::face && over_face())) return distance_vector(x);
-  Vec3 closest = vector_to_segment(x, corners[0], corners[1]);
+  Vec3 closest = closest_on_segment(x, corners[0], corners[1]) - x;
   for (int k = 1; k < corner_count && type == SiteType::face; ++k)
-    if (const Vec3 other = vector_to_segment(x, corners[k], corners[(k + 1) % 3]);
+    if (const Vec3 other = closest_on_segment(x, corners[k], corners[(k + 1) % 3]) - x;
         squared_norm(other) < squared_norm(closest))
       closest = other;
   return closest;
