@@ -24,7 +24,7 @@ struct DistanceStatistics {
 };
 
 /// Computes statistics of `map.distance` as it is, signed or not. Throws sdm::Error if the map does not
-/// belong to this surface. Cost: O(n log n) in texels.
+/// belong to this surface. Cost: linear in texels, all cores.
 [[nodiscard]] SDM_API DistanceStatistics statistics(const Surface& surface, const DistanceMap& map);
 
 /// Where a distance was measured.
