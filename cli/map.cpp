@@ -97,7 +97,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
       [&] { write_map_files(folder, *surface, map, at_vertices, picture, boundary); },
       [&] {
         outcome.distance = sdm::statistics(*surface, map);
-        outcome.error_bound = sdm::SamplingBound(*surface).value();
+        outcome.error_bound = sdm::covering_radius(*surface);
       },
   });
   if (command.picture.tolerance) {

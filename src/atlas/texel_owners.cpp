@@ -59,12 +59,4 @@ std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::
   return owner;
 }
 
-std::vector<std::uint32_t> owned_texels(const std::vector<std::uint32_t>& texel_faces) {
-  std::vector<std::uint32_t> texels;
-  texels.reserve(texel_faces.size() - static_cast<std::size_t>(std::ranges::count(texel_faces, kNone)));
-  for (std::size_t texel = 0; texel < texel_faces.size(); ++texel)
-    if (texel_faces[texel] != kNone) texels.push_back(static_cast<std::uint32_t>(texel));
-  return texels;
-}
-
 }  // namespace sdm::atlas

@@ -13,7 +13,4 @@ namespace sdm::atlas {
 [[nodiscard]] std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind,
                                                    std::uint32_t resolution);
 
-/// All texels that are owned by a face, in increasing order.
-[[nodiscard]] std::vector<std::uint32_t> owned_texels(const std::vector<std::uint32_t>& texel_faces);
-
 }  // namespace sdm::atlas

@@ -8,10 +8,10 @@
 
 #include "atlas/packing/too_small.h"
 #include "atlas/texel_owners.h"
-#include "core/geometry/spatial_order.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "mesh/validate.h"
+#include "surface/sample_order.h"
 
 namespace sdm::surface {
 namespace {
@@ -46,8 +46,7 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   for (std::uint32_t c = 0; c < layout.charts.size(); ++c)
     for (const std::uint32_t f : layout.charts[c]) face_charts[f] = c;
   texel_faces = atlas::rasterise(layout, kind, resolution);
-  samples = atlas::owned_texels(texel_faces);
-  if (samples.empty())
+  if (std::ranges::all_of(texel_faces, [](std::uint32_t face) { return face == kNone; }))
     throw atlas::TooSmall(
         "no face of the mesh is large enough in the texture to own a texel; use a larger resolution",
         std::uint64_t{2} * resolution);
@@ -56,7 +55,11 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   max_stretch = layout.max_stretch;
   maps = std::move(layout.maps);
   corners = std::move(layout.corners);
-  order_samples();
+  samples = sample_order(*this);
+  sample_faces.resize(samples.size());
+  parallel_for(samples.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sample_faces[i] = texel_faces[samples[i]];
+  });
 }
 
 void SurfaceData::refit(std::span<const Vec3> positions) {
@@ -83,20 +86,6 @@ std::vector<Vec3> SurfaceData::sample_points() const {
     place_samples(begin, std::span(points).subspan(begin, end - begin));
   });
   return points;
-}
-
-void SurfaceData::order_samples() {
-  find_sample_faces();
-  std::vector<std::uint32_t> order = spatial_order(sample_points());
-  for (std::uint32_t& index : order) index = samples[index];
-  samples = std::move(order);
-  find_sample_faces();
-}
-
-void SurfaceData::find_sample_faces() {
-  sample_faces.resize(samples.size());
-  std::ranges::transform(samples, sample_faces.begin(),
-                         [&](std::uint32_t texel) { return texel_faces[texel]; });
 }
 
 }  // namespace sdm::surface

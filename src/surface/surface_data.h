@@ -47,10 +47,6 @@ class SurfaceData {
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
   std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order are scattered over texel_faces
   std::shared_ptr<const Identity> identity = std::make_shared<Identity>();
-
- private:
-  void order_samples();  ///< in spatial order
-  void find_sample_faces();
 };
 
 }  // namespace sdm::surface

@@ -69,7 +69,7 @@ TEST_F(MapCommand, ReportHasTheNumbersOfTheLibrary) {
   EXPECT_EQ(report["texels_with_value"], expected.texels);
   EXPECT_EQ(report["beyond_max_distance"], 0);
   EXPECT_TRUE(report["max_distance"].is_null());
-  EXPECT_EQ(report["error_bound"], SamplingBound(surface).value());
+  EXPECT_EQ(report["error_bound"], covering_radius(surface));
   EXPECT_EQ(report["error_bound_kind"], "bounded");
   for (const char* step : {"import", "atlas", "sites", "map", "export", "total"})
     EXPECT_GT(report["time_ms"][step], 0) << step;

@@ -142,7 +142,7 @@ std::vector<Ball> block_balls(const Surface& surface, const surface::PieceAssign
 double expect_covered(const Surface& surface, const SamplingBound& bound) {
   const std::vector<FacePoint> points = points_of_faces(surface.mesh(), 60000);
   const surface::SampleTree tree(surface, bound.value());
-  const std::span<const Vec3> samples = tree.points();
+  const std::vector<Vec3> samples = surface.sample_points();
   const SampleBalls balls(samples, bound.sample_radii());
   std::vector<double> distances(points.size());
   std::vector<std::uint8_t> covered(points.size());

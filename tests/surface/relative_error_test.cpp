@@ -22,6 +22,7 @@ using testing::HasSubstr;
 std::vector<double> seen(const Surface& surface) {
   const Mesh& mesh = surface.mesh();
   const surface::SampleTree tree(surface, SamplingBound(surface).value());
+  const std::vector<Vec3> points = surface.sample_points();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<double> radii(mesh.triangles.size());
@@ -31,7 +32,7 @@ std::vector<double> seen(const Surface& surface) {
       const auto& [a, b, c] = mesh.triangles[f];
       const Vec3 p =
           (1 - s) * mesh.positions[a] + (s * (1 - t)) * mesh.positions[b] + (s * t) * mesh.positions[c];
-      radii[f] = std::max(radii[f], norm(p - tree.points()[tree.nearest(p)]));
+      radii[f] = std::max(radii[f], norm(p - points[tree.nearest(p)]));
     }
   return radii;
 }

@@ -63,6 +63,7 @@ void expect_bound(const Surface& surface, double slack, std::size_t points = 200
   const double seen = measured(surface, points), bound = SamplingBound(surface).value();
   EXPECT_LE(seen, bound);
   EXPECT_LE(bound, slack * seen);
+  EXPECT_NEAR(covering_radius(surface), bound, 1e-5 * bound);  // its pieces are rounded to float
 }
 
 TEST(SamplingBound, IsValidAndTightOnGoodMeshes) {
@@ -111,6 +112,7 @@ TEST(SamplingBound, PartsWithoutSamples) {
   const SamplingBound bound(surface);
   EXPECT_LE(farthest, bound.value());
   EXPECT_LE(bound.value(), 1.1 * farthest);
+  EXPECT_NEAR(covering_radius(surface), bound.value(), 1e-6 * bound.value());
 }
 
 TEST(SamplingBound, HalvesWithTheResolution) {
@@ -123,7 +125,9 @@ TEST(SamplingBound, HalvesWithTheResolution) {
 TEST(SamplingBound, DoesNotDependOnTheNumberOfThreads) {
   const Mesh mesh = test::load("head.off", "fit");
   const double many = SamplingBound(Surface(mesh, {.resolution = 256})).value();
+  const double radius = covering_radius(Surface(mesh, {.resolution = 256}));
   const ThreadLimit one(1);
+  EXPECT_EQ(covering_radius(Surface(mesh, {.resolution = 256})), radius);
   EXPECT_EQ(SamplingBound(Surface(mesh, {.resolution = 256})).value(), many);
 }
 

@@ -12,24 +12,15 @@
 #include "surface/surface_data.h"
 
 namespace sdm::surface {
-namespace {
-
-/// x rounded up to a float.
 float rounded_up(double x) {
   return static_cast<float>(x * (1 + 0x1p-23));
 }
-
-}  // namespace
 
 double half_diagonal(const std::array<Vec3, 2>& texel_edges) {
   const auto& [du, dv] = texel_edges;
   return 0.5 * std::sqrt(std::max(squared_norm(du + dv), squared_norm(du - dv)));
 }
 
-namespace {
-
-// The distance from the centre of a texel's square on the face to its farthest corner, plus the rounding
-// error of M⁻¹, which places the samples, at the face's own corners.
 double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame& frame) {
   const atlas::FaceMap& map = internals(surface).maps[face];
   const auto& [du, dv] = map.edges;
@@ -40,8 +31,6 @@ double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame
   }
   return half_diagonal(map.edges) + mismatch + frame.rounding();
 }
-
-}  // namespace
 
 // Calls take_face(face, radius) for each face in the block: no point of its pieces here is farther from its
 // sample.

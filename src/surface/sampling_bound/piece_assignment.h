@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "surface/sample_blocks.h"
+#include "surface/sampling_bound/face_frame.h"
 #include "surface/sampling_bound/measure_pieces.h"
 
 namespace sdm::surface {
@@ -13,6 +14,11 @@ namespace sdm::surface {
 /// Half the longer diagonal of a texel's square on the surface, given its edges: the largest distance from
 /// the centre to a point of the square.
 [[nodiscard]] double half_diagonal(const std::array<Vec3, 2>& texel_edges);
+/// The distance from the centre of a texel's square on the face to its farthest corner, plus the rounding
+/// error of M⁻¹, which places the samples, at the face's own corners.
+[[nodiscard]] double square_radius(const Surface& surface, std::uint32_t face, const FaceFrame& frame);
+/// x rounded up to a float.
+[[nodiscard]] float rounded_up(double x);
 
 /// A cover of the surface by convex pieces, each assigned to a sample. Samples and pieces move affinely with
 /// their faces, so it is valid for any positions of the vertices. Only the radii depend on the positions;

@@ -42,7 +42,7 @@ std::array<double, 2> middle_corner(const std::array<Vec2, 3>& triangle) {
 
 std::vector<double> PieceAssignment::radius_lower_bounds(const Surface& surface, double bound) const {
   const SampleTree tree(surface, 16 * bound);
-  const std::span<const Vec3> points = tree.points();
+  const std::vector<Vec3> points = surface.sample_points();
   std::vector<double> radii(surface.mesh().triangles.size());
   parallel_for(radii.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {

@@ -28,7 +28,7 @@ double stepped(double resolution) {
 /// About the factor by which the resolution must change; above 1 if and only if it does not suffice.
 double needed_factor(const Mesh& mesh, AtlasOptions options, double resolution, double precision) try {
   options.resolution = static_cast<std::uint32_t>(resolution);
-  return SamplingBound(Surface(mesh, options)).value() / precision;
+  return covering_radius(Surface(mesh, options)) / precision;
 } catch (const atlas::TooSmall& error) {
   return static_cast<double>(error.enough()) / resolution;
 }

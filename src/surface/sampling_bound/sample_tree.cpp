@@ -15,9 +15,9 @@ struct SampleTree::Run {
 };
 
 SampleTree::SampleTree(const Surface& surface, double radius)
-    : points_(surface.sample_points()), frame_(UnitFrame::of(bounds(surface.mesh()))) {
+    : surface_(internals(surface)), frame_(UnitFrame::of(bounds(surface.mesh()))) {
   constexpr std::size_t kStride = 4096;
-  const std::size_t count = points_.size();
+  const std::size_t count = surface_.samples.size();
   std::vector<std::vector<Run>> parts((count + kStride - 1) / kStride);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -40,7 +40,7 @@ std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end,
   std::vector<Run> runs;
   Vec3 start{};
   for (std::size_t i = begin; i < end; ++i) {
-    const Vec3 p = points_[i];
+    const Vec3 p = surface_.texel_point(surface_.sample_faces[i], surface_.samples[i]);
     if (runs.empty() || i - runs.back().first == kLongest || norm(p - start) > radius) {
       runs.push_back({i, {}});
       start = p;
@@ -62,9 +62,11 @@ std::uint32_t SampleTree::nearest(const Vec3& query) const {
       [&](double squared_distance) { return squared_distance < least; },
       [&](std::uint32_t leaf) {
         const std::uint32_t run = tree_.items_of(leaf)[0];
-        for (std::size_t i = first_[run]; i < first_[run + 1]; ++i)
-          if (const double d = squared_norm(points_[i] - query); d < least)
+        for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
+          const Vec3 p = surface_.texel_point(surface_.sample_faces[i], surface_.samples[i]);
+          if (const double d = squared_norm(p - query); d < least)
             sample = static_cast<std::uint32_t>(i), least = d;
+        }
       });
   return sample;
 }

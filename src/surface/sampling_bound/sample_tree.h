@@ -6,19 +6,18 @@
 #include <vector>
 
 #include "hierarchy/aabb_tree.h"
+#include "surface/surface_data.h"
 
 namespace sdm::surface {
 
 /// A tree over runs of consecutive samples, which are close together: it is built in a fraction of the time
-/// of a tree over single samples. The surface must have a sample, outlive the tree and remain unchanged.
+/// of a tree over single samples, and takes less memory. The surface must have a sample, outlive the tree and
+/// remain unchanged.
 class SampleTree {
  public:
   /// Runs stay within `radius` of their first sample: a few texels, so that a run that jumps to another place
   /// is cut. Cost: linear in samples, all cores.
   SampleTree(const Surface& surface, double radius);
-
-  /// The points of all samples.
-  [[nodiscard]] std::span<const Vec3> points() const { return points_; }
 
   /// The nearest sample, as an index into sample_texels(). Cost: O(log n) for queries near the surface.
   [[nodiscard]] std::uint32_t nearest(const Vec3& query) const;
@@ -27,7 +26,7 @@ class SampleTree {
   struct Run;
   [[nodiscard]] std::vector<Run> cut(std::size_t begin, std::size_t end, double radius) const;
 
-  std::vector<Vec3> points_;
+  const SurfaceData& surface_;
   UnitFrame frame_;
   std::vector<std::size_t> first_;  ///< sample of each run, and the end of the last run
   hierarchy::AabbTree tree_;        ///< over runs, one a leaf
