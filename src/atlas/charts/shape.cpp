@@ -66,20 +66,9 @@ ShapeFrame upright_frame(const Mesh& mesh, const Chart& chart) {
   return frame;
 }
 
-// Total length of the sides of faces across which the neighbour is not in the chart.
-double border_length(const FaceGeometry& faces, const Chart& chart, const Shape& shape) {
-  double length = 0;
-  for (std::size_t i = 0; i < chart.faces.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t next = faces.neighbours[chart.faces[i]][k];
-      if (next != kNone && std::binary_search(chart.faces.begin(), chart.faces.end(), next)) continue;
-      const Vec2 side = shape.triangles[i][(k + 1) % 3] - shape.triangles[i][k];
-      length += std::hypot(side[0], side[1]);
-    }
-  return length;
-}
-
-Shape chart_shape(const Mesh& mesh, const FaceGeometry& faces, const Chart& chart) {
+// `charts`: that of each face.
+Shape chart_shape(const Mesh& mesh, const FaceGeometry& faces, const Chart& chart,
+                  std::span<const std::uint32_t> charts) {
   Shape shape;
   shape.frame = upright_frame(mesh, chart);
   shape.triangles.reserve(chart.faces.size());
@@ -92,10 +81,14 @@ Shape chart_shape(const Mesh& mesh, const FaceGeometry& faces, const Chart& char
       largest_area = area;
       shape.largest = static_cast<std::uint32_t>(shape.triangles.size() - 1);
     }
-    for (const Vec2& p : t)
-      for (int k = 0; k < 2; ++k) shape.size[k] = std::max(shape.size[k], p[k]);
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 2; ++i) shape.size[i] = std::max(shape.size[i], t[k][i]);
+      const std::uint32_t next = faces.neighbours[f][k];
+      if (next != kNone && charts[next] == charts[f]) continue;
+      shape.outline.push_back({t[k], t[(k + 1) % 3]});
+      shape.perimeter += std::hypot(t[(k + 1) % 3][0] - t[k][0], t[(k + 1) % 3][1] - t[k][1]);
+    }
   }
-  shape.perimeter = border_length(faces, chart, shape);
   return shape;
 }
 
@@ -108,8 +101,11 @@ Vec2 ShapeFrame::project(const Vec3& p) const {
 
 std::vector<Shape> chart_shapes(const Mesh& mesh, const FaceGeometry& faces, std::span<const Chart> charts) {
   std::vector<Shape> shapes(charts.size());
+  std::vector<std::uint32_t> chart_of(mesh.triangles.size(), kNone);
+  for (std::uint32_t c = 0; c < charts.size(); ++c)
+    for (const std::uint32_t f : charts[c].faces) chart_of[f] = c;
   parallel_for(charts.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) shapes[c] = chart_shape(mesh, faces, charts[c]);
+    for (std::size_t c = begin; c < end; ++c) shapes[c] = chart_shape(mesh, faces, charts[c], chart_of);
   });
   return shapes;
 }

@@ -24,8 +24,10 @@ struct Shape {
   ShapeFrame frame;
   std::vector<std::array<Vec2, 3>> triangles;  ///< shape coordinates of the chart's faces, in their order
   std::uint32_t largest = 0;                   ///< the triangle with the largest area
-  Vec2 size{};                                 ///< of the smallest bounding rectangle
-  double area = 0, perimeter = 0;              ///< of the projection; borders of holes included
+  /// The directed sides across which the neighbour is not in the chart: closed curves, holes included.
+  std::vector<std::array<Vec2, 2>> outline;
+  Vec2 size{};                     ///< of the smallest bounding rectangle
+  double area = 0, perimeter = 0;  ///< of the projection; that of holes included
 };
 
 /// The shapes of charts, each turned so that its smallest bounding rectangle is axis-aligned. Cost: O(n log

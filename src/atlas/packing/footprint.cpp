@@ -47,33 +47,69 @@ Vec2 centring_shift(const Shape& shape, double scale) {
   return shift;
 }
 
-// Fills the texels that the closed triangle touches, and `reach` more to the left and right.
-void fill_touched(Bitmap& bitmap, const std::array<Vec2, 3>& t, std::uint32_t reach) {
-  const auto [lo, hi] = std::minmax({t[0][1], t[1][1], t[2][1]});
+// Fills the cells that the closed segment touches, and `reach` more to the left and right.
+void fill_touched(Bitmap& bitmap, const Vec2& a, const Vec2& b, std::uint32_t reach) {
+  const auto [lo, hi] = std::minmax({a[1], b[1]});
   const double rows = bitmap.height - 1.0, columns = bitmap.width - 1.0;
   const auto first = static_cast<std::size_t>(std::clamp(std::floor(lo), 0.0, rows));
   const auto last = static_cast<std::size_t>(std::clamp(std::floor(hi), 0.0, rows));
+  const auto x_at = [&](const Vec2& end, double top, double bottom) {
+    const double line = std::clamp(end[1], top, bottom);
+    return line == end[1] ? end[0] : a[0] + (line - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+  };
   for (std::size_t y = first; y <= last; ++y) {
-    // The part of the triangle between two horizontal lines is convex: its leftmost and rightmost points are
-    // ends of clipped edges.
     const double top = y == first ? lo : static_cast<double>(y);
     const double bottom = y == last ? hi : static_cast<double>(y) + 1;
-    double left = std::numeric_limits<double>::infinity(), right = -left;
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 &a = t[k], &b = t[(k + 1) % 3];
-      if (std::max(a[1], b[1]) < top || std::min(a[1], b[1]) > bottom) continue;
-      const auto x_at = [&](const Vec2& end) {
-        const double line = std::clamp(end[1], top, bottom);
-        return line == end[1] ? end[0] : a[0] + (line - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-      };
-      left = std::min({left, x_at(a), x_at(b)});
-      right = std::max({right, x_at(a), x_at(b)});
-    }
-    if (left > right) continue;
+    const auto [left, right] = std::minmax({x_at(a, top, bottom), x_at(b, top, bottom)});
     const auto begin = static_cast<std::size_t>(std::clamp(std::floor(left) - reach, 0.0, columns));
     const auto end = static_cast<std::size_t>(std::clamp(std::floor(right) + reach, 0.0, columns));
     std::fill(bitmap.row(y) + begin, bitmap.row(y) + end + 1, 1);
   }
+}
+
+/// Winding numbers at the centres of cells.
+class Windings {
+ public:
+  explicit Windings(const Bitmap& bitmap)
+      : width_(bitmap.width), height_(bitmap.height), turns_(bitmap.cells.size(), 0) {}
+
+  // Adds a segment of closed curves.
+  void add(const Vec2& a, const Vec2& b) {
+    const auto [lo, hi] = std::minmax({a[1], b[1]});
+    for (double y = std::max(0.0, std::ceil(lo - 0.5)); y + 0.5 < hi && y < height_; ++y) {
+      const double x = a[0] + (y + 0.5 - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+      const double column = std::max(0.0, std::ceil(x - 0.5));
+      if (column < width_)
+        turns_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(column)] +=
+            a[1] < b[1] ? 1 : -1;
+    }
+  }
+  // Fills the cells around whose centres the curves wind.
+  void fill(Bitmap& bitmap) const {
+    for (std::size_t y = 0; y < height_; ++y) {
+      int winding = 0;
+      for (std::size_t x = 0; x < width_; ++x) {
+        winding += turns_[y * width_ + x];
+        bitmap.row(y)[x] |= winding != 0;
+      }
+    }
+  }
+
+ private:
+  std::uint32_t width_, height_;
+  std::vector<int> turns_;  ///< the change of the winding number from the cell to the left
+};
+
+// Fills the cells that the shape touches, and `reach` more to the left and right of its outline. A cell that
+// the outline does not touch is inside or outside as a whole.
+void fill_shape(Bitmap& bitmap, const Shape& shape, double scale, const Vec2& shift, std::uint32_t reach) {
+  Windings windings(bitmap);
+  for (const auto& [from, to] : shape.outline) {
+    const Vec2 a = scale * from + shift, b = scale * to + shift;
+    fill_touched(bitmap, a, b, reach);
+    windings.add(a, b);
+  }
+  windings.fill(bitmap);
 }
 
 Bitmap spread_rows(const Bitmap& bitmap, std::uint32_t reach) {
@@ -139,8 +175,7 @@ Footprint make_footprint(const Shape& shape, const FootprintOptions& options) {
   result.height = bitmap.height * cell;
   result.shift = result.shift + Vec2{1.0 * reach * cell, 1.0 * reach * cell};
 
-  for (const auto& t : shape.triangles)
-    fill_touched(bitmap, placed(t, scale / cell, (1.0 / cell) * result.shift), reach);
+  fill_shape(bitmap, shape, scale / cell, (1.0 / cell) * result.shift, reach);
   if (reach > 0) bitmap = spread_rows(bitmap, reach);
   result.stamps[0] = make_stamp(bitmap);
   result.stamps[1] = make_stamp(turn(bitmap));
