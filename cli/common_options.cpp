@@ -51,6 +51,13 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
       ->expected(2)
       ->check(number("a number", [](double) { return true; }))
       ->type_name("LO HI");
+  app.add_option(
+         "--picture-size", picture.largest,
+         "The most pixels a side of the pictures and of the model's texture; of a larger map, they show "
+         "some texels")
+      ->check(whole_number(16, 32768))
+      ->type_name("N")
+      ->capture_default_str();
   app.add_option("--units", picture.units,
                  "Units of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
       ->type_name("NAME");

@@ -7,7 +7,7 @@ void write_map_files(const std::filesystem::path& folder, const sdm::Surface& su
       [&] { sdm::write_exr(folder / "map.exr", surface, map, boundary); },
       [&] { sdm::write_glb(folder / "model.glb", surface, map, at_vertices, picture); },
       [&] { sdm::write_distance_png(folder / "distance.png", surface, map, picture); },
-      [&] { sdm::write_direction_png(folder / "direction.png", surface, map); },
-      [&] { sdm::write_voronoi_png(folder / "voronoi.png", surface, map); },
+      [&] { sdm::write_direction_png(folder / "direction.png", surface, map, picture); },
+      [&] { sdm::write_voronoi_png(folder / "voronoi.png", surface, map, picture); },
   });
 }

@@ -43,6 +43,9 @@ struct PictureOptions {
   std::optional<double> tolerance{};  ///< bands: green within ±tolerance, beyond it by sign
   std::string units{};                ///< shown in the legend: "mm", ...
   double accuracy = 0;                ///< error of the distances: a range from the map is at least as long
+  /// The most pixels a side of pictures and of the model's texture. If there are more texels, one pixel shows
+  /// one texel of a square of them.
+  std::uint32_t largest = 2048;
 };
 
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Values
@@ -64,10 +67,10 @@ SDM_API void write_distance_png(const std::filesystem::path& file, const Surface
                                 const DistanceMap& map, const PictureOptions& options = {});
 /// voronoi.png: one colour per closest site.
 SDM_API void write_voronoi_png(const std::filesystem::path& file, const Surface& surface,
-                               const DistanceMap& map);
+                               const DistanceMap& map, const PictureOptions& options = {});
 /// direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
 SDM_API void write_direction_png(const std::filesystem::path& file, const Surface& surface,
-                                 const DistanceMap& map);
+                                 const DistanceMap& map, const PictureOptions& options = {});
 
 /// A curve of a plot: one value per position on the axis; NaN leaves a gap.
 struct Curve {

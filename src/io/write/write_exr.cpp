@@ -1,22 +1,19 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "io/write/atomic_file.h"
+#include "io/write/deflate.h"
 #include "io/write/gutter.h"
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
-#include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfStandardAttributes.h>
-#include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/openexr.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/version.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
-#include <exception>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <span>
@@ -29,37 +26,114 @@ using namespace io;
 
 namespace {
 
-class ExrStream : public Imf::OStream {
- public:
-  ExrStream(AtomicFile& file, const std::string& name) : OStream(name.c_str()), file_(file) {}
-
-  void write(const char bytes[], int count) override {
-    file_.stream().write(bytes, count);
-    file_.check();
-  }
-  std::uint64_t tellp() override { return static_cast<std::uint64_t>(file_.stream().tellp()); }
-  void seekp(std::uint64_t position) override { file_.stream().seekp(static_cast<std::streamoff>(position)); }
-
- private:
-  AtomicFile& file_;
-};
-
 // A channel of the texels, which are structures whose members all have four bytes and which therefore have no
-// padding.
+// padding. Files store channels in the order of their names.
 struct Channel {
   const char* name;
-  Imf::PixelType type;
+  exr_pixel_type_t type;
   std::size_t offset;
 };
 
-Imf::Header header(std::uint32_t n, std::span<const Channel> channels) {
-  Imf::Header result(static_cast<int>(n), static_cast<int>(n));
-  // Level 1: three times as fast as the default for a few percent of size.
-  result.compression() = Imf::ZIP_COMPRESSION;
-  result.zipCompressionLevel() = 1;
-  for (const Channel& channel : channels) result.channels().insert(channel.name, Imf::Channel(channel.type));
-  Imf::addComments(result, std::string("surface distance map, sdm ") + kVersion);
-  return result;
+// Of a file compressed with ZIP.
+constexpr std::uint32_t kRowsPerChunk = 16;
+
+// A file that is written in chunks. Chunks are compressed by the caller, by all threads at once: OpenEXR's
+// own compression with zlib takes six times as long.
+class ExrFile {
+ public:
+  ExrFile(const std::filesystem::path& file, std::uint32_t n, std::span<const Channel> channels)
+      : file_(file), name_(file.string()) {
+    exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    settings.user_data = this;
+    settings.error_handler_fn = take_message;
+    settings.write_fn = write;
+    check(exr_start_write(&context_, name_.c_str(), EXR_WRITE_FILE_DIRECTLY, &settings));
+    try {
+      write_header(static_cast<std::int32_t>(n), channels);
+    } catch (...) {
+      exr_finish(&context_);
+      throw;
+    }
+  }
+  ~ExrFile() { exr_finish(&context_); }
+  ExrFile(const ExrFile&) = delete;
+  ExrFile& operator=(const ExrFile&) = delete;
+
+  // Chunks must come in the order of their rows.
+  void write_chunk(std::uint32_t first_row, std::span<const std::uint8_t> bytes) {
+    check(exr_write_scanline_chunk(context_, 0, static_cast<int>(first_row), bytes.data(), bytes.size()));
+  }
+  void commit() {
+    check(exr_finish(&context_));
+    file_.commit();
+  }
+
+ private:
+  void write_header(std::int32_t n, std::span<const Channel> channels) {
+    int part = 0;
+    check(exr_add_part(context_, nullptr, EXR_STORAGE_SCANLINE, &part));
+    check(exr_initialize_required_attr_simple(context_, part, n, n, EXR_COMPRESSION_ZIP));
+    for (const Channel& channel : channels)
+      check(exr_add_channel(context_, part, channel.name, channel.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    const std::string comment = std::string("surface distance map, sdm ") + kVersion;
+    check(exr_attr_set_string(context_, part, "comments", comment.c_str()));
+    check(exr_write_header(context_));
+  }
+
+  void check(exr_result_t result) const {
+    if (result == EXR_ERR_SUCCESS) return;
+    if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
+    file_.check();
+    throw Error("cannot write " + name_ + ": " +
+                (message_.empty() ? exr_get_default_error_message(result) : message_));
+  }
+
+  // The library is C, through which no exception may pass.
+  static void take_message(exr_const_context_t context, exr_result_t, const char* message) try {
+    void* self = nullptr;
+    if (exr_get_user_data(context, &self) == EXR_ERR_SUCCESS) static_cast<ExrFile*>(self)->message_ = message;
+  } catch (...) {
+  }
+  static std::int64_t write(exr_const_context_t, void* self, const void* bytes, std::uint64_t count,
+                            std::uint64_t offset, exr_stream_error_func_ptr_t) try {
+    std::ostream& stream = static_cast<ExrFile*>(self)->file_.stream();
+    if (static_cast<std::uint64_t>(stream.tellp()) != offset)
+      stream.seekp(static_cast<std::streamoff>(offset));
+    stream.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+    return stream ? static_cast<std::int64_t>(count) : -1;
+  } catch (...) {
+    return -1;
+  }
+
+  AtomicFile file_;
+  std::string name_, message_;
+  exr_context_t context_ = nullptr;
+};
+
+// A chunk's bytes: for each row, the values of each channel.
+template <class Texel>
+std::vector<std::uint8_t> interleaved(std::span<const Texel> texels, std::uint32_t n,
+                                      std::span<const Channel> channels) {
+  std::vector<std::uint8_t> bytes(texels.size() * channels.size() * 4);
+  std::uint8_t* to = bytes.data();
+  for (std::size_t row = 0; row < texels.size(); row += n)
+    for (const Channel& channel : channels)
+      for (std::size_t x = 0; x < n; ++x, to += 4)
+        std::memcpy(to, reinterpret_cast<const std::uint8_t*>(&texels[row + x]) + channel.offset, 4);
+  return bytes;
+}
+
+// What a chunk consists of in the file: OpenEXR's ZIP compresses all even bytes, then all odd ones, each as
+// its difference from the byte before. A chunk that would not get smaller is stored as it is.
+std::vector<std::uint8_t> packed(std::vector<std::uint8_t> bytes) {
+  const std::size_t half = bytes.size() / 2;  // the size is a multiple of 4
+  std::vector<std::uint8_t> split(bytes.size()), differences(bytes.size());
+  for (std::size_t i = 0; i < half; ++i) split[i] = bytes[2 * i], split[half + i] = bytes[2 * i + 1];
+  differences[0] = split[0];
+  for (std::size_t i = 1; i < split.size(); ++i)
+    differences[i] = static_cast<std::uint8_t>(split[i] - split[i - 1] + 128);
+  std::vector<std::uint8_t> compressed(bytes.size() - 1);
+  return deflate(differences, compressed) ? compressed : bytes;
 }
 
 // Writes the texels that texel(source, covered) returns. `source` is the owned texel whose values are used, a
@@ -67,42 +141,33 @@ Imf::Header header(std::uint32_t n, std::span<const Channel> channels) {
 template <class Texel, class Get>
 void write_texels(const std::filesystem::path& file, const Surface& surface,
                   std::span<const Channel> channels, const Get& texel) {
+  static_assert(std::endian::native == std::endian::little, "the order of bytes in the file");
   const std::uint32_t n = surface.resolution();
   const auto owners = surface.texel_faces();
-  // Writing groups of rows bounds the memory. OpenEXR compresses 16 rows together, so groups are multiples of
-  // that.
-  constexpr std::uint32_t kRows = 256;
-  std::vector<Texel> texels(std::size_t{n} * std::min(kRows, n));
-  // OpenEXR creates no threads by default.
-  if (Imf::globalThreadCount() == 0) Imf::setGlobalThreadCount(static_cast<int>(thread_count()));
-  AtomicFile out(file);
-  ExrStream stream(out, file.string());
-  try {
-    Imf::OutputFile exr(stream, header(n, channels), static_cast<int>(thread_count()));
-    for (std::uint32_t y = 0; y < n; y += kRows) {
-      const std::uint32_t rows = std::min(kRows, n - y);
-      parallel_for(rows, 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row)
-          for (std::uint32_t x = 0; x < n; ++x) {
-            const auto here = y + static_cast<std::uint32_t>(row);
-            const std::uint32_t source = gutter_source(n, owners, x, here);
-            texels[row * n + x] = texel(source, source == here * n + x);
-          }
-      });
-      Imf::FrameBuffer buffer;
-      for (const Channel& channel : channels)
-        buffer.insert(
-            channel.name,
-            Imf::Slice::Make(channel.type, reinterpret_cast<char*>(texels.data()) + channel.offset,
-                             Imath::V2i(0, static_cast<int>(y)), n, rows, sizeof(Texel), n * sizeof(Texel)));
-      exr.setFrameBuffer(buffer);
-      exr.writePixels(static_cast<int>(rows));
-    }
-  } catch (const std::exception&) {
-    out.check();  // OpenEXR replaces the message of the stream's error
-    throw;
+  ExrFile exr(file, n, channels);
+  const auto chunk = [&](std::uint32_t first_row) {
+    const std::uint32_t rows = std::min(kRowsPerChunk, n - first_row);
+    std::vector<Texel> texels(std::size_t{n} * rows);
+    for (std::uint32_t y = 0; y < rows; ++y)
+      for (std::uint32_t x = 0; x < n; ++x) {
+        const std::uint32_t source = gutter_source(n, owners, x, first_row + y);
+        texels[std::size_t{y} * n + x] = texel(source, source == (first_row + y) * n + x);
+      }
+    return packed(interleaved<Texel>(texels, n, channels));
+  };
+  // Groups of chunks, so that memory does not grow with the number of rows.
+  constexpr std::uint32_t kGroup = 16;
+  const std::uint32_t chunks = (n + kRowsPerChunk - 1) / kRowsPerChunk;
+  std::array<std::vector<std::uint8_t>, kGroup> group;
+  for (std::uint32_t first = 0; first < chunks; first += kGroup) {
+    const std::uint32_t count = std::min(kGroup, chunks - first);
+    parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        group[i] = chunk((first + static_cast<std::uint32_t>(i)) * kRowsPerChunk);
+    });
+    for (std::uint32_t i = 0; i < count; ++i) exr.write_chunk((first + i) * kRowsPerChunk, group[i]);
   }
-  out.commit();
+  exr.commit();
 }
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -125,16 +190,16 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
   if (!boundary.empty() && boundary.size() != map.distance.size())
     throw Error("cannot write " + file.string() + ": the mask of the boundary belongs to another map");
   constexpr std::size_t kVector = offsetof(MapTexel, vector);
-  const Channel channels[] = {{"distance.D", Imf::FLOAT, offsetof(MapTexel, distance)},
-                              {"vector.X", Imf::FLOAT, kVector},
-                              {"vector.Y", Imf::FLOAT, kVector + sizeof(float)},
-                              {"vector.Z", Imf::FLOAT, kVector + 2 * sizeof(float)},
-                              {"site.id", Imf::UINT, offsetof(MapTexel, site)},
-                              {"site.type", Imf::UINT, offsetof(MapTexel, site_type)},
-                              {"face.id", Imf::UINT, offsetof(MapTexel, face)},
-                              {"coverage.A", Imf::FLOAT, offsetof(MapTexel, coverage)},
-                              {"boundary.M", Imf::FLOAT, offsetof(MapTexel, boundary)}};
-  const std::span used = std::span(channels).first(std::size(channels) - (boundary.empty() ? 1 : 0));
+  const Channel channels[] = {{"boundary.M", EXR_PIXEL_FLOAT, offsetof(MapTexel, boundary)},
+                              {"coverage.A", EXR_PIXEL_FLOAT, offsetof(MapTexel, coverage)},
+                              {"distance.D", EXR_PIXEL_FLOAT, offsetof(MapTexel, distance)},
+                              {"face.id", EXR_PIXEL_UINT, offsetof(MapTexel, face)},
+                              {"site.id", EXR_PIXEL_UINT, offsetof(MapTexel, site)},
+                              {"site.type", EXR_PIXEL_UINT, offsetof(MapTexel, site_type)},
+                              {"vector.X", EXR_PIXEL_FLOAT, kVector},
+                              {"vector.Y", EXR_PIXEL_FLOAT, kVector + sizeof(float)},
+                              {"vector.Z", EXR_PIXEL_FLOAT, kVector + 2 * sizeof(float)}};
+  const std::span used = std::span(channels).subspan(boundary.empty() ? 1 : 0);
   const auto owners = surface.texel_faces();
   write_texels<MapTexel>(file, surface, used, [&](std::uint32_t source, bool covered) -> MapTexel {
     if (source == kNone) return {};
@@ -154,10 +219,10 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
 void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps) try {
   if (maps.resolution() != surface.resolution())
     throw Error("cannot write " + file.string() + ": the maps belong to another surface");
-  const Channel channels[] = {{"min.D", Imf::FLOAT, offsetof(TemporalTexel, least)},
-                              {"mean.D", Imf::FLOAT, offsetof(TemporalTexel, mean)},
-                              {"max.D", Imf::FLOAT, offsetof(TemporalTexel, largest)},
-                              {"coverage.A", Imf::FLOAT, offsetof(TemporalTexel, coverage)}};
+  const Channel channels[] = {{"coverage.A", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, coverage)},
+                              {"max.D", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, largest)},
+                              {"mean.D", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, mean)},
+                              {"min.D", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, least)}};
   const std::vector<float> mean = maps.mean();
   write_texels<TemporalTexel>(
       file, surface, channels, [&](std::uint32_t source, bool covered) -> TemporalTexel {

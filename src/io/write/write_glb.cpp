@@ -1,9 +1,11 @@
 #include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "io/write/atomic_file.h"
 #include "io/write/gutter.h"
+#include "io/write/pictures/atlas_picture.h"
 #include "io/write/pictures/color_scale.h"
-#include "io/write/pictures/png.h"
+#include "io/write/png.h"
 
 #include <sdm/error.h>
 #include <sdm/io.h>
@@ -31,7 +33,7 @@ namespace {
 /// Vertices of the glTF mesh: one for each position in the atlas of each vertex of the mesh.
 struct SplitVertices {
   std::vector<std::uint32_t> vertex;     ///< of the mesh
-  std::vector<std::array<float, 2>> uv;  ///< in [0, 1], v down: the atlas over its resolution
+  std::vector<std::array<float, 2>> uv;  ///< in [0, 1], v down
   std::vector<Triangle> triangles;
 };
 
@@ -46,7 +48,8 @@ bool same(const Vec2& a, const Vec2& b) {
   return std::abs(a[0] - b[0]) <= kSamePlace && std::abs(a[1] - b[1]) <= kSamePlace;
 }
 
-SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint32_t>& faces) {
+// `extent`: the side of the texture, in texels of the atlas.
+SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint32_t>& faces, double extent) {
   const Mesh& mesh = surface.mesh();
   const auto charts = surface.face_charts();
   SplitVertices result;
@@ -74,8 +77,8 @@ SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint
     }
   }
   for (const Vec2& place : places)
-    result.uv.push_back({static_cast<float>(std::clamp(place[0] / surface.resolution(), 0.0, 1.0)),
-                         static_cast<float>(std::clamp(place[1] / surface.resolution(), 0.0, 1.0))});
+    result.uv.push_back({static_cast<float>(std::clamp(place[0] / extent, 0.0, 1.0)),
+                         static_cast<float>(std::clamp(place[1] / extent, 0.0, 1.0))});
   return result;
 }
 
@@ -173,30 +176,37 @@ void add_primitive(GlbModel& glb, const Mesh& mesh, const SplitVertices& vertice
 /// and small charts own hardly any: the free texels that are blended at a vertex get the vertex's own
 /// distance.
 std::string texture_png(const Surface& surface, const DistanceMap& map, const ColorScale& scale,
-                        std::span<const float> vertex_distances) {
-  const std::uint32_t n = surface.resolution();
+                        const AtlasPicture& picture, std::span<const float> vertex_distances) {
+  const std::uint32_t n = picture.size();
   const Mesh& mesh = surface.mesh();
-  std::vector<std::uint32_t> owners(surface.texel_faces().begin(), surface.texel_faces().end());
-  std::vector<float> distance = map.distance;
+  std::vector<std::uint32_t> shown(std::size_t{n} * n);  // texels
+  std::vector<float> distance(shown.size());
+  parallel_for(n, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin * n; pixel < end * n; ++pixel) {
+      shown[pixel] =
+          picture.texel(static_cast<std::uint32_t>(pixel % n), static_cast<std::uint32_t>(pixel / n));
+      if (shown[pixel] != kNone) distance[pixel] = map.distance[shown[pixel]];
+    }
+  });
   const auto seed = [&](double x, double y, float d) {
     if (!(x >= 0 && y >= 0 && x < n && y < n)) return;
-    const std::size_t texel = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);
-    if (owners[texel] != kNone) return;
-    owners[texel] = 0;
-    distance[texel] = d;
+    const std::size_t pixel = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);
+    if (shown[pixel] != kNone) return;
+    shown[pixel] = 0;
+    distance[pixel] = d;
   };
   for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
     if (surface.face_charts()[face] == kNone) continue;
     for (const std::uint32_t vertex : mesh.triangles[face]) {
-      const auto [u, v] = surface.to_atlas(face, mesh.positions[vertex]);
+      const Vec2 at = (1.0 / picture.step()) * surface.to_atlas(face, mesh.positions[vertex]);
       for (const double dx : {-0.5, 0.5})
-        for (const double dy : {-0.5, 0.5}) seed(u + dx, v + dy, vertex_distances[vertex]);
+        for (const double dy : {-0.5, 0.5}) seed(at[0] + dx, at[1] + dy, vertex_distances[vertex]);
     }
   }
   std::ostringstream png;
   write_png(png, n, n, [&](std::uint32_t y, std::span<Rgb> pixels) {
     for (std::uint32_t x = 0; x < n; ++x) {
-      const std::uint32_t source = gutter_source(n, owners, x, y);
+      const std::uint32_t source = gutter_source(n, shown, x, y);
       pixels[x] = source == kNone ? kBackground : scale(distance[source]);
     }
   });
@@ -259,7 +269,10 @@ void write_glb(const std::filesystem::path& file, const Surface& surface, const 
         std::ranges::all_of(mesh.triangles[face], [&](auto v) { return std::isfinite(vertex_distances[v]); });
     faces[known ? 0 : 1].push_back(face);
   }
-  const std::array parts{split_vertices(surface, faces[0]), split_vertices(surface, faces[1])};
+  const AtlasPicture picture(surface, options.largest);
+  const double extent = 1.0 * picture.size() * picture.step();
+  const std::array parts{split_vertices(surface, faces[0], extent),
+                         split_vertices(surface, faces[1], extent)};
 
   AtomicFile out(file);
   GlbModel glb;
@@ -267,7 +280,7 @@ void write_glb(const std::filesystem::path& file, const Surface& surface, const 
   glb.model.meshes.emplace_back().name = "O1";
   add_primitive(glb, mesh, parts[0], place, vertex_distances, true);
   add_primitive(glb, mesh, parts[1], place, vertex_distances, false);
-  add_material(glb, texture_png(surface, map, color_scale(map, options), vertex_distances));
+  add_material(glb, texture_png(surface, map, color_scale(map, options), picture, vertex_distances));
   add_scene(glb, place);
   tinygltf::TinyGLTF().WriteGltfSceneToStream(&glb.model, out.stream(), false, true);
   out.commit();

@@ -1,9 +1,10 @@
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
+#include "io/write/pictures/atlas_picture.h"
 #include "io/write/pictures/color_scale.h"
 #include "io/write/pictures/legend.h"
-#include "io/write/pictures/png.h"
 #include "io/write/pictures/ticks.h"
+#include "io/write/png.h"
 
 #include <sdm/io.h>
 
@@ -28,16 +29,17 @@ LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const st
   return text;
 }
 
-// A picture of the size of the map: color(texel) where a face owns the texel, otherwise the background.
+// A picture of the atlas: color(texel) where a face owns the texel, otherwise the background.
 template <class Color>
-void write_map_png(const std::filesystem::path& file, const Surface& surface, Color&& color) {
+void write_map_png(const std::filesystem::path& file, const AtlasPicture& picture, Color&& color) {
   AtomicFile out(file);
-  const std::uint32_t n = surface.resolution();
-  const auto owners = surface.texel_faces();
+  const std::uint32_t n = picture.size();
   write_png(out.stream(), n, n, [&](std::uint32_t y, std::span<Rgb> pixels) {
     out.check();
-    for (std::size_t x = 0, texel = std::size_t{y} * n; x < n; ++x, ++texel)
-      pixels[x] = owners[texel] == kNone ? kBackground : color(texel);
+    for (std::uint32_t x = 0; x < n; ++x) {
+      const std::uint32_t texel = picture.texel(x, y);
+      pixels[x] = texel == kNone ? kBackground : color(texel);
+    }
   });
   out.commit();
 }
@@ -47,9 +49,9 @@ void write_map_png(const std::filesystem::path& file, const Surface& surface, Co
 void write_distance_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                         const PictureOptions& options) try {
   const ColorScale scale = color_scale(map, options);
-  const std::uint32_t n = surface.resolution();
+  const AtlasPicture picture(surface, options.largest);
+  const std::uint32_t n = picture.size();
   const Picture legend = draw_legend(scale, legend_text(map, scale, options.units), n);
-  const auto owners = surface.texel_faces();
 
   AtomicFile out(file);
   write_png(out.stream(), n + legend.width, std::max(n, legend.height),
@@ -59,8 +61,9 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
               std::fill(map_row.begin(), map_row.end(), kBackground);
               std::fill(legend_row.begin(), legend_row.end(), Rgb{255, 255, 255});
               if (y < n)
-                for (std::size_t x = 0, texel = std::size_t{y} * n; x < n; ++x, ++texel)
-                  if (owners[texel] != kNone) map_row[x] = scale(map.distance[texel]);
+                for (std::uint32_t x = 0; x < n; ++x)
+                  if (const std::uint32_t texel = picture.texel(x, y); texel != kNone)
+                    map_row[x] = scale(map.distance[texel]);
               if (y < legend.height)
                 std::copy_n(&legend.pixels[std::size_t{y} * legend.width], legend.width, legend_row.begin());
             });
@@ -69,17 +72,17 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
   throw out_of_memory("writing " + file.string());
 }
 
-void write_voronoi_png(const std::filesystem::path& file, const Surface& surface,
-                       const DistanceMap& map) try {
-  write_map_png(file, surface,
+void write_voronoi_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                       const PictureOptions& options) try {
+  write_map_png(file, AtlasPicture(surface, options.largest),
                 [&](std::size_t texel) { return site_color(map.site_type[texel], map.site[texel]); });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }
 
-void write_direction_png(const std::filesystem::path& file, const Surface& surface,
-                         const DistanceMap& map) try {
-  write_map_png(file, surface, [&](std::size_t texel) {
+void write_direction_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                         const PictureOptions& options) try {
+  write_map_png(file, AtlasPicture(surface, options.largest), [&](std::size_t texel) {
     return map.site_type[texel] == SiteType::none ? kNoValue : direction_color(map.vector[texel]);
   });
 } catch (const std::bad_alloc&) {

@@ -43,7 +43,7 @@ Rgb gradient(std::span<const Rgb> colors, double t) {
   const double s = std::clamp(t, 0.0, 1.0) * static_cast<double>(colors.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(s), colors.size() - 2);
   const double f = s - static_cast<double>(i);
-  const auto mix = [f](int a, int b) { return static_cast<std::uint8_t>(std::lround(a + f * (b - a))); };
+  const auto mix = [f](int a, int b) { return static_cast<std::uint8_t>(a + f * (b - a) + 0.5); };
   const Rgb &a = colors[i], &b = colors[i + 1];
   return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
@@ -58,7 +58,7 @@ Rgb hsl(double hue, double saturation, double lightness) {
   const auto channel = [&](double n) {
     const double k = std::fmod(n + 12 * hue, 12);
     return static_cast<std::uint8_t>(
-        std::lround(255 * (lightness - chroma * std::clamp(std::min(k - 3, 9 - k), -1.0, 1.0))));
+        255 * (lightness - chroma * std::clamp(std::min(k - 3, 9 - k), -1.0, 1.0)) + 0.5);
   };
   return {channel(0), channel(8), channel(4)};
 }
@@ -137,7 +137,7 @@ Rgb direction_color(const Vec3f& vector) {
   // The zero vector has no direction: use the centre of the colour cube.
   const double scale = length > 0 ? 1 / length : 0;
   const auto channel = [scale](double x) {
-    return static_cast<std::uint8_t>(std::lround(127.5 * (1 + std::clamp(scale * x, -1.0, 1.0))));
+    return static_cast<std::uint8_t>(127.5 * (1 + std::clamp(scale * x, -1.0, 1.0)) + 0.5);
   };
   return {channel(vector[0]), channel(vector[1]), channel(vector[2])};
 }

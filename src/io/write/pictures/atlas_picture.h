@@ -1,0 +1,28 @@
+// Pictures of the atlas, which may be smaller than it.
+#pragma once
+
+#include <sdm/surface.h>
+
+#include <cstdint>
+
+namespace sdm::io {
+
+/// One pixel for each texel or, if that would be more than `largest` a side, for each square of step()²
+/// texels.
+class AtlasPicture {
+ public:
+  /// The surface must outlive this.
+  AtlasPicture(const Surface& surface, std::uint32_t largest);
+
+  [[nodiscard]] std::uint32_t size() const { return size_; }  ///< pixels a side
+  [[nodiscard]] std::uint32_t step() const { return step_; }
+  /// The texel that a pixel shows: the one in the middle of its square if a face owns it, otherwise another
+  /// one of the square; kNone if no face owns any.
+  [[nodiscard]] std::uint32_t texel(std::uint32_t x, std::uint32_t y) const;
+
+ private:
+  const Surface& surface_;
+  std::uint32_t step_, size_;
+};
+
+}  // namespace sdm::io
