@@ -1,13 +1,12 @@
 #include "surface/sample_order.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <numeric>
 #include <span>
 #include <utility>
 
-#include "core/geometry/spatial_order.h"
+#include "core/geometry/unit_frame.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "surface/surface_data.h"
@@ -15,89 +14,86 @@
 namespace sdm::surface {
 namespace {
 
-constexpr std::uint32_t kSide = 4;          // of a square of texels
-constexpr std::size_t kPacket = 16;         // samples
-constexpr std::size_t kSingle = 64;         // this many samples are ordered one by one
-constexpr std::size_t kParallel = 1 << 15;  // below this many samples, one thread
+constexpr std::uint32_t kSide = 4;              // of a square of texels
+constexpr std::size_t kPacket = kSide * kSide;  // samples
+constexpr std::size_t kParallel = 1 << 13;      // below this many items, one thread
 
-/// The texels [first, first + count) of a list: those of one chart in one square, so they are close together
-/// on the surface.
-struct Group {
-  Vec3 point;  ///< of one of them
-  std::uint32_t first, count;
+/// A square of texels, or a single one that is in no such square.
+struct Item {
+  Vec3f point;          ///< of the square's middle, in the unit frame
+  std::uint32_t texel;  ///< the upper left one
+  bool single;
+
+  [[nodiscard]] std::size_t samples() const { return single ? 1 : kPacket; }
 };
 
-/// A k-d tree over samples, as that of spatial_order(), which sorts groups of them instead as far as
-/// possible: a split that falls into a group divides it.
 class SampleOrder {
  public:
-  explicit SampleOrder(const SurfaceData& surface) : surface_(surface) {
-    const std::uint32_t n = surface.resolution, rows = (n + kSide - 1) / kSide;
-    std::vector<std::vector<Group>> of_row(rows);
-    std::vector<std::vector<std::uint32_t>> texels_of_row(rows);
-    parallel_for(rows, 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end; ++row)
-        add_row(static_cast<std::uint32_t>(row), of_row[row], texels_of_row[row]);
-    });
-    for (std::uint32_t row = 0; row < rows; ++row) {
-      for (Group& group : of_row[row]) {
-        group.first += static_cast<std::uint32_t>(texels_.size());
-        groups_.push_back(group);
-      }
-      texels_.insert(texels_.end(), texels_of_row[row].begin(), texels_of_row[row].end());
-      of_row[row] = {}, texels_of_row[row] = {};
-    }
-  }
+  explicit SampleOrder(const SurfaceData& surface)
+      : surface_(surface), frame_(UnitFrame::of(bounds(surface.mesh))) {}
 
-  std::vector<std::uint32_t> operator()() {
-    std::vector<std::uint32_t> result(texels_.size());
-    order(std::move(groups_), result);
+  std::vector<std::uint32_t> operator()() const {
+    std::vector<Item> items = all_items();
+    std::vector<std::uint32_t> result(count(items));
+    order(items, result);
     return result;
   }
 
  private:
-  [[nodiscard]] Vec3 point(std::uint32_t texel) const {
-    return surface_.texel_point(surface_.texel_faces[texel], texel);
-  }
-  [[nodiscard]] std::span<std::uint32_t> texels_of(const Group& group) {
-    return std::span(texels_).subspan(group.first, group.count);
-  }
-  [[nodiscard]] Group group(std::size_t first, std::size_t count) {
-    return {point(texels_[first + count / 2]), static_cast<std::uint32_t>(first),
-            static_cast<std::uint32_t>(count)};
+  [[nodiscard]] static std::size_t count(std::span<const Item> items) {
+    return std::accumulate(items.begin(), items.end(), std::size_t{0},
+                           [](std::size_t sum, const Item& item) { return sum + item.samples(); });
   }
 
-  // Adds the groups of a row of squares; their texels start at 0.
-  void add_row(std::uint32_t row, std::vector<Group>& groups, std::vector<std::uint32_t>& texels) const {
-    const std::uint32_t n = surface_.resolution;
-    const auto chart_of = [&](std::uint32_t texel) {
-      return surface_.face_charts[surface_.texel_faces[texel]];
-    };
-    for (std::uint32_t left = 0; left < n; left += kSide) {
-      const std::size_t begin = texels.size();
-      for (std::uint32_t y = row * kSide; y < std::min(n, (row + 1) * kSide); ++y)
-        for (std::uint32_t x = left; x < std::min(n, left + kSide); ++x)
-          if (const std::uint32_t texel = y * n + x; surface_.texel_faces[texel] != kNone)
-            texels.push_back(texel);
-      std::stable_sort(texels.begin() + static_cast<std::ptrdiff_t>(begin), texels.end(),
-                       [&](auto a, auto b) { return chart_of(a) < chart_of(b); });
-      for (std::size_t first = begin, i = begin; i < texels.size(); ++i)
-        if (i + 1 == texels.size() || chart_of(texels[i]) != chart_of(texels[i + 1])) {
-          groups.push_back({point(texels[(first + i) / 2]), static_cast<std::uint32_t>(first),
-                            static_cast<std::uint32_t>(i + 1 - first)});
-          first = i + 1;
-        }
+  [[nodiscard]] std::vector<Item> all_items() const {
+    const std::uint32_t n = surface_.resolution, rows = (n + kSide - 1) / kSide;
+    std::vector<std::vector<Item>> of_row(rows);
+    parallel_for(rows, 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row)
+        for (std::uint32_t left = 0; left < n; left += kSide)
+          add_square(left, static_cast<std::uint32_t>(row) * kSide, of_row[row]);
+    });
+    std::vector<Item> items;
+    for (std::vector<Item>& row : of_row) {
+      items.insert(items.end(), row.begin(), row.end());
+      row = {};
     }
+    return items;
   }
 
-  void order(std::vector<Group> groups, std::span<std::uint32_t> result) {
-    if (result.size() <= kSingle) return order_singly(groups, result);
-    // As in spatial_order(): all packets but the last are full.
+  // Adds the square with this upper left corner if one chart owns all of it, otherwise its texels.
+  void add_square(std::uint32_t left, std::uint32_t top, std::vector<Item>& items) const {
+    const std::uint32_t n = surface_.resolution;
+    const std::uint32_t right = std::min(n, left + kSide), bottom = std::min(n, top + kSide);
+    const auto chart_of = [&](std::uint32_t x, std::uint32_t y) {
+      const std::uint32_t face = surface_.texel_faces[std::size_t{y} * n + x];
+      return face == kNone ? kNone : surface_.face_charts[face];
+    };
+    const std::uint32_t chart = chart_of(left, top);
+    bool whole = chart != kNone && right - left == kSide && bottom - top == kSide;
+    for (std::uint32_t y = top; y < bottom && whole; ++y)
+      for (std::uint32_t x = left; x < right && whole; ++x) whole = chart_of(x, y) == chart;
+    const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t texel, bool single) {
+      const Vec3 p =
+          frame_.to_unit(surface_.texel_point(surface_.texel_faces[std::size_t{y} * n + x], y * n + x));
+      items.push_back(
+          {{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}, texel, single});
+    };
+    if (whole) return add(left + kSide / 2, top + kSide / 2, top * n + left, false);
+    for (std::uint32_t y = top; y < bottom; ++y)
+      for (std::uint32_t x = left; x < right; ++x)
+        if (chart_of(x, y) != kNone) add(x, y, y * n + x, true);
+  }
+
+  // A k-d tree whose nodes hold 16·2^k samples, but for the last one of a level. Single samples come in
+  // multiples of 16 as well, so that no square is divided.
+  void order(std::span<Item> items, std::span<std::uint32_t> result) const {
+    if (result.size() <= kPacket) return write(items, result);
     const std::size_t half = kPacket * std::bit_floor((result.size() - 1) / kPacket);
-    std::vector<Group> others = split(groups, half);
-    const auto first = [&] { order(std::move(groups), result.first(half)); };
-    const auto second = [&] { order(std::move(others), result.subspan(half)); };
-    if (result.size() >= kParallel) {
+    const std::size_t middle = split(items, half);
+    const auto first = [&] { order(items.first(middle), result.first(half)); };
+    const auto second = [&] { order(items.subspan(middle), result.subspan(half)); };
+    if (items.size() >= kParallel) {
       parallel_invoke(first, second);
     } else {
       first();
@@ -105,58 +101,69 @@ class SampleOrder {
     }
   }
 
-  void order_singly(std::span<const Group> groups, std::span<std::uint32_t> result) {
-    std::array<std::uint32_t, kSingle> texels;
-    std::array<Vec3, kSingle> points;
-    std::size_t count = 0;
-    for (const Group& group : groups)
-      for (const std::uint32_t texel : texels_of(group)) {
-        points[count] = point(texel);
-        texels[count++] = texel;
-      }
-    std::ranges::transform(spatial_order(std::span(points).first(count)), result.begin(),
-                           [&](std::uint32_t i) { return texels[i]; });
+  void write(std::span<const Item> items, std::span<std::uint32_t> result) const {
+    std::size_t next = 0;
+    for (const Item& item : items)
+      for (std::uint32_t k = 0; k < item.samples(); ++k)
+        result[next++] = item.texel + k / kSide * surface_.resolution + k % kSide;
   }
 
-  // Removes all but the first `count` samples along the longest side, and returns them.
-  std::vector<Group> split(std::vector<Group>& groups, std::size_t count) {
-    Box box;
-    for (const Group& g : groups) extend(box, g.point);
-    const Vec3 size = box.hi - box.lo;
-    const std::ptrdiff_t axis = std::ranges::max_element(size) - size.begin();
-    const auto along = [axis](const Group& g) { return std::pair(g.point[axis], g.first); };  // unique
-    // The group at which the samples before it reach `count` lies in [begin, end).
-    auto begin = groups.begin(), end = groups.end();
-    std::size_t before = 0;  // samples of the groups before `begin`
+  // Moves items with `samples` samples in all, a multiple of 16, to the front: those with the smallest
+  // coordinates along the longest side, but for a few single ones near the split. Returns their number.
+  [[nodiscard]] static std::size_t split(std::span<Item> items, std::size_t samples) {
+    const std::size_t axis = longest_side(items);
+    const auto along = [axis](const Item& item) {
+      return std::pair(item.point[axis], item.texel);
+    };  // unique
+    const auto sort_out = [&](std::span<Item> part, std::size_t nth) {
+      std::ranges::nth_element(part, part.begin() + static_cast<std::ptrdiff_t>(nth), {}, along);
+    };
+    // The item at which the samples before it exceed the number lies in [begin, end).
+    std::size_t begin = 0, end = items.size(), before = 0;  // samples of the items before `begin`
     while (end - begin > 1) {
-      const auto middle = begin + (end - begin) / 2;
-      std::ranges::nth_element(begin, middle, end, {}, along);
-      const std::size_t samples = std::accumulate(
-          begin, middle, before, [](std::size_t sum, const Group& g) { return sum + g.count; });
-      if (samples <= count) {
-        before = samples, begin = middle;
+      const std::size_t middle = begin + (end - begin) / 2;
+      sort_out(items.subspan(begin, end - begin), middle - begin);
+      if (const std::size_t more = count(items.subspan(begin, middle - begin)); before + more <= samples) {
+        before += more, begin = middle;
       } else {
         end = middle;
       }
     }
-    std::vector<Group> others;
-    if (before < count) {  // the split falls into the group at `begin`
-      const Group whole = *begin;
-      const auto texels = texels_of(whole);
-      const std::size_t kept = count - before;
-      std::ranges::nth_element(texels, texels.begin() + static_cast<std::ptrdiff_t>(kept), {},
-                               [&](std::uint32_t texel) { return std::pair(point(texel)[axis], texel); });
-      *begin++ = group(whole.first, kept);
-      others.push_back(group(whole.first + kept, whole.count - kept));
+    const std::size_t missing = samples - before;
+    if (missing == 0) return begin;
+    // The item there is a square. It stays behind if enough single samples can take its place, otherwise it
+    // takes the place of single samples: of those before it, there are 16 − missing modulo 16.
+    const std::span<Item> rest = items.subspan(begin);
+    const auto singles_end = std::ranges::partition(rest.subspan(1), &Item::single).begin();
+    const std::span<Item> singles(rest.begin() + 1, singles_end);
+    if (missing <= kPacket / 2 && singles.size() >= missing) {
+      sort_out(singles, missing - 1);
+      std::swap(rest[0], rest[missing]);
+      return begin + missing;
     }
-    others.insert(others.end(), begin, groups.end());
-    groups.erase(begin, groups.end());
-    return others;
+    const std::span<Item> front = items.first(begin);
+    const auto squares_end =
+        std::ranges::partition(front, [](const Item& item) { return !item.single; }).begin();
+    const std::span<Item> last(squares_end, front.end());
+    const std::size_t kept = last.size() - (kPacket - missing);
+    if (kept < last.size()) sort_out(last, kept);
+    std::swap(last[kept], rest[0]);
+    return begin - (kPacket - missing) + 1;
+  }
+
+  [[nodiscard]] static std::size_t longest_side(std::span<const Item> items) {
+    Vec3f lo = items[0].point, hi = lo;
+    for (const Item& item : items)
+      for (std::size_t k = 0; k < 3; ++k) {
+        lo[k] = std::min(lo[k], item.point[k]);
+        hi[k] = std::max(hi[k], item.point[k]);
+      }
+    const Vec3f size{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]};
+    return static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
   }
 
   const SurfaceData& surface_;
-  std::vector<Group> groups_;
-  std::vector<std::uint32_t> texels_;
+  const UnitFrame frame_;  ///< in which single precision suffices for points
 };
 
 }  // namespace
