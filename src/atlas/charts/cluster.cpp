@@ -1,10 +1,14 @@
 #include "atlas/charts/cluster.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <queue>
 
 #include "atlas/charts/normal_cone.h"
+#include "core/bucket_queue.h"
+#include "core/geometry/unit_frame.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "core/scattered_order.h"
@@ -12,8 +16,9 @@
 namespace sdm::atlas {
 namespace {
 
-// Normals of a chart stay inside the cone by this margin, so that rounding cannot move them out of it.
-constexpr double kMargin = 1e-9;
+// Normals of a chart stay inside the cone by this margin, so that rounding to float cannot move them out of
+// it.
+constexpr double kMargin = 1e-6;
 constexpr int kRounds = 2;
 // How much slower a chart grows over faces turned away from its axis.
 constexpr double kTurnCost = 4;
@@ -23,10 +28,41 @@ struct Link {
   double length;  ///< of the border that the two clusters share
 };
 
+// What growing clusters read of a face, together: they visit faces in no particular order in memory.
+struct Node {
+  Vec3f normal, centroid;                   ///< in the unit frame, whose squares do not overflow
+  std::array<std::uint32_t, 3> neighbours;  ///< those with area
+};
+
+Vec3f to_float(const Vec3& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+std::vector<Node> to_nodes(const Mesh& mesh, const FaceGeometry& faces) {
+  const UnitFrame frame = UnitFrame::of(bounds(mesh));
+  std::vector<Node> nodes(faces.normal.size());
+  parallel_for(nodes.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      nodes[f] = {to_float(faces.normal[f]), to_float(frame.to_unit(faces.centroid[f])), faces.neighbours[f]};
+      for (std::uint32_t& next : nodes[f].neighbours)
+        if (next != kNone && faces.area[next] == 0) next = kNone;
+    }
+  });
+  return nodes;
+}
+
+double dot(const Vec3f& a, const Vec3f& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 class Clustering {
  public:
   Clustering(const Mesh& mesh, const FaceGeometry& faces, double cos_angle)
-      : mesh_(mesh), faces_(faces), cos_(cos_angle + kMargin), label_(faces.normal.size(), kNone) {}
+      : mesh_(mesh),
+        faces_(faces),
+        nodes_(to_nodes(mesh, faces)),
+        cos_(cos_angle + kMargin),
+        label_(faces.normal.size(), kNone) {}
 
   // Lloyd's alternation: the axes from the clusters, the clusters from the axes.
   std::vector<Chart> run() {
@@ -42,60 +78,83 @@ class Clustering {
   }
 
  private:
-  [[nodiscard]] bool fits(std::uint32_t face, const Vec3& axis) const {
+  [[nodiscard]] bool fits(const Node& face, const Vec3f& axis) const {
     // A single face fits its own normal despite rounding.
-    return dot(faces_.normal[face], axis) >= std::min(cos_, 1 - 1e-12);
+    return dot(face.normal, axis) >= std::min(cos_, 1 - kMargin);
+  }
+
+  // Faces that will be visited soon: growing clusters waits for memory most of the time.
+  static constexpr std::size_t kAhead = 8;
+  void prefetch(std::uint32_t face) const {
+    hwy::Prefetch(&nodes_[face]);
+    hwy::Prefetch(&label_[face]);
+  }
+  void prefetch_neighbours(std::uint32_t face) const {
+    for (const std::uint32_t next : nodes_[face].neighbours)
+      if (next != kNone) prefetch(next);
   }
 
   // Every face without a cluster starts one, with its normal as the axis, which grows as far as possible.
   void flood_rest() {
-    std::vector<std::uint32_t> stack;
+    std::vector<std::uint32_t> queue;
     for (const std::uint32_t seed : scattered_order(label_.size())) {
       if (label_[seed] != kNone || faces_.area[seed] == 0) continue;
       const auto cluster = static_cast<std::uint32_t>(axes_.size());
-      const Vec3 axis = faces_.normal[seed];
-      axes_.push_back(axis);
+      const Vec3f axis = nodes_[seed].normal;
+      axes_.push_back(faces_.normal[seed]);
       label_[seed] = cluster;
-      stack.push_back(seed);
-      while (!stack.empty()) {
-        const std::uint32_t face = stack.back();
-        stack.pop_back();
-        for (const std::uint32_t next : faces_.neighbours[face])
-          if (next != kNone && label_[next] == kNone && faces_.area[next] > 0 && fits(next, axis)) {
+      queue.assign(1, seed);
+      for (std::size_t i = 0; i < queue.size(); ++i) {
+        if (i + 2 * kAhead < queue.size()) prefetch(queue[i + 2 * kAhead]);
+        if (i + kAhead < queue.size()) prefetch_neighbours(queue[i + kAhead]);
+        const std::uint32_t face = queue[i];
+        for (const std::uint32_t next : nodes_[face].neighbours)
+          if (next != kNone && label_[next] == kNone && fits(nodes_[next], axis)) {
             label_[next] = cluster;
-            stack.push_back(next);
+            queue.push_back(next);
           }
       }
     }
   }
 
   // Grows all clusters simultaneously from their most central faces; each face joins the cluster that is
-  // nearest along the surface.
+  // nearest along the surface, up to a fraction of a face.
   void regrow() {
     struct Front {
-      double cost;
+      float cost;
       std::uint32_t face, cluster;
-      bool operator>(const Front& other) const { return cost > other.cost; }
     };
     const std::vector<std::uint32_t> seeds = central_faces();
+    std::vector<Vec3f> axes(axes_.size());
+    std::ranges::transform(axes_, axes.begin(), to_float);
     std::fill(label_.begin(), label_.end(), kNone);
-    std::vector<Front> heap;
-    for (std::uint32_t c = 0; c < seeds.size(); ++c) heap.push_back({0, seeds[c], c});
-    std::priority_queue<Front, std::vector<Front>, std::greater<>> queue({}, std::move(heap));
-    while (!queue.empty()) {
-      const Front front = queue.top();
-      queue.pop();
-      if (label_[front.face] != kNone) continue;
-      label_[front.face] = front.cluster;
-      for (const std::uint32_t next : faces_.neighbours[front.face])
-        if (next != kNone && label_[next] == kNone && faces_.area[next] > 0 &&
-            fits(next, axes_[front.cluster])) {
-          const double turn = 1 - dot(faces_.normal[next], axes_[front.cluster]);
-          const double step = norm(faces_.centroid[next] - faces_.centroid[front.face]);
-          queue.push({front.cost + step * (1 + kTurnCost * turn), next, front.cluster});
-        }
+    BucketQueue<Front> queue(typical_step() / 4);
+    for (std::uint32_t c = 0; c < seeds.size(); ++c) queue.push(0, {0, seeds[c], c});
+    while (const auto front = queue.pop()) {
+      if (const Front* ahead = queue.ahead(2 * kAhead)) prefetch(ahead->face);
+      if (const Front* ahead = queue.ahead(kAhead)) prefetch_neighbours(ahead->face);
+      if (label_[front->face] != kNone) continue;
+      label_[front->face] = front->cluster;
+      const Node& node = nodes_[front->face];
+      for (const std::uint32_t next : node.neighbours) {
+        if (next == kNone || label_[next] != kNone) continue;
+        const Vec3f& axis = axes[front->cluster];
+        const Node& other = nodes_[next];
+        if (!fits(other, axis)) continue;
+        const Vec3f step = {other.centroid[0] - node.centroid[0], other.centroid[1] - node.centroid[1],
+                            other.centroid[2] - node.centroid[2]};
+        const double turn = 1 - dot(other.normal, axis);
+        const double cost = front->cost + std::sqrt(dot(step, step)) * (1 + kTurnCost * turn);
+        queue.push(cost, {static_cast<float>(cost), next, front->cluster});
+      }
     }
     drop_empty_clusters();
+  }
+
+  // The side of a square of a face's mean area, in the unit frame.
+  [[nodiscard]] double typical_step() const {
+    const double area = std::accumulate(faces_.area.begin(), faces_.area.end(), 0.0);
+    return UnitFrame::of(bounds(mesh_)).scale * std::sqrt(area / static_cast<double>(faces_.area.size()));
   }
 
   // For each cluster, the face closest to its centre of gravity.
@@ -235,11 +294,12 @@ class Clustering {
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (std::uint32_t f = 0; f < label_.size(); ++f) {
         if (label_[f] == kNone) continue;
-        const auto [a, b, c] = faces_.neighbours[f];
+        const auto [a, b, c] = nodes_[f].neighbours;
         const auto label = [&](std::uint32_t face) { return face == kNone ? kNone : label_[face]; };
         const std::uint32_t twice = label(a) == label(b) || label(a) == label(c) ? label(a) : label(b);
         const bool is_twice = (label(a) == twice) + (label(b) == twice) + (label(c) == twice) >= 2;
-        if (is_twice && twice != kNone && twice != label_[f] && fits(f, axes_[twice])) label_[f] = twice;
+        if (is_twice && twice != kNone && twice != label_[f] && fits(nodes_[f], to_float(axes_[twice])))
+          label_[f] = twice;
       }
     drop_empty_clusters();
   }
@@ -270,6 +330,7 @@ class Clustering {
 
   const Mesh& mesh_;
   const FaceGeometry& faces_;
+  const std::vector<Node> nodes_;
   double cos_;
   std::vector<std::uint32_t> label_;  // the cluster of each face
   std::vector<Vec3> axes_;            // of each cluster

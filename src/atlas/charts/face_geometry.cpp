@@ -14,13 +14,15 @@ constexpr std::size_t kGrain = 4096;
 std::vector<std::array<std::uint32_t, 3>> face_neighbours(const Mesh& mesh) {
   const mesh::Topology topology = mesh::build_topology(mesh.positions.size(), mesh.triangles);
   std::vector<std::array<std::uint32_t, 3>> neighbours(mesh.triangles.size(), {kNone, kNone, kNone});
-  for (std::uint32_t f = 0; f < neighbours.size(); ++f) {
-    if (topology.ignored(f)) continue;
-    for (int k = 0; k < 3; ++k) {
-      const auto faces = topology.edge_faces(topology.face_edges[f][k]);
-      if (faces.size() == 2) neighbours[f][k] = faces[0] == f ? faces[1] : faces[0];
+  parallel_for(neighbours.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      if (topology.ignored(f)) continue;
+      for (int k = 0; k < 3; ++k) {
+        const auto faces = topology.edge_faces(topology.face_edges[f][k]);
+        if (faces.size() == 2) neighbours[f][k] = faces[0] == f ? faces[1] : faces[0];
+      }
     }
-  }
+  });
   return neighbours;
 }
 

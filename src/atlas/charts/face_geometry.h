@@ -21,7 +21,7 @@ struct FaceGeometry {
 /// this normal. Zero where the triangle has no area.
 [[nodiscard]] Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Cost: O(n log n), in parallel except for the neighbours.
+/// Cost: O(n log n), all cores.
 [[nodiscard]] FaceGeometry face_geometry(const Mesh& mesh);
 
 }  // namespace sdm::atlas

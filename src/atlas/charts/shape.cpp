@@ -45,19 +45,37 @@ std::array<Vec2, 3> project_face(const Mesh& mesh, const ShapeFrame& frame, std:
           frame.project(mesh.positions[k])};
 }
 
-ShapeFrame upright_frame(const Mesh& mesh, const Chart& chart) {
+// A side of a face across which the neighbour is not in the chart; the face's position in the chart.
+struct OuterSide {
+  std::uint32_t face;
+  int corner;
+};
+
+// `charts`: that of each face.
+std::vector<OuterSide> outer_sides(const FaceGeometry& faces, const Chart& chart,
+                                   std::span<const std::uint32_t> charts) {
+  std::vector<OuterSide> sides;
+  for (std::uint32_t i = 0; i < chart.faces.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t next = faces.neighbours[chart.faces[i]][k];
+      if (next == kNone || charts[next] != charts[chart.faces[i]]) sides.push_back({i, k});
+    }
+  return sides;
+}
+
+ShapeFrame upright_frame(const Mesh& mesh, const Chart& chart, std::span<const OuterSide> sides) {
   const auto [right, up] = tangent_frame(chart.axis);
   ShapeFrame frame{mesh.positions[mesh.triangles[chart.faces[0]][0]], right, -up, {}};
   std::vector<Vec2> points;
-  points.reserve(3 * chart.faces.size());
-  for (const std::uint32_t f : chart.faces)
-    for (const Vec2& p : project_face(mesh, frame, f)) points.push_back(p);
+  points.reserve(sides.size());
+  for (const auto& [face, corner] : sides)
+    points.push_back(frame.project(mesh.positions[mesh.triangles[chart.faces[face]][corner]]));
   const Vec2 side = least_rectangle(points);
   const Vec3 turned_right = side[0] * frame.right + side[1] * frame.down;
   const Vec3 turned_down = side[0] * frame.down - side[1] * frame.right;
   frame.right = turned_right;
   frame.down = turned_down;
-  Vec2 lo = {0, 0};  // the origin is one of the corners
+  Vec2 lo = {dot(side, points[0]), cross(side, points[0])};
   for (const Vec2& p : points) {
     lo[0] = std::min(lo[0], dot(side, p));
     lo[1] = std::min(lo[1], cross(side, p));
@@ -66,11 +84,11 @@ ShapeFrame upright_frame(const Mesh& mesh, const Chart& chart) {
   return frame;
 }
 
-// `charts`: that of each face.
 Shape chart_shape(const Mesh& mesh, const FaceGeometry& faces, const Chart& chart,
                   std::span<const std::uint32_t> charts) {
   Shape shape;
-  shape.frame = upright_frame(mesh, chart);
+  const std::vector<OuterSide> sides = outer_sides(faces, chart, charts);
+  shape.frame = upright_frame(mesh, chart, sides);
   shape.triangles.reserve(chart.faces.size());
   double largest_area = -1;
   for (const std::uint32_t f : chart.faces) {
@@ -81,13 +99,12 @@ Shape chart_shape(const Mesh& mesh, const FaceGeometry& faces, const Chart& char
       largest_area = area;
       shape.largest = static_cast<std::uint32_t>(shape.triangles.size() - 1);
     }
-    for (int k = 0; k < 3; ++k) {
-      for (int i = 0; i < 2; ++i) shape.size[i] = std::max(shape.size[i], t[k][i]);
-      const std::uint32_t next = faces.neighbours[f][k];
-      if (next != kNone && charts[next] == charts[f]) continue;
-      shape.outline.push_back({t[k], t[(k + 1) % 3]});
-      shape.perimeter += std::hypot(t[(k + 1) % 3][0] - t[k][0], t[(k + 1) % 3][1] - t[k][1]);
-    }
+  }
+  for (const auto& [face, k] : sides) {
+    const Vec2 &from = shape.triangles[face][k], &to = shape.triangles[face][(k + 1) % 3];
+    shape.outline.push_back({from, to});
+    shape.perimeter += std::hypot(to[0] - from[0], to[1] - from[1]);
+    for (int i = 0; i < 2; ++i) shape.size[i] = std::max(shape.size[i], from[i]);
   }
   return shape;
 }

@@ -17,10 +17,35 @@ inline std::array<Vec3, 2> tangent_frame(const Vec3& axis) {
   return {right, cross(axis, right)};
 }
 
+/// Removes points inside the polygon of those that are extreme in eight directions: most of many points (Akl
+/// & Toussaint 1978).
+template <class Point, class At>
+void remove_inner_points(std::vector<Point>& points, At at) {
+  constexpr std::array<Vec2, 8> kDirections{
+      {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+  std::array<Vec2, 8> corners;
+  for (std::size_t k = 0; k < 8; ++k)
+    corners[k] = at(*std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) {
+      return dot(kDirections[k], at(p)) < dot(kDirections[k], at(q));
+    }));
+  // A direction may have the corner of the one before.
+  const auto end = std::unique(corners.begin(), corners.end());
+  std::erase_if(points, [&](const Point& point) {
+    const Vec2& p = at(point);
+    for (auto a = corners.begin(); a != end; ++a) {
+      const Vec2& b = a + 1 == end ? corners[0] : a[1];
+      if (b != *a && !(cross(b - *a, p - *a) > 0)) return false;
+    }
+    return end - corners.begin() > 2;
+  });
+}
+
 /// The corners of the convex hull, counter-clockwise (Andrew's monotone chain). `at` returns the position of
 /// a point.
 template <class Point, class At>
 std::vector<Point> convex_hull(std::vector<Point> points, At at) {
+  constexpr std::size_t kMany = 64;
+  if (points.size() > kMany) remove_inner_points(points, at);
   const auto lower = [&](const Point& p, const Point& q) { return at(p) < at(q); };
   const auto same = [&](const Point& p, const Point& q) { return at(p) == at(q); };
   std::sort(points.begin(), points.end(), lower);
