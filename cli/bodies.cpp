@@ -85,7 +85,7 @@ void run(BodiesCommand command) {
   std::vector<Input> inputs;
   std::vector<sdm::Mesh> meshes;
   for (const std::string& file : command.files) {
-    inputs.push_back(load_input(fmt::format("body {}", inputs.size()), file, ""));
+    inspect(inputs.emplace_back(load_input(fmt::format("body {}", inputs.size()), file, "")));
     meshes.push_back(inputs.back().mesh);
   }
   const double import_ms = watch.lap();

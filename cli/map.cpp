@@ -49,7 +49,7 @@ std::vector<std::string> notes(const sdm::Mesh& on, const sdm::Mesh& to, const O
 }
 
 /// Computes the map on `on` of the distances to `to`, and writes all files of it into `folder`.
-Result measure(const MapCommand& command, const Input& on, const Input& to, double import_ms,
+Result measure(const MapCommand& command, Input& on, Input& to, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
   Stopwatch total;
   Result result;
@@ -72,6 +72,7 @@ Result measure(const MapCommand& command, const Input& on, const Input& to, doub
         outcome.time.sites = watch.lap();
         outcome.embedded = sdm::is_embedded(*sites);
       },
+      [&] { inspect(on), inspect(to); },  // while the atlas leaves a core idle
   });
 
   Stopwatch map_watch;

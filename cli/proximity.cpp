@@ -24,8 +24,13 @@ void run(PairCommand command) {
   progress.step("import");
   Stopwatch watch;
   Input o1, o2;
-  sdm::run_concurrently({[&] { o1 = load_input("o1", command.o1, command.transform_o1); },
-                         [&] { o2 = load_input("o2", command.o2, command.transform_o2); }});
+  const auto load = [](Input& input, const char* role, const std::string& file,
+                       const std::string& transform) {
+    input = load_input(role, file, transform);
+    inspect(input);
+  };
+  sdm::run_concurrently({[&] { load(o1, "o1", command.o1, command.transform_o1); },
+                         [&] { load(o2, "o2", command.o2, command.transform_o2); }});
   const double import_ms = watch.lap();
   sdm::ProximityQuery query(o1.mesh, o2.mesh, command.options);
   const double build_ms = watch.lap();

@@ -78,18 +78,21 @@ Json to_json(const sdm::GlReport& r) {
 Input load_input(const std::string& role, const std::string& file, const std::string& transform) {
   Input input{role, file, transform, sdm::read_mesh(file), {}};
   sdm::scenes::place(input.mesh, sdm::scenes::parse_placement(transform));
-  input.info = sdm::inspect(input.mesh);
   return input;
+}
+
+void inspect(Input& input) {
+  if (!input.info) input.info = sdm::inspect(input.mesh);
 }
 
 Json to_json(const Input& input) {
   return {{"file", input.file},
           {"transform", input.transform},
-          {"vertices", input.info.vertices},
-          {"triangles", input.info.triangles},
-          {"closed", input.info.closed},
-          {"degenerate_faces", input.info.degenerate_faces},
-          {"duplicate_faces", input.info.duplicate_faces}};
+          {"vertices", input.info->vertices},
+          {"triangles", input.info->triangles},
+          {"closed", input.info->closed},
+          {"degenerate_faces", input.info->degenerate_faces},
+          {"duplicate_faces", input.info->duplicate_faces}};
 }
 
 Json to_json(const sdm::Surface& surface) {

@@ -15,10 +15,13 @@ struct Input {
   std::string role;  ///< "o1", "o2", or "mesh" if it is the only one
   std::string file, transform;
   sdm::Mesh mesh;
-  sdm::MeshInfo info;
+  std::optional<sdm::MeshInfo> info;  ///< once inspected
 };
 
-/// Reads a mesh and applies its transform.
+/// Sets input.info, which to_json() needs, unless it is set.
+void inspect(Input& input);
+
+/// Reads a mesh and applies its transform. Does not inspect it.
 [[nodiscard]] Input load_input(const std::string& role, const std::string& file,
                                const std::string& transform);
 

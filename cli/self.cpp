@@ -103,7 +103,8 @@ void run(SelfCommand command) {
 
   progress.step("import");
   Stopwatch import;
-  const Input input = load_input("mesh", command.file, command.transform);
+  Input input = load_input("mesh", command.file, command.transform);
+  inspect(input);
   const double import_ms = import.lap();
   Json report;
   out.fill([&] { report = measure(command, input, import_ms, out.staging(), progress); });

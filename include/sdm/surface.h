@@ -56,6 +56,8 @@ class SDM_API Surface {
   [[nodiscard]] std::span<const std::uint32_t> face_charts() const;
   /// M: atlas coordinates of a point of the face's plane. The face must have a chart.
   [[nodiscard]] Vec2 to_atlas(std::uint32_t face, const Vec3& point) const;
+  /// M of the face's vertices. The face must have a chart.
+  [[nodiscard]] std::array<Vec2, 3> atlas_corners(std::uint32_t face) const;
   /// M⁻¹: the point of the face's plane at atlas coordinates. The face must have a chart.
   [[nodiscard]] Vec3 to_surface(std::uint32_t face, const Vec2& uv) const;
   /// The edges of a texel on the surface: the columns ∂p/∂u and ∂p/∂v of M⁻¹. The face must have a chart.

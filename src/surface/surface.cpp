@@ -73,6 +73,10 @@ Vec2 Surface::to_atlas(std::uint32_t face, const Vec3& point) const {
   return origin + Vec2{dot(cross(p, edges[1]), n) / area, dot(cross(edges[0], p), n) / area};
 }
 
+std::array<Vec2, 3> Surface::atlas_corners(std::uint32_t face) const {
+  return data_->corners[face];
+}
+
 std::array<Vec3, 2> Surface::texel_edges(std::uint32_t face) const {
   return data_->maps[face].edges;
 }

@@ -34,7 +34,8 @@ class PaperLiteral : public testing::TestWithParam<const char*> {
     return compute_map(surface_, sites_, {.engine = engine, .sign = SignMethod::none});
   }
   [[nodiscard]] Differences against_exact(const DistanceMap& found) const {
-    const double tolerance = 2e-6 * test::scene_diagonal(surface_.mesh(), sites_.mesh());
+    // Vectors are interpolated in single precision, across polygons as large as the scene.
+    const double tolerance = 1e-5 * test::scene_diagonal(surface_.mesh(), sites_.mesh());
     Differences d;
     for (const std::uint32_t t : surface_.sample_texels()) {
       ++d.texels;

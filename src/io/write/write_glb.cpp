@@ -59,11 +59,11 @@ SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint
   result.triangles.reserve(faces.size());
   for (const std::uint32_t face : faces) {
     Triangle& triangle = result.triangles.emplace_back();
+    // A face with almost no area is invisible: any position will do.
+    const auto corners = charts[face] == kNone ? std::array<Vec2, 3>{} : surface.atlas_corners(face);
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint32_t vertex = mesh.triangles[face][corner];
-      // A face with almost no area is invisible: any position will do.
-      Vec2 place = charts[face] == kNone ? Vec2{} : surface.to_atlas(face, mesh.positions[vertex]);
-      if (!std::isfinite(place[0]) || !std::isfinite(place[1])) place = {};
+      const Vec2& place = corners[corner];
       std::uint32_t split = first[vertex];
       for (int looked_at = 0; split != kNone; split = next[split])
         if (same(places[split], place) || ++looked_at == kMostSplits) break;
@@ -197,8 +197,10 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
   };
   for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
     if (surface.face_charts()[face] == kNone) continue;
-    for (const std::uint32_t vertex : mesh.triangles[face]) {
-      const Vec2 at = (1.0 / picture.step()) * surface.to_atlas(face, mesh.positions[vertex]);
+    const auto corners = surface.atlas_corners(face);
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh.triangles[face][k];
+      const Vec2 at = (1.0 / picture.step()) * corners[k];
       for (const double dx : {-0.5, 0.5})
         for (const double dy : {-0.5, 0.5}) seed(at[0] + dx, at[1] + dy, vertex_distances[vertex]);
     }
