@@ -186,11 +186,13 @@ class Clustering {
     std::vector<Link> links = all_links();
     std::vector<std::uint32_t> target(axes_.size());  // the cluster that each was merged into, or itself
     std::iota(target.begin(), target.end(), 0u);
+    std::vector<std::uint32_t> left = target;  // those that were not merged into others
     std::vector<std::uint8_t> grown(axes_.size(), 1);
     for (bool merged = true; merged;) {
       merged = false;
       std::vector<std::uint8_t> busy(axes_.size(), 0);
-      for (const std::uint32_t c : by_area(area, target)) {
+      std::ranges::stable_sort(left, {}, [&](std::uint32_t c) { return area[c]; });
+      for (const std::uint32_t c : left) {
         if (busy[c]) continue;
         auto [first, last] = std::equal_range(links.begin(), links.end(), Link{c, 0, 0},
                                               [](const Link& a, const Link& b) { return a.from < b.from; });
@@ -215,10 +217,11 @@ class Clustering {
       // same round.
       for (Link& link : links) link = {target[link.from], target[link.to], link.length};
       unite(links);
-      for (std::uint32_t& l : label_)
-        if (l != kNone) l = target[l];
+      std::erase_if(left, [&](std::uint32_t c) { return target[c] != c; });
       grown = std::move(busy);
     }
+    for (std::uint32_t& label : label_)
+      while (label != kNone && target[label] != label) label = target[label] = target[target[label]];
     drop_empty_clusters();
   }
 
@@ -274,16 +277,6 @@ class Clustering {
     for (std::uint32_t f = 0; f < label_.size(); ++f)
       if (label_[f] != kNone) area[label_[f]] += faces_.area[f];
     return area;
-  }
-
-  // The clusters that were not merged into others, the smallest first.
-  [[nodiscard]] static std::vector<std::uint32_t> by_area(const std::vector<double>& area,
-                                                          const std::vector<std::uint32_t>& target) {
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t c = 0; c < target.size(); ++c)
-      if (target[c] == c) order.push_back(c);
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return area[a] < area[b]; });
-    return order;
   }
 
   // Moves faces with two sides on the same other cluster to that cluster: borders get shorter (triangle
