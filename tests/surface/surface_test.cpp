@@ -233,5 +233,16 @@ TEST(SurfaceRefit, RejectedPositionsChangeNothing) {
   EXPECT_EQ(surface.sample_points(), before);
 }
 
+// Regression: the search for a scale never tried the only ones that hold both the gutters and the charts.
+TEST(Surface, ChartsOfOneTexelFillASmallAtlas) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 53; ++i) {
+    mesh.positions.insert(mesh.positions.end(), {{2.0 * i, 0, 0}, {2.0 * i + 1, 0, 0}, {2.0 * i, 1, 0}});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  EXPECT_EQ(Surface(mesh, {.kind = AtlasKind::triangles, .resolution = 24}).chart_count(), 53u);
+  EXPECT_THROW(Surface(mesh, {.kind = AtlasKind::triangles, .resolution = 20}), Error);
+}
+
 }  // namespace
 }  // namespace sdm

@@ -149,8 +149,8 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
                             const Progress& progress) {
   const Packer packer(shapes, resolution, gutter);
   require_memory(kTrials * BitmapBin::bytes(packer.cells()), "packing the atlas");
-  // Fractions of the atlas: `low` is known to fit, once there is a best packing, and `high` not to, if it is
-  // below 1.
+  // Fractions of the atlas: once there is a best packing, `low` is known to fit; before, it does not even
+  // hold the gutters. `high` is known not to fit, if it is below 1.
   double low = 0, high = 1;
   std::optional<std::vector<Placement>> best;
   const double precision = shapes.size() > kManyCharts ? kPrecisionOfMany : kPrecision;
@@ -167,25 +167,27 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
     return progress(step, done);
   };
   while (!best || high - low > precision) {
+    if (high - low < kPrecision) throw_too_small(shapes.size(), resolution, gutter);
     std::array<double, kTrials> shares{};
+    std::array<std::optional<double>, kTrials> scales;
     std::array<std::optional<std::vector<Placement>>, kTrials> packings;
     for (int k = 0; k < kTrials; ++k) shares[k] = low + (high - low) * (k + 1) / (kTrials + 1);
     if (high - low == 1) shares = kFirstShares;
     parallel_for(kTrials, 1, progress ? Progress(report) : Progress(), "packing",
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t k = begin; k < end; ++k)
-                     if (const auto scale = packer.scale_for(shares[k]))
-                       packings[k] = packer.try_scale(*scale);
+                     if ((scales[k] = packer.scale_for(shares[k])))
+                       packings[k] = packer.try_scale(*scales[k]);
                  });
-    int fitting = kTrials - 1;
-    while (fitting >= 0 && !packings[fitting]) --fitting;
-    if (fitting + 1 < kTrials) high = shares[fitting + 1];
-    if (fitting >= 0) {
-      low = shares[fitting];
-      best = std::move(packings[fitting]);
-    } else if (high < kPrecisionOfMany) {
-      throw_too_small(shapes.size(), resolution, gutter);
-    }
+    for (int k = 0; k < kTrials; ++k)
+      if (packings[k]) {
+        low = shares[k];
+        best = std::move(packings[k]);
+      } else if (!scales[k] && !best) {
+        low = shares[k];
+      }
+    for (int k = kTrials - 1; k >= 0; --k)
+      if (shares[k] > low) high = shares[k];
   }
   return std::move(*best);
 }
