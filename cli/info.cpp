@@ -129,14 +129,6 @@ std::string to_csv(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
   return csv;
 }
 
-// Whole or not at all; directly into what is not a file, such as /dev/stdout.
-void write_whole(const fs::path& path, const std::string& text) {
-  if (fs::exists(path) && !fs::is_regular_file(path)) return write_text(path, text);
-  const fs::path file = fs::weakly_canonical(fs::absolute(path));  // a link remains one
-  OutputFolder out(file.parent_path());
-  out.fill([&] { write_text(out.staging() / file.filename(), text); });
-}
-
 void run(const Options& options) {
   const Info info = collect(options.file);
   if (!options.self_intersections.empty())

@@ -1,5 +1,6 @@
 #include "map.h"
 
+#include "atlas_cache.h"
 #include "common_options.h"
 #include "format.h"
 #include "map_files.h"
@@ -63,7 +64,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
         Stopwatch watch;
         sdm::AtlasOptions options = command.atlas;
         if (command.precision) options.resolution = sdm::resolution_for(on.mesh, options, *command.precision);
-        surface = std::make_unique<sdm::Surface>(on.mesh, options);
+        surface = std::make_unique<sdm::Surface>(cached_surface(on.mesh, options, command.atlas_cache));
         outcome.time.atlas = watch.lap();
       },
       [&] {

@@ -27,19 +27,29 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->required();
   app.add_option("O2", c.o2, "The mesh that distances are measured to")->required();
   add_output_option(app, c.out);
-  app.add_flag("--both", c.both, "Also compute the map of O2; results in DIR/o1 and DIR/o2");
+  CLI::Option* both =
+      app.add_flag("--both", c.both, "Also compute the map of O2; results in DIR/o1 and DIR/o2");
 
   add_transform_option(app, "--transform-o1", "O1", c.transform_o1);
   add_transform_option(app, "--transform-o2", "O2", c.transform_o2);
 
   CLI::Option* resolution = add_resolution_option(app, c.atlas);
-  app.add_option("--precision", c.precision,
-                 "Instead: choose the resolution so that every surface point is within EPS of a sample, and "
-                 "distances between samples are known to within EPS (error_bound)")
-      ->check(positive)
-      ->type_name("EPS")
-      ->excludes(resolution);
+  CLI::Option* precision =
+      app.add_option(
+             "--precision", c.precision,
+             "Instead: choose the resolution so that every surface point is within EPS of a sample, and "
+             "distances between samples are known to within EPS (error_bound)")
+          ->check(positive)
+          ->type_name("EPS")
+          ->excludes(resolution);
   add_layout_options(app, c.atlas, "O1");
+  app.add_option(
+         "--atlas-cache", c.atlas_cache,
+         "Take the atlas of O1 from this file, or write it there if the file does not exist; it must be "
+         "of the same mesh, transform and layout")
+      ->type_name("FILE")
+      ->excludes(precision)
+      ->excludes(both);
 
   app.add_option("--max-distance", c.map.max_distance, "Texels farther than this have no value")
       ->check(positive)

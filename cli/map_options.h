@@ -12,7 +12,7 @@
 
 struct MapCommand {
   std::string o1, o2, transform_o1, transform_o2;
-  std::filesystem::path out;
+  std::filesystem::path out, atlas_cache;
   sdm::AtlasOptions atlas;
   sdm::MapOptions map;  ///< its engine is created from the next two members
   sdm::EngineInfo engine = sdm::engines().front();

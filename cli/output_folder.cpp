@@ -115,7 +115,7 @@ OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier
   try {
     create_folder(folder_);
     std::tie(staging_, lock_) = make_staging(folder_);
-    current_ = this;
+    outer_ = current_.exchange(this);
   } catch (...) {
     remove_traces();
     throw;
@@ -123,11 +123,11 @@ OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier
 }
 
 void OutputFolder::discard_current() {
-  if (current_) current_->remove_traces();
+  for (OutputFolder* folder = current_; folder != nullptr; folder = folder->outer_) folder->remove_traces();
 }
 
 OutputFolder::~OutputFolder() {
-  current_ = nullptr;
+  current_ = outer_;
   remove_traces();
 }
 
@@ -195,11 +195,18 @@ void OutputFolder::commit() {
   }
 }
 
-void write_text(const fs::path& file, const std::string& text) {
+void write_text(const fs::path& file, std::string_view text) {
   std::ofstream out(file, std::ios::binary);
   out << text;
   out.close();
   if (!out) throw_write_failure(file);
+}
+
+void write_whole(const fs::path& path, std::string_view text) {
+  if (fs::exists(path) && !fs::is_regular_file(path)) return write_text(path, text);
+  const fs::path file = fs::weakly_canonical(fs::absolute(path));  // a link remains one
+  OutputFolder out(file.parent_path());
+  out.fill([&] { write_text(out.staging() / file.filename(), text); });
 }
 
 void throw_write_failure(const fs::path& file) {

@@ -1,10 +1,12 @@
 // The output folder of a command, which receives either all files or none.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Files are first written to a hidden staging folder inside the output folder, and moved into place at the
@@ -22,7 +24,7 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Removes what the folder in use, if any, has written: for a process that must end at once.
+  /// Removes what the folders in use have written: for a process that must end at once.
   static void discard_current();
 
   /// Calls `work`, which writes its files below staging(), then moves them to the output folder, replacing
@@ -37,8 +39,9 @@ class OutputFolder {
   void commit();
   void remove_traces();
 
-  static inline OutputFolder* current_ = nullptr;
+  static inline std::atomic<OutputFolder*> current_ = nullptr;  ///< the innermost one in use
 
+  OutputFolder* outer_ = nullptr;  ///< in use before this one, and after
   std::filesystem::path folder_, staging_;
   std::shared_ptr<const void> lock_;  ///< on the staging folder
   /// Memory for remove_traces(), released before: too little for a mapping of its own, so it stays available.
@@ -48,6 +51,8 @@ class OutputFolder {
 };
 
 /// Throws sdm::Error if not all of the text could be written.
-void write_text(const std::filesystem::path& file, const std::string& text);
+void write_text(const std::filesystem::path& file, std::string_view text);
+/// The same, whole or not at all; directly into what is not a file, such as /dev/stdout.
+void write_whole(const std::filesystem::path& file, std::string_view text);
 /// Throws sdm::Error about the file, and says that the disk may be full.
 [[noreturn]] void throw_write_failure(const std::filesystem::path& file);

@@ -28,6 +28,10 @@ class SDM_API Surface {
   /// coordinates are missing or faces overlap (the message names two of them). Faces without area belong to
   /// no chart. Cost: O(n log n) for charts, then packing.
   explicit Surface(Mesh mesh, const AtlasOptions& options = {});
+  /// Takes the atlas that stored_atlas() returned for a surface of the same mesh and options; nothing is laid
+  /// out. Throws sdm::Error if the bytes belong to another mesh, to other options or to another version, or
+  /// are damaged, and as above. Cost: linear, a small part of laying out.
+  Surface(Mesh mesh, const AtlasOptions& options, std::span<const std::uint8_t> stored_atlas);
   ~Surface();
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
@@ -36,6 +40,10 @@ class SDM_API Surface {
   /// the map of a face whose vertices do not move is bit-identical. Throws sdm::Error, and changes nothing,
   /// when the count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces, all cores.
   void refit(std::span<const Vec3> positions);
+
+  /// The atlas as bytes, without the mesh: for a cache. They can be used by the same version of sdm only, on
+  /// any little-endian machine. Cost: linear.
+  [[nodiscard]] std::vector<std::uint8_t> stored_atlas() const;
 
   [[nodiscard]] const Mesh& mesh() const;
   [[nodiscard]] AtlasKind atlas_kind() const;

@@ -5,6 +5,7 @@
 
 #include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "surface/stored_atlas.h"
 #include "surface/surface_data.h"
 
 namespace sdm {
@@ -13,6 +14,18 @@ Surface::Surface(Mesh mesh, const AtlasOptions& options) try
     : data_(std::make_unique<surface::SurfaceData>(std::move(mesh), options)) {
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the atlas");
+}
+
+Surface::Surface(Mesh mesh, const AtlasOptions& options, std::span<const std::uint8_t> stored_atlas) try
+    : data_(std::make_unique<surface::SurfaceData>(std::move(mesh), options, stored_atlas)) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the atlas");
+}
+
+std::vector<std::uint8_t> Surface::stored_atlas() const try {
+  return surface::store_atlas(*data_);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("storing the atlas");
 }
 
 void Surface::refit(std::span<const Vec3> positions) try {

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "mesh/validate.h"
 #include "surface/sample_order.h"
+#include "surface/stored_atlas.h"
 
 namespace sdm::surface {
 namespace {
@@ -38,7 +39,10 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
 }  // namespace
 
 SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
-    : kind(options.kind), resolution(options.resolution) {
+    : kind(options.kind),
+      resolution(options.resolution),
+      gutter(options.gutter),
+      stretch_limit(options.max_stretch) {
   check(laid_out, options);
   atlas::Layout layout =
       kind == AtlasKind::uv ? atlas::uv_layout(laid_out, options) : atlas::chart_layout(laid_out, options);
@@ -60,6 +64,16 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   parallel_for(samples.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) sample_faces[i] = texel_faces[samples[i]];
   });
+}
+
+SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options, std::span<const std::uint8_t> atlas)
+    : mesh(std::move(laid_out)),
+      kind(options.kind),
+      resolution(options.resolution),
+      gutter(options.gutter),
+      stretch_limit(options.max_stretch) {
+  check(mesh, options);
+  restore_atlas(*this, options, atlas);
 }
 
 void SurfaceData::refit(std::span<const Vec3> positions) {

@@ -19,6 +19,7 @@ class SurfaceData {
  public:
   /// As Surface::Surface.
   SurfaceData(Mesh mesh, const AtlasOptions& options);
+  SurfaceData(Mesh mesh, const AtlasOptions& options, std::span<const std::uint8_t> atlas);
   void refit(std::span<const Vec3> positions);
 
   /// M⁻¹ of the face.
@@ -39,7 +40,8 @@ class SurfaceData {
 
   Mesh mesh;
   AtlasKind kind;
-  std::uint32_t resolution;
+  std::uint32_t resolution, gutter;
+  double stretch_limit;  ///< AtlasOptions::max_stretch
   std::size_t chart_count = 0;
   double max_stretch = 1;
   std::vector<atlas::FaceMap> maps;

@@ -31,6 +31,34 @@ TEST_F(MapCommand, WritesAllResultsAndTellsWhere) {
   EXPECT_EQ(run.err, "") << "progress is for terminals";
 }
 
+TEST_F(MapCommand, ALaterRunTakesTheAtlasFromItsCache) {
+  const std::string cache = folder / "first.atlas";
+  ASSERT_EQ(run_sdm(map({"--atlas-cache", cache})).code, 0);
+  const std::string exr = contents(out + "/map.exr"), stored = contents(cache);
+  EXPECT_GT(stored.size(), 1000u);
+  const Outcome again = run_sdm(map({"--atlas-cache", cache}));
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(contents(out + "/map.exr"), exr);
+  EXPECT_EQ(contents(cache), stored);
+  EXPECT_EQ(names_in(folder.path()).size(), 4u) << "two meshes, the results and the cache";
+
+  for (const std::vector<std::string>& other : {std::vector<std::string>{"--resolution", "256"},
+                                                {"--resolution", "32"},
+                                                {"--transform-o1", "scale:2"},
+                                                {"--max-stretch", "3"}}) {
+    std::vector<std::string> more = other;
+    more.insert(more.end(), {"--atlas-cache", cache});
+    const Outcome refused = run_sdm(map(more));
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_THAT(refused.err, HasSubstr(cache + ": the stored atlas"));
+  }
+  EXPECT_EQ(contents(out + "/map.exr"), exr);
+  std::ofstream(cache) << "not an atlas";
+  EXPECT_THAT(run_sdm(map({"--atlas-cache", cache})).err, HasSubstr(cache + ": it is not a stored atlas"));
+  EXPECT_EQ(run_sdm(map({"--atlas-cache", cache, "--both"})).code, 2);
+  EXPECT_EQ(run_sdm(map({"--atlas-cache", folder.path().string()})).code, 1);
+}
+
 TEST_F(MapCommand, ReportHasTheNumbersOfTheLibrary) {
   const Outcome run = run_sdm(map({"--json", "--units", "mm", "--threads", "1"}));
   ASSERT_EQ(run.code, 0) << run.err;

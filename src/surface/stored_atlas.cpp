@@ -1,0 +1,149 @@
+#include "surface/stored_atlas.h"
+
+#define XXH_INLINE_ALL
+#include <sdm/error.h>
+#include <xxhash.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <string>
+
+#include "core/geometry/vec.h"
+#include "surface/surface_data.h"
+
+namespace sdm::surface {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the order of the stored bytes");
+
+struct Header {
+  std::array<char, 8> magic{'s', 'd', 'm', 'a', 't', 'l', 'a', 's'};
+  std::uint32_t version = 1, kind = 0, resolution = 0, gutter = 0;
+  double stretch_limit = 0, max_stretch = 0;
+  std::uint64_t vertices = 0, faces = 0, charts = 0, samples = 0;
+  std::uint64_t mesh = 0, contents = 0;  ///< checksums: of the mesh, and of all else
+};
+static_assert(sizeof(Header) == 88, "no padding");
+
+template <class Item>
+void add(XXH3_state_t& state, const std::vector<Item>& items) {
+  XXH3_64bits_update(&state, items.data(), items.size() * sizeof(Item));
+}
+
+std::uint64_t checksum(Header header, std::span<const std::uint8_t> arrays) {
+  header.contents = 0;
+  XXH3_state_t state;
+  XXH3_64bits_reset(&state);
+  XXH3_64bits_update(&state, &header, sizeof(Header));
+  XXH3_64bits_update(&state, arrays.data(), arrays.size());
+  return XXH3_64bits_digest(&state);
+}
+
+std::uint64_t checksum(const Mesh& mesh) {
+  XXH3_state_t state;
+  XXH3_64bits_reset(&state);
+  add(state, mesh.positions);
+  add(state, mesh.triangles);
+  add(state, mesh.corner_uvs);
+  return XXH3_64bits_digest(&state);
+}
+
+Header header_of(const SurfaceData& s) {
+  Header header;
+  header.kind = static_cast<std::uint32_t>(s.kind);
+  header.resolution = s.resolution;
+  header.gutter = s.gutter;
+  header.stretch_limit = s.stretch_limit;
+  header.vertices = s.mesh.positions.size();
+  header.faces = s.mesh.triangles.size();
+  header.mesh = checksum(s.mesh);
+  return header;
+}
+
+// Calls take(array, its length) for the arrays in the order of the file.
+template <class Surface, class Take>
+void for_each_array(Surface& s, const Header& header, const Take& take) {
+  take(s.maps, header.faces);
+  take(s.corners, header.faces);
+  take(s.face_charts, header.faces);
+  take(s.samples, header.samples);
+  take(s.sample_faces, header.samples);
+}
+
+bool valid(const SurfaceData& s, std::uint64_t charts) {
+  const std::uint64_t texels = std::uint64_t{s.resolution} * s.resolution;
+  for (std::size_t f = 0; f < s.face_charts.size(); ++f) {
+    if (s.face_charts[f] != kNone && s.face_charts[f] >= charts) return false;
+    for (const Vec2& corner : s.corners[f])
+      for (const double x : corner)
+        if (!(x >= -1 && x <= s.resolution + 1.0)) return false;
+    if (!finite(s.maps[f].edges[0]) || !finite(s.maps[f].edges[1])) return false;
+  }
+  for (std::size_t i = 0; i < s.samples.size(); ++i)
+    if (s.samples[i] >= texels || s.sample_faces[i] >= s.face_charts.size() ||
+        s.face_charts[s.sample_faces[i]] == kNone)
+      return false;
+  return !s.samples.empty();
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> store_atlas(const SurfaceData& s) {
+  Header header = header_of(s);
+  header.max_stretch = s.max_stretch;
+  header.charts = s.chart_count;
+  header.samples = s.samples.size();
+  std::size_t size = sizeof(Header);
+  for_each_array(s, header,
+                 [&](const auto& array, std::uint64_t) { size += array.size() * sizeof(array[0]); });
+  std::vector<std::uint8_t> bytes(size);
+  std::uint8_t* to = bytes.data() + sizeof(Header);
+  for_each_array(s, header, [&](const auto& array, std::uint64_t) {
+    std::memcpy(to, array.data(), array.size() * sizeof(array[0]));
+    to += array.size() * sizeof(array[0]);
+  });
+  header.contents = checksum(header, std::span(bytes).subspan(sizeof(Header)));
+  std::memcpy(bytes.data(), &header, sizeof(Header));
+  return bytes;
+}
+
+void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const std::uint8_t> bytes) {
+  Header header;
+  const Header expected = header_of(s);
+  if (bytes.size() < sizeof(Header) || std::memcmp(bytes.data(), &expected, sizeof expected.magic) != 0)
+    throw Error("it is not a stored atlas");
+  std::memcpy(&header, bytes.data(), sizeof(Header));
+  bytes = bytes.subspan(sizeof(Header));
+  if (header.version != expected.version) throw Error("another version of sdm has stored the atlas");
+  if (header.vertices != expected.vertices || header.faces != expected.faces || header.mesh != expected.mesh)
+    throw Error("the stored atlas belongs to another mesh");
+  if (header.kind != expected.kind || header.resolution != expected.resolution ||
+      header.gutter != options.gutter || header.stretch_limit != options.max_stretch)
+    throw Error("the stored atlas has other options: a resolution of " + std::to_string(header.resolution) +
+                ", a gutter of " + std::to_string(header.gutter) + ", a stretch of at most " +
+                std::to_string(header.stretch_limit));
+
+  const std::uint64_t texels = std::uint64_t{s.resolution} * s.resolution;
+  const std::uint64_t of_faces =
+      header.faces * (sizeof s.maps[0] + sizeof s.corners[0] + sizeof(std::uint32_t));
+  if (header.samples > texels || bytes.size() != of_faces + header.samples * 2 * sizeof(std::uint32_t) ||
+      checksum(header, bytes) != header.contents)
+    throw Error("the stored atlas is damaged");
+  for_each_array(s, header, [&](auto& array, std::uint64_t count) {
+    array.resize(count);
+    std::memcpy(array.data(), bytes.data(), count * sizeof(array[0]));
+    bytes = bytes.subspan(count * sizeof(array[0]));
+  });
+  s.texel_faces.assign(texels, kNone);
+  if (!valid(s, header.charts)) throw Error("the stored atlas is damaged");
+  for (std::size_t i = 0; i < s.samples.size(); ++i) {
+    std::uint32_t& owner = s.texel_faces[s.samples[i]];
+    if (owner != kNone) throw Error("the stored atlas is damaged");
+    owner = s.sample_faces[i];
+  }
+  s.chart_count = header.charts;
+  s.max_stretch = header.max_stretch;
+}
+
+}  // namespace sdm::surface
