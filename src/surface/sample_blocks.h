@@ -6,7 +6,7 @@
 
 namespace sdm::surface {
 
-inline constexpr std::size_t kBlockSize = 256;  // compact on the surface: see core/geometry/spatial_order.h
+inline constexpr std::size_t kBlockSize = 256;  // compact on the surface: see surface/sample_order.h
 
 /// The samples of a block: [first, end).
 struct SampleBlock {

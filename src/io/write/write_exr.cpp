@@ -38,7 +38,7 @@ struct Channel {
 constexpr std::uint32_t kRowsPerChunk = 16;
 
 // A file that is written in chunks. Chunks are compressed by the caller, by all threads at once: OpenEXR's
-// own compression with zlib takes six times as long.
+// own compression with zlib takes twice as long.
 class ExrFile {
  public:
   ExrFile(const std::filesystem::path& file, std::uint32_t n, std::span<const Channel> channels)
