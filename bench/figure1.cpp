@@ -19,7 +19,7 @@
 #include "io/write/atomic_file.h"
 #include "io/write/pictures/color_scale.h"
 #include "io/write/pictures/legend.h"
-#include "io/write/png.h"
+#include "io/write/pictures/png.h"
 #include "scenes.h"
 #include "visible_texels.h"
 

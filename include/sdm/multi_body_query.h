@@ -34,7 +34,7 @@ struct PairProximity {
 /// The distance map of one body to all others.
 struct NearestMap {
   /// As computed by compute_map, at each texel to the body with the nearest surface, or to the one with the
-  /// lowest index if several are equally near. The sign is that of this body alone: negative inside it if it
+  /// lowest index if several are equally near. The sign is that of that body alone: negative inside it if it
   /// is closed and orientable.
   DistanceMap map;
   /// The index of that body for each texel; kNone where the map has no value.

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "core/geometry/spatial_order.h"
 #include "core/geometry/unit_frame.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
@@ -111,7 +112,7 @@ class SampleOrder {
   // Moves items with `samples` samples in all, a multiple of 16, to the front: those with the smallest
   // coordinates along the longest side, but for a few single ones near the split. Returns their number.
   [[nodiscard]] static std::size_t split(std::span<Item> items, std::size_t samples) {
-    const std::size_t axis = longest_side(items);
+    const std::size_t axis = longest_side<Item>(items);
     const auto along = [axis](const Item& item) {
       return std::pair(item.point[axis], item.texel);
     };  // unique
@@ -149,17 +150,6 @@ class SampleOrder {
     if (kept < last.size()) sort_out(last, kept);
     std::swap(last[kept], rest[0]);
     return begin - (kPacket - missing) + 1;
-  }
-
-  [[nodiscard]] static std::size_t longest_side(std::span<const Item> items) {
-    Vec3f lo = items[0].point, hi = lo;
-    for (const Item& item : items)
-      for (std::size_t k = 0; k < 3; ++k) {
-        lo[k] = std::min(lo[k], item.point[k]);
-        hi[k] = std::max(hi[k], item.point[k]);
-      }
-    const Vec3f size{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]};
-    return static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
   }
 
   const SurfaceData& surface_;

@@ -33,9 +33,8 @@ class PaperLiteral : public testing::TestWithParam<const char*> {
     const auto engine = gl::make_gl_engine({.clip = GlClip::stencil}, corrections);
     return compute_map(surface_, sites_, {.engine = engine, .sign = SignMethod::none});
   }
-  [[nodiscard]] Differences against_exact(const DistanceMap& found) const {
-    // Vectors are interpolated in single precision, across polygons as large as the scene.
-    const double tolerance = 1e-5 * test::scene_diagonal(surface_.mesh(), sites_.mesh());
+  [[nodiscard]] Differences against_exact(const DistanceMap& found, double relative_tolerance = 2e-6) const {
+    const double tolerance = relative_tolerance * test::scene_diagonal(surface_.mesh(), sites_.mesh());
     Differences d;
     for (const std::uint32_t t : surface_.sample_texels()) {
       ++d.texels;
@@ -54,7 +53,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PaperLiteral, testing::Values("Penetrating", "S
                          [](const auto& scene) { return scene.param; });
 
 TEST_P(PaperLiteral, AsPrintedIsNeverTooSmallAndSometimesTooLarge) {
-  const Differences d = against_exact(map(printed()));
+  // Vectors are interpolated in single precision, across polygons as large as the scene: one texel of these
+  // scenes is 4e-6 too small.
+  const Differences d = against_exact(map(printed()), 1e-5);
   EXPECT_GT(d.above, 0u);
   EXPECT_EQ(d.below, 0u);
 }

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <random>
 #include <string>
@@ -139,6 +141,37 @@ double depth_by_faces(const Body& solid, const Mesh& of) {
   return deepest;
 }
 
+// The map of a body to all others, of which there is one.
+void expect_nearest_maps(const Body& a, const Body& b, const MultiBodyQuery& bodies) {
+  for (const std::uint32_t i : {0u, 1u}) {
+    const DistanceMap map = compute_map(bodies.surface(i), bodies.sites(1 - i));
+    const NearestMap nearest = bodies.nearest_map(i);
+    const Body& body = i == 0 ? b : a;
+    ASSERT_EQ(nearest.map.sign.method, body.solid ? SignMethod::exact : SignMethod::none);
+    for (const std::uint32_t t : bodies.surface(i).sample_texels()) {
+      ASSERT_EQ(nearest.body[t], 1 - i);
+      ASSERT_EQ(nearest.map.distance[t], map.distance[t]);
+    }
+  }
+}
+
+// Both bodies as one mesh: what it says of itself follows from what the two say of themselves and each other.
+void expect_self_proximity(const Body& a, const Body& b, bool intersect, double separation,
+                           double tolerance) {
+  const auto apart = [](const Mesh& mesh) {
+    const std::optional<BoundedLength> length = SelfProximityQuery(mesh).separation();
+    return length ? length->value : std::numeric_limits<double>::infinity();
+  };
+  const Mesh both = joined(a.mesh, b.mesh);
+  ASSERT_EQ(is_embedded(Sites(both)), !intersect && is_embedded(Sites(a.mesh)) && is_embedded(Sites(b.mesh)));
+  const double least = std::min({apart(a.mesh), apart(b.mesh), separation});
+  ASSERT_NEAR(apart(both), least, tolerance);
+  for (const double margin : {0.0, 2 * least}) {
+    SelfProximityQuery self(both);
+    ASSERT_EQ(self.contacts(margin).empty(), least > margin) << "margin " << margin << ", least " << least;
+  }
+}
+
 void check(const Body& a, const Body& b) {
   const double tolerance = 1e-6 * scene_diagonal(a.mesh, b.mesh);
   expect_map_signs(a, b, tolerance);
@@ -197,6 +230,11 @@ void check(const Body& a, const Body& b) {
     if (depth) {
       ASSERT_EQ(pair.penetration_depth->value, depth->value);
       ASSERT_EQ(pair.penetration_depth->upper, depth->upper);
+    }
+    if (exact) {
+      expect_nearest_maps(a, b, bodies);
+      expect_self_proximity(a, b, intersect, separation.value, tolerance);
+      if (testing::Test::HasFatalFailure()) return;
     }
   }
 }

@@ -18,23 +18,12 @@ struct Item {
   std::uint32_t index;
 };
 
-std::size_t longest_side(std::span<const Item> items) {
-  Vec3f lo = items[0].point, hi = lo;
-  for (const Item& item : items)
-    for (std::size_t k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], item.point[k]);
-      hi[k] = std::max(hi[k], item.point[k]);
-    }
-  const Vec3f size{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]};
-  return static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
-}
-
 // All halves but the last hold 16·2^k items, so that all packets but the last are full.
 void order(std::span<Item> items) {
   if (items.size() <= kPacket) return;
   const std::size_t half = kPacket * std::bit_floor((items.size() - 1) / kPacket);
   std::ranges::nth_element(items, items.begin() + static_cast<std::ptrdiff_t>(half), {},
-                           [axis = longest_side(items)](const Item& item) {
+                           [axis = longest_side<Item>(items)](const Item& item) {
                              return std::pair(item.point[axis], item.index);  // unique, so the order is too
                            });
   const auto first = [=] { order(items.first(half)); };

@@ -1,10 +1,10 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "io/write/atomic_file.h"
-#include "io/write/deflate.h"
 #include "io/write/gutter.h"
 
 #include <OpenEXR/openexr.h>
+#include <libdeflate.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/version.h>
@@ -15,9 +15,11 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <new>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sdm {
@@ -132,8 +134,14 @@ std::vector<std::uint8_t> packed(std::vector<std::uint8_t> bytes) {
   differences[0] = split[0];
   for (std::size_t i = 1; i < split.size(); ++i)
     differences[i] = static_cast<std::uint8_t>(split[i] - split[i - 1] + 128);
+  constexpr int kLevel = 1;  // three times as fast as the default for a few percent of size
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(kLevel), &libdeflate_free_compressor);
+  if (!compressor) throw std::bad_alloc();
   std::vector<std::uint8_t> compressed(bytes.size() - 1);
-  return deflate(differences, compressed) ? compressed : bytes;
+  compressed.resize(libdeflate_zlib_compress(compressor.get(), differences.data(), differences.size(),
+                                             compressed.data(), compressed.size()));
+  return compressed.empty() ? std::move(bytes) : std::move(compressed);
 }
 
 // Writes the texels that texel(source, covered) returns. `source` is the owned texel whose values are used, a

@@ -5,7 +5,7 @@
 #include "io/write/gutter.h"
 #include "io/write/pictures/atlas_picture.h"
 #include "io/write/pictures/color_scale.h"
-#include "io/write/png.h"
+#include "io/write/pictures/png.h"
 
 #include <sdm/error.h>
 #include <sdm/io.h>

@@ -10,8 +10,8 @@
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
 #include "io/write/pictures/canvas.h"
+#include "io/write/pictures/png.h"
 #include "io/write/pictures/ticks.h"
-#include "io/write/png.h"
 
 namespace sdm {
 

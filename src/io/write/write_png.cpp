@@ -3,8 +3,8 @@
 #include "io/write/pictures/atlas_picture.h"
 #include "io/write/pictures/color_scale.h"
 #include "io/write/pictures/legend.h"
+#include "io/write/pictures/png.h"
 #include "io/write/pictures/ticks.h"
-#include "io/write/png.h"
 
 #include <sdm/io.h>
 
