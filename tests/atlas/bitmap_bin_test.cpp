@@ -34,9 +34,8 @@ bool is_free(const Cells& cells, const atlas::Stamp& stamp, std::uint32_t x, std
 // Row by row, cell by cell.
 std::optional<atlas::BitmapBin::Spot> plain_first_fit(const Cells& cells, const atlas::Stamp& stamp,
                                                       std::uint32_t first_y, std::uint32_t end_y) {
-  const auto size = static_cast<std::uint32_t>(cells.size());
-  for (std::uint32_t y = first_y; y < end_y && y + stamp.height <= size; ++y)
-    for (std::uint32_t x = 0; x + stamp.width <= size; ++x)
+  for (std::uint32_t y = first_y; y < end_y && y + stamp.height <= cells.size(); ++y)
+    for (std::uint32_t x = 0; x + stamp.width <= cells[y].size(); ++x)
       if (is_free(cells, stamp, x, y)) return atlas::BitmapBin::Spot{x, y};
   return std::nullopt;
 }
@@ -45,12 +44,13 @@ TEST(BitmapBin, FindsTheFirstFit) {
   for (const std::uint32_t size : {16u, 63u, 64u, 65u, 100u, 128u, 200u}) {
     SCOPED_TRACE(size);
     std::mt19937 random(size);
-    atlas::BitmapBin bin(size);
-    Cells cells(size, std::vector<bool>(size, false));
+    const std::uint32_t height = size + size / 3;
+    atlas::BitmapBin bin(size, height);
+    Cells cells(height, std::vector<bool>(size, false));
     int misses = 0;
     for (int i = 0; i < 600; ++i) {
       const atlas::Stamp stamp = random_stamp(random, i < 300 ? size / 4 : 6);
-      const std::uint32_t first_y = i % 5 == 0 ? size / 3 : 0, end_y = i % 7 == 0 ? size / 2 : size;
+      const std::uint32_t first_y = i % 5 == 0 ? size / 3 : 0, end_y = i % 7 == 0 ? size / 2 : height;
       const auto expected = plain_first_fit(cells, stamp, first_y, end_y);
       const auto spot = bin.first_fit(stamp, first_y, end_y);
       ASSERT_EQ(spot.has_value(), expected.has_value()) << i;
@@ -67,10 +67,12 @@ TEST(BitmapBin, FindsTheFirstFit) {
 }
 
 TEST(BitmapBin, FitsStampsUpToItsOwnSize) {
-  atlas::BitmapBin bin(64);
-  atlas::Stamp stamp{64, 1, {{0, 0, 64}}};
+  atlas::BitmapBin bin(64, 3);
+  atlas::Stamp stamp{64, 3, {{0, 0, 64}, {1, 0, 64}, {2, 0, 64}}};
   EXPECT_TRUE(bin.first_fit(stamp, 0, 64));
   stamp.width = 65;
+  EXPECT_FALSE(bin.first_fit(stamp, 0, 64));
+  stamp.width = 64, stamp.height = 4;
   EXPECT_FALSE(bin.first_fit(stamp, 0, 64));
 }
 

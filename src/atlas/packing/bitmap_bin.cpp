@@ -15,8 +15,8 @@ inline std::uint64_t load(const std::uint64_t* words, std::size_t x) {
 }
 
 // Words per row. All bits of the last two are set, so that load may read past the end.
-std::size_t words_per_row(std::uint32_t size) {
-  return size / 64 + 3;
+std::size_t words_per_row(std::uint32_t width) {
+  return width / 64 + 3;
 }
 
 std::uint32_t level_of(std::uint32_t length) {
@@ -25,30 +25,31 @@ std::uint32_t level_of(std::uint32_t length) {
 
 }  // namespace
 
-BitmapBin::BitmapBin(std::uint32_t size)
-    : size_(size),
-      levels_(level_of(size) + 1),
-      stride_(words_per_row(size)),
-      bits_(stride_ * size * levels_, kFull),
-      longest_(size, size),
-      stale_(size, 0) {
-  for (std::uint32_t y = 0; y < size; ++y) {
+BitmapBin::BitmapBin(std::uint32_t width, std::uint32_t height)
+    : width_(width),
+      height_(height),
+      levels_(level_of(width) + 1),
+      stride_(words_per_row(width)),
+      bits_(stride_ * height * levels_, kFull),
+      longest_(height, width),
+      stale_(height, 0) {
+  for (std::uint32_t y = 0; y < height; ++y) {
     std::uint64_t* cells = row(0, y);
-    std::fill_n(cells, size / 64, 0);
-    cells[size / 64] = kFull << size % 64;
-    update_levels(y, 0, size);
+    std::fill_n(cells, width / 64, 0);
+    cells[width / 64] = kFull << width % 64;
+    update_levels(y, 0, width);
   }
 }
 
-std::size_t BitmapBin::bytes(std::uint32_t size) {
-  return words_per_row(size) * size * (level_of(size) + 1) * sizeof(std::uint64_t);
+std::size_t BitmapBin::bytes(std::uint32_t width, std::uint32_t height) {
+  return words_per_row(width) * height * (level_of(width) + 1) * sizeof(std::uint64_t);
 }
 
 std::optional<BitmapBin::Spot> BitmapBin::first_fit(const Stamp& stamp, std::uint32_t first_y,
                                                     std::uint32_t end_y) {
-  if (stamp.width > size_ || stamp.height > size_) return std::nullopt;
-  end_y = std::min(end_y, size_ - stamp.height + 1);
-  std::vector<std::uint64_t> blocked((size_ - stamp.width) / 64 + 1);
+  if (stamp.width > width_ || stamp.height > height_) return std::nullopt;
+  end_y = std::min(end_y, height_ - stamp.height + 1);
+  std::vector<std::uint64_t> blocked((width_ - stamp.width) / 64 + 1);
   for (std::uint32_t y = first_y; y < end_y; ++y) {
     const bool hopeless = std::any_of(stamp.runs.begin(), stamp.runs.end(),
                                       [&](const Run& r) { return longest_[y + r.row] < r.length; });
@@ -62,7 +63,7 @@ std::optional<BitmapBin::Spot> BitmapBin::first_fit(const Stamp& stamp, std::uin
 
 std::optional<std::uint32_t> BitmapBin::fit_in_row(const Stamp& stamp, std::uint32_t y,
                                                    std::vector<std::uint64_t>& blocked) const {
-  const std::uint32_t positions = size_ - stamp.width + 1;
+  const std::uint32_t positions = width_ - stamp.width + 1;
   std::fill(blocked.begin(), blocked.end(), 0);
   if (positions % 64 != 0) blocked.back() = kFull << positions % 64;
   std::size_t first = 0, last = blocked.size();  // words that may have a free position
@@ -103,7 +104,7 @@ void BitmapBin::update_levels(std::uint32_t y, std::uint32_t begin, std::uint32_
     const std::size_t half = std::size_t{1} << k;
     std::uint64_t changed = 0;
     for (std::size_t i = (begin - std::min<std::size_t>(begin, 2 * half)) / 64; i <= end / 64; ++i) {
-      const std::uint64_t bits = 64 * i + half <= size_ ? lower[i] | load(lower, 64 * i + half) : kFull;
+      const std::uint64_t bits = 64 * i + half <= width_ ? lower[i] | load(lower, 64 * i + half) : kFull;
       changed |= bits ^ upper[i];
       upper[i] = bits;
     }
@@ -114,7 +115,7 @@ void BitmapBin::update_levels(std::uint32_t y, std::uint32_t begin, std::uint32_
 void BitmapBin::update_longest(std::uint32_t y) {
   const std::uint64_t* cells = row(0, y);
   std::uint32_t longest = 0, run = 0;
-  for (std::uint32_t x = 0; x < size_;) {
+  for (std::uint32_t x = 0; x < width_;) {
     const std::uint64_t word = cells[x / 64] >> x % 64;
     const bool taken = word & 1;
     const int same = taken ? std::countr_one(word) : std::countr_zero(word);

@@ -1,4 +1,4 @@
-// A square of cells into which shapes of cells are packed, row by row.
+// A rectangle of cells into which shapes of cells are packed, row by row.
 #pragma once
 
 #include <cstdint>
@@ -30,9 +30,9 @@ class BitmapBin {
     std::uint32_t x, y;
   };
 
-  explicit BitmapBin(std::uint32_t size);
+  BitmapBin(std::uint32_t width, std::uint32_t height);
   /// The memory of a bin of this size, in bytes.
-  [[nodiscard]] static std::size_t bytes(std::uint32_t size);
+  [[nodiscard]] static std::size_t bytes(std::uint32_t width, std::uint32_t height);
 
   /// The position with the smallest y in [first_y, end_y), then the smallest x, at which no cell of the stamp
   /// is taken.
@@ -43,16 +43,16 @@ class BitmapBin {
   [[nodiscard]] std::optional<std::uint32_t> fit_in_row(const Stamp& stamp, std::uint32_t y,
                                                         std::vector<std::uint64_t>& blocked) const;
   [[nodiscard]] std::uint64_t* row(std::uint32_t level, std::uint32_t y) {
-    return &bits_[(std::size_t{level} * size_ + y) * stride_];
+    return &bits_[(std::size_t{level} * height_ + y) * stride_];
   }
   [[nodiscard]] const std::uint64_t* row(std::uint32_t level, std::uint32_t y) const {
-    return &bits_[(std::size_t{level} * size_ + y) * stride_];
+    return &bits_[(std::size_t{level} * height_ + y) * stride_];
   }
   void update_levels(std::uint32_t y, std::uint32_t begin, std::uint32_t end);
   void update_longest(std::uint32_t y);
 
-  std::uint32_t size_, levels_;
-  std::size_t stride_;  // words per row; bits from size_ on are always set
+  std::uint32_t width_, height_, levels_;
+  std::size_t stride_;  // words per row; bits from width_ on are always set
   std::vector<std::uint64_t> bits_;
   // An upper bound on the free spans of a row, which rejects most rows. Exact except for stale rows.
   std::vector<std::uint32_t> longest_;

@@ -26,6 +26,10 @@ constexpr int kTrials = 2;
 constexpr double kPrecision = 0.005;
 // Between these, most meshes stop fitting: the scales tried first.
 constexpr std::array<double, kTrials> kFirstShares{0.70, 0.82};
+// Rounds of trials around the scale that the rows of the trials before suggest, before the gap is divided.
+constexpr int kGuesses = 4;
+// How much taller than the atlas the bin of a trial is, so that it shows how many rows are missing.
+constexpr double kTallness = 1.25;
 // From this number of charts, speed is preferred over filling the last gaps.
 constexpr std::size_t kManyCharts = 4096;
 constexpr double kPrecisionOfMany = 0.02;
@@ -40,6 +44,11 @@ std::uint64_t size_class(std::uint32_t length) {
   const auto shift = static_cast<std::uint32_t>(std::max(0, static_cast<int>(std::bit_width(length)) - 3));
   return std::uint64_t{shift} << 3 | length >> shift;
 }
+
+struct Packing {
+  std::vector<Placement> placements;
+  std::uint32_t rows = 0;  ///< of cells in use, perhaps more than there are
+};
 
 class Packer {
  public:
@@ -56,6 +65,14 @@ class Packer {
   }
 
   [[nodiscard]] std::uint32_t cells() const { return resolution_ / cell_; }
+  [[nodiscard]] std::uint32_t rows() const {
+    return static_cast<std::uint32_t>(std::ceil(kTallness * cells()));
+  }
+  /// No packing needs to be tried at a larger scale.
+  [[nodiscard]] double largest_scale() const {
+    const double gutter = std::ceil(1.0 * gutter_ / cell_) * cell_;
+    return (resolution_ - 2 * gutter - 2 * cell_) / longest_;
+  }
 
   // The scale at which footprints cover about the given fraction of the atlas: a region dilated by r grows by
   // r times its perimeter and a few texels for its corners. Empty if corners alone take more.
@@ -73,15 +90,15 @@ class Packer {
     // area s² + reach perimeter s = room, without cancellation; a long thin shape may reach across before
     // that
     const double b = reach * perimeter;
-    const double longest_fit = (resolution_ - 2 * gutter - 2 * cell_) / longest_;
-    return std::min(2 * room / (b + std::sqrt(b * b + 4 * area * room)), longest_fit);
+    return std::min(2 * room / (b + std::sqrt(b * b + 4 * area * room)), largest_scale());
   }
 
   // Places shapes by first fit, large ones first, each in the rotation that extends least far down. Empty if
-  // a shape does not fit.
-  [[nodiscard]] std::optional<std::vector<Placement>> try_scale(double scale) const {
-    BitmapBin bin(cells());
-    std::vector<Placement> placements(shapes_.size());
+  // a shape does not fit into the taller bin.
+  [[nodiscard]] std::optional<Packing> try_scale(double scale) const {
+    BitmapBin bin(cells(), rows());
+    Packing packing;
+    packing.placements.resize(shapes_.size());
     // A stamp rarely fits above the last one of about the same size: starting from there saves nearly all of
     // the search with many small charts.
     const bool many = shapes_.size() > kManyCharts;
@@ -92,7 +109,7 @@ class Packer {
       const Footprint footprint = make_footprint(shapes_[s], {scale, gutter_, cell_});
       std::optional<BitmapBin::Spot> best;
       unsigned best_turn = 0;
-      std::uint32_t bottom = cells() + 1;  // an upper bound
+      std::uint32_t bottom = rows() + 1;  // an upper bound
       for (unsigned turn = 0; turn < 4; ++turn) {
         const Stamp& stamp = footprint.stamps[turn];
         if (stamp.height >= bottom) continue;
@@ -107,9 +124,10 @@ class Packer {
       }
       if (!best) return std::nullopt;
       bin.place(footprint.stamps[best_turn], *best);
-      placements[s] = placement(footprint, best_turn, scale, *best);
+      packing.placements[s] = placement(footprint, best_turn, scale, *best);
+      packing.rows = std::max(packing.rows, bottom);
     }
-    return placements;
+    return packing;
   }
 
  private:
@@ -148,14 +166,13 @@ Vec2 Placement::apply(const Vec2& q) const {
 std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolution, std::uint32_t gutter,
                             const Progress& progress) {
   const Packer packer(shapes, resolution, gutter);
-  require_memory(kTrials * BitmapBin::bytes(packer.cells()), "packing the atlas");
+  require_memory(kTrials * BitmapBin::bytes(packer.cells(), packer.rows()), "packing the atlas");
   // Fractions of the atlas: once there is a best packing, `low` is known to fit; before, it does not even
   // hold the gutters. `high` is known not to fit, if it is below 1.
   double low = 0, high = 1;
   std::optional<std::vector<Placement>> best;
   const double precision = shapes.size() > kManyCharts ? kPrecisionOfMany : kPrecision;
-  // A round in which something fits divides the gap by about kTrials + 1. Others achieve less: their
-  // successor then reports nothing new until it is ahead.
+  // Rounds divide the gap by about kTrials + 1, or by more. Those that achieve less report nothing new.
   const double first_gap = high - low;
   const auto done_at = [&](double gap) {
     return std::log(first_gap / gap) / std::log(first_gap / precision);
@@ -166,28 +183,44 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
     done = std::max(done, std::min(1.0, begin + of_round * (end - begin)));
     return progress(step, done);
   };
-  while (!best || high - low > precision) {
+  double guess = 0;  // what should just fit; 0: unknown
+  for (int round = 0; !best || high - low > precision; ++round) {
     if (high - low < kPrecision) throw_too_small(shapes.size(), resolution, gutter);
     std::array<double, kTrials> shares{};
-    std::array<std::optional<double>, kTrials> scales;
-    std::array<std::optional<std::vector<Placement>>, kTrials> packings;
     for (int k = 0; k < kTrials; ++k) shares[k] = low + (high - low) * (k + 1) / (kTrials + 1);
-    if (high - low == 1) shares = kFirstShares;
+    if (round == 0) {
+      shares = kFirstShares;
+    } else if (guess > 0 && round <= kGuesses && high - low > 3 * precision) {
+      // If it fits just below the guess and not just above it, the search ends.
+      const double half = 0.49 * precision, centre = std::clamp(guess, low + precision, high - precision);
+      shares = {centre - half, centre + half};
+    }
+    std::array<std::optional<double>, kTrials> scales;
+    std::array<std::optional<Packing>, kTrials> packings;
     parallel_for(kTrials, 1, progress ? Progress(report) : Progress(), "packing",
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t k = begin; k < end; ++k)
                      if ((scales[k] = packer.scale_for(shares[k])))
                        packings[k] = packer.try_scale(*scales[k]);
                  });
-    for (int k = 0; k < kTrials; ++k)
+    guess = 0;
+    double off = 1;
+    for (int k = 0; k < kTrials; ++k) {
       if (packings[k]) {
+        // Rows are filled about equally at scales that differ little.
+        const double fitting = shares[k] * packer.cells() / packings[k]->rows;
+        if (std::abs(fitting - shares[k]) < off) guess = fitting, off = std::abs(fitting - shares[k]);
+      }
+      if (packings[k] && packings[k]->rows <= packer.cells()) {
         low = shares[k];
-        best = std::move(packings[k]);
+        best = std::move(packings[k]->placements);
+        if (scales[k] == packer.largest_scale()) high = low;
       } else if (!scales[k] && !best) {
         low = shares[k];
       }
+    }
     for (int k = kTrials - 1; k >= 0; --k)
-      if (shares[k] > low) high = shares[k];
+      if (shares[k] > low) high = std::min(high, shares[k]);
   }
   return std::move(*best);
 }
