@@ -26,6 +26,7 @@ struct BodiesCommand {
   std::string units;
   std::filesystem::path out;
   sdm::MultiBodyOptions options;
+  MapFiles map_files;
   unsigned threads = 0;
   bool json = false, quiet = false;
 };
@@ -36,7 +37,7 @@ void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies,
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     bodies.nearest_map(body, nearest);
     const std::filesystem::path folder = out.staging(fmt::to_string(body));
-    write_map_files(folder, bodies.surface(body), nearest.map,
+    write_map_files(folder, command.map_files, bodies.surface(body), nearest.map,
                     sdm::nearest_distances_at_vertices(bodies, body, command.options.max_distance),
                     {.units = command.units});
     sdm::write_npy(folder / "body.npy", nearest.map.resolution, nearest.body);
@@ -65,11 +66,8 @@ std::string summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
   text += "\n" + table(bodies.pairs());
   if (!command.units.empty()) text += fmt::format("\n  lengths in {}\n", command.units);
   if (!command.out.empty())
-    text += fmt::format(
-        "\n  results   {}/: report.json and, of each body, N/: map.exr distance.png voronoi.png "
-        "direction.png "
-        "model.glb body.npy\n",
-        command.out.string());
+    text += fmt::format("\n  results   {}/: report.json and, of each body, N/: {}body.npy\n",
+                        command.out.string(), listed(command.map_files));
   return text;
 }
 
@@ -121,6 +119,7 @@ void add_options(CLI::App& app, BodiesCommand& c) {
       ->check(number("a positive number", [](double x) { return x > 0; }))
       ->type_name("D");
   add_proximity_options(app, c.options.exact, c.units);
+  add_write_option(app, c.map_files);
   add_resolution_option(app, c.options.atlas, "all bodies' maps");
   add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a table");
 }

@@ -16,6 +16,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace {
@@ -96,7 +97,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
   sdm::PictureOptions picture = command.picture;
   if (std::isfinite(outcome.accuracy)) picture.accuracy = outcome.accuracy;
   sdm::run_concurrently({
-      [&] { write_map_files(folder, *surface, map, at_vertices, picture, boundary); },
+      [&] { write_map_files(folder, command.files, *surface, map, at_vertices, picture, boundary); },
       [&] {
         outcome.distance = sdm::statistics(*surface, map);
         outcome.error_bound = sdm::covering_radius(*surface);
@@ -131,10 +132,10 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
 /// All files that any run of the command writes.
 std::vector<std::filesystem::path> stale_files() {
   std::vector<std::filesystem::path> files;
-  for (const char* folder : {"", "o1", "o2"})
-    for (const char* file :
-         {"map.exr", "distance.png", "voronoi.png", "direction.png", "model.glb", "report.json"})
-      files.push_back(std::filesystem::path(folder) / file);
+  for (const std::filesystem::path folder : {"", "o1", "o2"}) {
+    for (const std::string& file : names({})) files.push_back(folder / file);
+    files.push_back(folder / "report.json");
+  }
   return files;
 }
 
@@ -174,10 +175,9 @@ int run(MapCommand command) {
   } else if (!command.quiet) {
     std::cout << summary(o1, o2, results[0].outcome, command.picture.units);
     if (command.both) std::cout << summary(o2, o1, results[1].outcome, command.picture.units);
-    std::cout << fmt::format(
-        "  time      {} s\n  results   {}{}/: map.exr distance.png voronoi.png direction.png model.glb "
-        "report.json\n",
-        number(std::round(total.lap()) / 1000, 6), command.out.string(), command.both ? "/{o1,o2}" : "");
+    std::cout << fmt::format("  time      {} s\n  results   {}{}/: {}report.json\n",
+                             number(std::round(total.lap()) / 1000, 6), command.out.string(),
+                             command.both ? "/{o1,o2}" : "", listed(command.files));
   }
   const bool within = std::ranges::all_of(
       results, [](const Result& r) { return !r.outcome.tolerance || r.outcome.tolerance->within; });

@@ -84,6 +84,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
       ->type_name("D");
 
+  add_write_option(app, c.files);
   add_picture_options(app, c.picture, c.range);
   add_run_options(app, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
 }

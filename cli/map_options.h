@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "map_files.h"
+
 struct MapCommand {
   std::string o1, o2, transform_o1, transform_o2;
   std::filesystem::path out, atlas_cache;
@@ -18,6 +20,7 @@ struct MapCommand {
   sdm::EngineInfo engine = sdm::engines().front();
   sdm::GlOptions gl;
   sdm::PictureOptions picture;
+  MapFiles files;
   std::vector<double> range;
   std::optional<double> precision;
   unsigned threads = 0;

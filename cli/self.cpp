@@ -27,6 +27,7 @@ struct SelfCommand {
   sdm::AtlasOptions atlas;
   sdm::SelfProximityOptions self;
   sdm::PictureOptions picture;
+  MapFiles files;
   std::vector<double> range;
   unsigned threads = 0;
   bool json = false, quiet = false;
@@ -50,8 +51,9 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
 
   progress.step("export");
   sdm::DistanceStatistics distance;
-  sdm::run_concurrently({[&] { write_map_files(folder, surface, map, at_vertices, command.picture); },
-                         [&] { distance = sdm::statistics(surface, map); }});
+  sdm::run_concurrently(
+      {[&] { write_map_files(folder, command.files, surface, map, at_vertices, command.picture); },
+       [&] { distance = sdm::statistics(surface, map); }});
   const double export_ms = watch.lap();
 
   Json report;
@@ -96,7 +98,9 @@ std::string summary(const SelfCommand& command, const Json& report) {
 void run(SelfCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.out, {"report.json"});
+  std::vector<std::filesystem::path> earlier{"report.json"};
+  for (const std::string& file : names({})) earlier.emplace_back(file);
+  OutputFolder out(command.out, earlier);
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.self.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
@@ -113,10 +117,9 @@ void run(SelfCommand command) {
     std::cout << to_text(report);
   else if (!command.quiet)
     std::cout << summary(command, report)
-              << fmt::format(
-                     "  time        {} s\n  results     {}/: map.exr distance.png voronoi.png direction.png "
-                     "model.glb report.json\n",
-                     number(std::round(total.lap()) / 1000, 6), command.out.string());
+              << fmt::format("  time        {} s\n  results     {}/: {}report.json\n",
+                             number(std::round(total.lap()) / 1000, 6), command.out.string(),
+                             listed(command.files));
 }
 
 }  // namespace
@@ -151,6 +154,7 @@ void add_self_command(CLI::App& app) {
       ->type_name("D");
   add_resolution_option(*self, c.atlas);
   add_layout_options(*self, c.atlas, "the mesh");
+  add_write_option(*self, c.files);
   add_picture_options(*self, c.picture, c.range);
   add_run_options(*self, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   self->callback([command] {

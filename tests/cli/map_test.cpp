@@ -31,6 +31,25 @@ TEST_F(MapCommand, WritesAllResultsAndTellsWhere) {
   EXPECT_EQ(run.err, "") << "progress is for terminals";
 }
 
+// Files of an earlier run, which would belong to another map, disappear.
+TEST_F(MapCommand, WritesTheFilesAskedFor) {
+  ASSERT_EQ(run_sdm(map()).code, 0);
+  const std::string report = contents(out + "/report.json");
+  const Outcome some = run_sdm(map({"--write", "glb,exr"}));
+  EXPECT_EQ(some.code, 0) << some.err;
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"map.exr", "model.glb", "report.json"}));
+  EXPECT_THAT(some.out, HasSubstr(": map.exr model.glb report.json\n"));
+  // The list ends with its comma-separated words: what follows is another argument.
+  const Outcome none =
+      run_sdm({"map", "--write", "none", o1, o2, "-o", out, "--resolution", "128", "--json"});
+  EXPECT_EQ(none.code, 0) << none.err;
+  EXPECT_EQ(names_in(out), std::vector<std::string>{"report.json"});
+  EXPECT_EQ(Json::parse(none.out)["distance"], Json::parse(report)["distance"]);
+  const Outcome bad = run_sdm(map({"--write", "exr,jpg"}));
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("jpg is not one of exr, png, glb, none"));
+}
+
 TEST_F(MapCommand, ALaterRunTakesTheAtlasFromItsCache) {
   const std::string cache = folder / "first.atlas";
   ASSERT_EQ(run_sdm(map({"--atlas-cache", cache})).code, 0);
