@@ -18,37 +18,52 @@ namespace sdm {
 struct ExclusionRule {
   /// Exclude the face and this many rings of faces around it, connected by shared vertices; ≥ 1.
   std::uint32_t rings = 1;
-  /// If set, replaces `rings`: exclude faces closer than this along the surface at rest; > 0, in units of the
-  /// mesh.
+  /// If set, replaces `rings`: exclude everything closer than this along the surface at rest; > 0, in units
+  /// of the mesh.
   std::optional<double> geodesic{};
 };
 
 /// The faces that each face of a mesh excludes: itself and its neighbourhood. The relation is symmetric. It
-/// depends on the mesh at rest only, not on later deformation.
+/// depends on the mesh at rest only, not on later deformation. It is stored for patches: groups of faces that
+/// exclude the same faces.
 ///
-/// With a geodesic length L, faces f and g exclude each other if a chain of faces, consecutive ones sharing a
-/// vertex, leads from f to g such that every face of it is less than L from f in a straight line at rest, and
-/// likewise a chain from g to f. No point that is not excluded is therefore nearer than L along the surface
-/// at rest: the shortest path to it would run through such a chain. The rule is conservative: it excludes
-/// more where the surface at rest folds back within L.
+/// With rings, every face is a patch of its own. With a geodesic length L, faces around seeds about L/6 apart
+/// form patches, which are connected and hardly wider than L/3 or a single face; where faces are larger than
+/// that, each is a patch. Patches P and Q exclude each other if a chain of patches, consecutive ones sharing
+/// a vertex, leads from P to Q such that every patch of it is less than L from P in a straight line at rest,
+/// and likewise a chain from Q to P. Single faces are measured exactly, larger patches by the spheres around
+/// them. No point that is not excluded is therefore nearer than L along the surface at rest: the shortest
+/// path to it would run through such a chain. The rule is conservative: it excludes whole patches, and more
+/// where the surface at rest folds back within L.
 class SDM_API Exclusion {
  public:
   /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and if there is not
-  /// enough memory for all neighbourhoods; Cancelled. Cost: linear in the sum of their sizes (with L, as many
-  /// triangle–triangle distances), all cores.
+  /// enough memory; Cancelled. Memory: up to about 100 numbers per face of a smooth surface with a geodesic
+  /// length, whatever the length, and the sizes of all neighbourhoods with rings. Cost: linear in that, all
+  /// cores.
   explicit Exclusion(const Mesh& rest, const ExclusionRule& rule = {}, const Progress& progress = {});
 
-  [[nodiscard]] std::size_t faces() const { return offsets_.size() - 1; }
-  /// The faces that `face` excludes, in increasing order.
-  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t face) const {
-    return {excluded_.data() + offsets_[face], excluded_.data() + offsets_[face + 1]};
+  [[nodiscard]] std::size_t faces() const { return patch_of_.size(); }
+  [[nodiscard]] std::size_t patches() const { return face_offsets_.size() - 1; }
+  [[nodiscard]] std::uint32_t patch_of(std::uint32_t face) const { return patch_of_[face]; }
+  /// The faces of a patch, in increasing order.
+  [[nodiscard]] std::span<const std::uint32_t> faces_of(std::uint32_t patch) const {
+    return {patch_faces_.data() + face_offsets_[patch], patch_faces_.data() + face_offsets_[patch + 1]};
   }
+  /// The patches whose faces the faces of `patch` exclude, itself among them, in increasing order.
+  [[nodiscard]] std::span<const std::uint32_t> excluded_by(std::uint32_t patch) const {
+    return {excluded_.data() + offsets_[patch], excluded_.data() + offsets_[patch + 1]};
+  }
+  /// Whether two faces exclude each other. Cost: a binary search.
+  [[nodiscard]] bool excludes(std::uint32_t face1, std::uint32_t face2) const;
 
  private:
   void keep_mutual();
 
-  std::vector<std::size_t> offsets_;  ///< of each face in excluded_, and an end
-  std::vector<std::uint32_t> excluded_;
+  std::vector<std::uint32_t> patch_of_;                    ///< of each face
+  std::vector<std::uint32_t> patch_faces_, face_offsets_;  ///< the faces of each patch, and where they start
+  std::vector<std::uint32_t> excluded_;                    ///< patches, by the patch that excludes them
+  std::vector<std::size_t> offsets_;                       ///< of each patch in excluded_, and an end
 };
 
 struct SelfMapOptions {
@@ -65,7 +80,7 @@ struct SelfMapOptions {
 ///
 /// `surface` and `sites` must be built from the same mesh and positions, `exclusion` from the same mesh at
 /// rest. Throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, or if there
-/// is not enough memory; Cancelled. Cost: one search per texel that skips excluded faces; all cores.
+/// is not enough memory; Cancelled. Cost: one search per texel that skips what is excluded; all cores.
 [[nodiscard]] SDM_API DistanceMap compute_self_map(const Surface& surface, const Sites& sites,
                                                    const Exclusion& exclusion,
                                                    const SelfMapOptions& options = {});

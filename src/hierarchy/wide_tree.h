@@ -32,13 +32,13 @@ struct WideTree {
   static constexpr std::uint32_t kLeafBit = 0x80000000u;
 };
 
-/// Squared distances from a box to the boxes of a node's children.
-inline void squared_distances(const WideTree::Node& node, const Box& box,
-                              double (&squared)[WideTree::kWidth]) {
+/// Squared distances from a box to the boxes of a node's children, at most 1e-6 of themselves too large.
+inline void squared_distances(const WideTree::Node& node, const FloatBox& box,
+                              float (&squared)[WideTree::kWidth]) {
   for (int i = 0; i < WideTree::kWidth; ++i) squared[i] = 0;
   for (int k = 0; k < 3; ++k)
     for (int i = 0; i < WideTree::kWidth; ++i) {
-      const double gap = std::max({node.lo[k][i] - box.hi[k], box.lo[k] - node.hi[k][i], 0.0});
+      const float gap = std::max(std::max(node.lo[k][i] - box.hi[k], box.lo[k] - node.hi[k][i]), 0.0f);
       squared[i] += gap * gap;
     }
 }

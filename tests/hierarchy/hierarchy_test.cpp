@@ -229,7 +229,7 @@ TEST_P(Traversal, BestFirstVisitsByTheirDistance) {
 TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
   const hierarchy::WideTree wide = hierarchy::collapse(tree);
   const std::vector<std::uint32_t> leaves = leaf_nodes(tree);
-  std::vector<hierarchy::OpenChild<double>> stack;
+  std::vector<hierarchy::OpenChild<float>> stack;
   for (int i = 0; i < 50; ++i) {
     const Vec3 p = point();
     const auto bound = [&](const hierarchy::FloatBox& box) { return squared_distance(box, p); };
@@ -252,16 +252,17 @@ TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
     EXPECT_EQ(best_first, expected);
     EXPECT_EQ(visits, leaves.empty() ? 0 : 1);
     if (leaves.empty()) continue;
+    const auto within = [&](float squared) { return squared < (1 + 1e-6) * wide_first; };
     traverse_nearest_child_first(
         wide, stack,
-        [&](const hierarchy::WideTree::Node& node, double(&squared)[hierarchy::WideTree::kWidth]) {
-          squared_distances(node, {p, p}, squared);
+        [&](const hierarchy::WideTree::Node& node, float(&squared)[hierarchy::WideTree::kWidth]) {
+          squared_distances(node, hierarchy::FloatBox::around({p, p}), squared);
           std::uint32_t near = 0;
-          for (std::uint32_t c = 0; c < node.count; ++c) near |= (squared[c] < wide_first ? 1u : 0u) << c;
+          for (std::uint32_t c = 0; c < node.count; ++c) near |= (within(squared[c]) ? 1u : 0u) << c;
           return near;
         },
-        [&](double squared) { return squared < wide_first; },
-        [&](std::uint32_t leaf) { wide_first = bound(tree.box(leaves.at(leaf))); });
+        within,
+        [&](std::uint32_t leaf) { wide_first = std::min(wide_first, bound(tree.box(leaves.at(leaf)))); });
     EXPECT_EQ(wide_first, expected);
   }
 }

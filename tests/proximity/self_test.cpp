@@ -107,7 +107,11 @@ void expect_exclusion(const Exclusion& exclusion, const Relation& expected) {
     std::vector<std::uint32_t> row;
     for (std::uint32_t g = 0; g < expected.size(); ++g)
       if (expected[f][g]) row.push_back(g);
-    ASSERT_TRUE(std::ranges::equal(exclusion.of(f), row)) << "face " << f;
+    std::vector<std::uint32_t> found;
+    for (const std::uint32_t patch : exclusion.excluded_by(exclusion.patch_of(f)))
+      found.insert(found.end(), exclusion.faces_of(patch).begin(), exclusion.faces_of(patch).end());
+    std::ranges::sort(found);
+    ASSERT_EQ(found, row) << "face " << f;
   }
 }
 
@@ -162,6 +166,8 @@ std::vector<Case> cases() {
           {"octagonal", load("eight.off"), {.rings = 2}},
           {"soup", soup(60, random), {}},
           {"soup, geodesic", soup(60, random), {.geodesic = 0.3}},
+          {"finely folded, geodesic", folded(0.2, 80, 12), {.geodesic = 0.9}},
+          {"octagonal, geodesic", load("eight.off", "fit"), {.geodesic = 0.3}},
           {"two sheets", joined(flat(10, 3), placed(flat(10, 3), "translate:0:0:0.1")), {.geodesic = 0.7}}};
 }
 
@@ -173,10 +179,81 @@ TEST(Self, ExclusionMatchesItsDefinition) {
   }
 }
 
+// A bumpy sphere of 8 · 4^k faces, with a diameter of about 2.
+Mesh bumpy(int k) {
+  Mesh mesh = sphere(k);
+  for (Vec3& p : mesh.positions) p = (1 + 0.1 * std::sin(5 * p[0]) * std::sin(4 * p[1])) * p;
+  return mesh;
+}
+
+// The largest distance of two points of a patch.
+double width(const Mesh& mesh, const Exclusion& exclusion, std::uint32_t patch) {
+  double squared = 0;
+  for (const std::uint32_t f : exclusion.faces_of(patch))
+    for (const std::uint32_t g : exclusion.faces_of(patch))
+      for (const Vec3& p : corners(mesh, f))
+        for (const Vec3& q : corners(mesh, g)) squared = std::max(squared, squared_norm(q - p));
+  return std::sqrt(squared);
+}
+
+TEST(Self, PatchesAreSmallAndConnected) {
+  const Mesh mesh = bumpy(4);
+  const double length = 0.6;
+  const Exclusion exclusion(mesh, {.geodesic = length});
+  EXPECT_LT(exclusion.patches(), mesh.triangles.size() / 3);
+  double longest_edge = 0;
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
+    for (const Vec3& p : corners(mesh, f))
+      for (const Vec3& q : corners(mesh, f)) longest_edge = std::max(longest_edge, norm(q - p));
+  std::vector<std::uint32_t> times(mesh.triangles.size());
+  for (std::uint32_t patch = 0; patch < exclusion.patches(); ++patch) {
+    const auto faces = exclusion.faces_of(patch);
+    ASSERT_FALSE(faces.empty());
+    Mesh part;
+    part.positions = mesh.positions;
+    for (const std::uint32_t f : faces) {
+      ASSERT_EQ(exclusion.patch_of(f), patch);
+      ++times[f];
+      part.triangles.push_back(mesh.triangles[f]);
+    }
+    ASSERT_EQ(inspect(part).components, 1u);
+    ASSERT_LE(width(mesh, exclusion, patch), length / 3 + 2 * longest_edge);
+  }
+  for (const std::uint32_t n : times) ASSERT_EQ(n, 1u);
+}
+
+// A pair of patches is excluded only if both are within reach of each other, and symmetrically.
+TEST(Self, ExclusionOfPatchesReachesALittleFartherThanItsLength) {
+  const Mesh mesh = bumpy(3);
+  for (const double length : {0.2, 0.6, 1.0}) {
+    const Exclusion exclusion(mesh, {.geodesic = length});
+    for (std::uint32_t p = 0; p < exclusion.patches(); ++p)
+      for (const std::uint32_t q : exclusion.excluded_by(p)) {
+        ASSERT_TRUE(std::ranges::binary_search(exclusion.excluded_by(q), p));
+        double least = kInf;
+        for (const std::uint32_t f : exclusion.faces_of(p))
+          for (const std::uint32_t g : exclusion.faces_of(q))
+            for (const Vec3& a : corners(mesh, f))
+              for (const Vec3& b : corners(mesh, g)) least = std::min(least, norm(b - a));
+        ASSERT_LT(least, length + width(mesh, exclusion, p) + width(mesh, exclusion, q));
+      }
+  }
+}
+
+// Whatever the length: the number of pairs of patches per face stays below what one length needs.
+TEST(Self, ExclusionTakesMemoryInProportionToTheFaces) {
+  const Mesh mesh = bumpy(5);
+  for (const double length : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
+    const Exclusion exclusion(mesh, {.geodesic = length});
+    std::size_t entries = 0;
+    for (std::uint32_t p = 0; p < exclusion.patches(); ++p) entries += exclusion.excluded_by(p).size();
+    EXPECT_LT(entries, 150 * mesh.triangles.size()) << "length " << length;
+  }
+}
+
 // Paths along edges are paths along the surface.
-TEST(Self, ExcludesEverythingNearerAlongTheSurface) {
+void expect_everything_nearer_excluded(double length) {
   const Mesh mesh = load("eight.off", "fit");
-  const double length = 0.15;
   const Exclusion exclusion(mesh, {.geodesic = length});
   const std::size_t n = mesh.positions.size();
   const Sites sites(mesh);
@@ -200,12 +277,19 @@ TEST(Self, ExcludesEverythingNearerAlongTheSurface) {
       if (!(way[v] < length)) continue;
       for (const std::uint32_t f : faces[start])
         for (const std::uint32_t g : faces[v]) {
-          ASSERT_TRUE(std::ranges::binary_search(exclusion.of(f), g));
+          ASSERT_TRUE(exclusion.excludes(f, g));
           ++pairs;
         }
     }
   }
   EXPECT_GT(pairs, 1000u);
+}
+
+TEST(Self, ExcludesEverythingNearerAlongTheSurface) {
+  for (const double length : {0.15, 0.5}) {
+    SCOPED_TRACE(length);
+    expect_everything_nearer_excluded(length);
+  }
 }
 
 TEST(Self, MapAgreesWithBruteForceAtEveryTexel) {
@@ -216,7 +300,7 @@ TEST(Self, MapAgreesWithBruteForceAtEveryTexel) {
     const Exclusion exclusion(c.mesh, c.rule);
     Relation all(c.mesh.triangles.size(), std::vector<bool>(c.mesh.triangles.size()));
     for (std::uint32_t f = 0; f < all.size(); ++f)
-      for (const std::uint32_t g : exclusion.of(f)) all[f][g] = true;
+      for (std::uint32_t g = 0; g < all.size(); ++g) all[f][g] = exclusion.excludes(f, g);
     const DistanceMap map = compute_self_map(surface, sites, exclusion);
     expect_self_map(surface, sites, map, all);
     const double limit = statistics(surface, map).p50;

@@ -4,15 +4,22 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <string>
+#include <utility>
 
 #include "core/geometry/triangle_pair.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rows.h"
+#include "proximity/self/patches.h"
 
 namespace sdm {
 namespace {
+
+// Seeds of patches are this fraction of the geodesic length apart. The number of patches that one excludes is
+// proportional to the inverse square, what is excluded beyond the length proportional to the fraction.
+constexpr double kPatchRadius = 1.0 / 6;
 
 void check(const ExclusionRule& rule) {
   if (rule.rings == 0) throw Error("with 0 rings a face excludes only itself; use 1 or more");
@@ -21,57 +28,106 @@ void check(const ExclusionRule& rule) {
                 " is out of range; use a positive number");
 }
 
-// The faces reachable from each face through shared vertices.
+struct Sphere {
+  Vec3 centre;
+  double radius = 0;
+};
+
+// The patches reachable from each patch through shared vertices.
 class Neighbours {
  public:
-  Neighbours(const Mesh& mesh, const ExclusionRule& rule)
-      : mesh_(mesh),
-        rule_(rule),
-        around_(make_rows<std::uint32_t>(mesh.positions.size(), [&](const auto& put) {
-          for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
-            for (const std::uint32_t v : mesh.triangles[f]) put(v, f);
-        })) {}
+  Neighbours(const Mesh& mesh, const ExclusionRule& rule, const self::Patches& patches,
+             const CompressedRows<std::uint32_t>& faces_of_vertex)
+      : mesh_(mesh), rule_(rule), patches_(patches) {
+    join(faces_of_vertex);
+    if (rule.geodesic) enclose();
+  }
 
   // The marks of one thread; none is set between calls of `of`.
   struct Met {
-    std::vector<bool> vertices, faces;
+    std::vector<bool> joints, patches;
   };
   [[nodiscard]] Met none_met() const {
-    return {std::vector<bool>(mesh_.positions.size()), std::vector<bool>(mesh_.triangles.size())};
+    return {std::vector<bool>(patches_at_.size()), std::vector<bool>(patches_.count())};
   }
 
   // In increasing order.
-  [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t face, Met& met) const {
-    std::vector<std::uint32_t> reached{face}, rejected;
-    met.faces[face] = true;
+  [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t patch, Met& met) const {
+    std::vector<std::uint32_t> reached{patch}, rejected;
+    met.patches[patch] = true;
     std::size_t begin = 0;
     for (std::uint32_t ring = 1; begin < reached.size() && (rule_.geodesic || ring <= rule_.rings); ++ring)
       for (const std::size_t end = reached.size(); begin < end; ++begin)
-        for (const std::uint32_t v : mesh_.triangles[reached[begin]]) {
-          if (met.vertices[v]) continue;
-          met.vertices[v] = true;
-          for (const std::uint32_t other : around_.of(v)) {
-            if (met.faces[other]) continue;
-            met.faces[other] = true;
-            const bool admitted = ring == 1 || !rule_.geodesic || within(*rule_.geodesic, face, other);
+        for (const std::uint32_t joint : joints_of_.of(reached[begin])) {
+          if (met.joints[joint]) continue;
+          met.joints[joint] = true;
+          for (const std::uint32_t other : patches_at_.of(joint)) {
+            if (met.patches[other]) continue;
+            met.patches[other] = true;
+            const bool admitted = ring == 1 || !rule_.geodesic || within(*rule_.geodesic, patch, other);
             (admitted ? reached : rejected).push_back(other);
           }
         }
-    for (const std::uint32_t f : rejected) met.faces[f] = false;
-    for (const std::uint32_t f : reached) {
-      met.faces[f] = false;
-      for (const std::uint32_t v : mesh_.triangles[f]) met.vertices[v] = false;
+    for (const std::uint32_t p : rejected) met.patches[p] = false;
+    for (const std::uint32_t p : reached) {
+      met.patches[p] = false;
+      for (const std::uint32_t joint : joints_of_.of(p)) met.joints[joint] = false;
     }
     std::ranges::sort(reached);
     return reached;
   }
 
  private:
+  // Finds the joints: vertices at which patches meet, with these patches.
+  void join(const CompressedRows<std::uint32_t>& faces_of_vertex) {
+    std::vector<std::uint32_t> around;
+    patches_at_.offsets.assign(1, 0);
+    for (std::size_t v = 0; v < faces_of_vertex.size(); ++v) {
+      around.clear();
+      for (const std::uint32_t f : faces_of_vertex.of(v)) around.push_back(patches_.of[f]);
+      std::ranges::sort(around);
+      around.erase(std::unique(around.begin(), around.end()), around.end());
+      if (around.size() < 2) continue;
+      patches_at_.items.insert(patches_at_.items.end(), around.begin(), around.end());
+      patches_at_.offsets.push_back(static_cast<std::uint32_t>(patches_at_.items.size()));
+    }
+    joints_of_ = make_rows<std::uint32_t>(patches_.count(), [&](const auto& put) {
+      for (std::uint32_t joint = 0; joint < patches_at_.size(); ++joint)
+        for (const std::uint32_t p : patches_at_.of(joint)) put(p, joint);
+    });
+  }
+
+  void enclose() {
+    spheres_.resize(patches_.count());
+    parallel_for(spheres_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        Box box;
+        const auto for_each_corner = [&](const auto& visit) {
+          for (const std::uint32_t f : patches_.faces.of(p))
+            for (const std::uint32_t v : mesh_.triangles[f]) visit(mesh_.positions[v]);
+        };
+        for_each_corner([&](const Vec3& corner) { extend(box, corner); });
+        double squared = 0;
+        for_each_corner(
+            [&](const Vec3& corner) { squared = std::max(squared, squared_norm(corner - centre(box))); });
+        spheres_[p] = {centre(box), std::sqrt(squared)};
+      }
+    });
+  }
+
   [[nodiscard]] Corners corners(std::uint32_t face) const {
     const Triangle& t = mesh_.triangles[face];
     return {mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]};
   }
-  [[nodiscard]] bool within(double length, std::uint32_t f, std::uint32_t g) const {
+  [[nodiscard]] bool within(double length, std::uint32_t p, std::uint32_t q) const {
+    const Sphere &a = spheres_[p], &b = spheres_[q];
+    const double reach = length + a.radius + b.radius;
+    // Rounding must not exclude less.
+    if (squared_norm(b.centre - a.centre) > (1 + 1e-12) * reach * reach) return false;
+    const auto faces_p = patches_.faces.of(p), faces_q = patches_.faces.of(q);
+    return faces_p.size() > 1 || faces_q.size() > 1 || faces_within(length, faces_p[0], faces_q[0]);
+  }
+  [[nodiscard]] bool faces_within(double length, std::uint32_t f, std::uint32_t g) const {
     const Corners a = corners(f), b = corners(g);
     const double most = length * length;
     // Corners or boxes decide in nearly all cases.
@@ -83,7 +139,9 @@ class Neighbours {
 
   const Mesh& mesh_;
   const ExclusionRule& rule_;
-  CompressedRows<std::uint32_t> around_;  // faces of each vertex
+  const self::Patches& patches_;
+  CompressedRows<std::uint32_t> patches_at_, joints_of_;
+  std::vector<Sphere> spheres_;  // around patches
 };
 
 }  // namespace
@@ -91,12 +149,16 @@ class Neighbours {
 Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress& progress) try {
   validate(rest);
   check(rule);
-  const std::size_t count = rest.triangles.size();
-  const Neighbours neighbours(rest, rule);
+  const CompressedRows<std::uint32_t> faces_of_vertex = self::faces_of_vertices(rest);
+  self::Patches grouped = rule.geodesic
+                              ? self::group_faces(rest, faces_of_vertex, kPatchRadius * *rule.geodesic)
+                              : self::single_faces(rest.triangles.size());
+  const Neighbours neighbours(rest, rule, grouped, faces_of_vertex);
+  const std::size_t count = grouped.count();
   offsets_.assign(1, 0);
 
-  // Faces are processed in portions whose neighbourhoods, however large, take a bounded amount of memory: the
-  // total is checked before it is stored.
+  // Patches are processed in portions whose neighbourhoods, however large, take a bounded amount of memory:
+  // the total is checked before it is stored.
   constexpr std::size_t kEntries = std::size_t{1} << 26, kGrain = 256;
   const std::size_t block = std::clamp<std::size_t>(kEntries / count, 1, std::size_t{1} << 16);
   std::vector<std::vector<std::uint32_t>> rows(std::min(block, count));
@@ -110,7 +172,7 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress
     for (std::size_t i = 0; i < end - first; ++i) offsets_.push_back(offsets_.back() + rows[i].size());
     if (offsets_.back() > excluded_.capacity()) {
       const std::size_t room = std::max(offsets_.back(), 2 * excluded_.capacity());
-      require_memory(room * sizeof(std::uint32_t), "the excluded neighbourhoods of all faces");
+      require_memory(room * sizeof(std::uint32_t), "the excluded neighbourhoods");
       excluded_.reserve(room);
     }
     for (std::size_t i = 0; i < end - first; ++i)
@@ -119,24 +181,32 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress
       throw Cancelled();
   }
   if (rule.geodesic) keep_mutual();
+  patch_of_ = std::move(grouped.of);
+  patch_faces_ = std::move(grouped.faces.items);
+  face_offsets_ = std::move(grouped.faces.offsets);
 } catch (const std::bad_alloc&) {
-  throw out_of_memory("the excluded neighbourhoods of all faces");
+  throw out_of_memory("the excluded neighbourhoods");
 }
 
-// Keeps only mutual exclusions: the search from g may miss f although the search from f finds g.
+bool Exclusion::excludes(std::uint32_t face1, std::uint32_t face2) const {
+  return std::ranges::binary_search(excluded_by(patch_of(face1)), patch_of(face2));
+}
+
+// Keeps only mutual exclusions: the search from one patch may miss another whose search finds it.
 void Exclusion::keep_mutual() {
   std::vector<std::uint8_t> mutual(excluded_.size());
+  const std::size_t count = offsets_.size() - 1;
   constexpr std::size_t kGrain = 1024;
-  parallel_for(faces(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f)
-      for (std::size_t i = offsets_[f]; i < offsets_[f + 1]; ++i)
-        mutual[i] = std::ranges::binary_search(of(excluded_[i]), static_cast<std::uint32_t>(f));
+  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      for (std::size_t i = offsets_[p]; i < offsets_[p + 1]; ++i)
+        mutual[i] = std::ranges::binary_search(excluded_by(excluded_[i]), static_cast<std::uint32_t>(p));
   });
   std::size_t kept = 0;
-  for (std::size_t f = 0, i = 0; f < faces(); ++f) {
-    for (; i < offsets_[f + 1]; ++i)
+  for (std::size_t p = 0, i = 0; p < count; ++p) {
+    for (; i < offsets_[p + 1]; ++i)
       if (mutual[i]) excluded_[kept++] = excluded_[i];
-    offsets_[f + 1] = kept;
+    offsets_[p + 1] = kept;
   }
   excluded_.resize(kept);
 }

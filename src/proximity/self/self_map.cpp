@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <new>
 
+#include "core/atomic_extremes.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/rows.h"
 #include "map/map_writer.h"
 #include "proximity/self/self_search.h"
 #include "surface/tiles.h"
@@ -30,6 +33,19 @@ void gather_around(std::span<const Vec3> points, double max_distance, self::Self
   double squared = 0;
   for (const Vec3& p : points) squared = std::max(squared, squared_norm(p - centre(box)));
   search.gather(centre(box), std::sqrt(squared), max_distance);
+}
+
+// The tiles of each patch one after another.
+std::vector<std::uint32_t> by_patch(const surface::Tiles& tiles, const self::PatchTree& patches,
+                                    const Exclusion& exclusion) {
+  std::vector<std::uint32_t> place(exclusion.patches());
+  for (std::uint32_t i = 0; i < place.size(); ++i) place[patches.order[i]] = i;
+  return make_rows<std::uint32_t>(place.size(),
+                                  [&](const auto& put) {
+                                    for (std::uint32_t tile = 0; tile < tiles.count(); ++tile)
+                                      put(place[exclusion.patch_of(tiles.faces[tile])], tile);
+                                  })
+      .items;
 }
 
 // Returns whether there is a closest point.
@@ -54,12 +70,15 @@ DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const E
   map::clear(map, surface);
   map.sign.reason = "the distance of a surface to itself has no sign";
   const surface::Tiles tiles(surface);
+  const self::PatchTree patches(internals(sites), exclusion);
+  const std::vector<std::uint32_t> order = by_patch(tiles, patches, exclusion);
   std::atomic<std::size_t> none{0};
-  parallel_for(tiles.count(), kGrain, options.progress, "map", [&](std::size_t begin, std::size_t end) {
-    self::SelfSearch search(internals(sites), exclusion);
+  parallel_for(order.size(), kGrain, options.progress, "map", [&](std::size_t begin, std::size_t end) {
+    self::SelfSearch search(internals(sites), exclusion, patches);
     std::vector<Vec3> points;
     std::size_t none_here = 0;
-    for (auto tile = static_cast<std::uint32_t>(begin); tile < end; ++tile) {
+    for (std::size_t place = begin; place < end; ++place) {
+      const std::uint32_t tile = order[place];
       const std::span<const std::uint32_t> texels = tiles.of(tile);
       points.clear();
       for (const std::uint32_t texel : texels) points.push_back(surface.texel_point(texel));
@@ -80,27 +99,32 @@ std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusio
                                               const SelfMapOptions& options) try {
   check(sites, exclusion, options);
   const Mesh& mesh = sites.mesh();
-  const mesh::Topology& topology = internals(sites).topology;
-  std::vector<std::array<float, 3>> at_corners(mesh.triangles.size());
-  parallel_for(mesh.triangles.size(), kGrain, options.progress, "vertices",
+  const self::PatchTree patches(internals(sites), exclusion);
+  // Faces that Sites ignores are skipped; +∞ for vertices of others.
+  std::vector<float> least(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  const std::vector<std::uint32_t>& faces = internals(sites).tree.items;
+  for (const std::uint32_t f : faces)
+    for (const std::uint32_t v : mesh.triangles[f]) least[v] = std::numeric_limits<float>::infinity();
+  // The faces of a patch exclude the same: one search from each vertex for all of them.
+  parallel_for(patches.order.size(), kGrain, options.progress, "vertices",
                [&](std::size_t begin, std::size_t end) {
-                 self::SelfSearch search(internals(sites), exclusion);
-                 for (std::size_t f = begin; f < end; ++f) {
-                   if (topology.ignored(f)) continue;
-                   search.start_from(static_cast<std::uint32_t>(f));
-                   for (int k = 0; k < 3; ++k) {
-                     const Vec3& p = mesh.positions[mesh.triangles[f][k]];
-                     search.gather(p, 0, options.max_distance);
-                     at_corners[f][k] = static_cast<float>(search.closest_to(p).distance);
+                 self::SelfSearch search(internals(sites), exclusion, patches);
+                 std::vector<std::uint32_t> vertices;
+                 for (std::size_t i = begin; i < end; ++i) {
+                   vertices.clear();
+                   for (const std::uint32_t f : exclusion.faces_of(patches.order[i])) {
+                     if (internals(sites).topology.ignored(f)) continue;
+                     search.start_from(f);
+                     vertices.insert(vertices.end(), mesh.triangles[f].begin(), mesh.triangles[f].end());
+                   }
+                   std::ranges::sort(vertices);
+                   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+                   for (const std::uint32_t v : vertices) {
+                     search.gather(mesh.positions[v], 0, options.max_distance);
+                     atomic_min(least[v], static_cast<float>(search.closest_to(mesh.positions[v]).distance));
                    }
                  }
                });
-  std::vector<float> least(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
-    for (int k = 0; k < 3 && !topology.ignored(f); ++k) {
-      float& at_vertex = least[mesh.triangles[f][k]];
-      at_vertex = std::fmin(at_vertex, at_corners[f][k]);  // ignores NaN
-    }
   return least;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("self-distances at vertices");

@@ -17,7 +17,7 @@
 namespace sdm {
 namespace {
 
-constexpr std::size_t kGrain = 128;  // faces
+constexpr std::size_t kGrain = 64;  // patches
 
 void check_max_distance(double max_distance) {
   if (!(max_distance > 0)) throw Error("the maximum distance must be greater than 0");
@@ -28,12 +28,13 @@ void check_max_distance(double max_distance) {
 struct SelfProximityQuery::Impl {
   Sites sites;
   Exclusion exclusion;
+  self::PatchTree patch_tree;
   double max_distance;
 
   // Results since the last refit.
   std::optional<self::FacePair> closest;
 
-  std::vector<self::FacePair> nearest{};  // of each face in the tree, in its order
+  std::vector<self::FacePair> nearest{};  // of each face
   std::vector<Contact> contacts{};
   std::vector<Box> boxes{};
   sampled::ContactPatches patches{};
@@ -41,18 +42,20 @@ struct SelfProximityQuery::Impl {
   Impl(Mesh rest, const SelfProximityOptions& options)
       : sites(std::move(rest)),
         exclusion(sites.mesh(), options.exclusion, options.progress),
+        patch_tree(internals(sites), exclusion),
         max_distance(options.max_distance) {}
 
-  // Calls body(search, place) for the place of each face in the tree, neighbours one after another.
+  // Calls body(search, face) for each face in the tree, those of a patch one after another.
   template <class Body>
   void for_each_face(const Body& body) const {
-    const std::vector<std::uint32_t>& faces = internals(sites).tree.items;
-    parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      self::SelfSearch search(internals(sites), exclusion);
-      for (std::size_t place = begin; place < end; ++place) {
-        search.start_from(faces[place]);
-        body(search, place);
-      }
+    parallel_for(patch_tree.order.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      self::SelfSearch search(internals(sites), exclusion, patch_tree);
+      for (std::size_t i = begin; i < end; ++i)
+        for (const std::uint32_t face : exclusion.faces_of(patch_tree.order[i])) {
+          if (internals(sites).topology.ignored(face)) continue;
+          search.start_from(face);
+          body(search, face);
+        }
     });
   }
 
@@ -62,7 +65,7 @@ struct SelfProximityQuery::Impl {
     std::atomic<double> bound{max_distance};
     std::mutex mutex;
     self::FacePair best;
-    for_each_face([&](const self::SelfSearch& search, std::size_t) {
+    for_each_face([&](const self::SelfSearch& search, std::uint32_t) {
       const self::FacePair pair = search.nearest(bound.load(std::memory_order_relaxed));
       if (pair.face1 == kNone) return;
       const std::scoped_lock lock(mutex);
@@ -73,9 +76,9 @@ struct SelfProximityQuery::Impl {
   }
 
   void find_contacts(double margin) {
-    nearest.resize(internals(sites).tree.items.size());
+    nearest.assign(exclusion.faces(), {});
     for_each_face(
-        [&](const self::SelfSearch& search, std::size_t place) { nearest[place] = search.nearest(margin); });
+        [&](const self::SelfSearch& search, std::uint32_t face) { nearest[face] = search.nearest(margin); });
     // Two faces that are each other's nearest are found twice.
     std::erase_if(nearest, [](const self::FacePair& pair) { return pair.face1 == kNone; });
     std::ranges::sort(nearest, [](const self::FacePair& a, const self::FacePair& b) { return a.before(b); });

@@ -12,10 +12,15 @@
 
 namespace sdm::self {
 
+using hierarchy::WideTree;
+
 struct SelfSearch::Scratch {
-  std::vector<hierarchy::OpenChild<double>> stack;
+  std::vector<hierarchy::OpenChild<float>> stack;
   std::vector<std::pair<double, std::uint32_t>> candidates;  ///< with their distance from the ball's centre
-  std::vector<std::uint8_t> excluded;                        ///< for each face; all 0 between searches
+  // All 0 between searches.
+  std::vector<std::uint8_t> excluded;  ///< for each patch
+  std::vector<std::uint8_t> taken;     ///< of each leaf: the number of its faces that are excluded
+  std::vector<std::uint8_t> closed;  ///< of each wide node: a bit for each child with nothing but such faces
 
   static Scratch& of_this_thread() {
     thread_local Scratch scratch;
@@ -38,9 +43,43 @@ bool FacePair::before(const FacePair& other) const {
   return std::tie(distance, face1, face2) < std::tie(other.distance, other.face1, other.face2);
 }
 
-SelfSearch::SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion)
-    : sites_(sites), exclusion_(exclusion), scratch_(Scratch::of_this_thread()) {
-  if (scratch_.excluded.size() < exclusion.faces()) scratch_.excluded.resize(exclusion.faces());
+PatchTree::PatchTree(const sites::SitesData& sites, const Exclusion& exclusion) {
+  const std::vector<std::uint32_t>& leaf_begin = sites.regions.leaves;
+  const std::size_t leaf_count = leaf_begin.size() - 1;
+  leaves = make_rows<std::uint32_t>(exclusion.patches(), [&](const auto& put) {
+    for (std::uint32_t leaf = 0; leaf < leaf_count; ++leaf)
+      for (std::uint32_t i = leaf_begin[leaf]; i < leaf_begin[leaf + 1]; ++i)
+        put(exclusion.patch_of(sites.tree.items[i]), leaf);
+  });
+  above_leaf.assign(leaf_count, kNone);
+  above_node.assign(sites.wide.nodes.size(), kNone);
+  for (std::uint32_t n = 0; n < sites.wide.nodes.size(); ++n) {
+    const WideTree::Node& node = sites.wide.nodes[n];
+    for (std::uint32_t slot = 0; slot < node.count; ++slot) {
+      const std::uint32_t child = node.child[slot], place = WideTree::kWidth * n + slot;
+      if (WideTree::is_leaf(child))
+        above_leaf[WideTree::leaf_number(child)] = place;
+      else
+        above_node[child] = place;
+    }
+  }
+  std::vector<std::uint8_t> listed(exclusion.patches());
+  order.reserve(exclusion.patches());
+  const auto list = [&](std::uint32_t patch) {
+    if (std::exchange(listed[patch], 1) == 0) order.push_back(patch);
+  };
+  for (const std::uint32_t face : sites.tree.items) list(exclusion.patch_of(face));
+  for (std::uint32_t patch = 0; patch < exclusion.patches(); ++patch) list(patch);  // of ignored faces only
+}
+
+SelfSearch::SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion, const PatchTree& patches)
+    : sites_(sites), exclusion_(exclusion), patches_(patches), scratch_(Scratch::of_this_thread()) {
+  const auto at_least = [](std::vector<std::uint8_t>& marks, std::size_t size) {
+    if (marks.size() < size) marks.resize(size);
+  };
+  at_least(scratch_.excluded, exclusion.patches());
+  at_least(scratch_.taken, patches.above_leaf.size());
+  at_least(scratch_.closed, patches.above_node.size());
 }
 
 SelfSearch::~SelfSearch() {
@@ -48,39 +87,76 @@ SelfSearch::~SelfSearch() {
 }
 
 void SelfSearch::start_from(std::uint32_t face) {
-  const auto mark = [&](std::uint8_t value) {
-    if (face_ == kNone) return;
-    for (const std::uint32_t f : exclusion_.of(face_)) scratch_.excluded[f] = value;
-  };
-  mark(0);
   face_ = face;
-  mark(1);
+  const std::uint32_t patch = face == kNone ? kNone : exclusion_.patch_of(face);
+  if (patch == patch_) return;
+  if (patch_ != kNone) admit_patches();
+  patch_ = patch;
+  if (patch_ != kNone) exclude_patches();
+}
+
+void SelfSearch::exclude_patches() {
+  for (const std::uint32_t patch : exclusion_.excluded_by(patch_)) {
+    scratch_.excluded[patch] = 1;
+    for (const std::uint32_t leaf : patches_.leaves.of(patch)) {
+      if (++scratch_.taken[leaf] < sites_.regions.leaves[leaf + 1] - sites_.regions.leaves[leaf]) continue;
+      for (std::uint32_t place = patches_.above_leaf[leaf]; place != kNone;) {
+        const std::uint32_t node = place / WideTree::kWidth;
+        scratch_.closed[node] |= static_cast<std::uint8_t>(1u << place % WideTree::kWidth);
+        if (scratch_.closed[node] != (1u << sites_.wide.nodes[node].count) - 1) break;
+        place = patches_.above_node[node];
+      }
+    }
+  }
+}
+
+// A node without a closed child has none above it on its account.
+void SelfSearch::admit_patches() {
+  for (const std::uint32_t patch : exclusion_.excluded_by(patch_)) {
+    scratch_.excluded[patch] = 0;
+    for (const std::uint32_t leaf : patches_.leaves.of(patch)) {
+      scratch_.taken[leaf] = 0;
+      for (std::uint32_t place = patches_.above_leaf[leaf]; place != kNone;) {
+        const std::uint32_t node = place / WideTree::kWidth;
+        if (std::exchange(scratch_.closed[node], 0) == 0) break;
+        place = patches_.above_node[node];
+      }
+    }
+  }
 }
 
 // Calls visit(face) for the faces in leaves whose boxes are within `limit` of `box`; `limit` may shrink
-// meanwhile. Depth first, the nearest child first. Skips excluded faces.
+// meanwhile. Depth first, the nearest child first. Skips excluded faces, and nodes with no others.
 template <class Visit>
 void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) const {
   const UnitFrame& frame = sites_.frame;
-  const Box unit{frame.to_unit(box.lo), frame.to_unit(box.hi)};
-  const auto within = [&](double squared) {
-    // Coordinates in the unit frame have a rounding error of 1e-16.
-    const double most = (1 + 1e-9) * frame.scale * limit + 1e-15;
+  const hierarchy::FloatBox unit =
+      hierarchy::FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
+  const auto within = [&](float squared) {
+    // Distances are too large by 1e-6 of themselves at most, coordinates in the unit frame by 1e-16.
+    const double most = (1 + 1e-6) * frame.scale * limit + 1e-15;
     return !(squared > most * most);
   };
   hierarchy::traverse_nearest_child_first(
       sites_.wide, scratch_.stack,
-      [&](const hierarchy::WideTree::Node& node, double(&squared)[hierarchy::WideTree::kWidth]) {
+      [&](const WideTree::Node& node, float(&squared)[WideTree::kWidth]) {
         squared_distances(node, unit, squared);
         std::uint32_t near = 0;
         for (std::uint32_t i = 0; i < node.count; ++i) near |= (within(squared[i]) ? 1u : 0u) << i;
-        return near;
+        return near &
+               ~std::uint32_t{scratch_.closed[static_cast<std::size_t>(&node - sites_.wide.nodes.data())]};
       },
       within,
       [&](std::uint32_t leaf) {
         for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
-          if (const std::uint32_t face = sites_.tree.items[i]; scratch_.excluded[face] == 0) visit(face);
+          if (const std::uint32_t face = sites_.tree.items[i];
+              scratch_.excluded[exclusion_.patch_of(face)] == 0)
+            visit(face);
       });
+}
+
+bool SelfSearch::beyond(std::uint32_t face, const Vec3& q, double limit) const {
+  return squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit;
 }
 
 // A bound on the distance from the centre c to a face g that is closest to a point q of the ball: with d_c =
@@ -90,13 +166,18 @@ void SelfSearch::gather(const Vec3& centre, double radius, double max_distance) 
   auto& candidates = scratch_.candidates;
   candidates.clear();
   double limit = max_distance + radius;
+  // The closest face of the search before is a good first bound: searches near each other follow each other.
+  if (before_ != kNone && scratch_.excluded[exclusion_.patch_of(before_)] == 0)
+    limit = std::min(limit, sites::closest_on_face(sites_, before_, centre).distance + 2 * radius);
   visit_near({centre, centre}, limit, [&](std::uint32_t face) {
+    if (beyond(face, centre, limit)) return;
     const double distance = sites::closest_on_face(sites_, face, centre).distance;
     if (distance > limit) return;
     candidates.push_back({distance, face});
     limit = std::min(limit, distance + 2 * radius);
   });
   std::ranges::sort(candidates);
+  if (!candidates.empty()) before_ = candidates[0].second;
 }
 
 ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
@@ -105,7 +186,7 @@ ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
   const double from_centre = norm(q - centre_);
   for (const auto& [at_centre, face] : scratch_.candidates) {
     if (at_centre - from_centre > limit) break;  // d(q, g) ≥ d(c, g) − |q − c|
-    if (squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit) continue;
+    if (beyond(face, q, limit)) continue;
     const ClosestPoint c = sites::closest_on_face(sites_, face, q);
     if (c.distance < best.distance && c.distance <= limit) best = c, limit = c.distance;
   }

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "core/rows.h"
 #include "sites/sites_data.h"
 
 namespace sdm::self {
@@ -19,16 +20,28 @@ struct FacePair {
   [[nodiscard]] bool before(const FacePair& other) const;
 };
 
+/// How the patches of an exclusion lie in the tree of faces. Refits do not change it.
+struct PatchTree {
+  /// Cost: linear, all cores.
+  PatchTree(const sites::SitesData& sites, const Exclusion& exclusion);
+
+  CompressedRows<std::uint32_t> leaves;  ///< of each patch, for each of its faces in the tree
+  /// Of each leaf and each wide node, where it hangs: 8 · node + slot; kNone for the root.
+  std::vector<std::uint32_t> above_leaf, above_node;
+  std::vector<std::uint32_t> order;  ///< patches, in the order in which the tree has their first faces
+};
+
 /// Per-thread searches, each starting from a face. The memory is kept between searches and between objects.
 class SelfSearch {
  public:
   /// The arguments must outlive it. At most one per thread at a time.
-  SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion);
+  SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion, const PatchTree& patches);
   ~SelfSearch();
   SelfSearch(const SelfSearch&) = delete;
   SelfSearch& operator=(const SelfSearch&) = delete;
 
-  /// Sets the face whose neighbourhood is excluded.
+  /// Sets the face whose neighbourhood is excluded. Cost: that of the tree above this neighbourhood, or
+  /// nothing if the face before was of the same patch.
   void start_from(std::uint32_t face);
 
   /// Collects the faces that can be closest to any point of a ball.
@@ -41,15 +54,21 @@ class SelfSearch {
 
  private:
   struct Scratch;
+  void exclude_patches();
+  void admit_patches();
+  /// Whether the box of a face shows that it is farther than this.
+  [[nodiscard]] bool beyond(std::uint32_t face, const Vec3& q, double limit) const;
   template <class Visit>
   void visit_near(const Box& box, double& limit, const Visit& visit) const;
 
   const sites::SitesData& sites_;
   const Exclusion& exclusion_;
+  const PatchTree& patches_;
   Scratch& scratch_;
-  std::uint32_t face_ = kNone;
+  std::uint32_t face_ = kNone, patch_ = kNone;
   Vec3 centre_{};
   double max_distance_ = 0;
+  std::uint32_t before_ = kNone;  ///< the closest face that gather() last found
 };
 
 }  // namespace sdm::self

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <new>
 
-#include "core/atomic_max.h"
+#include "core/atomic_extremes.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"

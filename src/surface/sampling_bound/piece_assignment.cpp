@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/atomic_max.h"
+#include "core/atomic_extremes.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "surface/sample_blocks.h"

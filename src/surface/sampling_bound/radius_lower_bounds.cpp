@@ -1,5 +1,5 @@
 // Lower bounds on the radii, from the true distances of points of the surface to the nearest sample.
-#include "core/atomic_max.h"
+#include "core/atomic_extremes.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "surface/sample_blocks.h"
