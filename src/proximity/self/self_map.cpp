@@ -73,7 +73,9 @@ DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const E
   const self::PatchTree patches(internals(sites), exclusion);
   const std::vector<std::uint32_t> order = by_patch(tiles, patches, exclusion);
   std::atomic<std::size_t> none{0};
-  parallel_for(order.size(), kGrain, options.progress, "map", [&](std::size_t begin, std::size_t end) {
+  // Large enough that few patches are divided: each division excludes them again.
+  const std::size_t grain = std::clamp<std::size_t>(order.size() / 256, kGrain, 16384);
+  parallel_for(order.size(), grain, options.progress, "map", [&](std::size_t begin, std::size_t end) {
     self::SelfSearch search(internals(sites), exclusion, patches);
     std::vector<Vec3> points;
     std::size_t none_here = 0;

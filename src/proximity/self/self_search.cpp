@@ -45,24 +45,44 @@ bool FacePair::before(const FacePair& other) const {
 
 PatchTree::PatchTree(const sites::SitesData& sites, const Exclusion& exclusion) {
   const std::vector<std::uint32_t>& leaf_begin = sites.regions.leaves;
-  const std::size_t leaf_count = leaf_begin.size() - 1;
-  leaves = make_rows<std::uint32_t>(exclusion.patches(), [&](const auto& put) {
-    for (std::uint32_t leaf = 0; leaf < leaf_count; ++leaf)
-      for (std::uint32_t i = leaf_begin[leaf]; i < leaf_begin[leaf + 1]; ++i)
-        put(exclusion.patch_of(sites.tree.items[i]), leaf);
-  });
-  above_leaf.assign(leaf_count, kNone);
-  above_node.assign(sites.wide.nodes.size(), kNone);
-  for (std::uint32_t n = 0; n < sites.wide.nodes.size(); ++n) {
-    const WideTree::Node& node = sites.wide.nodes[n];
-    for (std::uint32_t slot = 0; slot < node.count; ++slot) {
-      const std::uint32_t child = node.child[slot], place = WideTree::kWidth * n + slot;
-      if (WideTree::is_leaf(child))
-        above_leaf[WideTree::leaf_number(child)] = place;
-      else
-        above_node[child] = place;
+  const std::vector<WideTree::Node>& nodes = sites.wide.nodes;
+  const auto leaf_count = static_cast<std::uint32_t>(leaf_begin.size() - 1);
+  const auto patch_at = [&](std::uint32_t i) { return exclusion.patch_of(sites.tree.items[i]); };
+  place_of_leaf.assign(leaf_count, kNone);
+  place_of_node.assign(nodes.size(), kNone);
+
+  // The patch that all faces below belong to, or kNone. The children of a node come after it.
+  std::vector<std::uint32_t> of_leaf(leaf_count), of_node(nodes.size());
+  for (std::uint32_t leaf = 0; leaf < leaf_count; ++leaf) {
+    of_leaf[leaf] = patch_at(leaf_begin[leaf]);
+    for (std::uint32_t i = leaf_begin[leaf]; i < leaf_begin[leaf + 1]; ++i)
+      if (patch_at(i) != of_leaf[leaf]) of_leaf[leaf] = kNone;
+  }
+  const auto below = [&](std::uint32_t child) {
+    return WideTree::is_leaf(child) ? of_leaf[WideTree::leaf_number(child)] : of_node[child];
+  };
+  for (auto n = static_cast<std::uint32_t>(nodes.size()); n-- > 0;) {
+    of_node[n] = below(nodes[n].child[0]);
+    for (std::uint32_t slot = 0; slot < nodes[n].count; ++slot) {
+      const std::uint32_t child = nodes[n].child[slot], place = WideTree::kWidth * n + slot;
+      (WideTree::is_leaf(child) ? place_of_leaf[WideTree::leaf_number(child)] : place_of_node[child]) = place;
+      if (below(child) != of_node[n]) of_node[n] = kNone;
     }
   }
+  whole = make_rows<std::uint32_t>(exclusion.patches(), [&](const auto& put) {
+    for (std::uint32_t n = 0; n < nodes.size(); ++n)
+      for (std::uint32_t slot = 0; slot < nodes[n].count; ++slot)
+        if (const std::uint32_t patch = below(nodes[n].child[slot]); patch != kNone && of_node[n] == kNone)
+          put(patch, WideTree::kWidth * n + slot);
+    // With nothing but faces of one patch in the tree, the children of the root stand for it.
+    for (std::uint32_t slot = 0; !nodes.empty() && of_node[0] != kNone && slot < nodes[0].count; ++slot)
+      put(of_node[0], slot);
+  });
+  part = make_rows<std::uint32_t>(exclusion.patches(), [&](const auto& put) {
+    for (std::uint32_t leaf = 0; leaf < leaf_count; ++leaf)
+      for (std::uint32_t i = leaf_begin[leaf]; of_leaf[leaf] == kNone && i < leaf_begin[leaf + 1]; ++i)
+        put(patch_at(i), leaf);
+  });
   std::vector<std::uint8_t> listed(exclusion.patches());
   order.reserve(exclusion.patches());
   const auto list = [&](std::uint32_t patch) {
@@ -78,8 +98,8 @@ SelfSearch::SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion
     if (marks.size() < size) marks.resize(size);
   };
   at_least(scratch_.excluded, exclusion.patches());
-  at_least(scratch_.taken, patches.above_leaf.size());
-  at_least(scratch_.closed, patches.above_node.size());
+  at_least(scratch_.taken, patches.place_of_leaf.size());
+  at_least(scratch_.closed, patches.place_of_node.size());
 }
 
 SelfSearch::~SelfSearch() {
@@ -98,30 +118,41 @@ void SelfSearch::start_from(std::uint32_t face) {
 void SelfSearch::exclude_patches() {
   for (const std::uint32_t patch : exclusion_.excluded_by(patch_)) {
     scratch_.excluded[patch] = 1;
-    for (const std::uint32_t leaf : patches_.leaves.of(patch)) {
-      if (++scratch_.taken[leaf] < sites_.regions.leaves[leaf + 1] - sites_.regions.leaves[leaf]) continue;
-      for (std::uint32_t place = patches_.above_leaf[leaf]; place != kNone;) {
-        const std::uint32_t node = place / WideTree::kWidth;
-        scratch_.closed[node] |= static_cast<std::uint8_t>(1u << place % WideTree::kWidth);
-        if (scratch_.closed[node] != (1u << sites_.wide.nodes[node].count) - 1) break;
-        place = patches_.above_node[node];
-      }
+    for (const std::uint32_t place : patches_.whole.of(patch)) close(place);
+    for (const std::uint32_t leaf : patches_.part.of(patch))
+      if (++scratch_.taken[leaf] == sites_.regions.leaves[leaf + 1] - sites_.regions.leaves[leaf])
+        close(patches_.place_of_leaf[leaf]);
+  }
+}
+
+void SelfSearch::admit_patches() {
+  for (const std::uint32_t patch : exclusion_.excluded_by(patch_)) {
+    scratch_.excluded[patch] = 0;
+    for (const std::uint32_t place : patches_.whole.of(patch)) open(place);
+    for (const std::uint32_t leaf : patches_.part.of(patch)) {
+      scratch_.taken[leaf] = 0;
+      open(patches_.place_of_leaf[leaf]);
     }
   }
 }
 
-// A node without a closed child has none above it on its account.
-void SelfSearch::admit_patches() {
-  for (const std::uint32_t patch : exclusion_.excluded_by(patch_)) {
-    scratch_.excluded[patch] = 0;
-    for (const std::uint32_t leaf : patches_.leaves.of(patch)) {
-      scratch_.taken[leaf] = 0;
-      for (std::uint32_t place = patches_.above_leaf[leaf]; place != kNone;) {
-        const std::uint32_t node = place / WideTree::kWidth;
-        if (std::exchange(scratch_.closed[node], 0) == 0) break;
-        place = patches_.above_node[node];
-      }
-    }
+// Closes a child, and the nodes above it that have no other open child.
+void SelfSearch::close(std::uint32_t place) {
+  while (place != kNone) {
+    const std::uint32_t node = place / WideTree::kWidth;
+    scratch_.closed[node] |= static_cast<std::uint8_t>(1u << place % WideTree::kWidth);
+    if (scratch_.closed[node] != (1u << sites_.wide.nodes[node].count) - 1) return;
+    place = patches_.place_of_node[node];
+  }
+}
+
+// Opens all children of the node and of those above it, up to one without a closed child: it has none above
+// it on its account.
+void SelfSearch::open(std::uint32_t place) {
+  while (place != kNone) {
+    const std::uint32_t node = place / WideTree::kWidth;
+    if (std::exchange(scratch_.closed[node], 0) == 0) return;
+    place = patches_.place_of_node[node];
   }
 }
 

@@ -25,9 +25,12 @@ struct PatchTree {
   /// Cost: linear, all cores.
   PatchTree(const sites::SitesData& sites, const Exclusion& exclusion);
 
-  CompressedRows<std::uint32_t> leaves;  ///< of each patch, for each of its faces in the tree
-  /// Of each leaf and each wide node, where it hangs: 8 · node + slot; kNone for the root.
-  std::vector<std::uint32_t> above_leaf, above_node;
+  /// A place in the tree: 8 · wide node + slot.
+  CompressedRows<std::uint32_t>
+      whole;                           ///< of each patch, the places with nothing but its faces, topmost only
+  CompressedRows<std::uint32_t> part;  ///< of each patch, the leaf of each of its other faces
+  /// The places of each leaf and each wide node; kNone for the root.
+  std::vector<std::uint32_t> place_of_leaf, place_of_node;
   std::vector<std::uint32_t> order;  ///< patches, in the order in which the tree has their first faces
 };
 
@@ -56,6 +59,8 @@ class SelfSearch {
   struct Scratch;
   void exclude_patches();
   void admit_patches();
+  void close(std::uint32_t place);
+  void open(std::uint32_t place);
   /// Whether the box of a face shows that it is farther than this.
   [[nodiscard]] bool beyond(std::uint32_t face, const Vec3& q, double limit) const;
   template <class Visit>
