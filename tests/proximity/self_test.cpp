@@ -338,6 +338,25 @@ TEST(Self, NoDistanceWhereAllIsExcluded) {
   EXPECT_TRUE(query.contacts(10).empty());
 }
 
+// All faces are one patch, and so is the whole tree.
+TEST(Self, NoDistanceWithinALengthBeyondTheMesh) {
+  const Mesh mesh = folded(0.2);
+  const ExclusionRule rule{.geodesic = 100};
+  const Exclusion exclusion(mesh, rule);
+  EXPECT_EQ(exclusion.patches(), 1u);
+  const Surface surface(mesh, {.resolution = 64});
+  const Sites sites(mesh);
+  EXPECT_EQ(compute_self_map(surface, sites, exclusion).beyond_max_distance, surface.sample_texels().size());
+  for (const float d : self_distances_at_vertices(sites, exclusion)) ASSERT_EQ(d, kInf);
+  EXPECT_FALSE(SelfProximityQuery(mesh, {.exclusion = rule}).separation());
+
+  // Another sheet, which is not connected to the first, is not excluded.
+  const Mesh sheets = joined(flat(10, 3), placed(flat(10, 3), "translate:0:0:0.1"));
+  const Exclusion of_sheets(sheets, rule);
+  EXPECT_EQ(of_sheets.patches(), 2u);
+  for (const float d : self_distances_at_vertices(Sites(sheets), of_sheets)) ASSERT_NEAR(d, 0.1, 1e-6);
+}
+
 TEST(Self, VerticesHaveTheMinimumOfTheirFaces) {
   Mesh mesh = folded(0.2);
   mesh.positions.push_back({9, 9, 9});  // of no face
