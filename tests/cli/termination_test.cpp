@@ -26,12 +26,15 @@ struct Command {
   std::string name;
   std::vector<std::string> arguments;
   std::string concluding;  ///< shows that the results are complete; in any subfolder
+
+  friend void PrintTo(const Command& command, std::ostream* out) { *out << command.name; }
 };
 
 // Placeholders of the paths in TwoTori, and of a sequence.
 const std::vector<Command> kCommands{
     {"map", {"map", "O1", "O2", "-o", "OUT"}, "report.json"},
     {"map_both", {"map", "O1", "O2", "--both", "-o", "OUT"}, "report.json"},
+    {"map_cached", {"map", "O1", "O2", "--atlas-cache", "CACHE", "-o", "OUT"}, "report.json"},
     {"self", {"self", "O1", "-o", "OUT"}, "report.json"},
     {"bodies", {"bodies", "O1", "O2", "-o", "OUT"}, "report.json"},
     {"sequence", {"sequence", "FRAMES", "O2", "--maps", "2", "-o", "OUT"}, "frames.jsonl"},
@@ -42,7 +45,7 @@ const std::vector<Command> kCommands{
 struct Termination : ::testing::TestWithParam<Command>, TwoTori {
   using Files = std::map<std::string, std::string>;  // contents by names relative to the folder
 
-  std::string frames = folder / "frames";
+  std::string frames = folder / "frames", cache = folder / "first.atlas";
 
   Termination() {
     fs::create_directory(frames);
@@ -56,6 +59,7 @@ struct Termination : ::testing::TestWithParam<Command>, TwoTori {
       if (a == "O1") a = o1;
       if (a == "O2") a = o2;
       if (a == "FRAMES") a = frames;
+      if (a == "CACHE") a = cache;
       if (a.starts_with("OUT")) a.replace(0, 3, out);
     }
     const std::string& name = arguments[0];
@@ -117,6 +121,7 @@ TEST_P(Termination, AKilledRunLeavesNothingThatLooksLikeAResult) {
   ASSERT_EQ(run_sdm(arguments).code, 0);
   const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - start;
   const Files whole = results();
+  const std::string whole_cache = fs::exists(cache) ? contents(cache) : "";
   fs::remove_all(out);
   int killed = 0;
   for (const bool earlier : {false, true}) {
@@ -129,8 +134,12 @@ TEST_P(Termination, AKilledRunLeavesNothingThatLooksLikeAResult) {
     for (int i = 1; i <= kMoments; ++i) {
       const int ms = std::max(1, static_cast<int>(duration.count() * i / kMoments));
       SCOPED_TRACE(ms);
+      fs::remove(cache);
       killed += run_sdm(arguments, {.kill_after_ms = ms}).code == 128 + SIGKILL;
       expect_consistent(results(), whole);
+      if (fs::exists(cache)) {
+        EXPECT_TRUE(contents(cache) == whole_cache);
+      }
       EXPECT_LE(staging_folders(), 1u) << "those of earlier runs are removed";
     }
   }

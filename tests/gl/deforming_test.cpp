@@ -34,7 +34,10 @@ std::vector<Vec3> bent(std::vector<Vec3> positions, double time) {
 }
 
 class Deforming : public testing::TestWithParam<GlClip> {};
-INSTANTIATE_TEST_SUITE_P(Clips, Deforming, testing::Values(GlClip::planes, GlClip::stencil));
+INSTANTIATE_TEST_SUITE_P(Clips, Deforming, testing::Values(GlClip::planes, GlClip::stencil),
+                         [](const auto& clip) {
+                           return std::string(clip.param == GlClip::planes ? "planes" : "stencil");
+                         });
 
 TEST_P(Deforming, EveryTexelOfEveryFrameMatchesTheReference) {
   // With coordinates of its own, a surface built from a frame has the texels of one that was refitted to it.

@@ -31,7 +31,10 @@ class DeviceFailure : public testing::TestWithParam<GlClip> {
   Sites sites_{test::load("head.off", "fit,translate:0.5:0:0")};
   std::vector<float> expected_;
 };
-INSTANTIATE_TEST_SUITE_P(Clips, DeviceFailure, testing::Values(GlClip::planes, GlClip::stencil));
+INSTANTIATE_TEST_SUITE_P(Clips, DeviceFailure, testing::Values(GlClip::planes, GlClip::stencil),
+                         [](const auto& clip) {
+                           return std::string(clip.param == GlClip::planes ? "planes" : "stencil");
+                         });
 
 TEST_P(DeviceFailure, ResetWhileDrawing) {
   const Replaced reset(epoxy_glGetGraphicsResetStatus,
