@@ -31,14 +31,26 @@ struct BodiesCommand {
   bool json = false, quiet = false;
 };
 
+std::vector<std::filesystem::path> earlier_files(const BodiesCommand& command) {
+  std::vector<std::filesystem::path> files{"report.json"};
+  for (std::size_t body = 0; body < command.files.size(); ++body) {
+    const std::filesystem::path folder = fmt::to_string(body);
+    for (const std::string& file : names({})) files.push_back(folder / file);
+    files.push_back(folder / "body.npy");
+  }
+  return files;
+}
+
 /// Writes the map of each body to a folder named after its number.
 void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies, OutputFolder& out) {
   sdm::NearestMap nearest;
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     bodies.nearest_map(body, nearest);
     const std::filesystem::path folder = out.staging(fmt::to_string(body));
-    write_map_files(folder, command.map_files, bodies.surface(body), nearest.map,
-                    sdm::nearest_distances_at_vertices(bodies, body, command.options.max_distance),
+    std::vector<float> at_vertices;
+    if (command.map_files.glb)
+      at_vertices = sdm::nearest_distances_at_vertices(bodies, body, command.options.max_distance);
+    write_map_files(folder, command.map_files, bodies.surface(body), nearest.map, at_vertices,
                     {.units = command.units});
     sdm::write_npy(folder / "body.npy", nearest.map.resolution, nearest.body);
   }
@@ -74,7 +86,7 @@ std::string summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
 void run(BodiesCommand command) {
   limit_threads(command.threads);
   std::optional<OutputFolder> out;
-  if (!command.out.empty()) out.emplace(command.out, std::vector<std::filesystem::path>{"report.json"});
+  if (!command.out.empty()) out.emplace(command.out, earlier_files(command));
   ProgressLine progress(command.quiet);
   command.options.atlas.progress = progress.callback();
 

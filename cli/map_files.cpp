@@ -44,9 +44,11 @@ void add_write_option(CLI::App& app, MapFiles& files) {
   app.add_option_function<std::vector<std::string>>(
          "--write",
          [&files](const std::vector<std::string>& chosen) {
+           if (chosen.size() > 1 && std::ranges::count(chosen, "none") > 0)
+             throw CLI::ValidationError("--write", "none excludes the others");
            for (const Kind& kind : kinds()) files.*kind.chosen = std::ranges::count(chosen, kind.name) > 0;
          },
-         "The files to write besides report.json: map.exr, the three pictures, model.glb; or none")
+         "The files of a map to write: map.exr, the three pictures, model.glb; or none")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::Validator(

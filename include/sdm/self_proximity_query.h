@@ -27,20 +27,21 @@ struct ExclusionRule {
 /// depends on the mesh at rest only, not on later deformation. It is stored for patches: groups of faces that
 /// exclude the same faces.
 ///
-/// With rings, every face is a patch of its own. With a geodesic length L, faces around seeds about L/6 apart
-/// form patches, which are connected and hardly wider than L/3 or a single face; where faces are larger than
-/// that, each is a patch. Patches P and Q exclude each other if a chain of patches, consecutive ones sharing
-/// a vertex, leads from P to Q such that every patch of it is less than L from P in a straight line at rest,
-/// and likewise a chain from Q to P. Single faces are measured exactly, larger patches by the spheres around
-/// them. No point that is not excluded is therefore nearer than L along the surface at rest: the shortest
-/// path to it would run through such a chain. The rule is conservative: it excludes whole patches, and more
-/// where the surface at rest folds back within L.
+/// With rings, every face is a patch of its own. With a geodesic length L, faces form patches around seeds
+/// about L/6 apart, which lie in balls of radius L/4; faces too large for that are patches of their own.
+/// Patches P and Q exclude each other if a chain of patches, consecutive ones sharing a vertex, leads from P
+/// to Q such that every patch of it is less than L from P in a straight line at rest, and likewise a chain
+/// from Q to P. Distances are those of single faces, and of the spheres around the bounding boxes of patches
+/// of several faces. No point that is not excluded is therefore nearer than L along the surface at rest: the
+/// shortest path to it would run through such a chain. The rule is conservative: it excludes whole patches,
+/// and so what is up to about 2 L away in a straight line, besides the length of large faces; on fine meshes,
+/// 1.6 L. Where the surface at rest folds back within that, it excludes the other side as well.
 class SDM_API Exclusion {
  public:
   /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and if there is not
-  /// enough memory; Cancelled. Memory: up to about 100 numbers per face of a smooth surface with a geodesic
-  /// length, whatever the length, and the sizes of all neighbourhoods with rings. Cost: linear in that, all
-  /// cores.
+  /// enough memory; Cancelled. Memory: with a geodesic length, whatever it is, up to about 200 numbers per
+  /// face of a surface with well-shaped faces, but always as many as faces share a vertex; with rings, the
+  /// sizes of all neighbourhoods. Cost: linear in that, most of it on all cores.
   explicit Exclusion(const Mesh& rest, const ExclusionRule& rule = {}, const Progress& progress = {});
 
   [[nodiscard]] std::size_t faces() const { return patch_of_.size(); }

@@ -41,9 +41,9 @@ class SDM_API Surface {
   /// when the count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces, all cores.
   void refit(std::span<const Vec3> positions);
 
-  /// The atlas as bytes, without the mesh: for a cache. They belong to the mesh in its present shape, and can
-  /// be used by the same version of sdm only, on
-  /// any little-endian machine. Cost: linear.
+  /// The atlas as bytes, without the mesh: for a cache. They belong to the mesh in its present shape, and
+  /// can be used by the same version of sdm only, on any little-endian machine.
+  /// Cost: linear.
   [[nodiscard]] std::vector<std::uint8_t> stored_atlas() const;
 
   [[nodiscard]] const Mesh& mesh() const;

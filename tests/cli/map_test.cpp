@@ -45,6 +45,7 @@ TEST_F(MapCommand, WritesTheFilesAskedFor) {
   EXPECT_EQ(none.code, 0) << none.err;
   EXPECT_EQ(names_in(out), std::vector<std::string>{"report.json"});
   EXPECT_EQ(Json::parse(none.out)["distance"], Json::parse(report)["distance"]);
+  EXPECT_EQ(run_sdm(map({"--write", "none,exr"})).code, 2);
   const Outcome bad = run_sdm(map({"--write", "exr,jpg"}));
   EXPECT_EQ(bad.code, 2);
   EXPECT_THAT(bad.err, HasSubstr("jpg is not one of exr, png, glb, none"));

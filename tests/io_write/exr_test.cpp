@@ -134,7 +134,7 @@ TEST(Exr, KeepsEveryBitAndFillsGutters) {
   }
 }
 
-// Regression: a compressor wrote other bytes for the same data.
+// A compressor once wrote other bytes for the same data, but rarely: this only shows gross differences.
 TEST(Exr, IsTheSameFileEachTime) {
   const Surface surface(ring(40), {.resolution = 512});
   const DistanceMap map = map_of(surface, [](const Vec3& p) { return std::sin(40 * p[0]) * p[1]; });

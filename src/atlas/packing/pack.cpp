@@ -168,7 +168,8 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
   const Packer packer(shapes, resolution, gutter);
   require_memory(kTrials * BitmapBin::bytes(packer.cells(), packer.rows()), "packing the atlas");
   // Fractions of the atlas: once there is a best packing, `low` is known to fit; before, it does not even
-  // hold the gutters. `high` is known not to fit, if it is below 1.
+  // hold the gutters. `high` is known not to fit, if it is below 1; it is `low` if no larger scale
+  // needs to be tried.
   double low = 0, high = 1;
   std::optional<std::vector<Placement>> best;
   const double precision = shapes.size() > kManyCharts ? kPrecisionOfMany : kPrecision;

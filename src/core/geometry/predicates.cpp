@@ -78,7 +78,7 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     magnitude += std::abs(w[k]) * (std::abs(plus) + std::abs(minus));
   }
   if (std::abs(determinant) > kError3 * magnitude + kUnderflow) return sign(determinant);
-  if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;  // a segment in place of a triangle
+  if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;  // no volume
   return exact(a, b, c, d);
 }
 
@@ -87,7 +87,7 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double plus = u[0] * v[1], minus = u[1] * v[0];
   if (std::abs(plus - minus) > kError2 * (std::abs(plus) + std::abs(minus)) + kUnderflow)
     return sign(plus - minus);
-  if (a == b || a == c || b == c) return 0;
+  if (a == b || a == c || b == c) return 0;  // no area
   return exact(a, b, c);
 }
 

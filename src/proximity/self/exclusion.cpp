@@ -2,6 +2,7 @@
 #include <sdm/self_proximity_query.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <new>
 #include <string>
@@ -20,6 +21,8 @@ namespace {
 // Seeds of patches are this fraction of the geodesic length apart. The number of patches that one excludes is
 // proportional to the inverse square, what is excluded beyond the length proportional to the fraction.
 constexpr double kPatchRadius = 1.0 / 6;
+
+constexpr const char* kNeighbourhoods = "the excluded neighbourhoods";
 
 void check(const ExclusionRule& rule) {
   if (rule.rings == 0) throw Error("with 0 rings a face excludes only itself; use 1 or more");
@@ -43,16 +46,12 @@ class Neighbours {
     if (rule.geodesic) enclose();
   }
 
-  // The marks of one thread; none is set between calls of `of`.
-  struct Met {
-    std::vector<bool> joints, patches;
-  };
-  [[nodiscard]] Met none_met() const {
-    return {std::vector<bool>(patches_at_.size()), std::vector<bool>(patches_.count())};
-  }
-
   // In increasing order.
-  [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t patch, Met& met) const {
+  [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t patch) const {
+    // None is set between calls.
+    thread_local struct { std::vector<bool> joints, patches; } met;
+    if (met.joints.size() < patches_at_.size()) met.joints.resize(patches_at_.size());
+    if (met.patches.size() < patches_.count()) met.patches.resize(patches_.count());
     std::vector<std::uint32_t> reached{patch}, rejected;
     met.patches[patch] = true;
     std::size_t begin = 0;
@@ -125,7 +124,16 @@ class Neighbours {
     // Rounding must not exclude less.
     if (squared_norm(b.centre - a.centre) > (1 + 1e-12) * reach * reach) return false;
     const auto faces_p = patches_.faces.of(p), faces_q = patches_.faces.of(q);
-    return faces_p.size() > 1 || faces_q.size() > 1 || faces_within(length, faces_p[0], faces_q[0]);
+    // A single face may be long: its sphere says little.
+    if (faces_p.size() > 1 && faces_q.size() > 1) return true;
+    if (faces_p.size() > 1) return face_within(length + a.radius, faces_q[0], a.centre);
+    if (faces_q.size() > 1) return face_within(length + b.radius, faces_p[0], b.centre);
+    return faces_within(length, faces_p[0], faces_q[0]);
+  }
+  [[nodiscard]] bool face_within(double length, std::uint32_t f, const Vec3& point) const {
+    const Corners a = corners(f), b{point, point, point};
+    const double most = (1 + 1e-12) * length * length;
+    return squared_box_distance(a, b) <= most && closest_or_common(a, b).squared <= most;
   }
   [[nodiscard]] bool faces_within(double length, std::uint32_t f, std::uint32_t g) const {
     const Corners a = corners(f), b = corners(g);
@@ -157,35 +165,42 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress
   const std::size_t count = grouped.count();
   offsets_.assign(1, 0);
 
-  // Patches are processed in portions whose neighbourhoods, however large, take a bounded amount of memory:
-  // the total is checked before it is stored.
-  constexpr std::size_t kEntries = std::size_t{1} << 26, kGrain = 256;
-  const std::size_t block = std::clamp<std::size_t>(kEntries / count, 1, std::size_t{1} << 16);
-  std::vector<std::vector<std::uint32_t>> rows(std::min(block, count));
-  for (std::size_t first = 0; first < count; first += block) {
+  // Patches are processed in portions whose neighbourhoods take about this many entries, judging by those
+  // before: the total is checked before it is stored, and that of a portion while it grows.
+  constexpr std::size_t kEntries = std::size_t{1} << 24, kLeast = 256, kMost = std::size_t{1} << 16,
+                        kGrain = 64;
+  std::vector<std::vector<std::uint32_t>> rows;
+  for (std::size_t first = 0, block = kLeast; first < count;) {
     const std::size_t end = std::min(count, first + block);
-    parallel_for(end - first, kGrain, [&](std::size_t begin, std::size_t last) {
-      Neighbours::Met met = neighbours.none_met();
-      for (std::size_t i = begin; i < last; ++i)
-        rows[i] = neighbours.of(static_cast<std::uint32_t>(first + i), met);
+    rows.resize(end - first);
+    std::atomic<std::size_t> entries{0};
+    parallel_for(rows.size(), kGrain, [&](std::size_t begin, std::size_t last) {
+      for (std::size_t i = begin; i < last; ++i) {
+        rows[i] = neighbours.of(static_cast<std::uint32_t>(first + i));
+        const std::size_t before = entries.fetch_add(rows[i].size());
+        if (before / kEntries != (before + rows[i].size()) / kEntries)
+          require_memory(kEntries * sizeof(std::uint32_t), kNeighbourhoods);
+      }
     });
-    for (std::size_t i = 0; i < end - first; ++i) offsets_.push_back(offsets_.back() + rows[i].size());
+    for (const std::vector<std::uint32_t>& row : rows) offsets_.push_back(offsets_.back() + row.size());
     if (offsets_.back() > excluded_.capacity()) {
       const std::size_t room = std::max(offsets_.back(), 2 * excluded_.capacity());
-      require_memory(room * sizeof(std::uint32_t), "the excluded neighbourhoods");
+      require_memory(room * sizeof(std::uint32_t), kNeighbourhoods);
       excluded_.reserve(room);
     }
-    for (std::size_t i = 0; i < end - first; ++i)
-      excluded_.insert(excluded_.end(), rows[i].begin(), rows[i].end());
+    for (const std::vector<std::uint32_t>& row : rows)
+      excluded_.insert(excluded_.end(), row.begin(), row.end());
     if (progress && !progress("neighbourhoods", static_cast<double>(end) / static_cast<double>(count)))
       throw Cancelled();
+    block = std::clamp(kEntries / std::max<std::size_t>(1, entries / rows.size()), kLeast, kMost);
+    first = end;
   }
   if (rule.geodesic) keep_mutual();
   patch_of_ = std::move(grouped.of);
   patch_faces_ = std::move(grouped.faces.items);
   face_offsets_ = std::move(grouped.faces.offsets);
 } catch (const std::bad_alloc&) {
-  throw out_of_memory("the excluded neighbourhoods");
+  throw out_of_memory(kNeighbourhoods);
 }
 
 bool Exclusion::excludes(std::uint32_t face1, std::uint32_t face2) const {

@@ -1,14 +1,19 @@
 #include "proximity/self/patches.h"
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
 
 namespace sdm::self {
 namespace {
+
+// How far a patch may reach beyond the ball of its centroids: it bounds the spheres around patches.
+constexpr double kCornerReach = 1.5;
 
 std::vector<Vec3> centroids(const Mesh& mesh) {
   std::vector<Vec3> result(mesh.triangles.size());
@@ -60,11 +65,22 @@ Patches group_faces(const Mesh& mesh, const CompressedRows<std::uint32_t>& faces
   for (std::uint32_t seed = 0; seed < count; ++seed) {
     if (patch_of[seed] != kNone) continue;
     const std::uint32_t patch = patches++;
+    patch_of[seed] = patch, nearest[seed] = 0;
+    const auto within = [&](double reach, const Vec3& p) {
+      return squared_norm(p - centroid[seed]) <= reach * reach;
+    };
+    const auto fits = [&](std::uint32_t face) {
+      return within(radius, centroid[face]) &&
+             std::ranges::all_of(mesh.triangles[face], [&](std::uint32_t v) {
+               return within(kCornerReach * radius, mesh.positions[v]);
+             });
+    };
+    if (!fits(seed)) continue;
     const auto enter = [&](std::uint32_t face) {
       if (seen_by[face] == patch) return;
       seen_by[face] = patch;
+      if (!fits(face)) return;
       const double squared = squared_norm(centroid[face] - centroid[seed]);
-      if (squared > radius * radius) return;
       flood.push_back(face);
       if (squared < nearest[face]) nearest[face] = squared, patch_of[face] = patch;
     };

@@ -24,9 +24,11 @@ struct Patches {
 /// One patch for each face.
 [[nodiscard]] Patches single_faces(std::size_t faces);
 
-/// Groups faces around seeds that are about `radius` apart: a face belongs to the nearest seed, by centroids,
+/// Groups faces around seeds that are about `radius` apart. A face belongs to the nearest seed, by centroids,
 /// among those from which a chain of faces, each sharing a vertex with the next, leads to it without leaving
-/// the seed's ball of this radius. Cost: linear, as balls around seeds overlap a bounded number of times.
+/// the seed's ball: centroids stay within `radius` of the seed's, corners within 1.5 of it. Faces too large
+/// for that are patches of their own. Cost: linear on a surface of bounded valence, as the balls around seeds
+/// then overlap a bounded number of times.
 [[nodiscard]] Patches group_faces(const Mesh& mesh, const CompressedRows<std::uint32_t>& faces_of_vertex,
                                   double radius);
 

@@ -19,7 +19,7 @@
 namespace sdm {
 namespace {
 
-constexpr std::size_t kGrain = 256;  // tiles or faces
+constexpr std::size_t kGrain = 256;  // tiles
 
 void check(const Sites& sites, const Exclusion& exclusion, const SelfMapOptions& options) {
   if (sites.mesh().triangles.size() != exclusion.faces())
@@ -108,7 +108,7 @@ std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusio
   for (const std::uint32_t f : faces)
     for (const std::uint32_t v : mesh.triangles[f]) least[v] = std::numeric_limits<float>::infinity();
   // The faces of a patch exclude the same: one search from each vertex for all of them.
-  parallel_for(patches.order.size(), kGrain, options.progress, "vertices",
+  parallel_for(patches.order.size(), self::grain_of_patches(exclusion), options.progress, "vertices",
                [&](std::size_t begin, std::size_t end) {
                  self::SelfSearch search(internals(sites), exclusion, patches);
                  std::vector<std::uint32_t> vertices;

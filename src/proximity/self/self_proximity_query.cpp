@@ -17,8 +17,6 @@
 namespace sdm {
 namespace {
 
-constexpr std::size_t kGrain = 64;  // patches
-
 void check_max_distance(double max_distance) {
   if (!(max_distance > 0)) throw Error("the maximum distance must be greater than 0");
 }
@@ -48,15 +46,16 @@ struct SelfProximityQuery::Impl {
   // Calls body(search, face) for each face in the tree, those of a patch one after another.
   template <class Body>
   void for_each_face(const Body& body) const {
-    parallel_for(patch_tree.order.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      self::SelfSearch search(internals(sites), exclusion, patch_tree);
-      for (std::size_t i = begin; i < end; ++i)
-        for (const std::uint32_t face : exclusion.faces_of(patch_tree.order[i])) {
-          if (internals(sites).topology.ignored(face)) continue;
-          search.start_from(face);
-          body(search, face);
-        }
-    });
+    parallel_for(patch_tree.order.size(), self::grain_of_patches(exclusion),
+                 [&](std::size_t begin, std::size_t end) {
+                   self::SelfSearch search(internals(sites), exclusion, patch_tree);
+                   for (std::size_t i = begin; i < end; ++i)
+                     for (const std::uint32_t face : exclusion.faces_of(patch_tree.order[i])) {
+                       if (internals(sites).topology.ignored(face)) continue;
+                       search.start_from(face);
+                       body(search, face);
+                     }
+                 });
   }
 
   // The bound depends on the order in which threads finish, but it never excludes a pair at the smallest

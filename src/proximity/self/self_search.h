@@ -3,6 +3,7 @@
 
 #include <sdm/self_proximity_query.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "core/rows.h"
@@ -22,7 +23,7 @@ struct FacePair {
 
 /// How the patches of an exclusion lie in the tree of faces. Refits do not change it.
 struct PatchTree {
-  /// Cost: linear, all cores.
+  /// Cost: linear.
   PatchTree(const sites::SitesData& sites, const Exclusion& exclusion);
 
   /// A place in the tree: 8 · wide node + slot.
@@ -33,6 +34,12 @@ struct PatchTree {
   std::vector<std::uint32_t> place_of_leaf, place_of_node;
   std::vector<std::uint32_t> order;  ///< patches, in the order in which the tree has their first faces
 };
+
+/// A grain for loops over patches, which have as many faces on average as there are.
+[[nodiscard]] inline std::size_t grain_of_patches(const Exclusion& exclusion) {
+  constexpr std::size_t kFaces = 256;
+  return std::clamp<std::size_t>(kFaces * exclusion.patches() / exclusion.faces(), 1, kFaces);
+}
 
 /// Per-thread searches, each starting from a face. The memory is kept between searches and between objects.
 class SelfSearch {
