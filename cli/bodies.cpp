@@ -71,7 +71,7 @@ nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector
   return report;
 }
 
-std::string summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
+std::string bodies_summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
   std::string text;
   for (std::size_t body = 0; body < bodies.size(); ++body)
     text += fmt::format("  {}  {}\n", body, command.files[body]);
@@ -115,7 +115,7 @@ void run(BodiesCommand command) {
   if (command.json) {
     std::cout << to_text(report);
   } else if (!command.quiet) {
-    std::cout << summary(command, bodies);
+    std::cout << bodies_summary(command, bodies);
   }
 }
 

@@ -14,7 +14,7 @@
 
 namespace {
 
-nlohmann::ordered_json to_json(const std::vector<sdm::GlDevice>& devices) {
+nlohmann::ordered_json devices_json(const std::vector<sdm::GlDevice>& devices) {
   auto list = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < devices.size(); ++i)
     list.push_back({{"index", i},
@@ -43,7 +43,8 @@ void add_devices_command(CLI::App& app) {
   command->callback([json] {
     const std::vector<sdm::GlDevice> devices = sdm::gl_devices();
     if (*json)
-      std::cout << to_json(devices).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+      std::cout << devices_json(devices).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+                << '\n';
     else
       print_table(std::cout, devices);
   });

@@ -43,7 +43,7 @@ Info collect(const std::string& file) {
 
 constexpr std::size_t kShown = 3;  // pairs of intersecting faces
 
-nlohmann::ordered_json to_json(const std::string& file, const Info& all) {
+nlohmann::ordered_json info_json(const std::string& file, const Info& all) {
   const sdm::MeshInfo& info = all.mesh;
   return {{"file", file},
           {"vertices", info.vertices},
@@ -134,7 +134,7 @@ void run(const Options& options) {
   if (!options.self_intersections.empty())
     write_whole(options.self_intersections, to_csv(info.self_intersections));
   if (options.json)
-    std::cout << to_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+    std::cout << info_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
               << '\n';
   else
     print_table(std::cout, options.file, info);

@@ -9,11 +9,11 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-const char* name(sdm::AtlasKind kind) {
+const char* atlas_name(sdm::AtlasKind kind) {
   return kind == sdm::AtlasKind::charts ? "charts" : kind == sdm::AtlasKind::triangles ? "triangles" : "uv";
 }
 
-const char* name(sdm::SignMethod method) {
+const char* sign_name(sdm::SignMethod method) {
   switch (method) {
     case sdm::SignMethod::exact:
       return "exact";
@@ -24,7 +24,7 @@ const char* name(sdm::SignMethod method) {
   }
 }
 
-const char* name(sdm::GlClip clip) {
+const char* clip_name(sdm::GlClip clip) {
   return clip == sdm::GlClip::planes ? "planes" : "stencil";
 }
 
@@ -37,10 +37,10 @@ double rounded(double ms) {
   return std::round(1000 * ms) / 1000;
 }
 
-Json to_json(const sdm::GlReport& r) {
+Json gl_json(const sdm::GlReport& r) {
   const sdm::GlReport::Times& t = r.time_ms;
   return {{"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
-          {"clip", name(r.clip)},
+          {"clip", clip_name(r.clip)},
           {"paper_literal", r.paper_literal},
           {"sites", r.sites},
           {"sites_dropped", r.sites_dropped},
@@ -96,9 +96,9 @@ Json to_json(const Input& input) {
 }
 
 Json to_json(const sdm::Surface& surface) {
-  return {{"kind", name(surface.atlas_kind())},   {"resolution", surface.resolution()},
-          {"charts", surface.chart_count()},      {"texels", surface.sample_texels().size()},
-          {"utilisation", surface.utilisation()}, {"max_stretch", surface.max_stretch()}};
+  return {{"kind", atlas_name(surface.atlas_kind())}, {"resolution", surface.resolution()},
+          {"charts", surface.chart_count()},          {"texels", surface.sample_texels().size()},
+          {"utilisation", surface.utilisation()},     {"max_stretch", surface.max_stretch()}};
 }
 
 Json to_json(const sdm::DistanceStatistics& d) {
@@ -111,7 +111,7 @@ Json to_json(const sdm::DistanceStatistics& d) {
 
 namespace {
 
-Json to_json(const sdm::Extreme& extreme) {
+Json extreme_json(const sdm::Extreme& extreme) {
   if (std::isnan(extreme.distance)) return nullptr;
   return {{"distance", extreme.distance},
           {"point", extreme.point},
@@ -123,9 +123,10 @@ Json to_json(const sdm::Extreme& extreme) {
 Json to_json(const Outcome& outcome) {
   const sdm::DistanceStatistics& d = outcome.distance;
   Json json;
-  json["sign"] = {{"method", name(outcome.sign.method)}, {"reason", outcome.sign.reason}};
+  json["sign"] = {{"method", sign_name(outcome.sign.method)}, {"reason", outcome.sign.reason}};
   json["distance"] = to_json(d);
-  json["extremes"] = {{"min", to_json(outcome.extremes.min)}, {"max", to_json(outcome.extremes.max)}};
+  json["extremes"] = {{"min", extreme_json(outcome.extremes.min)},
+                      {"max", extreme_json(outcome.extremes.max)}};
   json["texels_with_value"] = d.texels;
   json["negative_texels"] = d.negative_texels;
   json["beyond_max_distance"] = outcome.beyond_max_distance;
@@ -141,7 +142,7 @@ Json to_json(const Outcome& outcome) {
                          {"within", outcome.tolerance->within},
                          {"certified", outcome.tolerance->certified}};
   json["notes"] = outcome.notes;
-  if (outcome.raster) json["raster"] = to_json(*outcome.raster);
+  if (outcome.raster) json["raster"] = gl_json(*outcome.raster);
   const Times& t = outcome.time;
   json["time_ms"] = {{"import", t.import}, {"atlas", t.atlas},   {"sites", t.sites},
                      {"map", t.map},       {"export", t.output}, {"total", t.total}};

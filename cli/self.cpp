@@ -75,7 +75,7 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   return report;
 }
 
-std::string summary(const SelfCommand& command, const Json& report) {
+std::string self_summary(const SelfCommand& command, const Json& report) {
   const std::string unit = unit_suffix(command.picture.units);
   std::string text = fmt::format("{} -> itself\n", command.file);
   const Json &d = report["distance"], &separation = report["separation"];
@@ -116,7 +116,7 @@ void run(SelfCommand command) {
   if (command.json)
     std::cout << to_text(report);
   else if (!command.quiet)
-    std::cout << summary(command, report)
+    std::cout << self_summary(command, report)
               << fmt::format("  time        {} s\n  results     {}/: {}report.json\n",
                              number(std::round(total.lap()) / 1000, 6), command.out.string(),
                              listed(command.files));

@@ -38,7 +38,7 @@ void read_array(std::ifstream& in, std::vector<T>& values, std::size_t count) {
   in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count * sizeof(T)));
 }
 
-Json to_json(const std::optional<std::uint64_t>& hash) {
+Json hash_json(const std::optional<std::uint64_t>& hash) {
   return hash ? Json(*hash) : Json(nullptr);
 }
 
@@ -66,7 +66,7 @@ void SequenceState::write(const std::filesystem::path& file) const {
   Json header{{"options", options}, {"meshes", meshes}, {"frames", Json::array()}};
   for (const Frame& frame : frames)
     header["frames"].push_back(
-        {{"line", frame.line}, {"hash", {to_json(frame.hash[0]), to_json(frame.hash[1])}}});
+        {{"line", frame.line}, {"hash", {hash_json(frame.hash[0]), hash_json(frame.hash[1])}}});
   const sdm::TemporalMaps::State& maps = temporal.state();
   header["maps"] = maps.maps;
   header["resolution"] = maps.resolution;

@@ -50,19 +50,24 @@ std::vector<DisplayCandidate> display_candidates() {
   require_libraries();
   std::vector<DisplayCandidate> result;
   const std::vector<EGLDeviceEXT> all = devices();
-  for (std::size_t i = 0; i < all.size(); ++i)
-    result.push_back({.display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, all[i], nullptr),
-                      .name = "EGL device " + std::to_string(i),
-                      .software = is_software(all[i])});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    DisplayCandidate& c = result.emplace_back();
+    c.display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, all[i], nullptr);
+    c.name = "EGL device " + std::to_string(i);
+    c.software = is_software(all[i]);
+  }
   std::ranges::stable_partition(result, [](const DisplayCandidate& c) { return !c.software; });
 
+  const auto add_last_resort = [&](EGLDisplay display, const char* name) {
+    DisplayCandidate& c = result.emplace_back();
+    c.display = display;
+    c.name = name;
+    c.last_resort = true;
+  };
   if (has_client_extension("EGL_MESA_platform_surfaceless") && has_client_extension("EGL_EXT_platform_base"))
-    result.push_back(
-        {.display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
-         .name = "Mesa's surfaceless platform",
-         .last_resort = true});
-  result.push_back(
-      {.display = eglGetDisplay(EGL_DEFAULT_DISPLAY), .name = "EGL's default display", .last_resort = true});
+    add_last_resort(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
+                    "Mesa's surfaceless platform");
+  add_last_resort(eglGetDisplay(EGL_DEFAULT_DISPLAY), "EGL's default display");
   return result;
 }
 
