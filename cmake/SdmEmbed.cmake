@@ -18,4 +18,7 @@ function(sdm_embed_files target)
     COMMENT "Embedding ${ARG_FILES}"
     VERBATIM)
   target_sources(${target} PRIVATE ${output})
+  # Of its own, so that it can be built without what the target depends on (./tidy).
+  add_custom_target(${target}_embedded DEPENDS ${output})
+  add_dependencies(${target} ${target}_embedded)
 endfunction()
