@@ -27,12 +27,12 @@ Mesh without_near_side(Mesh mesh, const Vec3& eye) {
   return mesh;
 }
 
-std::uint32_t texel_at(const Surface& surface, std::uint32_t face, const Vec3& point) {
+std::uint32_t texel_at(const Surface& surface, const Gutter& gutter, std::uint32_t face, const Vec3& point) {
   const Vec2 uv = surface.to_atlas(face, point);
   const auto clamped = [&](double x) {
     return static_cast<std::uint32_t>(std::clamp(x, 0.0, static_cast<double>(surface.resolution() - 1)));
   };
-  return gutter_source(surface.resolution(), surface.texel_faces(), clamped(uv[0]), clamped(uv[1]));
+  return gutter.source(clamped(uv[0]), clamped(uv[1]));
 }
 
 }  // namespace
@@ -40,9 +40,12 @@ std::uint32_t texel_at(const Surface& surface, std::uint32_t face, const Vec3& p
 std::vector<Seen> visible_texels(const View& view, std::span<const Shown> objects) {
   const DeviceHandle device(rtcNewDevice(nullptr));
   const SceneHandle scene(rtcNewScene(device.get()));
-  for (const auto& [surface, only_inside] : objects)  // geometry ids count up from 0
+  std::vector<Gutter> gutters;
+  for (const auto& [surface, only_inside] : objects) {  // geometry ids count up from 0
     attach(device.get(), scene.get(),
            only_inside ? without_near_side(surface->mesh(), view.eye) : surface->mesh());
+    gutters.emplace_back(surface->resolution(), surface->texel_faces());
+  }
   rtcCommitScene(scene.get());
 
   const Vec3 forward = normalized(view.target - view.eye);
@@ -73,7 +76,8 @@ std::vector<Seen> visible_texels(const View& view, std::span<const Shown> object
       const std::uint32_t face = query.hit.primID;
       const Vec3 point = view.eye + query.ray.tfar * ray;
       const double cosine = std::abs(dot(face_normal(surface.mesh(), surface.mesh().triangles[face]), ray));
-      seen[i] = {query.hit.geomID, texel_at(surface, face, point), static_cast<float>(cosine)};
+      seen[i] = {query.hit.geomID, texel_at(surface, gutters[query.hit.geomID], face, point),
+                 static_cast<float>(cosine)};
     }
   });
   return seen;

@@ -4,18 +4,38 @@
 
 #include <sdm/types.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace sdm::io {
 
 /// How far, in texels, values extend beyond the charts: bilinear filtering needs 1, the rest is for smaller
 /// mip levels.
-inline constexpr int kGutter = 4;
+inline constexpr std::uint32_t kGutter = 4;
 
-/// The owned texel nearest to (x, y): the texel itself if it is owned; kNone if there is none within kGutter
-/// texels. `owners`: resolution² values, kNone for a free texel.
-[[nodiscard]] std::uint32_t gutter_source(std::uint32_t resolution, std::span<const std::uint32_t> owners,
-                                          std::uint32_t x, std::uint32_t y);
+/// The owned texels from which free ones take their values.
+class Gutter {
+ public:
+  /// `owners`: resolution² values, kNone for a free texel; they must outlive this and not change.
+  Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners);
+
+  /// The owned texel nearest to (x, y): the texel itself if it is owned; kNone if there is none within
+  /// kGutter texels.
+  [[nodiscard]] std::uint32_t source(std::uint32_t x, std::uint32_t y) const {
+    const std::size_t texel = std::size_t{y} * resolution_ + x;
+    if (owners_[texel] != kNone) return static_cast<std::uint32_t>(texel);
+    return close_[std::size_t{y / kGutter} * blocks_ + x / kGutter] ? search(x, y) : kNone;
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t search(std::uint32_t x, std::uint32_t y) const;
+
+  std::uint32_t resolution_, blocks_;  ///< texels, and blocks of kGutter² texels, a side
+  std::span<const std::uint32_t> owners_;
+  std::vector<std::uint8_t>
+      close_;  ///< for each block, whether it or one of the eight around it has an owned texel
+};
 
 }  // namespace sdm::io

@@ -205,10 +205,11 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
         for (const double dy : {-0.5, 0.5}) seed(at[0] + dx, at[1] + dy, vertex_distances[vertex]);
     }
   }
+  const Gutter gutter(n, shown);
   std::ostringstream png;
   write_png(png, n, n, [&](std::uint32_t y, std::span<Rgb> pixels) {
     for (std::uint32_t x = 0; x < n; ++x) {
-      const std::uint32_t source = gutter_source(n, shown, x, y);
+      const std::uint32_t source = gutter.source(x, y);
       pixels[x] = source == kNone ? kBackground : scale(distance[source]);
     }
   });
