@@ -4,6 +4,8 @@
 #include <sdm/threads.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -25,7 +27,7 @@ void write(const std::filesystem::path& file, std::span<const T> values) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app(
       "Computes the unsigned map of O1 to O2 with one thread, and prints the number of its samples and the "
       "milliseconds it takes. Writes arrays without headers into OUT: points (float64), distances (float32), "
@@ -40,28 +42,26 @@ int main(int argc, char** argv) {
   app.add_option("RESOLUTION", resolution)->required();
   app.add_option("OUT", out)->required();
   CLI11_PARSE(app, argc, argv);
-  try {
-    const sdm::Surface surface(sdm::bench::load(o1, o1_steps), {.resolution = resolution});
-    const sdm::Sites sites(o2 == "box" ? sdm::bench::paper_box(surface.mesh())
-                                       : sdm::bench::load(o2, o2_steps));
-    sdm::DistanceMap map;
-    const sdm::MapOptions options{.sign = sdm::SignMethod::none};
-    const sdm::bench::Contender ours{[&] { sdm::compute_map(surface, sites, options, map); }, 1};
-    const double ms = sdm::bench::median(sdm::bench::take_turns(std::array{ours}, 3)[0]);
+  const sdm::Surface surface(sdm::bench::load(o1, o1_steps), {.resolution = resolution});
+  const sdm::Sites sites(o2 == "box" ? sdm::bench::paper_box(surface.mesh())
+                                     : sdm::bench::load(o2, o2_steps));
+  sdm::DistanceMap map;
+  const sdm::MapOptions options{.sign = sdm::SignMethod::none};
+  const sdm::bench::Contender ours{[&] { sdm::compute_map(surface, sites, options, map); }, 1};
+  const double ms = sdm::bench::median(sdm::bench::take_turns(std::array{ours}, 3)[0]);
 
-    std::vector<sdm::Vec3> points;
-    std::vector<float> distances;
-    for (const std::uint32_t texel : surface.sample_texels()) {
-      points.push_back(surface.texel_point(texel));
-      distances.push_back(map.distance[texel]);
-    }
-    write<sdm::Vec3>(out / "points", points);
-    write<float>(out / "distances", distances);
-    write<sdm::Vec3>(out / "vertices", sites.mesh().positions);
-    write<sdm::Triangle>(out / "triangles", sites.mesh().triangles);
-    std::cout << points.size() << ' ' << ms << '\n';
-  } catch (const sdm::Error& error) {
-    std::cerr << error.what() << '\n';
-    return 1;
+  std::vector<sdm::Vec3> points;
+  std::vector<float> distances;
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    points.push_back(surface.texel_point(texel));
+    distances.push_back(map.distance[texel]);
   }
+  write<sdm::Vec3>(out / "points", points);
+  write<float>(out / "distances", distances);
+  write<sdm::Vec3>(out / "vertices", sites.mesh().positions);
+  write<sdm::Triangle>(out / "triangles", sites.mesh().triangles);
+  std::cout << points.size() << ' ' << ms << '\n';
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "map_samples: %s\n", error.what());
+  return 1;
 }

@@ -177,7 +177,7 @@ void OutputFolder::commit() {
   // Those of earlier runs are absent while files are moved: where there is one, the results are of one run,
   // even if the process is killed here.
   const auto is_last = [](const auto& move) { return concludes(move.second); };
-  std::ranges::stable_partition(moves, std::not_fn(is_last));
+  std::stable_partition(moves.begin(), moves.end(), std::not_fn(is_last));
   for (const auto& [from, to] : moves) create_folder(to.parent_path());
   std::error_code ignored;
   for (const fs::path& file : earlier_)

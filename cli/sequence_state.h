@@ -18,6 +18,7 @@
 /// Of positions and triangles.
 [[nodiscard]] std::uint64_t hash_of(const sdm::Mesh& mesh);
 
+// NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw
 struct SequenceState {
   static constexpr const char* kFile = "resume.state";
 

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <string>
 
+#include "core/memory.h"
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
 #include "io/write/npy.h"
@@ -27,15 +29,17 @@ struct SequenceWriter::Impl {
   }
 };
 
-SequenceWriter::SequenceWriter(const std::filesystem::path& file, std::size_t vertices)
+SequenceWriter::SequenceWriter(const std::filesystem::path& file, std::size_t vertices) try
     : impl_(new Impl{.out = AtomicFile(file), .vertices = vertices}) {
-  impl_->write_header();  // rewritten now that the number of frames is known
+  impl_->write_header();  // rewritten by commit(), when the number of frames is known
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
 }
 SequenceWriter::~SequenceWriter() = default;
 SequenceWriter::SequenceWriter(SequenceWriter&&) noexcept = default;
 SequenceWriter& SequenceWriter::operator=(SequenceWriter&&) noexcept = default;
 
-void SequenceWriter::add(std::span<const Vec3> positions) {
+void SequenceWriter::add(std::span<const Vec3> positions) try {
   if (positions.size() != impl_->vertices)
     throw Error(fmt::format("frame {} has {} positions for {} vertices", impl_->frames, positions.size(),
                             impl_->vertices));
@@ -50,11 +54,15 @@ void SequenceWriter::add(std::span<const Vec3> positions) {
   impl_->out.stream().write(impl_->bytes.data(), static_cast<std::streamsize>(impl_->bytes.size()));
   impl_->out.check();
   ++impl_->frames;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing a sequence");
 }
 
-void SequenceWriter::commit() {
+void SequenceWriter::commit() try {
   impl_->write_header();
   impl_->out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing a sequence");
 }
 
 }  // namespace sdm

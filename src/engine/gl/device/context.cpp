@@ -125,7 +125,7 @@ std::vector<Context> Context::open(bool only_the_first) {
     throw Error("no device with OpenGL 4.5 was found (" + faults +
                 "): install or update the driver of a graphics card, or libgl1-mesa-dri (Debian) for "
                 "OpenGL on the processor, or use another engine");
-  std::ranges::stable_partition(opened, [](const Context& c) { return !c.device().software; });
+  std::stable_partition(opened.begin(), opened.end(), [](const Context& c) { return !c.device().software; });
   return opened;
 }
 

@@ -56,7 +56,7 @@ std::vector<DisplayCandidate> display_candidates() {
     c.name = "EGL device " + std::to_string(i);
     c.software = is_software(all[i]);
   }
-  std::ranges::stable_partition(result, [](const DisplayCandidate& c) { return !c.software; });
+  std::stable_partition(result.begin(), result.end(), [](const DisplayCandidate& c) { return !c.software; });
 
   const auto add_last_resort = [&](EGLDisplay display, const char* name) {
     DisplayCandidate& c = result.emplace_back();
