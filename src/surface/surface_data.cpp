@@ -95,19 +95,16 @@ void SurfaceData::place_samples(std::size_t first, std::span<Vec3> points) const
   // The quotient of texel + 1/2 is at least 1/2 / resolution away from integers: its rounding does not
   // matter.
   const double inverse = 1.0 / resolution;
-  const auto corner = [&](std::uint32_t face) { return &mesh.positions[mesh.triangles[face][0]]; };
   constexpr std::size_t kAhead = 16;  // faces are scattered: prefetch what the samples after these will need
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i + 2 * kAhead < points.size()) {
       __builtin_prefetch(&mesh.triangles[faces[i + 2 * kAhead]]);
       __builtin_prefetch(&maps[faces[i + kAhead]]);
-      __builtin_prefetch(corner(faces[i + kAhead]));
+      __builtin_prefetch(&mesh.positions[mesh.triangles[faces[i + kAhead]][0]]);
     }
-    const atlas::FaceMap& map = maps[faces[i]];
     const auto row = static_cast<std::uint32_t>((texels[i] + 0.5) * inverse);
     const std::uint32_t column = texels[i] - row * resolution;
-    const Vec2 d = Vec2{column + 0.5, row + 0.5} - map.origin;
-    points[i] = *corner(faces[i]) + d[0] * map.edges[0] + d[1] * map.edges[1];
+    points[i] = to_surface(faces[i], {column + 0.5, row + 0.5});
   }
 }
 

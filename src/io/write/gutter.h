@@ -34,8 +34,8 @@ class Gutter {
 
   std::uint32_t resolution_, blocks_;  ///< texels, and blocks of kGutter² texels, a side
   std::span<const std::uint32_t> owners_;
-  std::vector<std::uint8_t>
-      close_;  ///< for each block, whether it or one of the eight around it has an owned texel
+  /// For each block, whether it or one of the eight around it has an owned texel.
+  std::vector<std::uint8_t> close_;
 };
 
 }  // namespace sdm::io
