@@ -15,9 +15,9 @@
 namespace sdm::surface {
 namespace {
 
-constexpr std::uint32_t kSide = 4;              // of a square of texels
-constexpr std::size_t kPacket = kSide * kSide;  // samples
-constexpr std::size_t kParallel = 1 << 13;      // below this many items, one thread
+constexpr std::uint32_t kSide = 4;                           // of a square of texels
+constexpr std::size_t kPacket = std::size_t{kSide} * kSide;  // samples
+constexpr std::size_t kParallel = 1 << 13;                   // below this many items, one thread
 
 /// A square of texels, or a single one that is in no such square.
 struct Item {

@@ -161,7 +161,8 @@ struct Resume : SequenceCommand {
     return arguments;
   }
   /// The number of frames that were kept.
-  std::size_t interrupt(std::vector<std::string> more = {}, int after_lines = 5, int signal = SIGINT) const {
+  std::size_t interrupt(const std::vector<std::string>& more = {}, int after_lines = 5,
+                        int signal = SIGINT) const {
     const Outcome run = run_sdm(into(out, more), {.interrupt_after_lines = after_lines, .signal = signal});
     EXPECT_EQ(run.code, 128 + signal) << run.err;
     const std::size_t kept = lines().size();

@@ -16,7 +16,7 @@ HalfPlane restrict(const HalfSpace& wall, const PlanarDomain& domain) {
 
 std::array<HalfSpace, 6> sides(const OrientedBox& box) {
   std::array<HalfSpace, 6> result;
-  for (int k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < 3; ++k) {
     const double middle = dot(box.axes[k], box.centre);
     result[2 * k] = {box.axes[k], middle - box.half[k]};
     result[2 * k + 1] = {-box.axes[k], -middle - box.half[k]};

@@ -38,12 +38,17 @@ constexpr Rgb kWithin{92, 184, 92};
 constexpr std::array<Rgb, 3> kAbove{{{255, 214, 94}, {240, 120, 40}, {165, 15, 21}}};
 constexpr std::array<Rgb, 3> kBelow{{{150, 200, 235}, {60, 130, 200}, {8, 48, 107}}};
 
+// The nearest integer to `x` in [0, 255]. Not std::lround, which is a call for every channel of every texel.
+std::uint8_t to_byte(double x) {
+  return static_cast<std::uint8_t>(x + 0.5);  // NOLINT(bugprone-incorrect-roundings): x is not negative
+}
+
 // Piecewise linear through equally spaced colours; t is clamped to [0, 1].
 Rgb gradient(std::span<const Rgb> colors, double t) {
   const double s = std::clamp(t, 0.0, 1.0) * static_cast<double>(colors.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(s), colors.size() - 2);
   const double f = s - static_cast<double>(i);
-  const auto mix = [f](int a, int b) { return static_cast<std::uint8_t>(a + f * (b - a) + 0.5); };
+  const auto mix = [f](int a, int b) { return to_byte(a + f * (b - a)); };
   const Rgb &a = colors[i], &b = colors[i + 1];
   return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
@@ -57,8 +62,7 @@ Rgb hsl(double hue, double saturation, double lightness) {
   const double chroma = saturation * std::min(lightness, 1 - lightness);
   const auto channel = [&](double n) {
     const double k = std::fmod(n + 12 * hue, 12);
-    return static_cast<std::uint8_t>(
-        255 * (lightness - chroma * std::clamp(std::min(k - 3, 9 - k), -1.0, 1.0)) + 0.5);
+    return to_byte(255 * (lightness - chroma * std::clamp(std::min(k - 3, 9 - k), -1.0, 1.0)));
   };
   return {channel(0), channel(8), channel(4)};
 }
@@ -136,9 +140,7 @@ Rgb direction_color(const Vec3f& vector) {
   if (std::isnan(length)) return kNoValue;
   // The zero vector has no direction: use the centre of the colour cube.
   const double scale = length > 0 ? 1 / length : 0;
-  const auto channel = [scale](double x) {
-    return static_cast<std::uint8_t>(127.5 * (1 + std::clamp(scale * x, -1.0, 1.0)) + 0.5);
-  };
+  const auto channel = [scale](double x) { return to_byte(127.5 * (1 + std::clamp(scale * x, -1.0, 1.0))); };
   return {channel(vector[0]), channel(vector[1]), channel(vector[2])};
 }
 
