@@ -19,6 +19,11 @@ constexpr std::uint32_t kSide = 4;                           // of a square of t
 constexpr std::size_t kPacket = std::size_t{kSide} * kSide;  // samples
 constexpr std::size_t kParallel = 1 << 13;                   // below this many items, one thread
 
+// Up to this resolution every texel is on its own: packets are then smaller and maps faster, which is what
+// counts where one atlas serves many frames. Above it, ordering single texels would take longer than maps
+// gain.
+constexpr std::uint32_t kSingleTexels = 512;
+
 /// A square of texels, or a single one that is in no such square.
 struct Item {
   Vec3f point;          ///< of the square's middle, in the unit frame
@@ -71,7 +76,7 @@ class SampleOrder {
       return face == kNone ? kNone : surface_.face_charts[face];
     };
     const std::uint32_t chart = chart_of(left, top);
-    bool whole = chart != kNone && right - left == kSide && bottom - top == kSide;
+    bool whole = n > kSingleTexels && chart != kNone && right - left == kSide && bottom - top == kSide;
     for (std::uint32_t y = top; y < bottom && whole; ++y)
       for (std::uint32_t x = left; x < right && whole; ++x) whole = chart_of(x, y) == chart;
     const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t texel, bool single) {
