@@ -52,9 +52,7 @@ bool agree(ProximityQuery& query, const std::array<DistanceMap, 2>& maps) {
   const double tolerance = 2e-6 * diagonal(box);
   const BoundedLength &separation = query.separation(),
                       depth = query.penetration_depth().value_or(BoundedLength{});
-  const bool exact = separation.certainty == Certainty::exact;
-  return (exact ? separation.value <= least + tolerance : std::abs(separation.value - least) <= tolerance) &&
-         std::abs(depth.value - deepest) <= tolerance;
+  return separation.value <= least + tolerance && std::abs(depth.value - deepest) <= tolerance;
 }
 
 /// Milliseconds of each frame.
@@ -72,10 +70,10 @@ std::vector<double> sum(std::vector<double> a, const std::vector<double>& b) {
   return a;
 }
 
-Outcome measure(const Trial& trial, scenes::SceneKind kind, bool exact) {
+Outcome measure(const Trial& trial, scenes::SceneKind kind) {
   const Motion motion(kind, trial.repetitions);
   const ThreadLimit limit(trial.threads);
-  ProximityQuery query(motion.first[0], motion.first[1], {.atlas = {.resolution = 512}, .exact = exact});
+  ProximityQuery query(motion.first[0], motion.first[1], {.atlas = {.resolution = 512}});
   std::array<DistanceMap, 2> maps;
   Times times;
   std::size_t colliding = 0, samples = 0;
@@ -106,20 +104,16 @@ Outcome measure(const Trial& trial, scenes::SceneKind kind, bool exact) {
 
 std::vector<Case> cases() {
   std::vector<Case> result;
-  const auto add = [&](std::string name, scenes::SceneKind kind, const std::string& what, bool exact) {
-    result.push_back(
-        {.name = std::move(name),
-         .description = what + ", 512²" + (exact ? "; separation and collision from triangles" : ""),
-         .run = [=](const Trial& trial) { return measure(trial, kind, exact); },
-         .repetitions = 150,
-         .threads = 0});
+  const auto add = [&](std::string name, scenes::SceneKind kind, const std::string& what) {
+    result.push_back({.name = std::move(name),
+                      .description = what + ", 512²",
+                      .run = [=](const Trial& trial) { return measure(trial, kind); },
+                      .repetitions = 150,
+                      .threads = 0});
   };
-  for (const bool exact : {false, true}) {
-    const std::string suffix = exact ? "-exact" : "";
-    add("letters" + suffix, scenes::SceneKind::letters, "the scene of two letters", exact);
-    add("bunnies" + suffix, scenes::SceneKind::bunnies, "the scene of two bunnies", exact);
-    add("figure" + suffix, scenes::SceneKind::figure, "the scene of a figure in a box", exact);
-  }
+  add("letters", scenes::SceneKind::letters, "the scene of two letters");
+  add("bunnies", scenes::SceneKind::bunnies, "the scene of two bunnies");
+  add("figure", scenes::SceneKind::figure, "the scene of a figure in a box");
   return result;
 }
 

@@ -130,7 +130,7 @@ void add_options(CLI::App& app, BodiesCommand& c) {
   app.add_option("--max-distance", c.options.max_distance, "Omit pairs, and texels, farther apart than D")
       ->check(number("a positive number", [](double x) { return x > 0; }))
       ->type_name("D");
-  add_proximity_options(app, c.options.exact, c.units);
+  add_units_option(app, c.units);
   add_write_option(app, c.map_files);
   add_resolution_option(app, c.options.atlas, "all bodies' maps");
   add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a table");

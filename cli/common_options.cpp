@@ -63,9 +63,7 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
       ->type_name("NAME");
 }
 
-void add_proximity_options(CLI::App& app, bool& exact, std::string& units) {
-  app.add_flag("--exact", exact,
-               "Compute separation and collision from the triangles instead of from samples with bounds");
+void add_units_option(CLI::App& app, std::string& units) {
   app.add_option("--units", units, "Units of the meshes, for printed and drawn values")->type_name("NAME");
 }
 

@@ -40,7 +40,6 @@ Json options_of(const SequenceCommand& command) {
   return {{"version", sdm::kVersion},
           {"--transform-o1", pair.transform_o1},
           {"--transform-o2", pair.transform_o2},
-          {"--exact", pair.options.exact},
           {"--units", pair.units},
           {"--margin", pair.options.contact_margin},
           {"--resolution", pair.options.atlas.resolution},

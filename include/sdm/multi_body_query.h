@@ -15,12 +15,11 @@
 namespace sdm {
 
 struct MultiBodyOptions {
-  AtlasOptions atlas{.resolution = 128};  ///< of each body; distances are measured at its samples
-  /// Compute separation from the triangles; otherwise from the samples, with bounds. Collision is always
-  /// computed from the triangles.
-  bool exact = false;
+  /// Of bodies that are given as meshes. Depth and contacts are measured at its samples.
+  AtlasOptions atlas{.resolution = 128};
   /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
   double max_distance = std::numeric_limits<double>::infinity();
+  double contact_margin = 0;  ///< as that of ProximityOptions
 };
 
 /// The results of ProximityQuery for one pair: O1 is `first`, O2 is `second`.
@@ -31,44 +30,66 @@ struct PairProximity {
   std::optional<BoundedLength> penetration_depth{};
 };
 
+/// A contact of two bodies, as reported by ProximityQuery: O1 is `first`, O2 is `second`.
+struct BodyContact {
+  std::uint32_t first = kNone, second = kNone;  ///< first < second
+  Contact contact{};
+};
+
 /// The distance map of one body to all others.
 struct NearestMap {
-  /// As computed by compute_map, at each texel to the body with the nearest surface, or to the one with the
-  /// lowest index if several are equally near. The sign is that of that body alone: negative inside it if it
-  /// is closed and orientable.
+  /// As computed by compute_map with all bodies in their poses, at each texel to the body with the nearest
+  /// surface, or to the one with the lowest index if several are equally near. The sign is that of that body
+  /// alone: negative inside it if it is closed and orientable.
   DistanceMap map;
   /// The index of that body for each texel; kNone where the map has no value.
   std::vector<std::uint32_t> body;
 };
 
-/// Proximity of deforming bodies, each against all others, for simulation loops.
+/// Proximity of bodies that move and deform, each against all others, for simulation loops. A body is a shape
+/// in a pose, as in ProximityQuery; many bodies can share a shape.
+///
+/// Threads: an object is used by one thread at a time, but for const functions, which may run concurrently;
+/// objects that share shapes may be used concurrently.
 class SDM_API MultiBodyQuery {
  public:
   /// Builds the atlas and the sites of every body; any number of bodies is allowed, including 0. Throws
   /// sdm::Error as Surface and Sites do, naming the body, and for a maximum distance that is not positive.
   /// Cost: that of all atlases and sites.
   explicit MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options = {});
+  /// The same for shapes that are there already. Cost: constant for each.
+  explicit MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options = {});
   ~MultiBodyQuery();
   MultiBodyQuery(MultiBodyQuery&&) noexcept;
   MultiBodyQuery& operator=(MultiBodyQuery&&) noexcept;
 
   [[nodiscard]] std::size_t size() const;
 
-  /// Moves the vertices of a body, keeping its triangles. Throws sdm::Error, and changes nothing, for a body
-  /// that does not exist, a wrong number of positions, or a coordinate that is not finite or beyond 1e37.
-  /// Cost: linear.
+  /// Sets the pose of a body, as ProximityQuery::set_pose does. Throws sdm::Error, and changes nothing, also
+  /// for a body that does not exist. Cost: constant.
+  void set_pose(std::size_t body, const Transform& pose);
+  /// The same for all bodies: one pose per body.
+  void set_poses(std::span<const Transform> poses);
+  [[nodiscard]] Transform pose(std::size_t body) const;
+
+  /// Moves the vertices of a body, keeping its triangles and its pose. Throws sdm::Error, and changes
+  /// nothing, for a body that does not exist or whose Shape is shared, a wrong number of positions, or a
+  /// coordinate that is not finite or beyond 1e37. Cost: linear.
   void refit(std::size_t body, std::span<const Vec3> positions);
   /// The same for all bodies, on all cores: one entry per body; an empty one leaves the body unchanged.
   void refit(std::span<const std::span<const Vec3>> positions);
 
-  /// Returns all pairs that collide or whose separation is at most max_distance, and those for which the
-  /// samples cannot rule this out. No pair has separation.lower > max_distance unless it collides. Sorted by
-  /// first, then by second body. The results of a pair are those of ProximityQuery. Computed by the first
-  /// call after a refit and valid until the next one. Neither this nor refit() allocates memory once the
-  /// bodies have been through similar poses, unless a solid intersects itself. Cost: a sweep over the boxes
-  /// of the bodies, then that of ProximityQuery for each candidate pair, the pairs distributed over all
-  /// cores.
+  /// Returns all pairs that collide or whose separation is at most max_distance. Sorted by first, then by
+  /// second body. The results of a pair are those of ProximityQuery. Computed by the first call after a body
+  /// has moved, and valid until one moves again. Neither this nor refit() allocates memory once the bodies
+  /// have been through similar poses, unless a solid intersects itself. Cost: a sweep over the boxes of the
+  /// bodies, then that of ProximityQuery for each candidate pair, the pairs distributed over all cores.
   [[nodiscard]] std::span<const PairProximity> pairs();
+  /// Returns the contacts of all pairs, those of each pair as by ProximityQuery::contacts, sorted by first,
+  /// then by second body. Computed by the first call after a body has moved, and valid until one moves again.
+  /// Cost: a sweep over the boxes of the bodies, then that of ProximityQuery::contacts for each pair whose
+  /// boxes are within the margin.
+  [[nodiscard]] std::span<const BodyContact> contacts();
   /// The number of pairs whose boxes were within max_distance of each other when pairs() was last computed.
   [[nodiscard]] std::size_t candidate_pairs() const;
 
@@ -80,7 +101,8 @@ class SDM_API MultiBodyQuery {
   /// The same, into `nearest`, whose memory is reused where possible.
   void nearest_map(std::size_t body, NearestMap& nearest) const;
 
-  /// The atlas and the sites of a body. Both throw sdm::Error for a body that does not exist.
+  /// The atlas and the sites of a body, in the frame of its mesh, without the pose. Both throw sdm::Error for
+  /// a body that does not exist.
   [[nodiscard]] const Surface& surface(std::size_t body) const;
   [[nodiscard]] const Sites& sites(std::size_t body) const;
 

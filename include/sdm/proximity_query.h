@@ -3,6 +3,8 @@
 
 #include <sdm/api.h>
 #include <sdm/map.h>
+#include <sdm/shape.h>
+#include <sdm/transform.h>
 
 #include <array>
 #include <cstdint>
@@ -43,46 +45,68 @@ struct Contact {
   Vec3 normal{};
   double depth = 0;  ///< ±|point2 − point1|, exact; positive if the sampled point is inside the other body
   std::uint32_t patch = 0;  ///< contact patch: contacts on connected parts of the surface share one
+  /// A face of O1 that contains point1 and one of O2 that contains point2, and the barycentric coordinates of
+  /// the points there, to rounding.
+  std::array<std::uint32_t, 2> faces{kNone, kNone};
+  std::array<Vec3, 2> barycentric{};
+  /// Identifies the part of a surface whose deepest point this is (see ProximityQuery::contacts): unique
+  /// among the contacts of a pair, and the same in all frames, so that a solver can start from the forces of
+  /// the frame before.
+  std::uint64_t id = 0;
 };
 
 struct ProximityOptions {
-  AtlasOptions atlas{.resolution = 512};  ///< of both bodies; distances are measured at its samples
-  /// Compute separation from the triangles; otherwise from the samples, with bounds. Collision is always
-  /// computed from the triangles.
-  bool exact = false;
+  /// Of bodies that are given as meshes. Depth and contacts are measured at its samples.
+  AtlasOptions atlas{.resolution = 512};
   /// Contacts are reported for samples inside the other body or within this distance of it; ≥ 0, in units of
   /// the meshes.
   double contact_margin = 0;
 };
 
-/// Proximity of two deforming bodies, for simulation loops.
+/// Proximity of two bodies that move and deform, for simulation loops.
+///
+/// Separation and collision are computed from the triangles. Depth and contacts are measured at samples.
+///
+/// A body is a shape in a pose: moving it rigidly costs nothing, whatever its size. All results are in space,
+/// with both bodies in their poses.
 ///
 /// A closed, orientable body is a solid, with the inside of SignMethod::exact; any other body is a surface
-/// without an inside. Distances are measured at those samples of both bodies' atlases that can affect a
+/// without an inside. Distances d are measured at those samples of both bodies' atlases that can affect a
 /// result. As distances are 1-Lipschitz, they and the covering radii R of the samples
 /// (SamplingBound::sample_radii) bound the distance everywhere:
-///     min (|d| − R) ≤ separation ≤ min |d|,    max (−d) ≤ penetration depth ≤ max (R − d).
+///     max (−d) ≤ penetration depth ≤ max (R − d).
 /// d is negative inside a solid; for the depth it is there the distance to the boundary of the solid: the
 /// parts of its surface that have the inside on one side only. Where the solid intersects itself, that
 /// distance has bounds of its own.
+///
+/// Threads: an object is used by one thread at a time; objects that share shapes may be used concurrently.
 class SDM_API ProximityQuery {
  public:
   /// Throws sdm::Error as Surface and Sites do, and for a margin that is negative or not finite. Cost: that
   /// of the atlases and sites of both bodies.
   ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options = {});
+  /// The same for shapes that are there already; their atlases are those of the shapes. Cost: constant.
+  ProximityQuery(Shape o1, Shape o2, const ProximityOptions& options = {});
   ~ProximityQuery();
   ProximityQuery(ProximityQuery&&) noexcept;
   ProximityQuery& operator=(ProximityQuery&&) noexcept;
 
-  /// Moves the vertices of the bodies, keeping their triangles; other triangles need a new ProximityQuery. An
-  /// empty span leaves a body unchanged. Throws sdm::Error, and changes nothing, for a wrong number of
-  /// positions or a coordinate that is not finite. Cost: that of Sites::refit. Neither this nor the queries
-  /// allocate memory once the bodies have been through similar poses, unless a solid intersects itself.
+  /// Sets the pose of a body, 0 or 1: a map from the frame of its mesh to space, of a rotation, a uniform
+  /// scale and a translation. Initially the identity. The nearest such map is used; throws sdm::Error, and
+  /// changes nothing, if `pose` differs from it by more than 1e-5 of the scale. Cost: constant.
+  void set_pose(int body, const Transform& pose);
+  [[nodiscard]] Transform pose(int body) const;
+
+  /// Moves the vertices of the bodies, keeping their triangles and poses; other triangles need a new
+  /// ProximityQuery. An empty span leaves a body unchanged. Throws sdm::Error, and changes nothing, for a
+  /// wrong number of positions, a coordinate that is not finite, or a body whose Shape is shared with
+  /// anything else. Cost: that of Sites::refit. Neither this nor the queries allocate memory once the bodies
+  /// have been through similar poses, unless a solid intersects itself.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
-  // Results are computed by the first call after a refit.
+  // Results are computed by the first call after a body has moved.
 
-  /// The smallest distance between the two surfaces; exactly 0 if they intersect.
+  /// The smallest distance between the two surfaces, from the triangles: exact, and 0 if they intersect.
   [[nodiscard]] const BoundedLength& separation();
   /// Whether the surfaces intersect or one body is a solid that contains part of the other. Always exact,
   /// from the triangles.
@@ -90,20 +114,21 @@ class SDM_API ProximityQuery {
   /// The largest distance from a surface point of either body that lies inside the other to the boundary of
   /// that other body. Exactly 0 if they do not collide, otherwise bounded. Empty if neither body is a solid.
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
-  /// The contacts of both bodies. The samples of each chart in each block (256 consecutive samples) that lie
-  /// inside the other body or within the margin have one contact, at the one with the least signed distance
-  /// to the surface of the other body. If that body intersects itself, the contact is with a point of its
-  /// boundary, closest to about 1/1000 of its size, or else with the closest point of its surface. Sorted by
-  /// patch, the patch with the deepest contact first, and by decreasing depth within a patch. Contacts belong
-  /// to the same patch if the boxes of their samples, grown by the covering radii, intersect: a connected
-  /// contact region is never divided.
+  /// The contacts of both bodies: none, at the cost of colliding(), if they are farther apart than the
+  /// margin. The samples of each chart in each block (256 consecutive samples) that lie inside the other body
+  /// or within the margin have one contact, at the one with the least signed distance to the surface of the
+  /// other body. If that body intersects itself, the contact is with a point of its boundary, closest to
+  /// about 1/1000 of its size, or else with the closest point of its surface. Sorted by patch, the patch with
+  /// the deepest contact first, and by decreasing depth within a patch. Contacts belong to the same patch if
+  /// the boxes of their samples, grown by the covering radii, intersect: a connected contact region is never
+  /// divided.
   [[nodiscard]] std::span<const Contact> contacts();
 
-  /// O1 for 0, O2 for 1.
+  /// O1 for 0, O2 for 1; in the frames of their meshes, without the poses.
   [[nodiscard]] const Surface& surface(int body) const;
   [[nodiscard]] const Sites& sites(int body) const;
-  /// The number of samples of both bodies that the last results were measured at; no other sample can affect
-  /// them.
+  /// The number of samples of both bodies that depth and contacts were measured at; no other sample can
+  /// affect them. 0 before either was computed, or if neither needed any.
   [[nodiscard]] std::size_t samples_used() const;
 
  private:

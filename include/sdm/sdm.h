@@ -15,6 +15,7 @@
 #include <sdm/sampling_bound.h>
 #include <sdm/self_intersections.h>
 #include <sdm/self_proximity_query.h>
+#include <sdm/shape.h>
 #include <sdm/sign.h>
 #include <sdm/sites.h>
 #include <sdm/solid.h>

@@ -20,6 +20,9 @@ struct SDM_API Transform {
   [[nodiscard]] static Transform scaling(double factor);
   /// Rotates about the X, then the Y, then the Z axis, right-handed. Multiples of 90° are exact.
   [[nodiscard]] static Transform rotation(const Vec3& degrees);
+  /// The rotation of a quaternion w + x i + y j + z k, which need not have length 1. Throws sdm::Error if it
+  /// is zero or not finite.
+  [[nodiscard]] static Transform quaternion(const std::array<double, 4>& wxyz);
 
   [[nodiscard]] Vec3 operator()(const Vec3& p) const;
   /// The determinant of the linear part; negative for a reflection.

@@ -162,6 +162,7 @@ SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
     if (whole || is_boundary(sides_beside(nearest.point, normalized(nearest.point - q)))) {
       found.upper = nearest.bound + (whole ? 0 : kBeside);
       found.point = solid_.frame.origin + unit * nearest.point;
+      found.face = piece.face;
       found.lower = std::min(found.lower, nearest.bound);
       break;
     }
@@ -176,7 +177,7 @@ SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
       for (const Piece& part : piece.divided()) push_piece(part);
   }
   found.lower = std::min(found.lower, found.upper);
-  return {unit * found.lower, unit * found.upper, found.point};
+  return {unit * found.lower, unit * found.upper, found.point, found.face};
 }
 
 SolidBoundary::Volume SolidBoundary::volume() const {

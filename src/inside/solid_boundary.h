@@ -2,6 +2,7 @@
 // on one side only.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,6 +23,7 @@ class SolidBoundary {
   struct Closest {
     double lower = 0, upper = 0;
     std::optional<Vec3> point{};
+    std::uint32_t face = kNone;  ///< which contains the point
   };
   /// The closest point of the boundary to a point inside the solid. Faces that others intersect are divided
   /// into pieces, which are boundary or not. Cost: O(log n) where no faces intersect nearby, at most that of

@@ -42,6 +42,19 @@ Transform Transform::rotation(const Vec3& degrees) {
   return rotation_about(2, degrees[2]) * rotation_about(1, degrees[1]) * rotation_about(0, degrees[0]);
 }
 
+Transform Transform::quaternion(const std::array<double, 4>& wxyz) {
+  const auto& [w, x, y, z] = wxyz;
+  const double squared = w * w + x * x + y * y + z * z, s = 2 / squared;
+  if (!(squared > 0 && std::isfinite(squared) && std::isfinite(s)))
+    throw Error("a quaternion of a rotation must be finite and not zero");
+  Transform map;
+  const double linear[3][3] = {{1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)},
+                               {s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)},
+                               {s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)}};
+  for (int i = 0; i < 3; ++i) std::ranges::copy(linear[i], map.rows[i].begin());
+  return map;
+}
+
 Vec3 Transform::operator()(const Vec3& p) const {
   Vec3 result;
   for (int k = 0; k < 3; ++k)

@@ -6,21 +6,22 @@
 #include <string>
 
 #include "core/memory.h"
-#include "mesh/validate.h"
-#include "proximity/sampled/body.h"
 #include "proximity/sampled/pair_answers.h"
+#include "proximity/sampled/posed_body.h"
 
 namespace sdm {
 
 struct ProximityQuery::Impl {
-  std::array<sampled::Body, 2> bodies;
+  std::array<sampled::PosedBody, 2> bodies;
   sampled::PairAnswers answers;
 
-  Impl(const Mesh& o1, const Mesh& o2, const ProximityOptions& options)
-      : bodies{sampled::Body(o1, options.atlas), sampled::Body(o2, options.atlas)},
-        answers({.exact = options.exact, .contact_margin = options.contact_margin}) {
-    answers.begin(bodies[0], bodies[1]);
+  Impl(Shape o1, Shape o2, const ProximityOptions& options)
+      : bodies{sampled::PosedBody(std::move(o1)), sampled::PosedBody(std::move(o2))},
+        answers(options.contact_margin) {
+    begin();
   }
+  // The faces that were closest before are most likely near the closest ones now.
+  void begin() { answers.begin(bodies[0], bodies[1], answers.closest_faces()); }
 };
 
 namespace {
@@ -32,55 +33,64 @@ const ProximityOptions& checked(const ProximityOptions& options) {
   return options;
 }
 
-}  // namespace
-
-ProximityQuery::ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options) try
-    : impl_(std::make_unique<Impl>(o1, o2, checked(options))) {
+// Calls `work`, whose errors of memory become sdm::Error.
+template <class Work>
+decltype(auto) with_memory(const Work& work) try {
+  return work();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a proximity query");
 }
+
+}  // namespace
+
+ProximityQuery::ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options)
+    : ProximityQuery(Shape(o1, checked(options).atlas), Shape(o2, options.atlas), options) {}
+ProximityQuery::ProximityQuery(Shape o1, Shape o2, const ProximityOptions& options)
+    : impl_(with_memory(
+          [&] { return std::make_unique<Impl>(std::move(o1), std::move(o2), checked(options)); })) {}
 ProximityQuery::~ProximityQuery() = default;
 ProximityQuery::ProximityQuery(ProximityQuery&&) noexcept = default;
 ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;
 
-void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) try {
-  const std::array positions{o1, o2};
-  for (int b = 0; b < 2; ++b)
-    if (!positions[b].empty())
-      mesh::validate_positions(positions[b], impl_->bodies[b].surface().mesh().positions.size());
-  for (int b = 0; b < 2; ++b)
-    if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
-  impl_->answers.begin(impl_->bodies[0], impl_->bodies[1]);
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a proximity query");
+void ProximityQuery::set_pose(int body, const Transform& pose) {
+  impl_->bodies[body].set_pose(pose);
+  impl_->begin();
 }
 
-const BoundedLength& ProximityQuery::separation() try {
-  return impl_->answers.separation();
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a proximity query");
+Transform ProximityQuery::pose(int body) const {
+  return impl_->bodies[body].pose().transform();
 }
-BoundedBool ProximityQuery::colliding() try {
-  return impl_->answers.colliding();
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a proximity query");
+
+void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
+  const std::array positions{o1, o2};
+  for (int b = 0; b < 2; ++b)
+    if (!positions[b].empty()) impl_->bodies[b].check_refit(positions[b]);
+  with_memory([&] {
+    for (int b = 0; b < 2; ++b)
+      if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
+    impl_->begin();
+  });
 }
-const std::optional<BoundedLength>& ProximityQuery::penetration_depth() try {
-  return impl_->answers.penetration_depth();
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a proximity query");
+
+const BoundedLength& ProximityQuery::separation() {
+  return with_memory([&]() -> const BoundedLength& { return impl_->answers.separation(); });
 }
-std::span<const Contact> ProximityQuery::contacts() try {
-  return impl_->answers.contacts();
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a proximity query");
+BoundedBool ProximityQuery::colliding() {
+  return with_memory([&] { return impl_->answers.colliding(); });
+}
+const std::optional<BoundedLength>& ProximityQuery::penetration_depth() {
+  return with_memory(
+      [&]() -> const std::optional<BoundedLength>& { return impl_->answers.penetration_depth(); });
+}
+std::span<const Contact> ProximityQuery::contacts() {
+  return with_memory([&] { return impl_->answers.contacts(); });
 }
 
 const Surface& ProximityQuery::surface(int body) const {
-  return impl_->bodies[body].surface();
+  return impl_->bodies[body].body().surface();
 }
 const Sites& ProximityQuery::sites(int body) const {
-  return impl_->bodies[body].sites();
+  return impl_->bodies[body].body().sites();
 }
 std::size_t ProximityQuery::samples_used() const {
   return impl_->answers.samples_used();

@@ -27,40 +27,35 @@ struct BodiesCommand : ::testing::Test, TwoTori {
     return arguments;
   }
   [[nodiscard]] MultiBodyQuery in_library(const MultiBodyOptions& options = {}) const {
-    return MultiBodyQuery({read_mesh(o1), read_mesh(o2), read_mesh(o3)}, options);
+    return MultiBodyQuery(std::vector{read_mesh(o1), read_mesh(o2), read_mesh(o3)}, options);
   }
 };
 
 TEST_F(BodiesCommand, PrintsThePairsOfTheLibrary) {
-  for (const bool exact : {false, true}) {
-    std::vector<std::string> more{"--json", "--units", "mm", "--resolution", "64"};
-    if (exact) more.emplace_back("--exact");
-    const Outcome run = run_sdm(bodies(more));
-    ASSERT_EQ(run.code, 0) << run.err;
-    const Json json = Json::parse(run.out);
-    MultiBodyQuery expected = in_library({.atlas = {.resolution = 64}, .exact = exact});
-    ASSERT_EQ(json["pairs"].size(), 3u);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const PairProximity& pair = expected.pairs()[i];
-      EXPECT_EQ(json["pairs"][i]["first"], pair.first);
-      EXPECT_EQ(json["pairs"][i]["second"], pair.second);
-      EXPECT_EQ(json["pairs"][i]["separation"]["value"], pair.separation.value);
-      EXPECT_EQ(json["pairs"][i]["separation"]["lower"], pair.separation.lower);
-      EXPECT_EQ(json["pairs"][i]["separation"]["kind"],
-                pair.separation.certainty == Certainty::exact ? "exact" : "bounded");
-      EXPECT_EQ(json["pairs"][i]["colliding"]["value"], pair.colliding.value);
-      EXPECT_EQ(json["pairs"][i]["penetration_depth"]["upper"], pair.penetration_depth->upper);
-    }
-    EXPECT_EQ(json["pairs"][0]["colliding"]["value"], true);
-    EXPECT_EQ(json["pairs"][1]["colliding"]["value"], false);
-    EXPECT_EQ(json["candidate_pairs"], 3);
-    EXPECT_EQ(json["bodies"][2]["file"], o3);
-    EXPECT_EQ(json["units"], "mm");
-    EXPECT_EQ(json["resolution"], 64);
-    EXPECT_TRUE(json["max_distance"].is_null());
-    for (const char* step : {"import", "build", "query"}) EXPECT_GT(json["time_ms"][step], 0) << step;
-    EXPECT_EQ(run.err, "") << "progress is for terminals";
+  const Outcome run = run_sdm(bodies({"--json", "--units", "mm", "--resolution", "64"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  MultiBodyQuery expected = in_library({.atlas = {.resolution = 64}});
+  ASSERT_EQ(json["pairs"].size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const PairProximity& pair = expected.pairs()[i];
+    EXPECT_EQ(json["pairs"][i]["first"], pair.first);
+    EXPECT_EQ(json["pairs"][i]["second"], pair.second);
+    EXPECT_EQ(json["pairs"][i]["separation"]["value"], pair.separation.value);
+    EXPECT_EQ(json["pairs"][i]["separation"]["lower"], pair.separation.lower);
+    EXPECT_EQ(json["pairs"][i]["separation"]["kind"], "exact");
+    EXPECT_EQ(json["pairs"][i]["colliding"]["value"], pair.colliding.value);
+    EXPECT_EQ(json["pairs"][i]["penetration_depth"]["upper"], pair.penetration_depth->upper);
   }
+  EXPECT_EQ(json["pairs"][0]["colliding"]["value"], true);
+  EXPECT_EQ(json["pairs"][1]["colliding"]["value"], false);
+  EXPECT_EQ(json["candidate_pairs"], 3);
+  EXPECT_EQ(json["bodies"][2]["file"], o3);
+  EXPECT_EQ(json["units"], "mm");
+  EXPECT_EQ(json["resolution"], 64);
+  EXPECT_TRUE(json["max_distance"].is_null());
+  for (const char* step : {"import", "build", "query"}) EXPECT_GT(json["time_ms"][step], 0) << step;
+  EXPECT_EQ(run.err, "") << "progress is for terminals";
 }
 
 TEST_F(BodiesCommand, LeavesOutWhatIsFar) {
@@ -73,7 +68,7 @@ TEST_F(BodiesCommand, LeavesOutWhatIsFar) {
   run = run_sdm(bodies({"--max-distance", "2"}));
   EXPECT_THAT(run.out, HasSubstr("  0      1       yes (exact)"));
   EXPECT_THAT(run.out, Not(HasSubstr("  0      2")));
-  run = run_sdm(bodies({"--exact"}));
+  run = run_sdm(bodies());
   EXPECT_THAT(run.out, HasSubstr("  0      2       no (exact)   "));
   EXPECT_EQ(run_sdm(bodies({"--quiet"})).out, "");
 }

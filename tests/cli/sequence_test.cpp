@@ -295,7 +295,6 @@ TEST_F(Resume, RefusesOtherOptionsAndInputs) {
       arguments.insert(arguments.end(), {option, value});
     expect_refusal(arguments, "the interrupted run had another " + option);
   }
-  expect_refusal(into(out, {"--resume", "--exact"}), "--exact");
   expect_refusal(into(out, {"--resume", "--no-temporal"}), "--no-temporal");
   std::vector<std::string> other = into(out, {"--resume"});
   other[2] = o1;

@@ -83,8 +83,8 @@ std::vector<Mesh> crowd() {
           moved(sphere(2), {40, 3, 2})};
 }
 
-MultiBodyOptions options(double max_distance = kAny, bool exact = false) {
-  return {.atlas = {.resolution = 64}, .exact = exact, .max_distance = max_distance};
+MultiBodyOptions options(double max_distance = kAny) {
+  return {.atlas = {.resolution = 64}, .max_distance = max_distance};
 }
 
 void expect_same(const BoundedLength& a, const BoundedLength& b) {
@@ -103,25 +103,20 @@ void expect_same(const PairProximity& a, const PairProximity& b) {
   if (a.penetration_depth) expect_same(*a.penetration_depth, *b.penetration_depth);
 }
 
-PairProximity by_query(const std::vector<Mesh>& meshes, std::uint32_t a, std::uint32_t b, bool exact) {
-  ProximityQuery query(meshes[a], meshes[b], {.atlas = {.resolution = 64}, .exact = exact});
+PairProximity by_query(const std::vector<Mesh>& meshes, std::uint32_t a, std::uint32_t b) {
+  ProximityQuery query(meshes[a], meshes[b], {.atlas = {.resolution = 64}});
   return {a, b, query.separation(), query.colliding(), query.penetration_depth()};
 }
 
-class ManyBodies : public testing::TestWithParam<bool> {};  // exact or not
-INSTANTIATE_TEST_SUITE_P(Modes, ManyBodies, testing::Bool(),
-                         [](const auto& mode) { return mode.param ? "exact" : "sampled"; });
-
-TEST_P(ManyBodies, AgreeWithPairQueries) {
+TEST(MultiBodyQuery, AgreesWithPairQueries) {
   const std::vector<Mesh> meshes = crowd();
   std::vector<PairProximity> expected;
   for (std::uint32_t a = 0; a < meshes.size(); ++a)
-    for (std::uint32_t b = a + 1; b < meshes.size(); ++b)
-      expected.push_back(by_query(meshes, a, b, GetParam()));
+    for (std::uint32_t b = a + 1; b < meshes.size(); ++b) expected.push_back(by_query(meshes, a, b));
   std::size_t colliding = 0;
   for (const double max_distance : {kAny, 2.0, 0.3, 0.01}) {
     SCOPED_TRACE(max_distance);
-    MultiBodyQuery bodies(meshes, options(max_distance, GetParam()));
+    MultiBodyQuery bodies(meshes, options(max_distance));
     std::set<std::pair<std::uint32_t, std::uint32_t>> reported;
     for (const PairProximity& pair : bodies.pairs()) {
       const auto same = std::ranges::find_if(
@@ -145,23 +140,19 @@ TEST_P(ManyBodies, AgreeWithPairQueries) {
   EXPECT_GE(colliding, 3u);
 }
 
-// The triangles, by FCL and by all pairs of them; and the samples, by their bounds.
+// By FCL and by all pairs of triangles.
 TEST(MultiBodyQuery, AgreesWithFclAndBruteForce) {
   const std::vector<Mesh> meshes = crowd();
-  MultiBodyQuery exact(meshes, options(kAny, true)), sampled(meshes, options());
-  ASSERT_EQ(exact.pairs().size(), meshes.size() * (meshes.size() - 1) / 2);
-  ASSERT_EQ(sampled.pairs().size(), exact.pairs().size());
+  MultiBodyQuery bodies(meshes, options());
+  ASSERT_EQ(bodies.pairs().size(), meshes.size() * (meshes.size() - 1) / 2);
   const Affine in_place;
   int apart = 0;
-  for (std::size_t i = 0; i < exact.pairs().size(); ++i) {
-    const PairProximity& pair = exact.pairs()[i];
+  for (std::size_t i = 0; i < bodies.pairs().size(); ++i) {
+    const PairProximity& pair = bodies.pairs()[i];
     const Mesh &a = meshes[pair.first], &b = meshes[pair.second];
     SCOPED_TRACE(std::to_string(pair.first) + ' ' + std::to_string(pair.second));
     const double tolerance = 1e-6 * scene_diagonal(a, b);
     EXPECT_NEAR(pair.separation.value, std::max(0.0, bench::FclPair(a, b).distance(in_place)), tolerance);
-    const BoundedLength& bounded = sampled.pairs()[i].separation;
-    EXPECT_LE(bounded.lower, pair.separation.value + tolerance);
-    EXPECT_GE(bounded.upper, pair.separation.value - tolerance);
     apart += pair.separation.value > 0;
     if (a.triangles.size() * b.triangles.size() > 4000) continue;
     const Sites o1(a), o2(b);
@@ -234,13 +225,13 @@ TEST(MultiBodyQuery, MapsNameTheLowestOfEquidistantBodies) {
   EXPECT_EQ(nearest.map.sign.reason, "3 of 3 other bodies are closed and orientable");
 }
 
-TEST_P(ManyBodies, DoNotDependOnTheirOrder) {
+TEST(MultiBodyQuery, DoesNotDependOnTheOrder) {
   const std::vector<Mesh> meshes = crowd();
   const std::vector<std::uint32_t> order{3, 6, 0, 7, 1, 5, 2, 4};
   std::vector<Mesh> shuffled;
   shuffled.reserve(order.size());
   for (const std::uint32_t i : order) shuffled.push_back(meshes[i]);
-  MultiBodyQuery bodies(meshes, options(3, GetParam())), others(shuffled, options(3, GetParam()));
+  MultiBodyQuery bodies(meshes, options(3)), others(shuffled, options(3));
   ASSERT_EQ(bodies.pairs().size(), others.pairs().size());
   for (const PairProximity& pair : others.pairs()) {
     const std::uint32_t first = order[pair.first], second = order[pair.second];
@@ -264,9 +255,9 @@ TEST_P(ManyBodies, DoNotDependOnTheirOrder) {
   }
 }
 
-TEST_P(ManyBodies, RefitForAnyThreadCount) {
+TEST(MultiBodyQuery, RefitsForAnyThreadCount) {
   std::vector<Mesh> meshes = crowd();
-  MultiBodyQuery bodies(meshes, options(2, GetParam()));
+  MultiBodyQuery bodies(meshes, options(2));
   const auto copy = [&] { return std::vector(bodies.pairs().begin(), bodies.pairs().end()); };
   const auto expect_all_same = [](const std::vector<PairProximity>& a, const std::vector<PairProximity>& b) {
     ASSERT_EQ(a.size(), b.size());
@@ -284,7 +275,7 @@ TEST_P(ManyBodies, RefitForAnyThreadCount) {
   std::vector<std::span<const Vec3>> positions(meshes.size());
   positions[1] = away.positions, positions[7] = back.positions;
   bodies.refit(positions);
-  MultiBodyQuery others(meshes, options(2, GetParam()));
+  MultiBodyQuery others(meshes, options(2));
   others.refit(7, back.positions);
   others.refit(1, away.positions);
   const std::vector<PairProximity> now = copy();
@@ -300,10 +291,10 @@ TEST_P(ManyBodies, RefitForAnyThreadCount) {
   EXPECT_GT(involved(7), 0);
 }
 
-TEST_P(ManyBodies, AllocateNothingAfterTheFirstFrames) {
+TEST(MultiBodyQuery, AllocatesNothingAfterTheFirstFrames) {
   const ThreadLimit alone(1);  // threads that join later allocate memory of their own
   const std::vector<Mesh> meshes = crowd();
-  MultiBodyQuery bodies(meshes, options(1, GetParam()));
+  MultiBodyQuery bodies(meshes, options(1));
   std::array<std::vector<std::vector<Vec3>>, 2> frames;
   for (std::size_t f = 0; f < 2; ++f)
     for (std::size_t i = 0; i < meshes.size(); ++i)
@@ -321,19 +312,19 @@ TEST_P(ManyBodies, AllocateNothingAfterTheFirstFrames) {
 }
 
 TEST(MultiBodyQuery, AcceptsFewBodies) {
-  MultiBodyQuery none({});
+  MultiBodyQuery none(std::vector<Mesh>{});
   EXPECT_EQ(none.size(), 0u);
   EXPECT_TRUE(none.pairs().empty());
   EXPECT_THROW((void)none.nearest_map(0), Error);
 
-  MultiBodyQuery one({cube()}, options());
+  MultiBodyQuery one(std::vector{cube()}, options());
   EXPECT_TRUE(one.pairs().empty());
   const NearestMap nearest = one.nearest_map(0);
   EXPECT_EQ(nearest.map.beyond_max_distance, one.surface(0).sample_texels().size());
   EXPECT_THAT(nearest.body, testing::Each(kNone));
   EXPECT_THAT(nearest.map.site_type, testing::Each(SiteType::none));
 
-  MultiBodyQuery two({cube(), moved(cube(), {5, 0, 0})}, options(2));
+  MultiBodyQuery two(std::vector{cube(), moved(cube(), {5, 0, 0})}, options(2));
   EXPECT_TRUE(two.pairs().empty());
   EXPECT_EQ(two.candidate_pairs(), 0u);
   EXPECT_EQ(two.nearest_map(0).map.beyond_max_distance, two.surface(0).sample_texels().size());
@@ -358,7 +349,7 @@ TEST(MultiBodyQuery, RejectsMismatchedInput) {
   EXPECT_THROW(MultiBodyQuery(meshes, options(0)), Error);
   EXPECT_THROW(MultiBodyQuery(meshes, options(std::nan(""))), Error);
   try {
-    MultiBodyQuery broken({cube(), {}}, options());
+    MultiBodyQuery broken(std::vector<Mesh>{cube(), {}}, options());
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "body 1: there are no triangles");

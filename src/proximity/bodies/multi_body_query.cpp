@@ -2,6 +2,7 @@
 #include <sdm/multi_body_query.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <mutex>
 #include <new>
@@ -11,16 +12,18 @@
 #include "core/geometry/sweep.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "mesh/validate.h"
 #include "proximity/bodies/nearest_body.h"
-#include "proximity/sampled/body.h"
 #include "proximity/sampled/pair_answers.h"
+#include "proximity/sampled/posed_body.h"
 
 namespace sdm {
 namespace {
 
 const MultiBodyOptions& checked(const MultiBodyOptions& options) {
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+  if (!(options.contact_margin >= 0 && std::isfinite(options.contact_margin)))
+    throw Error("a contact margin of " + std::to_string(options.contact_margin) +
+                " is out of range; use 0 or more");
   return options;
 }
 
@@ -36,14 +39,21 @@ void on_behalf_of(std::size_t body, const Work& work) {
   }
 }
 
+std::vector<Shape> shapes_of(std::span<const Mesh> meshes, const AtlasOptions& atlas) {
+  std::vector<Shape> shapes;
+  shapes.reserve(meshes.size());
+  for (const Mesh& mesh : meshes) on_behalf_of(shapes.size(), [&] { shapes.emplace_back(mesh, atlas); });
+  return shapes;
+}
+
 // A pool of the memory for pairs measured concurrently: one entry for each thread.
 class AnswersPool {
  public:
-  explicit AnswersPool(const sampled::PairAnswers::Options& options) : options_(options) {}
+  explicit AnswersPool(double contact_margin) : contact_margin_(contact_margin) {}
 
   std::unique_ptr<sampled::PairAnswers> take() {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<sampled::PairAnswers>(options_);
+    if (idle_.empty()) return std::make_unique<sampled::PairAnswers>(contact_margin_);
     std::unique_ptr<sampled::PairAnswers> answers = std::move(idle_.back());
     idle_.pop_back();
     return answers;
@@ -54,7 +64,7 @@ class AnswersPool {
   }
 
  private:
-  sampled::PairAnswers::Options options_;
+  double contact_margin_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<sampled::PairAnswers>> idle_;
 };
@@ -63,22 +73,31 @@ class AnswersPool {
 
 struct MultiBodyQuery::Impl {
   MultiBodyOptions options;
-  std::vector<sampled::Body> bodies;
+  std::vector<sampled::PosedBody> bodies;
   AnswersPool pool;
   Sweep sweep;
   std::vector<Box> boxes;
 
-  // Results since the last refit.
-  bool found = false;
+  struct ClosestFaces {
+    Sweep::Pair pair{};
+    sampled::FacePair faces = sampled::kNoFaces;
+  };
+  std::vector<ClosestFaces> hints, closest_faces;  // sorted by pair: of the last search, of this one
+
+  // Results since a body last moved.
+  bool pairs_found = false, contacts_found = false;
   std::size_t candidates = 0;
   std::vector<PairProximity> pairs;
+  std::vector<std::vector<BodyContact>> contacts_of;  // each candidate pair
+  std::vector<BodyContact> contacts;
 
-  Impl(std::span<const Mesh> meshes, const MultiBodyOptions& asked)
-      : options(asked), pool({.exact = asked.exact}), boxes(meshes.size()) {
-    bodies.reserve(meshes.size());
-    for (const Mesh& mesh : meshes)
-      on_behalf_of(bodies.size(), [&] { bodies.emplace_back(mesh, options.atlas); });
+  Impl(std::vector<Shape> shapes, const MultiBodyOptions& asked)
+      : options(asked), pool(asked.contact_margin), boxes(shapes.size()) {
+    bodies.reserve(shapes.size());
+    for (Shape& shape : shapes) bodies.emplace_back(std::move(shape));
   }
+
+  void moved() { pairs_found = contacts_found = false; }
 
   [[nodiscard]] std::size_t checked(std::size_t body) const {
     if (body >= bodies.size())
@@ -86,38 +105,77 @@ struct MultiBodyQuery::Impl {
                   "; they are numbered from 0");
     return body;
   }
+  void check_count(std::size_t count, const char* what) const {
+    if (count != bodies.size())
+      throw Error("there are " + std::to_string(bodies.size()) + " bodies, but " + what + " for " +
+                  std::to_string(count) + " were given; give one entry per body");
+  }
   void check(std::size_t body, std::span<const Vec3> positions) const {
-    on_behalf_of(
-        body, [&] { mesh::validate_positions(positions, bodies[body].surface().mesh().positions.size()); });
+    on_behalf_of(body, [&] { bodies[body].check_refit(positions); });
   }
 
-  void find_pairs() {
-    std::ranges::transform(bodies, boxes.begin(), &sampled::Body::box);
-    const std::span<const Sweep::Pair> near = sweep.near_pairs(boxes, options.max_distance);
-    candidates = near.size();
-    pairs.resize(near.size());
+  // Calls find(i, answers) for the i-th pair, on all cores.
+  template <class Find>
+  void for_near_pairs(std::span<const Sweep::Pair> near, const Find& find) {
+    closest_faces.resize(near.size());
     const auto measure = [&](std::size_t begin, std::size_t end) {
       std::unique_ptr<sampled::PairAnswers> answers = pool.take();
       for (std::size_t i = begin; i < end; ++i) {
-        const auto [a, b] = near[i];
-        answers->begin(bodies[a], bodies[b]);
-        pairs[i] = {.first = a,
-                    .second = b,
-                    .separation = answers->separation(),
-                    .colliding = answers->colliding(),
-                    .penetration_depth = answers->penetration_depth()};
+        answers->begin(bodies[near[i][0]], bodies[near[i][1]], hint(near[i]));
+        find(i, *answers);
+        closest_faces[i] = {near[i], answers->closest_faces()};
       }
       pool.give_back(std::move(answers));
     };
     parallel_for(near.size(), 1, measure);
-    std::erase_if(pairs, [&](const PairProximity& pair) {
-      return pair.separation.lower > options.max_distance && !pair.colliding.value;
+    std::swap(closest_faces, hints);
+  }
+  // The faces of a pair that were closest when it was last searched.
+  [[nodiscard]] sampled::FacePair hint(const Sweep::Pair& pair) const {
+    const auto found = std::ranges::lower_bound(hints, pair, {}, &ClosestFaces::pair);
+    return found != hints.end() && found->pair == pair ? found->faces : sampled::kNoFaces;
+  }
+  std::span<const Sweep::Pair> near_pairs(double reach) {
+    std::ranges::transform(bodies, boxes.begin(), &sampled::PosedBody::box);
+    return sweep.near_pairs(boxes, reach);
+  }
+
+  void find_pairs() {
+    const std::span<const Sweep::Pair> near = near_pairs(options.max_distance);
+    candidates = near.size();
+    pairs.resize(near.size());
+    for_near_pairs(near, [&](std::size_t i, sampled::PairAnswers& answers) {
+      if (!answers.within(options.max_distance)) {
+        pairs[i].first = kNone;
+        return;
+      }
+      pairs[i] = {.first = near[i][0],
+                  .second = near[i][1],
+                  .separation = answers.separation(),
+                  .colliding = answers.colliding(),
+                  .penetration_depth = answers.penetration_depth()};
     });
+    std::erase_if(pairs, [](const PairProximity& pair) { return pair.first == kNone; });
+  }
+
+  void find_contacts() {
+    const std::span<const Sweep::Pair> near = near_pairs(options.contact_margin);
+    if (contacts_of.size() < near.size()) contacts_of.resize(near.size());
+    for_near_pairs(near, [&](std::size_t i, sampled::PairAnswers& answers) {
+      contacts_of[i].clear();
+      for (const Contact& contact : answers.contacts())
+        contacts_of[i].push_back({near[i][0], near[i][1], contact});
+    });
+    contacts.clear();
+    for (const std::vector<BodyContact>& of_pair : std::span(contacts_of).first(near.size()))
+      contacts.insert(contacts.end(), of_pair.begin(), of_pair.end());
   }
 };
 
-MultiBodyQuery::MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options) try
-    : impl_(std::make_unique<Impl>(meshes, checked(options))) {
+MultiBodyQuery::MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options)
+    : MultiBodyQuery(shapes_of(meshes, checked(options).atlas), options) {}
+MultiBodyQuery::MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options) try
+    : impl_(std::make_unique<Impl>(std::move(shapes), checked(options))) {
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a query of many bodies");
 }
@@ -129,21 +187,36 @@ std::size_t MultiBodyQuery::size() const {
   return impl_->bodies.size();
 }
 
+void MultiBodyQuery::set_pose(std::size_t body, const Transform& pose) {
+  on_behalf_of(impl_->checked(body), [&] { impl_->bodies[body].set_pose(pose); });
+  impl_->moved();
+}
+
+void MultiBodyQuery::set_poses(std::span<const Transform> poses) {
+  impl_->check_count(poses.size(), "poses");
+  for (std::size_t b = 0; b < size(); ++b)
+    on_behalf_of(b, [&] { (void)proximity::Similarity::of(poses[b]); });
+  for (std::size_t b = 0; b < size(); ++b) impl_->bodies[b].set_pose(poses[b]);
+  impl_->moved();
+}
+
+Transform MultiBodyQuery::pose(std::size_t body) const {
+  return impl_->bodies[impl_->checked(body)].pose().transform();
+}
+
 void MultiBodyQuery::refit(std::size_t body, std::span<const Vec3> positions) try {
   impl_->check(impl_->checked(body), positions);
-  impl_->found = false;
+  impl_->moved();
   impl_->bodies[body].refit(positions);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a query of many bodies");
 }
 
 void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) try {
-  if (positions.size() != size())
-    throw Error("there are " + std::to_string(size()) + " bodies, but positions for " +
-                std::to_string(positions.size()) + " were given; give one entry per body");
+  impl_->check_count(positions.size(), "positions");
   for (std::size_t b = 0; b < size(); ++b)
     if (!positions[b].empty()) impl_->check(b, positions[b]);
-  impl_->found = false;
+  impl_->moved();
   const auto refit = [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
       if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
@@ -154,9 +227,17 @@ void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) try
 }
 
 std::span<const PairProximity> MultiBodyQuery::pairs() try {
-  if (!impl_->found) impl_->find_pairs();
-  impl_->found = true;
+  if (!impl_->pairs_found) impl_->find_pairs();
+  impl_->pairs_found = true;
   return impl_->pairs;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a query of many bodies");
+}
+
+std::span<const BodyContact> MultiBodyQuery::contacts() try {
+  if (!impl_->contacts_found) impl_->find_contacts();
+  impl_->contacts_found = true;
+  return impl_->contacts;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a query of many bodies");
 }
@@ -178,11 +259,11 @@ void MultiBodyQuery::nearest_map(std::size_t body, NearestMap& nearest) const tr
 }
 
 const Surface& MultiBodyQuery::surface(std::size_t body) const {
-  return impl_->bodies[impl_->checked(body)].surface();
+  return impl_->bodies[impl_->checked(body)].body().surface();
 }
 
 const Sites& MultiBodyQuery::sites(std::size_t body) const {
-  return impl_->bodies[impl_->checked(body)].sites();
+  return impl_->bodies[impl_->checked(body)].body().sites();
 }
 
 }  // namespace sdm

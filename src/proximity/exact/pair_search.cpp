@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "proximity/exact/face_lanes-inl.h"
 
@@ -130,7 +131,8 @@ class PairSearch {
       for (size_t i = 0; i < kWidth; i += hn::Lanes(d))
         hn::Store(in_units(face_distances(a, i, b, j, direction_)), d, least + i);
       for (uint32_t i = 0; i < a.count(); ++i) {
-        candidates[count] = {least[i], a.first() + i, b.first() + j};
+        // 0 for all that may intersect: how far below depends on the closest faces found so far.
+        candidates[count] = {std::max(least[i], 0.0f), a.first() + i, b.first() + j};
         count += !(least[i] > limit_);
       }
     }
@@ -146,6 +148,13 @@ class PairSearch {
   struct Candidate {
     float least;
     uint32_t owner1, owner2;
+
+    /// Of equally near ones, that with the smaller numbers: the order does not depend on which others there
+    /// are.
+    bool before(const Candidate& other) const {
+      return least < other.least ||
+             (least == other.least && std::pair(owner1, owner2) < std::pair(other.owner1, other.owner2));
+    }
   };
 
   // Nearest first, which excludes most of the others.
@@ -153,7 +162,7 @@ class PairSearch {
     for (; count > 0 && !best_.intersecting; --count) {
       Candidate* nearest = candidates;
       for (size_t i = 1; i < count; ++i)
-        if (candidates[i].least < nearest->least) nearest = candidates + i;
+        if (candidates[i].before(*nearest)) nearest = candidates + i;
       if (nearest->least > limit_) return;
       compare(*nearest);
       *nearest = candidates[count - 1];
@@ -175,7 +184,9 @@ class PairSearch {
     if constexpr (separate) {
       const PointPair closest = closest_points(a, b);
       const double distance = std::sqrt(closest.squared);
-      if (!(distance < best_.distance || (distance == best_.distance && best_.face1 == kNone))) return;
+      if (distance > best_.distance || (distance == best_.distance && best_.face1 != kNone &&
+                                        !(std::pair(face1, face2) < std::pair(best_.face1, best_.face2))))
+        return;
       best_ = {distance, false, closest.point1, closest.point2, face1, face2};
       limit_ = maps_.round_up(distance);
       direction_ = maps_.direction(closest.point2 - closest.point1);
@@ -212,6 +223,10 @@ HWY_EXPORT(FindIntersection);
 Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace) {
   return HWY_DYNAMIC_DISPATCH(FindClosest)(pair, bound, workspace);
 }
+double face_distance(const MeshPair& pair, std::uint32_t face1, std::uint32_t face2) {
+  return std::sqrt(closest_points(pair.face1(face1), pair.face2(face2)).squared);
+}
+
 Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace) {
   return HWY_DYNAMIC_DISPATCH(FindIntersection)(pair, workspace);
 }

@@ -50,10 +50,15 @@ struct PairWorkspace {
   Heap apart;
 };
 
-/// Finds the closest points of the two surfaces, if their distance is at most `bound`. Cost: logarithmic if
-/// few faces are candidates, in the worst case all pairs of candidates; single-threaded, without allocation
-/// once the workspace has grown.
+/// Finds the closest points of the two surfaces, if their distance is at most `bound`. Of several pairs of
+/// faces at the same distance, the one with the smallest numbers: the result does not depend on the bound.
+/// Cost: logarithmic if few faces are candidates, in the worst case all pairs of candidates; single-threaded,
+/// without allocation once the workspace has grown.
 [[nodiscard]] Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace);
+
+/// The distance of two faces: a bound on that of the surfaces, the tighter the nearer the faces are to the
+/// closest ones.
+[[nodiscard]] double face_distance(const MeshPair& pair, std::uint32_t face1, std::uint32_t face2);
 
 /// Finds two faces, one of each surface, that have a point in common, if any; decided exactly.
 [[nodiscard]] Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace);

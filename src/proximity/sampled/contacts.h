@@ -9,13 +9,14 @@
 
 #include "proximity/sampled/contact_patches.h"
 #include "proximity/sampled/local_distances.h"
+#include "proximity/sampled/posed_body.h"
 
 namespace sdm::sampled {
 
 /// A body with its measured samples.
 struct MeasuredBody {
-  const Body& body;
-  const LocalDistances& distances;  ///< to the other body
+  const PosedBody& body;
+  const LocalDistances& distances;  ///< to the other body, in its frame
 };
 
 /// Finds contacts; reuses its memory between calls.
@@ -30,9 +31,10 @@ class ContactFinder {
   struct Part {
     std::uint32_t chart;
     std::size_t deepest;  ///< index among the measured samples
-    Box box;              ///< contains everything that the samples within the margin cover
+    Box box;              ///< contains everything that the samples within the margin cover, in the frame of
+                          ///< the other body
   };
-  void find_parts(const MeasuredBody& body, double margin);
+  void find_parts(const MeasuredBody& body, const proximity::Similarity& measured_in, double margin);
   void add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length);
 
   std::vector<Part> parts_;   ///< of one body

@@ -27,8 +27,8 @@ void find_distances(const Body& body, std::span<const Vec3> points, const Take& 
 
 }  // namespace
 
-void LocalDistances::start(const Body& on, const Body& to) {
-  on_ = &on, to_ = &to;
+void LocalDistances::start(const Body& on, const Body& to, const proximity::Similarity& pose) {
+  on_ = &on, to_ = &to, pose_ = pose;
   on.require_pieces();
   probes_.assign(1, {.blocks = {0, surface::block_count(on.surface().sample_texels().size())}});
   least_probed_ = std::numeric_limits<double>::infinity();
@@ -52,6 +52,8 @@ void LocalDistances::probe(std::size_t blocks_per_probe) {
       internals(surface).place_samples(probe.blocks.middle(surface.sample_texels().size()), {&point, 1});
       probe.radius = blocks_per_probe == 1 ? pieces.radius_about(surface, probe.blocks.first, point)
                                            : pieces.face_radius_about(surface, probe.blocks, point);
+      probe.radius *= pose_.scale;
+      point = pose_.map(point);
     }
     find_distances(*to_, std::span(probe_points_).subspan(begin, end - begin),
                    [&](std::size_t i, double distance, const sites::ClosestPacket&, std::size_t) {
@@ -99,6 +101,10 @@ void LocalDistances::measure_blocks(std::size_t begin, std::size_t end) {
                          std::span(points_).subspan(block.first, block.size()),
                          std::span(radii_).subspan(block.first, block.size()));
   }
+  for (Vec3& p : points) p = pose_.map(p);
+  if (pose_.scale != 1)
+    for (float& radius : std::span(radii_).subspan(first, last - first))
+      radius = surface::rounded_up(pose_.scale * radius);
   find_distances(*to_, points,
                  [&](std::size_t i, double distance, const sites::ClosestPacket& closest, std::size_t lane) {
                    distances_[first + i] = static_cast<float>(distance);

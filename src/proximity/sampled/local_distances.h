@@ -1,4 +1,5 @@
-// Distances to another body from those samples of a surface that affect a result.
+// Distances to another body from those samples of a surface that affect a result, in the frame of the other
+// body.
 #pragma once
 
 #include <array>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "proximity/sampled/body.h"
+#include "proximity/similarity.h"
 #include "surface/sample_blocks.h"
 
 namespace sdm::sampled {
@@ -19,8 +21,9 @@ class LocalDistances {
   /// Blocks per probe, for each pass of probing. (Measured.)
   static constexpr std::array<std::size_t, 2> kBlocksPerProbe{8, 1};
 
-  /// Starts with all samples of `on`. The bodies must remain unchanged until they are measured.
-  void start(const Body& on, const Body& to);
+  /// Starts with all samples of `on`, moved by `pose` into the frame of `to`. The bodies must remain
+  /// unchanged until they are measured.
+  void start(const Body& on, const Body& to, const proximity::Similarity& pose);
   /// Probes the remaining blocks, on all cores.
   void probe(std::size_t blocks_per_probe);
   /// The smallest |distance| probed so far.
@@ -52,6 +55,7 @@ class LocalDistances {
   void measure_blocks(std::size_t begin, std::size_t end);
 
   const Body *on_ = nullptr, *to_ = nullptr;
+  proximity::Similarity pose_;
   std::vector<Probe> probes_, denser_;
   std::vector<Vec3> probe_points_;
   double least_probed_ = 0;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/geometry/sweep.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "engine/cpu/cpu_engine.h"
@@ -17,24 +18,30 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-void PairAnswers::begin(const Body& o1, const Body& o2) {
+void PairAnswers::begin(const PosedBody& o1, const PosedBody& o2, const FacePair& hint) {
   bodies_ = {&o1, &o2};
+  closest_faces_ = hint;
+  for (int b = 0; b < 2; ++b) {
+    const proximity::Similarity &from = bodies_[b]->pose(), &to = bodies_[1 - b]->pose();
+    to_other_[b] = {inverse(to.map) * from.map, from.scale / to.scale};
+  }
   Box box = o1.box();
   extend(box, o2.box());
   precision_ = 1e-6 * diagonal(box);
   measured_ = depth_found_ = false;
-  closest_.reset(), intersection_.reset(), separation_.reset(), depth_.reset(), colliding_.reset(),
-      contacts_.reset();
+  intersecting_.reset(), separation_.reset(), depth_.reset(), colliding_.reset(), contacts_.reset();
 }
 
 const BoundedLength& PairAnswers::separation() {
-  if (!separation_) separation_ = options_.exact ? exact_separation() : bounded_separation();
+  if (!separation_) find_closest(kNoLimit);
   return *separation_;
 }
 
 BoundedBool PairAnswers::colliding() {
   if (!colliding_)
-    colliding_ = {surfaces_intersect() || exact::one_contains_part_of_other(meshes()), Certainty::exact};
+    colliding_ = {box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
+                      (surfaces_intersect() || exact::one_contains_part_of_other(meshes())),
+                  Certainty::exact};
   return *colliding_;
 }
 
@@ -44,99 +51,69 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 }
 
 std::span<const Contact> PairAnswers::contacts() {
-  measure();
+  if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
   if (!contacts_) {
+    measure();
     const std::array<MeasuredBody, 2> measured{MeasuredBody{*bodies_[0], distances_[0]},
                                                MeasuredBody{*bodies_[1], distances_[1]}};
-    contacts_ = finder_.find(measured, options_.contact_margin, precision_);
+    contacts_ = finder_.find(measured, contact_margin_, precision_);
   }
   return *contacts_;
 }
 
 std::size_t PairAnswers::samples_used() const {
-  std::size_t sum = 0;
-  for (const LocalDistances& measured : distances_) sum += measured.distances().size();
-  return sum;
+  if (!measured_) return 0;
+  return distances_[0].distances().size() + distances_[1].distances().size();
 }
 
+// Measures the samples that affect contacts or depth.
 void PairAnswers::measure() {
   if (std::exchange(measured_, true)) return;
-  for (int b = 0; b < 2; ++b) distances_[b].start(*bodies_[b], *bodies_[1 - b]);
-  for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe) {
-    for (LocalDistances& distances : distances_) distances.probe(blocks_per_probe);
-    // Samples nearer than this affect contacts, depth and, unless it is computed from the triangles,
-    // separation.
-    double reach = options_.contact_margin;
-    if (!options_.exact)
-      reach = std::max(reach, std::min(distances_[0].least_probed(), distances_[1].least_probed()));
-    for (LocalDistances& distances : distances_) distances.keep(reach + precision_);
-  }
+  for (int b = 0; b < 2; ++b) distances_[b].start(bodies_[b]->body(), bodies_[1 - b]->body(), to_other_[b]);
+  for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe)
+    for (int b = 0; b < 2; ++b) {
+      distances_[b].probe(blocks_per_probe);
+      distances_[b].keep((contact_margin_ + precision_) / bodies_[1 - b]->pose().scale);
+    }
   for (LocalDistances& distances : distances_) distances.measure();
 }
 
-// The minimum of value(distance, covering radius) over all measured samples, and its sample.
-template <class Value>
-std::pair<double, PairAnswers::Sample> PairAnswers::least(const Value& value) const {
-  std::pair<double, Sample> least{kNoLimit, {}};
-  for (int b = 0; b < 2; ++b) {
-    const std::span<const float> distances = distances_[b].distances(), radii = distances_[b].radii();
-    for (std::size_t i = 0; i < distances.size(); ++i)
-      if (const double v = value(distances[i], radii[i]); v < least.first) least = {v, {b, i}};
-  }
-  return least;
-}
-
-// The sample and the closest point on the other body.
-std::optional<std::array<Vec3, 2>> PairAnswers::witness(const Sample& sample) const {
-  if (sample.index == kNone) return {};
-  const Vec3& p = distances_[sample.body].points()[sample.index];
-  Vec3 q = p;
-  cpu::cpu_search(internals(bodies_[1 - sample.body]->sites()), {&p, 1}, kNoLimit,
-                  [&](std::size_t, const sites::ClosestPacket& closest) { q = closest.get(0, p).point; });
-  return sample.body == 0 ? std::array{p, q} : std::array{q, p};
+bool PairAnswers::within(double distance) {
+  if (box_distance(bodies_[0]->box(), bodies_[1]->box()) > distance) return false;
+  if (distance > 0 && !separation_ && !find_closest(distance)) intersecting_ = false;
+  return (separation_ && separation_->value <= distance) || colliding().value;
 }
 
 exact::MeshPair PairAnswers::meshes() const {
-  return {internals(bodies_[0]->sites()), internals(bodies_[1]->sites())};
+  return {internals(bodies_[0]->body().sites()), internals(bodies_[1]->body().sites()), to_other_[1].map};
 }
 
-const exact::Separation& PairAnswers::closest_triangles() {
-  if (!closest_) closest_ = exact::find_closest(meshes(), kNoLimit, workspace_);
-  return *closest_;
+// Computes separation_ if it is at most `bound`, and returns whether it is.
+bool PairAnswers::find_closest(double bound) {
+  const proximity::Similarity& pose = bodies_[0]->pose();
+  bound /= pose.scale;
+  if (closest_faces_ != kNoFaces)
+    bound = std::min(bound, exact::face_distance(meshes(), closest_faces_[0], closest_faces_[1]));
+  const exact::Separation c = exact::find_closest(meshes(), bound, workspace_);
+  if (c.face1 == kNone) return false;
+  intersecting_ = c.intersecting;
+  closest_faces_ = {c.face1, c.face2};
+  const double distance = pose.scale * c.distance;
+  separation_ = {.value = distance,
+                 .certainty = Certainty::exact,
+                 .lower = distance,
+                 .upper = distance,
+                 .witness = std::array{pose.map(c.point1), pose.map(c.point2)}};
+  return true;
 }
 
-BoundedLength PairAnswers::exact_separation() {
-  const exact::Separation& c = closest_triangles();
-  return {.value = c.distance,
-          .certainty = Certainty::exact,
-          .lower = c.distance,
-          .upper = c.distance,
-          .witness = std::array{c.point1, c.point2}};
-}
-
-// Decided exactly, by the closest triangles if they are known.
 bool PairAnswers::surfaces_intersect() {
-  if (closest_ || options_.exact) return closest_triangles().intersecting;
-  if (!intersection_) intersection_ = exact::find_intersection(meshes(), workspace_);
-  return intersection_->intersecting;
-}
-
-BoundedLength PairAnswers::bounded_separation() {
-  measure();
-  const auto [value, sample] = least([](double d, double) { return std::abs(d); });
-  const double lower = least([](double d, double radius) { return std::abs(d) - radius; }).first;
-  if (lower <= precision_ && surfaces_intersect())
-    return {.certainty = Certainty::exact,
-            .witness = std::array{intersection_->point1, intersection_->point2}};
-  return {.value = value,
-          .certainty = Certainty::bounded,
-          .lower = std::max(0.0, lower - precision_),
-          .upper = value + precision_,
-          .witness = witness(sample)};
+  if (!intersecting_) intersecting_ = exact::find_intersection(meshes(), workspace_).intersecting;
+  return *intersecting_;
 }
 
 std::optional<BoundedLength> PairAnswers::depth() {
-  if (!bodies_[0]->solid() && !bodies_[1]->solid()) return {};
+  if (!bodies_[0]->body().solid() && !bodies_[1]->body().solid()) return {};
   if (!colliding().value) return BoundedLength{.certainty = Certainty::exact};
   return bounded_depth();
 }
@@ -144,14 +121,30 @@ std::optional<BoundedLength> PairAnswers::depth() {
 BoundedLength PairAnswers::bounded_depth() {
   measure();
   Depth deepest;
-  for (int b = 0; b < 2; ++b) deepest = deeper(deepest, depth_at_faces(b));
+  for (int b = 0; b < 2; ++b) deepest = deeper(deepest, in_space(b, depth_at_faces(b)));
   for (int b = 0; b < 2; ++b)
-    if (!distances_[b].buried().empty()) deepest = deeper(deepest, depth_of_buried(b, deepest));
+    if (!distances_[b].buried().empty())
+      deepest = deeper(deepest, in_space(b, depth_of_buried(b, in_frame(b, deepest))));
   return {.value = std::max(0.0, deepest.value),
           .certainty = Certainty::bounded,
           .lower = std::max(0.0, deepest.lower - precision_),
           .upper = std::max(0.0, deepest.upper + precision_),
           .witness = deepest.points};
+}
+
+// From the frame in which the samples of `body` are measured.
+PairAnswers::Depth PairAnswers::in_space(int body, Depth depth) const {
+  const proximity::Similarity& pose = bodies_[1 - body]->pose();
+  for (double* length : {&depth.lower, &depth.value, &depth.upper}) *length *= pose.scale;
+  if (depth.points)
+    for (Vec3& p : *depth.points) p = pose.map(p);
+  return depth;
+}
+
+// Into the frame in which the samples of `body` are measured, without the points.
+PairAnswers::Depth PairAnswers::in_frame(int body, Depth depth) const {
+  const double unit = 1 / bodies_[1 - body]->pose().scale;
+  return {unit * depth.lower, unit * depth.value, unit * depth.upper};
 }
 
 PairAnswers::Depth PairAnswers::deeper(const Depth& a, const Depth& b) {
@@ -165,7 +158,7 @@ PairAnswers::Depth PairAnswers::depth_at_faces(int body) const {
   const LocalDistances& on = distances_[body];
   const std::span<const float> distances = on.distances(), radii = on.radii();
   Depth deepest;
-  Sample sample{.body = body};
+  std::uint32_t deepest_sample = kNone;
   std::span<const std::uint32_t> buried = on.buried();
   for (std::uint32_t i = 0; i < distances.size(); ++i) {
     if (!buried.empty() && buried.front() == i) {
@@ -173,9 +166,14 @@ PairAnswers::Depth PairAnswers::depth_at_faces(int body) const {
       continue;
     }
     deepest.upper = std::max(deepest.upper, double{radii[i]} - distances[i]);
-    if (-distances[i] > deepest.lower) deepest.lower = deepest.value = -distances[i], sample.index = i;
+    if (-distances[i] > deepest.lower) deepest.lower = deepest.value = -distances[i], deepest_sample = i;
   }
-  deepest.points = witness(sample);
+  if (deepest_sample == kNone) return deepest;
+  const Vec3& p = on.points()[deepest_sample];
+  Vec3 q = p;
+  cpu::cpu_search(internals(bodies_[1 - body]->body().sites()), {&p, 1}, kNoLimit,
+                  [&](std::size_t, const sites::ClosestPacket& closest) { q = closest.get(0, p).point; });
+  deepest.points = body == 0 ? std::array{p, q} : std::array{q, p};
   return deepest;
 }
 
@@ -183,7 +181,7 @@ PairAnswers::Depth PairAnswers::depth_at_faces(int body) const {
 // 1-Lipschitz: samples every kStrides[0] tell which others need to be measured, these which more.
 PairAnswers::Depth PairAnswers::depth_of_buried(int body, Depth known) {
   constexpr std::array<std::size_t, 3> kStrides{64, 8, 1};
-  const Body& solid = *bodies_[1 - body];
+  const Body& solid = bodies_[1 - body]->body();
   solid.require_boundary();
   const LocalDistances& on = distances_[body];
   const std::span<const std::uint32_t> samples = on.buried();
@@ -208,7 +206,7 @@ PairAnswers::Depth PairAnswers::depth_of_buried(int body, Depth known) {
     });
     for (std::size_t i = 0; i < samples.size(); i += stride) {
       if (!closest[i]) continue;
-      const auto& [lower, upper, point] = *closest[i];
+      const auto& [lower, upper, point, face] = *closest[i];
       const Vec3& p = on.points()[samples[i]];
       Depth here{.lower = lower, .value = point ? upper : lower, .upper = upper + on.radii()[samples[i]]};
       if (point) here.points = body == 0 ? std::array{p, *point} : std::array{*point, p};

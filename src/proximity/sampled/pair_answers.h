@@ -8,26 +8,36 @@
 #include <span>
 
 #include "proximity/exact/pair_search.h"
-#include "proximity/sampled/body.h"
 #include "proximity/sampled/contacts.h"
 #include "proximity/sampled/local_distances.h"
+#include "proximity/sampled/posed_body.h"
 
 namespace sdm::sampled {
 
+/// A face of each of two bodies.
+using FacePair = std::array<std::uint32_t, 2>;
+inline constexpr FacePair kNoFaces{kNone, kNone};
+
 /// Results as documented at ProximityQuery, each computed on first use. Memory is reused from pair to pair;
 /// results do not depend on earlier pairs.
+///
+/// The triangles are compared in the frame of O1, samples in that of the body that they are measured to; the
+/// results are in space.
 class PairAnswers {
  public:
-  struct Options {
-    bool exact = false;
-    double contact_margin = 0;
-  };
-
-  explicit PairAnswers(const Options& options) : options_(options) {}
+  explicit PairAnswers(double contact_margin) : contact_margin_(contact_margin) {}
 
   /// Sets the bodies to which the results refer. They must outlive this object and remain unchanged until the
   /// next call.
-  void begin(const Body& o1, const Body& o2);
+  ///
+  /// `hint`: faces of O1 and O2 that were closest when the bodies were in a similar pose; they change how
+  /// long results take, not the results.
+  void begin(const PosedBody& o1, const PosedBody& o2, const FacePair& hint = kNoFaces);
+
+  /// Whether the bodies collide or their surfaces are at most this far apart.
+  [[nodiscard]] bool within(double distance);
+  /// The closest faces, or faces that intersect, if the separation was computed; otherwise the hint.
+  [[nodiscard]] const FacePair& closest_faces() const { return closest_faces_; }
 
   [[nodiscard]] const BoundedLength& separation();
   [[nodiscard]] BoundedBool colliding();
@@ -36,12 +46,6 @@ class PairAnswers {
   [[nodiscard]] std::size_t samples_used() const;
 
  private:
-  /// A measured sample of one of the bodies.
-  struct Sample {
-    int body = 0;
-    std::size_t index = kNone;
-  };
-
   /// The depth of some samples: lower ≤ depth ≤ upper; `value` is attained by `points`.
   struct Depth {
     double lower = 0, value = 0, upper = 0;
@@ -49,31 +53,30 @@ class PairAnswers {
   };
 
   void measure();
-  template <class Value>
-  [[nodiscard]] std::pair<double, Sample> least(const Value& value) const;
-  [[nodiscard]] std::optional<std::array<Vec3, 2>> witness(const Sample& sample) const;
   [[nodiscard]] exact::MeshPair meshes() const;
-  const exact::Separation& closest_triangles();
-  [[nodiscard]] BoundedLength exact_separation();
+  bool find_closest(double bound);
   [[nodiscard]] bool surfaces_intersect();
-  [[nodiscard]] BoundedLength bounded_separation();
   [[nodiscard]] std::optional<BoundedLength> depth();
   [[nodiscard]] BoundedLength bounded_depth();
   [[nodiscard]] static Depth deeper(const Depth& a, const Depth& b);
   [[nodiscard]] Depth depth_at_faces(int body) const;
   [[nodiscard]] Depth depth_of_buried(int body, Depth known);
+  [[nodiscard]] Depth in_space(int body, Depth depth) const;
+  [[nodiscard]] Depth in_frame(int body, Depth depth) const;
 
-  Options options_;
-  std::array<const Body*, 2> bodies_{};
-  double precision_ = 0;                     // error of a computed distance
-  std::array<LocalDistances, 2> distances_;  // of each body to the other
+  double contact_margin_;
+  std::array<const PosedBody*, 2> bodies_{};
+  std::array<proximity::Similarity, 2> to_other_;  // from the frame of each body to that of the other
+  double precision_ = 0;                           // error of a computed distance
+  std::array<LocalDistances, 2> distances_;        // of each body to the other
   ContactFinder finder_;
   exact::PairWorkspace workspace_;
   std::vector<std::optional<inside::SolidBoundary::Closest>> closest_boundary_;  // of the buried samples
 
   // Results for the current bodies.
   bool measured_ = false, depth_found_ = false;
-  std::optional<exact::Separation> closest_, intersection_;  // from the triangles
+  FacePair closest_faces_ = kNoFaces;
+  std::optional<bool> intersecting_;  // the surfaces
   std::optional<BoundedLength> separation_, depth_;
   std::optional<BoundedBool> colliding_;
   std::optional<std::span<const Contact>> contacts_;

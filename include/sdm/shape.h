@@ -1,0 +1,34 @@
+/// A mesh prepared for proximity queries, shared by any number of bodies.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/atlas.h>
+#include <sdm/mesh.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+
+#include <memory>
+
+namespace sdm {
+namespace sampled {
+class Body;
+}
+
+/// The atlas and the sites of a mesh, in the frame of the mesh. Copies share them: a thousand bodies of one
+/// shape need the memory of one. Copies may be used by several threads at once, as the data do not change;
+/// only the refit of a query changes the shape of a body, and only if nothing else shares it.
+class SDM_API Shape {
+ public:
+  /// Throws sdm::Error as Surface and Sites do. Cost: theirs.
+  explicit Shape(const Mesh& mesh, const AtlasOptions& atlas = {.resolution = 512});
+
+  [[nodiscard]] const Surface& surface() const;
+  [[nodiscard]] const Sites& sites() const;
+
+ private:
+  friend const std::shared_ptr<sampled::Body>& internals(const Shape& shape);
+
+  std::shared_ptr<sampled::Body> body_;
+};
+
+}  // namespace sdm

@@ -1,0 +1,17 @@
+#include "proximity/sampled/posed_body.h"
+
+#include <sdm/error.h>
+
+#include "mesh/validate.h"
+
+namespace sdm::sampled {
+
+void PosedBody::check_refit(std::span<const Vec3> positions) const {
+  if (internals(shape_).use_count() > 1)
+    throw Error(
+        "its shape is shared and cannot be deformed; give a body that deforms a Shape of its own, and keep "
+        "no copy");
+  mesh::validate_positions(positions, body().surface().mesh().positions.size());
+}
+
+}  // namespace sdm::sampled

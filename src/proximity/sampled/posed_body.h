@@ -1,0 +1,50 @@
+// A body: a shape in a pose.
+#pragma once
+
+#include <sdm/shape.h>
+
+#include <span>
+
+#include "proximity/sampled/body.h"
+#include "proximity/similarity.h"
+
+namespace sdm::sampled {
+
+class PosedBody {
+ public:
+  explicit PosedBody(Shape shape) : shape_(std::move(shape)) { follow(); }
+
+  /// Throws sdm::Error unless the pose is a Similarity. Cost: constant.
+  void set_pose(const Transform& pose) {
+    pose_ = proximity::Similarity::of(pose);
+    follow();
+  }
+  /// Throws sdm::Error for positions that are not valid for the mesh, and if another Shape shares it.
+  void check_refit(std::span<const Vec3> positions) const;
+  /// Moves the vertices to positions that were checked; they are in the frame of the mesh.
+  void refit(std::span<const Vec3> positions) {
+    internals(shape_)->refit(positions);
+    follow();
+  }
+
+  [[nodiscard]] const Body& body() const { return *internals(shape_); }
+  [[nodiscard]] const proximity::Similarity& pose() const { return pose_; }
+  /// A box that contains the posed body.
+  [[nodiscard]] const Box& box() const { return box_; }
+
+ private:
+  void follow() { box_ = image(pose_.map, body().box()); }
+
+  Shape shape_;
+  proximity::Similarity pose_;
+  Box box_;
+};
+
+}  // namespace sdm::sampled
+
+namespace sdm {
+
+/// The data of Shape. Found by argument-dependent lookup.
+[[nodiscard]] const std::shared_ptr<sampled::Body>& internals(const Shape& shape);
+
+}  // namespace sdm
