@@ -31,14 +31,15 @@ void LocalDistances::start(const Body& on, const Body& to, const proximity::Simi
   on_ = &on, to_ = &to, pose_ = pose;
   on.require_pieces();
   probes_.assign(1, {.blocks = {0, surface::block_count(on.surface().sample_texels().size())}});
-  least_probed_ = std::numeric_limits<double>::infinity();
+  deepest_probed_ = 0;
 }
 
 void LocalDistances::probe(std::size_t blocks_per_probe) {
   denser_.clear();
-  for (const auto& [blocks, distance, radius] : probes_)
-    for (std::size_t first = blocks.first; first < blocks.end; first += blocks_per_probe)
-      denser_.push_back({.blocks = {first, std::min(first + blocks_per_probe, blocks.end)}});
+  for (const Probe& probe : probes_)
+    for (std::size_t first = probe.blocks.first; first < probe.blocks.end; first += blocks_per_probe)
+      denser_.push_back(
+          {.blocks = {first, std::min(first + blocks_per_probe, probe.blocks.end)}, .marked = probe.marked});
   std::swap(probes_, denser_);
 
   const Surface& surface = on_->surface();
@@ -55,13 +56,33 @@ void LocalDistances::probe(std::size_t blocks_per_probe) {
       probe.radius *= pose_.scale;
       point = pose_.map(point);
     }
-    find_distances(*to_, std::span(probe_points_).subspan(begin, end - begin),
-                   [&](std::size_t i, double distance, const sites::ClosestPacket&, std::size_t) {
-                     probes_[begin + i].distance = distance;
-                   });
+    const std::span points = std::span(probe_points_).subspan(begin, end - begin);
+    find_distances(
+        *to_, points,
+        [&](std::size_t i, double distance, const sites::ClosestPacket& closest, std::size_t lane) {
+          Probe& probe = probes_[begin + i];
+          probe.distance = distance;
+          probe.at_boundary = at_boundary(points[i], distance, closest, lane);
+        });
   };
   parallel_for(probes_.size(), kGrain, probe_some);
-  for (const Probe& probe : probes_) least_probed_ = std::min(least_probed_, std::abs(probe.distance));
+  for (const Probe& probe : probes_) deepest_probed_ = std::max(deepest_probed_, -probe.distance);
+}
+
+// True for points outside.
+bool LocalDistances::at_boundary(const Vec3& point, double distance, const sites::ClosestPacket& closest,
+                                 std::size_t lane) const {
+  return !(distance < 0) || to_->inside().at_boundary(point, closest.get(lane, point));
+}
+
+// The boundary is as far from the probe as its closest face, or from a probe outside no nearer. Where it may
+// be farther, nothing is known.
+void LocalDistances::mark_deeper(double depth) {
+  for (Probe& probe : probes_) probe.marked = probe.marked && (!probe.at_boundary || -probe.least() > depth);
+}
+
+void LocalDistances::keep_marked() {
+  std::erase_if(probes_, [](const Probe& probe) { return !probe.marked; });
 }
 
 void LocalDistances::keep(double reach) {
@@ -85,7 +106,7 @@ void LocalDistances::measure() {
   parallel_for(probes_.size(), kGrain, measure);
   buried_.clear();
   for (std::uint32_t i = 0; i < count; ++i)
-    if (!at_boundary_[i]) buried_.push_back(i);
+    if (!at_boundary_[i] && marked(i)) buried_.push_back(i);
 }
 
 void LocalDistances::measure_blocks(std::size_t begin, std::size_t end) {
@@ -108,8 +129,7 @@ void LocalDistances::measure_blocks(std::size_t begin, std::size_t end) {
   find_distances(*to_, points,
                  [&](std::size_t i, double distance, const sites::ClosestPacket& closest, std::size_t lane) {
                    distances_[first + i] = static_cast<float>(distance);
-                   at_boundary_[first + i] =
-                       !(distance < 0) || to_->inside().at_boundary(points[i], closest.get(lane, points[i]));
+                   at_boundary_[first + i] = at_boundary(points[i], distance, closest, lane);
                  });
 }
 

@@ -26,8 +26,14 @@ class LocalDistances {
   void start(const Body& on, const Body& to, const proximity::Similarity& pose);
   /// Probes the remaining blocks, on all cores.
   void probe(std::size_t blocks_per_probe);
-  /// The smallest |distance| probed so far.
-  [[nodiscard]] double least_probed() const { return least_probed_; }
+  /// The largest depth probed so far, or 0: a lower bound on the depth.
+  [[nodiscard]] double deepest_probed() const { return deepest_probed_; }
+  /// Marks the blocks that may have points deeper than `depth`, by the distance at the probe: the depth, as
+  /// the distance to the boundary of a solid, is 1-Lipschitz. Blocks that were not marked before are not
+  /// marked.
+  void mark_deeper(double depth);
+  /// Keeps only the marked blocks.
+  void keep_marked();
   /// Keeps only blocks that may be nearer than `reach`, or inside.
   void keep(double reach);
   /// Measures all remaining samples, on all cores. The last probe() must have been with one block per probe.
@@ -38,8 +44,10 @@ class LocalDistances {
   [[nodiscard]] std::span<const Vec3> points() const { return points_; }
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
   [[nodiscard]] std::span<const float> distances() const { return distances_; }
-  /// The measured samples inside a solid whose closest face may not be part of its boundary, because the
-  /// solid intersects itself: the boundary may be farther away. In increasing order.
+  /// Whether the i-th measured sample is in a marked block.
+  [[nodiscard]] bool marked(std::size_t i) const { return probes_[i / surface::kBlockSize].marked; }
+  /// The measured samples in marked blocks, inside a solid, whose closest face may not be part of its
+  /// boundary, because the solid intersects itself: the boundary may be farther away. In increasing order.
   [[nodiscard]] std::span<const std::uint32_t> buried() const { return buried_; }
   /// The index on the surface of the i-th measured sample.
   [[nodiscard]] std::size_t sample(std::size_t i) const;
@@ -48,17 +56,21 @@ class LocalDistances {
   struct Probe {
     surface::BlockRange blocks;
     double distance = 0;
-    double radius = 0;  ///< of a ball around the probe that contains the blocks' samples and pieces
+    double radius = 0;        ///< of a ball around the probe that contains the blocks' samples and pieces
+    bool at_boundary = true;  ///< unless the probe is inside, and its closest face may not be of the boundary
+    bool marked = true;
     /// Lower bound on the distance of any sample of the blocks and any point of their pieces.
     [[nodiscard]] double least() const { return distance - radius; }
   };
   void measure_blocks(std::size_t begin, std::size_t end);
+  [[nodiscard]] bool at_boundary(const Vec3& point, double distance, const sites::ClosestPacket& closest,
+                                 std::size_t lane) const;
 
   const Body *on_ = nullptr, *to_ = nullptr;
   proximity::Similarity pose_;
   std::vector<Probe> probes_, denser_;
   std::vector<Vec3> probe_points_;
-  double least_probed_ = 0;
+  double deepest_probed_ = 0;
   std::vector<Vec3> points_;
   std::vector<float> radii_, distances_;
   std::vector<std::uint8_t> at_boundary_;  // of each measured sample

@@ -28,7 +28,7 @@ void PairAnswers::begin(const PosedBody& o1, const PosedBody& o2, const FacePair
   Box box = o1.box();
   extend(box, o2.box());
   precision_ = 1e-6 * diagonal(box);
-  measured_ = depth_found_ = false;
+  measured_ = Measured::nothing, depth_found_ = false;
   intersecting_.reset(), separation_.reset(), depth_.reset(), colliding_.reset(), contacts_.reset();
 }
 
@@ -53,7 +53,7 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 std::span<const Contact> PairAnswers::contacts() {
   if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
   if (!contacts_) {
-    measure();
+    measure(Measured::all);
     const std::array<MeasuredBody, 2> measured{MeasuredBody{*bodies_[0], distances_[0]},
                                                MeasuredBody{*bodies_[1], distances_[1]}};
     contacts_ = finder_.find(measured, contact_margin_, precision_);
@@ -62,19 +62,31 @@ std::span<const Contact> PairAnswers::contacts() {
 }
 
 std::size_t PairAnswers::samples_used() const {
-  if (!measured_) return 0;
+  if (measured_ == Measured::nothing) return 0;
   return distances_[0].distances().size() + distances_[1].distances().size();
 }
 
-// Measures the samples that affect contacts or depth.
-void PairAnswers::measure() {
-  if (std::exchange(measured_, true)) return;
+// Marks the blocks that may hold the deepest point, with the same result whichever samples are measured:
+// blocks that only contacts need are no deeper than those that are marked.
+void PairAnswers::measure(Measured samples) {
+  if (measured_ >= samples) return;
+  measured_ = samples;
+  const auto unit = [&](int body) { return bodies_[1 - body]->pose().scale; };
   for (int b = 0; b < 2; ++b) distances_[b].start(bodies_[b]->body(), bodies_[1 - b]->body(), to_other_[b]);
-  for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe)
+  for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe) {
+    double deepest = 0;
     for (int b = 0; b < 2; ++b) {
       distances_[b].probe(blocks_per_probe);
-      distances_[b].keep((contact_margin_ + precision_) / bodies_[1 - b]->pose().scale);
+      deepest = std::max(deepest, unit(b) * distances_[b].deepest_probed());
     }
+    for (int b = 0; b < 2; ++b) {
+      distances_[b].mark_deeper(deepest / unit(b));
+      if (samples == Measured::all)
+        distances_[b].keep((contact_margin_ + precision_) / unit(b));
+      else
+        distances_[b].keep_marked();
+    }
+  }
   for (LocalDistances& distances : distances_) distances.measure();
 }
 
@@ -119,7 +131,7 @@ std::optional<BoundedLength> PairAnswers::depth() {
 }
 
 BoundedLength PairAnswers::bounded_depth() {
-  measure();
+  measure(Measured::deepest);
   Depth deepest;
   for (int b = 0; b < 2; ++b) deepest = deeper(deepest, in_space(b, depth_at_faces(b)));
   for (int b = 0; b < 2; ++b)
@@ -161,6 +173,7 @@ PairAnswers::Depth PairAnswers::depth_at_faces(int body) const {
   std::uint32_t deepest_sample = kNone;
   std::span<const std::uint32_t> buried = on.buried();
   for (std::uint32_t i = 0; i < distances.size(); ++i) {
+    if (!on.marked(i)) continue;
     if (!buried.empty() && buried.front() == i) {
       buried = buried.subspan(1);
       continue;

@@ -52,7 +52,9 @@ class PairAnswers {
     std::optional<std::array<Vec3, 2>> points{};
   };
 
-  void measure();
+  enum class Measured { nothing, deepest, all };  // samples: the deepest ones; also those of contacts
+
+  void measure(Measured samples);
   [[nodiscard]] exact::MeshPair meshes() const;
   bool find_closest(double bound);
   [[nodiscard]] bool surfaces_intersect();
@@ -74,7 +76,8 @@ class PairAnswers {
   std::vector<std::optional<inside::SolidBoundary::Closest>> closest_boundary_;  // of the buried samples
 
   // Results for the current bodies.
-  bool measured_ = false, depth_found_ = false;
+  Measured measured_ = Measured::nothing;
+  bool depth_found_ = false;
   FacePair closest_faces_ = kNoFaces;
   std::optional<bool> intersecting_;  // the surfaces
   std::optional<BoundedLength> separation_, depth_;
