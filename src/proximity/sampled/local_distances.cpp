@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "engine/cpu/cpu_engine.h"
 #include "surface/sample_blocks.h"
@@ -89,17 +90,18 @@ void LocalDistances::keep(double reach) {
   std::erase_if(probes_, [&](const Probe& probe) { return probe.least() > reach; });
 }
 
-void LocalDistances::measure() {
-  const std::size_t samples = on_->surface().sample_texels().size();
+void LocalDistances::measure(double depth, Samples samples) {
+  const std::size_t all = on_->surface().sample_texels().size();
   std::size_t count = 0;
-  for (const Probe& probe : probes_) count += surface::SampleBlock(probe.blocks.first, samples).size();
+  for (const Probe& probe : probes_) count += surface::SampleBlock(probe.blocks.first, all).size();
   points_.resize(count), radii_.resize(count), distances_.resize(count), at_boundary_.resize(count);
+  packet_marked_.resize((count + kPacket - 1) / kPacket);
   constexpr std::size_t kGrain = 16;
   const auto measure = [&](std::size_t begin, std::size_t end) {
     while (begin < end) {  // consecutive blocks share a search
       std::size_t next = begin + 1;
       while (next < end && probes_[next].blocks.first == probes_[next - 1].blocks.end) ++next;
-      measure_blocks(begin, next);
+      measure_blocks(begin, next, depth, samples);
       begin = next;
     }
   };
@@ -109,7 +111,36 @@ void LocalDistances::measure() {
     if (!at_boundary_[i] && marked(i)) buried_.push_back(i);
 }
 
-void LocalDistances::measure_blocks(std::size_t begin, std::size_t end) {
+void LocalDistances::measure_blocks(std::size_t begin, std::size_t end, double depth, Samples samples) {
+  place_blocks(begin, end);
+  const std::size_t first = begin * surface::kBlockSize,
+                    last = std::min(end * surface::kBlockSize, points_.size());
+  const std::size_t first_packet = first / kPacket, last_packet = (last + kPacket - 1) / kPacket;
+  thread_local std::vector<std::uint32_t> chosen;
+  chosen.clear();
+  if (samples == Samples::all) {
+    for (std::size_t i = first; i < last; ++i) chosen.push_back(static_cast<std::uint32_t>(i));
+    measure_samples(chosen);
+    mark_packets(begin, end, depth);
+    return;
+  }
+  std::fill(distances_.begin() + static_cast<std::ptrdiff_t>(first),
+            distances_.begin() + static_cast<std::ptrdiff_t>(last), std::numeric_limits<float>::infinity());
+  std::fill(at_boundary_.begin() + static_cast<std::ptrdiff_t>(first),
+            at_boundary_.begin() + static_cast<std::ptrdiff_t>(last), std::uint8_t{1});
+  for (std::size_t p = first_packet; p < last_packet; ++p)
+    chosen.push_back(static_cast<std::uint32_t>(middle_of_packet(p)));
+  measure_samples(chosen);
+  mark_packets(begin, end, depth);
+  chosen.clear();
+  for (std::size_t p = first_packet; p < last_packet; ++p)
+    for (std::size_t i = p * kPacket; i < std::min(last, (p + 1) * kPacket) && packet_marked_[p]; ++i)
+      chosen.push_back(static_cast<std::uint32_t>(i));
+  measure_samples(chosen);
+}
+
+// Sets the points and covering radii.
+void LocalDistances::place_blocks(std::size_t begin, std::size_t end) {
   const Surface& surface = on_->surface();
   const surface::PieceAssignment& pieces = on_->pieces();
   const std::size_t first = begin * surface::kBlockSize,
@@ -126,11 +157,38 @@ void LocalDistances::measure_blocks(std::size_t begin, std::size_t end) {
   if (pose_.scale != 1)
     for (float& radius : std::span(radii_).subspan(first, last - first))
       radius = surface::rounded_up(pose_.scale * radius);
+}
+
+void LocalDistances::measure_samples(std::span<const std::uint32_t> samples) {
+  thread_local std::vector<Vec3> points;
+  points.clear();
+  for (const std::uint32_t i : samples) points.push_back(points_[i]);
   find_distances(*to_, points,
-                 [&](std::size_t i, double distance, const sites::ClosestPacket& closest, std::size_t lane) {
-                   distances_[first + i] = static_cast<float>(distance);
-                   at_boundary_[first + i] = at_boundary(points[i], distance, closest, lane);
+                 [&](std::size_t k, double distance, const sites::ClosestPacket& closest, std::size_t lane) {
+                   const std::uint32_t i = samples[k];
+                   distances_[i] = static_cast<float>(distance);
+                   at_boundary_[i] = at_boundary(points_[i], distance, closest, lane);
                  });
+}
+
+// As mark_deeper does for blocks, by the distances at the middle of each packet, and where these are deeper,
+// by them.
+void LocalDistances::mark_packets(std::size_t begin, std::size_t end, double depth) {
+  for (std::size_t b = begin; b < end; ++b) {
+    const surface::SampleBlock block(b, points_.size());
+    const std::size_t first = block.first / kPacket, last = (block.end + kPacket - 1) / kPacket;
+    double deepest = depth;
+    for (std::size_t p = first; p < last; ++p)
+      deepest = std::max(deepest, -double{distances_[middle_of_packet(p)]});
+    for (std::size_t p = first; p < last; ++p) {
+      const std::size_t middle = middle_of_packet(p);
+      double radius = 0;
+      for (std::size_t i = p * kPacket; i < std::min(block.end, (p + 1) * kPacket); ++i)
+        radius = std::max(radius, norm(points_[i] - points_[middle]) + radii_[i]);
+      packet_marked_[p] =
+          probes_[b].marked && (!at_boundary_[middle] || radius - distances_[middle] > deepest);
+    }
+  }
 }
 
 std::size_t LocalDistances::sample(std::size_t i) const {

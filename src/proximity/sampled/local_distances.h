@@ -2,6 +2,7 @@
 // body.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -36,17 +37,20 @@ class LocalDistances {
   void keep_marked();
   /// Keeps only blocks that may be nearer than `reach`, or inside.
   void keep(double reach);
-  /// Measures all remaining samples, on all cores. The last probe() must have been with one block per probe.
-  void measure();
+  /// Which samples of the remaining blocks are measured.
+  enum class Samples { marked, all };
+  /// Marks, of the samples in marked blocks, those that may be deeper than `depth`, and measures these or all
+  /// samples, on all cores. The last probe() must have been with one block per probe.
+  void measure(double depth, Samples samples);
 
-  // The measured samples, block by block, in increasing order: their points, covering radii (see
-  // SamplingBound::sample_radii) and distances.
+  // The samples of the remaining blocks, block by block, in increasing order: their points, covering radii
+  // (see SamplingBound::sample_radii) and distances.
   [[nodiscard]] std::span<const Vec3> points() const { return points_; }
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
   [[nodiscard]] std::span<const float> distances() const { return distances_; }
-  /// Whether the i-th measured sample is in a marked block.
-  [[nodiscard]] bool marked(std::size_t i) const { return probes_[i / surface::kBlockSize].marked; }
-  /// The measured samples in marked blocks, inside a solid, whose closest face may not be part of its
+  /// Whether the i-th sample is marked. Samples that are not may have no distance: +∞.
+  [[nodiscard]] bool marked(std::size_t i) const { return packet_marked_[i / kPacket]; }
+  /// The marked samples inside a solid whose closest face may not be part of its
   /// boundary, because the solid intersects itself: the boundary may be farther away. In increasing order.
   [[nodiscard]] std::span<const std::uint32_t> buried() const { return buried_; }
   /// The index on the surface of the i-th measured sample.
@@ -62,7 +66,17 @@ class LocalDistances {
     /// Lower bound on the distance of any sample of the blocks and any point of their pieces.
     [[nodiscard]] double least() const { return distance - radius; }
   };
-  void measure_blocks(std::size_t begin, std::size_t end);
+  /// Consecutive samples, compact as blocks are.
+  static constexpr std::size_t kPacket = 16;
+
+  /// Consecutive blocks, of the probes from `begin` to `end`.
+  void measure_blocks(std::size_t begin, std::size_t end, double depth, Samples samples);
+  void place_blocks(std::size_t begin, std::size_t end);
+  void measure_samples(std::span<const std::uint32_t> samples);
+  void mark_packets(std::size_t begin, std::size_t end, double depth);
+  [[nodiscard]] std::size_t middle_of_packet(std::size_t packet) const {
+    return (packet * kPacket + std::min(points_.size(), (packet + 1) * kPacket)) / 2;
+  }
   [[nodiscard]] bool at_boundary(const Vec3& point, double distance, const sites::ClosestPacket& closest,
                                  std::size_t lane) const;
 
@@ -74,6 +88,7 @@ class LocalDistances {
   std::vector<Vec3> points_;
   std::vector<float> radii_, distances_;
   std::vector<std::uint8_t> at_boundary_;  // of each measured sample
+  std::vector<std::uint8_t> packet_marked_;
   std::vector<std::uint32_t> buried_;
 };
 

@@ -73,8 +73,8 @@ void PairAnswers::measure(Measured samples) {
   measured_ = samples;
   const auto unit = [&](int body) { return bodies_[1 - body]->pose().scale; };
   for (int b = 0; b < 2; ++b) distances_[b].start(bodies_[b]->body(), bodies_[1 - b]->body(), to_other_[b]);
+  double deepest = 0;
   for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe) {
-    double deepest = 0;
     for (int b = 0; b < 2; ++b) {
       distances_[b].probe(blocks_per_probe);
       deepest = std::max(deepest, unit(b) * distances_[b].deepest_probed());
@@ -87,7 +87,9 @@ void PairAnswers::measure(Measured samples) {
         distances_[b].keep_marked();
     }
   }
-  for (LocalDistances& distances : distances_) distances.measure();
+  using Samples = LocalDistances::Samples;
+  for (int b = 0; b < 2; ++b)
+    distances_[b].measure(deepest / unit(b), samples == Measured::all ? Samples::all : Samples::marked);
 }
 
 bool PairAnswers::within(double distance) {
