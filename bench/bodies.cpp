@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -80,6 +81,27 @@ class Crowd {
     for (const std::vector<Vec3>& positions : at(0)) result.push_back({positions, ball_.triangles, {}});
     return result;
   }
+  /// The bodies of frame 0, each about the origin.
+  [[nodiscard]] std::vector<Mesh> waves() const {
+    std::vector<Mesh> result;
+    for (const Mover& m : movers_) {
+      Mesh mesh = ball_;
+      for (Vec3& p : mesh.positions) p = (1 + 0.2 * std::sin(dot(m.wave, p) + m.phase)) * p;
+      result.push_back(std::move(mesh));
+    }
+    return result;
+  }
+  /// Where the bodies are, turning about their axes.
+  [[nodiscard]] std::vector<Transform> poses(int frame) const {
+    std::vector<Transform> result;
+    for (const Mover& m : movers_) {
+      const double half = 0.02 * frame + m.phase;
+      const Vec3 axis = std::sin(half) * normalized(m.wave);
+      result.push_back(Transform::translation(reflected(m.start + static_cast<double>(frame) * m.velocity)) *
+                       Transform::quaternion({std::cos(half), axis[0], axis[1], axis[2]}));
+    }
+    return result;
+  }
 
  private:
   struct Mover {
@@ -111,62 +133,133 @@ bool agree(std::span<const PairProximity> ours, std::span<const FclCrowd::Pair> 
   return pair == ours.end();
 }
 
-Outcome measure(const Trial& trial, std::size_t size, double max_distance) {
+/// Times of our frames and FCL's, and what was found.
+class Frames {
+ public:
+  explicit Frames(const Trial& trial, double max_distance) : trial_(trial), max_distance_(max_distance) {}
+
+  /// Frames before the first one warm up, and are not counted.
+  static constexpr int kWarmUp = 3;
+
+  template <class Ours, class Theirs>
+  void add(int frame, const Ours& ours, const Theirs& theirs) {
+    Stopwatch watch;
+    MultiBodyQuery& query = ours();
+    const double our_time = watch.lap();
+    const std::span<const FclCrowd::Pair> expected = theirs();
+    const double fcl_time = watch.lap();
+    if (frame < 0) return;
+    ours_ms_.push_back(our_time);
+    fcl_ms_.push_back(fcl_time);
+    verified_ &= agree(query.pairs(), expected, max_distance_);
+    candidates_ += query.candidate_pairs();
+    pairs_ += query.pairs().size();
+    for (const PairProximity& pair : query.pairs()) colliding_ += pair.colliding.value;
+  }
+
+  [[nodiscard]] Outcome outcome() const {
+    const auto per_frame = [&](std::size_t count) { return static_cast<double>(count) / trial_.repetitions; };
+    const auto row = [&](const char* name, const std::vector<double>& times) {
+      return Row{name,
+                 {{"mean_ms", mean(times)},
+                  {"p99_ms", quantile(times, 0.99)},
+                  {"fcl_over_this", mean(fcl_ms_) / mean(times)}}};
+    };
+    return {.verified = verified_,
+            .rows = {row("ours", ours_ms_), row("fcl", fcl_ms_)},
+            .counts = {{"candidate_pairs", per_frame(candidates_)},
+                       {"pairs", per_frame(pairs_)},
+                       {"colliding", per_frame(colliding_)}}};
+  }
+
+ private:
+  const Trial& trial_;
+  double max_distance_;
+  std::vector<double> ours_ms_, fcl_ms_;
+  std::size_t candidates_ = 0, pairs_ = 0, colliding_ = 0;
+  bool verified_ = true;
+};
+
+Outcome deforming(const Trial& trial, std::size_t size, double max_distance) {
   const ThreadLimit limit(trial.threads);
   Crowd crowd(size);
   const std::vector<Mesh> meshes = crowd.meshes();
   MultiBodyQuery query(meshes, {.max_distance = max_distance});
   FclCrowd fcl(meshes);
-  std::vector<double> ours_ms, fcl_ms;
-  std::size_t candidates = 0, pairs = 0, colliding = 0;
-  bool verified = true;
   std::vector<std::span<const Vec3>> positions(size);
-  constexpr int kWarmUp = 3;
-  for (int frame = -kWarmUp; frame < trial.repetitions; ++frame) {
+  Frames frames(trial, max_distance);
+  for (int frame = -Frames::kWarmUp; frame < trial.repetitions; ++frame) {
     const std::span<const std::vector<Vec3>> moved = crowd.at(frame);
     std::ranges::copy(moved, positions.begin());
-    Stopwatch watch;
-    query.refit(positions);
-    (void)query.pairs();
-    const double our_time = watch.lap();
-    fcl.refit(moved);
-    const auto theirs = fcl.distances(max_distance);
-    const double fcl_time = watch.lap();
-    if (frame < 0) continue;
-    ours_ms.push_back(our_time);
-    fcl_ms.push_back(fcl_time);
-    verified &= agree(query.pairs(), theirs, max_distance);
-    candidates += query.candidate_pairs();
-    pairs += query.pairs().size();
-    for (const PairProximity& pair : query.pairs()) colliding += pair.colliding.value;
+    frames.add(
+        frame,
+        [&]() -> MultiBodyQuery& {
+          query.refit(positions);
+          (void)query.pairs();
+          return query;
+        },
+        [&] {
+          fcl.refit(moved);
+          return fcl.distances(max_distance);
+        });
   }
+  return frames.outcome();
+}
 
-  const auto per_frame = [&](std::size_t count) { return static_cast<double>(count) / trial.repetitions; };
-  const auto row = [&](const char* name, const std::vector<double>& times) {
-    return Row{name,
-               {{"mean_ms", mean(times)},
-                {"p99_ms", quantile(times, 0.99)},
-                {"fcl_over_this", mean(fcl_ms) / mean(times)}}};
-  };
-  return {.verified = verified,
-          .rows = {row("ours", ours_ms), row("fcl", fcl_ms)},
-          .counts = {{"candidate_pairs", per_frame(candidates)},
-                     {"pairs", per_frame(pairs)},
-                     {"colliding", per_frame(colliding)}}};
+// Bodies of ten shapes that turn as they drift.
+Outcome rigid(const Trial& trial, std::size_t size, double max_distance) {
+  constexpr std::size_t kShapes = 10;
+  const ThreadLimit limit(trial.threads);
+  Crowd crowd(size);
+  const std::vector<Mesh> shape_meshes = Crowd(kShapes).waves();
+  std::vector<Shape> shapes, bodies;
+  std::vector<Mesh> meshes;
+  for (const Mesh& mesh : shape_meshes) shapes.emplace_back(mesh, AtlasOptions{.resolution = 128});
+  for (std::size_t b = 0; b < size; ++b) {
+    bodies.push_back(shapes[b % kShapes]);
+    meshes.push_back(shape_meshes[b % kShapes]);
+  }
+  MultiBodyQuery query(std::move(bodies), {.max_distance = max_distance});
+  FclCrowd fcl(meshes);
+  Frames frames(trial, max_distance);
+  for (int frame = -Frames::kWarmUp; frame < trial.repetitions; ++frame) {
+    const std::vector<Transform> poses = crowd.poses(frame);
+    frames.add(
+        frame,
+        [&]() -> MultiBodyQuery& {
+          query.set_poses(poses);
+          (void)query.pairs();
+          return query;
+        },
+        [&] {
+          fcl.move(poses);
+          return fcl.distances(max_distance);
+        });
+  }
+  return frames.outcome();
 }
 
 std::vector<Case> cases() {
   std::vector<Case> result;
-  for (const bool near : {true, false})
-    for (const std::size_t size : {5u, 10u, 20u, 40u}) {
-      const double max_distance = near ? 0.5 : std::numeric_limits<double>::infinity();
-      result.push_back({.name = (near ? "near-" : "all-") + std::to_string(size),
-                        .description = std::to_string(size) + " bodies of 500 triangles, " +
-                                       (near ? "pairs nearer than half a body's width" : "all pairs"),
-                        .run = [=](const Trial& trial) { return measure(trial, size, max_distance); },
-                        .repetitions = 100,
-                        .threads = 0});
-    }
+  const auto add = [&](const char* name, std::size_t size, const std::string& what, int repetitions,
+                       std::function<Outcome(const Trial&)> run) {
+    const std::string count = std::to_string(size);
+    result.push_back({.name = name + ("-" + count),
+                      .description = count + " bodies of 500 triangles, " + what,
+                      .run = std::move(run),
+                      .repetitions = repetitions,
+                      .threads = 0});
+  };
+  constexpr double kNear = 0.5;
+  for (const std::size_t size : {5u, 10u, 20u, 40u, 100u})
+    add("near", size, "pairs nearer than half a body's width", 100,
+        [=](const Trial& trial) { return deforming(trial, size, kNear); });
+  for (const std::size_t size : {5u, 10u, 20u, 40u})
+    add("all", size, "all pairs", 100,
+        [=](const Trial& trial) { return deforming(trial, size, std::numeric_limits<double>::infinity()); });
+  for (const std::size_t size : {100u, 1000u, 10000u})
+    add("rigid", size, "rigid, pairs nearer than half a body's width", size < 10000 ? 50 : 5,
+        [=](const Trial& trial) { return rigid(trial, size, kNear); });
   return result;
 }
 

@@ -69,6 +69,20 @@ FclCrowd::FclCrowd(std::span<const Mesh> meshes) : impl_(new Impl) {
 }
 FclCrowd::~FclCrowd() = default;
 
+void FclCrowd::move(std::span<const Transform> poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    fcl::Transform3d pose = fcl::Transform3d::Identity();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) pose.linear()(row, column) = poses[i].rows[row][column];
+      pose.translation()(row) = poses[i].rows[row][3];
+    }
+    Object& object = *impl_->bodies[i].object;
+    object.setTransform(pose);
+    object.computeAABB();
+  }
+  impl_->manager.update();
+}
+
 void FclCrowd::refit(std::span<const std::vector<Vec3>> positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Body& body = impl_->bodies[i];

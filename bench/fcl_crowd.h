@@ -1,7 +1,8 @@
-// Many deforming meshes in FCL's dynamic AABB tree.
+// Many deforming or rigid meshes in FCL's dynamic AABB tree.
 #pragma once
 
 #include <sdm/mesh.h>
+#include <sdm/transform.h>
 
 #include <cstdint>
 #include <memory>
@@ -18,6 +19,8 @@ class FclCrowd {
 
   /// Refits all hierarchies to new positions.
   void refit(std::span<const std::vector<Vec3>> positions);
+  /// Sets the pose of every body, a rigid motion.
+  void move(std::span<const Transform> poses);
 
   struct Pair {
     std::uint32_t first, second;  ///< first < second

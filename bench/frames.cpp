@@ -52,7 +52,8 @@ bool agree(ProximityQuery& query, const std::array<DistanceMap, 2>& maps) {
   const double tolerance = 2e-6 * diagonal(box);
   const BoundedLength &separation = query.separation(),
                       depth = query.penetration_depth().value_or(BoundedLength{});
-  return separation.value <= least + tolerance && std::abs(depth.value - deepest) <= tolerance;
+  return separation.value <= least + tolerance && depth.upper >= deepest - tolerance &&
+         depth.upper - depth.lower <= ProximityOptions::kDepthPrecision * diagonal(box) + tolerance;
 }
 
 /// Milliseconds of each frame.

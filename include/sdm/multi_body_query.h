@@ -19,7 +19,8 @@ struct MultiBodyOptions {
   AtlasOptions atlas{.resolution = 128};
   /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
   double max_distance = std::numeric_limits<double>::infinity();
-  double contact_margin = 0;  ///< as that of ProximityOptions
+  double depth_precision = 0;  ///< as that of ProximityOptions
+  double contact_margin = 0;   ///< as that of ProximityOptions
 };
 
 /// The results of ProximityQuery for one pair: O1 is `first`, O2 is `second`.

@@ -58,6 +58,11 @@ struct Contact {
 struct ProximityOptions {
   /// Of bodies that are given as meshes. Depth and contacts are measured at its samples.
   AtlasOptions atlas{.resolution = 512};
+  /// The bounds on the penetration depth are at most this far apart, or 1/1000 of the diagonal of the smaller
+  /// body's box if it is 0; ≥ 0, in units of the meshes. Errors of computed distances, and bounds on
+  /// distances to the boundary of a solid that intersects itself, are added.
+  double depth_precision = 0;
+  static constexpr double kDepthPrecision = 1e-3;
   /// Contacts are reported for samples inside the other body or within this distance of it; ≥ 0, in units of
   /// the meshes.
   double contact_margin = 0;

@@ -1,9 +1,7 @@
 #include <sdm/error.h>
 #include <sdm/proximity_query.h>
 
-#include <cmath>
 #include <new>
-#include <string>
 
 #include "core/memory.h"
 #include "proximity/sampled/pair_answers.h"
@@ -17,7 +15,7 @@ struct ProximityQuery::Impl {
 
   Impl(Shape o1, Shape o2, const ProximityOptions& options)
       : bodies{sampled::PosedBody(std::move(o1)), sampled::PosedBody(std::move(o2))},
-        answers(options.contact_margin) {
+        answers(options.contact_margin, options.depth_precision) {
     begin();
   }
   // The faces that were closest before are most likely near the closest ones now.
@@ -27,9 +25,7 @@ struct ProximityQuery::Impl {
 namespace {
 
 const ProximityOptions& checked(const ProximityOptions& options) {
-  if (!(options.contact_margin >= 0 && std::isfinite(options.contact_margin)))
-    throw Error("a contact margin of " + std::to_string(options.contact_margin) +
-                " is out of range; use 0 or more");
+  sampled::check_options(options.contact_margin, options.depth_precision);
   return options;
 }
 

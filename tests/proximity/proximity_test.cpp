@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 #include <vector>
@@ -61,12 +62,12 @@ TEST(Proximity, Cubes) {
 TEST(Proximity, DepthOfSpheresConverges) {
   double error = 1;
   for (const int level : {1, 2, 3, 4}) {
-    const auto resolution = static_cast<std::uint32_t>(32 << level);
-    ProximityQuery query(sphere(level), moved(sphere(level), {0.9, 1.2, 0}), at_resolution(resolution));
+    ProximityQuery query(sphere(level), moved(sphere(level), {0.9, 1.2, 0}), at_resolution(64));
     ASSERT_TRUE(query.penetration_depth());
     const BoundedLength depth = *query.penetration_depth();
     EXPECT_EQ(depth.certainty, Certainty::bounded);
     EXPECT_GT(depth.lower, 0.2);
+    expect_witness(depth);
     const double now = std::max(std::abs(depth.lower - 0.5), std::abs(depth.upper - 0.5));
     EXPECT_LT(now, 0.9 * error) << level;
     error = now;
@@ -81,11 +82,11 @@ TEST(Proximity, DepthInATorus) {
   for (const std::uint32_t n : {24u, 48u, 96u}) {
     Mesh ball = sphere(3);
     for (Vec3& p : ball.positions) p = 0.4 * p + Vec3{2.3, 0, 0};
-    ProximityQuery query(torus(2 * n, n), ball, at_resolution(4 * n));
+    ProximityQuery query(torus(2 * n, n), ball, at_resolution(64));
     const BoundedLength depth = *query.penetration_depth();
     EXPECT_TRUE(query.colliding().value);
     expect_holds(depth, 1, 0.04 * 24 / n);
-    const double now = depth.upper - depth.lower;
+    const double now = std::max(std::abs(depth.upper - 1), std::abs(depth.lower - 1));
     EXPECT_LT(now, 0.7 * error);
     error = now;
     EXPECT_NEAR(query.separation().value, 0.3, 0.04 * 24 / n);
@@ -93,7 +94,7 @@ TEST(Proximity, DepthInATorus) {
   }
 }
 
-// Culled samples do not affect results: complete maps give the same.
+// The maps' samples are points of the surfaces, and every other point is near one of them.
 TEST(Proximity, AgreesWithCompleteMaps) {
   const Mesh bunny = load("bunny.obj", "fit");
   for (const char* placement :
@@ -102,7 +103,8 @@ TEST(Proximity, AgreesWithCompleteMaps) {
     const Mesh armadillo = load("armadillo.off", placement);
     ProximityQuery query(bunny, armadillo, at_resolution(256));
     const double tolerance = 2e-6 * scene_diagonal(bunny, armadillo);
-    double least = 1e300, deepest = 0, lower = 1e300;  // lower: of the separation
+    double least = 1e300, lower = 1e300;  // bounds on the separation
+    double deepest = 0, upper = 0;        // and on the depth
     for (int b = 0; b < 2; ++b) {
       const Surface& surface = query.surface(b);
       const DistanceMap map = compute_map(surface, query.sites(1 - b));
@@ -111,42 +113,85 @@ TEST(Proximity, AgreesWithCompleteMaps) {
         const double d = map.distance[surface.sample_texels()[i]];
         least = std::min(least, std::abs(d));
         lower = std::min(lower, std::abs(d) - bound.sample_radii()[i]);
-        if (map.sign.method != SignMethod::none) deepest = std::max(deepest, -d);
+        deepest = std::max(deepest, -d);
+        upper = std::max(upper, bound.sample_radii()[i] - d);
       }
     }
     EXPECT_LE(query.separation().value, least + tolerance);
     EXPECT_GE(query.separation().value, lower - tolerance);
-    EXPECT_NEAR(query.penetration_depth()->value, deepest, tolerance);
-    EXPECT_EQ(query.samples_used() > 0, query.colliding().value);
+    const BoundedLength& depth = *query.penetration_depth();
+    EXPECT_GE(depth.upper, deepest - tolerance);
+    if (!query.colliding().value) continue;
+    EXPECT_LE(depth.lower, upper + tolerance);
+    EXPECT_LE(depth.upper - depth.lower, 1e-3 * diagonal(bounds(bunny)) + tolerance);
+    expect_witness(depth);
   }
 }
 
-// More samples: the bounds on the depth converge. The truth is not known, but between the largest lower bound
-// and each upper one.
-TEST(Proximity, BoundsNarrowWithTheResolution) {
+// The bounds are as narrow as asked, and consistent. The truth is not known, but between the largest lower
+// bound and each upper one.
+TEST(Proximity, DepthIsAsPreciseAsAsked) {
   const Mesh a = load("cow.off", "fit"), b = load("head.off", "fit,translate:0.4:0.1:0");
-  double width = 1e300, deepest = 0;
-  for (const std::uint32_t resolution : {64u, 128u, 256u, 512u}) {
-    ProximityQuery query(a, b, at_resolution(resolution));
+  const double tolerance = 2e-6 * scene_diagonal(a, b);
+  double deepest = 0, shallowest = 1e300;
+  for (const double precision : {0.1, 1e-2, 1e-3, 1e-4, 1e-5}) {
+    SCOPED_TRACE(precision);
+    ProximityQuery query(a, b, {.atlas = {.resolution = 64}, .depth_precision = precision});
     const BoundedLength& depth = *query.penetration_depth();
     EXPECT_EQ(depth.certainty, Certainty::bounded);
-    EXPECT_LT(depth.upper - depth.lower, 0.75 * width);
-    width = depth.upper - depth.lower;
-    deepest = std::max(deepest, depth.lower);
-    EXPECT_GE(depth.upper, deepest);
+    EXPECT_LE(depth.upper - depth.lower, precision + 2 * tolerance);
+    EXPECT_LE(depth.lower, depth.value);
+    EXPECT_LE(depth.value, depth.upper);
+    expect_witness(depth);
+    deepest = std::max(deepest, depth.lower), shallowest = std::min(shallowest, depth.upper);
+    EXPECT_LE(deepest, shallowest);
   }
-  EXPECT_LT(width, 0.02);
+  EXPECT_LT(shallowest - deepest, 1e-4);
+  for (const double bad : {-1.0, std::nan("")})
+    EXPECT_THROW(ProximityQuery(a, b, {.atlas = {.resolution = 64}, .depth_precision = bad}), Error);
 }
 
-// Samples are measured only for depth and contacts, and only near the other body.
+/// Each triangle divided into four, this many times.
+Mesh divided(Mesh mesh, int times) {
+  for (; times > 0; --times) {
+    std::map<std::array<std::uint32_t, 2>, std::uint32_t> middles;
+    Mesh finer{mesh.positions, {}, {}};
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [at, added] = middles.emplace(std::array{std::min(a, b), std::max(a, b)},
+                                               static_cast<std::uint32_t>(finer.positions.size()));
+      if (added) finer.positions.push_back(0.5 * (mesh.positions[a] + mesh.positions[b]));
+      return at->second;
+    };
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const std::uint32_t d = middle(a, b), e = middle(b, c), f = middle(c, a);
+      for (const Triangle& t : {Triangle{a, d, f}, {d, b, e}, {f, e, c}, {d, e, f}})
+        finer.triangles.push_back(t);
+    }
+    mesh = finer;
+  }
+  return mesh;
+}
+
+// Surfaces that are parallel and equally deep everywhere: finely divided ones, too.
+TEST(Proximity, DepthOfParallelFaces) {
+  for (const int times : {0, 5}) {
+    const Mesh box = divided(cube(), times);
+    ProximityQuery query(box, moved(box, {1.7, 0.01, 0.02}),
+                         {.atlas = {.resolution = 64}, .depth_precision = 1e-4});
+    expect_holds(*query.penetration_depth(), 0.3, 1e-9);
+    EXPECT_LT(query.penetration_depth()->upper - query.penetration_depth()->lower, 1.2e-4);
+  }
+}
+
+// Samples are measured only for contacts, and only near the other body.
 TEST(Proximity, ComputesFewSamples) {
   ProximityQuery apart(sphere(5), moved(sphere(5), {2.2, 0, 0}), at_resolution(512));
   (void)apart.separation(), (void)apart.colliding(), (void)apart.penetration_depth(), (void)apart.contacts();
   EXPECT_EQ(apart.samples_used(), 0u);
   ProximityQuery query(sphere(5), moved(sphere(5), {1.9, 0, 0}), at_resolution(512));
-  (void)query.separation(), (void)query.colliding();
+  (void)query.separation(), (void)query.colliding(), (void)query.penetration_depth();
   EXPECT_EQ(query.samples_used(), 0u);
-  (void)query.penetration_depth();
+  (void)query.contacts();
   const std::size_t all = query.surface(0).sample_texels().size() + query.surface(1).sample_texels().size();
   EXPECT_GT(query.samples_used(), 0u);
   EXPECT_LT(query.samples_used(), all / 4);

@@ -21,9 +21,7 @@ namespace {
 
 const MultiBodyOptions& checked(const MultiBodyOptions& options) {
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
-  if (!(options.contact_margin >= 0 && std::isfinite(options.contact_margin)))
-    throw Error("a contact margin of " + std::to_string(options.contact_margin) +
-                " is out of range; use 0 or more");
+  sampled::check_options(options.contact_margin, options.depth_precision);
   return options;
 }
 
@@ -49,11 +47,12 @@ std::vector<Shape> shapes_of(std::span<const Mesh> meshes, const AtlasOptions& a
 // A pool of the memory for pairs measured concurrently: one entry for each thread.
 class AnswersPool {
  public:
-  explicit AnswersPool(double contact_margin) : contact_margin_(contact_margin) {}
+  explicit AnswersPool(const MultiBodyOptions& options)
+      : contact_margin_(options.contact_margin), depth_precision_(options.depth_precision) {}
 
   std::unique_ptr<sampled::PairAnswers> take() {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<sampled::PairAnswers>(contact_margin_);
+    if (idle_.empty()) return std::make_unique<sampled::PairAnswers>(contact_margin_, depth_precision_);
     std::unique_ptr<sampled::PairAnswers> answers = std::move(idle_.back());
     idle_.pop_back();
     return answers;
@@ -64,7 +63,7 @@ class AnswersPool {
   }
 
  private:
-  double contact_margin_;
+  double contact_margin_, depth_precision_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<sampled::PairAnswers>> idle_;
 };
@@ -92,7 +91,7 @@ struct MultiBodyQuery::Impl {
   std::vector<BodyContact> contacts;
 
   Impl(std::vector<Shape> shapes, const MultiBodyOptions& asked)
-      : options(asked), pool(asked.contact_margin), boxes(shapes.size()) {
+      : options(asked), pool(asked), boxes(shapes.size()) {
     bodies.reserve(shapes.size());
     for (Shape& shape : shapes) bodies.emplace_back(std::move(shape));
   }

@@ -1,14 +1,15 @@
 #include "proximity/sampled/pair_answers.h"
 
+#include <sdm/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "core/geometry/sweep.h"
 #include "core/geometry/vec.h"
-#include "core/parallel.h"
-#include "engine/cpu/cpu_engine.h"
 #include "proximity/exact/collision.h"
 
 namespace sdm::sampled {
@@ -17,6 +18,15 @@ namespace {
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 }  // namespace
+
+void check_options(double contact_margin, double depth_precision) {
+  const auto check = [](const char* what, double length) {
+    if (!(length >= 0 && std::isfinite(length)))
+      throw Error(std::string(what) + " of " + std::to_string(length) + " is out of range; use 0 or more");
+  };
+  check("a contact margin", contact_margin);
+  check("a precision of the depth", depth_precision);
+}
 
 void PairAnswers::begin(const PosedBody& o1, const PosedBody& o2, const FacePair& hint) {
   bodies_ = {&o1, &o2};
@@ -28,7 +38,7 @@ void PairAnswers::begin(const PosedBody& o1, const PosedBody& o2, const FacePair
   Box box = o1.box();
   extend(box, o2.box());
   precision_ = 1e-6 * diagonal(box);
-  measured_ = Measured::nothing, depth_found_ = false;
+  measured_ = depth_found_ = false;
   intersecting_.reset(), separation_.reset(), depth_.reset(), colliding_.reset(), contacts_.reset();
 }
 
@@ -53,7 +63,7 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 std::span<const Contact> PairAnswers::contacts() {
   if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
   if (!contacts_) {
-    measure(Measured::all);
+    measure();
     const std::array<MeasuredBody, 2> measured{MeasuredBody{*bodies_[0], distances_[0]},
                                                MeasuredBody{*bodies_[1], distances_[1]}};
     contacts_ = finder_.find(measured, contact_margin_, precision_);
@@ -62,34 +72,20 @@ std::span<const Contact> PairAnswers::contacts() {
 }
 
 std::size_t PairAnswers::samples_used() const {
-  if (measured_ == Measured::nothing) return 0;
+  if (!measured_) return 0;
   return distances_[0].distances().size() + distances_[1].distances().size();
 }
 
-// Marks the blocks that may hold the deepest point, with the same result whichever samples are measured:
-// blocks that only contacts need are no deeper than those that are marked.
-void PairAnswers::measure(Measured samples) {
-  if (measured_ >= samples) return;
-  measured_ = samples;
-  const auto unit = [&](int body) { return bodies_[1 - body]->pose().scale; };
+// Measures the samples that affect contacts.
+void PairAnswers::measure() {
+  if (std::exchange(measured_, true)) return;
   for (int b = 0; b < 2; ++b) distances_[b].start(bodies_[b]->body(), bodies_[1 - b]->body(), to_other_[b]);
-  double deepest = 0;
-  for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe) {
+  for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe)
     for (int b = 0; b < 2; ++b) {
       distances_[b].probe(blocks_per_probe);
-      deepest = std::max(deepest, unit(b) * distances_[b].deepest_probed());
+      distances_[b].keep((contact_margin_ + precision_) / bodies_[1 - b]->pose().scale);
     }
-    for (int b = 0; b < 2; ++b) {
-      distances_[b].mark_deeper(deepest / unit(b));
-      if (samples == Measured::all)
-        distances_[b].keep((contact_margin_ + precision_) / unit(b));
-      else
-        distances_[b].keep_marked();
-    }
-  }
-  using Samples = LocalDistances::Samples;
-  for (int b = 0; b < 2; ++b)
-    distances_[b].measure(deepest / unit(b), samples == Measured::all ? Samples::all : Samples::marked);
+  for (LocalDistances& distances : distances_) distances.measure();
 }
 
 bool PairAnswers::within(double distance) {
@@ -129,107 +125,14 @@ bool PairAnswers::surfaces_intersect() {
 std::optional<BoundedLength> PairAnswers::depth() {
   if (!bodies_[0]->body().solid() && !bodies_[1]->body().solid()) return {};
   if (!colliding().value) return BoundedLength{.certainty = Certainty::exact};
-  return bounded_depth();
-}
-
-BoundedLength PairAnswers::bounded_depth() {
-  measure(Measured::deepest);
-  Depth deepest;
-  for (int b = 0; b < 2; ++b) deepest = deeper(deepest, in_space(b, depth_at_faces(b)));
-  for (int b = 0; b < 2; ++b)
-    if (!distances_[b].buried().empty())
-      deepest = deeper(deepest, in_space(b, depth_of_buried(b, in_frame(b, deepest))));
-  return {.value = std::max(0.0, deepest.value),
-          .certainty = Certainty::bounded,
-          .lower = std::max(0.0, deepest.lower - precision_),
-          .upper = std::max(0.0, deepest.upper + precision_),
-          .witness = deepest.points};
-}
-
-// From the frame in which the samples of `body` are measured.
-PairAnswers::Depth PairAnswers::in_space(int body, Depth depth) const {
-  const proximity::Similarity& pose = bodies_[1 - body]->pose();
-  for (double* length : {&depth.lower, &depth.value, &depth.upper}) *length *= pose.scale;
-  if (depth.points)
-    for (Vec3& p : *depth.points) p = pose.map(p);
-  return depth;
-}
-
-// Into the frame in which the samples of `body` are measured, without the points.
-PairAnswers::Depth PairAnswers::in_frame(int body, Depth depth) const {
-  const double unit = 1 / bodies_[1 - body]->pose().scale;
-  return {unit * depth.lower, unit * depth.value, unit * depth.upper};
-}
-
-PairAnswers::Depth PairAnswers::deeper(const Depth& a, const Depth& b) {
-  Depth result = b.lower > a.lower ? b : a;
-  result.upper = std::max(a.upper, b.upper);
-  return result;
-}
-
-// Over the samples whose closest faces are part of the boundary.
-PairAnswers::Depth PairAnswers::depth_at_faces(int body) const {
-  const LocalDistances& on = distances_[body];
-  const std::span<const float> distances = on.distances(), radii = on.radii();
-  Depth deepest;
-  std::uint32_t deepest_sample = kNone;
-  std::span<const std::uint32_t> buried = on.buried();
-  for (std::uint32_t i = 0; i < distances.size(); ++i) {
-    if (!on.marked(i)) continue;
-    if (!buried.empty() && buried.front() == i) {
-      buried = buried.subspan(1);
-      continue;
-    }
-    deepest.upper = std::max(deepest.upper, double{radii[i]} - distances[i]);
-    if (-distances[i] > deepest.lower) deepest.lower = deepest.value = -distances[i], deepest_sample = i;
-  }
-  if (deepest_sample == kNone) return deepest;
-  const Vec3& p = on.points()[deepest_sample];
-  Vec3 q = p;
-  cpu::cpu_search(internals(bodies_[1 - body]->body().sites()), {&p, 1}, kNoLimit,
-                  [&](std::size_t, const sites::ClosestPacket& closest) { q = closest.get(0, p).point; });
-  deepest.points = body == 0 ? std::array{p, q} : std::array{q, p};
-  return deepest;
-}
-
-// Over the other samples, as far as they may be deeper than `known`. Distances to the boundary are
-// 1-Lipschitz: samples every kStrides[0] tell which others need to be measured, these which more.
-PairAnswers::Depth PairAnswers::depth_of_buried(int body, Depth known) {
-  constexpr std::array<std::size_t, 3> kStrides{64, 8, 1};
-  const Body& solid = bodies_[1 - body]->body();
-  solid.require_boundary();
-  const LocalDistances& on = distances_[body];
-  const std::span<const std::uint32_t> samples = on.buried();
-  std::vector<std::optional<inside::SolidBoundary::Closest>>& closest = closest_boundary_;
-  closest.assign(samples.size(), {});
-  Depth deepest;
-  for (const std::size_t stride : kStrides) {
-    const std::size_t coarser = stride == kStrides[0] ? 0 : 8 * stride;  // decided before
-    parallel_for((samples.size() + stride - 1) / stride, 8, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        const std::size_t i = k * stride;
-        const Vec3& p = on.points()[samples[i]];
-        if (coarser > 0) {
-          if (i % coarser == 0) continue;
-          const std::size_t before =
-              closest[i / coarser * coarser] ? i / coarser * coarser : i / kStrides[0] * kStrides[0];
-          const double most = closest[before]->upper + norm(p - on.points()[samples[before]]);
-          if (most <= known.lower && most + on.radii()[samples[i]] <= known.upper) continue;
-        }
-        closest[i] = solid.boundary().closest(p);
-      }
-    });
-    for (std::size_t i = 0; i < samples.size(); i += stride) {
-      if (!closest[i]) continue;
-      const auto& [lower, upper, point, face] = *closest[i];
-      const Vec3& p = on.points()[samples[i]];
-      Depth here{.lower = lower, .value = point ? upper : lower, .upper = upper + on.radii()[samples[i]]};
-      if (point) here.points = body == 0 ? std::array{p, *point} : std::array{*point, p};
-      deepest = deeper(deepest, here);
-    }
-    known = deeper(known, deepest);
-  }
-  return deepest;
+  const double size = std::min(diagonal(bodies_[0]->box()), diagonal(bodies_[1]->box()));
+  const depth::Depth found = depth_search_.find(
+      bodies_, to_other_, depth_precision_ > 0 ? depth_precision_ : ProximityOptions::kDepthPrecision * size);
+  return BoundedLength{.value = found.value,
+                       .certainty = Certainty::bounded,
+                       .lower = std::max(0.0, found.lower - precision_),
+                       .upper = found.upper + precision_,
+                       .witness = found.points};
 }
 
 }  // namespace sdm::sampled

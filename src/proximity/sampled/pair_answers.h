@@ -7,12 +7,16 @@
 #include <optional>
 #include <span>
 
+#include "proximity/depth/depth_search.h"
 #include "proximity/exact/pair_search.h"
 #include "proximity/sampled/contacts.h"
 #include "proximity/sampled/local_distances.h"
 #include "proximity/sampled/posed_body.h"
 
 namespace sdm::sampled {
+
+/// Throws sdm::Error unless both are finite and at least 0.
+void check_options(double contact_margin, double depth_precision);
 
 /// A face of each of two bodies.
 using FacePair = std::array<std::uint32_t, 2>;
@@ -25,7 +29,9 @@ inline constexpr FacePair kNoFaces{kNone, kNone};
 /// results are in space.
 class PairAnswers {
  public:
-  explicit PairAnswers(double contact_margin) : contact_margin_(contact_margin) {}
+  /// `depth_precision`: see ProximityOptions.
+  PairAnswers(double contact_margin, double depth_precision)
+      : contact_margin_(contact_margin), depth_precision_(depth_precision) {}
 
   /// Sets the bodies to which the results refer. They must outlive this object and remain unchanged until the
   /// next call.
@@ -46,38 +52,23 @@ class PairAnswers {
   [[nodiscard]] std::size_t samples_used() const;
 
  private:
-  /// The depth of some samples: lower ≤ depth ≤ upper; `value` is attained by `points`.
-  struct Depth {
-    double lower = 0, value = 0, upper = 0;
-    std::optional<std::array<Vec3, 2>> points{};
-  };
-
-  enum class Measured { nothing, deepest, all };  // samples: the deepest ones; also those of contacts
-
-  void measure(Measured samples);
+  void measure();
   [[nodiscard]] exact::MeshPair meshes() const;
   bool find_closest(double bound);
   [[nodiscard]] bool surfaces_intersect();
   [[nodiscard]] std::optional<BoundedLength> depth();
-  [[nodiscard]] BoundedLength bounded_depth();
-  [[nodiscard]] static Depth deeper(const Depth& a, const Depth& b);
-  [[nodiscard]] Depth depth_at_faces(int body) const;
-  [[nodiscard]] Depth depth_of_buried(int body, Depth known);
-  [[nodiscard]] Depth in_space(int body, Depth depth) const;
-  [[nodiscard]] Depth in_frame(int body, Depth depth) const;
 
-  double contact_margin_;
+  double contact_margin_, depth_precision_;
   std::array<const PosedBody*, 2> bodies_{};
   std::array<proximity::Similarity, 2> to_other_;  // from the frame of each body to that of the other
   double precision_ = 0;                           // error of a computed distance
   std::array<LocalDistances, 2> distances_;        // of each body to the other
   ContactFinder finder_;
   exact::PairWorkspace workspace_;
-  std::vector<std::optional<inside::SolidBoundary::Closest>> closest_boundary_;  // of the buried samples
+  depth::DepthSearch depth_search_;
 
   // Results for the current bodies.
-  Measured measured_ = Measured::nothing;
-  bool depth_found_ = false;
+  bool measured_ = false, depth_found_ = false;
   FacePair closest_faces_ = kNoFaces;
   std::optional<bool> intersecting_;  // the surfaces
   std::optional<BoundedLength> separation_, depth_;

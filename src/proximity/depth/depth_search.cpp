@@ -1,0 +1,240 @@
+#include "proximity/depth/depth_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "core/geometry/sweep.h"
+#include "core/geometry/vec.h"
+#include "core/parallel.h"
+#include "engine/cpu/cpu_engine.h"
+#include "hierarchy/traverse.h"
+#include "sites/closest_on_face.h"
+#include "sites/sites_data.h"
+
+namespace sdm::depth {
+namespace {
+
+using inside::Sides;
+
+// Parts are evaluated together, at least this many, the deepest bounds first: more would evaluate parts that
+// the others rule out, fewer would not share searches. Of many open parts, a fraction: neighbours are then
+// among them.
+constexpr std::size_t kBatch = 64, kFraction = 4;
+constexpr std::uint64_t kFaceStep = std::uint64_t{1} << 32;  // between the places of faces
+
+}  // namespace
+
+Depth DepthSearch::find(const Bodies& bodies, const std::array<proximity::Similarity, 2>& to_other,
+                        double precision) {
+  bodies_ = bodies, to_other_ = to_other;
+  Depth depth;
+  double settled = 0;
+  sure_ = precision;
+  open_.clear(), all_.clear();
+  for (int body = 0; body < 2; ++body)
+    if (bodies[1 - body]->body().solid()) add_children({.body = body, .node = 0});
+  while (!open_.empty()) {
+    parts_.clear();
+    const std::size_t most = std::max(kBatch, open_.size() / kFraction);
+    while (!open_.empty() && parts_.size() < most) {
+      std::ranges::pop_heap(open_, {}, &Open::upper);
+      const Open deepest = open_.back();
+      open_.pop_back();
+      if (deepest.upper > sure_)
+        parts_.push_back(all_[deepest.part]);
+      else
+        settled = std::max(settled, deepest.upper);
+    }
+    std::ranges::sort(parts_, {}, [](const Part& part) { return std::pair(part.body, part.place); });
+    values_.assign(parts_.size(), {});
+    constexpr std::size_t kGrain = 256;
+    parallel_for(parts_.size(), kGrain, [&](std::size_t begin, std::size_t end) { evaluate(begin, end); });
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const Part& part = parts_[i];
+      const Value& value = values_[i];
+      if (part.node != kNone || !(unit(part.body) * value.lower > depth.lower)) continue;
+      depth.lower = unit(part.body) * value.lower;
+      depth.value = unit(part.body) * value.value;
+      depth.points.reset();
+      if (!value.boundary) continue;
+      const Affine& pose = bodies[1 - part.body]->pose().map;
+      const Vec3 p = pose(part.centre), q = pose(*value.boundary);
+      depth.points = part.body == 0 ? std::array{p, q} : std::array{q, p};
+    }
+    sure_ = depth.lower + precision;
+    for (const Part& part : parts_) {
+      // The distance to the boundary of a solid that intersects itself has bounds that no division tightens.
+      const bool finest =
+          part.node == kNone && unit(part.body) * part.radius <= std::max(0.125 * precision, part.gap);
+      if (part.upper <= sure_ || finest)
+        settled = std::max(settled, part.upper);
+      else
+        divide(part);
+    }
+  }
+  depth.upper = std::max(depth.lower, settled);
+  return depth;
+}
+
+void DepthSearch::add(const Part& part) {
+  open_.push_back({part.upper, static_cast<std::uint32_t>(all_.size())});
+  all_.push_back(part);
+  std::ranges::push_heap(open_, {}, &Open::upper);
+}
+
+void DepthSearch::divide(const Part& part) {
+  if (part.node != kNone) return add_children(part);
+  std::array<Vec3, 3> middle;  // of each side
+  for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (part.at[k] + part.at[(k + 1) % 3]);
+  // The quarters of a triangle follow it, up to the precision of the number.
+  const std::uint64_t step = part.step / 4;
+  for (int k = 0; k < 3; ++k)
+    add_triangle({part.at[k], middle[k], middle[(k + 2) % 3]}, part, part.place + k * step, step);
+  add_triangle(middle, part, part.place + 3 * step, step);
+}
+
+void DepthSearch::add_triangle(const Corners& at, const Part& parent, std::uint64_t place,
+                               std::uint64_t step) {
+  Part part{.body = parent.body, .at = at, .place = place, .step = step, .upper = parent.upper};
+  part.centre = (1.0 / 3) * (at[0] + at[1] + at[2]);
+  for (const Vec3& corner : at) part.radius = std::max(part.radius, norm(corner - part.centre));
+  if (parent.near) part.upper = std::min(part.upper, unit(part.body) * bound_by(*parent.near, part));
+  add(part);
+}
+
+double DepthSearch::bound_by(const BoundaryPart& near, const Part& triangle) const {
+  const sites::SitesData& sites = internals(bodies_[1 - triangle.body]->body().sites());
+  double most = 0;
+  for (const Vec3& p : triangle.at)
+    most = std::max(most, near.face == kNone ? norm(p - near.point)
+                                             : sites::closest_on_face(sites, near.face, p).distance);
+  return most;
+}
+
+// The children of a node of the tree, or the faces of a leaf, unless they are beyond the box of the other
+// body.
+void DepthSearch::add_children(const Part& parent) {
+  const int body = parent.body;
+  const std::uint32_t node = parent.node;
+  const sites::SitesData& sites = internals(bodies_[body]->body().sites());
+  const Box& other = bodies_[1 - body]->body().box();
+  const proximity::Similarity& to_other = to_other_[body];
+  if (hierarchy::WideTree::is_leaf(node)) {
+    const std::uint32_t leaf = hierarchy::WideTree::leaf_number(node);
+    for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i) {
+      const auto& [a, b, c] = sites.mesh.triangles[sites.regions.owners[i].face];
+      const auto at = [&](std::uint32_t vertex) { return to_other.map(sites.mesh.positions[vertex]); };
+      add_triangle({at(a), at(b), at(c)}, parent, i * kFaceStep, kFaceStep);
+    }
+    return;
+  }
+  constexpr double kRounding = 1e-6;  // of the boxes, in units of the frame
+  const hierarchy::WideTree::Node& wide = sites.wide.nodes[node];
+  for (std::uint32_t i = 0; i < wide.count; ++i) {
+    Vec3 centre, half;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double lo = wide.lo[k][i], hi = wide.hi[k][i];
+      centre[k] = sites.frame.origin[k] + 0.5 * (lo + hi) / sites.frame.scale;
+      half[k] = (0.5 * (hi - lo) + kRounding) / sites.frame.scale;
+    }
+    Part part{.body = body, .node = wide.child[i], .upper = parent.upper};
+    part.centre = to_other.map(centre);
+    part.radius = to_other.scale * norm(half);
+    if (box_distance({part.centre, part.centre}, other) <= part.radius) add(part);
+  }
+}
+
+// Parts of one body follow those of the other.
+void DepthSearch::evaluate(std::size_t begin, std::size_t end) {
+  thread_local std::vector<Vec3> centres;
+  while (begin < end) {
+    const int body = parts_[begin].body;
+    centres.clear();
+    for (std::size_t i = begin; i < end && parts_[i].body == body; ++i) centres.push_back(parts_[i].centre);
+    const sampled::Body& other = bodies_[1 - body]->body();
+    const std::span<const Vec3> points = centres;
+    const auto take = [&](std::size_t first, const sites::ClosestPacket& closest) {
+      const std::uint32_t inside = other.inside()(points.subspan(first, closest.count), closest);
+      for (std::size_t k = 0; k < closest.count; ++k) {
+        const std::size_t i = begin + first + k;
+        evaluate(parts_[i], values_[i], closest.distance[k], (inside >> k & 1) != 0,
+                 closest.get(k, points[first + k]));
+      }
+    };
+    cpu::cpu_search(internals(other.sites()), points, std::numeric_limits<double>::infinity(),
+                    std::ref(take));
+    begin += centres.size();
+  }
+}
+
+void DepthSearch::evaluate(Part& part, Value& value, double distance, bool inside,
+                           const ClosestPoint& closest) const {
+  const sampled::Body& other = bodies_[1 - part.body]->body();
+  const sites::SitesData& sites = internals(other.sites());
+  const Vec3& c = part.centre;
+  if (!inside) {
+    part.upper = std::min(part.upper, unit(part.body) * bound_outside(part, distance));
+    return;
+  }
+  std::optional<BoundaryPart> nearest;
+  const Sides sides = other.inside().sides().of_site(closest.type, closest.site);
+  if (sides == Sides::boundary || sides == Sides::reversed)
+    nearest = {sites.face_of(closest.type, closest.site), {}};
+  else if (other.inside().at_boundary(c, closest))
+    nearest = {kNone, closest.point};
+  value = {distance, distance, closest.point};
+  double most = distance;
+  if (!nearest) {
+    other.require_boundary();
+    const inside::SolidBoundary::Closest found = other.boundary().closest(c);
+    value = {found.lower, found.point ? found.upper : found.lower, found.point};
+    most = found.upper;
+    part.gap = unit(part.body) * (found.upper - found.lower);
+    if (found.point) nearest = {kNone, *found.point};
+  }
+  most += part.radius;
+  if (nearest && part.node == kNone) {
+    most = std::min(most, bound_by(*nearest, part));
+    part.near = nearest;
+  }
+  part.upper = std::min(part.upper, unit(part.body) * most);
+}
+
+// Of a part whose centre is outside, by this distance. The way in the triangle from c to a point p that is
+// inside passes through some face, at x, so b(p) ≤ |p − x|. As c and p are on different sides of its plane,
+// |p − x| is the part of |p − c| that is beyond the plane. A triangle that no face intersects has no point
+// inside.
+double DepthSearch::bound_outside(const Part& part, double distance) const {
+  const double most =
+      part.radius - distance;  // the way is at least as long before x as the surface is far from c
+  if (part.node != kNone || unit(part.body) * most <= sure_) return most;
+  const sites::SitesData& sites = internals(bodies_[1 - part.body]->body().sites());
+  Box box;
+  for (const Vec3& p : part.at) extend(box, sites.frame.to_unit(p));
+  const hierarchy::FloatBox around = hierarchy::FloatBox::around(box);
+  const double rounding = 1e-12 / sites.frame.scale;
+  double bound = 0;
+  const auto near = [&](hierarchy::Subtree subtree) {
+    return bound < most && squared_norm(gap(sites.tree.box(subtree.root), around)) == 0;
+  };
+  hierarchy::traverse(sites.tree, hierarchy::whole(sites.tree), near, [&](std::uint32_t leaf) {
+    for (const std::uint32_t face : sites.tree.items_of(leaf)) {
+      const auto& [i, j, k] = sites.mesh.triangles[face];
+      const Corners corners{sites.mesh.positions[i], sites.mesh.positions[j], sites.mesh.positions[k]};
+      if (!triangles_intersect(part.at, corners)) continue;
+      if (sites.sliver[face]) bound = most;
+      const Vec3& n = sites.normals.face[face];
+      const double height = dot(n, part.centre - corners[0]), side = height < 0 ? -1 : 1;
+      double beyond = 0;
+      for (const Vec3& p : part.at) beyond = std::max(beyond, -side * dot(n, p - corners[0]));
+      if (beyond > rounding)
+        bound = std::max(bound, part.radius * beyond / (beyond + side * height) + rounding);
+    }
+  });
+  return std::min(most, bound);
+}
+
+}  // namespace sdm::depth

@@ -1,0 +1,90 @@
+// The penetration depth of two bodies, from their triangles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/geometry/triangle_pair.h"
+#include "proximity/sampled/posed_body.h"
+
+namespace sdm::depth {
+
+/// Bounds on a depth, in space.
+struct Depth {
+  double lower = 0, upper = 0;
+  double value = 0;  ///< that of `points`, if any: a point of O1 and one of O2
+  std::optional<std::array<Vec3, 2>> points{};
+};
+
+/// Finds the largest distance b(p) from a point p of either surface inside the other body to the boundary of
+/// that body, by branch and bound. Parts of a surface, at first the nodes of its tree, then its triangles and
+/// their quarters, are bounded by the value at their centre c, and the better of
+///   b(p) ≤ b(c) + |p − c|, as the distance is 1-Lipschitz, and
+///   b(p) ≤ max over the corners p of a triangle of |p − G|, for a boundary face G: the distance to a convex
+///          set is convex.
+/// The second one, with the G that is nearest to c, exceeds b(c) by the square of the size of a triangle
+/// only, and not at all above one flat face. A triangle whose centre is outside has a similar bound. So the
+/// number of parts that must be divided hardly grows as bounds are tightened.
+class DepthSearch {
+ public:
+  using Bodies = std::array<const sampled::PosedBody*, 2>;
+
+  /// Divides parts until the bounds are at most `precision` apart, in space, as far as those on the distance
+  /// to the boundary of a solid that intersects itself are. Distances are computed to about 1e-6 of the size
+  /// of both bodies, which is not part of the bounds. Cost: some hundred searches for the closest point, more
+  /// where surfaces are nearly parallel; all cores if there are many. Reuses its memory.
+  [[nodiscard]] Depth find(const Bodies& bodies, const std::array<proximity::Similarity, 2>& to_other,
+                           double precision);
+
+ private:
+  /// A face that is boundary on one side everywhere, or a point of the boundary.
+  struct BoundaryPart {
+    std::uint32_t face = kNone;
+    Vec3 point{};
+  };
+  /// Part of a surface, in the frame of the other body.
+  struct Part {
+    int body = 0;
+    std::uint32_t node = kNone;  ///< of the wide tree, or a leaf; kNone: a triangle
+    Corners at{};
+    std::uint64_t place = 0, step = 0;  ///< in the order of the tree; its quarters are a quarter step apart
+    Vec3 centre{};
+    double radius = 0;  ///< of a ball about the centre that contains the part
+    double upper = std::numeric_limits<double>::infinity();  ///< bound on b in the part, in space
+    std::optional<BoundaryPart> near{};                      ///< part of the boundary near the centre
+    double gap = 0;                                          ///< between the bounds on b(c)
+  };
+  struct Open {
+    double upper = 0;
+    std::uint32_t part = 0;
+  };
+  /// A point that is inside, and bounds on its distance to the boundary, in the frame of the other body.
+  struct Value {
+    double lower = 0, value = 0;
+    std::optional<Vec3> boundary{};
+  };
+
+  void add_children(const Part& part);
+  void add_triangle(const Corners& at, const Part& parent, std::uint64_t place, std::uint64_t step);
+  void add(const Part& part);
+  void divide(const Part& part);
+  void evaluate(std::size_t begin, std::size_t end);
+  void evaluate(Part& part, Value& value, double distance, bool inside, const ClosestPoint& closest) const;
+  [[nodiscard]] double bound_by(const BoundaryPart& near, const Part& triangle) const;
+  [[nodiscard]] double bound_outside(const Part& part, double distance) const;
+  [[nodiscard]] double unit(int body) const { return bodies_[1 - body]->pose().scale; }
+
+  Bodies bodies_{};
+  std::array<proximity::Similarity, 2> to_other_;
+  double sure_ = 0;            // what is no deeper than this does not matter
+  std::vector<Open> open_;     // a heap, the deepest bound on top
+  std::vector<Part> all_;      // that were ever open
+  std::vector<Part> parts_;    // taken from the heap
+  std::vector<Value> values_;  // of parts_
+};
+
+}  // namespace sdm::depth
