@@ -4,6 +4,7 @@
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "map_files.h"
 #include "option_checks.h"
 #include "output_folder.h"
+#include "poses_file.h"
 #include "progress_line.h"
 #include "report.h"
 #include "stopwatch.h"
@@ -24,7 +26,7 @@ namespace {
 struct BodiesCommand {
   std::vector<std::string> files;
   std::string units;
-  std::filesystem::path out;
+  std::filesystem::path out, poses;
   sdm::MultiBodyOptions options;
   MapFiles map_files;
   unsigned threads = 0;
@@ -68,6 +70,8 @@ nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector
   report["pairs"] = nlohmann::ordered_json::array();
   for (const sdm::PairProximity& pair : bodies.pairs()) report["pairs"].push_back(to_json(pair));
   report["candidate_pairs"] = bodies.candidate_pairs();
+  report["contacts"] = nlohmann::ordered_json::array();
+  for (const sdm::BodyContact& contact : bodies.contacts()) report["contacts"].push_back(to_json(contact));
   return report;
 }
 
@@ -76,11 +80,48 @@ std::string bodies_summary(const BodiesCommand& command, sdm::MultiBodyQuery& bo
   for (std::size_t body = 0; body < bodies.size(); ++body)
     text += fmt::format("  {}  {}\n", body, command.files[body]);
   text += "\n" + table(bodies.pairs());
+  text += fmt::format("\n  contacts  {}\n", bodies.contacts().size());
   if (!command.units.empty()) text += fmt::format("\n  lengths in {}\n", command.units);
   if (!command.out.empty())
     text += fmt::format("\n  results   {}/: report.json and, of each body, N/: {}body.npy\n",
                         command.out.string(), listed(command.map_files));
   return text;
+}
+
+/// A file that several bodies name is read once.
+Input load_body(const std::vector<Input>& earlier, const std::string& file) {
+  const auto same = std::ranges::find(earlier, file, &Input::file);
+  Input input;
+  if (same != earlier.end())
+    input = *same;
+  else
+    inspect(input = load_input(fmt::format("body {}", earlier.size()), file, ""));
+  input.role = fmt::format("body {}", earlier.size());
+  return input;
+}
+
+/// Bodies of the same file share a shape.
+std::vector<sdm::Shape> shapes_of(const std::vector<Input>& inputs, const sdm::AtlasOptions& atlas) {
+  std::vector<sdm::Shape> shapes;
+  for (std::size_t body = 0; body < inputs.size(); ++body) try {
+      const auto same = std::ranges::find(inputs, inputs[body].file, &Input::file) - inputs.begin();
+      if (static_cast<std::size_t>(same) < body)
+        shapes.push_back(shapes[static_cast<std::size_t>(same)]);
+      else
+        shapes.emplace_back(inputs[body].mesh, atlas);
+    } catch (const sdm::Cancelled&) {
+      throw;
+    } catch (const sdm::Error& error) {
+      throw sdm::Error(fmt::format("body {}: {}", body, error.what()), error.remedy());
+    }
+  return shapes;
+}
+
+void set_poses(sdm::MultiBodyQuery& bodies, const std::vector<sdm::Transform>& poses,
+               const std::filesystem::path& file) try {
+  bodies.set_poses(poses);
+} catch (const sdm::Error& error) {
+  throw sdm::Error(fmt::format("{}: {}", file.string(), error.what()));
 }
 
 void run(BodiesCommand command) {
@@ -92,14 +133,13 @@ void run(BodiesCommand command) {
 
   progress.step("import");
   Stopwatch watch;
+  std::vector<sdm::Transform> poses;
+  if (!command.poses.empty()) poses = read_poses(command.poses, command.files.size());
   std::vector<Input> inputs;
-  std::vector<sdm::Mesh> meshes;
-  for (const std::string& file : command.files) {
-    inspect(inputs.emplace_back(load_input(fmt::format("body {}", inputs.size()), file, "")));
-    meshes.push_back(inputs.back().mesh);
-  }
+  for (const std::string& file : command.files) inputs.push_back(load_body(inputs, file));
   const double import_ms = watch.lap();
-  sdm::MultiBodyQuery bodies(std::move(meshes), command.options);
+  sdm::MultiBodyQuery bodies(shapes_of(inputs, command.options.atlas), command.options);
+  if (!poses.empty()) set_poses(bodies, poses, command.poses);
   const double build_ms = watch.lap();
   progress.step("queries");
   nlohmann::ordered_json report = report_of(command, inputs, bodies);
@@ -130,7 +170,11 @@ void add_options(CLI::App& app, BodiesCommand& c) {
   app.add_option("--max-distance", c.options.max_distance, "Omit pairs, and texels, farther apart than D")
       ->check(number("a positive number", [](double x) { return x > 0; }))
       ->type_name("D");
-  add_units_option(app, c.units);
+  add_proximity_options(app, c.units, c.options.contact_margin, c.options.depth_precision);
+  app.add_option("--poses", c.poses,
+                 "A text file with a pose per body and line: x y z and a quaternion w x y z, or a 4×4 "
+                 "matrix, row by row")
+      ->type_name("FILE");
   add_write_option(app, c.map_files);
   add_resolution_option(app, c.options.atlas, "all bodies' maps");
   add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a table");
@@ -146,8 +190,9 @@ void add_bodies_command(CLI::App& app) {
       "its\n"
       "map to the nearest of the other bodies, in the files of `sdm map`, and body.npy, the index of that "
       "body.\n\n"
-      "Example, all pairs closer than 5:\n"
-      "  sdm bodies part1.stl part2.stl housing.stl --max-distance 5");
+      "Examples, all pairs closer than 5, and three bodies of one shape in poses:\n"
+      "  sdm bodies part1.stl part2.stl housing.stl --max-distance 5\n"
+      "  sdm bodies gear.stl gear.stl gear.stl --poses poses.txt --margin 0.1 --json");
   const auto command = std::make_shared<BodiesCommand>();
   add_options(*bodies, *command);
   bodies->callback([command] { run(*command); });

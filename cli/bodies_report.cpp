@@ -35,6 +35,12 @@ Json to_json(const sdm::PairProximity& pair) {
           {"penetration_depth", pair.penetration_depth ? to_json(*pair.penetration_depth) : Json(nullptr)}};
 }
 
+Json to_json(const sdm::BodyContact& contact) {
+  Json json{{"first", contact.first}, {"second", contact.second}};
+  json.update(to_json(contact.contact));
+  return json;
+}
+
 std::string table(std::span<const sdm::PairProximity> pairs) {
   std::vector<Row> rows{{"first", "second", "colliding", "separation", "depth"}};
   for (const sdm::PairProximity& pair : pairs) rows.push_back(row(pair));

@@ -8,6 +8,7 @@
 #include <string>
 
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::PairProximity& pair);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::BodyContact& contact);
 
 /// A table with one line per pair, below a heading.
 [[nodiscard]] std::string table(std::span<const sdm::PairProximity> pairs);

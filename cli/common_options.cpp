@@ -63,7 +63,17 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
       ->type_name("NAME");
 }
 
-void add_units_option(CLI::App& app, std::string& units) {
+void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
+                           double& depth_precision) {
+  app.add_option("--margin", contact_margin,
+                 "Also report contacts up to a distance of D, not only of penetrating parts")
+      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
+      ->type_name("D");
+  app.add_option("--precision", depth_precision,
+                 "Bounds on the penetration depth at most EPS apart; by default 1/1000 of the smaller body's "
+                 "diagonal")
+      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->type_name("EPS");
   app.add_option("--units", units, "Units of the meshes, for printed and drawn values")->type_name("NAME");
 }
 

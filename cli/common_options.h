@@ -21,8 +21,9 @@ CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
 /// `mesh` describes the parametrised mesh in the help text.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
-/// Adds --units, for commands that print proximity.
-void add_units_option(CLI::App& app, std::string& units);
+/// Adds --units, --margin and --precision, for commands that print proximity.
+void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
+                           double& depth_precision);
 /// Adds --threads, --json and --quiet; `json_prints` describes the JSON in the help text.
 void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
                      const std::string& json_prints);

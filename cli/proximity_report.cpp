@@ -21,7 +21,10 @@ Json to_json(const sdm::Contact& contact) {
           {"point2", contact.point2},
           {"normal", contact.normal},
           {"depth", contact.depth},
-          {"patch", contact.patch}};
+          {"patch", contact.patch},
+          {"faces", contact.faces},
+          {"barycentric", contact.barycentric},
+          {"id", contact.id}};
 }
 
 Json to_json(const sdm::BoundedBool& decision) {

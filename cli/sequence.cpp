@@ -42,6 +42,7 @@ Json options_of(const SequenceCommand& command) {
           {"--transform-o2", pair.transform_o2},
           {"--units", pair.units},
           {"--margin", pair.options.contact_margin},
+          {"--precision", pair.options.depth_precision},
           {"--resolution", pair.options.atlas.resolution},
           {"--maps", command.maps_every},
           {"--rate", command.rate},

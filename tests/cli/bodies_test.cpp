@@ -4,6 +4,7 @@
 #include <sdm/multi_body_query.h>
 
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
@@ -56,6 +57,50 @@ TEST_F(BodiesCommand, PrintsThePairsOfTheLibrary) {
   EXPECT_TRUE(json["max_distance"].is_null());
   for (const char* step : {"import", "build", "query"}) EXPECT_GT(json["time_ms"][step], 0) << step;
   EXPECT_EQ(run.err, "") << "progress is for terminals";
+}
+
+TEST_F(BodiesCommand, PlacesBodiesOfOneFileByPoses) {
+  const auto poses = [&](const std::string& text) {
+    const std::string file = folder / "poses.txt";
+    std::ofstream(file) << text;
+    return file;
+  };
+  const auto arguments = [&](const std::string& file) {
+    return std::vector<std::string>{"bodies",       o1,   o1,       "--poses",  file,
+                                    "--resolution", "64", "--json", "--margin", "0.05"};
+  };
+  // By x y z and a quaternion, and by a matrix: 90° about the Z axis.
+  const Outcome run = run_sdm(arguments(
+      poses("# two poses\n0 0 0  1 0 0 0\n\n0, -1, 0, 1.2,  1, 0, 0, 0.1,  0, 0, 1, 0.3  # 12 numbers\n")));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  const Shape shape(read_mesh(o1), {.resolution = 64});
+  ProximityQuery expected(shape, shape, {.contact_margin = 0.05});
+  expected.set_pose(1, Transform::translation({1.2, 0.1, 0.3}) * Transform::rotation({0, 0, 90}));
+  EXPECT_EQ(json["pairs"][0]["separation"]["value"], expected.separation().value);
+  EXPECT_EQ(json["pairs"][0]["penetration_depth"]["lower"], expected.penetration_depth()->lower);
+  ASSERT_EQ(json["contacts"].size(), expected.contacts().size());
+  ASSERT_GT(json["contacts"].size(), 0u);
+  for (std::size_t i = 0; i < expected.contacts().size(); ++i) {
+    EXPECT_EQ(json["contacts"][i]["depth"], expected.contacts()[i].depth);
+    EXPECT_EQ(json["contacts"][i]["faces"], expected.contacts()[i].faces);
+    EXPECT_EQ(json["contacts"][i]["id"], expected.contacts()[i].id);
+    EXPECT_EQ(json["contacts"][i]["second"], 1);
+  }
+  const auto refusal = [&](const std::string& text) {
+    const Outcome refused = run_sdm(arguments(poses(text)));
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_EQ(refused.out, "");
+    return refused.err;
+  };
+  EXPECT_THAT(refusal("0 0 0 1 0 0 0\n"), HasSubstr("poses.txt: 1 poses for 2 bodies"));
+  EXPECT_THAT(refusal("0 0 0 1 0 0 0\n0 0 0\n"), HasSubstr("poses.txt: line 2: 3 numbers"));
+  EXPECT_THAT(refusal("0 0 zero 1 0 0 0\n"), HasSubstr("line 1: zero is not a number"));
+  EXPECT_THAT(refusal("0 0 0 0 0 0 0\n"), HasSubstr("line 1: a quaternion"));
+  EXPECT_THAT(refusal("0 0 0 1 0 0 0\n0 0 0 1 0 0 0\n0 0 0 1 0 0 0"), HasSubstr("line 3: more poses"));
+  EXPECT_THAT(refusal("0 0 0 1 0 0 0\n1 1 0 0 0 1 0 0 0 0 1 0\n"),
+              HasSubstr("body 1: a pose is not a rotation"));
+  EXPECT_THAT(run_sdm(arguments(folder / "none.txt")).err, HasSubstr("none.txt: there is no such file"));
 }
 
 TEST_F(BodiesCommand, LeavesOutWhatIsFar) {
