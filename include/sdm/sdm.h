@@ -23,6 +23,7 @@
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 #include <sdm/threads.h>
+#include <sdm/time_of_contact.h>
 #include <sdm/tolerance.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>

@@ -144,7 +144,7 @@ void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vec
       [&](hierarchy::Subtree below) {
         const hierarchy::FloatBox& of = sites.tree.box(below.root);
         bool apart = false;
-        for (int k = 0; k < 3; ++k) apart |= (of.hi[k] < unit.lo[k]) | (unit.hi[k] < of.lo[k]);
+        for (int k = 0; k < 3; ++k) apart = apart || of.hi[k] < unit.lo[k] || unit.hi[k] < of.lo[k];
         return !apart;
       },
       [&](std::uint32_t leaf) {
