@@ -15,7 +15,7 @@
 namespace sdm {
 
 struct MultiBodyOptions {
-  /// Of bodies that are given as meshes. Depth and contacts are measured at its samples.
+  /// Of bodies that are given as meshes. Contacts are measured at its samples.
   AtlasOptions atlas{.resolution = 128};
   /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
   double max_distance = std::numeric_limits<double>::infinity();

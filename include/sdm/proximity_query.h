@@ -56,7 +56,7 @@ struct Contact {
 };
 
 struct ProximityOptions {
-  /// Of bodies that are given as meshes. Depth and contacts are measured at its samples.
+  /// Of bodies that are given as meshes. Contacts are measured at its samples.
   AtlasOptions atlas{.resolution = 512};
   /// The bounds on the penetration depth are at most this far apart, or 1/1000 of the diagonal of the smaller
   /// body's box if it is 0; ≥ 0, in units of the meshes. Errors of computed distances, and bounds on
@@ -70,24 +70,19 @@ struct ProximityOptions {
 
 /// Proximity of two bodies that move and deform, for simulation loops.
 ///
-/// Separation and collision are computed from the triangles. Depth and contacts are measured at samples.
+/// Separation, collision and depth are computed from the triangles, contacts at samples.
 ///
 /// A body is a shape in a pose: moving it rigidly costs nothing, whatever its size. All results are in space,
 /// with both bodies in their poses.
 ///
 /// A closed, orientable body is a solid, with the inside of SignMethod::exact; any other body is a surface
-/// without an inside. Distances d are measured at those samples of both bodies' atlases that can affect a
-/// result. As distances are 1-Lipschitz, they and the covering radii R of the samples
-/// (SamplingBound::sample_radii) bound the distance everywhere:
-///     max (−d) ≤ penetration depth ≤ max (R − d).
-/// d is negative inside a solid; for the depth it is there the distance to the boundary of the solid: the
-/// parts of its surface that have the inside on one side only. Where the solid intersects itself, that
-/// distance has bounds of its own.
+/// without an inside. The depth of a point inside a solid is its distance to the boundary of the solid: the
+/// parts of its surface that have the inside on one side only.
 ///
 /// Threads: an object is used by one thread at a time; objects that share shapes may be used concurrently.
 class SDM_API ProximityQuery {
  public:
-  /// Throws sdm::Error as Surface and Sites do, and for a margin that is negative or not finite. Cost: that
+  /// Throws sdm::Error as Surface and Sites do, and for options that are out of range. Cost: that
   /// of the atlases and sites of both bodies.
   ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options = {});
   /// The same for shapes that are there already; their atlases are those of the shapes. Cost: constant.
@@ -117,7 +112,9 @@ class SDM_API ProximityQuery {
   /// from the triangles.
   [[nodiscard]] BoundedBool colliding();
   /// The largest distance from a surface point of either body that lies inside the other to the boundary of
-  /// that other body. Exactly 0 if they do not collide, otherwise bounded. Empty if neither body is a solid.
+  /// that other body. Exactly 0 if they do not collide, otherwise bounded
+  /// (ProximityOptions::depth_precision), with a witness at the depth `value`. Empty if neither body is a
+  /// solid.
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
   /// The contacts of both bodies: none, at the cost of colliding(), if they are farther apart than the
   /// margin. The samples of each chart in each block (256 consecutive samples) that lie inside the other body
@@ -132,8 +129,8 @@ class SDM_API ProximityQuery {
   /// O1 for 0, O2 for 1; in the frames of their meshes, without the poses.
   [[nodiscard]] const Surface& surface(int body) const;
   [[nodiscard]] const Sites& sites(int body) const;
-  /// The number of samples of both bodies that depth and contacts were measured at; no other sample can
-  /// affect them. 0 before either was computed, or if neither needed any.
+  /// The number of samples of both bodies that contacts were measured at; no other sample can affect them. 0
+  /// before they were computed, or if the bodies are farther apart than the margin.
   [[nodiscard]] std::size_t samples_used() const;
 
  private:

@@ -8,6 +8,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <thread>
 #include <vector>
 
 #include "core/geometry/vec.h"
@@ -186,6 +187,36 @@ TEST(RigidBodies, CostNoMemoryForEachPose) {
   };
   (void)taken();
   EXPECT_EQ(taken(), 0u);
+}
+
+// Run under ThreadSanitizer as well.
+TEST(RigidBodies, ShareTheirShapeBetweenThreads) {
+  const std::vector<Mesh> meshes = various();
+  std::vector<Shape> shapes;
+  for (const Mesh& mesh : meshes) shapes.emplace_back(mesh, kAtlas);
+  struct Result {
+    double separation, lower, upper;
+    std::size_t contacts;
+    bool operator==(const Result&) const = default;
+  };
+  const auto results = [&](unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<Result> found;
+    for (int i = 0; i < 10; ++i) {
+      ProximityQuery query(shapes[random() % shapes.size()], shapes[random() % shapes.size()]);
+      query.set_pose(0, random_pose(random, 0.3, true));
+      const BoundedLength depth = query.penetration_depth().value_or(BoundedLength{});
+      found.push_back({query.separation().value, depth.lower, depth.upper, query.contacts().size()});
+    }
+    return found;
+  };
+  constexpr unsigned kThreads = 4;
+  std::array<std::vector<Result>, kThreads> found;
+  {
+    std::vector<std::jthread> threads;
+    for (unsigned t = 0; t < kThreads; ++t) threads.emplace_back([&, t] { found[t] = results(t); });
+  }
+  for (unsigned t = 0; t < kThreads; ++t) EXPECT_EQ(found[t], results(t));
 }
 
 TEST(RigidBodies, ShareTheirShape) {

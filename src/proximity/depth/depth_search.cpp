@@ -140,7 +140,7 @@ void DepthSearch::add_children(const Part& parent) {
       centre[k] = sites.frame.origin[k] + 0.5 * (lo + hi) / sites.frame.scale;
       half[k] = (0.5 * (hi - lo) + kRounding) / sites.frame.scale;
     }
-    Part part{.body = body, .node = wide.child[i], .upper = parent.upper};
+    Part part{.body = body, .node = wide.child[i], .place = wide.source[i], .upper = parent.upper};
     part.centre = to_other.map(centre);
     part.radius = to_other.scale * norm(half);
     if (box_distance({part.centre, part.centre}, other) <= part.radius) add(part);
