@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -140,7 +141,8 @@ class SampleOrder {
     // The item there is a square. It stays behind if enough single samples can take its place, otherwise it
     // takes the place of single samples: of those before it, there are 16 − missing modulo 16.
     const std::span<Item> rest = items.subspan(begin);
-    const auto singles_end = std::ranges::partition(rest.subspan(1), &Item::single).begin();
+    const auto is_single = [](const Item& item) { return item.single; };
+    const auto singles_end = std::partition(rest.begin() + 1, rest.end(), is_single);
     const std::span<Item> singles(rest.begin() + 1, singles_end);
     if (missing <= kPacket / 2 && singles.size() >= missing) {
       sort_out(singles, missing - 1);
@@ -148,8 +150,7 @@ class SampleOrder {
       return begin + missing;
     }
     const std::span<Item> front = items.first(begin);
-    const auto squares_end =
-        std::ranges::partition(front, [](const Item& item) { return !item.single; }).begin();
+    const auto squares_end = std::partition(front.begin(), front.end(), std::not_fn(is_single));
     const std::span<Item> last(squares_end, front.end());
     const std::size_t kept = last.size() - (kPacket - missing);
     if (kept < last.size()) sort_out(last, kept);
