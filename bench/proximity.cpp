@@ -1,8 +1,10 @@
 // Exact separation and collision of two meshes against FCL, in poses that are far, near, touching,
 // penetrating and concentric. A repetition is a pose; every result is compared with FCL's before both are
-// timed.
+// timed. Searches know nothing of other poses. Also the time of ProximityQuery::contacts in the poses without
+// contact.
 //
 //   build/dev/bench/proximity [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
+#include <sdm/proximity_query.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
@@ -14,10 +16,13 @@
 #include <vector>
 
 #include "core/geometry/vec.h"
+#include "core/stopwatch.h"
 #include "fcl_pair.h"
 #include "harness.h"
 #include "poses.h"
 #include "proximity/exact/pair_search.h"
+#include "proximity/similarity.h"
+#include "refine_mesh.h"
 #include "scenes.h"
 #include "scenes/letters.h"
 #include "scenes/reduce_mesh.h"
@@ -60,6 +65,9 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
   std::mt19937 random(1);
   exact::PairWorkspace workspace;
   Times separation, collision;
+  const AtlasOptions coarse{.resolution = 256};  // contacts are not measured
+  ProximityQuery query(Shape(m1, coarse), Shape(m2, coarse));
+  std::vector<double> no_contacts;
   std::size_t wrong = 0;
   for (const Affine& pose : random_poses(o1, o2, static_cast<std::size_t>(trial.repetitions), random)) {
     const exact::MeshPair posed{internals(o1), internals(o2), pose};
@@ -74,9 +82,23 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
     const auto contender = [&](const std::function<void()>& work) { return Contender{work, trial.threads}; };
     separation.add(contender([&] { (void)separate(); }), contender([&] { (void)fcl.distance(pose); }));
     collision.add(contender([&] { (void)collide(); }), contender([&] { (void)fcl.collide(pose); }));
+    const auto find_contacts = [&] {
+      query.set_pose(1, proximity::Similarity{.map = pose}.transform());
+      return query.contacts().size();
+    };
+    if (find_contacts() == 0) {
+      Stopwatch watch;
+      constexpr int kTimes = 20;
+      for (int i = 0; i < kTimes; ++i) (void)find_contacts();
+      no_contacts.push_back(1000 * watch.lap() / kTimes);
+    }
   }
   if (wrong > 0) std::fprintf(stderr, "%zu of %d poses differ from FCL's\n", wrong, trial.repetitions);
-  return {.verified = wrong == 0, .rows = {row("separation", separation), row("collision", collision)}};
+  return {
+      .verified = wrong == 0,
+      .rows = {row("separation", separation),
+               row("collision", collision),
+               {"no contacts", {{"ours_us", median(no_contacts)}, {"p99_us", quantile(no_contacts, 0.99)}}}}};
 }
 
 std::vector<Case> cases() {
@@ -104,6 +126,9 @@ std::vector<Case> cases() {
     return std::array{paper_figure(), paper_box(paper_figure())};
   });
   add("bunny-armadillo", "70k and 52k", [=] { return std::array{bunny(), armadillo()}; });
+  add("refined", "the same with twice the edges, 279k and 208k", [=] {
+    return std::array{refine_mesh(bunny(), 2, 0), refine_mesh(armadillo(), 2, 0)};
+  });
   return result;
 }
 
