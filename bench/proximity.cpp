@@ -19,9 +19,9 @@
 #include "core/stopwatch.h"
 #include "fcl_pair.h"
 #include "harness.h"
+#include "mesh/similarity.h"
 #include "poses.h"
 #include "proximity/exact/pair_search.h"
-#include "proximity/similarity.h"
 #include "refine_mesh.h"
 #include "scenes.h"
 #include "scenes/letters.h"
@@ -83,7 +83,7 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
     separation.add(contender([&] { (void)separate(); }), contender([&] { (void)fcl.distance(pose); }));
     collision.add(contender([&] { (void)collide(); }), contender([&] { (void)fcl.collide(pose); }));
     const auto find_contacts = [&] {
-      query.set_pose(1, proximity::Similarity{.map = pose}.transform());
+      query.set_pose(1, mesh::Similarity{.map = pose}.transform());
       return query.contacts().size();
     };
     if (find_contacts() == 0) {

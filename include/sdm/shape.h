@@ -10,7 +10,7 @@
 #include <memory>
 
 namespace sdm {
-namespace sampled {
+namespace shape {
 class Body;
 }
 
@@ -26,9 +26,9 @@ class SDM_API Shape {
   [[nodiscard]] const Sites& sites() const;
 
  private:
-  friend const std::shared_ptr<sampled::Body>& internals(const Shape& shape);
+  friend const std::shared_ptr<shape::Body>& internals(const Shape& shape);
 
-  std::shared_ptr<sampled::Body> body_;
+  std::shared_ptr<shape::Body> body_;
 };
 
 }  // namespace sdm

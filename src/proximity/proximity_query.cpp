@@ -5,16 +5,16 @@
 
 #include "core/memory.h"
 #include "proximity/sampled/pair_answers.h"
-#include "proximity/sampled/posed_body.h"
+#include "proximity/shape/posed_body.h"
 
 namespace sdm {
 
 struct ProximityQuery::Impl {
-  std::array<sampled::PosedBody, 2> bodies;
+  std::array<shape::PosedBody, 2> bodies;
   sampled::PairAnswers answers;
 
   Impl(Shape o1, Shape o2, const ProximityOptions& options)
-      : bodies{sampled::PosedBody(std::move(o1)), sampled::PosedBody(std::move(o2))},
+      : bodies{shape::PosedBody(std::move(o1)), shape::PosedBody(std::move(o2))},
         answers(options.contact_margin, options.depth_precision) {
     begin();
   }

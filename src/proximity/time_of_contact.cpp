@@ -6,13 +6,13 @@
 #include <cmath>
 #include <string>
 
-#include "proximity/sampled/posed_body.h"
-#include "proximity/similarity.h"
+#include "mesh/similarity.h"
+#include "proximity/shape/posed_body.h"
 
 namespace sdm {
 namespace {
 
-using proximity::Similarity;
+using mesh::Similarity;
 
 /// A motion, divided into that of the centre and a rotation about it.
 class DividedMotion {

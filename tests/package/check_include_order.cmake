@@ -24,6 +24,8 @@ set(order
   engine/table
   map
   proximity/exact
+  proximity/shape
+  proximity/depth
   proximity/sampled
   proximity/bodies
   proximity/self

@@ -14,7 +14,7 @@
 #include "core/parallel.h"
 #include "proximity/bodies/nearest_body.h"
 #include "proximity/sampled/pair_answers.h"
-#include "proximity/sampled/posed_body.h"
+#include "proximity/shape/posed_body.h"
 
 namespace sdm {
 namespace {
@@ -72,7 +72,7 @@ class AnswersPool {
 
 struct MultiBodyQuery::Impl {
   MultiBodyOptions options;
-  std::vector<sampled::PosedBody> bodies;
+  std::vector<shape::PosedBody> bodies;
   AnswersPool pool;
   Sweep sweep;
   std::vector<Box> boxes;
@@ -135,7 +135,7 @@ struct MultiBodyQuery::Impl {
     return found != hints.end() && found->pair == pair ? found->faces : sampled::kNoFaces;
   }
   std::span<const Sweep::Pair> near_pairs(double reach) {
-    std::ranges::transform(bodies, boxes.begin(), &sampled::PosedBody::box);
+    std::ranges::transform(bodies, boxes.begin(), &shape::PosedBody::box);
     return sweep.near_pairs(boxes, reach);
   }
 
@@ -193,8 +193,7 @@ void MultiBodyQuery::set_pose(std::size_t body, const Transform& pose) {
 
 void MultiBodyQuery::set_poses(std::span<const Transform> poses) {
   impl_->check_count(poses.size(), "poses");
-  for (std::size_t b = 0; b < size(); ++b)
-    on_behalf_of(b, [&] { (void)proximity::Similarity::of(poses[b]); });
+  for (std::size_t b = 0; b < size(); ++b) on_behalf_of(b, [&] { (void)mesh::Similarity::of(poses[b]); });
   for (std::size_t b = 0; b < size(); ++b) impl_->bodies[b].set_pose(poses[b]);
   impl_->moved();
 }

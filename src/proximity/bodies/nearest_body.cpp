@@ -21,7 +21,7 @@ namespace {
 // Finds the nearest bodies for the samples of a block; reuses its memory between blocks.
 class BlockSearch {
  public:
-  BlockSearch(std::span<const sampled::PosedBody> bodies, std::size_t on, double max_distance)
+  BlockSearch(std::span<const shape::PosedBody> bodies, std::size_t on, double max_distance)
       : bodies_(bodies), on_(on), max_distance_(max_distance) {}
 
   void find(std::span<const Vec3> points) {
@@ -68,7 +68,7 @@ class BlockSearch {
   }
 
   void search(std::span<const Vec3> points, std::uint32_t body) {
-    const proximity::Similarity& pose = bodies_[body].pose();
+    const mesh::Similarity& pose = bodies_[body].pose();
     const Affine to_body = inverse(pose.map);
     std::size_t count = 0;
     double reach = 0;
@@ -92,7 +92,7 @@ class BlockSearch {
                     std::ref(keep_nearer));
   }
 
-  std::span<const sampled::PosedBody> bodies_;
+  std::span<const shape::PosedBody> bodies_;
   std::size_t on_;
   double max_distance_;
   std::vector<std::pair<double, std::uint32_t>> order_;  // distances of boxes from the samples, and bodies
@@ -106,9 +106,9 @@ class BlockSearch {
   std::array<Vec3, surface::kBlockSize> at_;              // these in its frame
 };
 
-SignUsed signs_of_others(std::span<const sampled::PosedBody> bodies, std::size_t on) {
+SignUsed signs_of_others(std::span<const shape::PosedBody> bodies, std::size_t on) {
   const auto solids = static_cast<std::size_t>(std::ranges::count_if(
-                          bodies, [](const sampled::PosedBody& body) { return body.body().solid(); })) -
+                          bodies, [](const shape::PosedBody& body) { return body.body().solid(); })) -
                       (bodies[on].body().solid() ? 1 : 0);
   return {solids > 0 ? SignMethod::exact : SignMethod::none, std::to_string(solids) + " of " +
                                                                  std::to_string(bodies.size() - 1) +
@@ -117,7 +117,7 @@ SignUsed signs_of_others(std::span<const sampled::PosedBody> bodies, std::size_t
 
 }  // namespace
 
-void map_nearest(std::span<const sampled::PosedBody> bodies, std::size_t on, double max_distance,
+void map_nearest(std::span<const shape::PosedBody> bodies, std::size_t on, double max_distance,
                  NearestMap& nearest) {
   const Surface& surface = bodies[on].body().surface();
   const Affine& pose = bodies[on].pose().map;

@@ -5,12 +5,12 @@
 
 #include <span>
 
-#include "proximity/sampled/posed_body.h"
+#include "proximity/shape/posed_body.h"
 
 namespace sdm::bodies {
 
 /// See MultiBodyQuery::nearest_map.
-void map_nearest(std::span<const sampled::PosedBody> bodies, std::size_t on, double max_distance,
+void map_nearest(std::span<const shape::PosedBody> bodies, std::size_t on, double max_distance,
                  NearestMap& nearest);
 
 }  // namespace sdm::bodies

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "proximity/similarity.h"
+#include "mesh/similarity.h"
 
 namespace sdm {
 
 std::vector<float> nearest_distances_at_vertices(const MultiBodyQuery& bodies, std::size_t body,
                                                  double max_distance) {
-  using proximity::Similarity;
+  using mesh::Similarity;
   const Mesh& mesh = bodies.surface(body).mesh();
   const Similarity pose = Similarity::of(bodies.pose(body));
   Mesh in_frame = mesh;  // of the other body

@@ -27,7 +27,7 @@ constexpr std::uint64_t kFaceStep = std::uint64_t{1} << 32;  // between the plac
 
 }  // namespace
 
-Depth DepthSearch::find(const Bodies& bodies, const std::array<proximity::Similarity, 2>& to_other,
+Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other,
                         double precision) {
   bodies_ = bodies, to_other_ = to_other;
   Depth depth;
@@ -121,7 +121,7 @@ void DepthSearch::add_children(const Part& parent) {
   const std::uint32_t node = parent.node;
   const sites::SitesData& sites = internals(bodies_[body]->body().sites());
   const Box& other = bodies_[1 - body]->body().box();
-  const proximity::Similarity& to_other = to_other_[body];
+  const mesh::Similarity& to_other = to_other_[body];
   if (hierarchy::WideTree::is_leaf(node)) {
     const std::uint32_t leaf = hierarchy::WideTree::leaf_number(node);
     for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i) {
@@ -154,7 +154,7 @@ void DepthSearch::evaluate(std::size_t begin, std::size_t end) {
     const int body = parts_[begin].body;
     centres.clear();
     for (std::size_t i = begin; i < end && parts_[i].body == body; ++i) centres.push_back(parts_[i].centre);
-    const sampled::Body& other = bodies_[1 - body]->body();
+    const shape::Body& other = bodies_[1 - body]->body();
     const std::span<const Vec3> points = centres;
     const auto take = [&](std::size_t first, const sites::ClosestPacket& closest) {
       const std::uint32_t inside = other.inside()(points.subspan(first, closest.count), closest);
@@ -172,7 +172,7 @@ void DepthSearch::evaluate(std::size_t begin, std::size_t end) {
 
 void DepthSearch::evaluate(Part& part, Value& value, double distance, bool inside,
                            const ClosestPoint& closest) const {
-  const sampled::Body& other = bodies_[1 - part.body]->body();
+  const shape::Body& other = bodies_[1 - part.body]->body();
   const sites::SitesData& sites = internals(other.sites());
   const Vec3& c = part.centre;
   if (!inside) {

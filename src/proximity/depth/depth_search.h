@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/geometry/triangle_pair.h"
-#include "proximity/sampled/posed_body.h"
+#include "proximity/shape/posed_body.h"
 
 namespace sdm::depth {
 
@@ -31,13 +31,13 @@ struct Depth {
 /// number of parts that must be divided hardly grows as bounds are tightened.
 class DepthSearch {
  public:
-  using Bodies = std::array<const sampled::PosedBody*, 2>;
+  using Bodies = std::array<const shape::PosedBody*, 2>;
 
   /// Divides parts until the bounds are at most `precision` apart, in space, as far as those on the distance
   /// to the boundary of a solid that intersects itself are. Distances are computed to about 1e-6 of the size
   /// of both bodies, which is not part of the bounds. Cost: some hundred searches for the closest point, more
   /// where surfaces are nearly parallel; all cores if there are many. Reuses its memory.
-  [[nodiscard]] Depth find(const Bodies& bodies, const std::array<proximity::Similarity, 2>& to_other,
+  [[nodiscard]] Depth find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other,
                            double precision);
 
  private:
@@ -79,7 +79,7 @@ class DepthSearch {
   [[nodiscard]] double unit(int body) const { return bodies_[1 - body]->pose().scale; }
 
   Bodies bodies_{};
-  std::array<proximity::Similarity, 2> to_other_;
+  std::array<mesh::Similarity, 2> to_other_;
   double sure_ = 0;            // what is no deeper than this does not matter
   std::vector<Open> open_;     // a heap, the deepest bound on top
   std::vector<Part> all_;      // that were ever open

@@ -56,8 +56,7 @@ std::span<const Contact> ContactFinder::find(const std::array<MeasuredBody, 2>& 
   return patches_.sort(contacts_, boxes_);
 }
 
-void ContactFinder::find_parts(const MeasuredBody& body, const proximity::Similarity& measured_in,
-                               double margin) {
+void ContactFinder::find_parts(const MeasuredBody& body, const mesh::Similarity& measured_in, double margin) {
   const Surface& surface = body.body.body().surface();
   const std::span<const float> distances = body.distances.distances(), radii = body.distances.radii();
   const double limit = margin / measured_in.scale;
@@ -83,10 +82,10 @@ void ContactFinder::find_parts(const MeasuredBody& body, const proximity::Simila
 
 void ContactFinder::add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length) {
   const MeasuredBody &on = bodies[body], &to = bodies[1 - body];
-  const Body& other = to.body.body();
+  const shape::Body& other = to.body.body();
   const sites::SitesData& sites = internals(other.sites());
   const surface::SurfaceData& surface = internals(on.body.body().surface());
-  const proximity::Similarity& pose = to.body.pose();  // in which the samples are measured
+  const mesh::Similarity& pose = to.body.pose();  // in which the samples are measured
   const auto in_space = [&](const Box& box) { return image(pose.map, box); };
   points_.clear();
   for (const Part& part : parts_) points_.push_back(on.distances.points()[part.deepest]);

@@ -9,13 +9,13 @@
 
 #include "proximity/sampled/contact_patches.h"
 #include "proximity/sampled/local_distances.h"
-#include "proximity/sampled/posed_body.h"
+#include "proximity/shape/posed_body.h"
 
 namespace sdm::sampled {
 
 /// A body with its measured samples.
 struct MeasuredBody {
-  const PosedBody& body;
+  const shape::PosedBody& body;
   const LocalDistances& distances;  ///< to the other body, in its frame
 };
 
@@ -34,7 +34,7 @@ class ContactFinder {
     Box box;              ///< contains everything that the samples within the margin cover, in the frame of
                           ///< the other body
   };
-  void find_parts(const MeasuredBody& body, const proximity::Similarity& measured_in, double margin);
+  void find_parts(const MeasuredBody& body, const mesh::Similarity& measured_in, double margin);
   void add_contacts(const std::array<MeasuredBody, 2>& bodies, int body, double length);
 
   std::vector<Part> parts_;   ///< of one body

@@ -15,7 +15,7 @@ namespace {
 
 // Calls take(index, signed distance) for each point; the points are in spatial order.
 template <class Take>
-void find_distances(const Body& body, std::span<const Vec3> points, const Take& take) {
+void find_distances(const shape::Body& body, std::span<const Vec3> points, const Take& take) {
   const auto deliver = [&](std::size_t first, const sites::ClosestPacket& closest) {
     const std::uint32_t inside = body.inside()(points.subspan(first, closest.count), closest);
     for (std::size_t i = 0; i < closest.count; ++i)
@@ -27,7 +27,7 @@ void find_distances(const Body& body, std::span<const Vec3> points, const Take& 
 
 }  // namespace
 
-void LocalDistances::start(const Body& on, const Body& to, const proximity::Similarity& pose) {
+void LocalDistances::start(const shape::Body& on, const shape::Body& to, const mesh::Similarity& pose) {
   on_ = &on, to_ = &to, pose_ = pose;
   on.require_pieces();
   probes_.assign(1, {.blocks = {0, surface::block_count(on.surface().sample_texels().size())}});

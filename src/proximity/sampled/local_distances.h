@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "proximity/sampled/body.h"
-#include "proximity/similarity.h"
+#include "mesh/similarity.h"
+#include "proximity/shape/body.h"
 #include "surface/sample_blocks.h"
 
 namespace sdm::sampled {
@@ -23,7 +23,7 @@ class LocalDistances {
 
   /// Starts with all samples of `on`, moved by `pose` into the frame of `to`. The bodies must remain
   /// unchanged until they are measured.
-  void start(const Body& on, const Body& to, const proximity::Similarity& pose);
+  void start(const shape::Body& on, const shape::Body& to, const mesh::Similarity& pose);
   /// Probes the remaining blocks, on all cores.
   void probe(std::size_t blocks_per_probe);
   /// Keeps only blocks that may be nearer than `reach`, or inside.
@@ -49,8 +49,8 @@ class LocalDistances {
   };
   void measure_blocks(std::size_t begin, std::size_t end);
 
-  const Body *on_ = nullptr, *to_ = nullptr;
-  proximity::Similarity pose_;
+  const shape::Body *on_ = nullptr, *to_ = nullptr;
+  mesh::Similarity pose_;
   std::vector<Probe> probes_, denser_;
   std::vector<Vec3> probe_points_;
   std::vector<Vec3> points_;

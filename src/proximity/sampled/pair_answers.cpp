@@ -28,11 +28,11 @@ void check_options(double contact_margin, double depth_precision) {
   check("a precision of the depth", depth_precision);
 }
 
-void PairAnswers::begin(const PosedBody& o1, const PosedBody& o2, const FacePair& hint) {
+void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const FacePair& hint) {
   bodies_ = {&o1, &o2};
   closest_faces_ = hint;
   for (int b = 0; b < 2; ++b) {
-    const proximity::Similarity &from = bodies_[b]->pose(), &to = bodies_[1 - b]->pose();
+    const mesh::Similarity &from = bodies_[b]->pose(), &to = bodies_[1 - b]->pose();
     to_other_[b] = {inverse(to.map) * from.map, from.scale / to.scale};
   }
   Box box = o1.box();
@@ -100,7 +100,7 @@ exact::MeshPair PairAnswers::meshes() const {
 
 // Computes separation_ if it is at most `bound`, and returns whether it is.
 bool PairAnswers::find_closest(double bound) {
-  const proximity::Similarity& pose = bodies_[0]->pose();
+  const mesh::Similarity& pose = bodies_[0]->pose();
   bound /= pose.scale;
   if (closest_faces_ != kNoFaces)
     bound = std::min(bound, exact::face_distance(meshes(), closest_faces_[0], closest_faces_[1]));

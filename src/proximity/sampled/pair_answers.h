@@ -11,7 +11,7 @@
 #include "proximity/exact/pair_search.h"
 #include "proximity/sampled/contacts.h"
 #include "proximity/sampled/local_distances.h"
-#include "proximity/sampled/posed_body.h"
+#include "proximity/shape/posed_body.h"
 
 namespace sdm::sampled {
 
@@ -38,7 +38,7 @@ class PairAnswers {
   ///
   /// `hint`: faces of O1 and O2 that were closest when the bodies were in a similar pose; they change how
   /// long results take, not the results.
-  void begin(const PosedBody& o1, const PosedBody& o2, const FacePair& hint = kNoFaces);
+  void begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const FacePair& hint = kNoFaces);
 
   /// Whether the bodies collide or their surfaces are at most this far apart.
   [[nodiscard]] bool within(double distance);
@@ -59,10 +59,10 @@ class PairAnswers {
   [[nodiscard]] std::optional<BoundedLength> depth();
 
   double contact_margin_, depth_precision_;
-  std::array<const PosedBody*, 2> bodies_{};
-  std::array<proximity::Similarity, 2> to_other_;  // from the frame of each body to that of the other
-  double precision_ = 0;                           // error of a computed distance
-  std::array<LocalDistances, 2> distances_;        // of each body to the other
+  std::array<const shape::PosedBody*, 2> bodies_{};
+  std::array<mesh::Similarity, 2> to_other_;  // from the frame of each body to that of the other
+  double precision_ = 0;                      // error of a computed distance
+  std::array<LocalDistances, 2> distances_;   // of each body to the other
   ContactFinder finder_;
   exact::PairWorkspace workspace_;
   depth::DepthSearch depth_search_;

@@ -13,7 +13,7 @@
 #include "inside/solid_boundary.h"
 #include "surface/sampling_bound/piece_assignment.h"
 
-namespace sdm::sampled {
+namespace sdm::shape {
 
 class Body {
  public:
@@ -62,4 +62,4 @@ class Body {
   std::unique_ptr<Lazy<inside::SolidBoundary>> boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
 };
 
-}  // namespace sdm::sampled
+}  // namespace sdm::shape

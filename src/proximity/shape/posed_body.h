@@ -5,10 +5,10 @@
 
 #include <span>
 
-#include "proximity/sampled/body.h"
-#include "proximity/similarity.h"
+#include "mesh/similarity.h"
+#include "proximity/shape/body.h"
 
-namespace sdm::sampled {
+namespace sdm::shape {
 
 class PosedBody {
  public:
@@ -16,7 +16,7 @@ class PosedBody {
 
   /// Throws sdm::Error unless the pose is a Similarity. Cost: constant.
   void set_pose(const Transform& pose) {
-    pose_ = proximity::Similarity::of(pose);
+    pose_ = mesh::Similarity::of(pose);
     follow();
   }
   /// Throws sdm::Error for positions that are not valid for the mesh, and if another Shape shares it.
@@ -28,7 +28,7 @@ class PosedBody {
   }
 
   [[nodiscard]] const Body& body() const { return *internals(shape_); }
-  [[nodiscard]] const proximity::Similarity& pose() const { return pose_; }
+  [[nodiscard]] const mesh::Similarity& pose() const { return pose_; }
   /// A box that contains the posed body.
   [[nodiscard]] const Box& box() const { return box_; }
 
@@ -36,15 +36,15 @@ class PosedBody {
   void follow() { box_ = image(pose_.map, body().box()); }
 
   Shape shape_;
-  proximity::Similarity pose_;
+  mesh::Similarity pose_;
   Box box_;
 };
 
-}  // namespace sdm::sampled
+}  // namespace sdm::shape
 
 namespace sdm {
 
 /// The data of Shape. Found by argument-dependent lookup.
-[[nodiscard]] const std::shared_ptr<sampled::Body>& internals(const Shape& shape);
+[[nodiscard]] const std::shared_ptr<shape::Body>& internals(const Shape& shape);
 
 }  // namespace sdm

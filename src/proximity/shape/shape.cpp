@@ -3,12 +3,12 @@
 #include <new>
 
 #include "core/memory.h"
-#include "proximity/sampled/body.h"
+#include "proximity/shape/body.h"
 
 namespace sdm {
 
 Shape::Shape(const Mesh& mesh, const AtlasOptions& atlas) try
-    : body_(std::make_shared<sampled::Body>(mesh, atlas)) {
+    : body_(std::make_shared<shape::Body>(mesh, atlas)) {
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a shape");
 }
@@ -20,7 +20,7 @@ const Sites& Shape::sites() const {
   return body_->sites();
 }
 
-const std::shared_ptr<sampled::Body>& internals(const Shape& shape) {
+const std::shared_ptr<shape::Body>& internals(const Shape& shape) {
   return shape.body_;
 }
 

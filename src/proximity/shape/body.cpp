@@ -1,6 +1,6 @@
-#include "proximity/sampled/body.h"
+#include "proximity/shape/body.h"
 
-namespace sdm::sampled {
+namespace sdm::shape {
 
 Body::Body(const Mesh& mesh, const AtlasOptions& atlas) : surface_(mesh, atlas), sites_(mesh) {
   follow_positions();
@@ -29,4 +29,4 @@ void Body::follow_positions() {
     inside_.emplace(internals(sites_), solid() ? SignMethod::exact : SignMethod::none);
 }
 
-}  // namespace sdm::sampled
+}  // namespace sdm::shape

@@ -5,7 +5,7 @@
 
 #include "core/geometry/affine.h"
 
-namespace sdm::proximity {
+namespace sdm::mesh {
 
 /// p ↦ scale · R p + offset.
 struct Similarity {
@@ -18,4 +18,4 @@ struct Similarity {
   [[nodiscard]] Transform transform() const;
 };
 
-}  // namespace sdm::proximity
+}  // namespace sdm::mesh

@@ -1,10 +1,10 @@
-#include "proximity/similarity.h"
+#include "mesh/similarity.h"
 
 #include <sdm/error.h>
 
 #include <cmath>
 
-namespace sdm::proximity {
+namespace sdm::mesh {
 namespace {
 
 Vec3 product(const std::array<Vec3, 3>& rows, const Vec3& v) {
@@ -61,4 +61,4 @@ Transform Similarity::transform() const {
   return result;
 }
 
-}  // namespace sdm::proximity
+}  // namespace sdm::mesh

@@ -1,10 +1,10 @@
-#include "proximity/sampled/posed_body.h"
+#include "proximity/shape/posed_body.h"
 
 #include <sdm/error.h>
 
 #include "mesh/validate.h"
 
-namespace sdm::sampled {
+namespace sdm::shape {
 
 void PosedBody::check_refit(std::span<const Vec3> positions) const {
   if (internals(shape_).use_count() > 1)
@@ -14,4 +14,4 @@ void PosedBody::check_refit(std::span<const Vec3> positions) const {
   mesh::validate_positions(positions, body().surface().mesh().positions.size());
 }
 
-}  // namespace sdm::sampled
+}  // namespace sdm::shape
