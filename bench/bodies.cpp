@@ -214,7 +214,7 @@ Outcome rigid(const Trial& trial, std::size_t size, double max_distance) {
   const std::vector<Mesh> shape_meshes = Crowd(kShapes).waves();
   std::vector<Shape> shapes, bodies;
   std::vector<Mesh> meshes;
-  for (const Mesh& mesh : shape_meshes) shapes.emplace_back(mesh, AtlasOptions{.resolution = 128});
+  for (const Mesh& mesh : shape_meshes) shapes.emplace_back(mesh);
   for (std::size_t b = 0; b < size; ++b) {
     bodies.push_back(shapes[b % kShapes]);
     meshes.push_back(shape_meshes[b % kShapes]);

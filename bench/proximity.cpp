@@ -65,8 +65,7 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
   std::mt19937 random(1);
   exact::PairWorkspace workspace;
   Times separation, collision;
-  const AtlasOptions coarse{.resolution = 256};  // contacts are not measured
-  ProximityQuery query(Shape(m1, coarse), Shape(m2, coarse));
+  ProximityQuery query(m1, m2);
   std::vector<double> no_contacts;
   std::size_t wrong = 0;
   for (const Affine& pose : random_poses(o1, o2, static_cast<std::size_t>(trial.repetitions), random)) {

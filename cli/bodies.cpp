@@ -28,6 +28,7 @@ struct BodiesCommand {
   std::string units;
   std::filesystem::path out, poses;
   sdm::MultiBodyOptions options;
+  sdm::AtlasOptions atlas{.resolution = 128};
   MapFiles map_files;
   unsigned threads = 0;
   bool json = false, quiet = false;
@@ -65,7 +66,7 @@ nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector
   report["bodies"] = nlohmann::ordered_json::array();
   for (const Input& input : inputs) report["bodies"].push_back(to_json(input));
   report["units"] = command.units;
-  report["resolution"] = command.options.atlas.resolution;
+  if (!command.out.empty()) report["resolution"] = command.atlas.resolution;
   report["max_distance"] = command.options.max_distance;  // null: no limit
   report["pairs"] = nlohmann::ordered_json::array();
   for (const sdm::PairProximity& pair : bodies.pairs()) report["pairs"].push_back(to_json(pair));
@@ -100,15 +101,15 @@ Input load_body(const std::vector<Input>& earlier, const std::string& file) {
   return input;
 }
 
-/// Bodies of the same file share a shape.
-std::vector<sdm::Shape> shapes_of(const std::vector<Input>& inputs, const sdm::AtlasOptions& atlas) {
+/// Bodies of the same file share a shape. `atlas`: none if null.
+std::vector<sdm::Shape> shapes_of(const std::vector<Input>& inputs, const sdm::AtlasOptions* atlas) {
   std::vector<sdm::Shape> shapes;
   for (std::size_t body = 0; body < inputs.size(); ++body) try {
       const auto same = std::ranges::find(inputs, inputs[body].file, &Input::file) - inputs.begin();
       if (static_cast<std::size_t>(same) < body)
         shapes.push_back(shapes[static_cast<std::size_t>(same)]);
       else
-        shapes.emplace_back(inputs[body].mesh, atlas);
+        shapes.push_back(atlas ? sdm::Shape(inputs[body].mesh, *atlas) : sdm::Shape(inputs[body].mesh));
     } catch (const sdm::Cancelled&) {
       throw;
     } catch (const sdm::Error& error) {
@@ -129,7 +130,7 @@ void run(BodiesCommand command) {
   std::optional<OutputFolder> out;
   if (!command.out.empty()) out.emplace(command.out, earlier_files(command));
   ProgressLine progress(command.quiet);
-  command.options.atlas.progress = progress.callback();
+  command.atlas.progress = progress.callback();
 
   progress.step("import");
   Stopwatch watch;
@@ -138,7 +139,7 @@ void run(BodiesCommand command) {
   std::vector<Input> inputs;
   for (const std::string& file : command.files) inputs.push_back(load_body(inputs, file));
   const double import_ms = watch.lap();
-  sdm::MultiBodyQuery bodies(shapes_of(inputs, command.options.atlas), command.options);
+  sdm::MultiBodyQuery bodies(shapes_of(inputs, out ? &command.atlas : nullptr), command.options);
   if (!poses.empty()) set_poses(bodies, poses, command.poses);
   const double build_ms = watch.lap();
   progress.step("queries");
@@ -176,7 +177,7 @@ void add_options(CLI::App& app, BodiesCommand& c) {
                  "matrix, row by row")
       ->type_name("FILE");
   add_write_option(app, c.map_files);
-  add_resolution_option(app, c.options.atlas, "all bodies' maps");
+  add_resolution_option(app, c.atlas, "all bodies' maps, which -o writes");
   add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a table");
 }
 

@@ -9,6 +9,5 @@ void add_options(CLI::App& app, PairCommand& c, const std::array<std::string, 2>
   add_transform_option(app, "--transform-o1", "O1", c.transform_o1);
   add_transform_option(app, "--transform-o2", "O2", c.transform_o2);
   add_proximity_options(app, c.units, c.options.contact_margin, c.options.depth_precision);
-  add_resolution_option(app, c.options.atlas, "both bodies' maps");
   add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a summary");
 }

@@ -19,7 +19,6 @@ namespace {
 void run(PairCommand command) {
   limit_threads(command.threads);
   ProgressLine progress(command.quiet);
-  command.options.atlas.progress = progress.callback();
 
   progress.step("import");
   Stopwatch watch;
@@ -44,7 +43,6 @@ void run(PairCommand command) {
     json["o1"] = to_json(o1);
     json["o2"] = to_json(o2);
     json["units"] = command.units;
-    json["resolution"] = command.options.atlas.resolution;
     json.update(answers);
     json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
     std::cout << to_text(json);

@@ -28,6 +28,7 @@ namespace {
 
 struct SequenceCommand {
   PairCommand pair;
+  sdm::AtlasOptions atlas{.resolution = 512};
   std::filesystem::path out;
   int maps_every = 0;
   double rate = 0;
@@ -43,7 +44,7 @@ Json options_of(const SequenceCommand& command) {
           {"--units", pair.units},
           {"--margin", pair.options.contact_margin},
           {"--precision", pair.options.depth_precision},
-          {"--resolution", pair.options.atlas.resolution},
+          {"--resolution", command.atlas.resolution},
           {"--maps", command.maps_every},
           {"--rate", command.rate},
           {"--no-temporal", command.no_temporal}};
@@ -115,11 +116,12 @@ class FrameLoop {
         o2_(command.pair.o2, command.pair.transform_o2, command.rate),
         count_(common_frames(o1_, o2_)),
         lines_(out_.staging() / "frames.jsonl", std::ios::binary) {
-    command_.pair.options.atlas.progress = progress_.callback();
+    command_.atlas.progress = progress_.callback();
     state_.options = options_of(command);
     state_.meshes = {hash_of(o1_.first()), hash_of(o2_.first())};
     if (resumed_) check_meshes();
-    query_.emplace(o1_.first(), o2_.first(), command_.pair.options);
+    query_.emplace(sdm::Shape(o1_.first(), command_.atlas), sdm::Shape(o2_.first(), command_.atlas),
+                   command_.pair.options);
     for (int b = 0; b < 2; ++b) {
       bounds_.emplace_back(query_->surface(b));
       errors_.emplace_back(query_->surface(b), bounds_.back());
@@ -182,18 +184,16 @@ class FrameLoop {
                                    count_, resumed_->frames.size()));
   }
 
-  // Moves the bodies through the finished frames and repeats the first query, since the structures of the
-  // query depend on earlier positions, and its bounds on the shapes of the first query. Results are kept.
+  // Moves the bodies through the finished frames, whose results are kept: the closest faces of a frame are
+  // sought near those of the frame before.
   void follow() {
     const std::size_t kept = resumed_->frames.size();
-    bool first = true;
     for (std::size_t i = 0; i < kept; ++i) {
       progress_.step(fmt::format("reading finished frame {} of {}", i + 1, kept));
       Frame frame;
       frame.index = i;
       try {
         move(frame);
-        if (std::exchange(first, false)) (void)query_->contacts();
       } catch (const sdm::Cancelled&) {
         throw;
       } catch (const sdm::Error&) {  // as in the interrupted run, if the hashes agree
@@ -354,6 +354,7 @@ void add_sequence_command(CLI::App& app) {
       "  sdm sequence letters/E.ply+letters/E.npy letters/G.ply+letters/G.npy -o out");
   const auto command = std::make_shared<SequenceCommand>();
   add_options(*sequence, command->pair, {"A sequence, or a mesh at rest", "The other sequence or mesh"});
+  add_resolution_option(*sequence, command->atlas, "both bodies' maps");
   add_output_option(*sequence, command->out);
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")

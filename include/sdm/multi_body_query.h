@@ -15,8 +15,6 @@
 namespace sdm {
 
 struct MultiBodyOptions {
-  /// Of bodies that are given as meshes. Contacts are measured at its samples.
-  AtlasOptions atlas{.resolution = 128};
   /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
   double max_distance = std::numeric_limits<double>::infinity();
   double depth_precision = 0;  ///< as that of ProximityOptions
@@ -54,11 +52,10 @@ struct NearestMap {
 /// objects that share shapes may be used concurrently.
 class SDM_API MultiBodyQuery {
  public:
-  /// Builds the atlas and the sites of every body; any number of bodies is allowed, including 0. Throws
-  /// sdm::Error as Surface and Sites do, naming the body, and for a maximum distance that is not positive.
-  /// Cost: that of all atlases and sites.
+  /// Builds the sites of every body; any number of bodies is allowed, including 0. Throws sdm::Error as Sites
+  /// does, naming the body, and for a maximum distance that is not positive. Cost: that of all sites.
   explicit MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options = {});
-  /// The same for shapes that are there already. Cost: constant for each.
+  /// The same for shapes that are there already, or that have an atlas, for maps. Cost: constant for each.
   explicit MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options = {});
   ~MultiBodyQuery();
   MultiBodyQuery(MultiBodyQuery&&) noexcept;
@@ -95,15 +92,15 @@ class SDM_API MultiBodyQuery {
   [[nodiscard]] std::size_t candidate_pairs() const;
 
   /// Returns the distances from the texels of a body to the nearest other body; texels with none within
-  /// max_distance have no value. Throws sdm::Error for a body that does not exist, or if there is not enough
-  /// memory. Cost: that of compute_map to each body whose box is nearer than the distances found so far, all
-  /// cores.
+  /// max_distance have no value. Throws sdm::Error for a body that does not exist or has no atlas, or if
+  /// there is not enough memory. Cost: that of compute_map to each body whose box is nearer than the
+  /// distances found so far, all cores.
   [[nodiscard]] NearestMap nearest_map(std::size_t body) const;
   /// The same, into `nearest`, whose memory is reused where possible.
   void nearest_map(std::size_t body, NearestMap& nearest) const;
 
   /// The atlas and the sites of a body, in the frame of its mesh, without the pose. Both throw sdm::Error for
-  /// a body that does not exist.
+  /// a body that does not exist, surface() also for one without an atlas.
   [[nodiscard]] const Surface& surface(std::size_t body) const;
   [[nodiscard]] const Sites& sites(std::size_t body) const;
 

@@ -36,41 +36,39 @@ struct BoundedBool {
   Certainty certainty = Certainty::estimate;
 };
 
-/// A sampled point of one body and a closest point of the other: outside, the closest point of its surface;
-/// inside, of the boundary of the solid, as far as it was found (see ProximityQuery::contacts).
+/// A point of one body that is in contact, and a closest point of the other: outside, the closest point of
+/// its surface; inside, of the boundary of the solid, as far as it was found (see ProximityQuery::contacts).
 struct Contact {
   Vec3 point1{}, point2{};  ///< on O1 and on O2
   /// Unit vector along which moving O1 separates it from O2: (point2 − point1) / depth, for depth of either
   /// sign; where depth is 0, O2's outward pseudonormal. Swapping the two bodies negates it.
   Vec3 normal{};
-  double depth = 0;  ///< ±|point2 − point1|, exact; positive if the sampled point is inside the other body
+  double depth = 0;  ///< ±|point2 − point1|, exact; positive if the point in contact is inside the other body
   std::uint32_t patch = 0;  ///< contact patch: contacts on connected parts of the surface share one
   /// A face of O1 that contains point1 and one of O2 that contains point2, and the barycentric coordinates of
   /// the points there, to rounding.
   std::array<std::uint32_t, 2> faces{kNone, kNone};
   std::array<Vec3, 2> barycentric{};
-  /// Identifies the part of a surface whose deepest point this is (see ProximityQuery::contacts): unique
-  /// among the contacts of a pair, and the same in all frames, so that a solver can start from the forces of
-  /// the frame before.
+  /// Identifies the vertex, the part of a surface or the edge whose contact this is (see
+  /// ProximityQuery::contacts): unique among the contacts of a pair, and the same in all frames, so that a
+  /// solver can start from the forces of the frame before.
   std::uint64_t id = 0;
 };
 
 struct ProximityOptions {
-  /// Of bodies that are given as meshes. Contacts are measured at its samples.
-  AtlasOptions atlas{.resolution = 512};
   /// The bounds on the penetration depth are at most this far apart, or 1/1000 of the diagonal of the smaller
   /// body's box if it is 0; ≥ 0, in units of the meshes. Errors of computed distances, and bounds on
   /// distances to the boundary of a solid that intersects itself, are added.
   double depth_precision = 0;
   static constexpr double kDepthPrecision = 1e-3;
-  /// Contacts are reported for samples inside the other body or within this distance of it; ≥ 0, in units of
+  /// Contacts are reported for points inside the other body or within this distance of it; ≥ 0, in units of
   /// the meshes.
   double contact_margin = 0;
 };
 
 /// Proximity of two bodies that move and deform, for simulation loops.
 ///
-/// Separation, collision and depth are computed from the triangles, contacts at samples.
+/// All results are computed from the triangles.
 ///
 /// A body is a shape in a pose: moving it rigidly costs nothing, whatever its size. All results are in space,
 /// with both bodies in their poses.
@@ -82,10 +80,10 @@ struct ProximityOptions {
 /// Threads: an object is used by one thread at a time; objects that share shapes may be used concurrently.
 class SDM_API ProximityQuery {
  public:
-  /// Throws sdm::Error as Surface and Sites do, and for options that are out of range. Cost: that
-  /// of the atlases and sites of both bodies.
+  /// Throws sdm::Error as Sites does, and for options that are out of range. Cost: that of the sites of both
+  /// bodies.
   ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options = {});
-  /// The same for shapes that are there already; their atlases are those of the shapes. Cost: constant.
+  /// The same for shapes that are there already, or that have an atlas, for maps. Cost: constant.
   ProximityQuery(Shape o1, Shape o2, const ProximityOptions& options = {});
   ~ProximityQuery();
   ProximityQuery(ProximityQuery&&) noexcept;
@@ -100,8 +98,9 @@ class SDM_API ProximityQuery {
   /// Moves the vertices of the bodies, keeping their triangles and poses; other triangles need a new
   /// ProximityQuery. An empty span leaves a body unchanged. Throws sdm::Error, and changes nothing, for a
   /// wrong number of positions, a coordinate that is not finite, or a body whose Shape is shared with
-  /// anything else. Cost: that of Sites::refit. Neither this nor the queries allocate memory once the bodies
-  /// have been through similar poses, unless a solid intersects itself.
+  /// anything else. Cost: that of Sites::refit and, with an atlas, Surface::refit. Neither this nor the
+  /// queries allocate memory once the bodies have been through similar poses, unless a solid intersects
+  /// itself.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
   // Results are computed by the first call after a body has moved.
@@ -117,21 +116,29 @@ class SDM_API ProximityQuery {
   /// solid.
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
   /// The contacts of both bodies: none, at the cost of colliding(), if they are farther apart than the
-  /// margin. The samples of each chart in each block (256 consecutive samples) that lie inside the other body
-  /// or within the margin have one contact, at the one with the least signed distance to the surface of the
-  /// other body. If that body intersects itself, the contact is with a point of its boundary, closest to
+  /// margin. Otherwise one for
+  ///  - each vertex that lies inside the other body or within the margin of its surface; of vertices within
+  ///    1/64 of the size of their mesh from each other, in the same node of the tree, only the deepest one;
+  ///  - both ends of each part of an edge that lies along a face of the other body, within the margin above
+  ///    it, or below it inside the body;
+  ///  - each other part of an edge inside the other body or within the margin that reaches no end in contact,
+  ///    at the middle of its points closest to the other surface. Edges are those of the boundary of an open
+  ///    mesh and convex ones, not those between faces in a plane, and of edges shorter than 1/16 of the size
+  ///    of the smaller body only those without an end in contact.
+  /// So a box on a plate has contacts at its corners, and beams that cross where their edges cross. A corner
+  /// whose closest point is on a face that cannot push it, as the side of a box that it is flush with, is in
+  /// contact with the nearest face that can, up to 1/4 of the size of the smaller body below that face.
+  /// Contacts of a point inside a body that intersects itself are with a point of its boundary, closest to
   /// about 1/1000 of its size, or else with the closest point of its surface. Sorted by patch, the patch with
   /// the deepest contact first, and by decreasing depth within a patch. Contacts belong to the same patch if
-  /// the boxes of their samples, grown by the covering radii, intersect: a connected contact region is never
+  /// the boxes of the faces at their vertices and edges intersect: a connected contact region is never
   /// divided.
   [[nodiscard]] std::span<const Contact> contacts();
 
-  /// O1 for 0, O2 for 1; in the frames of their meshes, without the poses.
+  /// O1 for 0, O2 for 1; in the frames of their meshes, without the poses. surface() throws sdm::Error if the
+  /// shape has no atlas.
   [[nodiscard]] const Surface& surface(int body) const;
   [[nodiscard]] const Sites& sites(int body) const;
-  /// The number of samples of both bodies that contacts were measured at; no other sample can affect them. 0
-  /// before they were computed, or if the bodies are farther apart than the margin.
-  [[nodiscard]] std::size_t samples_used() const;
 
  private:
   struct Impl;

@@ -14,14 +14,18 @@ namespace shape {
 class Body;
 }
 
-/// The atlas and the sites of a mesh, in the frame of the mesh. Copies share them: a thousand bodies of one
-/// shape need the memory of one. Copies may be used by several threads at once, as the data do not change;
-/// only the refit of a query changes the shape of a body, and only if nothing else shares it.
+/// The sites of a mesh and, if it is to have maps, its atlas, in the frame of the mesh. Copies share them: a
+/// thousand bodies of one shape need the memory of one. Copies may be used by several threads at once, as the
+/// data do not change; only the refit of a query changes the shape of a body, and only if nothing else shares
+/// it.
 class SDM_API Shape {
  public:
-  /// Throws sdm::Error as Surface and Sites do. Cost: theirs.
-  explicit Shape(const Mesh& mesh, const AtlasOptions& atlas = {.resolution = 512});
+  /// Without an atlas: for all queries but maps. Throws sdm::Error as Sites does. Cost: that of Sites.
+  explicit Shape(const Mesh& mesh);
+  /// With an atlas. Throws sdm::Error as Surface and Sites do. Cost: theirs.
+  Shape(const Mesh& mesh, const AtlasOptions& atlas);
 
+  /// Throws sdm::Error if there is no atlas.
   [[nodiscard]] const Surface& surface() const;
   [[nodiscard]] const Sites& sites() const;
 

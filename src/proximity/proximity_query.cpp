@@ -4,14 +4,14 @@
 #include <new>
 
 #include "core/memory.h"
-#include "proximity/sampled/pair_answers.h"
+#include "proximity/pair/pair_answers.h"
 #include "proximity/shape/posed_body.h"
 
 namespace sdm {
 
 struct ProximityQuery::Impl {
   std::array<shape::PosedBody, 2> bodies;
-  sampled::PairAnswers answers;
+  pair::PairAnswers answers;
 
   Impl(Shape o1, Shape o2, const ProximityOptions& options)
       : bodies{shape::PosedBody(std::move(o1)), shape::PosedBody(std::move(o2))},
@@ -25,7 +25,7 @@ struct ProximityQuery::Impl {
 namespace {
 
 const ProximityOptions& checked(const ProximityOptions& options) {
-  sampled::check_options(options.contact_margin, options.depth_precision);
+  pair::check_options(options.contact_margin, options.depth_precision);
   return options;
 }
 
@@ -40,7 +40,7 @@ decltype(auto) with_memory(const Work& work) try {
 }  // namespace
 
 ProximityQuery::ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options)
-    : ProximityQuery(Shape(o1, checked(options).atlas), Shape(o2, options.atlas), options) {}
+    : ProximityQuery(Shape(o1), Shape(o2), checked(options)) {}
 ProximityQuery::ProximityQuery(Shape o1, Shape o2, const ProximityOptions& options)
     : impl_(with_memory(
           [&] { return std::make_unique<Impl>(std::move(o1), std::move(o2), checked(options)); })) {}
@@ -88,8 +88,4 @@ const Surface& ProximityQuery::surface(int body) const {
 const Sites& ProximityQuery::sites(int body) const {
   return impl_->bodies[body].body().sites();
 }
-std::size_t ProximityQuery::samples_used() const {
-  return impl_->answers.samples_used();
-}
-
 }  // namespace sdm

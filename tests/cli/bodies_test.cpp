@@ -28,15 +28,16 @@ struct BodiesCommand : ::testing::Test, TwoTori {
     return arguments;
   }
   [[nodiscard]] MultiBodyQuery in_library(const MultiBodyOptions& options = {}) const {
-    return MultiBodyQuery(std::vector{read_mesh(o1), read_mesh(o2), read_mesh(o3)}, options);
+    return MultiBodyQuery(with_atlases(std::vector{read_mesh(o1), read_mesh(o2), read_mesh(o3)}, 64),
+                          options);
   }
 };
 
 TEST_F(BodiesCommand, PrintsThePairsOfTheLibrary) {
-  const Outcome run = run_sdm(bodies({"--json", "--units", "mm", "--resolution", "64"}));
+  const Outcome run = run_sdm(bodies({"--json", "--units", "mm"}));
   ASSERT_EQ(run.code, 0) << run.err;
   const Json json = Json::parse(run.out);
-  MultiBodyQuery expected = in_library({.atlas = {.resolution = 64}});
+  MultiBodyQuery expected = in_library();
   ASSERT_EQ(json["pairs"].size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const PairProximity& pair = expected.pairs()[i];
@@ -53,7 +54,7 @@ TEST_F(BodiesCommand, PrintsThePairsOfTheLibrary) {
   EXPECT_EQ(json["candidate_pairs"], 3);
   EXPECT_EQ(json["bodies"][2]["file"], o3);
   EXPECT_EQ(json["units"], "mm");
-  EXPECT_EQ(json["resolution"], 64);
+  EXPECT_FALSE(json.contains("resolution"));
   EXPECT_TRUE(json["max_distance"].is_null());
   for (const char* step : {"import", "build", "query"}) EXPECT_GT(json["time_ms"][step], 0) << step;
   EXPECT_EQ(run.err, "") << "progress is for terminals";
@@ -66,15 +67,14 @@ TEST_F(BodiesCommand, PlacesBodiesOfOneFileByPoses) {
     return file;
   };
   const auto arguments = [&](const std::string& file) {
-    return std::vector<std::string>{"bodies",       o1,   o1,       "--poses",  file,
-                                    "--resolution", "64", "--json", "--margin", "0.05"};
+    return std::vector<std::string>{"bodies", o1, o1, "--poses", file, "--json", "--margin", "0.05"};
   };
   // By x y z and a quaternion, and by a matrix: 90° about the Z axis.
   const Outcome run = run_sdm(arguments(
       poses("# two poses\n0 0 0  1 0 0 0\n\n0, -1, 0, 1.2,  1, 0, 0, 0.1,  0, 0, 1, 0.3  # 12 numbers\n")));
   ASSERT_EQ(run.code, 0) << run.err;
   const Json json = Json::parse(run.out);
-  const Shape shape(read_mesh(o1), {.resolution = 64});
+  const Shape shape(read_mesh(o1));
   ProximityQuery expected(shape, shape, {.contact_margin = 0.05});
   expected.set_pose(1, Transform::translation({1.2, 0.1, 0.3}) * Transform::rotation({0, 0, 90}));
   EXPECT_EQ(json["pairs"][0]["separation"]["value"], expected.separation().value);
@@ -131,7 +131,7 @@ TEST_F(BodiesCommand, WritesAMapForEachBody) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"0", "1", "2", "report.json"}));
   EXPECT_EQ(contents(out + "/report.json"), run.out);
-  const MultiBodyQuery expected = in_library({.atlas = {.resolution = 64}, .max_distance = 9});
+  const MultiBodyQuery expected = in_library({.max_distance = 9});
   for (std::size_t body = 0; body < 3; ++body) {
     const std::string mine = out + "/" + std::to_string(body);
     EXPECT_EQ(names_in(mine), (std::vector<std::string>{"body.npy", "direction.png", "distance.png",

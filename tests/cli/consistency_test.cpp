@@ -57,8 +57,8 @@ TEST_F(Consistency, OverlappingCubesAreOneSolidForAllCommands) {
     EXPECT_GE(pair["penetration_depth"]["upper"], 0.45);
     EXPECT_NEAR(pair["penetration_depth"]["value"], 0.45, 0.01);
   };
-  check(json({"proximity", small, two, "--resolution", "64"}));
-  check(json({"bodies", small, two, "--resolution", "64"})["pairs"][0]);
+  check(json({"proximity", small, two}));
+  check(json({"bodies", small, two})["pairs"][0]);
   const Json info = json({"info", two});
   EXPECT_GT(info["self_intersections"], 0);
   EXPECT_LE(info["volume"]["lower"], 1.125);

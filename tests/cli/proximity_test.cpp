@@ -19,10 +19,10 @@ using Json = nlohmann::json;
 struct ProximityCommand : ::testing::Test, TwoTori {};
 
 TEST_F(ProximityCommand, PrintsTheAnswersOfTheLibrary) {
-  const Outcome run = run_sdm({"proximity", o1, o2, "--json", "--resolution", "128", "--units", "mm"});
+  const Outcome run = run_sdm({"proximity", o1, o2, "--json", "--units", "mm"});
   ASSERT_EQ(run.code, 0) << run.err;
   const Json json = Json::parse(run.out);
-  ProximityQuery query(read_mesh(o1), read_mesh(o2), {.atlas = {.resolution = 128}});
+  ProximityQuery query(read_mesh(o1), read_mesh(o2));
   EXPECT_EQ(json["separation"]["value"], query.separation().value);
   EXPECT_EQ(json["separation"]["lower"], query.separation().lower);
   EXPECT_EQ(json["separation"]["upper"], query.separation().upper);
@@ -46,25 +46,24 @@ TEST_F(ProximityCommand, PrintsTheAnswersOfTheLibrary) {
 }
 
 TEST_F(ProximityCommand, SaysWhatNumbersAreWorth) {
-  Outcome run = run_sdm({"proximity", o1, o2, "--resolution", "128"});
+  Outcome run = run_sdm({"proximity", o1, o2});
   EXPECT_EQ(run.code, 0);
   EXPECT_THAT(run.out, HasSubstr("colliding  yes (exact)"));
   EXPECT_THAT(run.out, HasSubstr("(bounded)")) << "the depth";
   EXPECT_THAT(run.out, HasSubstr("contacts"));
-  run = run_sdm({"proximity", o1, o2, "--resolution", "128", "--transform-o2", "translate:9:0:0"});
+  run = run_sdm({"proximity", o1, o2, "--transform-o2", "translate:9:0:0"});
   EXPECT_THAT(run.out, HasSubstr("colliding  no (exact)"));
   EXPECT_THAT(run.out, HasSubstr("contacts   0"));
 }
 
 TEST_F(ProximityCommand, AsksTheTrianglesThemselves) {
   for (const char* placement : {"translate:0:0:0", "translate:7.3:0.2:0.1"}) {
-    const Outcome run =
-        run_sdm({"proximity", o1, o2, "--json", "--resolution", "64", "--transform-o2", placement});
+    const Outcome run = run_sdm({"proximity", o1, o2, "--json", "--transform-o2", placement});
     ASSERT_EQ(run.code, 0) << run.err;
     const Json json = Json::parse(run.out);
     Mesh second = read_mesh(o2);
     scenes::place(second, scenes::parse_placement(placement));
-    ProximityQuery query(read_mesh(o1), second, {.atlas = {.resolution = 64}});
+    ProximityQuery query(read_mesh(o1), second);
     EXPECT_EQ(json["separation"]["kind"], "exact");
     EXPECT_EQ(json["separation"]["value"], query.separation().value);
     EXPECT_EQ(json["separation"]["lower"], json["separation"]["upper"]);
@@ -76,9 +75,9 @@ TEST_F(ProximityCommand, AsksTheTrianglesThemselves) {
 TEST_F(ProximityCommand, TellsWhyThereIsNoDepth) {
   const std::string open =
       write_obj(folder / "open.obj", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}});
-  const Outcome text = run_sdm({"proximity", open, open, "--resolution", "32"});
+  const Outcome text = run_sdm({"proximity", open, open});
   EXPECT_THAT(text.out, HasSubstr("O1 is open (3 boundary edges); O2 is open (3 boundary edges)"));
-  const Outcome run = run_sdm({"proximity", open, open, "--resolution", "32", "--json"});
+  const Outcome run = run_sdm({"proximity", open, open, "--json"});
   const Json json = Json::parse(run.out);
   EXPECT_TRUE(json["penetration_depth"].is_null());
   EXPECT_THAT(json["no_penetration_depth"].get<std::string>(), HasSubstr("O1 is open"));

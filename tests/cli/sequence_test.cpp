@@ -57,7 +57,8 @@ TEST_F(SequenceCommand, FollowsTheBodies) {
   const std::vector<Json> all = lines();
   ASSERT_EQ(all.size(), 12u);
   EXPECT_EQ(csv_rows(), 12u);
-  ProximityQuery query(ring(12, 1, {-3.2, 0, 0}), read_mesh(o2), {.atlas = {.resolution = 64}});
+  const AtlasOptions atlas{.resolution = 64};
+  ProximityQuery query(Shape(ring(12, 1, {-3.2, 0, 0}), atlas), Shape(read_mesh(o2), atlas));
   SamplingBound bound(query.surface(0));
   const RelativeError error(query.surface(0), bound);
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -54,7 +54,7 @@ TEST(DistancesAtVertices, RejectASignThatO2DoesNotAllow) {
 }
 
 TEST(NearestDistancesAtVertices, AreToTheNearestOtherBody) {
-  const MultiBodyQuery bodies({square(1, 0), square(2, 1), square(2, -3)}, {.atlas = {.resolution = 32}});
+  const MultiBodyQuery bodies(std::vector{square(1, 0), square(2, 1), square(2, -3)});
   EXPECT_THAT(nearest_distances_at_vertices(bodies, 0, 10), Each(1));
   EXPECT_THAT(nearest_distances_at_vertices(bodies, 2, 10)[0], std::sqrt(9 + 0.5f));
   EXPECT_THAT(nearest_distances_at_vertices(bodies, 2, 2), Each(IsNan()));

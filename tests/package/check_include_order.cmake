@@ -26,7 +26,8 @@ set(order
   proximity/exact
   proximity/shape
   proximity/depth
-  proximity/sampled
+  proximity/contacts
+  proximity/pair
   proximity/bodies
   proximity/self
   proximity

@@ -179,8 +179,7 @@ void check(const Body& a, const Body& b) {
 
   const bool intersect = surfaces_intersect(a.mesh, b.mesh);
   const bool collide = intersect || contains_vertex(a, b.mesh) || contains_vertex(b, a.mesh);
-  const ProximityOptions options{.atlas = {.resolution = kResolution}};
-  ProximityQuery query(a.mesh, b.mesh, options);
+  ProximityQuery query(a.mesh, b.mesh);
   const BoundedLength separation = query.separation();
   const std::optional<BoundedLength> depth = query.penetration_depth();
 
@@ -210,7 +209,7 @@ void check(const Body& a, const Body& b) {
       }
   }
 
-  MultiBodyQuery bodies(std::vector{a.mesh, b.mesh}, {.atlas = options.atlas});
+  MultiBodyQuery bodies(with_atlases(std::vector{a.mesh, b.mesh}, kResolution));
   ASSERT_EQ(bodies.pairs().size(), 1u);
   const PairProximity& pair = bodies.pairs()[0];
   ASSERT_EQ(pair.colliding.value, collide);

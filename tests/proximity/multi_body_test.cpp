@@ -84,7 +84,7 @@ std::vector<Mesh> crowd() {
 }
 
 MultiBodyOptions options(double max_distance = kAny) {
-  return {.atlas = {.resolution = 64}, .max_distance = max_distance};
+  return {.max_distance = max_distance};
 }
 
 void expect_same(const BoundedLength& a, const BoundedLength& b) {
@@ -104,7 +104,7 @@ void expect_same(const PairProximity& a, const PairProximity& b) {
 }
 
 PairProximity by_query(const std::vector<Mesh>& meshes, std::uint32_t a, std::uint32_t b) {
-  ProximityQuery query(meshes[a], meshes[b], {.atlas = {.resolution = 64}});
+  ProximityQuery query(meshes[a], meshes[b]);
   return {a, b, query.separation(), query.colliding(), query.penetration_depth()};
 }
 
@@ -169,7 +169,7 @@ TEST(MultiBodyQuery, AgreesWithFclAndBruteForce) {
 TEST(MultiBodyQuery, MapsAreTheMinimumOfSingleMaps) {
   const std::vector<Mesh> meshes = crowd();
   for (const double max_distance : {kAny, 1.0}) {
-    const MultiBodyQuery bodies(meshes, options(max_distance));
+    const MultiBodyQuery bodies(with_atlases(meshes, 64), options(max_distance));
     for (std::uint32_t on = 0; on < meshes.size(); ++on) {
       SCOPED_TRACE(on);
       const Surface& surface = bodies.surface(on);
@@ -213,8 +213,9 @@ TEST(MultiBodyQuery, MapsAreTheMinimumOfSingleMaps) {
 // The same cube twice, once with a box that comes nearer.
 TEST(MultiBodyQuery, MapsNameTheLowestOfEquidistantBodies) {
   const Mesh right = moved(cube(), {4, 0, 0});
-  const MultiBodyQuery bodies(
-      {right, joined(right, moved(cube(), {0, 9, 0})), cube(), moved(cube(), {-6, 0, 0})}, options(2.5));
+  const std::vector<Mesh> meshes{right, joined(right, moved(cube(), {0, 9, 0})), cube(),
+                                 moved(cube(), {-6, 0, 0})};
+  const MultiBodyQuery bodies(with_atlases(meshes, 64), options(2.5));
   const NearestMap nearest = bodies.nearest_map(2);
   std::size_t to_right = 0;
   for (const std::uint32_t body : nearest.body) {
@@ -231,7 +232,7 @@ TEST(MultiBodyQuery, DoesNotDependOnTheOrder) {
   std::vector<Mesh> shuffled;
   shuffled.reserve(order.size());
   for (const std::uint32_t i : order) shuffled.push_back(meshes[i]);
-  MultiBodyQuery bodies(meshes, options(3)), others(shuffled, options(3));
+  MultiBodyQuery bodies(with_atlases(meshes, 64), options(3)), others(with_atlases(shuffled, 64), options(3));
   ASSERT_EQ(bodies.pairs().size(), others.pairs().size());
   for (const PairProximity& pair : others.pairs()) {
     const std::uint32_t first = order[pair.first], second = order[pair.second];
@@ -317,14 +318,14 @@ TEST(MultiBodyQuery, AcceptsFewBodies) {
   EXPECT_TRUE(none.pairs().empty());
   EXPECT_THROW((void)none.nearest_map(0), Error);
 
-  MultiBodyQuery one(std::vector{cube()}, options());
+  MultiBodyQuery one(with_atlases(std::vector{cube()}, 64), options());
   EXPECT_TRUE(one.pairs().empty());
   const NearestMap nearest = one.nearest_map(0);
   EXPECT_EQ(nearest.map.beyond_max_distance, one.surface(0).sample_texels().size());
   EXPECT_THAT(nearest.body, testing::Each(kNone));
   EXPECT_THAT(nearest.map.site_type, testing::Each(SiteType::none));
 
-  MultiBodyQuery two(std::vector{cube(), moved(cube(), {5, 0, 0})}, options(2));
+  MultiBodyQuery two(with_atlases(std::vector{cube(), moved(cube(), {5, 0, 0})}, 64), options(2));
   EXPECT_TRUE(two.pairs().empty());
   EXPECT_EQ(two.candidate_pairs(), 0u);
   EXPECT_EQ(two.nearest_map(0).map.beyond_max_distance, two.surface(0).sample_texels().size());
@@ -345,6 +346,8 @@ TEST(MultiBodyQuery, RejectsMismatchedInput) {
   EXPECT_THROW(bodies.refit(std::vector<std::span<const Vec3>>{good, nan}), Error);
   expect_same(bodies.pairs()[0].separation, before);
   EXPECT_THROW((void)bodies.surface(2), Error);
+  EXPECT_THROW((void)bodies.surface(1), Error);  // no atlas
+  EXPECT_THROW((void)bodies.nearest_map(1), Error);
   EXPECT_THROW((void)bodies.sites(2), Error);
   EXPECT_THROW(MultiBodyQuery(meshes, options(0)), Error);
   EXPECT_THROW(MultiBodyQuery(meshes, options(std::nan(""))), Error);

@@ -14,10 +14,8 @@
 namespace sdm::test {
 namespace {
 
-const AtlasOptions kAtlas{.resolution = 64};
-
 TEST(TimeOfContact, OfCubesThatMeet) {
-  const Shape box(cube(), kAtlas);
+  const Shape box(cube());
   // A gap of 2, closed by 1 and 3 from both sides.
   const Motion right{.from = Transform::translation({-2, 0, 0}), .to = Transform::translation({-1, 0, 0})};
   const Motion left{.from = Transform::translation({2, 0.3, 0}), .to = Transform::translation({-1, 0.3, 0})};
@@ -33,7 +31,7 @@ TEST(TimeOfContact, OfCubesThatMeet) {
 TEST(TimeOfContact, IsNotMissedThroughAThinPlate) {
   Mesh plate = cube();
   for (Vec3& p : plate.positions) p[0] *= 1e-4;
-  const Shape ball(placed(sphere(3), "scale:0.1"), kAtlas), wall(plate, kAtlas);
+  const Shape ball(placed(sphere(3), "scale:0.1")), wall(plate);
   const Motion shot{.from = Transform::translation({-5, 0, 0}), .to = Transform::translation({5, 0, 0})};
   const TimeOfContact found = time_of_contact(ball, shot, wall, {}, 1e-5);
   EXPECT_TRUE(found.contact);
@@ -51,7 +49,7 @@ TEST(TimeOfContact, IsNotMissedThroughAThinPlate) {
 TEST(TimeOfContact, OfARodThatTurns) {
   Mesh rod = cube();
   for (Vec3& p : rod.positions) p = {3 * p[0], 1e-3 * p[1], 0.1 * p[2]};
-  const Shape a(rod, kAtlas), b(cube(0.5), kAtlas);
+  const Shape a(rod), b(cube(0.5));
   const Motion turn{.from = {}, .to = Transform::rotation({0, 0, 180})};
   const Motion rest{.from = Transform::translation({0, 2.5, 0}), .to = Transform::translation({0, 2.5, 0})};
   const TimeOfContact found = time_of_contact(a, turn, b, rest, 1e-5);
@@ -61,7 +59,7 @@ TEST(TimeOfContact, OfARodThatTurns) {
 }
 
 TEST(TimeOfContact, OfBodiesThatCollideOrRest) {
-  const Shape outer(cube(), kAtlas), inner(cube(0.2), kAtlas);
+  const Shape outer(cube()), inner(cube(0.2));
   const Motion away{.from = {}, .to = Transform::translation({9, 0, 0})};
   const TimeOfContact nested = time_of_contact(outer, {}, inner, away, 1e-3);
   EXPECT_TRUE(nested.contact);
@@ -74,7 +72,7 @@ TEST(TimeOfContact, OfBodiesThatCollideOrRest) {
 }
 
 TEST(TimeOfContact, NoCollisionBefore) {
-  const std::array shapes{Shape(load("cow.off", "fit"), kAtlas), Shape(placed(torus(24, 12), "fit"), kAtlas)};
+  const std::array shapes{Shape(load("cow.off", "fit")), Shape(placed(torus(24, 12), "fit"))};
   std::mt19937 random(9);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> offset(-1.2, 1.2);
@@ -108,7 +106,7 @@ TEST(TimeOfContact, NoCollisionBefore) {
 }
 
 TEST(TimeOfContact, RejectsBadInput) {
-  const Shape box(cube(), kAtlas);
+  const Shape box(cube());
   const Motion grows{.from = {}, .to = Transform::scaling(2)};
   const Motion sheared{.from = {}, .to = {{{{1, 1, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}}};
   EXPECT_THROW((void)time_of_contact(box, grows, box, {}, 1e-3), Error);

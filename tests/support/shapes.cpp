@@ -219,6 +219,12 @@ Mesh degenerate_soup(std::size_t triangles, unsigned seed) {
   return mesh;
 }
 
+std::vector<Shape> with_atlases(std::span<const Mesh> meshes, std::uint32_t resolution) {
+  std::vector<Shape> shapes;
+  for (const Mesh& mesh : meshes) shapes.emplace_back(mesh, AtlasOptions{.resolution = resolution});
+  return shapes;
+}
+
 Mesh joined(const Mesh& a, const Mesh& b) {
   Mesh mesh = a;
   const auto offset = static_cast<std::uint32_t>(a.positions.size());

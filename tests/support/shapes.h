@@ -2,8 +2,11 @@
 #pragma once
 
 #include <sdm/mesh.h>
+#include <sdm/shape.h>
 
 #include <random>
+#include <span>
+#include <vector>
 
 namespace sdm::test {
 
@@ -45,6 +48,10 @@ namespace sdm::test {
 [[nodiscard]] Mesh soup(std::size_t triangles, std::mt19937& random);
 /// Triangles of any size and place; a tenth of them slivers, a tenth repeated, some without area.
 [[nodiscard]] Mesh degenerate_soup(std::size_t triangles, unsigned seed);
+
+// Shapes of meshes, with atlases of this resolution.
+
+[[nodiscard]] std::vector<Shape> with_atlases(std::span<const Mesh> meshes, std::uint32_t resolution);
 
 // Meshes from meshes.
 

@@ -13,7 +13,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "proximity/bodies/nearest_body.h"
-#include "proximity/sampled/pair_answers.h"
+#include "proximity/pair/pair_answers.h"
 #include "proximity/shape/posed_body.h"
 
 namespace sdm {
@@ -21,7 +21,7 @@ namespace {
 
 const MultiBodyOptions& checked(const MultiBodyOptions& options) {
   if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
-  sampled::check_options(options.contact_margin, options.depth_precision);
+  pair::check_options(options.contact_margin, options.depth_precision);
   return options;
 }
 
@@ -37,10 +37,10 @@ void on_behalf_of(std::size_t body, const Work& work) {
   }
 }
 
-std::vector<Shape> shapes_of(std::span<const Mesh> meshes, const AtlasOptions& atlas) {
+std::vector<Shape> shapes_of(std::span<const Mesh> meshes) {
   std::vector<Shape> shapes;
   shapes.reserve(meshes.size());
-  for (const Mesh& mesh : meshes) on_behalf_of(shapes.size(), [&] { shapes.emplace_back(mesh, atlas); });
+  for (const Mesh& mesh : meshes) on_behalf_of(shapes.size(), [&] { shapes.emplace_back(mesh); });
   return shapes;
 }
 
@@ -50,14 +50,14 @@ class AnswersPool {
   explicit AnswersPool(const MultiBodyOptions& options)
       : contact_margin_(options.contact_margin), depth_precision_(options.depth_precision) {}
 
-  std::unique_ptr<sampled::PairAnswers> take() {
+  std::unique_ptr<pair::PairAnswers> take() {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<sampled::PairAnswers>(contact_margin_, depth_precision_);
-    std::unique_ptr<sampled::PairAnswers> answers = std::move(idle_.back());
+    if (idle_.empty()) return std::make_unique<pair::PairAnswers>(contact_margin_, depth_precision_);
+    std::unique_ptr<pair::PairAnswers> answers = std::move(idle_.back());
     idle_.pop_back();
     return answers;
   }
-  void give_back(std::unique_ptr<sampled::PairAnswers> answers) {
+  void give_back(std::unique_ptr<pair::PairAnswers> answers) {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(answers));
   }
@@ -65,7 +65,7 @@ class AnswersPool {
  private:
   double contact_margin_, depth_precision_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<sampled::PairAnswers>> idle_;
+  std::vector<std::unique_ptr<pair::PairAnswers>> idle_;
 };
 
 }  // namespace
@@ -79,7 +79,7 @@ struct MultiBodyQuery::Impl {
 
   struct ClosestFaces {
     Sweep::Pair pair{};
-    sampled::FacePair faces = sampled::kNoFaces;
+    pair::FacePair faces = pair::kNoFaces;
   };
   std::vector<ClosestFaces> hints, closest_faces;  // sorted by pair: of the last search, of this one
 
@@ -118,7 +118,7 @@ struct MultiBodyQuery::Impl {
   void for_near_pairs(std::span<const Sweep::Pair> near, const Find& find) {
     closest_faces.resize(near.size());
     const auto measure = [&](std::size_t begin, std::size_t end) {
-      std::unique_ptr<sampled::PairAnswers> answers = pool.take();
+      std::unique_ptr<pair::PairAnswers> answers = pool.take();
       for (std::size_t i = begin; i < end; ++i) {
         answers->begin(bodies[near[i][0]], bodies[near[i][1]], hint(near[i]));
         find(i, *answers);
@@ -130,9 +130,9 @@ struct MultiBodyQuery::Impl {
     std::swap(closest_faces, hints);
   }
   // The faces of a pair that were closest when it was last searched.
-  [[nodiscard]] sampled::FacePair hint(const Sweep::Pair& pair) const {
+  [[nodiscard]] pair::FacePair hint(const Sweep::Pair& pair) const {
     const auto found = std::ranges::lower_bound(hints, pair, {}, &ClosestFaces::pair);
-    return found != hints.end() && found->pair == pair ? found->faces : sampled::kNoFaces;
+    return found != hints.end() && found->pair == pair ? found->faces : pair::kNoFaces;
   }
   std::span<const Sweep::Pair> near_pairs(double reach) {
     std::ranges::transform(bodies, boxes.begin(), &shape::PosedBody::box);
@@ -143,7 +143,7 @@ struct MultiBodyQuery::Impl {
     const std::span<const Sweep::Pair> near = near_pairs(options.max_distance);
     candidates = near.size();
     pairs.resize(near.size());
-    for_near_pairs(near, [&](std::size_t i, sampled::PairAnswers& answers) {
+    for_near_pairs(near, [&](std::size_t i, pair::PairAnswers& answers) {
       if (!answers.within(options.max_distance)) {
         pairs[i].first = kNone;
         return;
@@ -160,7 +160,7 @@ struct MultiBodyQuery::Impl {
   void find_contacts() {
     const std::span<const Sweep::Pair> near = near_pairs(options.contact_margin);
     if (contacts_of.size() < near.size()) contacts_of.resize(near.size());
-    for_near_pairs(near, [&](std::size_t i, sampled::PairAnswers& answers) {
+    for_near_pairs(near, [&](std::size_t i, pair::PairAnswers& answers) {
       contacts_of[i].clear();
       for (const Contact& contact : answers.contacts())
         contacts_of[i].push_back({near[i][0], near[i][1], contact});
@@ -172,7 +172,7 @@ struct MultiBodyQuery::Impl {
 };
 
 MultiBodyQuery::MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options)
-    : MultiBodyQuery(shapes_of(meshes, checked(options).atlas), options) {}
+    : MultiBodyQuery(shapes_of(meshes), checked(options)) {}
 MultiBodyQuery::MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options) try
     : impl_(std::make_unique<Impl>(std::move(shapes), checked(options))) {
 } catch (const std::bad_alloc&) {
@@ -251,13 +251,16 @@ NearestMap MultiBodyQuery::nearest_map(std::size_t body) const {
 }
 
 void MultiBodyQuery::nearest_map(std::size_t body, NearestMap& nearest) const try {
-  bodies::map_nearest(impl_->bodies, impl_->checked(body), impl_->options.max_distance, nearest);
+  on_behalf_of(impl_->checked(body),
+               [&] { bodies::map_nearest(impl_->bodies, body, impl_->options.max_distance, nearest); });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a map of the nearest bodies");
 }
 
 const Surface& MultiBodyQuery::surface(std::size_t body) const {
-  return impl_->bodies[impl_->checked(body)].body().surface();
+  const Surface* surface = nullptr;
+  on_behalf_of(impl_->checked(body), [&] { surface = &impl_->bodies[body].body().surface(); });
+  return *surface;
 }
 
 const Sites& MultiBodyQuery::sites(std::size_t body) const {

@@ -11,7 +11,7 @@ namespace sdm {
 std::vector<float> nearest_distances_at_vertices(const MultiBodyQuery& bodies, std::size_t body,
                                                  double max_distance) {
   using mesh::Similarity;
-  const Mesh& mesh = bodies.surface(body).mesh();
+  const Mesh& mesh = bodies.sites(body).mesh();
   const Similarity pose = Similarity::of(bodies.pose(body));
   Mesh in_frame = mesh;  // of the other body
   std::vector<float> nearest(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "engine/cpu/cpu_engine.h"
 #include "hierarchy/traverse.h"
+#include "proximity/shape/node_ball.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 
@@ -131,18 +132,11 @@ void DepthSearch::add_children(const Part& parent) {
     }
     return;
   }
-  constexpr double kRounding = 1e-6;  // of the boxes, in units of the frame
   const hierarchy::WideTree::Node& wide = sites.wide.nodes[node];
   for (std::uint32_t i = 0; i < wide.count; ++i) {
-    Vec3 centre, half;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double lo = wide.lo[k][i], hi = wide.hi[k][i];
-      centre[k] = sites.frame.origin[k] + 0.5 * (lo + hi) / sites.frame.scale;
-      half[k] = (0.5 * (hi - lo) + kRounding) / sites.frame.scale;
-    }
     Part part{.body = body, .node = wide.child[i], .place = wide.source[i], .upper = parent.upper};
-    part.centre = to_other.map(centre);
-    part.radius = to_other.scale * norm(half);
+    const auto [centre, radius] = shape::ball_of_child(sites, node, i, to_other);
+    part.centre = centre, part.radius = radius;
     if (box_distance({part.centre, part.centre}, other) <= part.radius) add(part);
   }
 }

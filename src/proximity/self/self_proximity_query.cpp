@@ -11,7 +11,7 @@
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "proximity/sampled/contact_patches.h"
+#include "proximity/contacts/contact_patches.h"
 #include "proximity/self/self_search.h"
 
 namespace sdm {
@@ -35,7 +35,7 @@ struct SelfProximityQuery::Impl {
   std::vector<self::FacePair> nearest{};  // of each face
   std::vector<Contact> contacts{};
   std::vector<Box> boxes{};
-  sampled::ContactPatches patches{};
+  contacts::ContactPatches patches{};
 
   Impl(Mesh rest, const SelfProximityOptions& options)
       : sites(std::move(rest)),

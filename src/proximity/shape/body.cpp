@@ -1,19 +1,28 @@
 #include "proximity/shape/body.h"
 
+#include <sdm/error.h>
+
+#include "proximity/shape/contact_parts.h"
+
 namespace sdm::shape {
 
-Body::Body(const Mesh& mesh, const AtlasOptions& atlas) : surface_(mesh, atlas), sites_(mesh) {
+Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
+  if (atlas) surface_.emplace(mesh, *atlas);
   follow_positions();
+  contact_parts_ = shape::contact_parts(internals(sites_));
 }
 
 void Body::refit(std::span<const Vec3> positions) {
-  surface_.refit(positions);
+  if (surface_) surface_->refit(positions);
   sites_.refit(positions);
   follow_positions();
 }
 
-void Body::require_pieces() const {
-  std::call_once(pieces_->built, [this] { pieces_->value.emplace(surface_); });
+const Surface& Body::surface() const {
+  if (!surface_)
+    throw Error(
+        "there is no map of this body: its shape has no atlas; construct its Shape with AtlasOptions");
+  return *surface_;
 }
 
 void Body::require_boundary() const {

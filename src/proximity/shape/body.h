@@ -1,4 +1,4 @@
-// A mesh in both roles: the surface of an O1 and the sites of an O2.
+// A mesh in both roles: the sites of an O2 and, for maps, the surface of an O1.
 #pragma once
 
 #include <sdm/sites.h>
@@ -8,22 +8,23 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "inside/inside.h"
 #include "inside/solid_boundary.h"
-#include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm::shape {
 
 class Body {
  public:
-  /// Throws sdm::Error as Surface and Sites do.
-  Body(const Mesh& mesh, const AtlasOptions& atlas);
+  /// Throws sdm::Error as Surface and Sites do. `atlas`: none if null.
+  Body(const Mesh& mesh, const AtlasOptions* atlas);
 
   /// Moves the vertices to positions that are valid for this mesh (see validate_positions).
   void refit(std::span<const Vec3> positions);
 
-  [[nodiscard]] const Surface& surface() const { return surface_; }
+  /// Throws sdm::Error if there is no atlas.
+  [[nodiscard]] const Surface& surface() const;
   [[nodiscard]] const Sites& sites() const { return sites_; }
   /// The bounding box of all faces.
   [[nodiscard]] const Box& box() const { return box_; }
@@ -37,19 +38,17 @@ class Body {
   /// The boundary of the solid. Requires a call of require_boundary().
   [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
 
-  /// Builds pieces() for the current shape unless already built: queries answered from the triangles alone do
-  /// not need them. Thread-safe.
-  void require_pieces() const;
-  /// The pieces of the surface. Requires a call of require_pieces().
-  [[nodiscard]] const surface::PieceAssignment& pieces() const { return *pieces_->value; }
+  /// See contact_parts(), of the first shape.
+  [[nodiscard]] std::span<const std::uint32_t> contact_parts() const { return contact_parts_; }
 
  private:
   void follow_positions();
 
-  Surface surface_;
+  std::optional<Surface> surface_;
   Sites sites_;
   Box box_;
   std::optional<inside::InsideTest> inside_;
+  std::vector<std::uint32_t> contact_parts_;
 
   /// A value that queries build when they need it.
   template <class Value>
@@ -57,8 +56,6 @@ class Body {
     std::once_flag built;
     std::optional<Value> value;
   };
-  std::unique_ptr<Lazy<surface::PieceAssignment>> pieces_ =
-      std::make_unique<Lazy<surface::PieceAssignment>>();
   std::unique_ptr<Lazy<inside::SolidBoundary>> boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
 };
 

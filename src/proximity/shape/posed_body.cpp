@@ -11,7 +11,7 @@ void PosedBody::check_refit(std::span<const Vec3> positions) const {
     throw Error(
         "its shape is shared and cannot be deformed; give a body that deforms a Shape of its own, and keep "
         "no copy");
-  mesh::validate_positions(positions, body().surface().mesh().positions.size());
+  mesh::validate_positions(positions, body().sites().mesh().positions.size());
 }
 
 }  // namespace sdm::shape

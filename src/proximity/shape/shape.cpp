@@ -7,8 +7,12 @@
 
 namespace sdm {
 
+Shape::Shape(const Mesh& mesh) try : body_(std::make_shared<shape::Body>(mesh, nullptr)) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a shape");
+}
 Shape::Shape(const Mesh& mesh, const AtlasOptions& atlas) try
-    : body_(std::make_shared<shape::Body>(mesh, atlas)) {
+    : body_(std::make_shared<shape::Body>(mesh, &atlas)) {
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a shape");
 }

@@ -9,7 +9,7 @@
 #include "core/disjoint_sets.h"
 #include "core/geometry/sweep.h"
 
-namespace sdm::sampled {
+namespace sdm::contacts {
 
 /// Sorts contacts; reuses its memory between calls.
 class ContactPatches {
@@ -26,4 +26,4 @@ class ContactPatches {
   Sweep sweep_;
 };
 
-}  // namespace sdm::sampled
+}  // namespace sdm::contacts

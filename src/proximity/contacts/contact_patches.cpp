@@ -1,4 +1,4 @@
-#include "proximity/sampled/contact_patches.h"
+#include "proximity/contacts/contact_patches.h"
 
 #include <algorithm>
 #include <numeric>
@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec.h"
 
-namespace sdm::sampled {
+namespace sdm::contacts {
 
 std::span<const Contact> ContactPatches::sort(std::span<Contact> contacts, std::span<const Box> boxes) {
   patches_.reset(boxes.size());
@@ -31,4 +31,4 @@ std::span<const Contact> ContactPatches::sort(std::span<Contact> contacts, std::
   return sorted_;
 }
 
-}  // namespace sdm::sampled
+}  // namespace sdm::contacts

@@ -7,13 +7,12 @@
 #include <optional>
 #include <span>
 
+#include "proximity/contacts/contact_finder.h"
 #include "proximity/depth/depth_search.h"
 #include "proximity/exact/pair_search.h"
-#include "proximity/sampled/contacts.h"
-#include "proximity/sampled/local_distances.h"
 #include "proximity/shape/posed_body.h"
 
-namespace sdm::sampled {
+namespace sdm::pair {
 
 /// Throws sdm::Error unless both are finite and at least 0.
 void check_options(double contact_margin, double depth_precision);
@@ -25,7 +24,7 @@ inline constexpr FacePair kNoFaces{kNone, kNone};
 /// Results as documented at ProximityQuery, each computed on first use. Memory is reused from pair to pair;
 /// results do not depend on earlier pairs.
 ///
-/// The triangles are compared in the frame of O1, samples in that of the body that they are measured to; the
+/// The triangles are compared in the frame of O1, points in that of the body that they are measured to; the
 /// results are in space.
 class PairAnswers {
  public:
@@ -49,10 +48,8 @@ class PairAnswers {
   [[nodiscard]] BoundedBool colliding();
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
   [[nodiscard]] std::span<const Contact> contacts();
-  [[nodiscard]] std::size_t samples_used() const;
 
  private:
-  void measure();
   [[nodiscard]] exact::MeshPair meshes() const;
   bool find_closest(double bound);
   [[nodiscard]] bool surfaces_intersect();
@@ -62,13 +59,12 @@ class PairAnswers {
   std::array<const shape::PosedBody*, 2> bodies_{};
   std::array<mesh::Similarity, 2> to_other_;  // from the frame of each body to that of the other
   double precision_ = 0;                      // error of a computed distance
-  std::array<LocalDistances, 2> distances_;   // of each body to the other
-  ContactFinder finder_;
+  contacts::ContactFinder contact_finder_;
   exact::PairWorkspace workspace_;
   depth::DepthSearch depth_search_;
 
   // Results for the current bodies.
-  bool measured_ = false, depth_found_ = false;
+  bool depth_found_ = false;
   FacePair closest_faces_ = kNoFaces;
   std::optional<bool> intersecting_;  // the surfaces
   std::optional<BoundedLength> separation_, depth_;
@@ -76,4 +72,4 @@ class PairAnswers {
   std::optional<std::span<const Contact>> contacts_;
 };
 
-}  // namespace sdm::sampled
+}  // namespace sdm::pair

@@ -1,4 +1,4 @@
-#include "proximity/sampled/pair_answers.h"
+#include "proximity/pair/pair_answers.h"
 
 #include <sdm/error.h>
 
@@ -12,7 +12,7 @@
 #include "core/geometry/vec.h"
 #include "proximity/exact/collision.h"
 
-namespace sdm::sampled {
+namespace sdm::pair {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -38,7 +38,7 @@ void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, 
   Box box = o1.box();
   extend(box, o2.box());
   precision_ = 1e-6 * diagonal(box);
-  measured_ = depth_found_ = false;
+  depth_found_ = false;
   intersecting_.reset(), separation_.reset(), depth_.reset(), colliding_.reset(), contacts_.reset();
 }
 
@@ -62,30 +62,8 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 
 std::span<const Contact> PairAnswers::contacts() {
   if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
-  if (!contacts_) {
-    measure();
-    const std::array<MeasuredBody, 2> measured{MeasuredBody{*bodies_[0], distances_[0]},
-                                               MeasuredBody{*bodies_[1], distances_[1]}};
-    contacts_ = finder_.find(measured, contact_margin_, precision_);
-  }
+  if (!contacts_) contacts_ = contact_finder_.find(bodies_, to_other_, contact_margin_, precision_);
   return *contacts_;
-}
-
-std::size_t PairAnswers::samples_used() const {
-  if (!measured_) return 0;
-  return distances_[0].distances().size() + distances_[1].distances().size();
-}
-
-// Measures the samples that affect contacts.
-void PairAnswers::measure() {
-  if (std::exchange(measured_, true)) return;
-  for (int b = 0; b < 2; ++b) distances_[b].start(bodies_[b]->body(), bodies_[1 - b]->body(), to_other_[b]);
-  for (const std::size_t blocks_per_probe : LocalDistances::kBlocksPerProbe)
-    for (int b = 0; b < 2; ++b) {
-      distances_[b].probe(blocks_per_probe);
-      distances_[b].keep((contact_margin_ + precision_) / bodies_[1 - b]->pose().scale);
-    }
-  for (LocalDistances& distances : distances_) distances.measure();
 }
 
 bool PairAnswers::within(double distance) {
@@ -135,4 +113,4 @@ std::optional<BoundedLength> PairAnswers::depth() {
                        .witness = found.points};
 }
 
-}  // namespace sdm::sampled
+}  // namespace sdm::pair

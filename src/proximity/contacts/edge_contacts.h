@@ -1,0 +1,66 @@
+// The points at which an edge is in contact with a mesh, between its ends.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "proximity/contacts/support.h"
+#include "proximity/shape/body.h"
+
+namespace sdm::contacts {
+
+/// Finds them for one edge after another; reuses its memory.
+///
+/// A face supports the part of an edge above it or, up to the reach, below it that is parallel to it, but for
+/// a small angle, as a box lies on another one: the ends of these parts carry the body. Elsewhere, the parts
+/// of the edge that are within the margin of the surface, or inside it, are found exactly, to rounding: the
+/// distance to a face is convex along the edge, so what is within the margin of a face is an interval, and
+/// between two of them the edge is inside or outside as a whole.
+class EdgeContacts {
+ public:
+  /// An edge in the frame of the other body, and whether its ends are in contact themselves.
+  struct Edge {
+    Vec3 a{}, b{};
+    bool a_touches = false, b_touches = false;
+    std::span<const Vec3> sides{};  ///< from the edge along the faces beside it
+  };
+  struct Found {
+    double t = 0;       ///< 0 at a, 1 at b
+    Support support{};  ///< if a face supports the edge here
+  };
+  /// The ends of the supported parts, but for ends of the edge in contact. For each part of the edge in
+  /// contact that is not supported and reaches no end in contact, the middle between the first and the last
+  /// point that are closest to the surface. `reach`: how deep a support may be; 0: none is
+  /// looked for. Valid until the next call.
+  [[nodiscard]] std::span<const Found> find(const Edge& edge, const shape::Body& other, double margin,
+                                            double reach);
+
+ private:
+  /// What is within the margin of a face.
+  struct Interval {
+    double from, to;
+    double distance;                     ///< the smallest
+    double first_closest, last_closest;  ///< parameters between which it has this distance
+  };
+  /// A part of the edge, and the face that supports it.
+  struct SupportedPart {
+    double from, to;
+    std::uint32_t face;
+  };
+  struct Part {
+    double from, to;
+  };
+  void find_intervals(const Edge& edge, const shape::Body& other, double margin);
+  void find_supports(const Edge& edge, const shape::Body& other, double margin, double reach);
+  void add_support(const Edge& edge, const shape::Body& other, std::uint32_t face, double margin,
+                   double reach);
+  void add_end(const Edge& edge, const sites::SitesData& sites, double t);
+
+  std::vector<Interval> intervals_;
+  std::vector<SupportedPart> supported_;
+  std::vector<Part> parts_;  ///< of supported_, joined where faces continue each other
+  std::vector<Found> found_;
+};
+
+}  // namespace sdm::contacts

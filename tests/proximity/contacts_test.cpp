@@ -1,0 +1,205 @@
+// Contacts against known ones, and against signed distances by brute force.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "core/geometry/vec.h"
+#include "support/meshes.h"
+#include "support/oracle.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+Mesh beam(const Vec3& half, const Vec3& centre) {
+  Mesh mesh = cube();
+  for (Vec3& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) p[k] = half[k] * p[k] + centre[k];
+  return mesh;
+}
+
+std::vector<Contact> contacts_of(const Mesh& a, const Mesh& b, double margin) {
+  ProximityQuery query(a, b, {.contact_margin = margin});
+  return {query.contacts().begin(), query.contacts().end()};
+}
+
+/// Whether some contact has its first point here.
+bool has_point(const std::vector<Contact>& contacts, const Vec3& point) {
+  return std::ranges::any_of(contacts, [&](const Contact& c) { return norm(c.point1 - point) < 1e-6; });
+}
+
+// A plate carries a box at its four corners: without, at and beyond contact.
+TEST(Contacts, OfABoxOnAPlateAreItsCorners) {
+  const Mesh plate = beam({5, 5, 0.5}, {0, 0, -0.5});
+  for (const double height : {0.01, 0.0, -0.01}) {
+    SCOPED_TRACE(height);
+    const std::vector<Contact> contacts = contacts_of(beam({1, 2, 1}, {0.3, 0.1, 1 + height}), plate, 0.02);
+    ASSERT_EQ(contacts.size(), 4u);
+    for (const double x : {-1, 1})
+      for (const double y : {-2, 2}) EXPECT_TRUE(has_point(contacts, {0.3 + x, 0.1 + y, height}));
+    for (const Contact& c : contacts) {
+      EXPECT_NEAR(c.depth, -height, 1e-9);
+      EXPECT_NEAR(c.normal[2], 1, 1e-9);
+      EXPECT_EQ(c.patch, 0u);
+      EXPECT_NEAR(c.point2[2], 0, 1e-9);
+    }
+  }
+}
+
+// Neither of two beams that cross has a corner in the other: the contacts are those of their edges, at the
+// corners of the square where they meet, of both beams.
+TEST(Contacts, OfBeamsThatCross) {
+  const Mesh lower = beam({5, 1, 1}, {0, 0, -1});
+  for (const double height : {0.01, -0.01}) {
+    SCOPED_TRACE(height);
+    const std::vector<Contact> contacts = contacts_of(beam({0.5, 5, 1}, {0.2, 0, 1 + height}), lower, 0.02);
+    ASSERT_EQ(contacts.size(), 8u);
+    for (const double x : {-0.5, 0.5})
+      for (const double y : {-1, 1}) EXPECT_TRUE(has_point(contacts, {0.2 + x, y, height}));
+    std::set<std::uint64_t> ids;
+    for (const Contact& c : contacts) {
+      EXPECT_TRUE(ids.insert(c.id).second);
+      EXPECT_NEAR(c.depth, -height, 1e-9);
+      EXPECT_NEAR(c.normal[2], 1, 1e-9);
+    }
+  }
+}
+
+// One edge over two posts of one body touches each of them; both posts are narrower than the plank.
+TEST(Contacts, OfAPlankOnTwoPosts) {
+  const Mesh posts = joined(beam({0.3, 3, 1}, {-3, 0, -1}), beam({0.3, 3, 1}, {3, 0, -1}));
+  const std::vector<Contact> contacts = contacts_of(beam({5, 1, 0.1}, {0, 0, 0.105}), posts, 0.01);
+  ASSERT_EQ(contacts.size(), 16u);
+  for (const double x : {-3, 3})
+    for (const double side : {-0.3, 0.3})
+      for (const double y : {-1, 1}) EXPECT_TRUE(has_point(contacts, {x + side, y, 0.005}));
+  // The corner of a plank on one post does not hide its contact with the other one.
+  EXPECT_TRUE(has_point(contacts_of(beam({5, 1, 0.1}, {2, 0, 0.105}), posts, 0.01), {3.3, 1, 0.005}));
+}
+
+// Flush with each other: the sides, which touch, cannot push a corner.
+TEST(Contacts, OfAlignedBoxesPointUpwards) {
+  for (const double height : {0.01, 0.0, -0.01}) {
+    SCOPED_TRACE(height);
+    const std::vector<Contact> contacts = contacts_of(cube(0.5), moved(cube(0.5), {0, 0, -1 - height}), 0.02);
+    EXPECT_GE(contacts.size(), 4u);
+    for (const double x : {-0.5, 0.5})
+      for (const double y : {-0.5, 0.5}) EXPECT_TRUE(has_point(contacts, {x, y, -0.5}));
+    for (const Contact& c : contacts) {
+      EXPECT_NEAR(c.normal[2], 1, 1e-6);
+      EXPECT_NEAR(c.depth, -height, 1e-9);
+    }
+  }
+}
+
+// The edges inside a flat face have no contacts.
+TEST(Contacts, DoNotDependOnTheDivisionOfFlatFaces) {
+  const Mesh plate = beam({5, 5, 0.5}, {0, 0, -0.5}), ball = moved(sphere(3), {0.3, 0.1, 0.99});
+  const auto on_plate = [&](const std::vector<Contact>& contacts) {
+    return std::ranges::count_if(contacts, [](const Contact& c) { return (c.id >> 63) == 1; });
+  };
+  EXPECT_EQ(on_plate(contacts_of(ball, plate, 0.01)), 0);
+}
+
+double signed_distance(const Mesh& solid, const Vec3& p) {
+  const double distance = oracle::brute_force(solid, p);
+  return oracle::winding_number(solid, p) != 0 ? -distance : distance;
+}
+
+/// Whether the faces beside an edge lie in a plane.
+bool flat(const Mesh& mesh, std::uint32_t v, std::uint32_t w) {
+  std::vector<Vec3> normals;
+  for (const Triangle& t : mesh.triangles)
+    if (std::ranges::count(t, v) + std::ranges::count(t, w) == 2)
+      normals.push_back(normalized(
+          cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]])));
+  return normals.size() == 2 && norm(normals[0] - normals[1]) < 1e-6;
+}
+
+// All vertices in contact are near a contact that is at least as deep, and those of coarse meshes are
+// contacts; all parts of edges in contact between their ends have one.
+TEST(Contacts, CoverAllVerticesAndEdges) {
+  const std::vector<Mesh> meshes{cube(0.5), tetrahedron(), placed(sphere(1), "scale:0.6"),
+                                 placed(sphere(3), "scale:0.6"), beam({0.8, 0.1, 0.1}, {})};
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> offset(-0.7, 0.7);
+  std::size_t vertices = 0, parts = 0;
+  for (int trial = 0; trial < 150; ++trial) {
+    const Mesh& a = meshes[static_cast<std::size_t>(trial) % meshes.size()];
+    Mesh b = meshes[static_cast<std::size_t>(trial / 5) % meshes.size()];
+    transform(b.positions,
+              Transform::translation({offset(random), offset(random), offset(random)}) *
+                  Transform::quaternion({normal(random), normal(random), normal(random), normal(random)}));
+    const double margin = trial % 2 == 0 ? 0.05 : 0;
+    const std::vector<Contact> contacts = contacts_of(a, b, margin);
+    SCOPED_TRACE(trial);
+    for (const Contact& c : contacts) {
+      const bool on_b = c.id >> 63 != 0;
+      const double d = signed_distance(on_b ? a : b, on_b ? c.point2 : c.point1);
+      EXPECT_GE(c.depth, -d - 1e-6);  // deeper if the closest face cannot push it
+      EXPECT_LE(d, margin + 1e-6);
+      EXPECT_NEAR(norm(c.point2 - c.point1), std::abs(c.depth), 1e-6);
+    }
+    for (const int body : {0, 1}) {
+      const Mesh &on = body == 0 ? a : b, &other = body == 0 ? b : a;
+      const auto point = [&](const Contact& c) { return body == 0 ? c.point1 : c.point2; };
+      const double part = diagonal(bounds(on)) / 64;
+      std::map<std::uint32_t, double> distance;
+      for (std::uint32_t v = 0; v < on.positions.size(); ++v) {
+        const Vec3& p = on.positions[v];
+        distance[v] = signed_distance(other, p);
+        if (!(distance[v] <= margin - 1e-6)) continue;
+        ++vertices;
+        EXPECT_TRUE(std::ranges::any_of(contacts, [&](const Contact& c) {
+          return c.id >> 63 == static_cast<std::uint64_t>(body) && -c.depth <= distance[v] + 1e-6 &&
+                 norm(point(c) - p) <= 1.01 * part;
+        }));
+      }
+      const Sites sites(on);
+      if (on.triangles.size() > 100 || other.triangles.size() > 100) continue;  // the oracle is slow
+      for (const auto& [v, w] : sites.edges()) {
+        if (flat(on, v, w)) continue;
+        constexpr int kSteps = 100;
+        const Vec3 from = on.positions[v], along = on.positions[w] - from;
+        if (norm(along) < diagonal(bounds(on)) / 8 && (distance[v] <= margin || distance[w] <= margin))
+          continue;
+        // A part in contact, at least some steps long.
+        int begin = -1;
+        double least = 1;
+        for (int i = 1; i <= kSteps; ++i) {
+          const double d = i == kSteps ? 1e9 : signed_distance(other, from + (double(i) / kSteps) * along);
+          if (d <= margin - 1e-6) {
+            if (begin < 0) begin = i;
+            least = std::min(least, std::abs(d));
+          } else {
+            const bool reaches_end =
+                (begin == 1 && distance[v] <= margin + 0.02) || (i == kSteps && distance[w] <= margin + 0.02);
+            if (begin > 0 && i - begin > 2 && !reaches_end && i < kSteps) {
+              ++parts;
+              const auto on_part = [&](const Contact& c) {
+                const Vec3 x = point(c) - from;
+                const double t = dot(x, along) / squared_norm(along);
+                return c.id >> 63 == static_cast<std::uint64_t>(body) && norm(x - t * along) < 1e-6 &&
+                       t > double(begin - 1.01) / kSteps && t < double(i + 0.01) / kSteps;
+              };
+              EXPECT_TRUE(std::ranges::any_of(contacts, on_part)) << v << ' ' << w;
+            }
+            begin = -1;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(vertices, 500u);
+  EXPECT_GT(parts, 100u);
+}
+
+}  // namespace
+}  // namespace sdm::test
