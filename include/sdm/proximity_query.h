@@ -118,7 +118,7 @@ class SDM_API ProximityQuery {
   /// The contacts of both bodies: none, at the cost of colliding(), if they are farther apart than the
   /// margin. Otherwise one for
   ///  - each vertex that lies inside the other body or within the margin of its surface; of vertices within
-  ///    1/64 of the size of their mesh from each other, in the same node of the tree, only the deepest one;
+  ///    1/32 of the size of their mesh from each other, in the same node of the tree, only the deepest one;
   ///  - both ends of each part of an edge that lies along a face of the other body, within the margin above
   ///    it, or below it inside the body;
   ///  - each other part of an edge inside the other body or within the margin that reaches no end in contact,

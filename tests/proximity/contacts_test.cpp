@@ -201,5 +201,14 @@ TEST(Contacts, CoverAllVerticesAndEdges) {
   EXPECT_GT(parts, 100u);
 }
 
+// A support replaces the closest point of a corner, not of a vertex of a smooth surface.
+TEST(Contacts, OfSmoothBodiesAreNoDeeperThanTheBodies) {
+  ProximityQuery query(load("bunny.obj", "fit"), load("armadillo.off", "fit,translate:0.1:0:0"));
+  ASSERT_GT(query.contacts().size(), 100u);
+  EXPECT_LT(query.contacts().size(), 4000u);  // of 35,000 and 26,000 vertices
+  for (const Contact& contact : query.contacts())
+    ASSERT_LE(contact.depth, query.penetration_depth()->upper + 1e-6);
+}
+
 }  // namespace
 }  // namespace sdm::test

@@ -26,6 +26,8 @@ constexpr double kShortEdge = 1.0 / 16;
 constexpr double kSupportReach = 1.0 / 4;
 // A corner at most this far, relative to the smaller body, from a face that cannot push it is flush with it.
 constexpr double kFlush = 1.0 / 16;
+// The sine of the angle by which all edges at a corner fall off behind its normal; 0.58 in a cube.
+constexpr double kCorner = 0.25;
 constexpr double kDirection = 1e-9;  // relative to the smaller body: the shortest vector with a direction
 // The sine of the angle between faces below which their edge is flat: its points are in contact no sooner
 // than those of the faces.
@@ -172,9 +174,11 @@ void ContactFinder::support(Feature& feature) {
         spokes_.push_back(
             to_other_[body_].map.linear(sites.mesh.positions[corner] - sites.mesh.positions[feature.site]));
   if (can_push(outwards, spokes_)) return;
-  // A vertex that is not convex has no direction in which nothing else of the body is in contact sooner.
-  const Vec3 own = to_other_[body_].map.linear(sites.normals.vertex[feature.site]);
-  if (!can_push(-normalized(own), spokes_)) return;
+  // A vertex in a smooth surface has no other direction in which nothing else of the body is in contact
+  // sooner.
+  const Vec3 own = normalized(to_other_[body_].map.linear(sites.normals.vertex[feature.site]));
+  for (const Vec3& spoke : spokes_)
+    if (dot(own, spoke) > -kCorner * norm(spoke)) return;
   feature.support = support_of_vertex(other(), points_[feature.point], spokes_, limit_,
                                       std::max(limit_, kSupportReach * size_));
   if (feature.support.face != kNone) feature.distance = feature.support.height;
