@@ -11,6 +11,7 @@
 #include "core/geometry/unit_frame.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "core/rows.h"
 #include "core/scattered_order.h"
 
 namespace sdm::atlas {
@@ -23,9 +24,10 @@ constexpr int kRounds = 2;
 // How much slower a chart grows over faces turned away from its axis.
 constexpr double kTurnCost = 4;
 
-struct Link {
-  std::uint32_t from, to;
-  double length;  ///< of the border that the two clusters share
+// The border that a cluster shares with another one.
+struct Border {
+  std::uint32_t with;
+  double length;
 };
 
 // What growing clusters read of a face, together: they visit faces in no particular order in memory.
@@ -178,61 +180,103 @@ class Clustering {
   }
 
   // Merges pairs of neighbours whose normals fit one cone until no such pair is left: the smallest clusters
-  // first, each with the neighbour with which it shares the longest border. A pair that did not fit is tried
-  // again only after one of the two has grown.
+  // first, each with the neighbour with which it shares the longest border. A cluster takes part in at most
+  // one merge per round, so that clusters grow evenly. A pair that did not fit is tried again only after one
+  // of the two has grown: a round costs no more than the clusters that grew in the one before, and their
+  // neighbours.
   void merge() {
-    std::vector<NormalCone> cones = all_cones();
+    const CompressedRows<std::uint32_t> members = faces_of_clusters();
+    std::vector<NormalCone> cones = cones_of(members);
     std::vector<double> area = areas();
-    std::vector<Link> links = all_links();
+    std::vector<std::vector<Border>> borders = borders_of(members);
     std::vector<std::uint32_t> target(axes_.size());  // the cluster that each was merged into, or itself
     std::iota(target.begin(), target.end(), 0u);
-    std::vector<std::uint32_t> left = target;  // those that were not merged into others
-    std::vector<std::uint8_t> grown(axes_.size(), 1);
-    for (bool merged = true; merged;) {
-      merged = false;
-      std::vector<std::uint8_t> busy(axes_.size(), 0);
-      std::ranges::stable_sort(left, {}, [&](std::uint32_t c) { return area[c]; });
-      for (const std::uint32_t c : left) {
+    std::vector<std::uint8_t> grown(axes_.size(), 1), busy(axes_.size(), 0);
+    std::vector<std::uint32_t> open = target;  // clusters that have grown, or have a neighbour that has
+    std::vector<std::uint32_t> merged;
+    std::vector<Border> choice;
+    while (!open.empty()) {
+      std::ranges::sort(open, {}, [&](std::uint32_t c) { return std::pair(area[c], c); });
+      merged.clear();
+      for (const std::uint32_t c : open) {
         if (busy[c]) continue;
-        auto [first, last] = std::equal_range(links.begin(), links.end(), Link{c, 0, 0},
-                                              [](const Link& a, const Link& b) { return a.from < b.from; });
-        std::vector<Link> choice;
-        std::copy_if(first, last, std::back_inserter(choice),
-                     [&](const Link& link) { return !busy[link.to] && (grown[c] || grown[link.to]); });
-        std::sort(choice.begin(), choice.end(),
-                  [](const Link& a, const Link& b) { return a.length > b.length; });
-        for (const Link& link : choice) {
-          auto joined = join(cones[c], cones[link.to], cos_);
+        choice.clear();
+        for (const Border& border : borders[c])
+          if (!busy[border.with] && (grown[c] || grown[border.with])) choice.push_back(border);
+        std::ranges::sort(choice, {}, [](const Border& b) { return std::pair(-b.length, b.with); });
+        for (const auto& [with, length] : choice) {
+          auto joined = join(cones[c], cones[with], cos_);
           if (!joined) continue;
-          cones[link.to] = std::move(*joined);
-          axes_[link.to] = cones[link.to].axis;
-          area[link.to] += area[c];
-          target[c] = link.to;
-          busy[c] = busy[link.to] = 1;
-          merged = true;
+          cones[with] = std::move(*joined);
+          axes_[with] = cones[with].axis;
+          area[with] += area[c];
+          target[c] = with;
+          busy[c] = busy[with] = 1;
+          merged.push_back(c);
           break;
         }
       }
-      // A cluster takes part in at most one merge per round, so that targets are not themselves merged in the
-      // same round.
-      for (Link& link : links) link = {target[link.from], target[link.to], link.length};
-      unite(links);
-      std::erase_if(left, [&](std::uint32_t c) { return target[c] != c; });
-      grown = std::move(busy);
+      for (const std::uint32_t c : open) grown[c] = 0;
+      open = take_over_borders(merged, target, borders);
+      for (const std::uint32_t c : merged) busy[target[c]] = 0, grown[target[c]] = 1;
     }
     for (std::uint32_t& label : label_)
       while (label != kNone && target[label] != label) label = target[label] = target[target[label]];
     drop_empty_clusters();
   }
 
-  [[nodiscard]] std::vector<NormalCone> all_cones() {
-    const std::vector<Chart> clusters = charts();
-    std::vector<NormalCone> cones(clusters.size());
-    parallel_for(clusters.size(), 16, [&](std::size_t begin, std::size_t end) {
+  // Gives the borders of merged clusters to their targets; returns these and their neighbours.
+  static std::vector<std::uint32_t> take_over_borders(std::span<const std::uint32_t> merged,
+                                                      std::span<const std::uint32_t> target,
+                                                      std::vector<std::vector<Border>>& borders) {
+    std::vector<std::uint32_t> changed;
+    for (const std::uint32_t c : merged) {
+      std::vector<Border>& into = borders[target[c]];
+      into.insert(into.end(), borders[c].begin(), borders[c].end());
+      borders[c] = {};
+    }
+    for (const std::uint32_t c : merged) {
+      changed.push_back(target[c]);
+      for (const Border& border : borders[target[c]]) changed.push_back(target[border.with]);
+    }
+    std::ranges::sort(changed);
+    changed.erase(std::ranges::unique(changed).begin(), changed.end());
+    for (const std::uint32_t c : changed) {
+      for (Border& border : borders[c]) border.with = target[border.with];
+      unite(borders[c], c);
+    }
+    return changed;
+  }
+
+  // Sorts the borders of a cluster, adds up those with the same other one, and drops those with itself.
+  static void unite(std::vector<Border>& borders, std::uint32_t cluster) {
+    std::erase_if(borders, [&](const Border& border) { return border.with == cluster; });
+    std::ranges::stable_sort(borders, {}, &Border::with);
+    std::size_t count = 0;
+    for (const Border& border : borders) {
+      if (count > 0 && borders[count - 1].with == border.with)
+        borders[count - 1].length += border.length;
+      else
+        borders[count++] = border;
+    }
+    borders.resize(count);
+  }
+
+  [[nodiscard]] CompressedRows<std::uint32_t> faces_of_clusters() const {
+    return make_rows<std::uint32_t>(axes_.size(), [&](const auto& put) {
+      for (std::uint32_t f = 0; f < label_.size(); ++f)
+        if (label_[f] != kNone) put(label_[f], f);
+    });
+  }
+
+  // The cones of the clusters' normals; sets the axes to theirs.
+  [[nodiscard]] std::vector<NormalCone> cones_of(const CompressedRows<std::uint32_t>& members) {
+    std::vector<NormalCone> cones(members.size());
+    parallel_for(cones.size(), 16, [&](std::size_t begin, std::size_t end) {
       std::vector<Vec3> normals;
       for (std::size_t c = begin; c < end; ++c) {
         normals.clear();
-        for (const std::uint32_t f : clusters[c].faces) normals.push_back(faces_.normal[f]);
+        for (const std::uint32_t f : members.of(c)) normals.push_back(faces_.normal[f]);
         cones[c] = spanned_cone(normals, axes_[c]);
         axes_[c] = cones[c].axis;
       }
@@ -240,36 +284,23 @@ class Clustering {
     return cones;
   }
 
-  // Pairs of adjacent clusters, both ways, sorted.
-  [[nodiscard]] std::vector<Link> all_links() const {
-    std::vector<Link> links;
-    for (std::uint32_t f = 0; f < label_.size(); ++f)
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t next = faces_.neighbours[f][k];
-        if (next == kNone || label_[f] == kNone || label_[next] == kNone || label_[next] == label_[f])
-          continue;
-        const Triangle& t = mesh_.triangles[f];
-        const double length = norm(mesh_.positions[t[(k + 1) % 3]] - mesh_.positions[t[k]]);
-        links.push_back({label_[f], label_[next], length});
+  [[nodiscard]] std::vector<std::vector<Border>> borders_of(
+      const CompressedRows<std::uint32_t>& members) const {
+    std::vector<std::vector<Border>> borders(members.size());
+    parallel_for(borders.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c) {
+        for (const std::uint32_t f : members.of(c))
+          for (int k = 0; k < 3; ++k) {
+            const std::uint32_t next = faces_.neighbours[f][k];
+            if (next == kNone || label_[next] == kNone || label_[next] == c) continue;
+            const Triangle& t = mesh_.triangles[f];
+            borders[c].push_back(
+                {label_[next], norm(mesh_.positions[t[(k + 1) % 3]] - mesh_.positions[t[k]])});
+          }
+        unite(borders[c], c);
       }
-    unite(links);
-    return links;
-  }
-
-  // Sorts links, adds up those between the same two clusters, and drops those of a cluster with itself.
-  static void unite(std::vector<Link>& links) {
-    std::erase_if(links, [](const Link& link) { return link.from == link.to; });
-    std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) {
-      return std::pair(a.from, a.to) < std::pair(b.from, b.to);
     });
-    std::size_t count = 0;
-    for (const Link& link : links) {
-      if (count > 0 && links[count - 1].from == link.from && links[count - 1].to == link.to)
-        links[count - 1].length += link.length;
-      else
-        links[count++] = link;
-    }
-    links.resize(count);
+    return borders;
   }
 
   [[nodiscard]] std::vector<double> areas() const {
@@ -314,10 +345,11 @@ class Clustering {
   }
 
   [[nodiscard]] std::vector<Chart> charts() const {
-    std::vector<Chart> result(axes_.size());
-    for (std::size_t c = 0; c < axes_.size(); ++c) result[c].axis = axes_[c];
-    for (std::uint32_t f = 0; f < label_.size(); ++f)
-      if (label_[f] != kNone) result[label_[f]].faces.push_back(f);
+    const CompressedRows<std::uint32_t> members = faces_of_clusters();
+    std::vector<Chart> result;
+    result.reserve(axes_.size());
+    for (std::size_t c = 0; c < axes_.size(); ++c)
+      result.push_back({axes_[c], {members.of(c).begin(), members.of(c).end()}});
     return result;
   }
 
