@@ -21,6 +21,9 @@ namespace {
 // it.
 constexpr double kMargin = 1e-6;
 constexpr int kRounds = 2;
+// So many clusters come from a rough surface. Each of them, grown about the normal of one face, is too wide
+// to be merged with another; grown again beside all the others, they are not.
+constexpr std::size_t kManyClusters = 4096;
 // How much slower a chart grows over faces turned away from its axis.
 constexpr double kTurnCost = 4;
 
@@ -69,7 +72,7 @@ class Clustering {
   // Lloyd's alternation: the axes from the clusters, the clusters from the axes.
   std::vector<Chart> run() {
     flood_rest();
-    merge();
+    if (axes_.size() < kManyClusters) merge();
     for (int round = 0; round < kRounds; ++round) {
       regrow();
       flood_rest();
