@@ -1,42 +1,17 @@
 #include "core/geometry/predicates.h"
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/exact_integer.h"
+#include "core/geometry/filter.h"
 #include "core/geometry/vec.h"
 
 namespace sdm::core {
 namespace {
 
-// J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997:
-// the rounding error of a determinant of differences is at most this fraction of the sum of the magnitudes of
-// its terms, plus what underflows: far less than kUnderflow for coordinates up to 1e40.
-constexpr double kHalfUlp = std::numeric_limits<double>::epsilon() / 2;
-constexpr double kError3 = (7 + 56 * kHalfUlp) * kHalfUlp, kError2 = (3 + 16 * kHalfUlp) * kHalfUlp;
-constexpr double kUnderflow = 1e-200;
-
 int sign(double x) {
   return (x > 0) - (x < 0);
-}
-
-// Differences of coordinates as integers, in a unit that divides all of them. For any two doubles they have
-// at most 2100 bits, and a product of three has three times as many. The size is fixed: nothing is allocated.
-using boost::multiprecision::cpp_int_backend;
-using Integer =
-    boost::multiprecision::number<cpp_int_backend<6400, 6400, boost::multiprecision::signed_magnitude,
-                                                  boost::multiprecision::unchecked, void>>;
-
-int exponent_of(double x) {  // x is a multiple of 2 to this power
-  constexpr int kDigits = std::numeric_limits<double>::digits;
-  int exponent = 0;
-  std::frexp(x, &exponent);
-  return exponent - kDigits;
-}
-
-Integer in_units(double x, int exponent) {
-  const int own = exponent_of(x);
-  return x == 0 ? Integer(0) : Integer(static_cast<std::int64_t>(std::ldexp(x, -own))) << (own - exponent);
 }
 
 template <std::size_t n, std::size_t count>
