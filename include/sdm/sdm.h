@@ -12,6 +12,7 @@
 #include <sdm/multi_body_query.h>
 #include <sdm/progress.h>
 #include <sdm/proximity_query.h>
+#include <sdm/rays.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/self_intersections.h>
 #include <sdm/self_proximity_query.h>

@@ -128,6 +128,7 @@ Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
         });
         regions.vertices.resize(vertices);
         regions.bounds.resize(regions.leaves.size() - 1);
+        regions.thin.resize(regions.bounds.size());
         places.neighbours.resize(vertices);
         for (std::size_t v = 0; v < vertices; ++v) regions.vertices[v].vertex = sites.vertices()[v];
       });

@@ -27,10 +27,12 @@ float slope_of(double cosine) {
 void look_around(Regions& regions, std::size_t leaf, std::span<const FaceShape> shapes,
                  Pseudonormals& normals) {
   const SitePlaces& places = regions.places;
+  unsigned thin_faces = 0;
   for (std::uint32_t i = regions.leaves[leaf]; i < regions.leaves[leaf + 1]; ++i) {
     const Regions::Owner &own = regions.owners[i], &next = regions.owners[i + 1];
     double least_cosine = regions.enclosed[i] ? 1 : -1;
     bool thin = shapes[i].thin;
+    thin_faces |= unsigned{thin} << (i - regions.leaves[leaf]);
     const auto include = [&](const FaceShape& other) {
       least_cosine = std::min(least_cosine, dot(shapes[i].normal, other.normal));
       thin |= other.thin;
@@ -48,6 +50,7 @@ void look_around(Regions& regions, std::size_t leaf, std::span<const FaceShape> 
     }
     regions.bounds[leaf].slope[i - regions.leaves[leaf]] = slope_of(thin ? -1 : least_cosine);
   }
+  regions.thin[leaf] = static_cast<std::uint8_t>(thin_faces);
 }
 
 }  // namespace

@@ -83,6 +83,7 @@ struct Regions {
   };
   std::vector<std::uint32_t> leaves;  ///< the first face of each leaf, in the order of owners; and an end
   std::vector<FaceBounds> bounds;     ///< of each leaf
+  std::vector<std::uint8_t> thin;     ///< of each leaf: a bit for each face whose normal may be unreliable
   std::vector<Owner> owners;          ///< one for each face in the tree's order, and an end
   std::vector<FaceRegion> faces;      ///< of each owner
   std::vector<EdgeRegion> edges;

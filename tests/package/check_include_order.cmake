@@ -23,6 +23,7 @@ set(order
   engine/gl
   engine/table
   map
+  rays
   proximity/exact
   proximity/shape
   proximity/depth

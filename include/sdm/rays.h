@@ -1,0 +1,87 @@
+/// Rays against O2: first hits, occlusion, and the ambient occlusion of O1.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/map.h>
+#include <sdm/progress.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+#include <sdm/types.h>
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+/// The points origin + t·direction with t_min ≤ t ≤ t_max; t is a length if the direction has length 1.
+struct Ray {
+  Vec3 origin{}, direction{};
+  double t_min = 0;  ///< at least 0; up to here the ray is known to be free, for example by free_distances()
+  double t_max = std::numeric_limits<double>::infinity();
+};
+
+/// The first point of O2 on a ray.
+struct RayHit {
+  double t = std::numeric_limits<double>::infinity();
+  std::uint32_t face = kNone;  ///< kNone: the ray does not meet O2
+  /// Of the face's corners: not negative, with a sum of 1 up to rounding. Their point is that of t to
+  /// rounding; of a needle, to 1e-7 of its length.
+  Vec3 barycentric{};
+};
+
+/// Returns the first hit of each ray. O2 is the union of its closed faces, edges and vertices; faces without
+/// area are their edges, and the faces that Sites ignores are not hit. Of several faces at the same t the one
+/// with the smallest index is returned.
+///
+/// Whether a ray's line meets a face, and whether t is negative, is exact: no ray passes between two faces
+/// that share an edge or a vertex. A ray in the plane of a face hits it where it enters the face, or at t_min
+/// inside it. t is rounded, by at most 1e-11 of the distance from the origin to the farthest corner of the
+/// face; t_min and t_max are compared with the rounded t. The result does not depend on the other rays, on
+/// the instruction set or on the number of threads.
+///
+/// Throws sdm::Error for an origin with a coordinate that is NaN or beyond 1e37, for a direction whose
+/// largest component is not between 1e-30 and 1e37, and for a t_min that is negative or NaN, or a t_max that
+/// is NaN; Cancelled. Cost: one traversal of the tree over the faces for each ray with t_min ≤ t_max, all
+/// cores. Consecutive rays with similar origins and directions are faster.
+[[nodiscard]] SDM_API std::vector<RayHit> first_hits(const Sites& sites, std::span<const Ray> rays,
+                                                     const Progress& progress = {});
+
+/// Returns 1 for each ray that meets O2, otherwise 0: first_hits() with a face. Throws as first_hits does.
+/// Cost: at most that of first_hits(); a traversal ends at the first face that it finds.
+[[nodiscard]] SDM_API std::vector<std::uint8_t> occluded(const Sites& sites, std::span<const Ray> rays,
+                                                         const Progress& progress = {});
+
+/// Returns, for each texel, a radius within which there is no point of O2: the distance of the map less the
+/// largest error that an engine may make (EngineInfo::relative_error), at least 0; 0 where the map has no
+/// value. The t_min of rays of unit direction that start at the texel's surface point. The map must be one of
+/// this surface to these sites in their present shapes, and not an estimate (GlOptions::paper_literal).
+/// Throws sdm::Error if its resolution is not that of the surface. Cost: linear.
+[[nodiscard]] SDM_API std::vector<double> free_distances(const Surface& surface, const DistanceMap& map,
+                                                         const Sites& sites);
+
+struct AmbientOcclusionOptions {
+  std::uint32_t rays = 64;  ///< for each sample, 1 to 65536
+  /// Greater than 0, in units of the meshes. O2 occludes nothing that is farther away than this.
+  double max_distance = std::numeric_limits<double>::infinity();
+  std::uint64_t seed = 0;  ///< of the directions
+  Progress progress{};
+};
+
+/// Returns, for each texel, the fraction of rays that do not meet O2, or NaN if no face owns the texel. Rays
+/// start at the texel's surface point, on the side to which the normal of its face points, with a density
+/// proportional to the cosine of the angle to the normal: the result is an estimate of
+///   1/π ∫ visible(ω) (n·ω) dω,
+/// 1 where the whole hemisphere is free. O1 does not occlude itself. Directions are stratified, differ from
+/// texel to texel and depend on the seed only.
+///
+/// The map's distances are where the rays start (free_distances(), with the same requirements): a sample
+/// farther than max_distance from O2 needs no ray. The result is the same with any such map. Throws
+/// sdm::Error for options out of range or a map of another resolution, or if there is not enough memory;
+/// Cancelled. Cost: `rays` rays for each other sample, all cores.
+[[nodiscard]] SDM_API std::vector<float> ambient_occlusion(const Surface& surface, const DistanceMap& map,
+                                                           const Sites& sites,
+                                                           const AmbientOcclusionOptions& options = {});
+
+}  // namespace sdm
