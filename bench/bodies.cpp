@@ -5,7 +5,7 @@
 //
 // Our frame is a refit of all bodies and pairs(): separation, collision and penetration depth. FCL's frame is
 // a refit of all bodies and the separations; FCL uses one thread. The rigid bodies share ten shapes and are
-// moved by poses; FCL moves all vertices of theirs.
+// moved by poses; FCL moves all vertices of theirs. The last case is a frame of the scene `crowd`.
 #include <sdm/multi_body_query.h>
 #include <sdm/threads.h>
 
@@ -23,6 +23,7 @@
 #include "core/stopwatch.h"
 #include "fcl_crowd.h"
 #include "harness.h"
+#include "scenes/scene.h"
 #include "timing.h"
 
 namespace sdm::bench {
@@ -239,6 +240,33 @@ Outcome rigid(const Trial& trial, std::size_t size, double max_distance) {
   return frames.outcome();
 }
 
+// The scene `crowd`: each of its agents steers by its map to all others.
+Outcome agents(const Trial& trial) {
+  const ThreadLimit limit(trial.threads);
+  scenes::Scene scene(scenes::SceneKind::crowd);
+  std::vector<Mesh> meshes;
+  for (const scenes::Scene::Body& body : scene.bodies())
+    if (body.moves) meshes.push_back(body.mesh);
+  MultiBodyQuery query(meshes, {.max_distance = 0.5});
+  std::vector<std::span<const Vec3>> positions(meshes.size());
+  std::vector<double> times;
+  std::size_t pairs = 0, colliding = 0;
+  for (int frame = 0; frame < trial.repetitions; ++frame) {
+    Stopwatch watch;
+    scene.advance();
+    times.push_back(watch.lap());
+    for (std::size_t b = 0; b < positions.size(); ++b) positions[b] = scene.bodies()[b].mesh.positions;
+    query.refit(positions);
+    pairs += query.pairs().size();
+    for (const PairProximity& pair : query.pairs()) colliding += pair.colliding.value;
+  }
+  return {
+      .verified = colliding == 0,
+      .rows = {{"frame",
+                {{"mean_ms", mean(times)}, {"median_ms", median(times)}, {"p99_ms", quantile(times, 0.99)}}}},
+      .counts = {{"pairs", static_cast<double>(pairs) / trial.repetitions}}};
+}
+
 std::vector<Case> cases() {
   std::vector<Case> result;
   const auto add = [&](const char* name, std::size_t size, const std::string& what, int repetitions,
@@ -260,6 +288,11 @@ std::vector<Case> cases() {
   for (const std::size_t size : {100u, 1000u, 10000u})
     add("rigid", size, "rigid, pairs nearer than half a body's width", size < 10000 ? 50 : 5,
         [=](const Trial& trial) { return rigid(trial, size, kNear); });
+  result.push_back({.name = "agents-100",
+                    .description = "the scene `crowd`: maps of 100 agents to each other, and their steps",
+                    .run = agents,
+                    .repetitions = 900,
+                    .threads = 0});
   return result;
 }
 

@@ -29,6 +29,7 @@ using sdm::scenes::SceneKind;
 const std::map<std::string, SceneKind> kKinds{{"letters", SceneKind::letters},
                                               {"bunnies", SceneKind::bunnies},
                                               {"figure", SceneKind::figure},
+                                              {"crowd", SceneKind::crowd},
                                               {"cloth", SceneKind::cloth}};
 
 struct SceneCommand {
@@ -128,11 +129,12 @@ void add_scene_command(CLI::App& app) {
   CLI::App* scene = app.add_subcommand("scene", "Generate a deforming scene like those of the paper");
   const auto command = std::make_shared<SceneCommand>();
   scene
-      ->add_option("SCENE", command->kind,
-                   "colliding letters, colliding bunnies, a figure walking in a box, or a falling cloth")
+      ->add_option(
+          "SCENE", command->kind,
+          "colliding letters, colliding bunnies, a figure walking in a box, a crowd, or a falling cloth")
       ->required()
       ->check(CLI::IsMember(kKinds))
-      ->type_name("letters|bunnies|figure|cloth");
+      ->type_name("letters|bunnies|figure|crowd|cloth");
   add_output_option(*scene, command->out);
   scene->add_option("--frames", command->frames, "Number of frames, at 60 per second")
       ->check(CLI::Range(1, 100000).description(""))

@@ -20,6 +20,9 @@ Scene::Scene(SceneKind kind, const SceneOptions& options) : impl_(std::make_uniq
     case SceneKind::figure:
       impl_->simulation = make_figure(impl_->bodies);
       break;
+    case SceneKind::crowd:
+      impl_->simulation = make_crowd(impl_->bodies);
+      break;
     case SceneKind::cloth:
       impl_->simulation = make_cloth(impl_->bodies);
       break;

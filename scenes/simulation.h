@@ -22,6 +22,7 @@ class Simulation {
 std::unique_ptr<Simulation> make_letters(std::vector<Scene::Body>& bodies);
 std::unique_ptr<Simulation> make_bunnies(std::vector<Scene::Body>& bodies, const std::filesystem::path& mesh);
 std::unique_ptr<Simulation> make_figure(std::vector<Scene::Body>& bodies);
+std::unique_ptr<Simulation> make_crowd(std::vector<Scene::Body>& bodies);
 std::unique_ptr<Simulation> make_cloth(std::vector<Scene::Body>& bodies);
 
 }  // namespace sdm::scenes

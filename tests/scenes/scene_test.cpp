@@ -40,6 +40,7 @@ TEST(Scene, IsBitIdenticalForAnyThreadCount) {
   for (const auto& [kind, frames] : {std::pair{SceneKind::letters, 40},
                                      {SceneKind::bunnies, 35},
                                      {SceneKind::figure, 3},
+                                     {SceneKind::crowd, 200},
                                      {SceneKind::cloth, 8}}) {
     std::vector<std::vector<Vec3>> results;
     for (const unsigned threads : {1u, 2u, 5u}) {
