@@ -1,5 +1,4 @@
 // Times one map, and writes its samples and distances for other libraries, for bench/peers.
-#include <sdm/error.h>
 #include <sdm/sdm.h>
 #include <sdm/threads.h>
 
@@ -7,25 +6,12 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <span>
 #include <vector>
 
+#include "arrays.h"
 #include "scenes.h"
 #include "timing.h"
-
-namespace {
-
-template <class T>
-void write(const std::filesystem::path& file, std::span<const T> values) {
-  std::ofstream out(file, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
-  out.close();
-  if (!out) throw sdm::Error("cannot write " + file.string());
-}
-
-}  // namespace
 
 int main(int argc, char** argv) try {
   CLI::App app(
@@ -56,10 +42,10 @@ int main(int argc, char** argv) try {
     points.push_back(surface.texel_point(texel));
     distances.push_back(map.distance[texel]);
   }
-  write<sdm::Vec3>(out / "points", points);
-  write<float>(out / "distances", distances);
-  write<sdm::Vec3>(out / "vertices", sites.mesh().positions);
-  write<sdm::Triangle>(out / "triangles", sites.mesh().triangles);
+  sdm::bench::write_array<sdm::Vec3>(out / "points", points);
+  sdm::bench::write_array<float>(out / "distances", distances);
+  sdm::bench::write_array<sdm::Vec3>(out / "vertices", sites.mesh().positions);
+  sdm::bench::write_array<sdm::Triangle>(out / "triangles", sites.mesh().triangles);
   std::cout << points.size() << ' ' << ms << '\n';
 } catch (const std::exception& error) {
   std::fprintf(stderr, "map_samples: %s\n", error.what());

@@ -1,4 +1,6 @@
 /// How the faces of a mesh are laid out in a texture atlas.
+///
+/// Threads: plain data, without state.
 #pragma once
 
 #include <sdm/progress.h>

@@ -1,4 +1,6 @@
 /// Closest points of O2 to arbitrary points.
+///
+/// Threads: the functions may be called concurrently, also with the same Sites.
 #pragma once
 
 #include <sdm/api.h>

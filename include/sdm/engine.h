@@ -1,4 +1,6 @@
 /// Engines: the algorithms that find closest points.
+///
+/// Threads: all functions may be called concurrently; an engine may serve several threads at once.
 #pragma once
 
 #include <sdm/api.h>

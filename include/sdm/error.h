@@ -1,4 +1,6 @@
 /// The exceptions that the public functions throw. Kernels never throw.
+///
+/// Threads: exceptions are values.
 #pragma once
 
 #include <sdm/api.h>

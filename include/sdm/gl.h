@@ -1,4 +1,6 @@
 /// The gl engine: surface distance maps by rasterisation on OpenGL (Sud et al. 2006): options and report.
+///
+/// Threads: all functions may be called concurrently; an engine may serve several threads at once.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// Reading meshes and writing maps. Every function throws an sdm::Error that names the file and the fault.
+///
+/// Threads: the functions may be called concurrently, unless two of them write the same file.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,7 @@
 /// The surface distance map: at every texel of O1's atlas, the distance to O2.
+///
+/// Threads: the functions may be called concurrently, also with the same Surface and Sites, if the maps that
+/// they write differ.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// Triangle meshes: any triangle soup, open or closed, manifold or not.
+///
+/// Threads: a Mesh is a plain value; the functions may be called concurrently, also with the same mesh.
 #pragma once
 
 #include <sdm/api.h>

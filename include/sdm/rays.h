@@ -1,4 +1,6 @@
 /// Rays against O2: first hits, occlusion, and the ambient occlusion of O1.
+///
+/// Threads: the functions may be called concurrently, also with the same Surface and Sites.
 #pragma once
 
 #include <sdm/api.h>

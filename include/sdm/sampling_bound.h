@@ -1,5 +1,8 @@
 /// Covering radii of the samples, their growth as a surface deforms, and the resolution that a given
 /// precision requires.
+///
+/// Threads: const functions of an object may be called concurrently; nothing else may run beside refit(). The
+/// other functions may be called concurrently, also with the same Surface.
 #pragma once
 
 #include <sdm/api.h>
@@ -41,6 +44,11 @@ class SDM_API SamplingBound {
 
   /// The largest radius: no point of the surface is farther from its nearest sample.
   [[nodiscard]] double value() const;
+  /// An upper bound on value() after the vertices have moved, each by at most `motion` ≥ 0, without measuring
+  /// it: a point and its sample are affine combinations of the corners of a face each, with weights ≥ 0, so
+  /// that their distance grows by at most 2·motion. For time steps: the bound that a motion leaves, or the
+  /// motion that a bound allows before it must be measured again. Cost: constant.
+  [[nodiscard]] double value_after(double motion) const;
   /// r_i of each of Surface::sample_texels; 0 for a sample that no point is assigned to. Valid until the next
   /// refit.
   [[nodiscard]] std::span<const float> sample_radii() const;

@@ -1,4 +1,6 @@
 /// Whether a mesh intersects itself.
+///
+/// Threads: the functions may be called concurrently, also with the same Sites.
 #pragma once
 
 #include <sdm/api.h>

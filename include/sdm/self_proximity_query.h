@@ -1,4 +1,7 @@
 /// Proximity of a mesh to itself: maps, separation and contacts of a surface that folds.
+///
+/// Threads: an object is used by one thread at a time; different objects, and compute_self_map, may be used
+/// concurrently.
 #pragma once
 
 #include <sdm/api.h>

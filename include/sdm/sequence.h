@@ -1,5 +1,7 @@
 /// Deforming meshes in files: fixed connectivity, positions for each frame. All functions throw an sdm::Error
 /// that names the file, the frame and the fault.
+///
+/// Threads: an object is used by one thread at a time; different objects may be used concurrently.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// Inside or outside of O2: the sign of a distance.
+///
+/// Threads: the functions may be called concurrently, also with the same Sites.
 #pragma once
 
 #include <sdm/api.h>

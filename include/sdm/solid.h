@@ -1,4 +1,6 @@
 /// The solid that a closed mesh bounds.
+///
+/// Threads: the functions may be called concurrently, also with the same Sites.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// Statistics of a map.
+///
+/// Threads: the functions may be called concurrently, also with the same map.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// Statistics over time of the maps of one surface.
+///
+/// Threads: const functions of an object may be called concurrently; nothing else may run beside the others.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// The number of threads that the library may use.
+///
+/// Threads: limits may be set by several threads; the smallest of them is in force.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// When two bodies that move from one pose to another first come into contact.
+///
+/// Threads: the functions may be called concurrently, also with the same shapes.
 #pragma once
 
 #include <sdm/api.h>

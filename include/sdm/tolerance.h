@@ -1,4 +1,6 @@
 /// Checks of a map against a tolerance, and the bounds that certify them.
+///
+/// Threads: the functions may be called concurrently, also with the same map.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// Affine transforms of meshes and points.
+///
+/// Threads: a Transform is a plain value.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,4 +1,6 @@
 /// Plain types shared by every public header. Lengths are in the units of the mesh.
+///
+/// Threads: plain values.
 #pragma once
 
 #include <array>

@@ -1,4 +1,6 @@
 /// Distances at the vertices of a mesh.
+///
+/// Threads: the functions may be called concurrently, also with the same Sites.
 #pragma once
 
 #include <sdm/api.h>

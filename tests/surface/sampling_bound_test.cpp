@@ -115,6 +115,28 @@ TEST(SamplingBound, PartsWithoutSamples) {
   EXPECT_NEAR(covering_radius(surface), bound.value(), 1e-6 * bound.value());
 }
 
+TEST(SamplingBound, HoldsAfterAMotion) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Mesh mesh = test::load("cow.off", "fit");
+  for (const double motion : {0.0, 0.003, 0.05}) {
+    Surface surface(mesh, {.resolution = 128});
+    SamplingBound bound(surface);
+    const double expected = bound.value_after(motion);
+    EXPECT_GE(expected, bound.value());
+    std::vector<Vec3> moved = mesh.positions;
+    for (Vec3& p : moved)
+      p = p + motion * normalized(Vec3{uniform(random), uniform(random), uniform(random)});
+    surface.refit(moved);
+    EXPECT_LE(measured(surface, 20000), expected);
+    bound.refit(surface);
+    EXPECT_LE(bound.value(), expected);
+    if (motion == 0.05) {
+      EXPECT_GT(bound.value(), 1.5 * (expected - 2 * motion));  // it does grow
+    }
+  }
+}
+
 TEST(SamplingBound, HalvesWithTheResolution) {
   const Mesh mesh = test::load("head.off", "fit");
   const double coarse = SamplingBound(Surface(mesh, {.resolution = 256})).value(),

@@ -43,6 +43,10 @@ void SamplingBound::refit(const Surface& surface) {
 double SamplingBound::value() const {
   return impl_->radii.largest;
 }
+double SamplingBound::value_after(double motion) const {
+  constexpr double kRounding = 1e-12;
+  return (1 + kRounding) * (value() + 2 * motion);
+}
 std::span<const float> SamplingBound::sample_radii() const {
   return impl_->radii.samples;
 }
