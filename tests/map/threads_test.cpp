@@ -13,7 +13,7 @@ namespace sdm::test {
 namespace {
 
 TEST(Threads, ShareASurfaceAndSites) {
-  const Mesh on = load("cow.off", "fit"), to = moved(load("head.off", "fit"), {0.4, 0.1, 0});
+  const Mesh on = load("cow.off", "fit"), to = moved(load("knot1.off", "fit"), {0.1, 0.1, 0});
   const Surface surface(on, {.resolution = 128});
   const Sites sites(to);
   struct Result {

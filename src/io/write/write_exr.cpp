@@ -4,6 +4,7 @@
 #include "io/write/gutter.h"
 
 #include <OpenEXR/openexr.h>
+#include <fmt/format.h>
 #include <isa-l/igzip_lib.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
@@ -76,7 +77,7 @@ class ExrFile {
     check(exr_initialize_required_attr_simple(context_, part, n, n, EXR_COMPRESSION_ZIP));
     for (const Channel& channel : channels)
       check(exr_add_channel(context_, part, channel.name, channel.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
-    const std::string comment = std::string("surface distance map, sdm ") + kVersion;
+    const std::string comment = fmt::format("surface distance map, sdm {}", kVersion);
     check(exr_attr_set_string(context_, part, "comments", comment.c_str()));
     check(exr_write_header(context_));
   }
