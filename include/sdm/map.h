@@ -28,16 +28,21 @@ struct MapOptions {
   Progress progress{};
 };
 
-/// One value per texel, in arrays of resolution², row 0 at the top. Texels without a value, because no face
-/// owns them or O2 is farther than max_distance, hold NaN, kNone and SiteType::none.
+/// One value per texel, in arrays of resolution · rows(), row 0 at the top. Texels without a value, because
+/// no face owns them or O2 is farther than max_distance, hold NaN, kNone and SiteType::none.
 struct DistanceMap {
-  std::uint32_t resolution = 0;
+  std::uint32_t resolution = 0;     ///< texels per row
   std::vector<float> distance;      ///< |vector|, negative inside O2 if signed
   std::vector<Vec3f> vector;        ///< closest point of O2 − texel's surface point
   std::vector<std::uint32_t> site;  ///< index of the closest site among those of its type
   std::vector<SiteType> site_type;
   SignUsed sign;
   std::size_t beyond_max_distance = 0;  ///< owned texels without a value
+
+  /// Texels per column, as Surface::rows().
+  [[nodiscard]] std::uint32_t rows() const {
+    return resolution == 0 ? 0 : static_cast<std::uint32_t>(distance.size() / resolution);
+  }
 };
 
 /// Computes the map. Distance and vector are those to a closest site, evaluated in double and stored in

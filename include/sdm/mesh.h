@@ -25,7 +25,8 @@ struct Mesh {
 /// an area, and texture coordinates finite and present for all triangles or none. Cost: linear.
 SDM_API void validate(const Mesh& mesh);
 
-/// Returns the bounding box of all vertices that triangles use. Cost: linear.
+/// Returns the bounding box of all vertices that triangles use; removed faces (see MeshEdit) use none. Cost:
+/// linear.
 [[nodiscard]] SDM_API Box bounds(const Mesh& mesh);
 
 /// Counts and topology of a mesh, as printed by `sdm info`.

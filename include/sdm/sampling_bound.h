@@ -19,8 +19,8 @@ class PieceAssignment;
 
 /// An upper bound on the distance from any point of a surface to its nearest sample.
 ///
-/// Every point p of the surface, including those on faces without texels or area, has a sample s_i (see
-/// Surface::sample_texels) with |p − s_i| ≤ sample_radii()[i]. As distances are 1-Lipschitz,
+/// Every point p of the surface, including those on faces without texels or area but for removed ones, has a
+/// sample s_i (see Surface::sample_texels) with |p − s_i| ≤ sample_radii()[i]. As distances are 1-Lipschitz,
 ///
 ///     min over i of d_i − r_i  ≤  d(p)  ≤  max over i of d_i + r_i
 ///

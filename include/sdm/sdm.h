@@ -9,6 +9,7 @@
 #include <sdm/gl.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/multi_body_query.h>
 #include <sdm/progress.h>
 #include <sdm/proximity_query.h>

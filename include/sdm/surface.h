@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/atlas.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
 
 #include <cstdint>
 #include <memory>
@@ -18,7 +19,7 @@ namespace surface {
 class SurfaceData;
 }
 
-/// O1: a mesh whose faces are laid out, without overlap, in a square texture.
+/// O1: a mesh whose faces are laid out, without overlap, in a square texture; edits may add rows to it.
 ///
 /// Atlas coordinates (u, v) are in texels, u to the right, v *down* from the upper left corner of the image,
 /// so that texel (x, y) has its centre at (x + 0.5, y + 0.5) and the index y * resolution + x. Every face has
@@ -44,6 +45,19 @@ class SDM_API Surface {
   /// when the count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces, all cores.
   void refit(std::span<const Vec3> positions);
 
+  /// Changes the mesh and keeps the atlas of all that stays: for every face that is neither removed nor
+  /// added, atlas_corners(), chart and owned texels do not change; its map is bit-identical if its corners
+  /// have the same positions as before, otherwise it is that of refit(). Texels of removed faces become free,
+  /// and their charts keep their numbers. Added faces form charts of their own, of the options of the atlas
+  /// (for `uv`: AtlasKind::charts), at the scale of the layout: texels per unit length of the added faces as
+  /// they are now. They take free texels first; then rows() grows. Rows are only added at the bottom, so
+  /// texel (x, y) keeps its index. sample_texels() changes; a SamplingBound must be built again.
+  ///
+  /// Throws sdm::Error, and changes nothing, as apply() does, if a chart of added faces is wider than the
+  /// atlas, if more than 65535 rows would be needed, and if no face would own a texel. Cost: by the size of
+  /// the edit, plus copying the mesh and one pass over the texels; the first edit also a pass over the faces.
+  void edit(const MeshEdit& edit);
+
   /// The atlas as bytes, without the mesh: for a cache. They belong to the mesh in its present shape, and
   /// can be used by the same version of sdm only, on any little-endian machine.
   /// Cost: linear.
@@ -51,9 +65,12 @@ class SDM_API Surface {
 
   [[nodiscard]] const Mesh& mesh() const;
   [[nodiscard]] AtlasKind atlas_kind() const;
+  /// Texels per row.
   [[nodiscard]] std::uint32_t resolution() const;
+  /// Texels per column: equal to resolution() until edits add rows.
+  [[nodiscard]] std::uint32_t rows() const;
 
-  /// The face that owns each texel, or kNone; resolution² values.
+  /// The face that owns each texel, or kNone; resolution() · rows() values.
   [[nodiscard]] std::span<const std::uint32_t> texel_faces() const;
   /// The indices of all owned texels, in an order that keeps consecutive texels close together on the
   /// surface.

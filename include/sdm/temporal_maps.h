@@ -21,7 +21,7 @@ class SDM_API TemporalMaps {
   struct State {
     std::size_t maps = 0;
     std::uint32_t resolution = 0;
-    std::vector<float> least{}, largest{};  ///< of resolution² texels, none before the first map
+    std::vector<float> least{}, largest{};  ///< of whole rows of texels, none before the first map
     std::vector<double> sum{};              ///< of the distances, likewise
   };
 
@@ -30,7 +30,7 @@ class SDM_API TemporalMaps {
   /// sdm::Error if the sizes do not match.
   explicit TemporalMaps(State state);
 
-  /// Adds a map. Throws sdm::Error if its resolution differs from that of earlier maps. Cost: O(n) in texels,
+  /// Adds a map. Throws sdm::Error if its size differs from that of earlier maps. Cost: O(n) in texels,
   /// all cores.
   void add(const DistanceMap& map);
 

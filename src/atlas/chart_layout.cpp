@@ -6,6 +6,7 @@
 #include "atlas/charts/shape.h"
 #include "atlas/charts/split.h"
 #include "atlas/layout.h"
+#include "atlas/packing/fit.h"
 #include "atlas/packing/pack.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
@@ -50,24 +51,19 @@ std::array<Vec3, 2> lifted(const std::array<Vec3, 2>& plane, double scale, const
   return {lift(plane[0]), lift(plane[1])};
 }
 
-}  // namespace
+double scale_of(const Placement& placement) {
+  return std::hypot(placement.matrix[0][0], placement.matrix[0][1]);
+}
 
-Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
-  report(options.progress, 0);
-  const FaceGeometry faces = face_geometry(mesh);
-  std::vector<Chart> charts;
-  if (options.kind == AtlasKind::triangles) {
-    charts = single_faces(faces);
-  } else {
-    charts = cluster_faces(mesh, faces, 1 / std::min(options.max_stretch, kMaxStretch));
-    report(options.progress, kClustered);
-    charts = split_overlaps(mesh, faces, std::move(charts));
-  }
-  report(options.progress, kSplit);
-  const std::vector<Shape> shapes = chart_shapes(mesh, faces, charts);
-  const std::vector<Placement> placements =
-      pack(shapes, options.resolution, options.gutter, packing_progress(options.progress));
+std::vector<Chart> make_charts(const Mesh& mesh, const FaceGeometry& faces, const AtlasOptions& options) {
+  if (options.kind == AtlasKind::triangles) return single_faces(faces);
+  std::vector<Chart> charts = cluster_faces(mesh, faces, 1 / std::min(options.max_stretch, kMaxStretch));
+  report(options.progress, kClustered);
+  return split_overlaps(mesh, faces, std::move(charts));
+}
 
+Layout placed_charts(const Mesh& mesh, const FaceGeometry& faces, std::vector<Chart> charts,
+                     std::span<const Shape> shapes, std::span<const Placement> placements) {
   Layout layout;
   layout.maps.resize(mesh.triangles.size());
   layout.corners.resize(mesh.triangles.size());
@@ -77,7 +73,7 @@ Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
     for (std::size_t c = begin; c < end; ++c) {
       const auto& [matrix, offset] = placements[c];
       const ShapeFrame& frame = shapes[c].frame;
-      const double scale = std::hypot(matrix[0][0], matrix[0][1]);
+      const double scale = scale_of(placements[c]);
       std::array<Vec3, 2> plane;
       for (int k = 0; k < 2; ++k)
         plane[k] = (1 / scale) * (matrix[k][0] * frame.right + matrix[k][1] * frame.down);
@@ -92,7 +88,36 @@ Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
     }
   });
   for (const double cos : least_cos) layout.max_stretch = std::max(layout.max_stretch, 1 / cos);
+  return layout;
+}
+
+}  // namespace
+
+Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
+  report(options.progress, 0);
+  const FaceGeometry faces = face_geometry(mesh);
+  std::vector<Chart> charts = make_charts(mesh, faces, options);
+  report(options.progress, kSplit);
+  const std::vector<Shape> shapes = chart_shapes(mesh, faces, charts);
+  const std::vector<Placement> placements =
+      pack(shapes, options.resolution, options.gutter, packing_progress(options.progress));
+  Layout layout = placed_charts(mesh, faces, std::move(charts), shapes, placements);
+  layout.scale = scale_of(placements.front());
   report(options.progress, 1);
+  return layout;
+}
+
+Layout added_layout(const Mesh& added, const AtlasOptions& options, double scale, Room& room) {
+  const FaceGeometry faces = face_geometry(added);
+  std::vector<Chart> charts;
+  if (std::ranges::any_of(faces.area, [](double area) { return area > 0; }))
+    charts = make_charts(added, faces, options);
+  const std::vector<Shape> shapes = chart_shapes(added, faces, charts);
+  const std::vector<Placement> placements = fit(shapes, scale, room);
+  Layout layout = placed_charts(added, faces, std::move(charts), shapes, placements);
+  layout.scale = scale;
+  for (const std::vector<std::uint32_t>& chart : layout.charts)
+    for (const std::uint32_t face : chart) room.add(layout.corners[face]);
   return layout;
 }
 

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "atlas/packing/room.h"
+
 namespace sdm::atlas {
 
 /// M⁻¹ of a face: atlas coordinates (u, v) ↦ vertex 0 + (u − origin.u) edges[0] + (v − origin.v) edges[1].
@@ -19,6 +21,7 @@ struct Layout {
   std::vector<std::array<Vec2, 3>>
       corners;  ///< atlas coordinates; a vertex has the same ones in all faces of a chart
   double max_stretch = 1;
+  double scale = 0;  ///< texels per unit length; for `uv` that at which areas agree in total
 };
 
 /// ∂p/∂u and ∂p/∂v of the affine map that takes the corners of a triangle in the atlas to its vertices: they
@@ -28,6 +31,10 @@ struct Layout {
 
 /// AtlasKind::charts and AtlasKind::triangles.
 [[nodiscard]] Layout chart_layout(const Mesh& mesh, const AtlasOptions& options);
+/// Charts of further faces for an atlas of `options`, at its scale, in free room; those of an atlas of kind
+/// `uv` are made as for `charts`. Takes the room, and adds rows where necessary. Throws sdm::Error as fit()
+/// does.
+[[nodiscard]] Layout added_layout(const Mesh& added, const AtlasOptions& options, double scale, Room& room);
 /// AtlasKind::uv. A chart is a set of faces connected by edges at which their coordinates agree.
 [[nodiscard]] Layout uv_layout(const Mesh& mesh, const AtlasOptions& options);
 

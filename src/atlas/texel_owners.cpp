@@ -14,24 +14,27 @@ double atlas_area(const std::array<Vec2, 3>& t) {
   return std::abs(cross(t[1] - t[0], t[2] - t[0]));
 }
 
+using Corners = std::vector<std::array<Vec2, 3>>;
+
 // Calls visit(face, x, y) for each texel centre in the chart's faces.
 template <class Visit>
-void for_each_texel(const Layout& layout, const std::vector<std::uint32_t>& faces, Visit visit) {
+void for_each_texel(const Corners& corners, const std::vector<std::uint32_t>& faces, Visit visit) {
   for (const std::uint32_t f : faces)
-    for_each_centre(layout.corners[f], [&](std::uint32_t x, std::uint32_t y) { visit(f, x, y); });
+    for_each_centre(corners[f], [&](std::uint32_t x, std::uint32_t y) { visit(f, x, y); });
 }
 
 // Packing puts the centroid of the largest face on a texel centre where no other lies in a face; for a face
-// thinner than rounding errors, that centre may still fall beside it.
-void claim_centroid(const Layout& layout, const std::vector<std::uint32_t>& faces, std::uint32_t resolution,
-                    std::vector<std::uint32_t>& owner) {
-  const auto smaller = [&](auto f, auto g) {
-    return atlas_area(layout.corners[f]) < atlas_area(layout.corners[g]);
-  };
+// thinner than rounding errors, that centre may still fall beside it. Returns the texel.
+std::size_t claim_centroid(const Corners& corners, const std::vector<std::uint32_t>& faces,
+                           std::uint32_t resolution, std::vector<std::uint32_t>& owner) {
+  const auto smaller = [&](auto f, auto g) { return atlas_area(corners[f]) < atlas_area(corners[g]); };
   const std::uint32_t face = *std::max_element(faces.begin(), faces.end(), smaller);
-  const auto& [a, b, c] = layout.corners[face];
+  const auto& [a, b, c] = corners[face];
   const Vec2 centroid = (1.0 / 3) * (a + b + c);
-  owner[static_cast<std::size_t>(centroid[1]) * resolution + static_cast<std::size_t>(centroid[0])] = face;
+  const std::size_t texel =
+      static_cast<std::size_t>(centroid[1]) * resolution + static_cast<std::size_t>(centroid[0]);
+  owner[texel] = face;
+  return texel;
 }
 
 }  // namespace
@@ -41,13 +44,14 @@ std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::
   const auto rasterise_charts = [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       bool any = false;
-      for_each_texel(layout, layout.charts[c], [&](std::uint32_t face, std::uint32_t x, std::uint32_t y) {
-        if (x >= resolution || y >= resolution) return;  // rounding at the border of the image
-        std::uint32_t& texel = owner[std::size_t{y} * resolution + x];
-        if (texel == kNone) texel = face;
-        any = true;
-      });
-      if (!any && kind != AtlasKind::uv) claim_centroid(layout, layout.charts[c], resolution, owner);
+      for_each_texel(layout.corners, layout.charts[c],
+                     [&](std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+                       if (x >= resolution || y >= resolution) return;  // rounding at the border of the image
+                       std::uint32_t& texel = owner[std::size_t{y} * resolution + x];
+                       if (texel == kNone) texel = face;
+                       any = true;
+                     });
+      if (!any && kind != AtlasKind::uv) claim_centroid(layout.corners, layout.charts[c], resolution, owner);
     }
   };
   // Packed charts share no texel. A mesh's own charts may overlap by rounding: the first one, in order, owns
@@ -57,6 +61,26 @@ std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::
   else
     parallel_for(layout.charts.size(), 16, rasterise_charts);
   return owner;
+}
+
+std::vector<std::uint32_t> rasterise_added(std::span<const std::vector<std::uint32_t>> charts,
+                                           const Corners& corners, std::uint32_t resolution,
+                                           std::vector<std::uint32_t>& owner) {
+  std::vector<std::uint32_t> texels;
+  const std::size_t rows = owner.size() / resolution;
+  for (const std::vector<std::uint32_t>& chart : charts) {
+    const std::size_t before = texels.size();
+    for_each_texel(corners, chart, [&](std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+      if (x >= resolution || y >= rows) return;  // rounding at the border of the image
+      const std::size_t texel = std::size_t{y} * resolution + x;
+      if (owner[texel] != kNone) return;
+      owner[texel] = face;
+      texels.push_back(static_cast<std::uint32_t>(texel));
+    });
+    if (texels.size() == before)
+      texels.push_back(static_cast<std::uint32_t>(claim_centroid(corners, chart, resolution, owner)));
+  }
+  return texels;
 }
 
 }  // namespace sdm::atlas

@@ -13,4 +13,11 @@ namespace sdm::atlas {
 [[nodiscard]] std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind,
                                                    std::uint32_t resolution);
 
+/// Gives the free texels of further charts, which overlap no others, to their faces; returns these texels.
+/// Every chart owns at least one.
+[[nodiscard]] std::vector<std::uint32_t> rasterise_added(std::span<const std::vector<std::uint32_t>> charts,
+                                                         const std::vector<std::array<Vec2, 3>>& corners,
+                                                         std::uint32_t resolution,
+                                                         std::vector<std::uint32_t>& owner);
+
 }  // namespace sdm::atlas

@@ -113,6 +113,7 @@ Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
     atlas_area += 0.5 * std::abs(cross(uv[1] - uv[0], uv[2] - uv[0]));
     largest = std::max(largest, largest_stretch(layout.maps[f].edges));
   }
+  layout.scale = std::sqrt(atlas_area / surface_area);
   layout.max_stretch = largest / std::sqrt(surface_area / atlas_area);
   layout.charts = uv_charts(mesh, faces, layout);
   return layout;

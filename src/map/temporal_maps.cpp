@@ -12,8 +12,9 @@
 namespace sdm {
 
 TemporalMaps::TemporalMaps(State state) : state_(std::move(state)) {
-  const std::size_t n = state_.maps == 0 ? 0 : std::size_t{state_.resolution} * state_.resolution;
-  if (state_.least.size() != n || state_.largest.size() != n || state_.sum.size() != n)
+  const std::size_t n = state_.least.size();
+  const bool fits = state_.maps == 0 ? n == 0 : n > 0 && state_.resolution > 0 && n % state_.resolution == 0;
+  if (!fits || state_.largest.size() != n || state_.sum.size() != n)
     throw Error("maps over time of " + std::to_string(state_.resolution) +
                 "² texels cannot continue from a state of another size; give a complete one");
 }
@@ -27,6 +28,9 @@ void TemporalMaps::add(const DistanceMap& map) try {
   } else if (map.resolution != state.resolution) {
     throw Error("a map of " + std::to_string(map.resolution) + "² texels cannot be added to maps of " +
                 std::to_string(state.resolution) + "²");
+  } else if (map.distance.size() != state.sum.size()) {
+    throw Error("a map of " + std::to_string(map.rows()) + " rows of texels cannot be added to maps of " +
+                std::to_string(state.sum.size() / state.resolution));
   } else {
     parallel_for(state.sum.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

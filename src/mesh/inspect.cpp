@@ -1,4 +1,5 @@
 #include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
 
 #include <algorithm>
 #include <new>
@@ -15,6 +16,7 @@ void count_components(const Mesh& mesh, MeshInfo& info) {
   DisjointSets sets(mesh.positions.size());
   std::vector<std::uint8_t> used(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles) {
+    if (is_removed(t)) continue;
     for (const std::uint32_t v : t) used[v] = 1;
     sets.unite(t[0], t[1]);
     sets.unite(t[1], t[2]);

@@ -1,6 +1,8 @@
 #include <sdm/error.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
 
+#include <algorithm>
 #include <mutex>
 #include <string>
 
@@ -23,6 +25,23 @@ bool has_area(const Mesh& mesh, const Triangle& t) {
   return n != Vec3{};
 }
 
+[[noreturn]] void throw_no_area() {
+  throw Error("all triangles are degenerate: none has positive area");
+}
+
+void validate_counts(const Mesh& mesh) {
+  if (mesh.triangles.size() > kMaxTriangles)
+    throw Error("there are " + std::to_string(mesh.triangles.size()) + " triangles, more than 2^30");
+  if (mesh.positions.size() >= kNone)
+    throw Error("there are " + std::to_string(mesh.positions.size()) +
+                " vertices, too many for 32-bit indices");
+}
+
+void validate_size(const Mesh& mesh) {
+  if (!(diagonal(bounds(mesh)) > kMinSize))
+    throw Error("the mesh is smaller than 1e-30, too small for the computation; scale it up");
+}
+
 void validate_triangles(const Mesh& mesh) {
   bool any_area = false;
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -32,7 +51,7 @@ void validate_triangles(const Mesh& mesh) {
                     std::to_string(v) + " of " + std::to_string(mesh.positions.size()));
     any_area = any_area || has_area(mesh, mesh.triangles[f]);
   }
-  if (!any_area) throw Error("all triangles are degenerate: none has positive area");
+  if (!any_area) throw_no_area();
 }
 
 void validate_uvs(const Mesh& mesh) {
@@ -65,17 +84,20 @@ void mesh::validate_positions(std::span<const Vec3> positions, std::size_t count
   mesh::validate_positions(positions);
 }
 
+void mesh::validate_edited(const Mesh& mesh) {
+  validate_counts(mesh);
+  if (std::ranges::none_of(mesh.triangles, [&](const Triangle& t) { return has_area(mesh, t); }))
+    throw_no_area();
+  validate_size(mesh);
+  validate_uvs(mesh);
+}
+
 void validate(const Mesh& mesh) {
   if (mesh.triangles.empty()) throw Error("there are no triangles");
-  if (mesh.triangles.size() > kMaxTriangles)
-    throw Error("there are " + std::to_string(mesh.triangles.size()) + " triangles, more than 2^30");
-  if (mesh.positions.size() >= kNone)
-    throw Error("there are " + std::to_string(mesh.positions.size()) +
-                " vertices, too many for 32-bit indices");
+  validate_counts(mesh);
   mesh::validate_positions(mesh.positions);
   validate_triangles(mesh);
-  if (!(diagonal(bounds(mesh)) > kMinSize))
-    throw Error("the mesh is smaller than 1e-30, too small for the computation; scale it up");
+  validate_size(mesh);
   validate_uvs(mesh);
 }
 
@@ -85,7 +107,8 @@ Box bounds(const Mesh& mesh) {
   parallel_for(mesh.triangles.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     Box part;
     for (std::size_t f = begin; f < end; ++f)
-      for (const std::uint32_t v : mesh.triangles[f]) extend(part, mesh.positions[v]);
+      if (!is_removed(mesh.triangles[f]))
+        for (const std::uint32_t v : mesh.triangles[f]) extend(part, mesh.positions[v]);
     const std::lock_guard lock(mutex);
     extend(box, part);
   });

@@ -4,31 +4,12 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "mesh/half_edges.h"
 
 namespace sdm::mesh {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-
-// An edge of a face, directed as in the face; stored in the list of its smaller vertex.
-struct HalfEdge {
-  std::uint32_t larger;    ///< vertex
-  std::uint32_t opposite;  ///< vertex of the face
-  std::uint32_t corner;    ///< 3f + k: from corner k of face f to the next
-};
-
-// The contribution of one vertex to the arrays of a topology.
-struct Share {
-  std::uint32_t edges = 0, half_edges = 0;
-
-  friend Share operator+(const Share& a, const Share& b) {
-    return {a.edges + b.edges, a.half_edges + b.half_edges};
-  }
-};
-
-bool repeats_a_corner(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
 
 CompressedRows<HalfEdge> half_edges_by_smaller_vertex(std::size_t vertex_count,
                                                       std::span<const Triangle> triangles) {
@@ -41,25 +22,6 @@ CompressedRows<HalfEdge> half_edges_by_smaller_vertex(std::size_t vertex_count,
       put(std::min(c, a), HalfEdge{std::max(c, a), b, 3 * f + 2});
     }
   });
-}
-
-// Sorts the half-edges of a vertex by edge, then by face. Those of duplicate faces, which have the same three
-// vertices as a half-edge of an earlier face, move to the end and are not counted.
-Share sort_half_edges(std::span<HalfEdge> half_edges) {
-  std::ranges::sort(half_edges, [](const HalfEdge& a, const HalfEdge& b) {
-    if (a.larger != b.larger) return a.larger < b.larger;
-    return a.opposite != b.opposite ? a.opposite < b.opposite : a.corner < b.corner;
-  });
-  const auto end = std::unique(
-      half_edges.begin(), half_edges.end(),
-      [](const HalfEdge& a, const HalfEdge& b) { return a.larger == b.larger && a.opposite == b.opposite; });
-  Share share{0, static_cast<std::uint32_t>(end - half_edges.begin())};
-  for (auto begin = half_edges.begin(); begin != end; ++share.edges) {
-    const auto next = std::find_if(begin, end, [&](const HalfEdge& s) { return s.larger != begin->larger; });
-    std::sort(begin, next, [](const HalfEdge& a, const HalfEdge& b) { return a.corner < b.corner; });
-    begin = next;
-  }
-  return share;
 }
 
 // For each half-edge of a face: twice the neighbouring face, plus 1 if both traverse the edge in the same
@@ -105,6 +67,23 @@ std::size_t walk(const Topology& topology, std::uint32_t vertex, std::uint32_t f
 }
 
 }  // namespace
+
+Share sort_half_edges(std::span<HalfEdge> half_edges) {
+  std::ranges::sort(half_edges, [](const HalfEdge& a, const HalfEdge& b) {
+    if (a.larger != b.larger) return a.larger < b.larger;
+    return a.opposite != b.opposite ? a.opposite < b.opposite : a.corner < b.corner;
+  });
+  const auto end = std::unique(
+      half_edges.begin(), half_edges.end(),
+      [](const HalfEdge& a, const HalfEdge& b) { return a.larger == b.larger && a.opposite == b.opposite; });
+  Share share{0, static_cast<std::uint32_t>(end - half_edges.begin())};
+  for (auto begin = half_edges.begin(); begin != end; ++share.edges) {
+    const auto next = std::find_if(begin, end, [&](const HalfEdge& s) { return s.larger != begin->larger; });
+    std::sort(begin, next, [](const HalfEdge& a, const HalfEdge& b) { return a.corner < b.corner; });
+    begin = next;
+  }
+  return share;
+}
 
 bool Topology::closed() const {
   for (std::size_t e = 0; e < edges.size(); ++e)

@@ -1,7 +1,7 @@
 // Validation of positions, for meshes and their refits.
 #pragma once
 
-#include <sdm/types.h>
+#include <sdm/mesh.h>
 
 #include <span>
 
@@ -12,5 +12,8 @@ void validate_positions(std::span<const Vec3> positions);
 
 /// The same for new positions of `count` vertices; also throws if there are more or fewer.
 void validate_positions(std::span<const Vec3> positions, std::size_t count);
+
+/// Throws as validate() does for what an edit with valid indices and coordinates may cause.
+void validate_edited(const Mesh& mesh);
 
 }  // namespace sdm::mesh

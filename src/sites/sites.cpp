@@ -23,6 +23,10 @@ void Sites::refit(std::span<const Vec3> positions) try {
   throw out_of_memory("the sites of a mesh");
 }
 
+void Sites::edit(const MeshEdit& edit) try { data_->edit(edit); } catch (const std::bad_alloc&) {
+  throw out_of_memory("the sites of a mesh");
+}
+
 const Mesh& Sites::mesh() const {
   return data_->mesh;
 }

@@ -32,22 +32,35 @@ SitesData::SitesData(Mesh given) {
   parallel_invoke(
       [&] {
         vertex_faces = mesh::vertex_faces(mesh.positions.size(), triangles, topology);
-        orientation = mesh::orient(triangles, topology);
-        closed = topology.closed();
-        if (is_solid()) shells = find_shells(orientation);
-        consistently_oriented = is_solid() && std::ranges::count(orientation.flipped, 1) == 0;
+        find_orientation();
       },
       [&] {
-        tree = hierarchy::build_aabb_tree(face_boxes(), faces_with_sites(topology), kLeafFaces);
+        build_tree();
         wide = hierarchy::collapse(tree);
       });
-  regions = build_regions(
-      {mesh.positions, triangles, topology, vertex_faces, orientation.orientable, frame.scale}, tree);
   normals = {std::vector<Vec3>(triangles.size()), std::vector<Vec3>(mesh.positions.size())};
   sliver.resize(triangles.size());
   Refit refit;  // discarded: a mesh that is never refitted does not need it
-  place(regions, mesh.positions, refit.placed);
+  assign_sites(refit);
   compute_regions(refit);
+}
+
+void SitesData::find_orientation() {
+  orientation = mesh::orient(mesh.triangles, topology);
+  closed = topology.closed();
+  shells = is_solid() ? find_shells(orientation) : Shells{};
+  consistently_oriented = is_solid() && std::ranges::count(orientation.flipped, 1) == 0;
+}
+
+void SitesData::assign_sites(Refit& refit) {
+  regions = build_regions(
+      {mesh.positions, mesh.triangles, topology, vertex_faces, orientation.orientable, frame.scale}, tree);
+  place(regions, mesh.positions, refit.placed);
+}
+
+void SitesData::build_tree() {
+  tree = hierarchy::build_aabb_tree(face_boxes(), faces_with_sites(topology), kLeafFaces);
+  faces_added_to_tree_ = 0;
 }
 
 void SitesData::refit(std::span<const Vec3> positions) {

@@ -21,6 +21,7 @@ class SitesData {
   /// As Sites::Sites.
   explicit SitesData(Mesh mesh);
   void refit(std::span<const Vec3> positions);
+  void edit(const MeshEdit& edit);
 
   /// Whether the mesh bounds a solid, and so has an inside.
   [[nodiscard]] bool is_solid() const { return closed && orientation.orientable; }
@@ -64,10 +65,15 @@ class SitesData {
   };
 
   [[nodiscard]] std::vector<hierarchy::FloatBox> face_boxes() const;
+  void build_tree();
+  [[nodiscard]] bool edit_tree(const UnitFrame& frame_before);
+  void find_orientation();
+  void assign_sites(Refit& refit);  ///< to the leaves of the tree
   void set_inverted();
   void compute_regions(Refit& refit);  ///< refit.placed: the present positions
 
   Refit last_refit_;
+  std::size_t faces_added_to_tree_ = 0;  ///< since it was built
 };
 
 }  // namespace sdm::sites

@@ -4,11 +4,14 @@
 #include <sdm/error.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <string>
 
+#include "atlas/packing/fit.h"
 #include "core/geometry/vec.h"
 #include "surface/surface_data.h"
 
@@ -19,12 +22,12 @@ static_assert(std::endian::native == std::endian::little, "the order of the stor
 
 struct Header {
   std::array<char, 8> magic{'s', 'd', 'm', 'a', 't', 'l', 'a', 's'};
-  std::uint32_t version = 1, kind = 0, resolution = 0, gutter = 0;
-  double stretch_limit = 0, max_stretch = 0;
-  std::uint64_t vertices = 0, faces = 0, charts = 0, samples = 0;
+  std::uint32_t version = 2, kind = 0, resolution = 0, gutter = 0;
+  double stretch_limit = 0, max_stretch = 0, scale = 0;
+  std::uint64_t vertices = 0, faces = 0, charts = 0, samples = 0, rows = 0;
   std::uint64_t mesh = 0, contents = 0;  ///< checksums: of the mesh, and of all else
 };
-static_assert(sizeof(Header) == 88, "no padding");
+static_assert(sizeof(Header) == 104, "no padding");
 
 template <class Item>
 void add(XXH3_state_t& state, const std::vector<Item>& items) {
@@ -72,12 +75,11 @@ void for_each_array(Surface& s, const Header& header, const Take& take) {
 }
 
 bool valid(const SurfaceData& s, std::uint64_t charts) {
-  const std::uint64_t texels = std::uint64_t{s.resolution} * s.resolution;
+  const std::uint64_t texels = std::uint64_t{s.resolution} * s.rows;
   for (std::size_t f = 0; f < s.face_charts.size(); ++f) {
     if (s.face_charts[f] != kNone && s.face_charts[f] >= charts) return false;
-    for (const Vec2& corner : s.corners[f])
-      for (const double x : corner)
-        if (!(x >= -1 && x <= s.resolution + 1.0)) return false;
+    for (const auto& [x, y] : s.corners[f])
+      if (!(x >= -1 && x <= s.resolution + 1.0 && y >= -1 && y <= s.rows + 1.0)) return false;
     if (!finite(s.maps[f].edges[0]) || !finite(s.maps[f].edges[1])) return false;
   }
   for (std::size_t i = 0; i < s.samples.size(); ++i)
@@ -92,6 +94,8 @@ bool valid(const SurfaceData& s, std::uint64_t charts) {
 std::vector<std::uint8_t> store_atlas(const SurfaceData& s) {
   Header header = header_of(s);
   header.max_stretch = s.max_stretch;
+  header.scale = s.scale;
+  header.rows = s.rows;
   header.charts = s.chart_count;
   header.samples = s.samples.size();
   std::size_t size = sizeof(Header);
@@ -124,7 +128,10 @@ void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const 
                 ", a gutter of " + std::to_string(header.gutter) + ", a stretch of at most " +
                 std::to_string(header.stretch_limit));
 
-  const std::uint64_t texels = std::uint64_t{s.resolution} * s.resolution;
+  const bool has_size = header.rows >= s.resolution &&
+                        header.rows <= std::max(s.resolution, atlas::kMaxRows) && header.scale > 0 &&
+                        std::isfinite(header.scale);
+  const std::uint64_t texels = s.resolution * (has_size ? header.rows : 0);
   const std::uint64_t of_faces =
       header.faces * (sizeof s.maps[0] + sizeof s.corners[0] + sizeof(std::uint32_t));
   if (header.samples > texels || bytes.size() != of_faces + header.samples * 2 * sizeof(std::uint32_t) ||
@@ -135,6 +142,8 @@ void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const 
     std::memcpy(array.data(), bytes.data(), count * sizeof(array[0]));
     bytes = bytes.subspan(count * sizeof(array[0]));
   });
+  s.rows = static_cast<std::uint32_t>(header.rows);
+  s.scale = header.scale;
   s.texel_faces.assign(texels, kNone);
   if (!valid(s, header.charts)) throw Error("the stored atlas is damaged");
   for (std::size_t i = 0; i < s.samples.size(); ++i) {

@@ -34,6 +34,10 @@ void Surface::refit(std::span<const Vec3> positions) try {
   throw out_of_memory("the atlas");
 }
 
+void Surface::edit(const MeshEdit& edit) try { data_->edit(edit); } catch (const std::bad_alloc&) {
+  throw out_of_memory("the atlas");
+}
+
 Surface::~Surface() = default;
 Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;
@@ -46,6 +50,9 @@ AtlasKind Surface::atlas_kind() const {
 }
 std::uint32_t Surface::resolution() const {
   return data_->resolution;
+}
+std::uint32_t Surface::rows() const {
+  return data_->rows;
 }
 std::span<const std::uint32_t> Surface::texel_faces() const {
   return data_->texel_faces;

@@ -41,6 +41,7 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
 SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
     : kind(options.kind),
       resolution(options.resolution),
+      rows(options.resolution),
       gutter(options.gutter),
       stretch_limit(options.max_stretch) {
   check(laid_out, options);
@@ -57,6 +58,7 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   mesh = std::move(laid_out);
   chart_count = layout.charts.size();
   max_stretch = layout.max_stretch;
+  scale = layout.scale;
   maps = std::move(layout.maps);
   corners = std::move(layout.corners);
   samples = sample_order(*this);
@@ -70,6 +72,7 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options, std::span<c
     : mesh(std::move(laid_out)),
       kind(options.kind),
       resolution(options.resolution),
+      rows(options.resolution),
       gutter(options.gutter),
       stretch_limit(options.max_stretch) {
   check(mesh, options);

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "atlas/layout.h"
+#include "atlas/packing/room.h"
 #include "core/geometry/vec.h"
 
 namespace sdm::surface {
 
-/// Identifies a surface for its lifetime; refits and moves of the object do not change it. Caches of data
+/// Identifies a surface until its next edit; refits and moves of the object do not change it. Caches of data
 /// that refits preserve hold weak references to it.
 struct Identity {};
 
@@ -21,6 +22,7 @@ class SurfaceData {
   SurfaceData(Mesh mesh, const AtlasOptions& options);
   SurfaceData(Mesh mesh, const AtlasOptions& options, std::span<const std::uint8_t> atlas);
   void refit(std::span<const Vec3> positions);
+  void edit(const MeshEdit& edit);
 
   /// M⁻¹ of the face.
   [[nodiscard]] Vec3 to_surface(std::uint32_t face, const Vec2& uv) const {
@@ -40,15 +42,21 @@ class SurfaceData {
 
   Mesh mesh;
   AtlasKind kind;
-  std::uint32_t resolution, gutter;
+  std::uint32_t resolution, rows, gutter;
   double stretch_limit;  ///< AtlasOptions::max_stretch
   std::size_t chart_count = 0;
   double max_stretch = 1;
+  double scale = 0;  ///< of the layout: texels per unit length
   std::vector<atlas::FaceMap> maps;
   std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
   std::vector<std::uint32_t> face_charts, texel_faces, samples;
   std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order are scattered over texel_faces
   std::shared_ptr<const Identity> identity = std::make_shared<Identity>();
+
+ private:
+  [[nodiscard]] atlas::Room occupied_room() const;
+
+  atlas::Room room_;  ///< of the present layout, or empty: only edits need it
 };
 
 }  // namespace sdm::surface

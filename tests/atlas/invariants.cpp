@@ -68,7 +68,8 @@ std::size_t strangers_near(const Surface& surface, std::int64_t x, std::int64_t 
                            std::uint32_t own) {
   const auto n = static_cast<std::int64_t>(surface.resolution());
   std::size_t count = 0;
-  for (std::int64_t j = std::max<std::int64_t>(0, y - reach); j <= std::min(n - 1, y + reach); ++j)
+  for (std::int64_t j = std::max<std::int64_t>(0, y - reach);
+       j <= std::min<std::int64_t>(surface.rows() - 1, y + reach); ++j)
     for (std::int64_t i = std::max<std::int64_t>(0, x - reach); i <= std::min(n - 1, x + reach); ++i) {
       const std::uint32_t face = surface.texel_faces()[static_cast<std::size_t>(j * n + i)];
       count += face != kNone && surface.face_charts()[face] != own;
@@ -105,7 +106,7 @@ void expect_owners(const Surface& surface) {
     const auto [left, right] = std::minmax({t[0][0], t[1][0], t[2][0]});
     const auto [top, bottom] = std::minmax({t[0][1], t[1][1], t[2][1]});
     for (auto y = std::max<std::int64_t>(0, static_cast<std::int64_t>(top));
-         y < std::min(n, static_cast<std::int64_t>(bottom) + 1); ++y)
+         y < std::min<std::int64_t>(surface.rows(), static_cast<std::int64_t>(bottom) + 1); ++y)
       for (auto x = std::max<std::int64_t>(0, static_cast<std::int64_t>(left));
            x < std::min(n, static_cast<std::int64_t>(right) + 1); ++x) {
         const Vec2 centre = {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
@@ -143,7 +144,7 @@ void expect_gutters(const Surface& surface, std::uint32_t gutter) {
       const auto x = static_cast<std::int64_t>(q[0]), y = static_cast<std::int64_t>(q[1]);
       touching += strangers_near(surface, x, y, gutter, surface.face_charts()[f]);
       outside += p[0] < gutter - 1e-6 || p[1] < gutter - 1e-6 || p[0] > n - gutter + 1e-6 ||
-                 p[1] > n - gutter + 1e-6;
+                 p[1] > surface.rows() - gutter + 1e-6;
     }
   }
   EXPECT_EQ(touching, 0u);

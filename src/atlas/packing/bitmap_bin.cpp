@@ -25,10 +25,13 @@ std::uint32_t level_of(std::uint32_t length) {
 
 }  // namespace
 
-BitmapBin::BitmapBin(std::uint32_t width, std::uint32_t height)
+BitmapBin::BitmapBin(std::uint32_t width, std::uint32_t height) : BitmapBin(width, height, width, {}) {}
+
+BitmapBin::BitmapBin(std::uint32_t width, std::uint32_t height, std::uint32_t longest,
+                     std::span<const std::uint16_t> taken)
     : width_(width),
       height_(height),
-      levels_(level_of(width) + 1),
+      levels_(level_of(std::min(longest, width)) + 1),
       stride_(words_per_row(width)),
       bits_(stride_ * height * levels_, kFull),
       longest_(height, width),
@@ -37,6 +40,11 @@ BitmapBin::BitmapBin(std::uint32_t width, std::uint32_t height)
     std::uint64_t* cells = row(0, y);
     std::fill_n(cells, width / 64, 0);
     cells[width / 64] = kFull << width % 64;
+    if (const std::size_t first = std::size_t{y} * width; first < taken.size()) {
+      for (std::uint32_t x = 0; x < width; ++x)
+        cells[x / 64] |= std::uint64_t{taken[first + x] != 0} << x % 64;
+      stale_[y] = 1;
+    }
     update_levels(y, 0, width);
   }
 }

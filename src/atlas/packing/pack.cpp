@@ -124,22 +124,14 @@ class Packer {
       }
       if (!best) return std::nullopt;
       bin.place(footprint.stamps[best_turn], *best);
-      packing.placements[s] = placement(footprint, best_turn, scale, *best);
+      packing.placements[s] =
+          placement_of(footprint, best_turn, scale, {1.0 * best->x * cell_, 1.0 * best->y * cell_});
       packing.rows = std::max(packing.rows, bottom);
     }
     return packing;
   }
 
  private:
-  [[nodiscard]] Placement placement(const Footprint& footprint, unsigned turn, double scale,
-                                    BitmapBin::Spot spot) const {
-    const Vec2 origin = turned(footprint, turn, {0, 0});
-    const Vec2 x = turned(footprint, turn, {1, 0}) - origin, y = turned(footprint, turn, {0, 1}) - origin;
-    const Vec2 corner = {1.0 * spot.x * cell_, 1.0 * spot.y * cell_};
-    return {{Vec2{scale * x[0], scale * y[0]}, Vec2{scale * x[1], scale * y[1]}},
-            turned(footprint, turn, footprint.shift) + corner};
-  }
-
   std::span<const Shape> shapes_;
   std::uint32_t resolution_, gutter_, cell_;
   double longest_ = 0;                // side of a shape's rectangle
@@ -161,6 +153,13 @@ class Packer {
 
 Vec2 Placement::apply(const Vec2& q) const {
   return Vec2{dot(matrix[0], q), dot(matrix[1], q)} + offset;
+}
+
+Placement placement_of(const Footprint& footprint, unsigned turn, double scale, const Vec2& corner) {
+  const Vec2 origin = turned(footprint, turn, {0, 0});
+  const Vec2 x = turned(footprint, turn, {1, 0}) - origin, y = turned(footprint, turn, {0, 1}) - origin;
+  return {{Vec2{scale * x[0], scale * y[0]}, Vec2{scale * x[1], scale * y[1]}},
+          turned(footprint, turn, footprint.shift) + corner};
 }
 
 std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolution, std::uint32_t gutter,

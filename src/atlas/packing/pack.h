@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "atlas/charts/shape.h"
+#include "atlas/packing/footprint.h"
 
 namespace sdm::atlas {
 
@@ -17,6 +18,10 @@ struct Placement {
 
   [[nodiscard]] Vec2 apply(const Vec2& q) const;
 };
+
+/// The placement of a footprint's shape: turned, with the corner of its rectangle at the texel `corner`.
+[[nodiscard]] Placement placement_of(const Footprint& footprint, unsigned quarter_turns, double scale,
+                                     const Vec2& corner);
 
 /// Places all shapes at one scale, the largest that is found to fit, each with its own ring of `gutter` free
 /// texels and owning at least one texel. Throws sdm::Error if the resolution is too small for so many charts,

@@ -142,6 +142,10 @@ class GlEngine final : public Engine {
 
 void GlEngine::map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
                    const engine::SampleSink& sink) const {
+  if (surface.rows() != surface.resolution())
+    throw Error(
+        "the gl engine draws square maps only, and edits have added rows to this atlas: choose the cpu "
+        "engine, or lay out the edited mesh anew");
   GlReport report;
   const RasterWinners winners = with_device(options_.device, [&](const RasterDevice& device, double ms) {
     report.device = device.context().device();

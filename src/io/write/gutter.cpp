@@ -24,19 +24,23 @@ std::vector<std::array<int, 2>> disc() {
 }  // namespace
 
 Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners)
-    : resolution_(resolution), blocks_((resolution + kGutter - 1) / kGutter), owners_(owners) {
-  std::vector<std::uint8_t> owned(std::size_t{blocks_} * blocks_);
+    : resolution_(resolution),
+      rows_(static_cast<std::uint32_t>(owners.size() / resolution)),
+      blocks_((resolution + kGutter - 1) / kGutter),
+      owners_(owners) {
+  const std::uint32_t block_rows = (rows_ + kGutter - 1) / kGutter;
+  std::vector<std::uint8_t> owned(std::size_t{block_rows} * blocks_);
   close_.resize(owned.size());
   constexpr std::size_t kGrain = 16;  // rows of blocks
-  parallel_for(blocks_, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin * kGutter; y < std::min<std::size_t>(end * kGutter, resolution_); ++y)
+  parallel_for(block_rows, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin * kGutter; y < std::min<std::size_t>(end * kGutter, rows_); ++y)
       for (std::size_t x = 0; x < resolution_; ++x)
         owned[y / kGutter * blocks_ + x / kGutter] |= owners_[y * resolution_ + x] != kNone;
   });
-  parallel_for(blocks_, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(block_rows, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row)
       for (std::size_t column = 0; column < blocks_; ++column)
-        for (std::size_t y = row - (row > 0); y <= std::min<std::size_t>(row + 1, blocks_ - 1); ++y)
+        for (std::size_t y = row - (row > 0); y <= std::min<std::size_t>(row + 1, block_rows - 1); ++y)
           for (std::size_t x = column - (column > 0); x <= std::min<std::size_t>(column + 1, blocks_ - 1);
                ++x)
             close_[row * blocks_ + column] |= owned[y * blocks_ + x];
@@ -48,7 +52,7 @@ std::uint32_t Gutter::search(std::uint32_t x, std::uint32_t y) const {
   for (const auto& [dx, dy] : steps) {
     // Offsets out of the image wrap around to large numbers.
     const std::uint32_t sx = x + static_cast<std::uint32_t>(dx), sy = y + static_cast<std::uint32_t>(dy);
-    if (sx >= resolution_ || sy >= resolution_) continue;
+    if (sx >= resolution_ || sy >= rows_) continue;
     const std::size_t source = std::size_t{sy} * resolution_ + sx;
     if (owners_[source] != kNone) return static_cast<std::uint32_t>(source);
   }

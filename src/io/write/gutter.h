@@ -18,7 +18,8 @@ inline constexpr std::uint32_t kGutter = 4;
 /// The owned texels from which free ones take their values.
 class Gutter {
  public:
-  /// `owners`: resolution² values, kNone for a free texel; they must outlive this and not change.
+  /// `owners`: whole rows of `resolution` values, kNone for a free texel; they must outlive this and not
+  /// change.
   Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners);
 
   /// The owned texel nearest to (x, y): the texel itself if it is owned; kNone if there is none within
@@ -32,7 +33,8 @@ class Gutter {
  private:
   [[nodiscard]] std::uint32_t search(std::uint32_t x, std::uint32_t y) const;
 
-  std::uint32_t resolution_, blocks_;  ///< texels, and blocks of kGutter² texels, a side
+  std::uint32_t resolution_, rows_;  ///< texels per row and per column
+  std::uint32_t blocks_;             ///< of kGutter² texels, per row
   std::span<const std::uint32_t> owners_;
   /// For each block, whether it or one of the eight around it has an owned texel.
   std::vector<std::uint8_t> close_;

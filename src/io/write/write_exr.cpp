@@ -43,7 +43,8 @@ constexpr std::uint32_t kRowsPerChunk = 16;
 // own compression with zlib takes twice as long.
 class ExrFile {
  public:
-  ExrFile(const std::filesystem::path& file, std::uint32_t n, std::span<const Channel> channels)
+  ExrFile(const std::filesystem::path& file, std::uint32_t columns, std::uint32_t rows,
+          std::span<const Channel> channels)
       : file_(file), name_(file.string()) {
     exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
     settings.user_data = this;
@@ -51,7 +52,7 @@ class ExrFile {
     settings.write_fn = write;
     check(exr_start_write(&context_, name_.c_str(), EXR_WRITE_FILE_DIRECTLY, &settings));
     try {
-      write_header(static_cast<std::int32_t>(n), channels);
+      write_header(static_cast<std::int32_t>(columns), static_cast<std::int32_t>(rows), channels);
     } catch (...) {
       exr_finish(&context_);
       throw;
@@ -71,10 +72,10 @@ class ExrFile {
   }
 
  private:
-  void write_header(std::int32_t n, std::span<const Channel> channels) {
+  void write_header(std::int32_t columns, std::int32_t rows, std::span<const Channel> channels) {
     int part = 0;
     check(exr_add_part(context_, nullptr, EXR_STORAGE_SCANLINE, &part));
-    check(exr_initialize_required_attr_simple(context_, part, n, n, EXR_COMPRESSION_ZIP));
+    check(exr_initialize_required_attr_simple(context_, part, columns, rows, EXR_COMPRESSION_ZIP));
     for (const Channel& channel : channels)
       check(exr_add_channel(context_, part, channel.name, channel.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
     const std::string comment = fmt::format("surface distance map, sdm {}", kVersion);
@@ -185,9 +186,9 @@ void write_texels(const std::filesystem::path& file, const Surface& surface,
   static_assert(std::endian::native == std::endian::little, "the order of bytes in the file");
   const std::uint32_t n = surface.resolution();
   const Gutter gutter(n, surface.texel_faces());
-  ExrFile exr(file, n, channels);
+  ExrFile exr(file, n, surface.rows(), channels);
   const auto chunk = [&](std::uint32_t first_row) {
-    const std::uint32_t rows = std::min(kRowsPerChunk, n - first_row);
+    const std::uint32_t rows = std::min(kRowsPerChunk, surface.rows() - first_row);
     std::vector<Texel> texels(std::size_t{n} * rows);
     for (std::uint32_t y = 0; y < rows; ++y)
       for (std::uint32_t x = 0; x < n; ++x) {
@@ -198,7 +199,7 @@ void write_texels(const std::filesystem::path& file, const Surface& surface,
   };
   // Groups of chunks, so that memory does not grow with the number of rows.
   constexpr std::uint32_t kGroup = 16;
-  const std::uint32_t chunks = (n + kRowsPerChunk - 1) / kRowsPerChunk;
+  const std::uint32_t chunks = (surface.rows() + kRowsPerChunk - 1) / kRowsPerChunk;
   std::array<std::vector<std::uint8_t>, kGroup> group;
   for (std::uint32_t first = 0; first < chunks; first += kGroup) {
     const std::uint32_t count = std::min(kGroup, chunks - first);
@@ -258,7 +259,7 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
 }
 
 void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps) try {
-  if (maps.resolution() != surface.resolution())
+  if (maps.resolution() != surface.resolution() || maps.least().size() != surface.texel_faces().size())
     throw Error("cannot write " + file.string() + ": the maps belong to another surface");
   const Channel channels[] = {{"coverage.A", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, coverage)},
                               {"max.D", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, largest)},

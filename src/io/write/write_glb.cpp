@@ -48,8 +48,9 @@ bool same(const Vec2& a, const Vec2& b) {
   return std::abs(a[0] - b[0]) <= kSamePlace && std::abs(a[1] - b[1]) <= kSamePlace;
 }
 
-// `extent`: the side of the texture, in texels of the atlas.
-SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint32_t>& faces, double extent) {
+// `extent`: the width and height of the texture, in texels of the atlas.
+SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint32_t>& faces,
+                             const Vec2& extent) {
   const Mesh& mesh = surface.mesh();
   const auto charts = surface.face_charts();
   SplitVertices result;
@@ -77,8 +78,8 @@ SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint
     }
   }
   for (const Vec2& place : places)
-    result.uv.push_back({static_cast<float>(std::clamp(place[0] / extent, 0.0, 1.0)),
-                         static_cast<float>(std::clamp(place[1] / extent, 0.0, 1.0))});
+    result.uv.push_back({static_cast<float>(std::clamp(place[0] / extent[0], 0.0, 1.0)),
+                         static_cast<float>(std::clamp(place[1] / extent[1], 0.0, 1.0))});
   return result;
 }
 
@@ -177,11 +178,11 @@ void add_primitive(GlbModel& glb, const Mesh& mesh, const SplitVertices& vertice
 /// distance.
 std::string texture_png(const Surface& surface, const DistanceMap& map, const ColorScale& scale,
                         const AtlasPicture& picture, std::span<const float> vertex_distances) {
-  const std::uint32_t n = picture.size();
+  const std::uint32_t n = picture.width(), rows = picture.height();
   const Mesh& mesh = surface.mesh();
-  std::vector<std::uint32_t> shown(std::size_t{n} * n);  // texels
+  std::vector<std::uint32_t> shown(std::size_t{n} * rows);  // texels
   std::vector<float> distance(shown.size());
-  parallel_for(n, 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin * n; pixel < end * n; ++pixel) {
       shown[pixel] =
           picture.texel(static_cast<std::uint32_t>(pixel % n), static_cast<std::uint32_t>(pixel / n));
@@ -189,7 +190,7 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
     }
   });
   const auto seed = [&](double x, double y, float d) {
-    if (!(x >= 0 && y >= 0 && x < n && y < n)) return;
+    if (!(x >= 0 && y >= 0 && x < n && y < rows)) return;
     const std::size_t pixel = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);
     if (shown[pixel] != kNone) return;
     shown[pixel] = 0;
@@ -207,7 +208,7 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
   }
   const Gutter gutter(n, shown);
   std::ostringstream png;
-  write_png(png, n, n, [&](std::uint32_t y, std::span<Rgb> pixels) {
+  write_png(png, n, rows, [&](std::uint32_t y, std::span<Rgb> pixels) {
     for (std::uint32_t x = 0; x < n; ++x) {
       const std::uint32_t source = gutter.source(x, y);
       pixels[x] = source == kNone ? kBackground : scale(distance[source]);
@@ -268,12 +269,13 @@ void write_glb(const std::filesystem::path& file, const Surface& surface, const 
   // glTF forbids NaN: faces with a vertex without a value form a separate primitive, without _DISTANCE.
   std::array<std::vector<std::uint32_t>, 2> faces;
   for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+    if (is_removed(mesh.triangles[face])) continue;
     const bool known =
         std::ranges::all_of(mesh.triangles[face], [&](auto v) { return std::isfinite(vertex_distances[v]); });
     faces[known ? 0 : 1].push_back(face);
   }
   const AtlasPicture picture(surface, options.largest);
-  const double extent = 1.0 * picture.size() * picture.step();
+  const Vec2 extent{1.0 * picture.width() * picture.step(), 1.0 * picture.height() * picture.step()};
   const std::array parts{split_vertices(surface, faces[0], extent),
                          split_vertices(surface, faces[1], extent)};
 

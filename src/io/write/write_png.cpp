@@ -33,10 +33,9 @@ LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const st
 template <class Color>
 void write_map_png(const std::filesystem::path& file, const AtlasPicture& picture, Color&& color) {
   AtomicFile out(file);
-  const std::uint32_t n = picture.size();
-  write_png(out.stream(), n, n, [&](std::uint32_t y, std::span<Rgb> pixels) {
+  write_png(out.stream(), picture.width(), picture.height(), [&](std::uint32_t y, std::span<Rgb> pixels) {
     out.check();
-    for (std::uint32_t x = 0; x < n; ++x) {
+    for (std::uint32_t x = 0; x < picture.width(); ++x) {
       const std::uint32_t texel = picture.texel(x, y);
       pixels[x] = texel == kNone ? kBackground : color(texel);
     }
@@ -50,17 +49,17 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
                         const PictureOptions& options) try {
   const ColorScale scale = color_scale(map, options);
   const AtlasPicture picture(surface, options.largest);
-  const std::uint32_t n = picture.size();
-  const Picture legend = draw_legend(scale, legend_text(map, scale, options.units), n);
+  const std::uint32_t n = picture.width();
+  const Picture legend = draw_legend(scale, legend_text(map, scale, options.units), picture.height());
 
   AtomicFile out(file);
-  write_png(out.stream(), n + legend.width, std::max(n, legend.height),
+  write_png(out.stream(), n + legend.width, std::max(picture.height(), legend.height),
             [&](std::uint32_t y, std::span<Rgb> pixels) {
               out.check();
               const auto map_row = pixels.first(n), legend_row = pixels.subspan(n);
               std::fill(map_row.begin(), map_row.end(), kBackground);
               std::fill(legend_row.begin(), legend_row.end(), Rgb{255, 255, 255});
-              if (y < n)
+              if (y < picture.height())
                 for (std::uint32_t x = 0; x < n; ++x)
                   if (const std::uint32_t texel = picture.texel(x, y); texel != kNone)
                     map_row[x] = scale(map.distance[texel]);

@@ -68,6 +68,7 @@ double largest_radius(const Surface& surface) {
   double largest = 0;
   parallel_for(faces, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
+      if (is_removed(surface.mesh().triangles[f])) continue;
       LargestRadius radius(surface, static_cast<std::uint32_t>(f), largest);
       cutter.cut(static_cast<std::uint32_t>(f), radius);
     }

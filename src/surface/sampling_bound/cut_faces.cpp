@@ -59,6 +59,7 @@ FacePieces cut_faces(const Surface& surface) {
   result.face_groups.resize((order.size() + kFacesPerGroup - 1) / kFacesPerGroup);
   parallel_for(result.face_groups.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * kFacesPerGroup; i < std::min(end * kFacesPerGroup, order.size()); ++i) {
+      if (is_removed(surface.mesh().triangles[order[i]])) continue;
       PieceStore store(sample_of, result.face_groups[i / kFacesPerGroup], result.whole_square);
       cutter.cut(order[i], store);
     }

@@ -52,7 +52,7 @@ bool NearSamples::same_side(std::uint32_t face, std::uint32_t other) const {
 
 std::uint32_t NearSamples::texel_at(double x, double y) const {
   const double n = surface_.resolution();
-  if (!(x >= 0 && y >= 0 && x < n && y < n)) return kNone;
+  if (!(x >= 0 && y >= 0 && x < n && y < surface_.rows())) return kNone;
   const auto texel = static_cast<std::uint32_t>(y * n + x);
   return surface_.texel_faces()[texel] == kNone ? kNone : texel;
 }

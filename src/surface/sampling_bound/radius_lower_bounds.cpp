@@ -46,6 +46,7 @@ std::vector<double> PieceAssignment::radius_lower_bounds(const Surface& surface,
   std::vector<double> radii(surface.mesh().triangles.size());
   parallel_for(radii.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
+      if (is_removed(surface.mesh().triangles[f])) continue;
       const FaceFrame frame(surface.mesh(), f);
       Farthest farthest(points, tree);
       if (surface.face_charts()[f] != kNone) {

@@ -14,7 +14,8 @@ class AtlasPicture {
   /// The surface must outlive this.
   AtlasPicture(const Surface& surface, std::uint32_t largest);
 
-  [[nodiscard]] std::uint32_t size() const { return size_; }  ///< pixels a side
+  [[nodiscard]] std::uint32_t width() const { return width_; }  ///< pixels
+  [[nodiscard]] std::uint32_t height() const { return height_; }
   [[nodiscard]] std::uint32_t step() const { return step_; }
   /// The texel that a pixel shows: the one in the middle of its square if a face owns it, otherwise another
   /// one of the square; kNone if no face owns any.
@@ -22,7 +23,7 @@ class AtlasPicture {
 
  private:
   const Surface& surface_;
-  std::uint32_t step_, size_;
+  std::uint32_t step_, width_, height_;
 };
 
 }  // namespace sdm::io

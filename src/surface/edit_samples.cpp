@@ -1,0 +1,60 @@
+#include "surface/edit_samples.h"
+
+#include <algorithm>
+
+#include "core/geometry/spatial_order.h"
+#include "surface/surface_data.h"
+
+namespace sdm::surface {
+namespace {
+
+constexpr std::size_t kPacket = 16;
+
+}  // namespace
+
+void edit_samples(SurfaceData& s, std::span<const std::uint8_t> removed_faces,
+                  std::span<const std::uint32_t> added) {
+  const std::size_t before = s.samples.size(), packets = (before + kPacket - 1) / kPacket;
+  const auto end_of = [&](std::size_t packet) { return std::min(before, (packet + 1) * kPacket); };
+  const auto is_removed = [&](std::size_t i) { return removed_faces[s.sample_faces[i]] != 0; };
+
+  std::vector<std::uint32_t> open;  // packets that lose a sample
+  std::size_t removed = 0;
+  for (std::size_t p = 0; p < packets; ++p) {
+    std::size_t of_packet = 0;
+    for (std::size_t i = p * kPacket; i < end_of(p); ++i) of_packet += is_removed(i);
+    if (of_packet > 0) open.push_back(static_cast<std::uint32_t>(p));
+    removed += of_packet;
+  }
+  if (removed == 0 && added.empty()) return;
+  // What is not full at the end, or beyond the new end, is distributed as well.
+  const std::size_t after = before - removed + added.size();
+  const std::size_t full = std::min(before, after) / kPacket;
+  while (!open.empty() && open.back() >= full) open.pop_back();
+  for (std::size_t p = full; p < packets; ++p) open.push_back(static_cast<std::uint32_t>(p));
+
+  std::vector<std::uint32_t> texels;
+  for (const std::uint32_t p : open)
+    for (std::size_t i = p * kPacket; i < end_of(p); ++i)
+      if (!is_removed(i)) texels.push_back(s.samples[i]);
+  texels.insert(texels.end(), added.begin(), added.end());
+  std::vector<Vec3> points(texels.size());
+  for (std::size_t i = 0; i < texels.size(); ++i)
+    points[i] = s.texel_point(s.texel_faces[texels[i]], texels[i]);
+  const std::vector<std::uint32_t> order = spatial_order(points);
+
+  s.samples.resize(after);
+  s.sample_faces.resize(after);
+  std::size_t next = 0;
+  const auto fill = [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      s.samples[i] = texels[order[next++]];
+      s.sample_faces[i] = s.texel_faces[s.samples[i]];
+    }
+  };
+  for (const std::uint32_t p : open)
+    if (p < full) fill(p * kPacket, (p + 1) * kPacket);
+  fill(full * kPacket, after);
+}
+
+}  // namespace sdm::surface
