@@ -26,11 +26,9 @@ namespace fs = std::filesystem;
 using sdm::scenes::Scene;
 using sdm::scenes::SceneKind;
 
-const std::map<std::string, SceneKind> kKinds{{"letters", SceneKind::letters},
-                                              {"bunnies", SceneKind::bunnies},
-                                              {"figure", SceneKind::figure},
-                                              {"crowd", SceneKind::crowd},
-                                              {"cloth", SceneKind::cloth}};
+const std::map<std::string, SceneKind> kKinds{
+    {"letters", SceneKind::letters}, {"bunnies", SceneKind::bunnies}, {"figure", SceneKind::figure},
+    {"crowd", SceneKind::crowd},     {"cloth", SceneKind::cloth},     {"tear", SceneKind::tear}};
 
 struct SceneCommand {
   std::string kind, format = "npy";
@@ -47,7 +45,7 @@ class Recorder {
     if (!body.moves) {
       sequence_ = body.name + ".ply";
       sdm::write_ply(folder / sequence_, body.mesh);
-    } else if (numbered) {
+    } else if (numbered || body.tears) {
       sequence_ = body.name;
       fs::create_directories(folder_);
       numbered_ = true;
@@ -85,6 +83,7 @@ nlohmann::ordered_json describe(const SceneCommand& command, const Scene& scene,
     bodies.push_back({{"name", body.name},
                       {"sequence", recorders[i].sequence()},
                       {"moves", body.moves},
+                      {"tears", body.tears},
                       {"vertices", body.mesh.positions.size()},
                       {"triangles", body.mesh.triangles.size()}});
   }
@@ -131,10 +130,11 @@ void add_scene_command(CLI::App& app) {
   scene
       ->add_option(
           "SCENE", command->kind,
-          "colliding letters, colliding bunnies, a figure walking in a box, a crowd, or a falling cloth")
+          "colliding letters, colliding bunnies, a figure walking in a box, a crowd, a falling cloth, or a "
+          "cloth that a ball tears")
       ->required()
       ->check(CLI::IsMember(kKinds))
-      ->type_name("letters|bunnies|figure|crowd|cloth");
+      ->type_name("letters|bunnies|figure|crowd|cloth|tear");
   add_output_option(*scene, command->out);
   scene->add_option("--frames", command->frames, "Number of frames, at 60 per second")
       ->check(CLI::Range(1, 100000).description(""))
@@ -142,7 +142,8 @@ void add_scene_command(CLI::App& app) {
       ->capture_default_str();
   scene
       ->add_option("--format", command->format,
-                   "Moving bodies: NAME.ply and NAME.npy, or NAME/00000.ply and so on")
+                   "Moving bodies: NAME.ply and NAME.npy, or NAME/00000.ply and so on, as always for those "
+                   "that tear")
       ->check(CLI::IsMember({"npy", "ply"}).description(""))
       ->type_name("npy|ply")
       ->capture_default_str();

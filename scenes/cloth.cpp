@@ -32,21 +32,35 @@ Cloth::Cloth(std::uint32_t n, double side) : thickness_(0.9 * side / (n - 1)), h
         mesh_.triangles.push_back({b, c, d});
       }
     }
+  // What lies between the ends: nothing, the two other corners of a square, or the particle in the middle.
+  const auto across = [&](std::uint32_t x, std::uint32_t y, std::uint32_t dx,
+                          std::uint32_t dy) -> std::array<std::uint32_t, 2> {
+    if (dx + dy == 1 || (dx == 1 && (x + y) % 2 == 0)) return {kNone, kNone};
+    if (dx == 1) return {at(x + 1, y), at(x, y + 1)};
+    return {at(x + dx / 2, y + dy / 2), at(x + dx / 2, y + dy / 2)};
+  };
   const auto add_springs = [&](std::uint32_t dx, std::uint32_t dy, double compliance) {
     for (std::uint32_t y = 0; y + dy < n; ++y)
-      for (std::uint32_t x = 0; x + dx < n; ++x) add_spring(at(x, y), at(x + dx, y + dy), compliance);
+      for (std::uint32_t x = 0; x + dx < n; ++x)
+        add_spring(at(x, y), at(x + dx, y + dy), compliance, across(x, y, dx, dy));
   };
   add_springs(1, 0, kStretch), add_springs(0, 1, kStretch);
   add_springs(1, 1, kShear);
   for (std::uint32_t y = 0; y + 1 < n; ++y)
-    for (std::uint32_t x = 0; x + 1 < n; ++x) add_spring(at(x + 1, y), at(x, y + 1), kShear);
+    for (std::uint32_t x = 0; x + 1 < n; ++x)
+      if ((x + y) % 2 == 0)
+        add_spring(at(x + 1, y), at(x, y + 1), kShear, {at(x, y), at(x + 1, y + 1)});
+      else
+        add_spring(at(x + 1, y), at(x, y + 1), kShear, {kNone, kNone});
   add_springs(2, 0, kBend), add_springs(0, 2, kBend);
   positions_ = previous_ = mesh_.positions;
   velocities_.resize(positions_.size());
+  mobility_.assign(positions_.size(), 1);
 }
 
-void Cloth::add_spring(std::uint32_t a, std::uint32_t b, double compliance) {
-  springs_.push_back({a, b, norm(mesh_.positions[b] - mesh_.positions[a]), compliance});
+void Cloth::add_spring(std::uint32_t a, std::uint32_t b, double compliance,
+                       const std::array<std::uint32_t, 2>& across) {
+  springs_.push_back({a, b, norm(mesh_.positions[b] - mesh_.positions[a]), compliance, across});
 }
 
 void Cloth::step(double dt, std::span<const Sites> solids) {
@@ -54,6 +68,7 @@ void Cloth::step(double dt, std::span<const Sites> solids) {
   const double fastest = 0.25 * thickness_ / dt;
   previous_ = positions_;
   for (std::size_t v = 0; v < positions_.size(); ++v) {
+    if (mobility_[v] == 0) continue;
     velocities_[v][2] -= dt * kGravity;
     const double speed = norm(velocities_[v]);
     positions_[v] += std::min(dt, dt * fastest / std::max(speed, fastest)) * velocities_[v];
@@ -61,19 +76,23 @@ void Cloth::step(double dt, std::span<const Sites> solids) {
   solve_springs(dt);
   resolve_self_contacts();
   for (const Sites& solid : solids) resolve_contacts(solid);
-  for (std::size_t v = 0; v < positions_.size(); ++v)
+  for (std::size_t v = 0; v < positions_.size(); ++v) {
+    if (mobility_[v] == 0) positions_[v] = previous_[v];
     velocities_[v] = (1 / dt) * (positions_[v] - previous_[v]);
+  }
 }
 
-// XPBD with C = |b − a| − length: Δλ = −C / (1 + 1 + compliance/dt²), Δx = ± Δλ ∇C.
+// XPBD with C = |b − a| − length and inverse masses w: Δλ = −C / (w_a + w_b + compliance/dt²), Δx = ± w Δλ
+// ∇C.
 void Cloth::solve_springs(double dt) {
   for (const Spring& s : springs_) {
     const Vec3 along = positions_[s.b] - positions_[s.a];
     const double length = norm(along);
-    if (length == 0) continue;
-    const Vec3 shift = ((length - s.length) / (2 + s.compliance / (dt * dt)) / length) * along;
-    positions_[s.a] += shift;
-    positions_[s.b] += -shift;
+    const double mobility = mobility_[s.a] + mobility_[s.b];
+    if (length == 0 || mobility == 0) continue;
+    const Vec3 shift = ((length - s.length) / (mobility + s.compliance / (dt * dt)) / length) * along;
+    positions_[s.a] += mobility_[s.a] * shift;
+    positions_[s.b] += -mobility_[s.b] * shift;
   }
 }
 

@@ -23,6 +23,9 @@ Scene::Scene(SceneKind kind, const SceneOptions& options) : impl_(std::make_uniq
     case SceneKind::crowd:
       impl_->simulation = make_crowd(impl_->bodies);
       break;
+    case SceneKind::tear:
+      impl_->simulation = make_tear(impl_->bodies);
+      break;
     case SceneKind::cloth:
       impl_->simulation = make_cloth(impl_->bodies);
       break;

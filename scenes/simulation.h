@@ -14,7 +14,7 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
-  /// Advances the positions of the bodies by kTimeStep.
+  /// Advances the bodies by kTimeStep.
   virtual void advance(std::vector<Scene::Body>& bodies) = 0;
 };
 
@@ -24,5 +24,6 @@ std::unique_ptr<Simulation> make_bunnies(std::vector<Scene::Body>& bodies, const
 std::unique_ptr<Simulation> make_figure(std::vector<Scene::Body>& bodies);
 std::unique_ptr<Simulation> make_crowd(std::vector<Scene::Body>& bodies);
 std::unique_ptr<Simulation> make_cloth(std::vector<Scene::Body>& bodies);
+std::unique_ptr<Simulation> make_tear(std::vector<Scene::Body>& bodies);
 
 }  // namespace sdm::scenes

@@ -53,10 +53,10 @@ class SDM_API Sites {
   /// close in the precision of the engine, another one may be found. Throws sdm::Error, and changes nothing,
   /// as apply() does.
   ///
-  /// Cost: linear, all cores, about twice to three times a refit; less than half of building anew. Edges and
-  /// the tree are repaired where the mesh changed, the regions of all sites are computed. Building anew what
-  /// is otherwise repaired takes longer: edges of meshes with duplicate faces; the orientation of meshes that
-  /// are closed, or not consistently oriented; the tree, when a quarter of its faces have been added.
+  /// Cost: linear in the mesh even for a small edit, all cores: three to four times a refit, or two thirds to
+  /// nine tenths of building anew. Edges and the tree are repaired where the mesh changed; the orientation,
+  /// and the regions of all sites, are computed again. Edges are built anew for meshes with duplicate faces,
+  /// and so is the tree when a quarter of its faces have been added.
   void edit(const MeshEdit& edit);
 
   [[nodiscard]] const Mesh& mesh() const;

@@ -1,6 +1,7 @@
 // `sdm scene` as a user runs it: the files are what MeshSequence reads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/io.h>
 #include <sdm/sequence.h>
 
 #include <csignal>
@@ -61,6 +62,19 @@ TEST_F(SceneCommand, BothFormatsHoldTheSameFrames) {
     for (std::size_t v = 0; v < b.size(); ++v)
       for (int k = 0; k < 3; ++k) ASSERT_EQ(a[v][k], static_cast<double>(static_cast<float>(b[v][k])));
   }
+}
+
+TEST_F(SceneCommand, ATearingClothIsWrittenAsNumberedFiles) {
+  ASSERT_EQ(run_sdm({"scene", "tear", "-o", out, "--frames", "30"}).code, 0);
+  EXPECT_THAT(names_in(out), ElementsAre("ball.npy", "ball.ply", "cloth", "floor.ply", "scene.json"));
+  EXPECT_EQ(names_in(out + "/cloth").size(), 30u);
+  EXPECT_EQ(description()["bodies"][0]["tears"], true);
+  EXPECT_EQ(description()["bodies"][1]["tears"], false);
+  // More vertices at the end than at the start, and as many faces.
+  const Mesh first = read_mesh(out + "/cloth/00000.ply"), last = read_mesh(out + "/cloth/00029.ply");
+  EXPECT_EQ(first.triangles.size(), last.triangles.size());
+  EXPECT_GT(last.positions.size(), first.positions.size());
+  EXPECT_EQ(sequence(1).frame_count(), 30u);
 }
 
 TEST_F(SceneCommand, BunniesAreMadeOfTheMeshGiven) {

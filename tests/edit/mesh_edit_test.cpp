@@ -51,6 +51,18 @@ TEST(MeshEdit, RemovedFacesCountNowhere) {
   EXPECT_TRUE(info.closed && info.oriented && info.manifold);
 }
 
+// A range of faces of which none is left had extended the bounds to infinity.
+TEST(MeshEdit, BoundsIgnoreLongRunsOfRemovedFaces) {
+  Mesh mesh = test::joined(test::sphere(6), test::moved(test::cube(), {5, 0, 0}));
+  const auto faces = static_cast<std::uint32_t>(test::sphere(6).triangles.size());
+  ASSERT_GT(faces, 50000u);
+  MeshEdit edit;
+  for (std::uint32_t f = 0; f < faces; ++f) edit.removed_faces.push_back(f);
+  apply(mesh, edit);
+  EXPECT_EQ(bounds(mesh).lo, (Vec3{4, -1, -1}));
+  EXPECT_EQ(bounds(mesh).hi, (Vec3{6, 1, 1}));
+}
+
 TEST(MeshEdit, RefusesWhatIsInvalidAndChangesNothing) {
   const Mesh mesh = test::cube();
   const auto n = static_cast<std::uint32_t>(mesh.positions.size());
