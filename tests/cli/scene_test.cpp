@@ -65,16 +65,16 @@ TEST_F(SceneCommand, BothFormatsHoldTheSameFrames) {
 }
 
 TEST_F(SceneCommand, ATearingClothIsWrittenAsNumberedFiles) {
-  ASSERT_EQ(run_sdm({"scene", "tear", "-o", out, "--frames", "30"}).code, 0);
+  ASSERT_EQ(run_sdm({"scene", "tear", "-o", out, "--frames", "60"}).code, 0);
   EXPECT_THAT(names_in(out), ElementsAre("ball.npy", "ball.ply", "cloth", "floor.ply", "scene.json"));
-  EXPECT_EQ(names_in(out + "/cloth").size(), 30u);
+  EXPECT_EQ(names_in(out + "/cloth").size(), 60u);
   EXPECT_EQ(description()["bodies"][0]["tears"], true);
   EXPECT_EQ(description()["bodies"][1]["tears"], false);
   // More vertices at the end than at the start, and as many faces.
-  const Mesh first = read_mesh(out + "/cloth/00000.ply"), last = read_mesh(out + "/cloth/00029.ply");
+  const Mesh first = read_mesh(out + "/cloth/00000.ply"), last = read_mesh(out + "/cloth/00059.ply");
   EXPECT_EQ(first.triangles.size(), last.triangles.size());
   EXPECT_GT(last.positions.size(), first.positions.size());
-  EXPECT_EQ(sequence(1).frame_count(), 30u);
+  EXPECT_EQ(sequence(1).frame_count(), 60u);
 }
 
 TEST_F(SceneCommand, BunniesAreMadeOfTheMeshGiven) {

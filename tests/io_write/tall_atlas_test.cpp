@@ -1,0 +1,76 @@
+// Files of an atlas to which an edit has added rows.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <gtest/gtest.h>
+#include <sdm/io.h>
+
+#include <tiny_gltf.h>
+
+#include "io_write/read_png.h"
+#include "support/made_up_maps.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
+
+namespace sdm::test {
+namespace {
+
+struct TallAtlas : ::testing::Test {
+  static constexpr std::uint32_t kSide = 128;
+  Surface surface{ring(24), {.resolution = kSide}};
+  DistanceMap map;
+  const TemporaryFolder folder;
+
+  TallAtlas() {
+    const Mesh more = moved(ring(24), {4, 0, 0});
+    MeshEdit edit{.removed_faces = {5}, .added_vertices = more.positions};
+    const auto n = static_cast<std::uint32_t>(surface.mesh().positions.size());
+    for (const auto& [a, b, c] : more.triangles) edit.added_faces.push_back({a + n, b + n, c + n});
+    surface.edit(edit);
+    map = map_of(surface, [](const Vec3& p) { return p[0]; });
+  }
+};
+
+TEST_F(TallAtlas, ExrHasAllRows) {
+  ASSERT_GT(surface.rows(), kSide);
+  write_exr(folder / "map.exr", surface, map);
+  Imf::InputFile exr((folder / "map.exr").c_str());
+  const auto window = exr.header().dataWindow();
+  ASSERT_EQ(window.max, Imath::V2i(kSide - 1, static_cast<int>(surface.rows()) - 1));
+  std::vector<float> distance(surface.texel_faces().size());
+  Imf::FrameBuffer frame;
+  frame.insert("distance.D",
+               Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(distance.data()), 4, std::size_t{4} * kSide));
+  exr.setFrameBuffer(frame);
+  exr.readPixels(0, window.max.y);
+  for (const std::uint32_t texel : surface.sample_texels()) ASSERT_EQ(distance[texel], map.distance[texel]);
+}
+
+TEST_F(TallAtlas, PicturesHaveAllRows) {
+  write_voronoi_png(folder / "voronoi.png", surface, map);
+  const Pixels pixels = read_png(folder / "voronoi.png");
+  EXPECT_EQ(pixels.width, kSide);
+  EXPECT_EQ(pixels.height, surface.rows());
+  write_distance_png(folder / "distance.png", surface, map, {.largest = 64});
+  EXPECT_LE(read_png(folder / "distance.png").width, 64u + 400);
+}
+
+TEST_F(TallAtlas, TheModelsCoordinatesReferToAllRows) {
+  write_glb(folder / "model.glb", surface, map,
+            at_vertices(surface.mesh(), [](const Vec3& p) { return p[0]; }));
+  tinygltf::Model model;
+  std::string error, warning;
+  ASSERT_TRUE(
+      tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, (folder / "model.glb").string()))
+      << error;
+  EXPECT_EQ(model.images.at(0).width, static_cast<int>(kSide));
+  EXPECT_EQ(model.images.at(0).height, static_cast<int>(surface.rows()));
+  std::size_t triangles = 0;
+  for (const auto& primitive : model.meshes.at(0).primitives)
+    triangles += model.accessors[primitive.indices].count / 3;
+  EXPECT_EQ(triangles, surface.mesh().triangles.size() - 1);  // but for the removed one
+}
+
+}  // namespace
+}  // namespace sdm::test
