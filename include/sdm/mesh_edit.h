@@ -1,4 +1,6 @@
 /// Changes of a mesh's topology that keep the numbers of all that stays.
+///
+/// Threads: plain data; apply() may run concurrently on different meshes.
 #pragma once
 
 #include <sdm/api.h>

@@ -1,7 +1,7 @@
 /// The object that distances are measured to (O2): the open faces, open edges and vertices of a mesh.
 ///
 /// Threads: const functions of an object may be called concurrently, as may all queries of it; nothing else
-/// may run beside refit().
+/// may run beside refit() and edit().
 #pragma once
 
 #include <sdm/api.h>

@@ -1,7 +1,7 @@
 /// The surface on which distances are measured (O1): a mesh with a texture atlas.
 ///
 /// Threads: const functions of an object may be called concurrently, as may all maps of it; nothing else may
-/// run beside refit().
+/// run beside refit() and edit().
 #pragma once
 
 #include <sdm/api.h>
