@@ -30,7 +30,7 @@ class Fitter {
     const double width = room.resolution(), margin = 2.0 * room.gutter() + 2;
     footprints_.reserve(shapes.size());
     for (const Shape& shape : shapes) {
-      const auto [less, more] = std::minmax(scale * shape.size[0] + margin, scale * shape.size[1] + margin);
+      const auto [less, more] = std::minmax({scale * shape.size[0] + margin, scale * shape.size[1] + margin});
       if (!(less <= width && more <= kMaxRows))
         throw Error("a chart of the added faces takes " + std::to_string(static_cast<std::uint64_t>(less)) +
                     " × " + std::to_string(static_cast<std::uint64_t>(more)) +
