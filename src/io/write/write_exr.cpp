@@ -1,11 +1,11 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "io/write/atomic_file.h"
+#include "io/write/deflate.h"
 #include "io/write/gutter.h"
 
 #include <OpenEXR/openexr.h>
 #include <fmt/format.h>
-#include <isa-l/igzip_lib.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/version.h>
@@ -149,32 +149,11 @@ std::vector<std::uint8_t> differences(std::span<const Texel> texels, std::uint32
   return result;
 }
 
-// The bytes in zlib's format; none if they would not get smaller.
-std::vector<std::uint8_t> deflated(std::span<std::uint8_t> bytes) {
-  // The second of three levels: 1 to 2 % larger than by libdeflate's fastest, in a third of the time.
-  constexpr std::uint32_t kLevel = 2;
-  std::vector<std::uint8_t> buffer(ISAL_DEF_LVL2_DEFAULT), compressed(bytes.size() - 1);
-  isal_zstream stream{};
-  isal_deflate_stateless_init(&stream);
-  stream.level = kLevel;
-  stream.level_buf = buffer.data();
-  stream.level_buf_size = static_cast<std::uint32_t>(buffer.size());
-  stream.gzip_flag = IGZIP_ZLIB;
-  stream.end_of_stream = 1;
-  stream.next_in = bytes.data();
-  stream.avail_in = static_cast<std::uint32_t>(bytes.size());
-  stream.next_out = compressed.data();
-  stream.avail_out = static_cast<std::uint32_t>(compressed.size());
-  compressed.resize(isal_deflate_stateless(&stream) == COMP_OK ? stream.total_out : 0);
-  return compressed;
-}
-
 // A chunk as it is stored: compressed, or as it is if it would not get smaller.
 template <class Texel>
 std::vector<std::uint8_t> packed(std::span<const Texel> texels, std::uint32_t n,
                                  std::span<const Channel> channels) {
-  std::vector<std::uint8_t> bytes = differences(texels, n, channels);
-  bytes = deflated(bytes);
+  std::vector<std::uint8_t> bytes = zlib_compressed(differences(texels, n, channels));
   return bytes.empty() ? interleaved(texels, n, channels) : bytes;
 }
 

@@ -144,7 +144,6 @@ void write_plot_png(const std::filesystem::path& file, const std::string& axis,
 
   AtomicFile out(file);
   write_png(out.stream(), picture.width, picture.height, [&](std::uint32_t y, std::span<Rgb> pixels) {
-    out.check();
     std::copy_n(&picture.pixels[std::size_t{y} * picture.width], picture.width, pixels.begin());
   });
   out.commit();

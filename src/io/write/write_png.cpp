@@ -34,7 +34,6 @@ template <class Color>
 void write_map_png(const std::filesystem::path& file, const AtlasPicture& picture, Color&& color) {
   AtomicFile out(file);
   write_png(out.stream(), picture.width(), picture.height(), [&](std::uint32_t y, std::span<Rgb> pixels) {
-    out.check();
     for (std::uint32_t x = 0; x < picture.width(); ++x) {
       const std::uint32_t texel = picture.texel(x, y);
       pixels[x] = texel == kNone ? kBackground : color(texel);
@@ -55,7 +54,6 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
   AtomicFile out(file);
   write_png(out.stream(), n + legend.width, std::max(picture.height(), legend.height),
             [&](std::uint32_t y, std::span<Rgb> pixels) {
-              out.check();
               const auto map_row = pixels.first(n), legend_row = pixels.subspan(n);
               std::fill(map_row.begin(), map_row.end(), kBackground);
               std::fill(legend_row.begin(), legend_row.end(), Rgb{255, 255, 255});

@@ -16,6 +16,10 @@ std::uint32_t AtlasPicture::texel(std::uint32_t x, std::uint32_t y) const {
   const std::uint32_t n = surface_.resolution();
   const auto owners = surface_.texel_faces();
   const auto index = [n](std::size_t column, std::size_t row) { return row * n + column; };
+  if (step_ == 1) {
+    const std::size_t texel = index(x, y);
+    return owners[texel] == kNone ? kNone : static_cast<std::uint32_t>(texel);
+  }
   const std::uint32_t left = x * step_, top = y * step_;
   const std::uint32_t right = std::min(n, left + step_), bottom = std::min(surface_.rows(), top + step_);
   const std::size_t middle = index((left + right) / 2, (top + bottom) / 2);

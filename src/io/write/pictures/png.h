@@ -1,4 +1,4 @@
-// 8-bit RGB images as PNG, written row by row.
+// 8-bit RGB images as PNG, in strips of rows that all threads compress.
 #pragma once
 
 #include "io/write/pictures/color_scale.h"
@@ -10,8 +10,8 @@
 
 namespace sdm::io {
 
-/// Writes `height` rows; `row(y, pixels)` fills each. Optimised for speed rather than size. Does not check
-/// the stream, whose state records failures.
+/// Writes `height` rows; `row(y, pixels)` fills each, called from several threads at once and in any order.
+/// Optimised for speed rather than size. Does not check the stream, whose state records failures.
 void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
                const std::function<void(std::uint32_t y, std::span<Rgb> pixels)>& row);
 
