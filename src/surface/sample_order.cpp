@@ -118,15 +118,16 @@ class SampleOrder {
   // Moves items with `samples` samples in all, a multiple of 16, to the front: those with the smallest
   // coordinates along the longest side, but for a few single ones near the split. Returns their number.
   [[nodiscard]] static std::size_t split(std::span<Item> items, std::size_t samples) {
-    const std::size_t axis = longest_side<Item>(items);
-    const auto along = [axis](const Item& item) {
-      return std::pair(item.point[axis], item.texel);
+    const Side side = longest_side<Item>(items);
+    const auto along = [&side](const Item& item) {
+      return std::pair(item.point[side.axis], item.texel);
     };  // unique
     const auto sort_out = [&](std::span<Item> part, std::size_t nth) {
       std::ranges::nth_element(part, part.begin() + static_cast<std::ptrdiff_t>(nth), {}, along);
     };
     // The item at which the samples before it exceed the number lies in [begin, end).
-    std::size_t begin = 0, end = items.size(), before = 0;  // samples of the items before `begin`
+    auto [begin, end, before] =
+        split_range(items, side, samples, [](const Item& item) { return item.samples(); });
     while (end - begin > 1) {
       const std::size_t middle = begin + (end - begin) / 2;
       sort_out(items.subspan(begin, end - begin), middle - begin);

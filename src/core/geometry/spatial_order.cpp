@@ -22,9 +22,12 @@ struct Item {
 void order(std::span<Item> items) {
   if (items.size() <= kPacket) return;
   const std::size_t half = kPacket * std::bit_floor((items.size() - 1) / kPacket);
-  std::ranges::nth_element(items, items.begin() + static_cast<std::ptrdiff_t>(half), {},
-                           [axis = longest_side<Item>(items)](const Item& item) {
-                             return std::pair(item.point[axis], item.index);  // unique, so the order is too
+  const Side side = longest_side<Item>(items);
+  const SplitRange range = split_range(items, side, half, [](const Item&) { return 1; });
+  std::ranges::nth_element(items.subspan(range.begin, range.end - range.begin),
+                           items.begin() + static_cast<std::ptrdiff_t>(half), {}, [&side](const Item& item) {
+                             return std::pair(item.point[side.axis],
+                                              item.index);  // unique, so the order is too
                            });
   const auto first = [=] { order(items.first(half)); };
   const auto second = [=] { order(items.subspan(half)); };
