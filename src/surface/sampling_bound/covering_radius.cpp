@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <new>
 
 #include "core/atomic_extremes.h"
@@ -26,6 +27,30 @@ class LargestRadius {
         rounding_(frame_.rounding()),
         square_(surface.face_charts()[face] == kNone ? 0 : square_radius(surface, face, frame_)),
         shared_(largest) {}
+
+  // Whether all pieces of a face with few squares are surely within the largest radius: those of its squares
+  // whose texels have an owner. Most faces need no more than this, which cuts nothing.
+  [[nodiscard]] bool skips_face(std::uint32_t face) const {
+    constexpr double kMostSquares = 256;
+    const double least = least_to_know();
+    if (surface_.face_charts()[face] == kNone || !(square_ <= least)) return false;
+    const auto& corners = internals(surface_).corners[face];
+    const auto [x0, x1] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
+    const auto [y0, y1] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
+    const double left = std::floor(x0), top = std::floor(y0), n = surface_.resolution();
+    if (!(left >= 0 && top >= 0 && x1 < n && y1 < surface_.rows())) return false;
+    if ((x1 - left + 1) * (y1 - top + 1) > kMostSquares) return false;
+    const auto owners = surface_.texel_faces();
+    for (double y = top; y <= y1; ++y)
+      for (double x = left; x <= x1; ++x) {
+        const auto texel = static_cast<std::uint32_t>(y * n + x);
+        if (owners[texel] == face) continue;
+        if (owners[texel] == kNone) return false;
+        const Vec3 centre = surface_.to_surface(face, {x + 0.5, y + 0.5}) - surface_.texel_point(texel);
+        if (norm(centre) + square_ > least) return false;
+      }
+    return true;
+  }
 
   [[nodiscard]] double enough(const CutFace& face) const { return std::max(face.enough, least_to_know()); }
 
@@ -70,7 +95,8 @@ double largest_radius(const Surface& surface) {
     for (std::size_t f = begin; f < end; ++f) {
       if (is_removed(surface.mesh().triangles[f])) continue;
       LargestRadius radius(surface, static_cast<std::uint32_t>(f), largest);
-      cutter.cut(static_cast<std::uint32_t>(f), radius);
+      if (!radius.skips_face(static_cast<std::uint32_t>(f)))
+        cutter.cut(static_cast<std::uint32_t>(f), radius);
     }
   });
   return rounded_up(largest);
