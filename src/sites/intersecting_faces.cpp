@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/geometry/predicates.h"
 #include "core/geometry/vec.h"
@@ -53,6 +54,19 @@ bool folded(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   return false;
 }
 
+// Whether a plane through the common corner 0 surely separates two triangles, which then share nothing else.
+// Any plane would do; the one tried lies between the directions of the triangles.
+bool separated(const Corners& p, const Corners& q) {
+  constexpr double kRounding = 1e-14;  // more than that of a difference and a dot product
+  const Vec3 to_p[] = {p[1] - p[0], p[2] - p[0]}, to_q[] = {q[1] - q[0], q[2] - q[0]};
+  const Vec3 normal = normalized(to_p[0] + to_p[1]) - normalized(to_q[0] + to_q[1]);
+  const auto size = [](const Vec3& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); };
+  const double error = kRounding * size(normal);
+  const auto above = [&](const Vec3& v) { return dot(normal, v) > error * size(v); };
+  const auto below = [&](const Vec3& v) { return dot(normal, v) < -error * size(v); };
+  return above(to_p[0]) && above(to_p[1]) && below(to_q[0]) && below(to_q[1]);
+}
+
 }  // namespace
 
 // Triangles that share one corner and another point share the segment between the two; its continuation
@@ -69,7 +83,8 @@ bool faces_intersect(const FaceSoup& mesh, std::uint32_t a, std::uint32_t b) {
     case 0:
       return triangles_intersect(p, q) && has_area(p) && has_area(q);
     case 1:
-      return (triangles_intersect({p[1], p[2], p[2]}, q) || triangles_intersect({q[1], q[2], q[2]}, p)) &&
+      return !separated(p, q) &&
+             (triangles_intersect({p[1], p[2], p[2]}, q) || triangles_intersect({q[1], q[2], q[2]}, p)) &&
              has_area(p) && has_area(q);
     case 2:
       return folded(p[0], p[1], p[2], q[2]);

@@ -91,6 +91,31 @@ TEST(SelfIntersections, OfFacesThatShareACorner) {
   EXPECT_FALSE(embedded({3, 0, 0}, {0, 0, 1})) << "on a side, longer";
 }
 
+// On a small grid, where many corners touch planes and edges, and the same slightly off it. Faces that share
+// a corner intersect beyond it if and only if the side across from it of one of them meets the other.
+TEST(SelfIntersections, OfFacesThatShareACornerAgreeWithExactArithmetic) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> grid(-2, 2);
+  std::uniform_real_distribution<double> off(-1e-13, 1e-13);
+  int intersecting = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Mesh mesh{std::vector<Vec3>(5), {{0, 1, 2}, {0, 3, 4}}, {}};
+    for (Vec3& p : mesh.positions)
+      for (double& x : p) x = grid(random) + (i % 2 == 0 ? 0 : off(random));
+    const auto corners = [&](const Triangle& t) {
+      return Corners{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+    };
+    const Corners a = corners({0, 1, 2}), b = corners({0, 3, 4});
+    const auto has_area = [](const Corners& t) { return cross(t[1] - t[0], t[2] - t[0]) != Vec3{}; };
+    if (!has_area(a) || !has_area(b)) continue;
+    const bool expected =
+        oracle::intersect(corners({1, 2, 2}), b) || oracle::intersect(corners({3, 4, 4}), a);
+    intersecting += expected;
+    ASSERT_EQ(is_embedded(Sites(mesh)), !expected) << i;
+  }
+  EXPECT_GT(intersecting, 400);
+}
+
 // Faces 0 1 2 and 1 0 3 share an edge.
 TEST(SelfIntersections, OfFacesThatShareAnEdge) {
   const auto embedded = [](const Vec3& three) {

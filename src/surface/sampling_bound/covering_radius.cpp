@@ -40,14 +40,17 @@ class LargestRadius {
     const double left = std::floor(x0), top = std::floor(y0), n = surface_.resolution();
     if (!(left >= 0 && top >= 0 && x1 < n && y1 < surface_.rows())) return false;
     if ((x1 - left + 1) * (y1 - top + 1) > kMostSquares) return false;
+    const SurfaceData& data = internals(surface_);
     const auto owners = surface_.texel_faces();
+    const double spare = least - square_;
     for (double y = top; y <= y1; ++y)
       for (double x = left; x <= x1; ++x) {
         const auto texel = static_cast<std::uint32_t>(y * n + x);
         if (owners[texel] == face) continue;
         if (owners[texel] == kNone) return false;
-        const Vec3 centre = surface_.to_surface(face, {x + 0.5, y + 0.5}) - surface_.texel_point(texel);
-        if (norm(centre) + square_ > least) return false;
+        const Vec2 at{x + 0.5, y + 0.5};
+        const Vec3 centre = data.to_surface(face, at) - data.to_surface(owners[texel], at);
+        if (squared_norm(centre) > spare * spare) return false;
       }
     return true;
   }
