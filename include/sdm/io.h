@@ -9,6 +9,7 @@
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -22,6 +23,38 @@ namespace sdm {
 /// into one. Vertices used by faces keep their order; bit-identical positions are welded. The result is valid
 /// in the sense of validate().
 [[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
+
+/// Names that a file gives to faces: those of objects (OBJ o, glTF meshes, solids of STL text, 3DS), of
+/// groups (OBJ g; several of one face, as in "g a b", are one name) or of materials (OBJ usemtl, glTF).
+struct FaceNames {
+  std::string kind;                    ///< "object", "group" or "material"
+  std::vector<std::string> names;      ///< each once, in the order of the file
+  std::vector<std::uint32_t> of_face;  ///< for each triangle of the mesh, an index into names or kNone
+};
+
+/// The vertices and polygons of a file as they are stored, before welding and triangulation. Those of the
+/// nodes of glTF are transformed and concatenated; every corner of a triangle of STL is a vertex.
+struct FileVertices {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> mesh_vertex;  ///< of each, the vertex of the mesh; kNone if no face uses it
+  std::vector<std::uint32_t> corners;      ///< the vertex of each corner, polygon after polygon
+  std::vector<std::uint32_t> ends;         ///< for each polygon, one past its last corner
+};
+
+/// A mesh, and what its file says about it.
+struct MeshFile {
+  Mesh mesh;                     ///< as of read_mesh()
+  std::vector<FaceNames> names;  ///< one entry for each kind that the file has
+  std::optional<FileVertices> vertices{};
+};
+
+struct MeshFileOptions {
+  bool vertices = false;  ///< keep the vertices of the file: up to six times the memory of the mesh for STL
+};
+
+/// Reads a mesh as read_mesh() does, with the names of its faces.
+[[nodiscard]] SDM_API MeshFile read_mesh_file(const std::filesystem::path& file,
+                                              const MeshFileOptions& options = {});
 
 /// The names of the formats that read_mesh supports, separated by commas, for messages and help texts.
 [[nodiscard]] SDM_API std::string mesh_format_names();
@@ -41,10 +74,10 @@ enum class Colormap {
 struct PictureOptions {
   Colormap colormap = Colormap::automatic;
   std::optional<std::array<double, 2>>
-      range{};                        ///< of the colour scale; default: from the map, symmetric if diverging
+      range{};  ///< of the colour scale; default: from the map, symmetric if diverging
   std::optional<double> tolerance{};  ///< bands: green within ±tolerance, beyond it by sign
-  std::string units{};                ///< shown in the legend: "mm", ...
-  double accuracy = 0;                ///< error of the distances: a range from the map is at least as long
+  std::string units{};                   ///< shown in the legend: "mm", ...
+  double accuracy = 0;                   ///< error of the distances: a range from the map is at least as long
   /// The most pixels a side of pictures and of the model's texture. If there are more texels, one pixel shows
   /// one texel of a square of them.
   std::uint32_t largest = 2048;

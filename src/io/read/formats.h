@@ -9,15 +9,15 @@
 
 namespace sdm::io {
 
-/// Reads Wavefront OBJ: v, vt and f statements (polygons; indices are relative or count from 1). All other
-/// statements are skipped.
+/// Reads Wavefront OBJ: v, vt and f statements (polygons; indices are relative or count from 1), and names of
+/// faces by o, g and usemtl. All other statements are skipped.
 [[nodiscard]] PolygonMesh read_obj(std::string_view text);
 
 /// Reads PLY, as text or binary of either byte order: the elements vertex (x, y, z, texture coordinates),
 /// face (vertex_indices, texcoord) and tristrips. All other elements and properties are skipped.
 [[nodiscard]] PolygonMesh read_ply(std::string_view bytes);
 
-/// Reads STL, as text or binary. Normals and attributes are skipped.
+/// Reads STL, as text or binary; the solids of text are objects. Normals and attributes are skipped.
 [[nodiscard]] PolygonMesh read_stl_text(std::string_view text);
 [[nodiscard]] PolygonMesh read_stl_binary(std::string_view bytes);
 /// Returns whether the data begin with the header of a binary STL file and have the size that it implies.

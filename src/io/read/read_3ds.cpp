@@ -77,8 +77,9 @@ void read_triangle_mesh(ByteScanner in, PolygonMesh& mesh) {
 }
 
 void read_object(ByteScanner in, PolygonMesh& mesh) {
-  while (in.number<char>() != '\0') {
-  }  // the object's name
+  std::string name;
+  for (char c; (c = in.number<char>()) != '\0';) name.push_back(c);
+  mesh.objects.begin(mesh.ends.size(), name);
   while (in.remaining() > 0) {
     const Chunk chunk = next_chunk(in);
     if (chunk.kind == kTriangleMesh) read_triangle_mesh(chunk.data, mesh);

@@ -39,6 +39,12 @@ class ObjReader {
         read_uv();
       else if (in_.accept("f"))
         read_face();
+      else if (in_.accept("usemtl"))
+        read_name(mesh_.materials);
+      else if (in_.accept("g"))
+        read_name(mesh_.groups);
+      else if (in_.accept("o"))
+        read_name(mesh_.objects);
     }
     check(highest_vertex_, mesh_.positions.size(), "vertex");
     check(highest_uv_, mesh_.uvs.size(), "texture coordinate");
@@ -69,6 +75,12 @@ class ObjReader {
       mesh_.corner_uvs.push_back(uv);
     }
     mesh_.end_polygon();
+  }
+  // The rest of the line: names may contain blanks, and a face may be in several groups.
+  void read_name(PolygonNames& names) {
+    std::string name;
+    while (in_.more_on_line()) name.append(name.empty() ? "" : " ").append(in_.word());
+    names.begin(mesh_.ends.size(), name);
   }
   void check(const HighestIndex& highest, std::size_t count, std::string_view item) const {
     if (highest.at && highest.index >= count)

@@ -73,6 +73,9 @@ PolygonMesh read_stl_text(std::string_view text) {
       mesh.end_polygon();
     } else if (same_keyword(word, "solid")) {
       in_solid = true;
+      std::string name;
+      while (in.more_on_line()) name.append(name.empty() ? "" : " ").append(in.word());
+      mesh.objects.begin(mesh.ends.size(), name);
     } else if (same_keyword(word, "endsolid")) {
       in_solid = false;
     }

@@ -78,6 +78,27 @@ void check_memory(const GltfDocument& document, const std::vector<GltfInstance>&
   require_memory(items * bytes_per_item, "the scene");
 }
 
+// Names are optional.
+std::string name_of(const json& item, const std::string& otherwise) {
+  const auto name = item.find("name");
+  return name != item.end() && name->is_string() ? name->get<std::string>() : otherwise;
+}
+
+// The name of a mesh defaults to that of its node, the name of a material to its number.
+void begin_names(const GltfDocument& document, const GltfInstance& instance, const json& primitive,
+                 PolygonMesh& mesh) {
+  const std::string node = name_of(document.item("nodes", instance.node), "");
+  mesh.objects.begin(mesh.ends.size(), name_of(document.item("meshes", instance.mesh), node));
+  std::string material;
+  if (const auto index = primitive.find("material"); index != primitive.end() && index->is_number_unsigned()) {
+    const auto materials = document.root().find("materials");
+    const std::string number = fmt::format("material {}", index->get<std::size_t>());
+    const bool exists = materials != document.root().end() && index->get<std::size_t>() < materials->size();
+    material = exists ? name_of(materials->at(index->get<std::size_t>()), number) : number;
+  }
+  mesh.materials.begin(mesh.ends.size(), material);
+}
+
 }  // namespace
 
 PolygonMesh read_gltf_scene(const GltfDocument& document) {
@@ -86,7 +107,10 @@ PolygonMesh read_gltf_scene(const GltfDocument& document) {
   PolygonMesh mesh;
   for (const GltfInstance& instance : scene)
     for (const json& primitive : document.item("meshes", instance.mesh).at("primitives"))
-      if (has_triangles(primitive)) add_primitive(document, primitive, instance.to_scene, mesh);
+      if (has_triangles(primitive)) {
+        begin_names(document, instance, primitive, mesh);
+        add_primitive(document, primitive, instance.to_scene, mesh);
+      }
   return mesh;
 }
 

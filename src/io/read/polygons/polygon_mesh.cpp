@@ -110,6 +110,19 @@ void gather(const std::vector<std::uint32_t>& corners, const std::vector<std::ui
 
 }  // namespace
 
+void PolygonNames::begin(std::size_t polygon, std::string_view name) {
+  std::uint32_t index = kNone;
+  if (!name.empty()) {
+    const auto found = index_.find(name);
+    index = found != index_.end() ? found->second : static_cast<std::uint32_t>(names_.size());
+    if (index == names_.size()) {
+      names_.emplace_back(name);
+      index_.emplace(name, index);
+    }
+  }
+  runs_.push_back({static_cast<std::uint32_t>(polygon), index});
+}
+
 void PolygonMesh::end_polygon() {
   const std::size_t begin = ends.empty() ? 0 : ends.back();
   if (corners.size() >= kNone) throw Error("there are more than 2^32 corners of faces");
@@ -127,6 +140,12 @@ Mesh to_mesh(const PolygonMesh& polygons) {
 }
 
 Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered) {
+  std::vector<std::uint32_t> triangle_ends;
+  return to_mesh(polygons, renumbered, triangle_ends);
+}
+
+Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered,
+             std::vector<std::uint32_t>& triangle_ends) {
   check_indices(polygons);
   Mesh mesh;
   renumbered = weld(polygons, mesh);
@@ -135,6 +154,8 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
   mesh.triangles.reserve(triangle_count);
   if (with_uvs) mesh.corner_uvs.reserve(triangle_count);
 
+  triangle_ends.clear();
+  triangle_ends.reserve(polygons.ends.size());
   Triangulator triangulator;
   std::vector<std::uint32_t> places;
   std::vector<Vec3> points;
@@ -156,6 +177,7 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
       for (const auto& t : triangulator.triangulate(points))
         add_triangle(places[t[0]], places[t[1]], places[t[2]]);
     }
+    triangle_ends.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
     begin = end;
   }
   return mesh;

@@ -4,9 +4,29 @@
 #include <sdm/mesh.h>
 
 #include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace sdm::io {
+
+/// Names of polygons: each holds from one polygon on, until another one does.
+class PolygonNames {
+ public:
+  struct Run {
+    std::uint32_t first_polygon, name;  ///< index into names(), or kNone for an empty one
+  };
+
+  void begin(std::size_t polygon, std::string_view name);
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  ///< each once
+  [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }            ///< by polygon
+
+ private:
+  std::vector<std::string> names_;
+  std::map<std::string, std::uint32_t, std::less<>> index_;
+  std::vector<Run> runs_;
+};
 
 /// Polygons over shared vertices, as stored in a file; unchecked.
 struct PolygonMesh {
@@ -15,6 +35,7 @@ struct PolygonMesh {
   std::vector<std::uint32_t> corners;     ///< the vertex of each corner, polygon after polygon
   std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; may be empty
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
+  PolygonNames objects, groups, materials;
 
   /// Ends a polygon of the corners added since the last one. Polygons of fewer than three corners are
   /// dropped.
@@ -29,5 +50,9 @@ struct PolygonMesh {
 /// As above. Also returns the index in the mesh of each vertex, or kNone if it was dropped. The mesh's
 /// vertices are in the order of their first occurrence in the file.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered);
+
+/// As above. Also sets, for each polygon, one past its last triangle in the mesh.
+[[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered,
+                           std::vector<std::uint32_t>& triangle_ends);
 
 }  // namespace sdm::io
