@@ -63,6 +63,21 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
       ->type_name("NAME");
 }
 
+void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance) {
+  app.add_option_function<std::string>(
+         "--tolerance", [&tolerance](const std::string& text) { tolerance = parse_tolerance(text); },
+         "Draw colour bands, and exit with code 3 if any distance is below LO or above HI; T: the same as "
+         "-T:T, also for unsigned distances")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return parse_tolerance(text)
+                       ? std::string()
+                       : text + " is not a number, 0 or more, nor two numbers LO:HI, the smaller one first";
+          },
+          ""))
+      ->type_name("T|LO:HI");
+}
+
 void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
                            double& depth_precision) {
   app.add_option("--margin", contact_margin,

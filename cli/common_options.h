@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
 /// `mesh` describes the parametrised mesh in the help text.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
+void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance);
 /// Adds --units, --margin and --precision, for commands that print proximity.
 void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
                            double& depth_precision);

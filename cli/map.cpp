@@ -77,12 +77,22 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
       [&] { inspect(on), inspect(to); },  // while the atlas leaves a core idle
   });
 
+  const std::optional<sdm::Tolerance>& tolerance = command.picture.tolerance;
+  if (tolerance && tolerance->needs_sign() &&
+      sdm::choose_sign(*sites, command.map.sign).method == sdm::SignMethod::none)
+    throw sdm::Error(fmt::format(
+        "{}: the tolerance {}:{} differs by sign, but the distances are unsigned: {}; use one number, or "
+        "another --sign",
+        to.file, tolerance->lo, tolerance->hi, sdm::choose_sign(*sites, command.map.sign).reason));
+
   Stopwatch map_watch;
   const sdm::DistanceMap map = sdm::compute_map(*surface, *sites, command.map);
   const auto at_vertices = sdm::distances_at_vertices(on.mesh, *sites, command.map);
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
+  outcome.max_distance = command.map.max_distance;
+  outcome.resolution = map.resolution;
   outcome.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), on.mesh, to.mesh);
   outcome.extremes = sdm::extremes(*surface, map, at_vertices);
   outcome.raster = sdm::gl_report(*command.map.engine);
@@ -100,6 +110,8 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
       [&] { write_map_files(folder, command.files, *surface, map, at_vertices, picture, boundary); },
       [&] {
         outcome.distance = sdm::statistics(*surface, map);
+        outcome.numbers = map_numbers(*surface, map, outcome.distance, on.names, on.info->components,
+                                      command.bands, command.picture.tolerance, outcome.accuracy);
         outcome.error_bound = sdm::covering_radius(*surface);
       },
   });
@@ -165,7 +177,11 @@ int run(MapCommand command) {
   std::vector<Result> results;
   out.fill([&] {
     results.push_back(measure(command, o1, o2, import_ms, out.staging(command.both ? "o1" : ""), progress));
-    if (command.both) results.push_back(measure(command, o2, o1, import_ms, out.staging("o2"), progress));
+    if (!command.both) return;
+    results.push_back(measure(command, o2, o1, import_ms, out.staging("o2"), progress));
+    add_symmetric_hausdorff(results[0].report, results[1].report);
+    write_text(out.staging("o1") / "report.json", to_text(results[0].report));
+    write_text(out.staging("o2") / "report.json", to_text(results[1].report));
   });
 
   if (command.json) {

@@ -6,6 +6,10 @@
 #include "common_options.h"
 #include "option_checks.h"
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
 namespace {
 
 void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
@@ -79,10 +83,15 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_flag("--paper-literal", c.gl.paper_literal,
                "gl: run the algorithm of the paper as it is printed, without corrections; the map is an "
                "estimate of unknown accuracy");
-  app.add_option("--tolerance", c.picture.tolerance,
-                 "Draw colour bands, and exit with code 3 if any distance exceeds D, inside or outside")
-      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
-      ->type_name("D");
+  add_tolerance_option(app, c.picture.tolerance);
+  app.add_option(
+         "--bands", c.bands,
+         "The edges of the bands of distance in the report, increasing, with the fraction of the area in "
+         "each; by default multiples of the tolerance")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(number("a number", [](double) { return true; }))
+      ->type_name("LIST");
 
   add_write_option(app, c.files);
   add_picture_options(app, c.picture, c.range);
@@ -91,7 +100,10 @@ void add_options(CLI::App& app, MapCommand& c) {
 
 void check_combination(const CLI::App& app, const MapCommand& c) {
   check_range(c.range);
-  if (c.picture.tolerance && *c.picture.tolerance > c.map.max_distance)
+  if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
+    throw CLI::ValidationError("--bands", "the edges must increase");
+  if (const auto& t = c.picture.tolerance;
+      t && std::max(std::abs(t->lo), std::abs(t->hi)) > c.map.max_distance)
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which texels have no value");
   for (const char* option :

@@ -21,7 +21,7 @@ struct MapCommand {
   sdm::GlOptions gl;
   sdm::PictureOptions picture;
   MapFiles files;
-  std::vector<double> range;
+  std::vector<double> range, bands;
   std::optional<double> precision;
   unsigned threads = 0;
   bool both = false, json = false, quiet = false;

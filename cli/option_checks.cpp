@@ -34,3 +34,15 @@ CLI::Validator whole_number(int lowest, int highest) {
       },
       "");
 }
+
+std::optional<sdm::Tolerance> parse_tolerance(const std::string& text) {
+  const auto parse = [](const std::string& part, double& value) {
+    return CLI::detail::lexical_cast(part, value) && std::isfinite(value);
+  };
+  double lo = 0, hi = 0;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos)
+    return parse(text, hi) && hi >= 0 ? std::optional<sdm::Tolerance>(hi) : std::nullopt;
+  if (!parse(text.substr(0, colon), lo) || !parse(text.substr(colon + 1), hi) || lo > hi) return std::nullopt;
+  return sdm::Tolerance(lo, hi);
+}

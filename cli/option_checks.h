@@ -1,6 +1,8 @@
 // Validators and choices for options of several commands.
 #pragma once
 
+#include <sdm/tolerance.h>
+
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
@@ -13,6 +15,9 @@
 /// Requires a finite number for which `accepts` holds.
 [[nodiscard]] CLI::Validator number(const std::string& description, bool (*accepts)(double));
 [[nodiscard]] CLI::Validator whole_number(int lowest, int highest);
+
+/// Reads "T" or "LO:HI"; nothing if it is neither, or LO is above HI.
+[[nodiscard]] std::optional<sdm::Tolerance> parse_tolerance(const std::string& text);
 
 /// An option with a fixed set of values; the first one is the default.
 template <class Enum>

@@ -76,7 +76,9 @@ Json gl_json(const sdm::GlReport& r) {
 }  // namespace
 
 Input load_input(const std::string& role, const std::string& file, const std::string& transform) {
-  Input input{role, file, transform, sdm::read_mesh(file), {}};
+  sdm::MeshFile read = sdm::read_mesh_file(file);
+  Input input{.role = role, .file = file, .transform = transform, .mesh = std::move(read.mesh)};
+  input.names = std::move(read.names);
   sdm::scenes::place(input.mesh, sdm::scenes::parse_placement(transform));
   return input;
 }
@@ -101,14 +103,6 @@ Json to_json(const sdm::Surface& surface) {
           {"utilisation", surface.utilisation()},     {"max_stretch", surface.max_stretch()}};
 }
 
-Json to_json(const sdm::DistanceStatistics& d) {
-  // NaN, if no texel has a value, becomes null.
-  return {{"kind", "estimate"},  {"min", d.min},           {"max", d.max},         {"mean", d.mean},
-          {"rms", d.rms},        {"stddev", d.stddev},     {"p50", d.p50},         {"p95", d.p95},
-          {"p99", d.p99},        {"mean_abs", d.mean_abs}, {"p50_abs", d.p50_abs}, {"p95_abs", d.p95_abs},
-          {"p99_abs", d.p99_abs}};
-}
-
 namespace {
 
 Json extreme_json(const sdm::Extreme& extreme) {
@@ -119,6 +113,23 @@ Json extreme_json(const sdm::Extreme& extreme) {
 }
 
 }  // namespace
+
+Json one_sided_hausdorff(const Outcome& outcome) {
+  const sdm::Extremes& extremes = outcome.extremes;
+  const sdm::Extreme& most = -extremes.min.distance > extremes.max.distance ? extremes.min : extremes.max;
+  Json json{{"lower", nullptr}, {"upper", nullptr}, {"kind", "unknown"}, {"point", nullptr}};
+  if (!std::isfinite(outcome.accuracy)) return json;
+  const double largest = std::isnan(most.distance) ? 0 : std::abs(most.distance);
+  json["kind"] = "bounded";
+  if (outcome.beyond_max_distance > 0) {  // somewhere, and not known by how much
+    json["lower"] = std::max(0.0, outcome.max_distance - outcome.accuracy);
+    return json;
+  }
+  json["lower"] = std::max(0.0, largest - outcome.accuracy);
+  json["upper"] = largest + outcome.error_bound + outcome.accuracy;
+  json["point"] = most.point;
+  return json;
+}
 
 Json to_json(const Outcome& outcome) {
   const sdm::DistanceStatistics& d = outcome.distance;
@@ -136,17 +147,25 @@ Json to_json(const Outcome& outcome) {
   json["accuracy_kind"] = known ? "bounded" : "unknown";
   json["error_bound"] = known ? Json(outcome.error_bound) : Json();
   json["error_bound_kind"] = known ? "bounded" : "unknown";
-  if (outcome.tolerance)
-    json["tolerance"] = {{"value", outcome.tolerance->tolerance},
-                         {"exceeded_area_fraction", outcome.tolerance->exceeded_area_fraction},
-                         {"within", outcome.tolerance->within},
-                         {"certified", outcome.tolerance->certified}};
+  json["hausdorff"] = {{"one_sided", one_sided_hausdorff(outcome)}};
+  if (outcome.tolerance) json["tolerance"] = to_json(*outcome.tolerance);
+  json.update(to_json(outcome.numbers));
   json["notes"] = outcome.notes;
   if (outcome.raster) json["raster"] = gl_json(*outcome.raster);
   const Times& t = outcome.time;
   json["time_ms"] = {{"import", t.import}, {"atlas", t.atlas},   {"sites", t.sites},
                      {"map", t.map},       {"export", t.output}, {"total", t.total}};
   return json;
+}
+
+void add_symmetric_hausdorff(Json& o1, Json& o2) {
+  const Json &a = o1["hausdorff"]["one_sided"], &b = o2["hausdorff"]["one_sided"];
+  const auto larger = [&](const char* key) {
+    return a[key].is_null() || b[key].is_null() ? Json()
+                                                : Json(std::max(a[key].get<double>(), b[key].get<double>()));
+  };
+  const Json both{{"lower", larger("lower")}, {"upper", larger("upper")}, {"kind", a["kind"]}};
+  o1["hausdorff"]["symmetric"] = o2["hausdorff"]["symmetric"] = both;
 }
 
 std::string to_text(const Json& json) {
@@ -156,13 +175,49 @@ std::string to_text(const Json& json) {
 namespace {
 
 // The texel or vertex that exceeds a tolerance most.
-std::string farthest(const sdm::Extremes& extremes, const std::string& unit) {
-  const auto& [min, max] = extremes;
-  const sdm::Extreme& most = std::abs(min.distance) > std::abs(max.distance) ? min : max;
+std::string farthest(const Outcome& outcome, const std::string& unit) {
+  const auto& [min, max] = outcome.extremes;
+  const sdm::Tolerance& tolerance = outcome.tolerance->tolerance;
+  const sdm::Extreme& most = tolerance.lo - min.distance > max.distance - tolerance.hi ? min : max;
   if (std::isnan(most.distance)) return "no texel has a value";
   return fmt::format("{}{} at {} ({} {} {})", number(most.distance), unit,
                      most.at_vertex ? "vertex" : "texel", number(most.point[0]), number(most.point[1]),
                      number(most.point[2]));
+}
+
+// The --precision that would decide, and the resolution that it needs: texels are about as far apart as the
+// error bound is long.
+std::string deciding_precision(const Outcome& outcome, const std::string& unit) {
+  const double bound = outcome.tolerance->deciding_bound;
+  if (!(bound > 0)) return "no --precision decides, as a distance is within rounding of a limit";
+  const double texels = outcome.resolution * outcome.error_bound / bound;
+  if (texels > 32768)
+    return fmt::format("an error of {}{} would decide, but needs more than 32768² texels", number(bound, 2),
+                       unit);
+  return fmt::format("--precision {} would decide (about {:.0f}² texels)", number(bound, 2), texels);
+}
+
+std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
+  const sdm::ToleranceVerdict& verdict = *outcome.tolerance;
+  const sdm::ToleranceShares& shares = verdict.shares;
+  const auto [lo, hi] = verdict.tolerance;
+  const std::string limits = lo == -hi ? fmt::format("±{}{}", number(hi), unit)
+                                       : fmt::format("{} to {}{}", number(lo), number(hi), unit);
+  const std::string word = verdict_name(verdict.verdict);
+  switch (verdict.verdict) {
+    case sdm::Verdict::pass:
+      return fmt::format("{}: every point of the surface is within {}", word, limits);
+    case sdm::Verdict::not_decided:
+      return fmt::format("{}: all samples are within {}, but points between them may not be; {}", word,
+                         limits, deciding_precision(outcome, unit));
+    case sdm::Verdict::fail:
+      break;
+  }
+  std::string text = fmt::format("{}: {} % of the area is out of {}", word,
+                                 number(100 * verdict.exceeded_area_fraction), limits);
+  if (outcome.sign.method != sdm::SignMethod::none)
+    text += fmt::format(" ({} % above, {} % below)", number(100 * shares.above), number(100 * shares.below));
+  return text + "; " + farthest(outcome, unit);
 }
 
 }  // namespace
@@ -180,9 +235,12 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
     const auto& [min, max] = outcome.extremes;
     add("  distance  min {}   mean {}   max {}{}\n", number(min.distance), number(d.mean),
         number(max.distance), unit);
+    add("            mean |d| {}   rms {}   σ {}{}\n", number(d.mean_abs), number(d.rms), number(d.stddev),
+        unit);
+    add("            95 % of the area has |d| up to {}, 99 % up to {}{}\n", number(d.p95_abs),
+        number(d.p99_abs), unit);
     if (outcome.sign.method != sdm::SignMethod::none)
-      add("            {} % of the texels are inside (negative)\n",
-          number(100.0 * static_cast<double>(d.negative_texels) / static_cast<double>(d.texels)));
+      add("            {} % of the area is inside (negative)\n", number(100 * d.negative_area_fraction));
   }
   if (outcome.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", outcome.sign.reason);
   if (outcome.beyond_max_distance > 0)
@@ -192,15 +250,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
         unit);
   else
     add("  error     unknown: the paper's algorithm as printed gives an estimate\n");
-  if (const auto& verdict = outcome.tolerance) {
-    if (!verdict->within)
-      add("  tolerance exceeded on {} % of the area; {}\n", number(100 * verdict->exceeded_area_fraction),
-          farthest(outcome.extremes, unit));
-    else if (verdict->certified)
-      add("  tolerance met\n");
-    else
-      add("  tolerance met at the samples, but not certified between them\n");
-  }
+  if (outcome.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
   for (const std::string& note : outcome.notes) add("  note      {}\n", note);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,

@@ -10,12 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "map_numbers.h"
+
 /// A mesh of the command line, after its transform.
 struct Input {
   std::string role;  ///< "o1", "o2", or "mesh" if it is the only one
   std::string file, transform;
   sdm::Mesh mesh;
-  std::optional<sdm::MeshInfo> info;  ///< once inspected
+  std::optional<sdm::MeshInfo> info{};  ///< once inspected
+  std::vector<sdm::FaceNames> names{};
 };
 
 /// Sets input.info, which to_json() needs, unless it is set.
@@ -39,17 +42,27 @@ struct Outcome {
   std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh
   double error_bound = 0;
   double accuracy = 0;             ///< of the engine; infinite if unknown
+  double max_distance = 0;         ///< infinite if there is no limit
+  std::uint32_t resolution = 0;    ///< of the map
   bool embedded = true;            ///< the other mesh does not intersect itself
   std::vector<std::string> notes;  ///< what the user probably did not intend
   std::optional<sdm::ToleranceVerdict> tolerance;
+  MapNumbers numbers;
   std::optional<sdm::GlReport> raster;
   Times time;
 };
 
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Surface& surface);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::DistanceStatistics& distance);
 [[nodiscard]] nlohmann::ordered_json to_json(const Outcome& outcome);
+
+/// Bounds on the largest distance of all points of the mesh with the map to the other one, inside or outside,
+/// from the samples and vertices and the error bound: `lower`, `upper`, `kind`, and `point`, which is `lower`
+/// away. `upper` is null if a texel is farther than the maximum distance.
+[[nodiscard]] nlohmann::ordered_json one_sided_hausdorff(const Outcome& outcome);
+
+/// Of two reports, the larger one of either direction; added to both.
+void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json& o2);
 
 /// JSON text; drops invalid bytes of file names that are not UTF-8.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);

@@ -8,6 +8,7 @@
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
+#include <sdm/tolerance.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -75,7 +76,7 @@ struct PictureOptions {
   Colormap colormap = Colormap::automatic;
   std::optional<std::array<double, 2>>
       range{};  ///< of the colour scale; default: from the map, symmetric if diverging
-  std::optional<double> tolerance{};  ///< bands: green within ±tolerance, beyond it by sign
+  std::optional<Tolerance> tolerance{};  ///< bands: green within the tolerance, by side out of it
   std::string units{};                   ///< shown in the legend: "mm", ...
   double accuracy = 0;                   ///< error of the distances: a range from the map is at least as long
   /// The most pixels a side of pictures and of the model's texture. If there are more texels, one pixel shows

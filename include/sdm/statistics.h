@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace sdm {
 
@@ -17,11 +18,12 @@ namespace sdm {
 struct DistanceStatistics {
   std::size_t texels = 0;  ///< with a value
   std::size_t negative_texels = 0;
+  double negative_area_fraction = 0;  ///< of the area of texels with a value, in [0, 1]
   double min = 0, max = 0, mean = 0, rms = 0;
-  double stddev = 0;                 ///< about the mean
-  double p50 = 0, p95 = 0, p99 = 0;  ///< area-weighted percentiles
+  double stddev = 0;                                   ///< about the mean
+  double p01 = 0, p05 = 0, p50 = 0, p95 = 0, p99 = 0;  ///< area-weighted percentiles
   // Of |distance|.
-  double mean_abs = 0;
+  double mean_abs = 0, max_abs = 0;
   double p50_abs = 0, p95_abs = 0, p99_abs = 0;
 };
 
@@ -47,8 +49,36 @@ struct Extremes {
                                         std::span<const float> vertex_distances);
 
 /// Returns the fraction of the area, in [0, 1], whose |distance| is above `limit`; texels beyond the map's
-/// maximum distance count as above. 0 for a map without texels. Cost: O(n) in texels.
+/// maximum distance count as above. 0 for a map without texels. Cost: O(n) in texels, all cores.
 [[nodiscard]] SDM_API double area_fraction_beyond(const Surface& surface, const DistanceMap& map,
                                                   double limit);
+
+/// The distances between two numbers, and the fraction of the area that has them.
+struct DistanceBand {
+  double lo = 0, hi = 0;  ///< −∞ for the first band of a table, ∞ for the last
+  double area_fraction = 0;
+};
+
+/// Returns the bands below, between and above `edges`, with fractions of the area of all texels of the map,
+/// those without a value included. A distance at an edge, or beyond it by no more than `accuracy`, belongs to
+/// the band on the side of `centre`, so that the bands within a tolerance hold what tolerance_shares() counts
+/// as within. Throws sdm::Error unless the edges are finite and increasing and the map belongs to the
+/// surface. Cost: linear in texels, times the logarithm of the number of edges, all cores.
+[[nodiscard]] SDM_API std::vector<DistanceBand> distance_bands(const Surface& surface, const DistanceMap& map,
+                                                               std::span<const double> edges,
+                                                               double accuracy = 0, double centre = 0);
+
+/// Fractions of the area of all texels of a map, those without a value included.
+struct DistanceHistogram {
+  double lo = 0, hi = 0;               ///< of all bins together
+  std::vector<double> area_fractions;  ///< of bins of equal width; a distance at an edge belongs to the upper
+                                       ///< bin, `hi` to the last
+  double below = 0, above = 0, without_value = 0;
+};
+
+/// Throws sdm::Error unless lo < hi are finite and there is a bin, and if the map belongs to another surface.
+/// Cost: linear in texels, all cores.
+[[nodiscard]] SDM_API DistanceHistogram distance_histogram(const Surface& surface, const DistanceMap& map,
+                                                           double lo, double hi, std::size_t bins);
 
 }  // namespace sdm

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,10 +13,10 @@
 
 namespace sdm::map {
 
-/// Finds percentiles in two passes over the values: the first adds up the weights by the upper half of a
-/// value's bits, the second by the lower half within the intervals that hold a percentile. Exact, as all bits
-/// of the value are then known; the weights are sums of doubles in an order that does not depend on the
-/// number of threads.
+/// Finds percentiles in three passes over the values. Each adds up the weights by some further bits of a
+/// value, from the highest on, of those values that share the bits found so far with a percentile. Exact, as
+/// all bits of the value are known in the end; the weights are sums of doubles in an order that does not
+/// depend on the number of threads.
 class WeightedPercentiles {
  public:
   /// `for_each(part, visit)` must call visit(value, weight) for all values of a part, the same ones each
@@ -24,45 +25,44 @@ class WeightedPercentiles {
   /// weight. Cost: linear, all cores.
   template <class ForEach>
   static std::vector<float> find(std::size_t parts, const ForEach& for_each, std::span<const double> shares) {
-    const Histogram coarse = add_up(parts, 1, [&](std::size_t part, Histogram& weights) {
-      for_each(part, [&](float value, float weight) { weights[key(value) >> kBits] += weight; });
-    });
+    std::vector<Place> places(shares.size());
     double total = 0;
-    for (const double weight : coarse) total += weight;
-
-    std::vector<Place> places;                       // the interval of each share
-    std::array<std::uint8_t, kIntervals> fine_of{};  // 1 + the number of the interval among those refined
-    std::size_t intervals = 0;
-    for (const double share : shares) {
-      const Place& place = places.emplace_back(first_at_least(coarse, share * total));
-      if (fine_of[place.index] == 0) fine_of[place.index] = static_cast<std::uint8_t>(++intervals);
-    }
-    const Histogram fine = add_up(parts, intervals, [&](std::size_t part, Histogram& weights) {
-      for_each(part, [&](float value, float weight) {
-        const std::uint32_t k = key(value);
-        if (const std::size_t interval = fine_of[k >> kBits]; interval > 0)
-          weights[(interval - 1) * kIntervals + (k & (kIntervals - 1))] += weight;
+    unsigned known = 0;  // bits
+    for (const unsigned bits : {11u, 11u, 10u}) {
+      const std::uint32_t entries = 1u << bits;
+      const unsigned shift = 32 - known - bits;
+      std::vector<std::uint32_t> prefixes;  // ascending, as the shares are
+      for (const Place& place : places)
+        if (prefixes.empty() || prefixes.back() != place.prefix) prefixes.push_back(place.prefix);
+      const Weights weights = add_up(parts, prefixes.size() * entries, [&](std::size_t part, Weights& sums) {
+        for_each(part, [&](float value, float weight) {
+          const std::uint32_t high = key(value) >> shift, prefix = high >> bits;
+          for (std::size_t i = 0; i < prefixes.size(); ++i)
+            if (prefixes[i] == prefix) sums[i * entries + (high & (entries - 1))] += weight;
+        });
       });
-    });
-
-    std::vector<float> result;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      const std::span weights =
-          std::span(fine).subspan((fine_of[places[i].index] - std::size_t{1}) * kIntervals, kIntervals);
-      const Place place = first_at_least(weights, shares[i] * total - places[i].below);
-      result.push_back(value_of(static_cast<std::uint32_t>(places[i].index << kBits | place.index)));
+      if (known == 0)
+        for (const double weight : weights) total += weight;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        Place& place = places[i];
+        const auto row = std::ranges::find(prefixes, place.prefix) - prefixes.begin();
+        const auto of_prefix = std::span(weights).subspan(static_cast<std::size_t>(row) * entries, entries);
+        const auto [entry, below] = first_at_least(of_prefix, shares[i] * total - place.below);
+        place = {place.prefix << bits | entry, place.below + below};
+      }
+      known += bits;
     }
+    std::vector<float> result;
+    for (const Place& place : places) result.push_back(value_of(place.prefix));
     return result;
   }
 
  private:
-  static constexpr unsigned kBits = 16;
-  static constexpr std::size_t kIntervals = std::size_t{1} << kBits;
-  using Histogram = std::vector<double>;
+  using Weights = std::vector<double>;
 
   struct Place {
-    std::size_t index;
-    double below;  ///< the weight of all entries before it
+    std::uint32_t prefix = 0;  ///< the bits found, or one of the entries of a table
+    double below = 0;          ///< the weight of all smaller values, or of all entries before it
   };
 
   // The bits of a float as a number whose order is that of the floats.
@@ -75,15 +75,15 @@ class WeightedPercentiles {
   }
 
   template <class Add>
-  static Histogram add_up(std::size_t parts, std::size_t intervals, const Add& add) {
-    std::vector<Histogram> of_part(parts);
+  static Weights add_up(std::size_t parts, std::size_t entries, const Add& add) {
+    std::vector<Weights> of_part(parts);
     parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t part = begin; part < end; ++part) {
-        of_part[part].assign(intervals * kIntervals, 0);
+        of_part[part].assign(entries, 0);
         add(part, of_part[part]);
       }
     });
-    Histogram sum = std::move(of_part[0]);
+    Weights sum = std::move(of_part[0]);
     for (std::size_t part = 1; part < parts; ++part)
       std::ranges::transform(sum, of_part[part], sum.begin(), std::plus());
     return sum;
@@ -92,9 +92,9 @@ class WeightedPercentiles {
   // The entry at which the sum reaches `weight`; the last one that is not empty where rounding keeps the sum
   // below it.
   static Place first_at_least(std::span<const double> weights, double weight) {
-    Place place{0, 0};
+    Place place;
     double sum = 0;
-    for (std::size_t i = 0; i < weights.size() && (sum < weight || sum == 0); ++i)
+    for (std::uint32_t i = 0; i < weights.size() && (sum < weight || sum == 0); ++i)
       if (weights[i] > 0) {
         place = {i, sum};
         sum += weights[i];

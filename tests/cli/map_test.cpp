@@ -176,6 +176,81 @@ TEST_F(MapCommand, ExceededToleranceEndsWithThreeAndStillWrites) {
   EXPECT_LT(tolerance["exceeded_area_fraction"], 1);
 }
 
+TEST_F(MapCommand, AToleranceMayDifferByTheSign) {
+  const Outcome run = run_sdm(map({"--tolerance", "-.5:.05", "--json"}));
+  EXPECT_EQ(run.code, 3);
+  const Json report = Json::parse(run.out), tolerance = report["tolerance"];
+  EXPECT_TRUE(tolerance["value"].is_null());
+  EXPECT_EQ(tolerance["lower"], -0.5);
+  EXPECT_EQ(tolerance["upper"], 0.05);
+  EXPECT_EQ(tolerance["verdict"], "FAIL");
+  EXPECT_EQ(tolerance["area_fractions"]["below"], 0);
+  EXPECT_EQ(tolerance["area_fractions"]["above"], tolerance["exceeded_area_fraction"]);
+  // By default, a limit is the edge of a band.
+  double within = 0, all = 0;
+  for (const Json& band : report["bands"]) {
+    all += band["area_fraction"].get<double>();
+    if (!band["lower"].is_null() && !band["upper"].is_null() && band["lower"] >= -0.5 &&
+        band["upper"] <= 0.05)
+      within += band["area_fraction"].get<double>();
+  }
+  EXPECT_NEAR(within, tolerance["area_fractions"]["within"].get<double>(), 1e-12);
+  EXPECT_NEAR(all, 1, 1e-12);
+  EXPECT_THAT(run_sdm(map({"--tolerance", "-0.5:0.05"})).out, HasSubstr("FAIL: "));
+  EXPECT_THAT(run_sdm(map({"--tolerance", "-5:3"})).out, HasSubstr("PASS: "));
+
+  const Outcome refused = run_sdm(map({"--tolerance", "-0.5:0.05", "--sign", "none"}));
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("unsigned"));
+  EXPECT_EQ(run_sdm(map({"--tolerance", "0:5", "--sign", "none"})).code, 0);
+}
+
+TEST_F(MapCommand, ReportHasBandsAHistogramAndHausdorffBounds) {
+  const Json report = Json::parse(run_sdm(map({"--bands", "-0.1,0,0.2", "--json"})).out);
+  EXPECT_EQ(report["bands"].size(), 4u);
+  EXPECT_EQ(report["bands"][1]["lower"], -0.1);
+  const Json& histogram = report["histogram"];
+  double all = histogram["below"].get<double>() + histogram["above"].get<double>();
+  for (const Json& bin : histogram["area_fractions"]) all += bin.get<double>();
+  EXPECT_NEAR(all, 1, 1e-9);
+  EXPECT_EQ(report["components"]["count"], 1);
+
+  const Json both = Json::parse(run_sdm(map({"--both", "--json"})).out);
+  const Json &a = both["o1"]["hausdorff"], &b = both["o2"]["hausdorff"];
+  EXPECT_EQ(Json::parse(contents(out + "/o1/report.json"))["hausdorff"], a);
+  EXPECT_EQ(a["symmetric"], b["symmetric"]);
+  for (const char* key : {"lower", "upper"})
+    EXPECT_EQ(a["symmetric"][key].get<double>(),
+              std::max(a["one_sided"][key].get<double>(), b["one_sided"][key].get<double>()));
+  // A finer map is within the bounds of a coarse one.
+  const Json fine =
+      Json::parse(run_sdm(map({"--resolution", "1024", "--json"})).out)["hausdorff"]["one_sided"];
+  EXPECT_LE(fine["upper"], a["one_sided"]["upper"]);
+  EXPECT_GE(fine["lower"], a["one_sided"]["lower"]);
+  EXPECT_LT(fine["lower"], fine["upper"]);
+}
+
+TEST_F(MapCommand, PartsHaveStatisticsOfTheirOwn) {
+  Mesh mesh = joined(ring(12), moved(ring(8), {9, 0, 0}));
+  write_obj(o1, mesh);
+  std::string text = contents(o1);
+  text.insert(text.find("f "), "usemtl steel\n");
+  std::ofstream(o1) << text << "usemtl rubber\nf 1 2 3\n";
+  const Json report = Json::parse(run_sdm(map({"--tolerance", "1", "--json"})).out);
+  EXPECT_EQ(report["components"]["count"], 2);
+  const Json& rows = report["components"]["largest"];
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_NEAR(rows[0]["area_fraction"].get<double>() + rows[1]["area_fraction"].get<double>(), 1, 1e-9);
+  EXPECT_LT(rows[0]["distance"]["max"], 2);
+  EXPECT_GT(rows[1]["distance"]["min"], 5);
+  EXPECT_EQ(rows[1]["tolerance"]["above"], 1);
+  ASSERT_EQ(report["groups"].size(), 1u);
+  EXPECT_EQ(report["groups"][0]["kind"], "material");
+  EXPECT_EQ(report["groups"][0]["count"], 2);
+  EXPECT_EQ(report["groups"][0]["largest"][0]["name"], "steel");
+  EXPECT_EQ(report["groups"][0]["largest"][1]["triangles"], 1);
+}
+
 TEST_F(MapCommand, KeptToleranceIsCertifiedOnlyWithRoomForTheErrorBound) {
   const Json plain = Json::parse(run_sdm(map({"--json"})).out);
   const double largest =

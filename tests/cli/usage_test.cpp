@@ -58,6 +58,11 @@ TEST(Usage, WrongUsageEndsWithTwo) {
                                                           {"--max-distance", "inf"},
                                                           {"--tolerance", "-0.1"},
                                                           {"--tolerance", "x"},
+                                                          {"--tolerance", "0.2:-0.1"},
+                                                          {"--tolerance", "0.1:"},
+                                                          {"--tolerance", "0:1:2"},
+                                                          {"--bands", "1,1"},
+                                                          {"--bands", "0,x"},
                                                           {"--range", "1"},
                                                           {"--range", "1", "1"},
                                                           {"--range", "2", "-2"},
@@ -85,7 +90,8 @@ TEST(Usage, WrongUsageEndsWithTwo) {
         {"mop"},
         {"info"},
         {"map", "a.obj", "b.obj", "-o"},
-        {"map", "a.obj", "b.obj", "-o", out, "--tolerance", "2", "--max-distance", "1"}}) {
+        {"map", "a.obj", "b.obj", "-o", out, "--tolerance", "2", "--max-distance", "1"},
+        {"map", "a.obj", "b.obj", "-o", out, "--tolerance", "-2:0.5", "--max-distance", "1"}}) {
     const Outcome run = run_sdm(arguments);
     EXPECT_EQ(run.code, 2);
     EXPECT_NE(run.err, "");

@@ -14,14 +14,14 @@ namespace sdm::test {
 namespace {
 
 /// The lower square's map of the distances to a square that is 1 above it.
-struct Tolerance : ::testing::Test {
+struct ToleranceTest : ::testing::Test {
   Surface surface{square(1, 0), {.resolution = 32}};
   Sites sites{square(2, 1)};
   DistanceMap map = compute_map(surface, sites);
   std::vector<float> at_vertices = distances_at_vertices(surface.mesh(), sites);
 };
 
-TEST_F(Tolerance, IsCertifiedWithTheErrorBoundToSpare) {
+TEST_F(ToleranceTest, IsCertifiedWithTheErrorBoundToSpare) {
   const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.25, 0, 1.25);
   EXPECT_EQ(verdict.largest, 1);
   EXPECT_EQ(verdict.exceeded_area_fraction, 0);
@@ -29,20 +29,20 @@ TEST_F(Tolerance, IsCertifiedWithTheErrorBoundToSpare) {
   EXPECT_TRUE(verdict.certified);
 }
 
-TEST_F(Tolerance, IsNotCertifiedIfTheErrorBoundReachesBeyond) {
+TEST_F(ToleranceTest, IsNotCertifiedIfTheErrorBoundReachesBeyond) {
   const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.26, 0, 1.25);
   EXPECT_TRUE(verdict.within);
   EXPECT_FALSE(verdict.certified);
 }
 
-TEST_F(Tolerance, IsCertainlyExceeded) {
+TEST_F(ToleranceTest, IsCertainlyExceeded) {
   const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0.25, 0, 0.99);
   EXPECT_FALSE(verdict.within);
   EXPECT_TRUE(verdict.certified);
   EXPECT_EQ(verdict.exceeded_area_fraction, 1);
 }
 
-TEST_F(Tolerance, IsExceededByASingleVertexOrSample) {
+TEST_F(ToleranceTest, IsExceededByASingleVertexOrSample) {
   std::vector<float> one_vertex = at_vertices;
   one_vertex[2] = -3;
   EXPECT_EQ(check_tolerance(surface, map, one_vertex, 0, 0, 2).largest, 3);
@@ -54,7 +54,54 @@ TEST_F(Tolerance, IsExceededByASingleVertexOrSample) {
   EXPECT_LT(verdict.exceeded_area_fraction, 0.1);
 }
 
-TEST_F(Tolerance, IsExceededWhereThereIsNoValue) {
+TEST_F(ToleranceTest, OfOneSideOnlyExceedsOnThatSide) {
+  const auto verdict = [&](double lo, double hi, double bound = 0.25, double accuracy = 0) {
+    return check_tolerance(surface, map, at_vertices, bound, accuracy, Tolerance(lo, hi));
+  };
+  // Unsigned distances of 1.
+  EXPECT_EQ(verdict(0.75, 1.25).verdict, Verdict::pass);
+  EXPECT_EQ(verdict(0.8, 1.25).verdict, Verdict::not_decided) << "the least distance may be 0.75";
+  EXPECT_EQ(verdict(0.75, 1.2).verdict, Verdict::not_decided);
+  EXPECT_EQ(verdict(1.01, 2).verdict, Verdict::fail);
+  EXPECT_EQ(verdict(1.01, 2).shares.below, 1);
+  EXPECT_EQ(verdict(0, 0.99).verdict, Verdict::fail);
+  EXPECT_EQ(verdict(0, 0.99).shares.above, 1);
+  EXPECT_EQ(verdict(1.01, 2, 0, 0.02).verdict, Verdict::not_decided) << "rounding";
+  EXPECT_THROW((void)verdict(-1, 2), Error);
+  map.sign.method = SignMethod::exact;
+  EXPECT_EQ(verdict(-1, 2).verdict, Verdict::pass);
+  // Estimated signs may be wrong between the samples.
+  map.sign.method = SignMethod::winding;
+  EXPECT_EQ(verdict(-1, 2).verdict, Verdict::not_decided);
+  EXPECT_EQ(verdict(-1.25, 2).verdict, Verdict::pass);
+  EXPECT_EQ(verdict(-2, 0.5).verdict, Verdict::fail);
+  EXPECT_FALSE(verdict(-2, 0.5).certified) << "inside, it would be within";
+  EXPECT_TRUE(verdict(-0.5, 0.5).certified);
+}
+
+// An error bound of half of the margin decides.
+TEST_F(ToleranceTest, NamesTheErrorBoundThatWouldDecide) {
+  const auto verdict = [&](double bound, double accuracy, double tolerance) {
+    return check_tolerance(surface, map, at_vertices, bound, accuracy, tolerance);
+  };
+  const double bound = verdict(1, 0.01, 1.25).deciding_bound;
+  EXPECT_NEAR(bound, (1.25 - 1 - 0.01) / 2, 1e-12);
+  EXPECT_EQ(verdict(bound, 0.01, 1.25).verdict, Verdict::pass);
+  EXPECT_EQ(verdict(1, 0.01, 1.005).verdict, Verdict::not_decided);
+  EXPECT_EQ(verdict(1, 0.01, 1.005).deciding_bound, 0) << "within rounding of the limit";
+}
+
+// At distances that rounding does not tell from zero, the sign is not certain either.
+TEST_F(ToleranceTest, IsNotExceededByTheSignOfRounding) {
+  map.sign.method = SignMethod::exact;
+  for (float& d : map.distance) d = std::isnan(d) ? d : -1e-3f;
+  for (float& d : at_vertices) d = -1e-3f;
+  EXPECT_TRUE(check_tolerance(surface, map, at_vertices, 0, 1.1e-3, Tolerance(1.5e-3, 1)).within);
+  EXPECT_FALSE(check_tolerance(surface, map, at_vertices, 0, 1.1e-3, Tolerance(2.5e-3, 1)).within);
+  EXPECT_FALSE(check_tolerance(surface, map, at_vertices, 0, 1e-5, Tolerance(0, 1)).within);
+}
+
+TEST_F(ToleranceTest, IsExceededWhereThereIsNoValue) {
   std::vector<float> unknown = at_vertices;
   unknown[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(check_tolerance(surface, map, unknown, 0, 0, 2).within);
@@ -63,7 +110,7 @@ TEST_F(Tolerance, IsExceededWhereThereIsNoValue) {
   EXPECT_FALSE(check_tolerance(surface, map, at_vertices, 0, 0, 2).within);
 }
 
-TEST_F(Tolerance, RejectsDistancesOfOtherVertices) {
+TEST_F(ToleranceTest, RejectsDistancesOfOtherVertices) {
   at_vertices.pop_back();
   EXPECT_THROW(static_cast<void>(check_tolerance(surface, map, at_vertices, 0, 0, 2)), Error);
 }

@@ -24,7 +24,9 @@ LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const st
   for (const float d : map.distance)
     if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
   if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
-  if (scale.tolerance) text.notes.push_back("green: within \u00b1" + value_label(*scale.tolerance));
+  if (const auto& t = scale.tolerance)
+    text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
+                                         : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
   text.notes.push_back(map.sign.method == SignMethod::none ? "unsigned" : "negative: inside");
   return text;
 }

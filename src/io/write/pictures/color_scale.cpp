@@ -83,9 +83,10 @@ std::uint32_t scramble(std::uint32_t x) {
 Rgb ColorScale::operator()(double distance) const {
   if (!std::isfinite(distance)) return kNoValue;
   if (tolerance) {
-    if (std::abs(distance) <= *tolerance + accuracy) return kWithin;
-    return distance > 0 ? gradient(kAbove, fraction(distance, *tolerance, hi))
-                        : gradient(kBelow, fraction(-distance, *tolerance, -lo));
+    if (distance > tolerance->hi + accuracy) return gradient(kAbove, fraction(distance, tolerance->hi, hi));
+    if (distance < tolerance->lo - accuracy)
+      return gradient(kBelow, fraction(-distance, -tolerance->lo, -lo));
+    return kWithin;
   }
   if (map == Colormap::diverging)
     return gradient(kDiverging, 0.5 + 0.5 * distance / std::max(std::abs(lo), std::abs(hi)));
@@ -111,8 +112,9 @@ ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
   } else {
     scale.map = options.colormap;
   }
-  if (options.tolerance && !(std::isfinite(*options.tolerance) && *options.tolerance >= 0))
-    throw Error("the tolerance of the picture must be a finite number, 0 or more");
+  if (const auto& t = options.tolerance;
+      t && !(std::isfinite(t->lo) && std::isfinite(t->hi) && t->lo <= t->hi))
+    throw Error("the tolerance of the picture must be two finite numbers, the smaller one first");
 
   if (options.range) {
     std::tie(scale.lo, scale.hi) = std::pair((*options.range)[0], (*options.range)[1]);
@@ -121,8 +123,9 @@ ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
     return scale;
   }
   if (scale.tolerance) {
-    scale.hi = std::max(scale.hi, 2 * *scale.tolerance);
-    scale.lo = is_signed ? std::min(scale.lo, -2 * *scale.tolerance) : 0;
+    const double margin = std::max(std::abs(scale.tolerance->lo), std::abs(scale.tolerance->hi));
+    scale.hi = std::max(scale.hi, scale.tolerance->hi + margin);
+    scale.lo = is_signed ? std::min(scale.lo, scale.tolerance->lo - margin) : 0;
   } else if (scale.map == Colormap::diverging) {
     scale.hi = std::max(std::abs(scale.lo), std::abs(scale.hi)), scale.lo = -scale.hi;
   }

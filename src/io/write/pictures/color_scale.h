@@ -19,10 +19,10 @@ inline constexpr Rgb kNoValue{128, 130, 134};  ///< owned texels without a value
 
 /// A map from distances to colours, continuous except at the edges of the tolerance bands.
 struct ColorScale {
-  Colormap map = Colormap::viridis;   ///< never automatic
-  double lo = 0, hi = 1;              ///< lo < hi; colours are constant outside
-  std::optional<double> tolerance{};  ///< if set, bands instead of the map
-  double accuracy = 0;                ///< distances that exceed the tolerance by less are within it
+  Colormap map = Colormap::viridis;      ///< never automatic
+  double lo = 0, hi = 1;                 ///< lo < hi; colours are constant outside
+  std::optional<Tolerance> tolerance{};  ///< if set, bands instead of the map
+  double accuracy = 0;                   ///< distances that exceed the tolerance by less are within it
 
   [[nodiscard]] Rgb operator()(double distance) const;
 };

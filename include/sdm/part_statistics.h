@@ -1,0 +1,41 @@
+/// Statistics of the parts of a surface: its connected components, or the named groups of its file.
+///
+/// Threads: the functions may be called concurrently, also with the same map.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/map.h>
+#include <sdm/mesh.h>
+#include <sdm/statistics.h>
+#include <sdm/surface.h>
+#include <sdm/tolerance.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+/// Returns, for each face, the number of its component: the faces that are connected by shared vertices.
+/// Components are numbered from 0 in the order of their first faces; removed faces (see MeshEdit) have kNone.
+/// Cost: linear.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> face_components(const Mesh& mesh);
+
+struct PartStatistics {
+  std::size_t faces = 0;
+  Box box;                      ///< of the vertices of its faces
+  double area_fraction = 0;     ///< of the area of all texels of the map, in [0, 1]
+  DistanceStatistics distance;  ///< of the texels of its faces
+  ToleranceShares tolerance;    ///< fractions of the part's own area; 0 without a tolerance
+};
+
+/// `part_of_face`: for each face of the surface, the number of its part, below `parts`, or kNone for faces
+/// that belong to none. `accuracy`: as for tolerance_shares(). Throws sdm::Error if the map or the parts
+/// belong to another surface. Cost: linear in texels and faces, all cores; eight bytes for each texel.
+[[nodiscard]] SDM_API std::vector<PartStatistics> part_statistics(
+    const Surface& surface, const DistanceMap& map, std::span<const std::uint32_t> part_of_face,
+    std::size_t parts, const std::optional<Tolerance>& tolerance = {}, double accuracy = 0);
+
+}  // namespace sdm
