@@ -38,7 +38,7 @@ std::vector<std::filesystem::path> earlier_files(const BodiesCommand& command) {
   std::vector<std::filesystem::path> files{"report.json"};
   for (std::size_t body = 0; body < command.files.size(); ++body) {
     const std::filesystem::path folder = fmt::to_string(body);
-    for (const std::string& file : names({})) files.push_back(folder / file);
+    for (const std::string& file : all_names()) files.push_back(folder / file);
     files.push_back(folder / "body.npy");
   }
   return files;
@@ -176,7 +176,7 @@ void add_options(CLI::App& app, BodiesCommand& c) {
                  "A text file with a pose per body and line: x y z and a quaternion w x y z, or a 4×4 "
                  "matrix, row by row")
       ->type_name("FILE");
-  add_write_option(app, c.map_files);
+  add_write_option(app, c.map_files, false);
   add_resolution_option(app, c.atlas, "all bodies' maps, which -o writes");
   add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a table");
 }

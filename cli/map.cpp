@@ -50,6 +50,20 @@ std::vector<std::string> notes(const sdm::Mesh& on, const sdm::Mesh& to, const O
   return result;
 }
 
+/// What map.exr says about itself.
+std::vector<std::pair<std::string, std::string>> exr_attributes(const Input& on, const Input& to,
+                                                                const sdm::SignUsed& sign,
+                                                                const std::string& units) {
+  std::vector<std::pair<std::string, std::string>> attributes{{"measuredOn", on.file},
+                                                              {"distanceTo", to.file},
+                                                              {"sign", sign_name(sign.method)},
+                                                              {"signReason", sign.reason}};
+  if (!on.transform.empty()) attributes.emplace_back("measuredOnTransform", on.transform);
+  if (!to.transform.empty()) attributes.emplace_back("distanceToTransform", to.transform);
+  if (!units.empty()) attributes.emplace_back("units", units);
+  return attributes;
+}
+
 /// Computes the map on `on` of the distances to `to`, and writes all files of it into `folder`.
 Result measure(const MapCommand& command, Input& on, Input& to, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
@@ -104,10 +118,17 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
     boundary = sdm::boundary_mask(*sites, map);
     outcome.boundary_texels = static_cast<std::size_t>(std::ranges::count(boundary, 1));
   }
+  const sdm::ExrOptions exr{.layers = command.layers,
+                            .boundary = boundary,
+                            .sites = sites.get(),
+                            .attributes = exr_attributes(on, to, map.sign, command.picture.units)};
   sdm::PictureOptions picture = command.picture;
   if (std::isfinite(outcome.accuracy)) picture.accuracy = outcome.accuracy;
   sdm::run_concurrently({
-      [&] { write_map_files(folder, command.files, *surface, map, at_vertices, picture, boundary); },
+      [&] { write_map_files(folder, command.files, *surface, map, at_vertices, picture, exr); },
+      [&] {
+        if (on.vertices) write_vertex_files(folder, command.files, *on.vertices, at_vertices);
+      },
       [&] {
         outcome.distance = sdm::statistics(*surface, map);
         outcome.numbers = map_numbers(*surface, map, outcome.distance, on.names, on.info->components,
@@ -145,7 +166,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
 std::vector<std::filesystem::path> stale_files() {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path folder : {"", "o1", "o2"}) {
-    for (const std::string& file : names({})) files.push_back(folder / file);
+    for (const std::string& file : all_names()) files.push_back(folder / file);
     files.push_back(folder / "report.json");
   }
   return files;
@@ -170,8 +191,10 @@ int run(MapCommand command) {
   progress.step("import");
   Stopwatch import;
   Input o1, o2;
-  sdm::run_concurrently({[&] { o1 = load_input("o1", command.o1, command.transform_o1); },
-                         [&] { o2 = load_input("o2", command.o2, command.transform_o2); }});
+  const bool vertices = command.files.any_vertices();
+  sdm::run_concurrently(
+      {[&] { o1 = load_input("o1", command.o1, command.transform_o1, {vertices}); },
+       [&] { o2 = load_input("o2", command.o2, command.transform_o2, {vertices && command.both}); }});
   const double import_ms = import.lap();
 
   std::vector<Result> results;

@@ -10,15 +10,43 @@ namespace {
 struct Kind {
   const char* name;
   bool MapFiles::*chosen;
+  bool of_vertices;
   std::vector<std::string> files;
 };
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> kinds{
-      {"exr", &MapFiles::exr, {"map.exr"}},
-      {"png", &MapFiles::png, {"distance.png", "voronoi.png", "direction.png"}},
-      {"glb", &MapFiles::glb, {"model.glb"}}};
+      {"exr", &MapFiles::exr, false, {"map.exr"}},
+      {"png", &MapFiles::png, false, {"distance.png", "voronoi.png", "direction.png"}},
+      {"glb", &MapFiles::glb, false, {"model.glb"}},
+      {"ply", &MapFiles::ply, true, {"vertices.ply"}},
+      {"csv", &MapFiles::csv, true, {"vertices.csv"}},
+      {"npy", &MapFiles::npy, true, {"vertices.npy"}},
+      {"vtp", &MapFiles::vtp, true, {"vertices.vtp"}}};
   return kinds;
+}
+
+struct Layer {
+  const char* name;
+  bool sdm::ExrLayers::*chosen;
+};
+
+constexpr Layer kLayers[] = {
+    {"distance", &sdm::ExrLayers::distance}, {"vector", &sdm::ExrLayers::vector},
+    {"site", &sdm::ExrLayers::site},         {"face", &sdm::ExrLayers::face},
+    {"position", &sdm::ExrLayers::position}, {"normal", &sdm::ExrLayers::normal},
+    {"closest", &sdm::ExrLayers::closest},
+};
+
+/// Words of a list that must be among `choices`.
+CLI::Validator one_of(const std::vector<std::string>& choices) {
+  return CLI::Validator(
+      [choices](const std::string& text) {
+        return std::ranges::count(choices, text) > 0
+                   ? std::string()
+                   : fmt::format("{} is not one of {}", text, fmt::join(choices, ", "));
+      },
+      "");
 }
 
 }  // namespace
@@ -30,17 +58,30 @@ std::vector<std::string> names(const MapFiles& files) {
   return names;
 }
 
+std::vector<std::string> all_names() {
+  MapFiles all;
+  for (const Kind& kind : kinds()) all.*kind.chosen = true;
+  return names(all);
+}
+
 std::string listed(const MapFiles& files) {
   std::string text;
   for (const std::string& name : names(files)) text += name + " ";
   return text;
 }
 
-void add_write_option(CLI::App& app, MapFiles& files) {
-  std::vector<std::string> choices;
-  for (const Kind& kind : kinds()) choices.emplace_back(kind.name);
-  const std::string all = fmt::format("{}", fmt::join(choices, ","));
+void add_write_option(CLI::App& app, MapFiles& files, bool with_vertices) {
+  std::vector<std::string> choices, by_default;
+  for (const Kind& kind : kinds()) {
+    if (files.*kind.chosen) by_default.emplace_back(kind.name);
+    if (with_vertices || !kind.of_vertices) choices.emplace_back(kind.name);
+  }
   choices.emplace_back("none");
+  std::string help = "The files of a map to write: exr: map.exr; png: the three pictures; glb: model.glb; ";
+  if (with_vertices)
+    help +=
+        "ply, csv, npy, vtp: the distance at each vertex of the input, in its order, as vertices.ply and so "
+        "on; ";
   app.add_option_function<std::vector<std::string>>(
          "--write",
          [&files](const std::vector<std::string>& chosen) {
@@ -48,25 +89,41 @@ void add_write_option(CLI::App& app, MapFiles& files) {
              throw CLI::ValidationError("--write", "none excludes the others");
            for (const Kind& kind : kinds()) files.*kind.chosen = std::ranges::count(chosen, kind.name) > 0;
          },
-         "The files of a map to write: map.exr, the three pictures, model.glb; or none")
+         help + "or none")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::Validator(
-          [choices](const std::string& text) {
-            return std::ranges::count(choices, text) > 0
-                       ? std::string()
-                       : fmt::format("{} is not one of {}", text, fmt::join(choices, ", "));
-          },
-          ""))
+      ->check(one_of(choices))
       ->type_name("LIST")
-      ->default_str(all);
+      ->default_str(fmt::format("{}", fmt::join(by_default, ",")));
+}
+
+void add_channels_option(CLI::App& app, sdm::ExrLayers& layers) {
+  std::vector<std::string> choices, by_default;
+  for (const Layer& layer : kLayers) {
+    choices.emplace_back(layer.name);
+    if (layers.*layer.chosen) by_default.emplace_back(layer.name);
+  }
+  app.add_option_function<std::vector<std::string>>(
+         "--channels",
+         [&layers](const std::vector<std::string>& chosen) {
+           for (const Layer& layer : kLayers)
+             layers.*layer.chosen = std::ranges::count(chosen, layer.name) > 0;
+         },
+         "The layers of map.exr: distance, vector, site and face, and on request position, normal and "
+         "closest (the "
+         "face of O2 with the closest point, and where on it)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(one_of(choices))
+      ->type_name("LIST")
+      ->default_str(fmt::format("{}", fmt::join(by_default, ",")));
 }
 
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
                      const sdm::DistanceMap& map, std::span<const float> at_vertices,
-                     const sdm::PictureOptions& picture, std::span<const std::uint8_t> boundary) {
+                     const sdm::PictureOptions& picture, const sdm::ExrOptions& exr) {
   std::vector<std::function<void()>> work;
-  if (files.exr) work.push_back([&] { sdm::write_exr(folder / "map.exr", surface, map, boundary); });
+  if (files.exr) work.push_back([&] { sdm::write_exr(folder / "map.exr", surface, map, exr); });
   if (files.glb)
     work.push_back([&] { sdm::write_glb(folder / "model.glb", surface, map, at_vertices, picture); });
   if (files.png) {
@@ -74,5 +131,18 @@ void write_map_files(const std::filesystem::path& folder, const MapFiles& files,
     work.push_back([&] { sdm::write_direction_png(folder / "direction.png", surface, map, picture); });
     work.push_back([&] { sdm::write_voronoi_png(folder / "voronoi.png", surface, map, picture); });
   }
+  sdm::run_concurrently(work);
+}
+
+void write_vertex_files(const std::filesystem::path& folder, const MapFiles& files,
+                        const sdm::FileVertices& vertices, std::span<const float> at_vertices) {
+  std::vector<std::function<void()>> work;
+  const auto add = [&](bool chosen, const char* name, auto* write) {
+    if (chosen) work.push_back([&, name, write] { write(folder / name, vertices, at_vertices); });
+  };
+  add(files.ply, "vertices.ply", sdm::write_vertices_ply);
+  add(files.csv, "vertices.csv", sdm::write_vertices_csv);
+  add(files.npy, "vertices.npy", sdm::write_vertices_npy);
+  add(files.vtp, "vertices.vtp", sdm::write_vertices_vtp);
   sdm::run_concurrently(work);
 }

@@ -12,21 +12,34 @@
 
 /// Which files of a map are written.
 struct MapFiles {
-  bool exr = true;  ///< map.exr
-  bool png = true;  ///< distance.png, voronoi.png and direction.png
-  bool glb = true;  ///< model.glb
+  bool exr = true;                                          ///< map.exr
+  bool png = true;                                          ///< distance.png, voronoi.png and direction.png
+  bool glb = true;                                          ///< model.glb
+  bool ply = false, csv = false, npy = false, vtp = false;  ///< vertices.ply, ...
+
+  /// Whether there is a file of the input's vertices.
+  [[nodiscard]] bool any_vertices() const { return ply || csv || npy || vtp; }
 };
 
 /// Their names, in the order in which they are listed for users.
 [[nodiscard]] std::vector<std::string> names(const MapFiles& files);
 /// The same, each followed by a space.
 [[nodiscard]] std::string listed(const MapFiles& files);
+/// Of all files that can be written.
+[[nodiscard]] std::vector<std::string> all_names();
 
-/// --write, which sets `files`.
-void add_write_option(CLI::App& app, MapFiles& files);
+/// --write, which sets `files`; `with_vertices`: also to files of the input's vertices.
+void add_write_option(CLI::App& app, MapFiles& files, bool with_vertices);
+
+/// --channels, which sets `layers`.
+void add_channels_option(CLI::App& app, sdm::ExrLayers& layers);
 
 /// Writes the files concurrently. `at_vertices`: the distance at each vertex of the surface's mesh.
-/// `boundary`: as for write_exr.
+/// `exr`: of map.exr.
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
                      const sdm::DistanceMap& map, std::span<const float> at_vertices,
-                     const sdm::PictureOptions& picture, std::span<const std::uint8_t> boundary = {});
+                     const sdm::PictureOptions& picture, const sdm::ExrOptions& exr = {});
+
+/// Writes the files of the input's vertices.
+void write_vertex_files(const std::filesystem::path& folder, const MapFiles& files,
+                        const sdm::FileVertices& vertices, std::span<const float> at_vertices);

@@ -93,7 +93,8 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->check(number("a number", [](double) { return true; }))
       ->type_name("LIST");
 
-  add_write_option(app, c.files);
+  add_write_option(app, c.files, true);
+  add_channels_option(app, c.layers);
   add_picture_options(app, c.picture, c.range);
   add_run_options(app, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
 }

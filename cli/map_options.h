@@ -21,6 +21,7 @@ struct MapCommand {
   sdm::GlOptions gl;
   sdm::PictureOptions picture;
   MapFiles files;
+  sdm::ExrLayers layers;
   std::vector<double> range, bands;
   std::optional<double> precision;
   unsigned threads = 0;

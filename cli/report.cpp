@@ -13,17 +13,6 @@ const char* atlas_name(sdm::AtlasKind kind) {
   return kind == sdm::AtlasKind::charts ? "charts" : kind == sdm::AtlasKind::triangles ? "triangles" : "uv";
 }
 
-const char* sign_name(sdm::SignMethod method) {
-  switch (method) {
-    case sdm::SignMethod::exact:
-      return "exact";
-    case sdm::SignMethod::winding:
-      return "winding";
-    default:
-      return "none";
-  }
-}
-
 const char* clip_name(sdm::GlClip clip) {
   return clip == sdm::GlClip::planes ? "planes" : "stencil";
 }
@@ -75,10 +64,23 @@ Json gl_json(const sdm::GlReport& r) {
 
 }  // namespace
 
-Input load_input(const std::string& role, const std::string& file, const std::string& transform) {
-  sdm::MeshFile read = sdm::read_mesh_file(file);
+const char* sign_name(sdm::SignMethod method) {
+  switch (method) {
+    case sdm::SignMethod::exact:
+      return "exact";
+    case sdm::SignMethod::winding:
+      return "winding";
+    default:
+      return "none";
+  }
+}
+
+Input load_input(const std::string& role, const std::string& file, const std::string& transform,
+                 const sdm::MeshFileOptions& options) {
+  sdm::MeshFile read = sdm::read_mesh_file(file, options);
   Input input{.role = role, .file = file, .transform = transform, .mesh = std::move(read.mesh)};
   input.names = std::move(read.names);
+  input.vertices = std::move(read.vertices);
   sdm::scenes::place(input.mesh, sdm::scenes::parse_placement(transform));
   return input;
 }

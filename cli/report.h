@@ -19,14 +19,15 @@ struct Input {
   sdm::Mesh mesh;
   std::optional<sdm::MeshInfo> info{};  ///< once inspected
   std::vector<sdm::FaceNames> names{};
+  std::optional<sdm::FileVertices> vertices{};  ///< of the file, without the transform, if requested
 };
 
 /// Sets input.info, which to_json() needs, unless it is set.
 void inspect(Input& input);
 
 /// Reads a mesh and applies its transform. Does not inspect it.
-[[nodiscard]] Input load_input(const std::string& role, const std::string& file,
-                               const std::string& transform);
+[[nodiscard]] Input load_input(const std::string& role, const std::string& file, const std::string& transform,
+                               const sdm::MeshFileOptions& options = {});
 
 /// Wall-clock times in milliseconds. Overlapping steps are each counted in full.
 struct Times {
@@ -54,6 +55,7 @@ struct Outcome {
 
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Surface& surface);
+[[nodiscard]] const char* sign_name(sdm::SignMethod method);
 [[nodiscard]] nlohmann::ordered_json to_json(const Outcome& outcome);
 
 /// Bounds on the largest distance of all points of the mesh with the map to the other one, inside or outside,

@@ -53,6 +53,9 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   sdm::DistanceStatistics distance;
   sdm::run_concurrently(
       {[&] { write_map_files(folder, command.files, surface, map, at_vertices, command.picture); },
+       [&] {
+         if (input.vertices) write_vertex_files(folder, command.files, *input.vertices, at_vertices);
+       },
        [&] { distance = sdm::statistics(surface, map); }});
   const double export_ms = watch.lap();
 
@@ -99,7 +102,7 @@ void run(SelfCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
   std::vector<std::filesystem::path> earlier{"report.json"};
-  for (const std::string& file : names({})) earlier.emplace_back(file);
+  for (const std::string& file : all_names()) earlier.emplace_back(file);
   OutputFolder out(command.out, earlier);
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.self.progress = progress.callback();
@@ -107,7 +110,7 @@ void run(SelfCommand command) {
 
   progress.step("import");
   Stopwatch import;
-  Input input = load_input("mesh", command.file, command.transform);
+  Input input = load_input("mesh", command.file, command.transform, {command.files.any_vertices()});
   inspect(input);
   const double import_ms = import.lap();
   Json report;
@@ -154,7 +157,7 @@ void add_self_command(CLI::App& app) {
       ->type_name("D");
   add_resolution_option(*self, c.atlas);
   add_layout_options(*self, c.atlas, "the mesh");
-  add_write_option(*self, c.files);
+  add_write_option(*self, c.files, true);
   add_picture_options(*self, c.picture, c.range);
   add_run_options(*self, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   self->callback([command] {

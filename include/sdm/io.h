@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sdm {
@@ -84,12 +85,56 @@ struct PictureOptions {
   std::uint32_t largest = 2048;
 };
 
+/// The distances of the vertices of a file, in its order and count, to join them to it. `vertex_distances`:
+/// one per vertex of the mesh that the file was read as. Vertices of no face, and those whose distance is
+/// not finite, have no value: NaN, in CSV an empty field. Positions are those of the file, in double
+/// precision. All also throw sdm::Error if the distances belong to another mesh. Cost: linear.
+///
+/// Binary PLY: x, y, z, and the distance twice, as `quality` and `distance` (float); the polygons of the
+/// file.
+SDM_API void write_vertices_ply(const std::filesystem::path& file, const FileVertices& vertices,
+                                std::span<const float> vertex_distances);
+/// Columns vertex (numbered from 0), x, y, z, distance; all digits.
+SDM_API void write_vertices_csv(const std::filesystem::path& file, const FileVertices& vertices,
+                                std::span<const float> vertex_distances);
+/// Shape (vertices,), float32.
+SDM_API void write_vertices_npy(const std::filesystem::path& file, const FileVertices& vertices,
+                                std::span<const float> vertex_distances);
+/// VTK PolyData in XML: points, the polygons of the file, and the point data `distance` (Float32).
+SDM_API void write_vertices_vtp(const std::filesystem::path& file, const FileVertices& vertices,
+                                std::span<const float> vertex_distances);
+
+/// The layers of map.exr.
+struct ExrLayers {
+  bool distance = true;   ///< distance.D
+  bool vector = true;     ///< vector.X/Y/Z
+  bool site = true;       ///< site.id, site.type
+  bool face = true;       ///< face.id
+  bool position = false;  ///< position.X/Y/Z: the surface point of the texel's centre
+  bool normal = false;    ///< normal.X/Y/Z: the unit normal of its face, by the order of the corners
+  /// closest.face, closest.U, closest.V: a face of O2 with the closest point, and that point's weights of the
+  /// second and third corner; needs ExrOptions::sites.
+  bool closest = false;
+};
+
+struct ExrOptions {
+  ExrLayers layers{};
+  std::span<const std::uint8_t> boundary{};  ///< of boundary_mask(), or empty: channel boundary.M (0 or 1)
+  const Sites* sites = nullptr;              ///< the sites of the map, for ExrLayers::closest
+  /// Names, of at most 31 bytes, and values of string attributes of the file, such as the units.
+  std::vector<std::pair<std::string, std::string>> attributes{};
+};
+
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Values
 /// are dilated into the gutters; coverage.A is the coverage before dilation. Texels without a value hold NaN
 /// and 0xFFFFFFFF; in self maps, texels with nothing in range hold +∞, 0 and 0xFFFFFFFF.
 /// `boundary`, of boundary_mask() or empty: written as a channel boundary.M (FLOAT, 0 or 1).
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        std::span<const std::uint8_t> boundary = {});
+/// The same with other layers and attributes. Also throws sdm::Error if `sites` are missing or those of
+/// another map.
+SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                       const ExrOptions& options);
 /// The same for statistics over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
 

@@ -5,10 +5,12 @@
 #include <new>
 #include <string>
 
+#include "core/geometry/barycentric.h"
 #include "core/geometry/spatial_order.h"
 #include "core/memory.h"
 #include "engine/blocks.h"
 #include "map/engine_of.h"
+#include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
@@ -38,6 +40,22 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
   return result;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("closest points");
+}
+
+FacePoint point_on_face(const Sites& sites, SiteType type, std::uint32_t site, const Vec3& query) {
+  if (type == SiteType::none) return {};
+  const sites::SitesData& data = internals(sites);
+  const std::size_t count = type == SiteType::vertex ? data.mesh.positions.size()
+                            : type == SiteType::edge ? data.topology.edges.size()
+                                                     : data.mesh.triangles.size();
+  if (site >= count || (type == SiteType::vertex && data.vertex_faces.of(site).empty()))
+    throw Error("point_on_face() needs a site of these sites");
+  const std::uint32_t face = data.face_of(type, site);
+  const Triangle& t = data.mesh.triangles[face];
+  const auto& p = data.mesh.positions;
+  const Vec3 weights =
+      barycentric(p[t[0]], p[t[1]], p[t[2]], sites::closest_on_face(data, face, query).point);
+  return {face, weights[1], weights[2]};
 }
 
 }  // namespace sdm

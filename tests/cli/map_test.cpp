@@ -3,12 +3,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/io.h>
 #include <sdm/map.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/version.h>
+#include <sdm/vertex_distances.h>
 
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "support/shapes.h"
@@ -48,7 +54,54 @@ TEST_F(MapCommand, WritesTheFilesAskedFor) {
   EXPECT_EQ(run_sdm(map({"--write", "none,exr"})).code, 2);
   const Outcome bad = run_sdm(map({"--write", "exr,jpg"}));
   EXPECT_EQ(bad.code, 2);
-  EXPECT_THAT(bad.err, HasSubstr("jpg is not one of exr, png, glb, none"));
+  EXPECT_THAT(bad.err, HasSubstr("jpg is not one of exr, png, glb, ply, csv, npy, vtp, none"));
+}
+
+// Also of STL, which repeats vertices, and of vertices without a face: against the reference engine.
+TEST_F(MapCommand, WritesTheDistancesOfTheInputsVertices) {
+  const Mesh mesh = ring(12);
+  std::ofstream(o1, std::ios::app) << "v 9 9 9\nv 1 1 1\n";
+  std::string stl = "solid ring\n";
+  for (const Triangle& t : mesh.triangles) {
+    stl += "facet normal 0 0 0\nouter loop\n";
+    for (const std::uint32_t v : t)
+      stl +=
+          fmt::format("vertex {} {} {}\n", mesh.positions[v][0], mesh.positions[v][1], mesh.positions[v][2]);
+    stl += "endloop\nendfacet\n";
+  }
+  const std::string as_stl = folder / "first.stl";
+  std::ofstream(as_stl) << stl << "endsolid\n";
+
+  const Sites sites(moved(read_mesh(o2), {0, 0.25, 0}));
+  const MapOptions reference{.engine = make_engine("reference")};
+  const std::vector<float> of_mesh = distances_at_vertices(mesh, sites, reference);
+  std::vector<float> of_obj = of_mesh, of_stl;
+  of_obj.insert(of_obj.end(), 2, std::nanf(""));
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) of_stl.push_back(of_mesh[v]);
+  for (const auto& [file, expected] : {std::pair(o1, of_obj), std::pair(as_stl, of_stl)}) {
+    const Outcome run = run_sdm({"map", file, o2, "-o", out, "--resolution", "128", "--transform-o2",
+                                 "translate:0:0.25:0", "--write", "csv,npy,ply,vtp"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.json", "vertices.csv", "vertices.npy",
+                                                       "vertices.ply", "vertices.vtp"}));
+    const std::string bytes = contents(out + "/vertices.npy");
+    ASSERT_EQ(bytes.size(), 128 + 4 * expected.size());
+    for (std::size_t v = 0; v < expected.size(); ++v) {
+      float found = 0;
+      std::memcpy(&found, bytes.data() + 128 + 4 * v, 4);
+      if (std::isnan(expected[v]))
+        ASSERT_TRUE(std::isnan(found)) << v;
+      else
+        ASSERT_NEAR(found, expected[v], 1e-6) << v;
+    }
+  }
+  EXPECT_EQ(run_sdm(map()).code, 0);
+  EXPECT_EQ(names_in(out), kResults) << "those of the earlier run are removed";
+  EXPECT_EQ(run_sdm({"self", o1, "-o", out, "--resolution", "128", "--write", "csv"}).code, 0);
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.json", "vertices.csv"}));
+  EXPECT_EQ(run_sdm(map({"--write", "exr", "--channels", "distance,position,closest"})).code, 0);
+  EXPECT_EQ(run_sdm(map({"--channels", "depth"})).code, 2);
 }
 
 TEST_F(MapCommand, ALaterRunTakesTheAtlasFromItsCache) {

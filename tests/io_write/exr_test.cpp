@@ -3,8 +3,10 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/closest_points.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 
@@ -34,7 +36,8 @@ Channels read_exr(const std::filesystem::path& file, std::uint32_t n) {
     auto& values = channels[channel.name()];
     values.resize(std::size_t{n} * n);
     const std::string name = channel.name();
-    const bool is_id = name == "site.id" || name == "site.type" || name == "face.id";
+    const bool is_id =
+        name == "site.id" || name == "site.type" || name == "face.id" || name == "closest.face";
     EXPECT_EQ(channel.channel().type, is_id ? Imf::UINT : Imf::FLOAT) << name;
     frame.insert(channel.name(), Imf::Slice(channel.channel().type, reinterpret_cast<char*>(values.data()), 4,
                                             std::size_t{4} * n));
@@ -173,6 +176,62 @@ TEST(Exr, MarksTheBoundaryOfAnOpenMesh) {
   EXPECT_LT(marked, surface.sample_texels().size());
   EXPECT_THROW(write_exr(folder / "other.exr", surface, map, std::vector<std::uint8_t>(3)), Error);
   EXPECT_THROW(static_cast<void>(boundary_mask(Sites(single_triangle()), map)), Error);
+}
+
+// The position, closest face and weights of every texel give its vector.
+TEST(Exr, HasFurtherLayersAndAttributesOnRequest) {
+  Mesh target = ring(9, 0.7, {0.4, 0.1, 0.2});
+  target.triangles.resize(100);  // open: closest edges and vertices of one face
+  const Surface surface(ring(12), {.resolution = 64});
+  const Sites sites(target);
+  const DistanceMap map = compute_map(surface, sites, {.max_distance = 1});
+  ASSERT_GT(map.beyond_max_distance, 0u);
+  const TemporaryFolder folder;
+  ExrOptions options{.layers = {.site = false, .position = true, .normal = true, .closest = true},
+                     .sites = &sites,
+                     .attributes = {{"units", "mm"}, {"sign", ""}}};
+  write_exr(folder / "map.exr", surface, map, options);
+  const Channels channels = read_exr(folder / "map.exr", 64);
+  EXPECT_EQ(channels.size(), 15u);
+  EXPECT_FALSE(channels.contains("site.id"));
+  const auto value = [&](const std::string& name, std::uint32_t t) {
+    return double{std::bit_cast<float>(channels.at(name)[t])};
+  };
+  for (const std::uint32_t t : surface.sample_texels()) {
+    const Vec3 p = surface.texel_point(t);
+    const Triangle& owner = surface.mesh().triangles[surface.texel_faces()[t]];
+    const std::uint32_t face = channels.at("closest.face")[t];
+    if (map.site_type[t] == SiteType::none) {
+      ASSERT_EQ(face, kNone);
+      ASSERT_TRUE(std::isnan(value("closest.U", t)));
+      continue;
+    }
+    const double u = value("closest.U", t), v = value("closest.V", t);
+    ASSERT_GE(std::min({u, v, 1 - u - v}), -1e-7);
+    const Triangle& triangle = target.triangles.at(face);
+    double along[2] = {0, 0}, length = 0;
+    for (int k = 0; k < 3; ++k) {
+      const std::string axis = {"XYZ"[k]};
+      const auto corner = [&](int i) { return target.positions[triangle[i]][k]; };
+      const double closest = (1 - u - v) * corner(0) + u * corner(1) + v * corner(2);
+      ASSERT_NEAR(value("position." + axis, t), p[k], 1e-6);
+      ASSERT_NEAR(closest - p[k], value("vector." + axis, t), 1e-6);
+      const double n = value("normal." + axis, t);
+      length += n * n;
+      for (int i = 0; i < 2; ++i)
+        along[i] += n * (surface.mesh().positions[owner[i + 1]][k] - surface.mesh().positions[owner[0]][k]);
+    }
+    ASSERT_NEAR(length, 1, 1e-6);
+    ASSERT_NEAR(along[0], 0, 1e-6);
+    ASSERT_NEAR(along[1], 0, 1e-6);
+  }
+  const Imf::InputFile exr((folder / "map.exr").c_str());
+  EXPECT_EQ(exr.header().typedAttribute<Imf::StringAttribute>("units").value(), "mm");
+  EXPECT_EQ(exr.header().typedAttribute<Imf::StringAttribute>("sign").value(), "");
+  options.sites = nullptr;
+  EXPECT_THROW(write_exr(folder / "other.exr", surface, map, options), Error);
+  EXPECT_EQ(point_on_face(sites, SiteType::none, kNone, {}).face, kNone);
+  EXPECT_THROW((void)point_on_face(sites, SiteType::edge, 1u << 30, {}), Error);
 }
 
 TEST(Exr, MissingValuesAreNaNAndNone) {

@@ -15,8 +15,8 @@ namespace sdm {
 
 std::string io::npy_header(std::string_view type, std::span<const std::uint64_t> shape) {
   constexpr std::size_t kHeaderSize = 128;
-  std::string dictionary =
-      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, fmt::join(shape, ", "));
+  std::string dictionary = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}{}), }}", type,
+                                       fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
   std::string header = "\x93NUMPY";
   header += {'\1', '\0'};
   append_little_endian(header, static_cast<std::uint16_t>(kHeaderSize - header.size() - 2));

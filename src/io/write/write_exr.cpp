@@ -1,3 +1,4 @@
+#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "io/write/atomic_file.h"
@@ -6,6 +7,7 @@
 
 #include <OpenEXR/openexr.h>
 #include <fmt/format.h>
+#include <sdm/closest_points.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/version.h>
@@ -36,6 +38,8 @@ struct Channel {
   std::size_t offset;
 };
 
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
 // Of a file compressed with ZIP.
 constexpr std::uint32_t kRowsPerChunk = 16;
 
@@ -44,7 +48,7 @@ constexpr std::uint32_t kRowsPerChunk = 16;
 class ExrFile {
  public:
   ExrFile(const std::filesystem::path& file, std::uint32_t columns, std::uint32_t rows,
-          std::span<const Channel> channels)
+          std::span<const Channel> channels, const Attributes& attributes)
       : file_(file), name_(file.string()) {
     exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
     settings.user_data = this;
@@ -52,7 +56,7 @@ class ExrFile {
     settings.write_fn = write;
     check(exr_start_write(&context_, name_.c_str(), EXR_WRITE_FILE_DIRECTLY, &settings));
     try {
-      write_header(static_cast<std::int32_t>(columns), static_cast<std::int32_t>(rows), channels);
+      write_header(static_cast<std::int32_t>(columns), static_cast<std::int32_t>(rows), channels, attributes);
     } catch (...) {
       exr_finish(&context_);
       throw;
@@ -72,7 +76,8 @@ class ExrFile {
   }
 
  private:
-  void write_header(std::int32_t columns, std::int32_t rows, std::span<const Channel> channels) {
+  void write_header(std::int32_t columns, std::int32_t rows, std::span<const Channel> channels,
+                    const Attributes& attributes) {
     int part = 0;
     check(exr_add_part(context_, nullptr, EXR_STORAGE_SCANLINE, &part));
     check(exr_initialize_required_attr_simple(context_, part, columns, rows, EXR_COMPRESSION_ZIP));
@@ -80,6 +85,8 @@ class ExrFile {
       check(exr_add_channel(context_, part, channel.name, channel.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
     const std::string comment = fmt::format("surface distance map, sdm {}", kVersion);
     check(exr_attr_set_string(context_, part, "comments", comment.c_str()));
+    for (const auto& [name, value] : attributes)
+      check(exr_attr_set_string(context_, part, name.c_str(), value.c_str()));
     check(exr_write_header(context_));
   }
 
@@ -161,11 +168,11 @@ std::vector<std::uint8_t> packed(std::span<const Texel> texels, std::uint32_t n,
 // neighbour's in gutters; kNone if there is none.
 template <class Texel, class Get>
 void write_texels(const std::filesystem::path& file, const Surface& surface,
-                  std::span<const Channel> channels, const Get& texel) {
+                  std::span<const Channel> channels, const Attributes& attributes, const Get& texel) {
   static_assert(std::endian::native == std::endian::little, "the order of bytes in the file");
   const std::uint32_t n = surface.resolution();
   const Gutter gutter(n, surface.texel_faces());
-  ExrFile exr(file, n, surface.rows(), channels);
+  ExrFile exr(file, n, surface.rows(), channels, attributes);
   const auto chunk = [&](std::uint32_t first_row) {
     const std::uint32_t rows = std::min(kRowsPerChunk, surface.rows() - first_row);
     std::vector<Texel> texels(std::size_t{n} * rows);
@@ -200,29 +207,76 @@ struct MapTexel {
   float coverage = 0, boundary = 0;
 };
 
+// With the layers that are written on request.
+struct FullTexel {
+  MapTexel map;
+  Vec3f position{kNaN, kNaN, kNaN}, normal{kNaN, kNaN, kNaN};
+  std::uint32_t closest_face = kNone;
+  float u = kNaN, v = kNaN;
+};
+
 struct TemporalTexel {
   float least = kNaN, mean = kNaN, largest = kNaN, coverage = 0;
 };
 
 }  // namespace
 
+namespace {
+
+// The channels of the layers, in the order of their names. Offsets are those in FullTexel, which begins with
+// MapTexel.
+std::vector<Channel> channels_of(const ExrLayers& layers, bool with_boundary) {
+  std::vector<Channel> channels;
+  const auto add = [&](bool wanted, const char* name, exr_pixel_type_t type, std::size_t offset) {
+    if (wanted) channels.push_back({name, type, offset});
+  };
+  const auto add_vector = [&](bool wanted, std::array<const char*, 3> names, std::size_t offset) {
+    for (std::size_t k = 0; k < 3; ++k) add(wanted, names[k], EXR_PIXEL_FLOAT, offset + k * sizeof(float));
+  };
+  add(with_boundary, "boundary.M", EXR_PIXEL_FLOAT, offsetof(MapTexel, boundary));
+  add(layers.closest, "closest.U", EXR_PIXEL_FLOAT, offsetof(FullTexel, u));
+  add(layers.closest, "closest.V", EXR_PIXEL_FLOAT, offsetof(FullTexel, v));
+  add(layers.closest, "closest.face", EXR_PIXEL_UINT, offsetof(FullTexel, closest_face));
+  add(true, "coverage.A", EXR_PIXEL_FLOAT, offsetof(MapTexel, coverage));
+  add(layers.distance, "distance.D", EXR_PIXEL_FLOAT, offsetof(MapTexel, distance));
+  add(layers.face, "face.id", EXR_PIXEL_UINT, offsetof(MapTexel, face));
+  add_vector(layers.normal, {"normal.X", "normal.Y", "normal.Z"}, offsetof(FullTexel, normal));
+  add_vector(layers.position, {"position.X", "position.Y", "position.Z"}, offsetof(FullTexel, position));
+  add(layers.site, "site.id", EXR_PIXEL_UINT, offsetof(MapTexel, site));
+  add(layers.site, "site.type", EXR_PIXEL_UINT, offsetof(MapTexel, site_type));
+  add_vector(layers.vector, {"vector.X", "vector.Y", "vector.Z"}, offsetof(MapTexel, vector));
+  return channels;
+}
+
+Vec3f to_float(const Vec3& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+Vec3f unit_normal(const Mesh& mesh, std::uint32_t face) {
+  const auto& [a, b, c] = mesh.triangles[face];
+  const Vec3 first = mesh.positions[b] - mesh.positions[a], second = mesh.positions[c] - mesh.positions[a];
+  const Vec3 normal = cross(first, second);
+  return to_float((1 / norm(normal)) * normal);
+}
+
+}  // namespace
+
 void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-               std::span<const std::uint8_t> boundary) try {
+               std::span<const std::uint8_t> boundary) {
+  write_exr(file, surface, map, ExrOptions{.boundary = boundary});
+}
+
+void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+               const ExrOptions& options) try {
+  const std::span<const std::uint8_t> boundary = options.boundary;
   if (!boundary.empty() && boundary.size() != map.distance.size())
     throw Error("cannot write " + file.string() + ": the mask of the boundary belongs to another map");
-  constexpr std::size_t kVector = offsetof(MapTexel, vector);
-  const Channel channels[] = {{"boundary.M", EXR_PIXEL_FLOAT, offsetof(MapTexel, boundary)},
-                              {"coverage.A", EXR_PIXEL_FLOAT, offsetof(MapTexel, coverage)},
-                              {"distance.D", EXR_PIXEL_FLOAT, offsetof(MapTexel, distance)},
-                              {"face.id", EXR_PIXEL_UINT, offsetof(MapTexel, face)},
-                              {"site.id", EXR_PIXEL_UINT, offsetof(MapTexel, site)},
-                              {"site.type", EXR_PIXEL_UINT, offsetof(MapTexel, site_type)},
-                              {"vector.X", EXR_PIXEL_FLOAT, kVector},
-                              {"vector.Y", EXR_PIXEL_FLOAT, kVector + sizeof(float)},
-                              {"vector.Z", EXR_PIXEL_FLOAT, kVector + 2 * sizeof(float)}};
-  const std::span used = std::span(channels).subspan(boundary.empty() ? 1 : 0);
+  const ExrLayers& layers = options.layers;
+  if (layers.closest && options.sites == nullptr)
+    throw Error("cannot write " + file.string() + ": the layer `closest` needs the sites of the map");
+  const std::vector<Channel> channels = channels_of(layers, !boundary.empty());
   const auto owners = surface.texel_faces();
-  write_texels<MapTexel>(file, surface, used, [&](std::uint32_t source, bool covered) -> MapTexel {
+  const auto map_texel = [&](std::uint32_t source, bool covered) -> MapTexel {
     if (source == kNone) return {};
     const SiteType type = map.site_type[source];
     return {map.distance[source],
@@ -232,7 +286,26 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
             owners[source],
             covered ? 1.f : 0.f,
             !boundary.empty() && boundary[source] ? 1.f : 0.f};
-  });
+  };
+  if (!layers.position && !layers.normal && !layers.closest) {
+    write_texels<MapTexel>(file, surface, channels, options.attributes, map_texel);
+    return;
+  }
+  write_texels<FullTexel>(
+      file, surface, channels, options.attributes, [&](std::uint32_t source, bool covered) {
+        FullTexel texel{.map = map_texel(source, covered)};
+        if (source == kNone) return texel;
+        const Vec3 point = surface.texel_point(source);
+        texel.position = to_float(point);
+        if (layers.normal) texel.normal = unit_normal(surface.mesh(), owners[source]);
+        if (layers.closest && map.site_type[source] != SiteType::none) {
+          const FacePoint closest =
+              point_on_face(*options.sites, map.site_type[source], map.site[source], point);
+          texel.closest_face = closest.face;
+          texel.u = static_cast<float>(closest.u), texel.v = static_cast<float>(closest.v);
+        }
+        return texel;
+      });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }
@@ -246,7 +319,7 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
                               {"min.D", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, least)}};
   const std::vector<float> mean = maps.mean();
   write_texels<TemporalTexel>(
-      file, surface, channels, [&](std::uint32_t source, bool covered) -> TemporalTexel {
+      file, surface, channels, {}, [&](std::uint32_t source, bool covered) -> TemporalTexel {
         if (source == kNone) return {};
         return {maps.least()[source], mean[source], maps.largest()[source], covered ? 1.f : 0.f};
       });
