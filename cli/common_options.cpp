@@ -33,6 +33,13 @@ void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::stri
       {{"charts", sdm::AtlasKind::charts},
        {"triangles", sdm::AtlasKind::triangles},
        {"uv", sdm::AtlasKind::uv}});
+  app.add_option("--gutter", atlas.gutter,
+                 "Free texels around each chart, and how far values extend beyond charts, if more than 4")
+      ->check(whole_number(0, 8192))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_flag("--strict-uv", atlas.strict_uv,
+               "uv: refuse coordinates outside of [0, 1] and faces that overlap in the texture");
   app.add_option("--max-stretch", atlas.max_stretch,
                  "Charts: the largest stretch, the factor by which lengths grow from map to surface")
       ->check(number("a number above 1", [](double x) { return x > 1; }))

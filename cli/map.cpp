@@ -1,6 +1,7 @@
 #include "map.h"
 
 #include "atlas_cache.h"
+#include "atlas_parts.h"
 #include "common_options.h"
 #include "format.h"
 #include "map_files.h"
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,9 +66,43 @@ std::vector<std::pair<std::string, std::string>> exr_attributes(const Input& on,
   return attributes;
 }
 
-/// Computes the map on `on` of the distances to `to`, and writes all files of it into `folder`.
-Result measure(const MapCommand& command, Input& on, Input& to, double import_ms,
+sdm::AtlasOptions atlas_options(const MapCommand& command, const sdm::Mesh& mesh) {
+  sdm::AtlasOptions options = command.atlas;
+  if (command.precision) options.resolution = sdm::resolution_for(mesh, options, *command.precision);
+  return options;
+}
+
+/// One scale of colours and grey values for all tiles, unless it is given: that of their distances together.
+/// Computes the maps, which are not kept, as they may need more memory than there is.
+void share_scale(const MapCommand& command, const std::vector<AtlasPart>& parts, const sdm::Mesh& to,
+                 sdm::PictureOptions& picture) {
+  if (picture.range) return;
+  const sdm::Sites sites(to);
+  float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+  for (const AtlasPart& part : parts) {
+    const sdm::Surface surface(*part.mesh, atlas_options(command, *part.mesh));
+    for (const float d : sdm::compute_map(surface, sites, command.map).distance)
+      if (std::isfinite(d)) lo = std::min(lo, d), hi = std::max(hi, d);
+  }
+  if (!(lo < hi)) return;
+  if (const auto& tolerance = picture.tolerance; tolerance && picture.colormap == sdm::Colormap::automatic) {
+    picture.range = {std::min<double>(lo, tolerance->lo), std::max<double>(hi, tolerance->hi)};
+  } else {
+    if (picture.colormap == sdm::Colormap::automatic)
+      picture.colormap = lo < 0 && hi > 0 ? sdm::Colormap::diverging : sdm::Colormap::viridis;
+    const double most = std::max(std::abs(lo), std::abs(hi));
+    if (picture.colormap == sdm::Colormap::diverging)
+      picture.range = {-most, most};
+    else
+      picture.range = {double{lo}, double{hi}};
+  }
+}
+
+/// Computes the map on `on`, or a part of it, of the distances to `to`, and writes all files of it into
+/// `folder`.
+Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart& part, double import_ms,
                const std::filesystem::path& folder, ProgressLine& progress) {
+  const sdm::Mesh& mesh = part.mesh ? *part.mesh : on.mesh;
   Stopwatch total;
   Result result;
   Outcome& outcome = result.outcome;
@@ -77,9 +113,8 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
   sdm::run_concurrently({
       [&] {
         Stopwatch watch;
-        sdm::AtlasOptions options = command.atlas;
-        if (command.precision) options.resolution = sdm::resolution_for(on.mesh, options, *command.precision);
-        surface = std::make_unique<sdm::Surface>(cached_surface(on.mesh, options, command.atlas_cache));
+        surface = std::make_unique<sdm::Surface>(
+            cached_surface(mesh, atlas_options(command, mesh), command.atlas_cache));
         outcome.time.atlas = watch.lap();
       },
       [&] {
@@ -101,7 +136,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
 
   Stopwatch map_watch;
   const sdm::DistanceMap map = sdm::compute_map(*surface, *sites, command.map);
-  const auto at_vertices = sdm::distances_at_vertices(on.mesh, *sites, command.map);
+  const auto at_vertices = sdm::distances_at_vertices(mesh, *sites, command.map);
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
@@ -131,7 +166,8 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
       },
       [&] {
         outcome.distance = sdm::statistics(*surface, map);
-        outcome.numbers = map_numbers(*surface, map, outcome.distance, on.names, on.info->components,
+        outcome.numbers = map_numbers(*surface, map, outcome.distance,
+                                      {on.mesh, on.info->components, on.names, part.source_face},
                                       command.bands, command.picture.tolerance, outcome.accuracy);
         outcome.error_bound = sdm::covering_radius(*surface);
       },
@@ -141,6 +177,12 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
                                              outcome.accuracy, *command.picture.tolerance);
   }
   outcome.notes = notes(on.mesh, to.mesh, outcome);
+  outcome.notes.insert(outcome.notes.end(), part.notes.begin(), part.notes.end());
+  if (const std::size_t texels = surface->overlapping_texels(); texels > 0)
+    outcome.notes.push_back(
+        fmt::format("{} texels are covered by several faces, and have the value of one of them; --strict-uv "
+                    "refuses that",
+                    texels));
   outcome.time.output = export_watch.lap();
   outcome.time.total = import_ms + total.lap();
 
@@ -154,6 +196,8 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
   report["measured_on"] = on.role;
   report["units"] = command.picture.units;
   report["atlas"] = to_json(*surface);
+  report["atlas"]["udim"] = part.udim ? nlohmann::ordered_json(*part.udim) : nullptr;
+  report["atlas"]["cut_faces"] = part.cut_faces;
   report["precision"] = command.precision ? nlohmann::ordered_json(*command.precision) : nullptr;
   report["engine"] = command.engine.name;
   report["max_distance"] = command.map.max_distance;  // null: no limit
@@ -162,21 +206,60 @@ Result measure(const MapCommand& command, Input& on, Input& to, double import_ms
   return result;
 }
 
-/// All files that any run of the command writes.
-std::vector<std::filesystem::path> stale_files() {
+/// All files that any run of the command writes, with the UDIM tiles that there are in the folder.
+std::vector<std::filesystem::path> stale_files(const std::filesystem::path& out) {
   std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path folder : {"", "o1", "o2"}) {
-    for (const std::string& file : all_names()) files.push_back(folder / file);
-    files.push_back(folder / "report.json");
+  for (const std::filesystem::path mesh : {"", "o1", "o2"}) {
+    std::vector<std::filesystem::path> folders{mesh};
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(out / mesh, ignored))
+      if (const std::string name = entry.path().filename().string();
+          name.size() == 4 && std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; }))
+        folders.push_back(mesh / name);
+    for (const std::filesystem::path& folder : folders) {
+      for (const std::string& file : all_names()) files.push_back(folder / file);
+      files.push_back(folder / "report.json");
+    }
   }
   return files;
+}
+
+/// The maps of a mesh: one, or one for each UDIM tile.
+struct MeshResults {
+  std::string role;
+  std::vector<AtlasPart> parts;
+  std::vector<Result> results;  ///< of each part
+
+  /// A report, or an object of the reports of the tiles.
+  [[nodiscard]] nlohmann::ordered_json report() const {
+    if (!parts.front().udim) return results.front().report;
+    nlohmann::ordered_json tiles;
+    for (std::size_t i = 0; i < parts.size(); ++i) tiles[std::to_string(*parts[i].udim)] = results[i].report;
+    return tiles;
+  }
+};
+
+/// Computes the maps of a mesh.
+MeshResults measure_parts(MapCommand command, Input& on, Input& to, double import_ms, OutputFolder& out,
+                          ProgressLine& progress) {
+  MeshResults all{on.role, atlas_parts(on.mesh, command.atlas), {}};
+  if (all.parts.size() > 1 && !command.atlas_cache.empty())
+    throw sdm::Error(fmt::format("{}: a mesh with {} UDIM tiles has no single atlas; omit --atlas-cache",
+                                 on.file, all.parts.size()));
+  if (all.parts.size() > 1) share_scale(command, all.parts, to.mesh, command.picture);
+  const std::filesystem::path folder = command.both ? on.role : "";
+  for (const AtlasPart& part : all.parts) {
+    const std::string tile = part.udim ? std::to_string(*part.udim) : "";
+    all.results.push_back(measure(command, on, to, part, import_ms, out.staging(folder / tile), progress));
+  }
+  return all;
 }
 
 /// Returns the exit code.
 int run(MapCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.out, stale_files());
+  OutputFolder out(command.out, stale_files(command.out));
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.map.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
@@ -197,30 +280,40 @@ int run(MapCommand command) {
        [&] { o2 = load_input("o2", command.o2, command.transform_o2, {vertices && command.both}); }});
   const double import_ms = import.lap();
 
-  std::vector<Result> results;
+  std::vector<MeshResults> meshes;
   out.fill([&] {
-    results.push_back(measure(command, o1, o2, import_ms, out.staging(command.both ? "o1" : ""), progress));
+    meshes.push_back(measure_parts(command, o1, o2, import_ms, out, progress));
     if (!command.both) return;
-    results.push_back(measure(command, o2, o1, import_ms, out.staging("o2"), progress));
-    add_symmetric_hausdorff(results[0].report, results[1].report);
-    write_text(out.staging("o1") / "report.json", to_text(results[0].report));
-    write_text(out.staging("o2") / "report.json", to_text(results[1].report));
+    meshes.push_back(measure_parts(command, o2, o1, import_ms, out, progress));
+    if (meshes[0].parts.size() > 1 || meshes[1].parts.size() > 1) return;
+    add_symmetric_hausdorff(meshes[0].results[0].report, meshes[1].results[0].report);
+    for (const MeshResults& mesh : meshes)
+      write_text(out.staging(mesh.role) / "report.json", to_text(mesh.report()));
   });
 
   if (command.json) {
     std::cout << to_text(command.both
-                             ? nlohmann::ordered_json{{"o1", results[0].report}, {"o2", results[1].report}}
-                             : results[0].report);
+                             ? nlohmann::ordered_json{{"o1", meshes[0].report()}, {"o2", meshes[1].report()}}
+                             : meshes[0].report());
   } else if (!command.quiet) {
-    std::cout << summary(o1, o2, results[0].outcome, command.picture.units);
-    if (command.both) std::cout << summary(o2, o1, results[1].outcome, command.picture.units);
-    std::cout << fmt::format("  time      {} s\n  results   {}{}/: {}report.json\n",
+    for (const MeshResults& mesh : meshes)
+      for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+        if (mesh.parts[i].udim) std::cout << fmt::format("tile {}: ", *mesh.parts[i].udim);
+        std::cout << summary(mesh.role == "o1" ? o1 : o2, mesh.role == "o1" ? o2 : o1,
+                             mesh.results[i].outcome, command.picture.units);
+      }
+    std::string tiles;
+    for (const AtlasPart& part : meshes[0].parts)
+      if (part.udim) tiles += fmt::format("{}{}", tiles.empty() ? "" : ",", *part.udim);
+    std::cout << fmt::format("  time      {} s\n  results   {}{}{}/: {}report.json\n",
                              number(std::round(total.lap()) / 1000, 6), command.out.string(),
-                             command.both ? "/{o1,o2}" : "", listed(command.files));
+                             command.both ? "/{o1,o2}" : "", tiles.empty() ? "" : "/{" + tiles + "}",
+                             listed(command.files));
   }
-  const bool within = std::ranges::all_of(
-      results, [](const Result& r) { return !r.outcome.tolerance || r.outcome.tolerance->within; });
-  return within ? 0 : 3;
+  const auto within = [](const Result& r) { return !r.outcome.tolerance || r.outcome.tolerance->within; };
+  const bool all_within = std::ranges::all_of(
+      meshes, [&](const MeshResults& mesh) { return std::ranges::all_of(mesh.results, within); });
+  return all_within ? 0 : 3;
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ const std::vector<Kind>& kinds() {
       {"exr", &MapFiles::exr, false, {"map.exr"}},
       {"png", &MapFiles::png, false, {"distance.png", "voronoi.png", "direction.png"}},
       {"glb", &MapFiles::glb, false, {"model.glb"}},
+      {"texture", &MapFiles::texture, false, {"distance_texture.png", "distance_texture.json"}},
       {"ply", &MapFiles::ply, true, {"vertices.ply"}},
       {"csv", &MapFiles::csv, true, {"vertices.csv"}},
       {"npy", &MapFiles::npy, true, {"vertices.npy"}},
@@ -77,7 +78,10 @@ void add_write_option(CLI::App& app, MapFiles& files, bool with_vertices) {
     if (with_vertices || !kind.of_vertices) choices.emplace_back(kind.name);
   }
   choices.emplace_back("none");
-  std::string help = "The files of a map to write: exr: map.exr; png: the three pictures; glb: model.glb; ";
+  std::string help =
+      "The files of a map to write: exr: map.exr; png: the three pictures; glb: model.glb; texture: the "
+      "distance as "
+      "16-bit grey; ";
   if (with_vertices)
     help +=
         "ply, csv, npy, vtp: the distance at each vertex of the input, in its order, as vertices.ply and so "
@@ -131,6 +135,12 @@ void write_map_files(const std::filesystem::path& folder, const MapFiles& files,
     work.push_back([&] { sdm::write_direction_png(folder / "direction.png", surface, map, picture); });
     work.push_back([&] { sdm::write_voronoi_png(folder / "voronoi.png", surface, map, picture); });
   }
+  if (files.texture)
+    work.push_back([&] {
+      const char* name = "distance_texture.png";
+      const sdm::TextureRange range = sdm::write_distance_texture(folder / name, surface, map, picture);
+      sdm::write_texture_range(folder / "distance_texture.json", name, range, picture.units);
+    });
   sdm::run_concurrently(work);
 }
 

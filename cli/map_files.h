@@ -15,6 +15,7 @@ struct MapFiles {
   bool exr = true;                                          ///< map.exr
   bool png = true;                                          ///< distance.png, voronoi.png and direction.png
   bool glb = true;                                          ///< model.glb
+  bool texture = false;                                     ///< distance_texture.png and .json
   bool ply = false, csv = false, npy = false, vtp = false;  ///< vertices.ply, ...
 
   /// Whether there is a file of the input's vertices.

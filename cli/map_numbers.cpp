@@ -32,7 +32,7 @@ sdm::DistanceHistogram histogram(const sdm::Surface& surface, const sdm::Distanc
 PartTable part_table(const sdm::Surface& surface, const sdm::DistanceMap& map, std::string kind,
                      std::span<const std::uint32_t> part_of_face, std::span<const std::string> names,
                      std::size_t parts, const std::optional<sdm::Tolerance>& tolerance, double accuracy) {
-  PartTable table{.kind = std::move(kind), .count = parts, .rows = {}};
+  PartTable table{.kind = std::move(kind), .count = 0, .rows = {}};
   std::vector<sdm::PartStatistics> all =
       sdm::part_statistics(surface, map, part_of_face, parts, tolerance, accuracy);
   for (std::size_t p = 0; p < parts; ++p)
@@ -41,6 +41,7 @@ PartTable part_table(const sdm::Surface& surface, const sdm::DistanceMap& map, s
     if (const std::uint32_t p = part_of_face[f]; p != sdm::kNone && table.rows[p].first_face == sdm::kNone)
       table.rows[p].first_face = f;
   std::erase_if(table.rows, [](const PartTable::Row& row) { return row.part.faces == 0; });
+  table.count = table.rows.size();
   std::ranges::stable_sort(table.rows, std::ranges::greater(),
                            [](const PartTable::Row& row) { return row.part.area_fraction; });
   table.rows.resize(std::min(table.rows.size(), kMostRows));
@@ -57,10 +58,7 @@ PartTable named_parts(const sdm::Surface& surface, const sdm::DistanceMap& map, 
   for (const std::uint32_t part : part_of_face) used[part] = 1;
   if (std::ranges::count(used, 1) < 2)
     return {.kind = names.kind, .count = static_cast<std::size_t>(std::ranges::count(used, 1)), .rows = {}};
-  PartTable table =
-      part_table(surface, map, names.kind, part_of_face, names.names, unnamed + 1, tolerance, accuracy);
-  table.count = static_cast<std::size_t>(std::ranges::count(used, 1));
-  return table;
+  return part_table(surface, map, names.kind, part_of_face, names.names, unnamed + 1, tolerance, accuracy);
 }
 
 Json shares_json(const sdm::ToleranceShares& shares) {
@@ -103,9 +101,9 @@ std::vector<double> default_bands(const sdm::Tolerance& tolerance, bool is_signe
 }
 
 MapNumbers map_numbers(const sdm::Surface& surface, const sdm::DistanceMap& map,
-                       const sdm::DistanceStatistics& distance, std::span<const sdm::FaceNames> names,
-                       std::size_t components, std::vector<double> edges,
-                       const std::optional<sdm::Tolerance>& tolerance, double accuracy) {
+                       const sdm::DistanceStatistics& distance, const PartSource& source,
+                       std::vector<double> edges, const std::optional<sdm::Tolerance>& tolerance,
+                       double accuracy) {
   MapNumbers numbers{.histogram = {}, .bands = {}, .parts = {}, .tolerance = tolerance.has_value()};
   if (!std::isfinite(accuracy)) accuracy = 0;
   if (distance.texels > 0) numbers.histogram = histogram(surface, map, distance, tolerance);
@@ -114,13 +112,22 @@ MapNumbers map_numbers(const sdm::Surface& surface, const sdm::DistanceMap& map,
     const double centre = tolerance ? tolerance->lo + (tolerance->hi - tolerance->lo) / 2 : 0;
     numbers.bands = sdm::distance_bands(surface, map, edges, accuracy, centre);
   }
-  PartTable all{.kind = "component", .count = components, .rows = {}};
-  if (components > 1)
-    all = part_table(surface, map, "component", sdm::face_components(surface.mesh()), {}, components,
-                     tolerance, accuracy);
+  // The values of the mesh's faces for those of the surface.
+  const auto of_surface = [&](std::vector<std::uint32_t> of_mesh) {
+    if (source.source_face.empty()) return of_mesh;
+    std::vector<std::uint32_t> result;
+    for (const std::uint32_t face : source.source_face) result.push_back(of_mesh[face]);
+    return result;
+  };
+  PartTable all{.kind = "component", .count = source.components, .rows = {}};
+  if (source.components > 1)
+    all = part_table(surface, map, "component", of_surface(sdm::face_components(source.mesh)), {},
+                     source.components, tolerance, accuracy);
   numbers.parts.push_back(std::move(all));
-  for (const sdm::FaceNames& kind : names)
-    numbers.parts.push_back(named_parts(surface, map, kind, tolerance, accuracy));
+  for (const sdm::FaceNames& kind : source.names) {
+    const sdm::FaceNames names{kind.kind, kind.names, of_surface(kind.of_face)};
+    numbers.parts.push_back(named_parts(surface, map, names, tolerance, accuracy));
+  }
   return numbers;
 }
 

@@ -35,11 +35,17 @@ struct MapNumbers {
 /// below zero are omitted if distances are unsigned.
 [[nodiscard]] std::vector<double> default_bands(const sdm::Tolerance& tolerance, bool is_signed);
 
-/// `edges`: of the bands; empty for the default ones, if there is a tolerance. `components`: the number of
-/// them that the mesh has.
+/// The mesh that parts are those of.
+struct PartSource {
+  const sdm::Mesh& mesh;
+  std::size_t components;  ///< of the mesh
+  std::span<const sdm::FaceNames> names;
+  std::span<const std::uint32_t> source_face;  ///< the mesh's face of each of the surface; empty: the same
+};
+
+/// `edges`: of the bands; empty for the default ones, if there is a tolerance.
 [[nodiscard]] MapNumbers map_numbers(const sdm::Surface& surface, const sdm::DistanceMap& map,
-                                     const sdm::DistanceStatistics& distance,
-                                     std::span<const sdm::FaceNames> names, std::size_t components,
+                                     const sdm::DistanceStatistics& distance, const PartSource& source,
                                      std::vector<double> edges,
                                      const std::optional<sdm::Tolerance>& tolerance, double accuracy);
 

@@ -100,9 +100,14 @@ Json to_json(const Input& input) {
 }
 
 Json to_json(const sdm::Surface& surface) {
-  return {{"kind", atlas_name(surface.atlas_kind())}, {"resolution", surface.resolution()},
-          {"charts", surface.chart_count()},          {"texels", surface.sample_texels().size()},
-          {"utilisation", surface.utilisation()},     {"max_stretch", surface.max_stretch()}};
+  return {{"kind", atlas_name(surface.atlas_kind())},
+          {"resolution", surface.resolution()},
+          {"charts", surface.chart_count()},
+          {"texels", surface.sample_texels().size()},
+          {"utilisation", surface.utilisation()},
+          {"max_stretch", surface.max_stretch()},
+          {"gutter", surface.gutter()},
+          {"overlapping_texels", surface.overlapping_texels()}};
 }
 
 namespace {

@@ -19,7 +19,12 @@ struct AtlasOptions {
   AtlasKind kind = AtlasKind::charts;
   std::uint32_t resolution = 1024;  ///< texels per side, in [16, 32768]
   double max_stretch = 1.3;  ///< charts: bounds the growth of lengths from atlas to surface; in (1, 100]
-  std::uint32_t gutter = 1;  ///< free texels around each chart, not shared (charts, triangles)
+  /// charts, triangles: free texels around each chart, not shared. All: values of files extend at least this
+  /// far beyond the charts (see write_exr).
+  std::uint32_t gutter = 1;
+  /// uv: refuse faces that overlap in the texture. Otherwise a texel of several faces belongs to the first of
+  /// their charts, and the other faces have no sample there.
+  bool strict_uv = false;
   Progress progress{};
 };
 

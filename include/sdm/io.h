@@ -126,9 +126,10 @@ struct ExrOptions {
 };
 
 /// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Values
-/// are dilated into the gutters; coverage.A is the coverage before dilation. Texels without a value hold NaN
-/// and 0xFFFFFFFF; in self maps, texels with nothing in range hold +∞, 0 and 0xFFFFFFFF.
-/// `boundary`, of boundary_mask() or empty: written as a channel boundary.M (FLOAT, 0 or 1).
+/// are dilated into the gutters, by four texels or AtlasOptions::gutter, if that is more; coverage.A is the
+/// coverage before dilation. Texels without a value hold NaN and 0xFFFFFFFF; in self maps, texels with
+/// nothing in range hold +∞, 0 and 0xFFFFFFFF. `boundary`, of boundary_mask() or empty: written as a channel
+/// boundary.M (FLOAT, 0 or 1).
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        std::span<const std::uint8_t> boundary = {});
 /// The same with other layers and attributes. Also throws sdm::Error if `sites` are missing or those of
@@ -152,6 +153,21 @@ SDM_API void write_voronoi_png(const std::filesystem::path& file, const Surface&
 /// direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
 SDM_API void write_direction_png(const std::filesystem::path& file, const Surface& surface,
                                  const DistanceMap& map, const PictureOptions& options = {});
+
+/// The distances of the darkest and the brightest value of a texture.
+struct TextureRange {
+  double lower = 0, upper = 1;
+};
+
+/// distance_texture.png: the distance of every texel as 16-bit grey, without legend or colours, at the size
+/// of the atlas: lower + value / 65535 · (upper − lower). The range is that of options.range, by default that
+/// of the colours of distance.png without a tolerance; distances beyond it are clamped. Gutters are filled as
+/// in map.exr; texels beyond them, or without a value, are 0. Returns the range.
+SDM_API TextureRange write_distance_texture(const std::filesystem::path& file, const Surface& surface,
+                                            const DistanceMap& map, const PictureOptions& options = {});
+/// distance_texture.json: the range of a texture, with its name and units.
+SDM_API void write_texture_range(const std::filesystem::path& file, const std::string& texture,
+                                 const TextureRange& range, const std::string& units = {});
 
 /// A curve of a plot: one value per position on the axis; NaN leaves a gap.
 struct Curve {

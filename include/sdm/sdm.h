@@ -30,5 +30,6 @@
 #include <sdm/tolerance.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>
+#include <sdm/uv_tiles.h>
 #include <sdm/version.h>
 #include <sdm/vertex_distances.h>

@@ -19,7 +19,8 @@ namespace surface {
 class SurfaceData;
 }
 
-/// O1: a mesh whose faces are laid out, without overlap, in a square texture; edits may add rows to it.
+/// O1: a mesh whose faces are laid out in a square texture; edits may add rows to it. Faces do not overlap,
+/// except for AtlasKind::uv, as the mesh has it.
 ///
 /// Atlas coordinates (u, v) are in texels, u to the right, v *down* from the upper left corner of the image,
 /// so that texel (x, y) has its centre at (x + 0.5, y + 0.5) and the index y * resolution + x. Every face has
@@ -29,8 +30,9 @@ class SDM_API Surface {
  public:
   /// Lays out the atlas. Throws sdm::Error when the mesh is unusable (see validate), when the resolution is
   /// out of range or too small for the charts, if there is not enough memory, and for AtlasKind::uv when
-  /// coordinates are missing or faces overlap (the message names two of them). Faces without area belong to
-  /// no chart. Cost: O(n log n) for charts, then packing.
+  /// coordinates are missing, lie outside [0, 1] (see wrap_uvs and uv_tile_mesh) or, with strict_uv, overlap
+  /// (the message names two faces). Faces without area belong to no chart. Cost: O(n log n) for charts, then
+  /// packing.
   explicit Surface(Mesh mesh, const AtlasOptions& options = {});
   /// Takes the atlas that stored_atlas() returned for a surface of the same mesh and options; nothing is laid
   /// out. Throws sdm::Error if the bytes belong to another mesh, to other options or to another version, or
@@ -92,6 +94,12 @@ class SDM_API Surface {
   [[nodiscard]] Vec3 to_surface(std::uint32_t face, const Vec2& uv) const;
   /// The edges of a texel on the surface: the columns ∂p/∂u and ∂p/∂v of M⁻¹. The face must have a chart.
   [[nodiscard]] std::array<Vec3, 2> texel_edges(std::uint32_t face) const;
+
+  /// AtlasOptions::gutter.
+  [[nodiscard]] std::uint32_t gutter() const;
+  /// uv: the texels whose centre lies in a face that does not own it, by more than rounding; each as often as
+  /// it does. 0 for other atlases.
+  [[nodiscard]] std::size_t overlapping_texels() const;
 
   /// The number of owned texels divided by that of all texels.
   [[nodiscard]] double utilisation() const;

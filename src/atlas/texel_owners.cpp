@@ -37,9 +37,23 @@ std::size_t claim_centroid(const Corners& corners, const std::vector<std::uint32
   return texel;
 }
 
+// Whether the centre of a texel is farther inside the triangle than rounding takes it: by 1/1024 of a texel.
+bool is_well_inside(const std::array<Vec2, 3>& t, std::uint32_t x, std::uint32_t y) {
+  constexpr double kRounding = 1.0 / 1024;
+  const Vec2 centre{x + 0.5, y + 0.5};
+  const double turn = cross(t[1] - t[0], t[2] - t[0]) < 0 ? -1 : 1;
+  for (int k = 0; k < 3; ++k) {
+    const Vec2 edge = t[(k + 1) % 3] - t[k];
+    if (!(turn * cross(edge, centre - t[k]) > kRounding * std::hypot(edge[0], edge[1]))) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::uint32_t resolution) {
+std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::uint32_t resolution,
+                                     std::size_t& overlapping) {
+  overlapping = 0;
   std::vector<std::uint32_t> owner(std::size_t{resolution} * resolution, kNone);
   const auto rasterise_charts = [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
@@ -48,14 +62,16 @@ std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::
                      [&](std::uint32_t face, std::uint32_t x, std::uint32_t y) {
                        if (x >= resolution || y >= resolution) return;  // rounding at the border of the image
                        std::uint32_t& texel = owner[std::size_t{y} * resolution + x];
-                       if (texel == kNone) texel = face;
                        any = true;
+                       if (texel == kNone)
+                         texel = face;
+                       else if (kind == AtlasKind::uv && is_well_inside(layout.corners[face], x, y))
+                         ++overlapping;
                      });
       if (!any && kind != AtlasKind::uv) claim_centroid(layout.corners, layout.charts[c], resolution, owner);
     }
   };
-  // Packed charts share no texel. A mesh's own charts may overlap by rounding: the first one, in order, owns
-  // the texel.
+  // Packed charts share no texel. A mesh's own charts may overlap: the first one, in order, owns the texel.
   if (kind == AtlasKind::uv)
     rasterise_charts(0, layout.charts.size());
   else

@@ -31,7 +31,7 @@ void place_corners(const Mesh& mesh, const FaceGeometry& faces, std::uint32_t re
     for (int k = 0; k < 3; ++k) {
       const auto [u, v] = mesh.corner_uvs[f][k];
       if (!(u >= -kOutside && u <= 1 + kOutside && v >= -kOutside && v <= 1 + kOutside))
-        fail("those of face " + std::to_string(f) + " lie outside [0, 1]");
+        fail("those of face " + std::to_string(f) + " lie outside [0, 1], where they would have to be wrapped");
       layout.corners[f][k] = {std::clamp(u, 0.0, 1.0) * n, (1 - std::clamp(v, 0.0, 1.0)) * n};
     }
     const auto& [a, b, c] = layout.corners[f];
@@ -102,7 +102,7 @@ Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
   layout.corners.resize(mesh.triangles.size());
   layout.maps.resize(mesh.triangles.size());
   place_corners(mesh, faces, options.resolution, layout);
-  check_overlaps(faces, options.resolution, layout);
+  if (options.strict_uv) check_overlaps(faces, options.resolution, layout);
 
   double surface_area = 0, atlas_area = 0, largest = 0;
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {

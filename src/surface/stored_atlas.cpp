@@ -22,12 +22,12 @@ static_assert(std::endian::native == std::endian::little, "the order of the stor
 
 struct Header {
   std::array<char, 8> magic{'s', 'd', 'm', 'a', 't', 'l', 'a', 's'};
-  std::uint32_t version = 2, kind = 0, resolution = 0, gutter = 0;
+  std::uint32_t version = 3, kind = 0, resolution = 0, gutter = 0;
   double stretch_limit = 0, max_stretch = 0, scale = 0;
-  std::uint64_t vertices = 0, faces = 0, charts = 0, samples = 0, rows = 0;
+  std::uint64_t vertices = 0, faces = 0, charts = 0, samples = 0, rows = 0, overlapping = 0;
   std::uint64_t mesh = 0, contents = 0;  ///< checksums: of the mesh, and of all else
 };
-static_assert(sizeof(Header) == 104, "no padding");
+static_assert(sizeof(Header) == 112, "no padding");
 
 template <class Item>
 void add(XXH3_state_t& state, const std::vector<Item>& items) {
@@ -97,6 +97,7 @@ std::vector<std::uint8_t> store_atlas(const SurfaceData& s) {
   header.scale = s.scale;
   header.rows = s.rows;
   header.charts = s.chart_count;
+  header.overlapping = s.overlapping_texels;
   header.samples = s.samples.size();
   std::size_t size = sizeof(Header);
   for_each_array(s, header,
@@ -142,6 +143,8 @@ void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const 
     std::memcpy(array.data(), bytes.data(), count * sizeof(array[0]));
     bytes = bytes.subspan(count * sizeof(array[0]));
   });
+  if (options.strict_uv && header.overlapping > 0)
+    throw Error("the stored atlas has faces that overlap in the texture");
   s.rows = static_cast<std::uint32_t>(header.rows);
   s.scale = header.scale;
   s.texel_faces.assign(texels, kNone);
@@ -152,6 +155,7 @@ void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const 
     owner = s.sample_faces[i];
   }
   s.chart_count = header.charts;
+  s.overlapping_texels = header.overlapping;
   s.max_stretch = header.max_stretch;
 }
 

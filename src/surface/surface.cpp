@@ -71,6 +71,12 @@ std::size_t Surface::chart_count() const {
 std::span<const std::uint32_t> Surface::face_charts() const {
   return data_->face_charts;
 }
+std::uint32_t Surface::gutter() const {
+  return data_->gutter;
+}
+std::size_t Surface::overlapping_texels() const {
+  return data_->overlapping_texels;
+}
 double Surface::max_stretch() const {
   return data_->max_stretch;
 }

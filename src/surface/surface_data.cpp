@@ -50,7 +50,7 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   face_charts.assign(laid_out.triangles.size(), kNone);
   for (std::uint32_t c = 0; c < layout.charts.size(); ++c)
     for (const std::uint32_t f : layout.charts[c]) face_charts[f] = c;
-  texel_faces = atlas::rasterise(layout, kind, resolution);
+  texel_faces = atlas::rasterise(layout, kind, resolution, overlapping_texels);
   if (std::ranges::all_of(texel_faces, [](std::uint32_t face) { return face == kNone; }))
     throw atlas::TooSmall(
         "no face of the mesh is large enough in the texture to own a texel; use a larger resolution",

@@ -2,6 +2,8 @@
 #include <sdm/error.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
+
 #include "atlas/invariants.h"
 #include "support/shapes.h"
 
@@ -47,10 +49,36 @@ TEST(Uv, AcceptsMirroredAndSeparatePieces) {
   test::expect_maps(surface);
 }
 
+// The first chart keeps its texels, and the bound covers what the others leave without samples.
+TEST(Uv, OverlappingTexelsBelongToTheFirstChart) {
+  Mesh mesh = test::height_field(10);
+  const Surface apart(mesh, kOptions);
+  EXPECT_EQ(apart.overlapping_texels(), 0u) << "neighbours share edges only";
+  const Mesh once = mesh;
+  for (const Triangle& t : once.triangles) mesh.triangles.push_back({t[0] + 121, t[1] + 121, t[2] + 121});
+  for (const Vec3& p : once.positions) mesh.positions.push_back({p[0], p[1], p[2] + 3});
+  mesh.corner_uvs.insert(mesh.corner_uvs.end(), once.corner_uvs.begin(), once.corner_uvs.end());
+  const Surface surface(mesh, kOptions);
+  EXPECT_EQ(surface.chart_count(), 2u);
+  EXPECT_TRUE(std::ranges::equal(surface.texel_faces(), apart.texel_faces()));
+  EXPECT_EQ(surface.overlapping_texels(), 200u * 200 - 100 * 20) << "all but the centres on diagonals";
+  EXPECT_GE(covering_radius(surface), 3 - 1e-6);
+  test::expect_samples(surface);
+
+  const Surface restored(mesh, kOptions, surface.stored_atlas());
+  EXPECT_EQ(restored.overlapping_texels(), surface.overlapping_texels());
+  AtlasOptions strict = kOptions;
+  strict.strict_uv = true;
+  EXPECT_THROW(Surface(mesh, strict), Error);
+  EXPECT_THROW(Surface(mesh, strict, surface.stored_atlas()), Error);
+}
+
 TEST(Uv, OverlapErrorNamesTheFaces) {
   Mesh mesh = test::height_field(10);
   mesh.corner_uvs[7] = {Vec2{0.97, 0.52}, Vec2{0.99, 0.52}, Vec2{0.98, 0.53}};
-  EXPECT_THAT([&] { Surface(mesh, kOptions); },
+  AtlasOptions strict = kOptions;
+  strict.strict_uv = true;
+  EXPECT_THAT([&] { Surface(mesh, strict); },
               ThrowsMessage<Error>(
                   AllOf(HasSubstr("faces 7 and 1"), HasSubstr("overlap"), HasSubstr("atlas of charts"))));
 }

@@ -54,7 +54,7 @@ TEST_F(MapCommand, WritesTheFilesAskedFor) {
   EXPECT_EQ(run_sdm(map({"--write", "none,exr"})).code, 2);
   const Outcome bad = run_sdm(map({"--write", "exr,jpg"}));
   EXPECT_EQ(bad.code, 2);
-  EXPECT_THAT(bad.err, HasSubstr("jpg is not one of exr, png, glb, ply, csv, npy, vtp, none"));
+  EXPECT_THAT(bad.err, HasSubstr("jpg is not one of exr, png, glb, texture, ply, csv, npy, vtp, none"));
 }
 
 // Also of STL, which repeats vertices, and of vertices without a face: against the reference engine.
@@ -102,6 +102,66 @@ TEST_F(MapCommand, WritesTheDistancesOfTheInputsVertices) {
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.json", "vertices.csv"}));
   EXPECT_EQ(run_sdm(map({"--write", "exr", "--channels", "distance,position,closest"})).code, 0);
   EXPECT_EQ(run_sdm(map({"--channels", "depth"})).code, 2);
+}
+
+/// With these texture coordinates: the height field's, scaled and moved.
+std::string write_obj_with_uvs(const std::filesystem::path& file, double scale, double offset) {
+  const Mesh mesh = height_field(8);
+  std::ofstream out(file);
+  for (const Vec3& p : mesh.positions) out << "v " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+  for (const auto& uvs : mesh.corner_uvs)
+    for (const Vec2& uv : uvs) out << "vt " << scale * uv[0] + offset << ' ' << scale * uv[1] << '\n';
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    out << 'f';
+    for (std::size_t k = 0; k < 3; ++k) out << ' ' << mesh.triangles[f][k] + 1 << '/' << 3 * f + k + 1;
+    out << '\n';
+  }
+  return file.string();
+}
+
+TEST_F(MapCommand, UdimTilesHaveAMapEach) {
+  write_obj_with_uvs(o1, 2, 0);
+  const Outcome run = run_sdm(map({"--atlas", "uv", "--write", "texture,csv", "--json"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::vector<std::string> tiles{"1001", "1002", "1011", "1012"};
+  EXPECT_EQ(names_in(out), tiles);
+  const Json reports = Json::parse(run.out);
+  EXPECT_EQ(reports.size(), 4u);
+  const Json range = Json::parse(contents(out + "/1001/distance_texture.json"));
+  for (const std::string& tile : tiles) {
+    EXPECT_EQ(names_in(out + "/" + tile),
+              (std::vector<std::string>{"distance_texture.json", "distance_texture.png", "report.json",
+                                        "vertices.csv"}));
+    EXPECT_EQ(reports[tile], Json::parse(contents(out + "/" + tile + "/report.json")));
+    EXPECT_EQ(reports[tile]["atlas"]["udim"], std::stoi(tile));
+    EXPECT_EQ(Json::parse(contents(out + "/" + tile + "/distance_texture.json")), range)
+        << "one scale for all";
+  }
+  EXPECT_EQ(run_sdm(map({"--atlas", "uv", "--strict-uv"})).code, 1);
+  EXPECT_EQ(run_sdm(map({"--atlas", "uv", "--atlas-cache", folder / "cache"})).code, 1);
+  ASSERT_EQ(run_sdm(map()).code, 0);
+  EXPECT_EQ(names_in(out), kResults) << "the tiles of the earlier run are removed";
+}
+
+TEST_F(MapCommand, TextureCoordinatesAreWrapped) {
+  write_obj_with_uvs(o1, 1, 2.3125);  // 296 texels: the same samples
+  const Outcome run = run_sdm(map({"--atlas", "uv", "--json"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json wrapped = Json::parse(run.out);
+  EXPECT_EQ(wrapped["o1"]["triangles"], 128);
+  EXPECT_EQ(wrapped["atlas"]["cut_faces"], 16);
+  EXPECT_EQ(wrapped["atlas"]["utilisation"], 1);
+  EXPECT_EQ(wrapped["atlas"]["overlapping_texels"], 0);
+  EXPECT_EQ(wrapped["notes"].size(), 1u);
+  EXPECT_EQ(wrapped["components"]["count"], 1);
+  write_obj_with_uvs(o1, 1, 0);
+  const Json plain = Json::parse(run_sdm(map({"--atlas", "uv", "--json"})).out);
+  EXPECT_EQ(plain["atlas"]["cut_faces"], 0);
+  EXPECT_NEAR(wrapped["distance"]["mean"], plain["distance"]["mean"], 1e-6);
+  write_obj_with_uvs(o1, 1.5, 0);
+  const Json overlapping = Json::parse(run_sdm(map({"--atlas", "uv", "--json"})).out);
+  EXPECT_GT(overlapping["atlas"]["overlapping_texels"], 128 * 128);
+  EXPECT_EQ(overlapping["notes"].size(), 2u);
 }
 
 TEST_F(MapCommand, ALaterRunTakesTheAtlasFromItsCache) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "core/parallel.h"
 
@@ -9,12 +10,11 @@ namespace sdm::io {
 namespace {
 
 // All offsets within a disc, shortest first; of equal lengths, those along rows first.
-std::vector<std::array<int, 2>> disc() {
-  constexpr int kRadius = kGutter;
+std::vector<std::array<int, 2>> disc(int radius) {
   std::vector<std::array<int, 2>> steps;
-  for (int dy = -kRadius; dy <= kRadius; ++dy)
-    for (int dx = -kRadius; dx <= kRadius; ++dx)
-      if (dx * dx + dy * dy <= kRadius * kRadius) steps.push_back({dx, dy});
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx)
+      if (dx * dx + dy * dy <= radius * radius) steps.push_back({dx, dy});
   std::stable_sort(steps.begin(), steps.end(), [](const auto& a, const auto& b) {
     return a[0] * a[0] + a[1] * a[1] < b[0] * b[0] + b[1] * b[1];
   });
@@ -23,19 +23,21 @@ std::vector<std::array<int, 2>> disc() {
 
 }  // namespace
 
-Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners)
+Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners, std::uint32_t width)
     : resolution_(resolution),
       rows_(static_cast<std::uint32_t>(owners.size() / resolution)),
-      blocks_((resolution + kGutter - 1) / kGutter),
+      shift_(static_cast<unsigned>(std::bit_width(std::bit_ceil(width)) - 1)),
+      blocks_(((resolution - 1) >> shift_) + 1),
+      steps_(disc(static_cast<int>(width))),
       owners_(owners) {
-  const std::uint32_t block_rows = (rows_ + kGutter - 1) / kGutter;
+  const std::uint32_t side = 1u << shift_, block_rows = ((rows_ - 1) >> shift_) + 1;
   std::vector<std::uint8_t> owned(std::size_t{block_rows} * blocks_);
   close_.resize(owned.size());
   constexpr std::size_t kGrain = 16;  // rows of blocks
   parallel_for(block_rows, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin * kGutter; y < std::min<std::size_t>(end * kGutter, rows_); ++y)
+    for (std::size_t y = begin * side; y < std::min<std::size_t>(end * side, rows_); ++y)
       for (std::size_t x = 0; x < resolution_; ++x)
-        owned[y / kGutter * blocks_ + x / kGutter] |= owners_[y * resolution_ + x] != kNone;
+        owned[(y >> shift_) * blocks_ + (x >> shift_)] |= owners_[y * resolution_ + x] != kNone;
   });
   parallel_for(block_rows, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row)
@@ -48,8 +50,7 @@ Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners)
 }
 
 std::uint32_t Gutter::search(std::uint32_t x, std::uint32_t y) const {
-  static const auto steps = disc();
-  for (const auto& [dx, dy] : steps) {
+  for (const auto& [dx, dy] : steps_) {
     // Offsets out of the image wrap around to large numbers.
     const std::uint32_t sx = x + static_cast<std::uint32_t>(dx), sy = y + static_cast<std::uint32_t>(dy);
     if (sx >= resolution_ || sy >= rows_) continue;

@@ -4,6 +4,7 @@
 
 #include <sdm/types.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,30 +12,32 @@
 
 namespace sdm::io {
 
-/// How far, in texels, values extend beyond the charts: bilinear filtering needs 1, the rest is for smaller
-/// mip levels.
+/// How far, in texels, values extend beyond the charts at least: bilinear filtering needs 1, the rest is for
+/// smaller mip levels.
 inline constexpr std::uint32_t kGutter = 4;
 
 /// The owned texels from which free ones take their values.
 class Gutter {
  public:
   /// `owners`: whole rows of `resolution` values, kNone for a free texel; they must outlive this and not
-  /// change.
-  Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners);
+  /// change. Values extend `width` ≥ 1 texels beyond the owned ones.
+  Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners, std::uint32_t width = kGutter);
 
   /// The owned texel nearest to (x, y): the texel itself if it is owned; kNone if there is none within
-  /// kGutter texels.
+  /// `width` texels.
   [[nodiscard]] std::uint32_t source(std::uint32_t x, std::uint32_t y) const {
     const std::size_t texel = std::size_t{y} * resolution_ + x;
     if (owners_[texel] != kNone) return static_cast<std::uint32_t>(texel);
-    return close_[std::size_t{y / kGutter} * blocks_ + x / kGutter] ? search(x, y) : kNone;
+    return close_[std::size_t{y >> shift_} * blocks_ + (x >> shift_)] ? search(x, y) : kNone;
   }
 
  private:
   [[nodiscard]] std::uint32_t search(std::uint32_t x, std::uint32_t y) const;
 
   std::uint32_t resolution_, rows_;  ///< texels per row and per column
-  std::uint32_t blocks_;             ///< of kGutter² texels, per row
+  unsigned shift_;        ///< the binary logarithm of the side of a block, which is at least the width
+  std::uint32_t blocks_;  ///< per row
+  std::vector<std::array<int, 2>> steps_;  ///< all offsets within a disc, shortest first
   std::span<const std::uint32_t> owners_;
   /// For each block, whether it or one of the eight around it has an owned texel.
   std::vector<std::uint8_t> close_;

@@ -171,7 +171,7 @@ void write_texels(const std::filesystem::path& file, const Surface& surface,
                   std::span<const Channel> channels, const Attributes& attributes, const Get& texel) {
   static_assert(std::endian::native == std::endian::little, "the order of bytes in the file");
   const std::uint32_t n = surface.resolution();
-  const Gutter gutter(n, surface.texel_faces());
+  const Gutter gutter(n, surface.texel_faces(), std::max(kGutter, surface.gutter()));
   ExrFile exr(file, n, surface.rows(), channels, attributes);
   const auto chunk = [&](std::uint32_t first_row) {
     const std::uint32_t rows = std::min(kRowsPerChunk, surface.rows() - first_row);
