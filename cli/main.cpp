@@ -1,6 +1,8 @@
 // The sdm command. Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.
 #include "bodies.h"
+#include "completion.h"
 #include "devices.h"
+#include "help_text.h"
 #include "info.h"
 #include "map.h"
 #include "output_folder.h"
@@ -20,6 +22,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <string_view>
 
 namespace {
 
@@ -56,6 +59,7 @@ int run(int argc, char** argv) {
       "sdm");
   app.set_version_flag("--version", std::string("sdm ") + sdm::kVersion);
   app.require_subcommand(0, 1);
+  app.formatter(help_formatter(help_width()));
   app.footer(
       "Example:\n"
       "  sdm map scan.ply part.stl -o out --units mm\n"
@@ -69,7 +73,13 @@ int run(int argc, char** argv) {
     add_info_command(app);
     add_devices_command(app);
     add_scene_command(app);
+    add_completion_command(app);
     app.failure_message(usage_error);
+    if (argc == 3 && std::string_view(argv[1]) == "help" && std::string_view(argv[2]) == "--man") {
+      std::cout << manual_page(app);
+      flush_output();
+      return 0;
+    }
     app.parse(arguments(app, argc, argv));
     if (app.get_subcommands().empty()) std::cout << app.help();
     flush_output();

@@ -5,6 +5,11 @@
 #include <sdm/io.h>
 #include <sdm/version.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 #include <vector>
 
 #include "support/temporary_folder.h"
@@ -30,6 +35,63 @@ TEST(Usage, HelpAndVersionAreNoErrors) {
     EXPECT_EQ(run.err, "");
   }
   EXPECT_THAT(run_sdm({"map", "--help"}).out, HasSubstr("Example"));
+}
+
+// Lines longer than the terminal hold a single word, or an example that can be copied.
+TEST(Usage, HelpFitsTheTerminal) {
+  for (const std::size_t width : {40, 61, 100})
+    for (const char* command : {"map", "sequence", "bodies"}) {
+      const Outcome run = run_sdm({command, "--help"}, {.environment = {"COLUMNS=" + std::to_string(width)}});
+      std::istringstream lines(run.out);
+      std::size_t longest = 0;
+      for (std::string line; std::getline(lines, line);) {
+        const auto characters = static_cast<std::size_t>(std::ranges::count_if(
+            line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+        const bool breakable = line.find(' ', line.find_first_not_of(' ')) != std::string::npos;
+        if (breakable && !line.starts_with("  sdm ")) {
+          EXPECT_LE(characters, width) << line;
+          longest = std::max(longest, characters);
+        }
+      }
+      EXPECT_GT(longest, width - 15) << "lines are filled";
+    }
+  // The words are those of the help on a wide terminal.
+  const auto words = [](const std::string& columns) {
+    std::istringstream text(run_sdm({"map", "--help"}, {.environment = {"COLUMNS=" + columns}}).out);
+    return std::vector<std::string>(std::istream_iterator<std::string>(text), {});
+  };
+  EXPECT_EQ(words("40"), words("120"));
+}
+
+TEST(Usage, CompletionsAndTheManualNameAllOptions) {
+  const TemporaryFolder folder;
+  const std::string help = run_sdm({"map", "--help"}).out, manual = run_sdm({"help", "--man"}).out;
+  std::vector<std::string> options;
+  for (std::size_t at = 0; (at = help.find("--", at)) != std::string::npos; ++at)
+    options.push_back(help.substr(at + 2, help.find_first_of(" =\n", at) - at - 2));
+  ASSERT_GT(options.size(), 25u);
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    const Outcome run = run_sdm({"completion", shell});
+    EXPECT_EQ(run.code, 0) << run.err;
+    for (const std::string& option : options) EXPECT_THAT(run.out, HasSubstr(option)) << shell;
+    for (const char* word : {"sequence", "triangles"}) EXPECT_THAT(run.out, HasSubstr(word)) << shell;
+    EXPECT_EQ(run.out.find("completion "), run.out.find("completion for sdm"))
+        << "it is not a command for users";
+    if (std::string(shell) == "bash") {
+      std::ofstream(folder / "sdm.bash") << run.out;
+      const std::string check =
+          "bash -c 'set -e; source \"$0\"; COMP_WORDS=(sdm map --atlas c); COMP_CWORD=3; _sdm; "
+          "[ \"${COMPREPLY[*]}\" = charts ]' ";
+      EXPECT_EQ(std::system((check + std::string(folder / "sdm.bash")).c_str()), 0);
+    }
+  }
+  for (std::string option : options) {
+    for (std::size_t at = 0; (at = option.find('-', at)) != std::string::npos; at += 2)
+      option.replace(at, 1, "\\-");
+    EXPECT_THAT(manual, HasSubstr(option));
+  }
+  EXPECT_TRUE(manual.starts_with(".TH SDM 1 "));
+  EXPECT_EQ(run_sdm({"completion", "tcsh"}).code, 2);
 }
 
 // Each is refused before any file is looked at, with a message that names the part at fault.
