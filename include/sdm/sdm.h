@@ -1,6 +1,7 @@
 /// All of sdm except reading and writing files, which is in <sdm/io.h>.
 #pragma once
 
+#include <sdm/align.h>
 #include <sdm/api.h>
 #include <sdm/atlas.h>
 #include <sdm/closest_points.h>

@@ -1,0 +1,45 @@
+// The closest points of samples, and the tangent planes of O2 there.
+#pragma once
+
+#include <sdm/sites.h>
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/geometry/affine.h"
+#include "registration/samples.h"
+
+namespace sdm::registration {
+
+/// O2, and which of its vertices are on a boundary.
+struct Target {
+  const Sites& sites;
+  std::vector<std::uint8_t> boundary_vertices;  ///< empty if O2 is closed
+
+  explicit Target(const Sites& o2);
+};
+
+/// One entry per sample.
+struct Correspondences {
+  std::vector<Vec3> points;       ///< the sample as it is placed
+  std::vector<Vec3> closest;      ///< on O2
+  std::vector<Vec3> normals;      ///< of the tangent plane, unit length: towards the sample, or of the face
+  std::vector<double> distances;  ///< ≥ 0
+  std::vector<std::uint32_t> faces;
+  std::vector<std::uint8_t> usable;  ///< 1, but for samples beside O2 or on the other side of a wall
+};
+
+/// Finds the closest points of the samples, placed by `pose`. Samples farther than `limit` have an infinite
+/// distance and no closest point. Cost: a search per sample, all cores; large for neighbours of which some
+/// are far away.
+[[nodiscard]] Correspondences find_correspondences(const Samples& samples, const Affine& pose,
+                                                   const Target& target,
+                                                   double limit = std::numeric_limits<double>::infinity());
+
+/// The normals of the surface that the faces of O2 approximate, at the closest points: interpolated between
+/// the corners of the face, where they are averages over the faces within 35° of it. On a polyhedron around
+/// a sphere they are radial to second order, whereas those of its faces would determine its rotation.
+[[nodiscard]] std::vector<Vec3> smooth_normals(const Correspondences& pairs, const Sites& sites);
+
+}  // namespace sdm::registration

@@ -1,0 +1,391 @@
+// Known motions are recovered; what O2 does not determine is reported.
+#include <gmock/gmock.h>
+#include <sdm/align.h>
+#include <sdm/error.h>
+#include <sdm/threads.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/geometry/vec.h"
+#include "support/error_of.h"
+#include "support/meshes.h"
+#include "support/points.h"
+#include "support/shapes.h"
+
+namespace sdm {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+constexpr std::size_t kSamples = 4096;
+
+double size_of(const Mesh& mesh) {
+  return diagonal(bounds(mesh));
+}
+
+/// A rotation by 2° in all about the centre, then a translation by 2 % of the size.
+Transform small_motion(const Mesh& mesh) {
+  const Vec3 centre = core::centre(bounds(mesh));
+  const double shift = 0.02 * size_of(mesh) / std::sqrt(3);
+  return Transform::translation(centre + Vec3{shift, -shift, shift}) * Transform::rotation({1.2, 1.2, -1.2}) *
+         Transform::translation(-centre);
+}
+
+Mesh image(Mesh mesh, const Transform& map) {
+  transform(mesh, map);
+  return mesh;
+}
+
+/// The largest distance of a corner of the bounds from its place.
+double displacement(const Mesh& mesh, const Transform& map) {
+  const Box box = bounds(mesh);
+  double largest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? box.hi[k] : box.lo[k];
+    largest = std::max(largest, norm(map(p) - p));
+  }
+  return largest;
+}
+
+/// Without the `share` of the faces that lie farthest along a direction.
+Mesh cut(const Mesh& mesh, double share, const Vec3& direction) {
+  const auto height = [&](const Triangle& t) {
+    return dot(mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]], direction);
+  };
+  Mesh result = mesh;
+  result.corner_uvs.clear();
+  std::ranges::sort(result.triangles, {}, height);
+  result.triangles.resize(static_cast<std::size_t>((1 - share) * static_cast<double>(mesh.triangles.size())));
+  return result;
+}
+
+/// With triangles far from the surface, 1 % of the number of faces and as large.
+Mesh with_outliers(Mesh mesh, std::mt19937& random) {
+  const Box box = bounds(mesh);
+  const double side = std::sqrt(2 * inspect(mesh).area / static_cast<double>(mesh.triangles.size()));
+  mesh.corner_uvs.clear();
+  for (std::size_t i = 0, count = mesh.triangles.size() / 100 + 1; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const Vec3 p = random_point(box, random);
+    for (const Vec3& offset : {Vec3{}, Vec3{side, 0, 0}, Vec3{0, side, 0}})
+      mesh.positions.push_back(p + offset);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+Mesh with_noise(Mesh mesh, double deviation, std::mt19937& random) {
+  std::normal_distribution<double> noise(0, deviation);
+  for (Vec3& p : mesh.positions)
+    for (double& x : p) x += noise(random);
+  return mesh;
+}
+
+/// A block with a ring through its top and another on its side: no symmetry.
+Mesh bracket() {
+  Mesh block = cube(1);
+  for (Vec3& p : block.positions) p = {3 * p[0], 1.5 * p[1], p[2]};
+  return joined(joined(block, ring(24, 1.2, {1.5, 0.2, 1.1})), ring(20, 0.5, {-2.5, 1.4, 0.3}));
+}
+
+struct Body {
+  const char* name;
+  Mesh mesh;
+};
+
+std::vector<Body> bodies() {
+  return {{"bracket", bracket()},         {"cube", cube()},      {"height field", height_field(40)},
+          {"tetrahedron", tetrahedron()}, {"wedge", wedge(0.3)}, {"head", load("head.off")}};
+}
+
+std::size_t free_count(const Alignment& alignment) {
+  return static_cast<std::size_t>(std::ranges::count(alignment.freedoms, true, &DegreeOfFreedom::free));
+}
+
+TEST(Align, FindsTheMotionOfACopyToRounding) {
+  for (const auto& [name, mesh] : bodies()) {
+    const Transform motion = small_motion(mesh);
+    const Alignment found = align(image(mesh, motion), Sites(mesh), {.samples = kSamples});
+    EXPECT_TRUE(found.converged) << name;
+    EXPECT_LT(displacement(mesh, found.transform * motion), 1e-9 * size_of(mesh)) << name;
+    EXPECT_EQ(free_count(found), 0u) << name;
+    EXPECT_NEAR(found.transform.determinant(), 1, 1e-14) << name;
+    EXPECT_LT(found.after.rms, 1e-9 * size_of(mesh)) << name;
+    EXPECT_GT(found.before.rms, 1e-3 * size_of(mesh)) << name;
+    EXPECT_LT(found.before.trimmed_rms, 1.0001 * found.before.rms) << name;
+  }
+}
+
+TEST(Align, SizeAndPlaceDoNotMatter) {
+  const Mesh mesh = bracket();
+  for (const double scale : {1e-12, 1e9}) {
+    const Mesh o2 = image(mesh, Transform::scaling(scale) * Transform::translation({1000, -2000, 500}));
+    const Transform motion = small_motion(o2);
+    const Alignment found = align(image(o2, motion), Sites(o2), {.samples = kSamples});
+    EXPECT_TRUE(found.converged);
+    EXPECT_LT(displacement(o2, found.transform * motion), 1e-9 * size_of(o2)) << scale;
+  }
+}
+
+TEST(Align, WorksWithAPartOfTheSurface) {
+  for (const auto& [name, mesh] : bodies()) {
+    if (mesh.triangles.size() < 100) continue;
+    const Transform motion = small_motion(mesh);
+    for (const Vec3& direction : {Vec3{1, 0.3, 0.2}, Vec3{-0.2, -1, 0.5}}) {
+      const Mesh part = cut(mesh, 0.3, direction);
+      const Alignment scan = align(image(part, motion), Sites(mesh), {.samples = kSamples});
+      EXPECT_LT(displacement(mesh, scan.transform * motion), 1e-9 * size_of(mesh)) << name;
+      const Alignment reference = align(image(mesh, motion), Sites(part), {.samples = kSamples});
+      EXPECT_LT(displacement(mesh, reference.transform * motion), 1e-9 * size_of(mesh)) << name << ", O2 cut";
+    }
+  }
+}
+
+// The errors are those of the noise divided by the square root of the number of vertices, times small
+// factors.
+TEST(Align, IsNotMisledByNoiseAndOutliers) {
+  std::mt19937 random(5);
+  for (const char* name : {"head.off", "elephant.off"}) {
+    const Mesh mesh = load(name);
+    const double size = size_of(mesh), deviation = 5e-4 * size;
+    const Transform motion = small_motion(mesh);
+    const Mesh scan = with_outliers(with_noise(cut(mesh, 0.3, {0.3, -0.2, 1}), deviation, random), random);
+    const Alignment found = align(image(scan, motion), Sites(mesh), {.samples = kSamples});
+    EXPECT_TRUE(found.converged) << name;
+    EXPECT_LT(displacement(mesh, found.transform * motion), 5e-4 * size) << name;
+    EXPECT_GT(found.fraction_used, 0.93) << name;
+    EXPECT_LT(found.fraction_used, 0.999) << name;
+    EXPECT_LT(found.after.trimmed_rms, deviation) << name;
+    EXPECT_GT(found.after.trimmed_rms, 0.3 * deviation) << name;
+    EXPECT_GT(found.after.rms, 2 * found.after.trimmed_rms) << name;
+    EXPECT_LT(found.freedoms[5].standard_error, 1e-4 * size) << name;
+    EXPECT_GT(found.freedoms[5].standard_error, 1e-7 * size) << name;
+  }
+}
+
+// A dent moves the pose by less than if its distances were averaged over the surface.
+TEST(Align, ADentDoesNotMoveTheRest) {
+  const Mesh mesh = load("head.off");
+  const double size = size_of(mesh);
+  Mesh dented = mesh;
+  const Vec3 centre = mesh.positions[100];
+  for (Vec3& p : dented.positions)
+    if (const double d = norm(p - centre) / (0.1 * size); d < 1) p[2] -= 0.02 * size * (1 - d * d);
+  const Transform motion = small_motion(mesh);
+  const Alignment found = align(image(dented, motion), Sites(mesh), {.samples = kSamples});
+  EXPECT_LT(displacement(mesh, found.transform * motion), 1e-9 * size);
+}
+
+// Most of the area is plane and has no residual, so that all others seem to be outliers; but only those
+// determine the motion in the plane.
+TEST(Align, KeepsTheSamplesThatDetermineTheMotion) {
+  Mesh plate = cube(1);
+  for (Vec3& p : plate.positions) p[2] *= 0.02;
+  std::mt19937 random(7);
+  const Transform motion = small_motion(plate);
+  const Alignment found = align(image(plate, motion), Sites(plate));
+  EXPECT_LT(displacement(plate, found.transform * motion), 1e-9);
+  EXPECT_EQ(free_count(found), 0u);
+  EXPECT_LT(found.freedoms[5].determined, 0.2);
+}
+
+TEST(Align, PrincipalAxesNeedNoStart) {
+  for (const char* name : {"head.off", "elephant.off", "bracket"}) {
+    const Mesh mesh = name == std::string("bracket") ? bracket() : load(name);
+    const double size = size_of(mesh);
+    const Transform motion =
+        Transform::translation({3 * size, -size, 2 * size}) * Transform::rotation({40, 110, -70});
+    const Alignment found =
+        align(image(mesh, motion), Sites(mesh), {.start = AlignStart::principal_axes, .samples = kSamples});
+    EXPECT_LT(displacement(mesh, found.transform * motion), 1e-9 * size) << name;
+  }
+}
+
+TEST(Align, PrincipalAxesOfAPart) {
+  const Mesh mesh = load("elephant.off");
+  const double size = size_of(mesh);
+  const Transform motion =
+      Transform::translation({3 * size, -size, 2 * size}) * Transform::rotation({40, 110, -70});
+  const Mesh part = image(cut(mesh, 0.3, {0.3, 0.5, 0.8}), motion);
+  const Alignment found =
+      align(part, Sites(mesh), {.start = AlignStart::principal_axes, .samples = kSamples});
+  EXPECT_LT(displacement(mesh, found.transform * motion), 1e-9 * size);
+}
+
+TEST(Align, StartsAtAPose) {
+  const Mesh mesh = bracket();
+  const Transform motion = Transform::translation({20, 5, 1}) * Transform::rotation({0, 0, 170});
+  const Transform start = Transform::rotation({0, 0, -172}) * Transform::translation({-20.05, -5, -1});
+  const Alignment found = align(image(mesh, motion), Sites(mesh), {.pose = start, .samples = kSamples});
+  EXPECT_LT(displacement(mesh, found.transform * motion), 1e-9);
+}
+
+// As the samples move along with O1.
+TEST(Align, AMotionOfO1ChangesTheResultAccordingly) {
+  const Mesh mesh = load("head.off");
+  std::mt19937 random(3);
+  const double size = size_of(mesh);
+  const Mesh scan = with_noise(cut(mesh, 0.2, {1, 0, 0}), 5e-4 * size, random);
+  const Sites sites(mesh);
+  const Transform motion = small_motion(mesh);
+  const Alignment found = align(scan, sites, {.samples = kSamples});
+  const Alignment moved = align(image(scan, motion), sites, {.samples = kSamples});
+  EXPECT_LT(displacement(mesh, moved.transform * motion * Transform(found.transform)), 2e-3 * size);
+  for (const Vec3& p : {Vec3{}, Vec3{size, 0, 0}, Vec3{0, size, size}})
+    EXPECT_LT(norm((moved.transform * motion)(p)-found.transform(p)), 1e-5 * size);
+}
+
+TEST(Align, DoesNotDependOnTheNumberOfThreads) {
+  std::mt19937 random(4);
+  const Mesh mesh = bracket();
+  const Sites sites(mesh);
+  const Mesh scan = image(with_outliers(with_noise(mesh, 0.002, random), random), small_motion(mesh));
+  const Alignment all = align(scan, sites, {.samples = kSamples});
+  const ThreadLimit limit(1);
+  const Alignment one = align(scan, sites, {.samples = kSamples});
+  EXPECT_EQ(one.transform.rows, all.transform.rows);
+  EXPECT_EQ(one.iterations, all.iterations);
+  EXPECT_EQ(one.after.rms, all.after.rms);
+  for (int k = 0; k < 6; ++k) EXPECT_EQ(one.freedoms[k].determined, all.freedoms[k].determined);
+}
+
+// The free motions of a plane: two translations in it and the rotation about its normal.
+TEST(AlignFreedoms, OfAPlane) {
+  Mesh mesh = square(2, 0);
+  const Alignment found = align(image(mesh, small_motion(mesh)), Sites(mesh), {.samples = kSamples});
+  ASSERT_EQ(free_count(found), 3u);
+  EXPECT_TRUE(found.converged);
+  EXPECT_LT(found.after.trimmed_rms, 1e-12);
+  int rotations = 0;
+  for (const DegreeOfFreedom& f : std::span(found.freedoms).last(3)) {
+    EXPECT_TRUE(f.free);
+    EXPECT_LT(f.determined, 1e-6);
+    EXPECT_TRUE(std::isinf(f.standard_error));
+    EXPECT_LT(std::abs(f.translation[2]), 1e-6);
+    if (norm(f.rotation) < 0.5) continue;
+    ++rotations;
+    EXPECT_NEAR(std::abs(f.rotation[2]), 1, 1e-6);
+  }
+  EXPECT_EQ(rotations, 1);
+}
+
+TEST(AlignFreedoms, OfASphere) {
+  for (const int levels : {2, 3, 4}) {
+    const Mesh mesh = moved(sphere(levels), {10, 20, 30});
+    const Alignment found = align(image(mesh, small_motion(mesh)), Sites(mesh), {.samples = kSamples});
+    ASSERT_EQ(free_count(found), 3u) << levels;
+    for (const DegreeOfFreedom& f : std::span(found.freedoms).last(3)) {
+      EXPECT_GT(norm(f.rotation), 0.99);
+      EXPECT_LT(norm(f.axis_point - Vec3{10, 20, 30}), 0.05);
+    }
+    // What is free stays: the motion is a translation.
+    EXPECT_NEAR(found.transform.rows[0][0], 1, 1e-4);
+    EXPECT_NEAR(found.transform.rows[1][1], 1, 1e-4);
+  }
+}
+
+/// A tube without ends, around the z axis.
+Mesh tube(std::uint32_t sides) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    for (const double z : {-2.0, 2.0}) mesh.positions.push_back({std::cos(angle), std::sin(angle), z});
+    const std::uint32_t a = 2 * i, c = 2 * ((i + 1) % sides);
+    mesh.triangles.push_back({a, c, a + 1});
+    mesh.triangles.push_back({a + 1, c, c + 1});
+  }
+  return mesh;
+}
+
+TEST(AlignFreedoms, OfACylinder) {
+  const Mesh mesh = moved(tube(40), {5, 6, 7});
+  const Alignment found = align(image(mesh, small_motion(mesh)), Sites(mesh), {.samples = kSamples});
+  ASSERT_EQ(free_count(found), 2u);
+  int translations = 0, rotations = 0;
+  for (const DegreeOfFreedom& f : std::span(found.freedoms).last(2)) {
+    const bool turns = norm(f.rotation) > 0.5;
+    (turns ? rotations : translations)++;
+    EXPECT_NEAR(std::abs((turns ? f.rotation : f.translation)[2]), 1, 1e-3);
+    if (turns) {
+      EXPECT_LT(std::hypot(f.axis_point[0] - 5, f.axis_point[1] - 6), 1e-2);
+    }
+  }
+  EXPECT_EQ(translations, 1);
+  EXPECT_EQ(rotations, 1);
+}
+
+TEST(AlignFreedoms, OfATorus) {
+  const Mesh mesh = torus(64, 48);
+  const Alignment found = align(mesh, Sites(mesh), {.samples = kSamples});
+  ASSERT_EQ(free_count(found), 1u);
+  EXPECT_GT(norm(found.freedoms[5].rotation), 0.99);
+}
+
+TEST(AlignPoints, OfACloud) {
+  const Mesh mesh = load("head.off");
+  std::mt19937 random(9);
+  const Transform motion = small_motion(mesh);
+  std::vector<Vec3> points = random_surface_points(mesh, 20000, random);
+  for (std::size_t i = 0; i < points.size(); i += 100) points[i] = random_point(bounds(mesh), random);
+  transform(points, motion);
+  const Sites sites(mesh);
+  const Alignment found = align(points, {}, sites, {.samples = kSamples});
+  EXPECT_TRUE(found.converged);
+  EXPECT_EQ(found.samples, kSamples);
+  EXPECT_LT(displacement(mesh, found.transform * motion), 1e-9 * size_of(mesh));
+  points.resize(3000);
+  const Alignment all = align(points, {}, sites);
+  EXPECT_EQ(all.samples, 3000u);
+  EXPECT_LT(displacement(mesh, all.transform * motion), 1e-9 * size_of(mesh));
+}
+
+// With normals, the two walls of a sheet cannot be confused.
+TEST(AlignPoints, NormalsTellTheSidesOfASheetApart) {
+  Mesh sheet = height_field(40);
+  const double thickness = 0.01 * size_of(sheet);
+  sheet.corner_uvs.clear();
+  const Mesh solid = joined(sheet, moved(flipped(sheet), {0, 0, -thickness}));
+  std::mt19937 random(2);
+  const Transform motion = Transform::translation({0, 0, -0.9 * thickness});
+  const Alignment found = align(image(solid, motion), Sites(solid), {.samples = kSamples});
+  EXPECT_LT(displacement(solid, found.transform * motion), 1e-9 * size_of(solid));
+}
+
+TEST(AlignErrors, NameTheFault) {
+  const Mesh mesh = cube();
+  const Sites sites(mesh);
+  EXPECT_THAT(error_of([&] { return align(mesh, sites, {.pose = Transform::scaling(2)}); }),
+              HasSubstr("not a rotation and a translation"));
+  EXPECT_THAT(error_of([&] { return align(mesh, sites, {.pose = Transform::scaling(-1)}); }),
+              HasSubstr("not a rotation and a translation"));
+  EXPECT_THAT(error_of([&] { return align(mesh, sites, {.samples = 3}); }), HasSubstr("64 samples"));
+  EXPECT_THAT(error_of([&] { return align(mesh, sites, {.max_iterations = 0}); }), HasSubstr("iterations"));
+  EXPECT_THAT(error_of([&] { return align(std::span<const Vec3>(), {}, sites); }), HasSubstr("needs points"));
+  const std::vector<Vec3> points{{0, 0, 0}, {1, std::numeric_limits<double>::quiet_NaN(), 0}};
+  EXPECT_THAT(error_of([&] { return align(points, {}, sites); }), HasSubstr("point 1 has a coordinate"));
+  EXPECT_THAT(error_of([&] { return align(points, std::span(points).first(1), sites); }),
+              HasSubstr("one normal for each point"));
+  EXPECT_THROW((void)align(Mesh{}, sites), Error);
+  EXPECT_THROW((void)align(mesh, sites, {.progress = [](std::string_view, double) { return false; }}),
+               Cancelled);
+}
+
+// A few points, or all in one place, determine little; none of it is an error.
+TEST(AlignErrors, FewPointsAreNone) {
+  const Sites sites(cube());
+  for (const std::vector<Vec3>& points :
+       {std::vector<Vec3>{{0.3, 0.2, 1.1}}, {{0.3, 0.2, 1.1}, {0.3, 0.2, 1.1}}, {{5, 5, 5}, {-5, 0, 0}}}) {
+    const Alignment found = align(points, {}, sites);
+    EXPECT_TRUE(std::isfinite(found.transform.rows[0][3]));
+    EXPECT_NEAR(found.transform.determinant(), 1, 1e-12);
+    EXPECT_GT(free_count(found), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace sdm
