@@ -14,7 +14,11 @@ CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder) {
 
 void add_transform_option(CLI::App& app, const std::string& name, const std::string& mesh,
                           std::string& steps) {
-  app.add_option(name, steps, mesh + ": transform steps, such as fit,rotate:0:90:0,scale:2,translate:0.8:0:0")
+  app.add_option(
+         name, steps,
+         mesh +
+             ": transform steps, such as fit,rotate:0:90:0,scale:2,translate:0.8:0:0, or matrix:FILE, "
+             "4x4 row by row as text, NPY or alignment.json")
       ->check(check_transform)
       ->type_name("STEPS");
 }

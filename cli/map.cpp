@@ -1,5 +1,6 @@
 #include "map.h"
 
+#include "alignment.h"
 #include "atlas_cache.h"
 #include "atlas_parts.h"
 #include "common_options.h"
@@ -99,9 +100,10 @@ void share_scale(const MapCommand& command, const std::vector<AtlasPart>& parts,
 }
 
 /// Computes the map on `on`, or a part of it, of the distances to `to`, and writes all files of it into
-/// `folder`.
-Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart& part, double import_ms,
-               const std::filesystem::path& folder, ProgressLine& progress) {
+/// `folder`. `sites`: of `to`; built if it is null. `aligned`: how O1 was, if it was.
+Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart& part,
+               std::unique_ptr<sdm::Sites>& sites, const std::optional<AlignOutcome>& aligned,
+               double import_ms, const std::filesystem::path& folder, ProgressLine& progress) {
   const sdm::Mesh& mesh = part.mesh ? *part.mesh : on.mesh;
   Stopwatch total;
   Result result;
@@ -109,7 +111,6 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   outcome.time.import = import_ms;
 
   std::unique_ptr<sdm::Surface> surface;
-  std::unique_ptr<sdm::Sites> sites;
   sdm::run_concurrently({
       [&] {
         Stopwatch watch;
@@ -119,7 +120,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
       },
       [&] {
         Stopwatch watch;
-        sites = std::make_unique<sdm::Sites>(to.mesh);
+        if (!sites) sites = std::make_unique<sdm::Sites>(to.mesh);
         outcome.time.sites = watch.lap();
         outcome.embedded = sdm::is_embedded(*sites);
       },
@@ -183,6 +184,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
         fmt::format("{} texels are covered by several faces, and have the value of one of them; --strict-uv "
                     "refuses that",
                     texels));
+  if (aligned) std::ranges::copy(notes(*aligned), std::back_inserter(outcome.notes));
   outcome.time.output = export_watch.lap();
   outcome.time.total = import_ms + total.lap();
 
@@ -195,6 +197,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   report[to.role]["embedded"] = outcome.embedded;
   report["measured_on"] = on.role;
   report["units"] = command.picture.units;
+  if (aligned) report["alignment"] = to_json(*aligned);
   report["atlas"] = to_json(*surface);
   report["atlas"]["udim"] = part.udim ? nlohmann::ordered_json(*part.udim) : nullptr;
   report["atlas"]["cut_faces"] = part.cut_faces;
@@ -206,9 +209,11 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   return result;
 }
 
+constexpr const char* kAlignmentFile = "alignment.json";
+
 /// All files that any run of the command writes, with the UDIM tiles that there are in the folder.
 std::vector<std::filesystem::path> stale_files(const std::filesystem::path& out) {
-  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> files{kAlignmentFile};
   for (const std::filesystem::path mesh : {"", "o1", "o2"}) {
     std::vector<std::filesystem::path> folders{mesh};
     std::error_code ignored;
@@ -239,8 +244,9 @@ struct MeshResults {
   }
 };
 
-/// Computes the maps of a mesh.
-MeshResults measure_parts(MapCommand command, Input& on, Input& to, double import_ms, OutputFolder& out,
+/// Computes the maps of a mesh. `sites`: of `to`, or null.
+MeshResults measure_parts(MapCommand command, Input& on, Input& to, std::unique_ptr<sdm::Sites> sites,
+                          const std::optional<AlignOutcome>& aligned, double import_ms, OutputFolder& out,
                           ProgressLine& progress) {
   MeshResults all{on.role, atlas_parts(on.mesh, command.atlas), {}};
   if (all.parts.size() > 1 && !command.atlas_cache.empty())
@@ -250,7 +256,8 @@ MeshResults measure_parts(MapCommand command, Input& on, Input& to, double impor
   const std::filesystem::path folder = command.both ? on.role : "";
   for (const AtlasPart& part : all.parts) {
     const std::string tile = part.udim ? std::to_string(*part.udim) : "";
-    all.results.push_back(measure(command, on, to, part, import_ms, out.staging(folder / tile), progress));
+    all.results.push_back(
+        measure(command, on, to, part, sites, aligned, import_ms, out.staging(folder / tile), progress));
   }
   return all;
 }
@@ -280,11 +287,19 @@ int run(MapCommand command) {
        [&] { o2 = load_input("o2", command.o2, command.transform_o2, {vertices && command.both}); }});
   const double import_ms = import.lap();
 
+  std::optional<AlignOutcome> aligned;
   std::vector<MeshResults> meshes;
   out.fill([&] {
-    meshes.push_back(measure_parts(command, o1, o2, import_ms, out, progress));
+    std::unique_ptr<sdm::Sites> sites;
+    if (command.align.on) {
+      progress.step("align");
+      sites = std::make_unique<sdm::Sites>(o2.mesh);
+      aligned = align_mesh(o1.mesh, *sites, command.align, progress.callback());
+      write_text(out.staging() / kAlignmentFile, to_text(to_json(*aligned)));
+    }
+    meshes.push_back(measure_parts(command, o1, o2, std::move(sites), aligned, import_ms, out, progress));
     if (!command.both) return;
-    meshes.push_back(measure_parts(command, o2, o1, import_ms, out, progress));
+    meshes.push_back(measure_parts(command, o2, o1, nullptr, aligned, import_ms, out, progress));
     if (meshes[0].parts.size() > 1 || meshes[1].parts.size() > 1) return;
     add_symmetric_hausdorff(meshes[0].results[0].report, meshes[1].results[0].report);
     for (const MeshResults& mesh : meshes)
@@ -302,13 +317,14 @@ int run(MapCommand command) {
         std::cout << summary(mesh.role == "o1" ? o1 : o2, mesh.role == "o1" ? o2 : o1,
                              mesh.results[i].outcome, command.picture.units);
       }
+    if (aligned) std::cout << summary(*aligned, command.picture.units);
     std::string tiles;
     for (const AtlasPart& part : meshes[0].parts)
       if (part.udim) tiles += fmt::format("{}{}", tiles.empty() ? "" : ",", *part.udim);
-    std::cout << fmt::format("  time      {} s\n  results   {}{}{}/: {}report.json\n",
-                             number(std::round(total.lap()) / 1000, 6), command.out.string(),
-                             command.both ? "/{o1,o2}" : "", tiles.empty() ? "" : "/{" + tiles + "}",
-                             listed(command.files));
+    std::cout << fmt::format(
+        "  time      {} s\n  results   {}{}{}/: {}report.json\n", number(std::round(total.lap()) / 1000, 6),
+        command.out.string(), command.both ? "/{o1,o2}" : "", tiles.empty() ? "" : "/{" + tiles + "}",
+        (aligned && !command.both ? kAlignmentFile + std::string(" ") : "") + listed(command.files));
   }
   const auto within = [](const Result& r) { return !r.outcome.tolerance || r.outcome.tolerance->within; };
   const bool all_within = std::ranges::all_of(

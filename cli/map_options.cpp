@@ -36,6 +36,7 @@ void add_options(CLI::App& app, MapCommand& c) {
 
   add_transform_option(app, "--transform-o1", "O1", c.transform_o1);
   add_transform_option(app, "--transform-o2", "O2", c.transform_o2);
+  add_align_options(app, c.align);
 
   CLI::Option* resolution = add_resolution_option(app, c.atlas);
   CLI::Option* precision =

@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "alignment.h"
 #include "map_files.h"
 
 struct MapCommand {
   std::string o1, o2, transform_o1, transform_o2;
   std::filesystem::path out, atlas_cache;
+  AlignCommand align;
   sdm::AtlasOptions atlas;
   sdm::MapOptions map;  ///< its engine is created from the next two members
   sdm::EngineInfo engine = sdm::engines().front();

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 
+#include "alignment.h"
 #include "common_options.h"
 #include "pair_options.h"
 #include "progress_line.h"
@@ -16,7 +17,7 @@
 
 namespace {
 
-void run(PairCommand command) {
+void run(PairCommand command, const AlignCommand& align) {
   limit_threads(command.threads);
   ProgressLine progress(command.quiet);
 
@@ -31,6 +32,9 @@ void run(PairCommand command) {
   sdm::run_concurrently({[&] { load(o1, "o1", command.o1, command.transform_o1); },
                          [&] { load(o2, "o2", command.o2, command.transform_o2); }});
   const double import_ms = watch.lap();
+  std::optional<AlignOutcome> aligned;
+  if (align.on) aligned = align_mesh(o1.mesh, sdm::Sites(o2.mesh), align, progress.callback());
+  watch.lap();
   sdm::ProximityQuery query(o1.mesh, o2.mesh, command.options);
   const double build_ms = watch.lap();
   progress.step("queries");
@@ -43,11 +47,19 @@ void run(PairCommand command) {
     json["o1"] = to_json(o1);
     json["o2"] = to_json(o2);
     json["units"] = command.units;
+    if (aligned) {
+      json["alignment"] = to_json(*aligned);
+      json["notes"] = notes(*aligned);
+    }
     json.update(answers);
     json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
     std::cout << to_text(json);
   } else if (!command.quiet) {
     std::cout << o1.file << ", " << o2.file << "\n" << summary(query, command.units);
+    if (aligned) {
+      std::cout << summary(*aligned, command.units);
+      for (const std::string& note : notes(*aligned)) std::cout << "  note       " << note << '\n';
+    }
   }
 }
 
@@ -62,5 +74,7 @@ void add_proximity_command(CLI::App& app) {
       "  sdm proximity bunny.obj armadillo.off --transform-o1 fit --transform-o2 fit,translate:0.1:0:0");
   const auto command = std::make_shared<PairCommand>();
   add_options(*proximity, *command, {fmt::format("A mesh ({})", sdm::mesh_format_names()), "The other mesh"});
-  proximity->callback([command] { run(*command); });
+  const auto align = std::make_shared<AlignCommand>();
+  add_align_options(*proximity, *align);
+  proximity->callback([command, align] { run(*command, *align); });
 }

@@ -1,6 +1,7 @@
 #include "scenes/placement.h"
 
 #include <sdm/error.h>
+#include <sdm/io.h>
 
 #include <algorithm>
 #include <charconv>
@@ -15,7 +16,7 @@ namespace {
 
 [[noreturn]] void fail(std::string_view step, const std::string& fault) {
   throw Error("transform step '" + std::string(step) + "' " + fault +
-              "; steps are fit, scale:S, rotate:X:Y:Z and translate:X:Y:Z");
+              "; steps are fit, scale:S, rotate:X:Y:Z, translate:X:Y:Z and matrix:FILE");
 }
 
 // The numbers after the name of a step, each preceded by a colon.
@@ -47,12 +48,17 @@ PlacementStep parse_step(std::string_view step) {
                             {"rotate", Kind::rotate, 3},
                             {"translate", Kind::translate, 3}};
   const std::string_view name = step.substr(0, step.find(':'));
+  if (name == "matrix") {
+    const std::string_view file = step.substr(std::min(name.size() + 1, step.size()));
+    if (file.empty()) fail(step, "has no name of a file");
+    return {.kind = Kind::file, .file = file};
+  }
   for (const Form& form : forms) {
     if (form.name != name) continue;
     const std::vector<double> values = parse_values(step, step.substr(name.size()));
     if (values.size() != form.values)
       fail(step, "has " + std::to_string(values.size()) + " numbers, not " + std::to_string(form.values));
-    PlacementStep result{form.kind, {}};
+    PlacementStep result{.kind = form.kind};
     std::copy(values.begin(), values.end(), result.value.begin());
     if (form.kind == Kind::scale && result.value[0] == 0) fail(step, "would flatten the mesh to a point");
     return result;
@@ -93,7 +99,13 @@ Fit fit_of(const Mesh& mesh) {
   return {centre(box), longest};
 }
 
-void apply(std::span<Vec3> points, const PlacementStep& step) {
+// Replaces the file of a step by its matrix.
+void read_file(PlacementStep& step) {
+  if (step.kind == PlacementStep::Kind::file)
+    step = {.kind = PlacementStep::Kind::matrix, .matrix = read_matrix(step.file)};
+}
+
+void apply_step(std::span<Vec3> points, const PlacementStep& step) {
   switch (step.kind) {
     case PlacementStep::Kind::fit:
       throw Error("transform step 'fit' needs a mesh");
@@ -105,6 +117,12 @@ void apply(std::span<Vec3> points, const PlacementStep& step) {
       break;
     case PlacementStep::Kind::translate:
       for (Vec3& p : points) p += step.value;
+      break;
+    case PlacementStep::Kind::file:
+      transform(points, read_matrix(step.file));
+      break;
+    case PlacementStep::Kind::matrix:
+      transform(points, step.matrix);
       break;
   }
   for (const Vec3& p : points)
@@ -126,7 +144,12 @@ std::vector<PlacementStep> parse_placement(std::string_view text) {
 }
 
 void place(Mesh& mesh, const std::vector<PlacementStep>& steps) {
-  for (const PlacementStep& step : steps) {
+  for (PlacementStep step : steps) {
+    read_file(step);
+    if (step.kind == PlacementStep::Kind::matrix) {
+      transform(mesh, step.matrix);
+      continue;
+    }
     if (step.kind == PlacementStep::Kind::fit) {
       const Fit fit = fit_of(mesh);
       for (Vec3& p : mesh.positions) {
@@ -135,27 +158,28 @@ void place(Mesh& mesh, const std::vector<PlacementStep>& steps) {
       }
       continue;
     }
-    apply(mesh.positions, step);
+    apply_step(mesh.positions, step);
     if (step.kind == PlacementStep::Kind::scale && step.value[0] < 0) turn_faces(mesh);
   }
 }
 
 void place(std::span<Vec3> points, const std::vector<PlacementStep>& steps) {
-  for (const PlacementStep& step : steps) apply(points, step);
+  for (const PlacementStep& step : steps) apply_step(points, step);
 }
 
 std::vector<PlacementStep> without_fit(Mesh mesh, const std::vector<PlacementStep>& steps) {
   std::vector<PlacementStep> result;
-  for (const PlacementStep& step : steps) {
+  for (PlacementStep step : steps) {
+    read_file(step);
     const std::size_t first = result.size();
     if (step.kind == PlacementStep::Kind::fit) {
       const Fit fit = fit_of(mesh);
-      result.push_back({PlacementStep::Kind::translate, -fit.centre});
-      result.push_back({PlacementStep::Kind::scale, {1 / fit.longest, 0, 0}});
+      result.push_back({.kind = PlacementStep::Kind::translate, .value = -fit.centre});
+      result.push_back({.kind = PlacementStep::Kind::scale, .value = {1 / fit.longest, 0, 0}});
     } else {
       result.push_back(step);
     }
-    for (std::size_t i = first; i < result.size(); ++i) apply(mesh.positions, result[i]);
+    for (std::size_t i = first; i < result.size(); ++i) apply_step(mesh.positions, result[i]);
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 #include <sdm/tolerance.h>
+#include <sdm/transform.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -60,6 +61,12 @@ struct MeshFileOptions {
 
 /// The names of the formats that read_mesh supports, separated by commas, for messages and help texts.
 [[nodiscard]] SDM_API std::string mesh_format_names();
+
+/// Reads a 4×4 matrix, row by row, with the last row 0 0 0 1: 16 numbers as text, separated by spaces, commas
+/// or line ends, with comments after '#'; an NPY array of shape (4, 4), float32 or float64; or JSON with the
+/// rows as "matrix", such as alignment.json, or the same in an object "alignment", as in report.json. Also
+/// throws sdm::Error for numbers that are not finite, and for a singular matrix.
+[[nodiscard]] SDM_API Transform read_matrix(const std::filesystem::path& file);
 
 /// Writes the positions, in double precision, and the triangles as binary PLY; read_mesh returns them
 /// bit-identical.

@@ -1,9 +1,12 @@
 #include <gmock/gmock.h>
 #include <sdm/error.h>
 
+#include <fstream>
+
 #include "core/geometry/vec.h"
 #include "scenes/placement.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm::scenes {
 namespace {
@@ -75,6 +78,27 @@ TEST(Placement, MirrorImagesKeepTheirOrientation) {
   EXPECT_NEAR(outward_volume(mesh), 8 * volume, 1e-12 * volume);
 }
 
+TEST(Placement, MatricesOfFiles) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "mirror.txt";
+  std::ofstream(file) << "-2 0 0 1\n0 2 0 0\n0 0 2 3\n0 0 0 1\n";
+  const auto steps = parse_placement("translate:1:0:0,matrix:" + file);
+  Mesh mesh = test::tetrahedron();
+  place(mesh, steps);
+  EXPECT_EQ(mesh.positions[0], (Vec3{-1, 0, 3}));
+  EXPECT_EQ(mesh.triangles[0],
+            (Triangle{test::tetrahedron().triangles[0][0], test::tetrahedron().triangles[0][2],
+                      test::tetrahedron().triangles[0][1]}));
+  std::filesystem::remove(file);
+  EXPECT_THROW(place(mesh, steps), Error);
+  std::ofstream(file) << "1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n";
+  const auto resolved = without_fit(mesh, steps);
+  std::filesystem::remove(file);
+  std::vector<Vec3> points{{1, 1, 1}};
+  place(points, resolved);
+  EXPECT_EQ(points[0], (Vec3{3, 3, 4}));
+}
+
 TEST(Placement, RejectsOverflow) {
   Mesh mesh = test::tetrahedron();
   EXPECT_THROW(place(mesh, parse_placement("scale:1e300,scale:1e300")), Error);
@@ -86,8 +110,9 @@ TEST(Placement, FitNeedsAnExtent) {
 }
 
 TEST(ParsePlacement, ReadsAllSteps) {
-  const auto steps = parse_placement("fit,scale:2,rotate:1:2:3,translate:0.8:-0:0");
-  ASSERT_EQ(steps.size(), 4u);
+  const auto steps = parse_placement("fit,scale:2,rotate:1:2:3,translate:0.8:-0:0,matrix:a:b.txt");
+  ASSERT_EQ(steps.size(), 5u);
+  EXPECT_EQ(steps[4].file, "a:b.txt");
   EXPECT_EQ(steps[0].kind, PlacementStep::Kind::fit);
   EXPECT_EQ(steps[1].value[0], 2);
   EXPECT_EQ(steps[2].value, (Vec3{1, 2, 3}));
@@ -134,6 +159,8 @@ TEST(ParsePlacement, ErrorNamesTheInvalidStep) {
   expect_refused("fit,", "''");
   expect_refused(",fit", "''");
   expect_refused(" fit", "' fit'");
+  expect_refused("matrix", "'matrix'");
+  expect_refused("matrix:", "'matrix:'");
 }
 
 }  // namespace

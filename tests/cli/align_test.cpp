@@ -1,0 +1,149 @@
+// `--align` of `sdm map` and `sdm proximity`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/samples.h"
+#include "support/meshes.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+/// A mesh, and the same moved away.
+struct AlignOption : ::testing::Test {
+  TemporaryFolder folder;
+  Mesh mesh = joined(cube(1), ring(16, 0.5, {0.9, 0.4, 0.2}));
+  std::string o2 = write_obj(folder / "part.obj", mesh);
+  std::string o1 = write_obj(folder / "scan.obj", placed(mesh, "rotate:1:-2:1,translate:0.04:0.02:-0.03"));
+  std::string out = folder / "out";
+
+  Outcome map(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"map", o1, o2, "-o", out, "--resolution", "64"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+};
+
+TEST_F(AlignOption, MovesO1AndWritesTheMatrix) {
+  const Outcome run = map({"--align", "--units", "mm"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("aligned   turned O1 by 2."));
+  EXPECT_THAT(run.out, HasSubstr(": alignment.json map.exr"));
+  EXPECT_THAT(run.out, Not(HasSubstr("note")));
+  const Json report = Json::parse(contents(out + "/report.json"));
+  const Json alignment = Json::parse(contents(out + "/alignment.json"));
+  EXPECT_EQ(report["alignment"], alignment);
+  EXPECT_LT(report["extremes"]["max"]["distance"], 1e-12);
+  EXPECT_EQ(alignment["converged"], true);
+  EXPECT_EQ(alignment["from"], "none");
+  EXPECT_EQ(alignment["degrees_of_freedom"].size(), 6u);
+  EXPECT_EQ(alignment["degrees_of_freedom"][5]["free"], false);
+  EXPECT_GT(alignment["before"]["rms"], 0.01);
+  EXPECT_LT(alignment["after"]["rms"], 1e-12);
+  EXPECT_NEAR(alignment["rotation_degrees"], 2.45, 0.1);
+}
+
+// The placed mesh is the same to the last bit, so that maps can be repeated without an alignment.
+TEST_F(AlignOption, TheMatrixCanBeReadBack) {
+  ASSERT_EQ(map({"--align"}).code, 0);
+  const std::string exr = contents(out + "/map.exr");
+  const std::string file = folder / "found.json", report = folder / "found-report.json";
+  std::filesystem::copy_file(out + "/alignment.json", file);
+  std::filesystem::copy_file(out + "/report.json", report);
+  for (const std::string& from : {file, report}) {
+    const Outcome run = map({"--transform-o1", "matrix:" + from});
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(contents(out + "/map.exr"), exr);
+    EXPECT_FALSE(std::filesystem::exists(out + "/alignment.json")) << "of the earlier run";
+  }
+  const Outcome again = map({"--align", "--align-from", file, "--json"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  const Json json = Json::parse(again.out);
+  EXPECT_EQ(json["alignment"]["from"], file);
+  EXPECT_EQ(json["alignment"]["iterations"], 2);
+}
+
+TEST_F(AlignOption, BothMapsAreOfTheAlignedMesh) {
+  const Outcome run = map({"--align", "--both", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json reports = Json::parse(run.out);
+  EXPECT_LT(reports["o1"]["extremes"]["max"]["distance"], 1e-12);
+  EXPECT_LT(reports["o2"]["extremes"]["max"]["distance"], 1e-12);
+  EXPECT_EQ(reports["o1"]["alignment"], reports["o2"]["alignment"]);
+  EXPECT_TRUE(std::filesystem::exists(out + "/alignment.json"));
+}
+
+TEST_F(AlignOption, FromPrincipalAxes) {
+  o1 = write_obj(folder / "turned.obj", placed(mesh, "rotate:40:100:-70,translate:9:8:7"));
+  const Outcome far = map({"--align"});
+  EXPECT_EQ(far.code, 0) << far.err;
+  EXPECT_THAT(far.out, HasSubstr("--align-from pca?"));
+  const Outcome run = map({"--align", "--align-from", "pca", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_LT(Json::parse(run.out)["extremes"]["max"]["distance"], 1e-12);
+}
+
+TEST_F(AlignOption, NotesSayWhatIsNotDetermined) {
+  o1 = write_obj(folder / "a.obj", placed(sphere(3), "translate:0.1:0:0"));
+  o2 = write_obj(folder / "b.obj", sphere(3));
+  const Outcome run = map({"--align", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  EXPECT_THAT(json["notes"].dump(), HasSubstr("the surfaces do not determine the alignment"));
+  EXPECT_THAT(json["notes"].dump(), HasSubstr("rotation about"));
+  EXPECT_TRUE(json["alignment"]["degrees_of_freedom"][3]["free"]);
+  EXPECT_TRUE(json["alignment"]["degrees_of_freedom"][3]["standard_error"].is_null());
+}
+
+TEST_F(AlignOption, OfProximity) {
+  const Outcome run = run_sdm({"proximity", o1, o2, "--align", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  EXPECT_LT(json["alignment"]["after"]["rms"], 1e-12);
+  EXPECT_EQ(json["notes"], Json::array());
+  EXPECT_THAT(run_sdm({"proximity", o1, o2, "--align"}).out, HasSubstr("aligned "));
+}
+
+TEST_F(AlignOption, FaultsOfTheMatrix) {
+  const std::string file = folder / "pose.txt";
+  const auto fault = [&](const std::vector<std::string>& options) {
+    const Outcome run = map(options);
+    EXPECT_EQ(run.code, 1);
+    EXPECT_FALSE(std::filesystem::exists(out));
+    return run.err;
+  };
+  const std::vector<std::string> start{"--align", "--align-from", file},
+      place{"--transform-o1", "fit,matrix:" + file};
+  EXPECT_THAT(fault(start), HasSubstr(file + ": there is no such file"));
+  EXPECT_THAT(fault(place), HasSubstr(file + ": there is no such file"));
+  std::ofstream(file) << "2 0 0 0\n0 2 0 0\n0 0 2 0\n0 0 0 1\n";
+  EXPECT_THAT(fault(start), HasSubstr(file + ": the pose to start the alignment at is not a rotation"));
+  EXPECT_EQ(map(place).code, 0) << "any affine map will do";
+  std::filesystem::remove_all(out);
+  std::ofstream(file) << "1 0 0\n";
+  EXPECT_THAT(fault(start), HasSubstr("has 3 numbers, not 16"));
+  EXPECT_THAT(fault(place), HasSubstr("has 3 numbers, not 16"));
+  EXPECT_EQ(map({"--align-from", "pca"}).code, 2) << "without --align";
+  EXPECT_EQ(map({"--transform-o1", "matrix:"}).code, 2);
+}
+
+// A reflection keeps the outside of a mesh outside.
+TEST_F(AlignOption, AMatrixMayReflect) {
+  const std::string file = folder / "mirror.txt";
+  std::ofstream(file) << "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  o1 = o2;
+  const Outcome run = map({"--transform-o1", "matrix:" + file, "--transform-o2", "matrix:" + file, "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_LT(Json::parse(run.out)["extremes"]["max"]["distance"], 1e-12);
+}
+
+}  // namespace
+}  // namespace sdm::test
