@@ -57,7 +57,7 @@ struct AlignResiduals {
 struct Alignment {
   /// Maps O1, as it was given, to its place on O2: a rotation and a translation.
   Transform transform;
-  AlignResiduals before;  ///< of O1 as it was given
+  AlignResiduals before;  ///< of O1 as it was given; of 1024 samples
   AlignResiduals after;
   std::size_t samples = 0;
   double fraction_used = 0;    ///< of the samples, in the last step; the others are taken for outliers
@@ -73,7 +73,8 @@ struct Alignment {
 /// Samples are refined from 1024 to options.samples. Without weight are residuals above three times their
 /// robust standard deviation (1.48 times the median), unless they are needed to determine the motion; samples
 /// whose closest point is on the boundary of O2; and those whose normal differs from that of O2 by more than
-/// 60°, if enough are left. On a copy of O2, or of a part of it, the steps converge quadratically to rounding.
+/// 60°, if enough are left. On a copy of O2, or of a part of it, the steps converge quadratically to
+/// rounding.
 ///
 /// Finds a local optimum: the start should be within some 20° and 10 % of the size. The result does not
 /// depend on the number of threads. Throws sdm::Error when the mesh is unusable (see validate), for options

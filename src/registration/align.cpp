@@ -23,6 +23,7 @@ using namespace registration;
 constexpr std::size_t kCoarse = 1024;  // samples of the first level
 constexpr double kEverything = std::numeric_limits<double>::infinity();
 constexpr double kFar = 4;
+constexpr std::size_t kThin = 4096;  // samples that show which motions are determined
 
 /// The state of a registration: a pose of samples that are relative to their centre.
 struct Fit {
@@ -58,8 +59,7 @@ Fit refine(const Samples& samples, Fit fit, double radius, const Target& target,
   Motions motions;
   for (int step = 0; step < most && !fit.converged; ++step, ++fit.iterations) {
     const Correspondences pairs = find_correspondences(samples, fit.pose, target);
-    if (step == 0)
-      motions = determined_motions(pairs, smooth_normals(pairs, target.sites), pivot, kEverything);
+    if (step == 0) motions = determined_motions(thinned(pairs, kThin), target.sites, pivot, kEverything);
     fit.cut = trimming_cut(pairs, pivot, motions);
     const Motion motion = best_motion(pairs, pivot, motions, fit.cut);
     fit.pose = moved(fit.pose, pivot, motion);
@@ -148,7 +148,7 @@ Alignment align_samples(const SampleSource& source, const Sites& o2, const Align
   fit = refine(fine, fit, radius, target, options.max_iterations, kTolerance);
   check_progress(options, 1);
 
-  const Correspondences before = find_correspondences(fine, {Affine{}.rows, centre}, target);
+  const Correspondences before = find_correspondences(coarse, {Affine{}.rows, centre}, target);
   const Correspondences after = find_correspondences(fine, fit.pose, target);
   std::size_t used = 0;
   for (std::size_t i = 0; i < after.distances.size(); ++i)
@@ -162,7 +162,7 @@ Alignment align_samples(const SampleSource& source, const Sites& o2, const Align
   result.converged = fit.converged;
   result.centre = fit.pose.offset;
   result.gyration_radius = extent;
-  result.freedoms = degrees_of_freedom(after, smooth_normals(after, o2), {fit.pose.offset, radius}, fit.cut,
+  result.freedoms = degrees_of_freedom(thinned(after, kThin), o2, {fit.pose.offset, radius}, fit.cut,
                                        result.after.trimmed_rms, used);
   const Vec3 offset = fit.pose.offset - fit.pose.linear(centre);
   result.transform = mesh::Similarity{{fit.pose.rows, offset}, 1}.transform();

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "engine/blocks.h"
 #include "engine/cpu/cpu_engine.h"
+#include "engine/reference/reference_engine.h"
 #include "sites/sites_data.h"
 
 namespace sdm::registration {
@@ -78,27 +79,52 @@ Correspondences find_correspondences(const Samples& samples, const Affine& pose,
                         std::vector<Vec3>(count),          std::vector<double>(count),
                         std::vector<std::uint32_t>(count), std::vector<std::uint8_t>(count)};
   for (std::size_t i = 0; i < count; ++i) pairs.points[i] = pose(samples.points[i]);
-  engine::for_each_block(count, {}, "align", [&](std::size_t begin, std::size_t end) {
-    const std::span<const Vec3> block = std::span(pairs.points).subspan(begin, end - begin);
-    cpu::cpu_search(data, block, limit, [&](std::size_t first, const sites::ClosestPacket& packet) {
-      for (std::size_t k = 0; k < packet.count; ++k) {
-        const std::size_t i = begin + first + k;
-        const ClosestPoint c = packet.get(k, pairs.points[i]);
-        pairs.distances[i] = c.distance;
-        pairs.usable[i] = 1;
-        if (c.type == SiteType::none) continue;
-        pairs.closest[i] = c.point;
-        pairs.faces[i] = data.face_of(c.type, c.site);
-        pairs.normals[i] = tangent_normal(c, pairs.faces[i], pairs.points[i], target);
-        pairs.usable[i] = !on_boundary(c, target);
-      }
+  const auto store = [&](std::size_t i, const ClosestPoint& c) {
+    pairs.distances[i] = c.distance;
+    pairs.usable[i] = 1;
+    if (c.type == SiteType::none) return;
+    pairs.closest[i] = c.point;
+    pairs.faces[i] = data.face_of(c.type, c.site);
+    pairs.normals[i] = tangent_normal(c, pairs.faces[i], pairs.points[i], target);
+    pairs.usable[i] = !on_boundary(c, target);
+  };
+  // Groups of the cpu engine take as long for a few sparse samples as for many: those are searched one by
+  // one.
+  constexpr std::size_t kSparse = 1 << 14, kGrain = 64;
+  if (count < kSparse)
+    parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        store(i, reference::reference_closest(data, pairs.points[i], limit));
     });
-  });
+  else
+    engine::for_each_block(count, {}, "align", [&](std::size_t begin, std::size_t end) {
+      const std::span<const Vec3> block = std::span(pairs.points).subspan(begin, end - begin);
+      cpu::cpu_search(data, block, limit, [&](std::size_t first, const sites::ClosestPacket& packet) {
+        for (std::size_t k = 0; k < packet.count; ++k) {
+          const std::size_t i = begin + first + k;
+          store(i, packet.get(k, pairs.points[i]));
+        }
+      });
+    });
   // Where O1 is far from its place, or O2 is a soup, most of the samples may be beside it.
   if (4 * static_cast<std::size_t>(std::ranges::count(pairs.usable, 1)) < count)
     std::ranges::fill(pairs.usable, std::uint8_t{1});
   if (!samples.normals.empty()) exclude_other_sides(samples, pose, target, pairs);
   return pairs;
+}
+
+Correspondences thinned(const Correspondences& pairs, std::size_t most) {
+  const std::size_t stride = (pairs.points.size() + most - 1) / most;
+  Correspondences result;
+  for (std::size_t i = 0; i < pairs.points.size(); i += stride) {
+    result.points.push_back(pairs.points[i]);
+    result.closest.push_back(pairs.closest[i]);
+    result.normals.push_back(pairs.normals[i]);
+    result.distances.push_back(pairs.distances[i]);
+    result.faces.push_back(pairs.faces[i]);
+    result.usable.push_back(pairs.usable[i]);
+  }
+  return result;
 }
 
 std::vector<Vec3> smooth_normals(const Correspondences& pairs, const Sites& o2) {

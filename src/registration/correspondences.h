@@ -37,6 +37,9 @@ struct Correspondences {
                                                    const Target& target,
                                                    double limit = std::numeric_limits<double>::infinity());
 
+/// At most `most` of the pairs, evenly spread.
+[[nodiscard]] Correspondences thinned(const Correspondences& pairs, std::size_t most);
+
 /// The normals of the surface that the faces of O2 approximate, at the closest points: interpolated between
 /// the corners of the face, where they are averages over the faces within 35° of it. On a polyhedron around
 /// a sphere they are radial to second order, whereas those of its faces would determine its rotation.

@@ -15,9 +15,8 @@ struct Spectrum {
   int free = 0;                            ///< the number of free ones, which come last
 };
 
-Spectrum spectrum(const Correspondences& pairs, std::span<const Vec3> smooth, const Pivot& pivot,
-                  double cut) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information(pairs, smooth, pivot, cut));
+Spectrum spectrum(const Matrix6& information) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
   Spectrum result{solver.eigenvalues().reverse().cwiseMax(0).cwiseSqrt(),
                   solver.eigenvectors().rowwise().reverse()};
   for (int k = 0; k < 6; ++k) result.free += result.determined[k] < kFree;
@@ -48,17 +47,16 @@ DegreeOfFreedom described(const Motion& motion, const Pivot& pivot) {
 
 }  // namespace
 
-Motions determined_motions(const Correspondences& pairs, std::span<const Vec3> smooth, const Pivot& pivot,
-                           double cut) {
-  const Spectrum all = spectrum(pairs, smooth, pivot, cut);
+Motions determined_motions(const Correspondences& pairs, const Sites& o2, const Pivot& pivot, double cut) {
+  const Spectrum all = spectrum(information(pairs, smooth_normals(pairs, o2), pivot, cut));
   return all.motions.leftCols(6 - all.free);
 }
 
-std::array<DegreeOfFreedom, 6> degrees_of_freedom(const Correspondences& pairs, std::span<const Vec3> smooth,
+std::array<DegreeOfFreedom, 6> degrees_of_freedom(const Correspondences& pairs, const Sites& o2,
                                                   const Pivot& pivot, double cut, double deviation,
                                                   std::size_t count) {
-  Spectrum all = spectrum(pairs, smooth, pivot, cut);
-  const Matrix6 matrix = information(pairs, smooth, pivot, cut);
+  const Matrix6 matrix = information(pairs, smooth_normals(pairs, o2), pivot, cut);
+  Spectrum all = spectrum(matrix);
   if (all.free > 0) all.motions.rightCols(all.free) = separated(all.motions.rightCols(all.free));
   std::array<DegreeOfFreedom, 6> result;
   for (int k = 0; k < 6; ++k) {

@@ -11,14 +11,13 @@ namespace sdm::registration {
 /// Below this rms motion along the normals, per unit of motion, a motion is free.
 inline constexpr double kFree = 0.02;
 
-/// Orthonormal motions that are not free, by the smooth normals of the usable samples within `cut`.
-[[nodiscard]] Motions determined_motions(const Correspondences& pairs, std::span<const Vec3> smooth,
-                                         const Pivot& pivot, double cut);
+/// Orthonormal motions that are not free, by the smooth normals of the usable pairs within `cut`.
+[[nodiscard]] Motions determined_motions(const Correspondences& pairs, const Sites& o2, const Pivot& pivot,
+                                         double cut);
 
 /// All six, the best determined one first. Free ones are separated into translations and rotations.
 /// `deviation`: the standard deviation of the residuals of `count` samples.
-[[nodiscard]] std::array<DegreeOfFreedom, 6> degrees_of_freedom(const Correspondences& pairs,
-                                                                std::span<const Vec3> smooth,
+[[nodiscard]] std::array<DegreeOfFreedom, 6> degrees_of_freedom(const Correspondences& pairs, const Sites& o2,
                                                                 const Pivot& pivot, double cut,
                                                                 double deviation, std::size_t count);
 

@@ -1,0 +1,110 @@
+// Times an alignment, and writes the vertices of both meshes for other libraries, for bench/peers.
+#include <sdm/sdm.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <random>
+#include <vector>
+
+#include "arrays.h"
+#include "core/geometry/vec.h"
+#include "refine_mesh.h"
+#include "scenes.h"
+#include "timing.h"
+
+namespace {
+
+using namespace sdm;
+
+/// O1 as a scanner delivers it: with noise, without the faces that lie farthest along a direction, with
+/// points in space.
+Mesh scanned(Mesh mesh, double noise, double missing, double outliers) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const Box box = bounds(mesh);
+  const double size = diagonal(box);
+  for (Vec3& p : mesh.positions)
+    for (double& x : p) x += noise * size * normal(random);
+  const auto height = [&](const Triangle& t) { return dot(mesh.positions[t[0]], Vec3{0.3, 0.5, 0.8}); };
+  std::ranges::sort(mesh.triangles, {}, height);
+  mesh.triangles.resize(static_cast<std::size_t>((1 - missing) * static_cast<double>(mesh.triangles.size())));
+  std::uniform_real_distribution<double> unit;
+  const auto apart = static_cast<std::size_t>(outliers * static_cast<double>(mesh.triangles.size()));
+  for (std::size_t i = 0; i < apart; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = box.lo[k] + unit(random) * (box.hi[k] - box.lo[k]);
+    const double side = 0.003 * size;
+    for (const Vec3& offset : {Vec3{}, Vec3{side, 0, 0}, Vec3{0, side, 0}})
+      mesh.positions.push_back(p + offset);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+std::vector<Vec3> used_vertices(const Mesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) used[v] = 1;
+  std::vector<Vec3> result;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) result.push_back(mesh.positions[v]);
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app(
+      "Aligns a mesh, turned by 2 degrees and moved by 2 % of its size, to itself on all cores. Prints the "
+      "triangles of both, the milliseconds, and the largest error of a corner of the bounds relative to the "
+      "size. "
+      "Writes arrays without headers into OUT: vertices1, vertices2, motion (4 × 4, row by row; all float64) "
+      "and "
+      "triangles2 (uint32).");
+  std::string name;
+  std::filesystem::path out;
+  std::uint32_t parts = 1;
+  double noise = 0, missing = 0, outliers = 0;
+  app.add_option("MESH", name, "A mesh of the benchmarks")->required();
+  app.add_option("PARTS", parts, "Triangles are divided into PARTS² triangles")->required();
+  app.add_option("NOISE", noise, "Standard deviation of O1, relative to its size")->required();
+  app.add_option("MISSING", missing, "Share of the triangles that O1 lacks")->required();
+  app.add_option("OUTLIERS", outliers, "Share of triangles in space that O1 has besides")->required();
+  app.add_option("OUT", out)->required();
+  CLI11_PARSE(app, argc, argv);
+
+  const Mesh mesh = bench::refine_mesh(bench::load(name, "fit"), parts, parts > 1 ? 0.1 : 0);
+  const Sites sites(mesh);
+  const double size = diagonal(bounds(mesh)), shift = 0.02 * size / std::sqrt(3);
+  const Transform motion =
+      Transform::translation({shift, -shift, shift}) * Transform::rotation({1.2, 1.2, -1.2});
+  Mesh o1 = scanned(mesh, noise, missing, outliers);
+  transform(o1, motion);
+
+  Alignment found;
+  const bench::Contender ours{[&] { found = align(o1, sites); }, 1};
+  const double ms = bench::median(bench::take_turns(std::array{ours}, 5)[0]);
+  double error = 0;
+  const Box box = bounds(mesh);
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? box.hi[k] : box.lo[k];
+    error = std::max(error, norm((found.transform * motion)(p)-p) / size);
+  }
+  bench::write_array<Vec3>(out / "vertices1", used_vertices(o1));
+  bench::write_array<Vec3>(out / "vertices2", mesh.positions);
+  bench::write_array<Triangle>(out / "triangles2", mesh.triangles);
+  std::vector<double> matrix;
+  for (const auto& row : motion.rows) matrix.insert(matrix.end(), row.begin(), row.end());
+  bench::write_array<double>(out / "motion", matrix);
+  std::cout << o1.triangles.size() << ' ' << mesh.triangles.size() << ' ' << ms << ' ' << error << '\n';
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "align_samples: %s\n", error.what());
+  return 1;
+}
