@@ -8,6 +8,7 @@
 #include <sdm/engine.h>
 #include <sdm/error.h>
 #include <sdm/gl.h>
+#include <sdm/hausdorff.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>

@@ -23,6 +23,7 @@ set(order
   engine/gl
   engine/table
   map
+  hausdorff
   rays
   proximity/exact
   proximity/shape

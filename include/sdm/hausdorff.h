@@ -1,0 +1,64 @@
+/// The Hausdorff distance of two surfaces, with certified bounds.
+///
+/// Threads: the functions may be called concurrently, also with the same Sites.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/mesh.h>
+#include <sdm/progress.h>
+#include <sdm/proximity_query.h>
+#include <sdm/sites.h>
+
+#include <array>
+#include <cstdint>
+
+namespace sdm {
+
+struct HausdorffOptions {
+  /// The bounds are at most this far apart, or 1e-6 of the diagonal of the box of both meshes if it is 0;
+  /// ≥ 0, in units of the meshes. At least 1e-12 of the diagonal and of the largest coordinate is used:
+  /// rounding permits no less.
+  double precision = 0;
+  static constexpr double kPrecision = 1e-6;
+  Progress progress{};
+};
+
+/// The largest distance from a point of a surface A to the closest point of a surface B.
+struct HausdorffDistance {
+  /// lower ≤ truth ≤ upper, rounding included. `value` is the distance of the witness: a point of A, and a
+  /// closest point of B; equal to `lower` up to rounding. `exact` if the bounds differ by rounding only, at
+  /// most 1e-12 of the diagonal of the box of both meshes.
+  BoundedLength distance{};
+  std::array<std::uint32_t, 2> faces{kNone, kNone};  ///< a face of A and one of B that contain the witness
+};
+
+/// Distances in both directions; the symmetric Hausdorff distance is the larger one.
+struct SymmetricHausdorff {
+  std::array<HausdorffDistance, 2> from{};  ///< from A to B, from B to A
+  /// Bounds on the larger one, and the witness of the direction with the larger lower bound, which starts on
+  /// that surface.
+  HausdorffDistance larger{};
+  int larger_from = 0;  ///< the direction that `larger` has its witness from
+};
+
+/// Returns the one-sided Hausdorff distance, the maximum of d(p, B) over all points p of A, which is 0 if and
+/// only if A is part of B. It is not symmetric. A is any triangle soup; faces that repeat a corner are
+/// ignored, as Sites does, while other faces without area have edges and vertices.
+///
+/// Nothing is sampled: the surface is searched by branch and bound until the bounds are as close as the
+/// options ask. Where triangles would have to be divided beyond the precision of double, the bounds stay
+/// farther apart. The result does not depend on the number of threads.
+///
+/// Throws sdm::Error if A is unusable (see validate), for a precision that is negative or NaN, or if there is
+/// not enough memory; Cancelled. Cost: sorting the vertices of A in space, and one search for each of those
+/// near which the maximum may lie, at most all of them; then some searches for each doubling of the
+/// precision. More where the largest distance is attained, nearly, on a large part of the surface.
+[[nodiscard]] SDM_API HausdorffDistance one_sided_hausdorff(const Mesh& a, const Sites& b,
+                                                            const HausdorffOptions& options = {});
+
+/// Returns both one-sided distances and the symmetric Hausdorff distance. Errors and cost as above, for each
+/// direction.
+[[nodiscard]] SDM_API SymmetricHausdorff symmetric_hausdorff(const Sites& a, const Sites& b,
+                                                             const HausdorffOptions& options = {});
+
+}  // namespace sdm
