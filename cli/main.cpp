@@ -2,6 +2,7 @@
 #include "bodies.h"
 #include "completion.h"
 #include "devices.h"
+#include "hausdorff.h"
 #include "help_text.h"
 #include "info.h"
 #include "map.h"
@@ -67,6 +68,7 @@ int run(int argc, char** argv) {
   try {
     add_map_command(app);
     add_proximity_command(app);
+    add_hausdorff_command(app);
     add_bodies_command(app);
     add_sequence_command(app);
     add_self_command(app);

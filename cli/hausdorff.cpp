@@ -1,0 +1,202 @@
+#include "hausdorff.h"
+
+#include <fmt/format.h>
+#include <sdm/io.h>
+#include <sdm/sdm.h>
+
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "common_options.h"
+#include "format.h"
+#include "option_checks.h"
+#include "progress_line.h"
+#include "proximity_report.h"
+#include "report.h"
+#include "stopwatch.h"
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct HausdorffCommand {
+  std::string o1, o2, transform_o1, transform_o2, units;
+  sdm::HausdorffOptions options;
+  bool both = false;
+  std::optional<double> tolerance;
+  unsigned threads = 0;
+  bool json = false, quiet = false;
+};
+
+/// The distance that was asked for, and those in single directions as far as they were computed.
+struct HausdorffAnswer {
+  sdm::HausdorffDistance distance;
+  int from = 0;  ///< the mesh, 0 or 1, that the witness starts on
+  std::vector<sdm::HausdorffDistance> directions;
+};
+
+HausdorffAnswer measure(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1,
+                        const sdm::HausdorffOptions& options) {
+  if (sites.size() == 1) {
+    const sdm::HausdorffDistance d = sdm::one_sided_hausdorff(o1, sites[0], options);
+    return {d, 0, {d}};
+  }
+  const sdm::SymmetricHausdorff both = sdm::symmetric_hausdorff(sites[0], sites[1], options);
+  return {both.larger, both.larger_from, {both.from.begin(), both.from.end()}};
+}
+
+struct HausdorffVerdict {
+  bool within = true;     // as far as the bounds tell
+  bool certified = true;  // by both bounds
+};
+
+HausdorffVerdict verdict(const sdm::BoundedLength& d, double tolerance) {
+  return {d.lower <= tolerance, d.lower > tolerance || d.upper <= tolerance};
+}
+
+/// Computes the distance, with closer bounds if the tolerance is between them.
+HausdorffAnswer decide(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1,
+                       const HausdorffCommand& command, const sdm::Progress& progress) {
+  constexpr double kCloser = 1e-3;
+  sdm::HausdorffOptions options = command.options;
+  options.progress = progress;
+  HausdorffAnswer answer = measure(sites, o1, options);
+  while (command.tolerance && !verdict(answer.distance.distance, *command.tolerance).certified) {
+    const double gap = answer.distance.distance.upper - answer.distance.distance.lower;
+    options.precision = kCloser * gap;
+    const HausdorffAnswer closer = measure(sites, o1, options);
+    if (!(closer.distance.distance.upper - closer.distance.distance.lower < 0.5 * gap)) break;  // rounding
+    answer = closer;
+  }
+  return answer;
+}
+
+Json hausdorff_json(const sdm::HausdorffDistance& h) {
+  Json json = to_json(h.distance);
+  json["faces"] = h.faces;
+  return json;
+}
+
+std::string place(const sdm::Vec3& p) {
+  return fmt::format("({} {} {})", number(p[0]), number(p[1]), number(p[2]));
+}
+
+std::string distance_line(const std::string& what, const sdm::HausdorffDistance& h, const std::string& unit) {
+  const sdm::BoundedLength& d = h.distance;
+  constexpr int kDigits = 9;
+  const std::string bounds =
+      d.certainty == sdm::Certainty::bounded
+          ? fmt::format("   between {} and {}", number(d.lower, kDigits), number(d.upper, kDigits))
+          : std::string();
+  return fmt::format("  {:<11}{}{}{} ({})\n", what, number(d.value, kDigits), unit, bounds,
+                     name(d.certainty));
+}
+
+std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAnswer& answer) {
+  const std::string unit = unit_suffix(command.units);
+  std::string text = fmt::format("{} -> {}\n", command.o1, command.o2);
+  if (command.both) text = fmt::format("{}, {}\n", command.o1, command.o2);
+  text += distance_line("hausdorff", answer.distance, unit);
+  const auto& [p, q] = *answer.distance.distance.witness;
+  const char* const names[2] = {"O1", "O2"};
+  text +=
+      fmt::format("             from {} of {}, face {}, to {} of {}, face {}\n", place(p), names[answer.from],
+                  answer.distance.faces[0], place(q), names[1 - answer.from], answer.distance.faces[1]);
+  if (command.both) {
+    text += distance_line("O1 -> O2", answer.directions[0], unit);
+    text += distance_line("O2 -> O1", answer.directions[1], unit);
+  }
+  if (command.tolerance) {
+    const HausdorffVerdict v = verdict(answer.distance.distance, *command.tolerance);
+    text += fmt::format("  tolerance  {}\n", !v.within     ? "exceeded"
+                                             : v.certified ? "met"
+                                                           : "equal to the distance, to the precision");
+  }
+  return text;
+}
+
+void run(const HausdorffCommand& command) {
+  limit_threads(command.threads);
+  ProgressLine progress(command.quiet);
+
+  progress.step("import");
+  Stopwatch watch;
+  Input o1, o2;
+  const auto load = [&](Input& input, const char* role, const std::string& file,
+                        const std::string& transform) {
+    input = load_input(role, file, transform);
+    if (command.json) inspect(input);
+  };
+  sdm::run_concurrently({[&] { load(o1, "o1", command.o1, command.transform_o1); },
+                         [&] { load(o2, "o2", command.o2, command.transform_o2); }});
+  const double import_ms = watch.lap();
+  std::vector<sdm::Sites> sites;  // of the meshes that distances are measured to: O2, or both
+  if (command.both) sites.emplace_back(o1.mesh);
+  sites.emplace_back(o2.mesh);
+  const double build_ms = watch.lap();
+  const HausdorffAnswer answer = decide(sites, o1.mesh, command, progress.callback());
+  const double query_ms = watch.lap();
+
+  if (command.json) {
+    Json json;
+    json["version"] = sdm::kVersion;
+    json["o1"] = to_json(o1);
+    json["o2"] = to_json(o2);
+    json["units"] = command.units;
+    json["hausdorff"] = hausdorff_json(answer.distance);
+    json["from"] = answer.from == 0 ? "o1" : "o2";
+    json["o1_to_o2"] = hausdorff_json(answer.directions[0]);
+    json["o2_to_o1"] = command.both ? hausdorff_json(answer.directions[1]) : Json(nullptr);
+    if (command.tolerance) {
+      const HausdorffVerdict v = verdict(answer.distance.distance, *command.tolerance);
+      json["tolerance"] = {{"value", *command.tolerance}, {"within", v.within}, {"certified", v.certified}};
+    }
+    json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
+    std::cout << to_text(json);
+  } else if (!command.quiet) {
+    std::cout << hausdorff_summary(command, answer);
+  }
+  constexpr int kExceeded = 3;
+  if (command.tolerance && !verdict(answer.distance.distance, *command.tolerance).within)
+    throw CLI::RuntimeError(kExceeded);
+}
+
+}  // namespace
+
+void add_hausdorff_command(CLI::App& app) {
+  CLI::App* hausdorff =
+      app.add_subcommand("hausdorff", "Compute the Hausdorff distance of two meshes, with certified bounds");
+  hausdorff->footer(
+      "The largest distance from a point of the surface of O1 to the surface of O2, or with --both the "
+      "larger "
+      "one of both directions. Nothing is sampled: the bounds hold for all points.\n"
+      "Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.\n\n"
+      "Example:\n"
+      "  sdm hausdorff simplified.ply original.ply --both --tolerance 0.1");
+  const auto command = std::make_shared<HausdorffCommand>();
+  HausdorffCommand& c = *command;
+  hausdorff
+      ->add_option("O1", c.o1,
+                   fmt::format("The mesh whose points are measured ({})", sdm::mesh_format_names()))
+      ->required();
+  hausdorff->add_option("O2", c.o2, "The mesh that distances are measured to")->required();
+  add_transform_option(*hausdorff, "--transform-o1", "O1", c.transform_o1);
+  add_transform_option(*hausdorff, "--transform-o2", "O2", c.transform_o2);
+  hausdorff
+      ->add_option(
+          "--precision", c.options.precision,
+          "Bounds at most EPS apart, in units of the meshes; by default 1e-6 of the diagonal of both")
+      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->type_name("EPS");
+  hausdorff->add_flag("--both", c.both, "Measure in both directions");
+  hausdorff
+      ->add_option(
+          "--tolerance", c.tolerance,
+          "Exit with code 3 if the distance exceeds T; closer bounds are computed if T is between them")
+      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
+      ->type_name("T");
+  hausdorff->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
+  add_run_options(*hausdorff, c.threads, c.json, c.quiet, "JSON instead of a summary");
+  hausdorff->callback([command] { run(*command); });
+}
