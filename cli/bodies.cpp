@@ -53,8 +53,9 @@ void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies,
     std::vector<float> at_vertices;
     if (command.map_files.glb)
       at_vertices = sdm::nearest_distances_at_vertices(bodies, body, command.options.max_distance);
-    write_map_files(folder, command.map_files, bodies.surface(body), nearest.map, at_vertices,
-                    {.units = command.units});
+    const sdm::PictureOptions picture{.units = command.units};
+    write_map_files(folder, command.map_files, bodies.surface(body), nearest.map, at_vertices, picture,
+                    sdm::fixed_colors(picture, sdm::statistics(bodies.surface(body), nearest.map)));
     sdm::write_npy(folder / "body.npy", nearest.map.resolution, nearest.body);
   }
 }

@@ -58,7 +58,9 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
                              {"viridis", sdm::Colormap::viridis},
                              {"diverging", sdm::Colormap::diverging},
                              {"paper2006", sdm::Colormap::paper2006}});
-  app.add_option("--range", range, "The distances at the ends of the colour scale")
+  app.add_option("--range", range,
+                 "The distances at the ends of the colour scale; by default up to the 99th percentile of "
+                 "|distance|, to both sides of 0 if distances have both signs")
       ->expected(2)
       ->check(number("a number", [](double) { return true; }))
       ->type_name("LO HI");
@@ -72,6 +74,9 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
   app.add_option("--units", picture.units,
                  "Units of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
       ->type_name("NAME");
+  add_choice<sdm::UpAxis>(app, "--up", picture.up, "The axis of the meshes that points up in model.glb",
+                          {{"y", sdm::UpAxis::y}, {"z", sdm::UpAxis::z}});
+  app.add_flag("--unlit", picture.unlit, "model.glb without shading, in exactly the colours of the scale");
 }
 
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance) {

@@ -160,13 +160,14 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
                             .attributes = exr_attributes(on, to, map.sign, command.picture.units)};
   sdm::PictureOptions picture = command.picture;
   if (std::isfinite(outcome.accuracy)) picture.accuracy = outcome.accuracy;
+  outcome.distance = sdm::statistics(*surface, map);
+  const sdm::PictureOptions fixed = sdm::fixed_colors(picture, outcome.distance);
   sdm::run_concurrently({
-      [&] { write_map_files(folder, command.files, *surface, map, at_vertices, picture, exr); },
+      [&] { write_map_files(folder, command.files, *surface, map, at_vertices, picture, fixed, exr); },
       [&] {
         if (on.vertices) write_vertex_files(folder, command.files, *on.vertices, at_vertices);
       },
       [&] {
-        outcome.distance = sdm::statistics(*surface, map);
         outcome.numbers = map_numbers(*surface, map, outcome.distance,
                                       {on.mesh, on.info->components, on.names, part.source_face},
                                       command.bands, command.picture.tolerance, outcome.accuracy);
@@ -204,6 +205,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   report["precision"] = command.precision ? nlohmann::ordered_json(*command.precision) : nullptr;
   report["engine"] = command.engine.name;
   report["max_distance"] = command.map.max_distance;  // null: no limit
+  report["colors"] = colors_json(fixed, command.picture);
   report.update(to_json(outcome));
   write_text(folder / "report.json", to_text(report));
   return result;

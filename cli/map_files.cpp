@@ -125,15 +125,16 @@ void add_channels_option(CLI::App& app, sdm::ExrLayers& layers) {
 
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
                      const sdm::DistanceMap& map, std::span<const float> at_vertices,
-                     const sdm::PictureOptions& picture, const sdm::ExrOptions& exr) {
+                     const sdm::PictureOptions& picture, const sdm::PictureOptions& fixed,
+                     const sdm::ExrOptions& exr) {
   std::vector<std::function<void()>> work;
   if (files.exr) work.push_back([&] { sdm::write_exr(folder / "map.exr", surface, map, exr); });
   if (files.glb)
-    work.push_back([&] { sdm::write_glb(folder / "model.glb", surface, map, at_vertices, picture); });
+    work.push_back([&] { sdm::write_glb(folder / "model.glb", surface, map, at_vertices, fixed); });
   if (files.png) {
-    work.push_back([&] { sdm::write_distance_png(folder / "distance.png", surface, map, picture); });
-    work.push_back([&] { sdm::write_direction_png(folder / "direction.png", surface, map, picture); });
-    work.push_back([&] { sdm::write_voronoi_png(folder / "voronoi.png", surface, map, picture); });
+    work.push_back([&] { sdm::write_distance_png(folder / "distance.png", surface, map, fixed); });
+    work.push_back([&] { sdm::write_direction_png(folder / "direction.png", surface, map, fixed); });
+    work.push_back([&] { sdm::write_voronoi_png(folder / "voronoi.png", surface, map, fixed); });
   }
   if (files.texture)
     work.push_back([&] {

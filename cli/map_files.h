@@ -36,10 +36,12 @@ void add_write_option(CLI::App& app, MapFiles& files, bool with_vertices);
 void add_channels_option(CLI::App& app, sdm::ExrLayers& layers);
 
 /// Writes the files concurrently. `at_vertices`: the distance at each vertex of the surface's mesh.
+/// `picture`: as given, of the texture; `fixed`: the same by fixed_colors(), of the pictures and the model.
 /// `exr`: of map.exr.
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
                      const sdm::DistanceMap& map, std::span<const float> at_vertices,
-                     const sdm::PictureOptions& picture, const sdm::ExrOptions& exr = {});
+                     const sdm::PictureOptions& picture, const sdm::PictureOptions& fixed,
+                     const sdm::ExrOptions& exr = {});
 
 /// Writes the files of the input's vertices.
 void write_vertex_files(const std::filesystem::path& folder, const MapFiles& files,

@@ -13,6 +13,17 @@ const char* atlas_name(sdm::AtlasKind kind) {
   return kind == sdm::AtlasKind::charts ? "charts" : kind == sdm::AtlasKind::triangles ? "triangles" : "uv";
 }
 
+const char* colormap_name(sdm::Colormap colormap) {
+  switch (colormap) {
+    case sdm::Colormap::diverging:
+      return "diverging";
+    case sdm::Colormap::paper2006:
+      return "paper2006";
+    default:
+      return "viridis";
+  }
+}
+
 const char* clip_name(sdm::GlClip clip) {
   return clip == sdm::GlClip::planes ? "planes" : "stencil";
 }
@@ -108,6 +119,13 @@ Json to_json(const sdm::Surface& surface) {
           {"max_stretch", surface.max_stretch()},
           {"gutter", surface.gutter()},
           {"overlapping_texels", surface.overlapping_texels()}};
+}
+
+Json colors_json(const sdm::PictureOptions& fixed, const sdm::PictureOptions& given) {
+  const bool bands = fixed.colormap == sdm::Colormap::automatic;
+  return {{"map", bands ? "tolerance" : colormap_name(fixed.colormap)},
+          {"range", *fixed.range},
+          {"range_from", given.range ? "option" : "p99_abs"}};
 }
 
 namespace {

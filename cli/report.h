@@ -56,6 +56,9 @@ struct Outcome {
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Surface& surface);
 [[nodiscard]] const char* sign_name(sdm::SignMethod method);
+/// The colour scale of the pictures: `fixed` by fixed_colors() from what was `given`.
+[[nodiscard]] nlohmann::ordered_json colors_json(const sdm::PictureOptions& fixed,
+                                                 const sdm::PictureOptions& given);
 [[nodiscard]] nlohmann::ordered_json to_json(const Outcome& outcome);
 
 /// Bounds on the largest distance of all points of the mesh with the map to the other one, inside or outside,

@@ -50,13 +50,13 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   const double map_ms = watch.lap();
 
   progress.step("export");
-  sdm::DistanceStatistics distance;
+  const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
+  const sdm::PictureOptions fixed = sdm::fixed_colors(command.picture, distance);
   sdm::run_concurrently(
-      {[&] { write_map_files(folder, command.files, surface, map, at_vertices, command.picture); },
+      {[&] { write_map_files(folder, command.files, surface, map, at_vertices, command.picture, fixed); },
        [&] {
          if (input.vertices) write_vertex_files(folder, command.files, *input.vertices, at_vertices);
-       },
-       [&] { distance = sdm::statistics(surface, map); }});
+       }});
   const double export_ms = watch.lap();
 
   Json report;
@@ -68,6 +68,7 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   report["exclusion"] = {{"rings", rule.geodesic ? Json(nullptr) : Json(rule.rings)},
                          {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
   report["max_distance"] = command.self.max_distance;  // null: no limit
+  report["colors"] = colors_json(fixed, command.picture);
   report["separation"] = separation ? to_json(*separation) : Json(nullptr);
   report["distance"] = to_json(distance);
   report["texels_with_value"] = distance.texels;

@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/statistics.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 #include <sdm/tolerance.h>
@@ -80,17 +81,32 @@ enum class Colormap {
   paper2006,  ///< red (near) to green (far), as in the paper's figures
 };
 
+/// The axis of the mesh that points up in model.glb, whose own vertical axis is y.
+enum class UpAxis { y, z };
+
 struct PictureOptions {
   Colormap colormap = Colormap::automatic;
-  std::optional<std::array<double, 2>>
-      range{};  ///< of the colour scale; default: from the map, symmetric if diverging
+  /// The distances at the ends of the colour scale; values beyond them have the colours of the ends. Default:
+  /// see fixed_colors().
+  std::optional<std::array<double, 2>> range{};
   std::optional<Tolerance> tolerance{};  ///< bands: green within the tolerance, by side out of it
   std::string units{};                   ///< shown in the legend: "mm", ...
   double accuracy = 0;                   ///< error of the distances: a range from the map is at least as long
   /// The most pixels a side of pictures and of the model's texture. If there are more texels, one pixel shows
   /// one texel of a square of them.
   std::uint32_t largest = 2048;
+  UpAxis up = UpAxis::y;  ///< model.glb: z turns the model, so that viewers show it upright
+  bool unlit = false;     ///< model.glb: without shading, so that a pixel has exactly the colour of its value
 };
+
+/// Returns `options` with the colormap and the range that they stand for on a map with these statistics, for
+/// pictures that share a scale. The range ends at the 99th percentile of |distance| (of the area), so that a
+/// few outliers do not take the colours from the rest: −p99 to p99 if the colormap is diverging, otherwise
+/// the range of the map cut at ±p99; with a tolerance, well beyond its limits. If the percentile is within the
+/// accuracy, it ends at the largest |distance|. Throws sdm::Error unless a range is finite and increasing and
+/// a tolerance too. Cost: O(1).
+[[nodiscard]] SDM_API PictureOptions fixed_colors(const PictureOptions& options,
+                                                  const DistanceStatistics& distances);
 
 /// The distances of the vertices of a file, in its order and count, to join them to it. `vertex_distances`:
 /// one per vertex of the mesh that the file was read as. Vertices of no face, and those whose distance is
@@ -191,9 +207,10 @@ struct PlotPanel {
 SDM_API void write_plot_png(const std::filesystem::path& file, const std::string& axis,
                             std::span<const double> places, std::span<const PlotPanel> panels);
 
-/// model.glb: O1 with the coloured map as its unlit base-colour texture and `_DISTANCE` per vertex; any
-/// viewer displays the colours. `vertex_distances`: one per vertex of surface.mesh(), not finite where there
-/// is none. glTF allows finite numbers only, so the faces of such vertices form a primitive without
+/// model.glb: O1 with the coloured map as the base-colour texture of a matt material, normals that are smooth
+/// except across edges of more than 40°, and `_DISTANCE` per vertex; any viewer displays it.
+/// `vertex_distances`: one per vertex of surface.mesh(), not finite where there is none. glTF allows finite
+/// numbers only, so the faces of such vertices form a primitive without
 /// `_DISTANCE`. The units m, cm, mm, um, in and ft scale the node to metres; with others or none the node is
 /// not scaled.
 SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,

@@ -218,6 +218,10 @@ TEST_F(MapCommand, ReportHasTheNumbersOfTheLibrary) {
   EXPECT_EQ(report["atlas"]["texels"], surface.sample_texels().size());
   EXPECT_EQ(report["atlas"]["utilisation"], surface.utilisation());
   EXPECT_EQ(report["atlas"]["max_stretch"], surface.max_stretch());
+  const PictureOptions colors = fixed_colors({.accuracy = report["accuracy"]}, expected);
+  EXPECT_EQ(report["colors"]["map"], "diverging");
+  EXPECT_EQ(report["colors"]["range"], Json(*colors.range));
+  EXPECT_EQ(report["colors"]["range_from"], "p99_abs");
   EXPECT_EQ(report["sign"]["method"], "exact");
   EXPECT_EQ(report["sign"]["reason"], map.sign.reason);
   EXPECT_EQ(report["distance"]["kind"], "estimate");

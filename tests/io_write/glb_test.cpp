@@ -6,11 +6,13 @@
 #include <sdm/io.h>
 #include <tiny_gltf.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <set>
 #include <vector>
 
+#include "core/geometry/vec.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
@@ -61,7 +63,7 @@ TEST(Glb, VertexColoursMatchTheirDistances) {
     const TemporaryFolder folder;
     write_glb(folder / "model.glb", surface, map, at_vertices(surface.mesh(), field), options);
     const tinygltf::Model model = read_glb(folder / "model.glb");
-    const ColorScale scale = color_scale(map, options);
+    const ColorScale scale = color_scale(surface, map, options);
     ASSERT_EQ(model.meshes[0].primitives.size(), 1u);
     const auto& primitive = model.meshes[0].primitives[0];
     const auto uvs = values<std::array<float, 2>>(model, primitive.attributes.at("TEXCOORD_0"));
@@ -126,6 +128,78 @@ TEST(Glb, ScalesToMetresAndKeepsPrecisionFarFromTheOrigin) {
     }
 }
 
+/// The normals of the model of a mesh, and the vertices' positions.
+std::pair<std::vector<Vec3f>, std::vector<Vec3f>> normals_of(const Mesh& mesh) {
+  const Field field = [](const Vec3&) { return 1; };
+  const Surface surface(mesh, {.resolution = 256});
+  const TemporaryFolder folder;
+  write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(mesh, field));
+  const tinygltf::Model model = read_glb(folder / "model.glb");
+  const auto& attributes = model.meshes[0].primitives.at(0).attributes;
+  return {values<Vec3f>(model, attributes.at("NORMAL")), values<Vec3f>(model, attributes.at("POSITION"))};
+}
+
+TEST(Glb, NormalsAreSmoothOnSmoothSurfaces) {
+  const auto [normals, positions] = normals_of(sphere(4));
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    double cosine = 0, length = 0;
+    for (int k = 0; k < 3; ++k)
+      cosine += double{normals[i][k]} * positions[i][k], length += double{positions[i][k]} * positions[i][k];
+    EXPECT_GT(cosine / std::sqrt(length), 0.99) << i;
+  }
+}
+
+TEST(Glb, NormalsAreThoseOfTheFacesAtSharpEdges) {
+  const auto [normals, positions] = normals_of(cube());
+  for (const Vec3f& n : normals) {
+    const double most = std::max({std::abs(n[0]), std::abs(n[1]), std::abs(n[2])});
+    EXPECT_NEAR(most, 1, 1e-6);
+  }
+  EXPECT_EQ(normals.size(), 24u);
+}
+
+TEST(Glb, IsLitUnlessAskedOtherwise) {
+  const Field field = [](const Vec3& p) { return p[0]; };
+  const Surface surface(ring(6), {.resolution = 128});
+  const DistanceMap map = map_of(surface, field);
+  const TemporaryFolder folder;
+  for (const bool unlit : {false, true}) {
+    write_glb(folder / "model.glb", surface, map, at_vertices(surface.mesh(), field), {.unlit = unlit});
+    const tinygltf::Model model = read_glb(folder / "model.glb");
+    EXPECT_EQ(model.materials.at(0).extensions.count("KHR_materials_unlit"), unlit ? 1u : 0u);
+    EXPECT_EQ(model.extensionsUsed.size(), unlit ? 1u : 0u);
+    EXPECT_EQ(model.materials[0].pbrMetallicRoughness.metallicFactor, 0);
+    EXPECT_EQ(model.materials[0].pbrMetallicRoughness.roughnessFactor, 1);
+  }
+}
+
+// By glTF's quaternions (x, y, z, w): the point v becomes v + 2 q × (q × v + w v).
+TEST(Glb, TurnsTheUpAxisOfTheMeshToY) {
+  const Field field = [](const Vec3&) { return 1; };
+  const Vec3 far{4e6, -5e6, 1e6};
+  const Surface surface(ring(6, 1, far), {.kind = AtlasKind::triangles, .resolution = 256});
+  const TemporaryFolder folder;
+  write_glb(folder / "model.glb", surface, map_of(surface, field), at_vertices(surface.mesh(), field),
+            {.units = "mm", .up = UpAxis::z});
+  const tinygltf::Model model = read_glb(folder / "model.glb");
+  const tinygltf::Node& node = model.nodes[0];
+  ASSERT_EQ(node.rotation.size(), 4u);
+  const Vec3 q{node.rotation[0], node.rotation[1], node.rotation[2]};
+  const double w = node.rotation[3];
+  const auto& primitive = model.meshes[0].primitives[0];
+  const auto positions = values<Vec3f>(model, primitive.attributes.at("POSITION"));
+  const auto triangles = values<Triangle>(model, primitive.indices);
+  for (std::size_t face = 0; face < triangles.size(); ++face)
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vec3f& stored = positions[triangles[face][corner]];
+      const Vec3 v{1e-3 * stored[0], 1e-3 * stored[1], 1e-3 * stored[2]};
+      const Vec3 turned = v + 2.0 * cross(q, cross(q, v) + w * v);
+      const Vec3& p = surface.mesh().positions[surface.mesh().triangles[face][corner]];
+      const Vec3 upright{1e-3 * p[0], 1e-3 * p[2], -1e-3 * p[1]};
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(turned[k] + node.translation[k], upright[k], 1e-9);
+    }
+}
+
 TEST(Glb, ContainsFacesWithoutAValue) {
   for (const double none : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     const Field field = [none](const Vec3& p) { return p[0] < 0 ? p[1] : none; };
@@ -171,6 +245,7 @@ TEST(Glb, PassesTheKhronosValidator) {
   flawed.positions.push_back({9, 9, 9});  // of no face
 
   add("charts.glb", ring(16), {.resolution = 256}, linear);
+  add("unlit.glb", ring(16), {.resolution = 256}, linear, {.up = UpAxis::z, .unlit = true});
   add("triangles.glb", ring(16), {.kind = AtlasKind::triangles, .resolution = 512}, linear, {.units = "in"});
   add("flawed.glb", flawed, {.resolution = 256}, linear);
   add("far.glb", ring(8, 1, {1e9, 1e9, -1e9}), {.resolution = 256}, linear, {.units = "mm"});

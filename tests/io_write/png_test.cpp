@@ -37,7 +37,7 @@ TEST_F(Pictures, DistanceHasTheColoursOfTheScaleAndALegend) {
                                         PictureOptions{.tolerance = 0.3}}) {
     write_distance_png(folder / "distance.png", surface, map, options);
     const Pixels pixels = read_png(folder / "distance.png");
-    const ColorScale scale = color_scale(map, options);
+    const ColorScale scale = color_scale(surface, map, options);
     for_each_texel(pixels,
                    [&](std::size_t texel, Rgb color) { ASSERT_EQ(color, scale(map.distance[texel])); });
 
@@ -79,8 +79,8 @@ TEST_F(Pictures, NothingInRangeHasItsOwnColourOutsideTheScale) {
   const DistanceMap endless = map_of(surface, field(std::numeric_limits<double>::infinity())),
                     nan = map_of(surface, field(std::nan("")));
   ASSERT_GT(endless.beyond_max_distance, 0u);
-  EXPECT_EQ(color_scale(endless, {}).lo, color_scale(nan, {}).lo);
-  EXPECT_EQ(color_scale(endless, {}).hi, color_scale(nan, {}).hi);
+  EXPECT_EQ(color_scale(surface, endless, {}).lo, color_scale(surface, nan, {}).lo);
+  EXPECT_EQ(color_scale(surface, endless, {}).hi, color_scale(surface, nan, {}).hi);
   write_distance_png(folder / "distance.png", surface, endless);
   write_direction_png(folder / "direction.png", surface, endless);
   write_voronoi_png(folder / "voronoi.png", surface, endless);

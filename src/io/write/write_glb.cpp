@@ -3,6 +3,8 @@
 #include "core/parallel.h"
 #include "io/write/atomic_file.h"
 #include "io/write/gutter.h"
+#include "io/write/model/model_vertices.h"
+#include "io/write/model/shading_normals.h"
 #include "io/write/pictures/atlas_picture.h"
 #include "io/write/pictures/color_scale.h"
 #include "io/write/pictures/png.h"
@@ -19,6 +21,7 @@
 #include <limits>
 #include <map>
 #include <new>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -29,59 +32,6 @@ namespace sdm {
 using namespace io;
 
 namespace {
-
-/// Vertices of the glTF mesh: one for each position in the atlas of each vertex of the mesh.
-struct SplitVertices {
-  std::vector<std::uint32_t> vertex;     ///< of the mesh
-  std::vector<std::array<float, 2>> uv;  ///< in [0, 1], v down
-  std::vector<Triangle> triangles;
-};
-
-// Positions closer than this, in texels, are equal: charts are farther apart, and rounding errors are far
-// smaller.
-constexpr double kSamePlace = 1.0 / 64;
-// The most positions searched for each vertex: a vertex of a million single-face charts must not take 10^12
-// steps.
-constexpr int kMostSplits = 64;
-
-bool same(const Vec2& a, const Vec2& b) {
-  return std::abs(a[0] - b[0]) <= kSamePlace && std::abs(a[1] - b[1]) <= kSamePlace;
-}
-
-// `extent`: the width and height of the texture, in texels of the atlas.
-SplitVertices split_vertices(const Surface& surface, const std::vector<std::uint32_t>& faces,
-                             const Vec2& extent) {
-  const Mesh& mesh = surface.mesh();
-  const auto charts = surface.face_charts();
-  SplitVertices result;
-  std::vector<Vec2> places;
-  // The splits of each vertex are a linked list: first[vertex], next[split], ...
-  std::vector<std::uint32_t> first(mesh.positions.size(), kNone), next;
-  result.triangles.reserve(faces.size());
-  for (const std::uint32_t face : faces) {
-    Triangle& triangle = result.triangles.emplace_back();
-    // A face with almost no area is invisible: any position will do.
-    const auto corners = charts[face] == kNone ? std::array<Vec2, 3>{} : surface.atlas_corners(face);
-    for (int corner = 0; corner < 3; ++corner) {
-      const std::uint32_t vertex = mesh.triangles[face][corner];
-      const Vec2& place = corners[corner];
-      std::uint32_t split = first[vertex];
-      for (int looked_at = 0; split != kNone; split = next[split])
-        if (same(places[split], place) || ++looked_at == kMostSplits) break;
-      if (split == kNone || !same(places[split], place)) {
-        split = static_cast<std::uint32_t>(places.size());
-        places.push_back(place);
-        result.vertex.push_back(vertex);
-        next.push_back(std::exchange(first[vertex], split));
-      }
-      triangle[corner] = split;
-    }
-  }
-  for (const Vec2& place : places)
-    result.uv.push_back({static_cast<float>(std::clamp(place[0] / extent[0], 0.0, 1.0)),
-                         static_cast<float>(std::clamp(place[1] / extent[1], 0.0, 1.0))});
-  return result;
-}
 
 /// The model under construction: a single buffer that grows at the end.
 struct GlbModel {
@@ -138,17 +88,34 @@ Placement placement(const Mesh& mesh, const std::string& units) {
   return result;
 }
 
-void add_primitive(GlbModel& glb, const Mesh& mesh, const SplitVertices& vertices, const Placement& place,
-                   std::span<const float> vertex_distances, bool with_distances) {
+/// What the primitives have in common.
+struct Model {
+  const Mesh& mesh;
+  const ShadingNormals& normals;
+  Placement place;
+  Vec2 extent;  ///< the width and height of the texture, in texels of the atlas
+  std::span<const float> vertex_distances;
+};
+
+void add_primitive(GlbModel& glb, const Model& model, const ModelVertices& vertices, bool with_distances) {
   if (vertices.triangles.empty()) return;
-  std::vector<Vec3f> positions;
+  std::vector<Vec3f> positions, normals;
+  std::vector<std::array<float, 2>> uvs;  // in [0, 1], v down
+  std::vector<float> distances;
   Vec3f lo, hi;
   lo.fill(std::numeric_limits<float>::infinity()), hi.fill(-std::numeric_limits<float>::infinity());
-  for (const std::uint32_t vertex : vertices.vertex) {
-    const Vec3 p = mesh.positions[vertex] - place.origin;
+  for (std::size_t i = 0; i < vertices.place.size(); ++i) {
+    const std::uint32_t vertex = model.normals.vertex[vertices.normal[i]];
+    const Vec3 p = model.mesh.positions[vertex] - model.place.origin;
     const Vec3f& q = positions.emplace_back(
         Vec3f{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
     for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], q[k]), hi[k] = std::max(hi[k], q[k]);
+    normals.push_back(model.normals.normals[vertices.normal[i]]);
+    const auto part = [&](int k) {
+      return static_cast<float>(std::clamp(vertices.place[i][k] / model.extent[k], 0.0, 1.0));
+    };
+    uvs.push_back({part(0), part(1)});
+    distances.push_back(model.vertex_distances[vertex]);
   }
 
   tinygltf::Primitive primitive;
@@ -164,12 +131,9 @@ void add_primitive(GlbModel& glb, const Mesh& mesh, const SplitVertices& vertice
   auto& accessor = glb.model.accessors[add_attribute("POSITION", positions, TINYGLTF_TYPE_VEC3)];
   accessor.minValues.assign(lo.begin(), lo.end());
   accessor.maxValues.assign(hi.begin(), hi.end());
-  add_attribute("TEXCOORD_0", vertices.uv, TINYGLTF_TYPE_VEC2);
-  if (with_distances) {
-    std::vector<float> distances;
-    for (const std::uint32_t vertex : vertices.vertex) distances.push_back(vertex_distances[vertex]);
-    add_attribute("_DISTANCE", distances, TINYGLTF_TYPE_SCALAR);
-  }
+  add_attribute("NORMAL", normals, TINYGLTF_TYPE_VEC3);
+  add_attribute("TEXCOORD_0", uvs, TINYGLTF_TYPE_VEC2);
+  if (with_distances) add_attribute("_DISTANCE", distances, TINYGLTF_TYPE_SCALAR);
   glb.model.meshes[0].primitives.push_back(primitive);
 }
 
@@ -217,7 +181,7 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
   return std::move(png).str();
 }
 
-void add_material(GlbModel& glb, const std::string& png) {
+void add_material(GlbModel& glb, const std::string& png, bool unlit) {
   tinygltf::Model& model = glb.model;
   tinygltf::Image image;
   image.bufferView = glb.add_view(png.data(), png.size(), 0);
@@ -236,18 +200,24 @@ void add_material(GlbModel& glb, const std::string& png) {
   material.name = "distance";
   material.doubleSided = true;
   material.pbrMetallicRoughness.baseColorTexture.index = 0;
-  material.pbrMetallicRoughness.metallicFactor = 0;  // for viewers that do not support unlit materials
-  material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object{});
+  material.pbrMetallicRoughness.metallicFactor = 0;  // matt: highlights would hide colours
+  material.pbrMetallicRoughness.roughnessFactor = 1;
+  if (unlit) {
+    material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object{});
+    model.extensionsUsed.push_back("KHR_materials_unlit");
+  }
   model.materials.push_back(material);
-  model.extensionsUsed.push_back("KHR_materials_unlit");
 }
 
-void add_scene(GlbModel& glb, const Placement& place) {
+void add_scene(GlbModel& glb, const Placement& place, UpAxis up) {
   tinygltf::Node node;
   node.name = "O1";
   node.mesh = 0;
-  if (place.origin != Vec3{})
-    for (const double x : place.origin) node.translation.push_back(x * place.scale);
+  const auto& [x, y, z] = place.origin;
+  const bool turned = up == UpAxis::z;  // (x, y, z) becomes (x, z, -y)
+  for (const double t : turned ? Vec3{x, z, -y} : place.origin)
+    if (place.origin != Vec3{}) node.translation.push_back(t * place.scale);
+  if (turned) node.rotation = {-std::numbers::sqrt2 / 2, 0, 0, std::numbers::sqrt2 / 2};
   if (place.scale != 1) node.scale.assign(3, place.scale);
   glb.model.nodes.push_back(node);
   tinygltf::Scene scene;
@@ -269,24 +239,29 @@ void write_glb(const std::filesystem::path& file, const Surface& surface, const 
   // glTF forbids NaN: faces with a vertex without a value form a separate primitive, without _DISTANCE.
   std::array<std::vector<std::uint32_t>, 2> faces;
   for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
-    if (is_removed(mesh.triangles[face])) continue;
+    const auto& [a, b, c] = mesh.triangles[face];
+    if (a == b || b == c || c == a) continue;  // also a removed face; the validator reports such triangles
     const bool known =
         std::ranges::all_of(mesh.triangles[face], [&](auto v) { return std::isfinite(vertex_distances[v]); });
     faces[known ? 0 : 1].push_back(face);
   }
   const AtlasPicture picture(surface, options.largest);
-  const Vec2 extent{1.0 * picture.width() * picture.step(), 1.0 * picture.height() * picture.step()};
-  const std::array parts{split_vertices(surface, faces[0], extent),
-                         split_vertices(surface, faces[1], extent)};
+  const ShadingNormals normals = shading_normals(mesh);
+  const Model model{
+      .mesh = mesh,
+      .normals = normals,
+      .place = placement(mesh, options.units),
+      .extent = {1.0 * picture.width() * picture.step(), 1.0 * picture.height() * picture.step()},
+      .vertex_distances = vertex_distances};
 
   AtomicFile out(file);
   GlbModel glb;
-  const Placement place = placement(mesh, options.units);
   glb.model.meshes.emplace_back().name = "O1";
-  add_primitive(glb, mesh, parts[0], place, vertex_distances, true);
-  add_primitive(glb, mesh, parts[1], place, vertex_distances, false);
-  add_material(glb, texture_png(surface, map, color_scale(map, options), picture, vertex_distances));
-  add_scene(glb, place);
+  add_primitive(glb, model, model_vertices(surface, normals, faces[0]), true);
+  add_primitive(glb, model, model_vertices(surface, normals, faces[1]), false);
+  const ColorScale scale = color_scale(surface, map, options);
+  add_material(glb, texture_png(surface, map, scale, picture, vertex_distances), options.unlit);
+  add_scene(glb, model.place, options.up);
   tinygltf::TinyGLTF().WriteGltfSceneToStream(&glb.model, out.stream(), false, true);
   out.commit();
 } catch (const std::bad_alloc&) {

@@ -24,6 +24,7 @@ LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const st
   for (const float d : map.distance)
     if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
   if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
+  if (least < scale.lo || most > scale.hi) text.notes.emplace_back("beyond: as the ends");
   if (const auto& t = scale.tolerance)
     text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
                                          : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
@@ -48,7 +49,7 @@ void write_map_png(const std::filesystem::path& file, const AtlasPicture& pictur
 
 void write_distance_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                         const PictureOptions& options) try {
-  const ColorScale scale = color_scale(map, options);
+  const ColorScale scale = color_scale(surface, map, options);
   const AtlasPicture picture(surface, options.largest);
   const std::uint32_t n = picture.width();
   const Picture legend = draw_legend(scale, legend_text(map, scale, options.units), picture.height());

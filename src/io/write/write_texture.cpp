@@ -20,7 +20,10 @@ TextureRange write_distance_texture(const std::filesystem::path& file, const Sur
                                     const DistanceMap& map, const PictureOptions& options) try {
   PictureOptions plain = options;
   plain.tolerance = {};
-  const ColorScale scale = color_scale(map, plain);
+  // All distances: a texture is data.
+  DistanceStatistics distances = statistics(surface, map);
+  if (distances.texels > 0) distances.p99_abs = std::max(std::abs(distances.min), std::abs(distances.max));
+  const ColorScale scale = color_scale(fixed_colors(plain, distances));
   const std::uint32_t n = surface.resolution();
   const Gutter gutter(n, surface.texel_faces(), std::max(kGutter, surface.gutter()));
   constexpr double kWhite = 0xFFFF;

@@ -94,43 +94,16 @@ Rgb ColorScale::operator()(double distance) const {
   return gradient(kViridis, fraction(distance, lo, hi));
 }
 
-ColorScale color_scale(const DistanceMap& map, const PictureOptions& options) {
-  ColorScale scale;
-  const bool is_signed = map.sign.method != SignMethod::none;
-  scale.lo = std::numeric_limits<double>::infinity(), scale.hi = -scale.lo;
-  for (const float d : map.distance) {
-    if (!std::isfinite(d)) continue;
-    scale.lo = std::min<double>(scale.lo, d), scale.hi = std::max<double>(scale.hi, d);
-  }
-  if (scale.lo > scale.hi) scale.lo = scale.hi = 0;
-  scale.accuracy = options.accuracy;
-  if (std::max(std::abs(scale.lo), std::abs(scale.hi)) <= options.accuracy)  // rounding
-    scale.lo = 0, scale.hi = options.accuracy;
-  if (options.colormap == Colormap::automatic) {
-    scale.map = scale.lo < 0 && scale.hi > 0 ? Colormap::diverging : Colormap::viridis;
-    scale.tolerance = options.tolerance;
-  } else {
-    scale.map = options.colormap;
-  }
-  if (const auto& t = options.tolerance;
-      t && !(std::isfinite(t->lo) && std::isfinite(t->hi) && t->lo <= t->hi))
-    throw Error("the tolerance of the picture must be two finite numbers, the smaller one first");
-
-  if (options.range) {
-    std::tie(scale.lo, scale.hi) = std::pair((*options.range)[0], (*options.range)[1]);
-    if (!(std::isfinite(scale.lo) && std::isfinite(scale.hi) && scale.lo < scale.hi))
-      throw Error("the range of the colours must be two finite numbers, the smaller one first");
-    return scale;
-  }
-  if (scale.tolerance) {
-    const double margin = std::max(std::abs(scale.tolerance->lo), std::abs(scale.tolerance->hi));
-    scale.hi = std::max(scale.hi, scale.tolerance->hi + margin);
-    scale.lo = is_signed ? std::min(scale.lo, scale.tolerance->lo - margin) : 0;
-  } else if (scale.map == Colormap::diverging) {
-    scale.hi = std::max(std::abs(scale.lo), std::abs(scale.hi)), scale.lo = -scale.hi;
-  }
-  if (!(scale.lo < scale.hi)) scale.hi = scale.lo + (scale.lo != 0 ? std::abs(scale.lo) : 1);
+ColorScale color_scale(const PictureOptions& fixed) {
+  ColorScale scale{.map = fixed.colormap, .accuracy = fixed.accuracy};
+  if (fixed.colormap == Colormap::automatic) scale.map = Colormap::viridis, scale.tolerance = fixed.tolerance;
+  std::tie(scale.lo, scale.hi) = std::pair((*fixed.range)[0], (*fixed.range)[1]);
   return scale;
+}
+
+ColorScale color_scale(const Surface& surface, const DistanceMap& map, const PictureOptions& options) {
+  const bool open = !options.range || (options.colormap == Colormap::automatic && !options.tolerance);
+  return color_scale(fixed_colors(options, open ? statistics(surface, map) : DistanceStatistics{}));
 }
 
 Rgb site_color(SiteType type, std::uint32_t site) {
@@ -153,3 +126,42 @@ Rgb direction_color(const Vec3f& vector) {
 }
 
 }  // namespace sdm::io
+
+namespace sdm {
+
+PictureOptions fixed_colors(const PictureOptions& options, const DistanceStatistics& distances) {
+  if (const auto& t = options.tolerance;
+      t && !(std::isfinite(t->lo) && std::isfinite(t->hi) && t->lo <= t->hi))
+    throw Error("the tolerance of the picture must be two finite numbers, the smaller one first");
+  if (options.range && !(std::isfinite((*options.range)[0]) && std::isfinite((*options.range)[1]) &&
+                         (*options.range)[0] < (*options.range)[1]))
+    throw Error("the range of the colours must be two finite numbers, the smaller one first");
+
+  const bool empty = distances.texels == 0;
+  double lo = empty ? 0 : distances.min, hi = empty ? 0 : distances.max;
+  if (std::max(std::abs(lo), std::abs(hi)) <= options.accuracy) lo = 0, hi = options.accuracy;  // rounding
+
+  PictureOptions fixed = options;
+  const bool bands = options.colormap == Colormap::automatic && options.tolerance;
+  if (options.colormap == Colormap::automatic && !bands)
+    fixed.colormap = lo < 0 && hi > 0 ? Colormap::diverging : Colormap::viridis;
+  if (options.range) return fixed;
+
+  const double least = lo, most = hi;
+  const double reach = !empty && distances.p99_abs > options.accuracy ? distances.p99_abs
+                                                                      : std::max(std::abs(lo), std::abs(hi));
+  lo = std::clamp(lo, -reach, reach), hi = std::clamp(hi, -reach, reach);
+  if (bands) {
+    const double margin = std::max(std::abs(options.tolerance->lo), std::abs(options.tolerance->hi));
+    hi = std::max(hi, options.tolerance->hi + margin);
+    lo = least < 0 ? std::min(lo, options.tolerance->lo - margin) : 0;
+  } else if (fixed.colormap == Colormap::diverging) {
+    hi = reach, lo = -reach;
+  }
+  if (!(lo < hi)) lo = least, hi = most;  // nearly all of the area has one distance
+  if (!(lo < hi)) hi = lo + (lo != 0 ? std::abs(lo) : 1);
+  fixed.range = {{lo, hi}};
+  return fixed;
+}
+
+}  // namespace sdm

@@ -27,9 +27,11 @@ struct ColorScale {
   [[nodiscard]] Rgb operator()(double distance) const;
 };
 
-/// The scale selected by `options`, with defaults from the map. Throws sdm::Error unless the range is finite
-/// and increasing, and the tolerance is finite and ≥ 0.
-[[nodiscard]] ColorScale color_scale(const DistanceMap& map, const PictureOptions& options);
+/// The scale of `options`; what they leave open comes from the map, as fixed_colors() chooses it.
+[[nodiscard]] ColorScale color_scale(const Surface& surface, const DistanceMap& map,
+                                     const PictureOptions& options);
+/// The scale of options that fixed_colors() returned.
+[[nodiscard]] ColorScale color_scale(const PictureOptions& fixed);
 
 /// A pseudorandom colour for each site: pale for faces, strong for edges, dark for vertices; kNoValue for
 /// none.
