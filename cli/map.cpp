@@ -207,7 +207,11 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   report["max_distance"] = command.map.max_distance;  // null: no limit
   report["colors"] = colors_json(fixed, command.picture);
   report.update(to_json(outcome));
-  write_text(folder / "report.json", to_text(report));
+  const std::string text = to_text(report);
+  if (command.files.html)
+    sdm::write_html(folder / "report.html", *surface, map, at_vertices, text,
+                    {.other = &to.mesh, .up = command.picture.up});
+  write_text(folder / "report.json", text);
   return result;
 }
 
@@ -339,8 +343,8 @@ int run(MapCommand command) {
 void add_map_command(CLI::App& app) {
   CLI::App* map = app.add_subcommand("map", "Compute the distance from every point of mesh O1 to mesh O2");
   map->footer(
-      "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb (O1 in colours) and "
-      "report.json.\n"
+      "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb (O1 in colours), "
+      "report.html (a page that shows all of it) and report.json.\n"
       "Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded. An interrupt terminates sdm "
       "with its signal.\n\n"
       "Example, two meshes side by side:\n"

@@ -10,7 +10,7 @@ namespace {
 struct Kind {
   const char* name;
   bool MapFiles::*chosen;
-  bool of_vertices;
+  bool of_one_input;  ///< not of the bodies of `sdm bodies`
   std::vector<std::string> files;
 };
 
@@ -19,6 +19,7 @@ const std::vector<Kind>& kinds() {
       {"exr", &MapFiles::exr, false, {"map.exr"}},
       {"png", &MapFiles::png, false, {"distance.png", "voronoi.png", "direction.png"}},
       {"glb", &MapFiles::glb, false, {"model.glb"}},
+      {"html", &MapFiles::html, true, {"report.html"}},
       {"texture", &MapFiles::texture, false, {"distance_texture.png", "distance_texture.json"}},
       {"ply", &MapFiles::ply, true, {"vertices.ply"}},
       {"csv", &MapFiles::csv, true, {"vertices.csv"}},
@@ -50,6 +51,11 @@ CLI::Validator one_of(const std::vector<std::string>& choices) {
       "");
 }
 
+std::string page_is_possible(const std::string& word) {
+  if (word != "html" || sdm::can_write_html()) return {};
+  return "html needs an sdm that was built with -DSDM_BUILD_REPORT=ON";
+}
+
 }  // namespace
 
 std::vector<std::string> names(const MapFiles& files) {
@@ -71,18 +77,20 @@ std::string listed(const MapFiles& files) {
   return text;
 }
 
-void add_write_option(CLI::App& app, MapFiles& files, bool with_vertices) {
+void add_write_option(CLI::App& app, MapFiles& files, bool of_one_input) {
+  files.html = of_one_input && sdm::can_write_html();
   std::vector<std::string> choices, by_default;
   for (const Kind& kind : kinds()) {
     if (files.*kind.chosen) by_default.emplace_back(kind.name);
-    if (with_vertices || !kind.of_vertices) choices.emplace_back(kind.name);
+    const bool possible = kind.chosen != &MapFiles::html || sdm::can_write_html();
+    if (possible && (of_one_input || !kind.of_one_input)) choices.emplace_back(kind.name);
   }
   choices.emplace_back("none");
   std::string help =
       "The files of a map to write: exr: map.exr; png: the three pictures; glb: model.glb; texture: the "
-      "distance as "
-      "16-bit grey; ";
-  if (with_vertices)
+      "distance as 16-bit grey; ";
+  if (files.html) help += "html: report.html; ";
+  if (of_one_input)
     help +=
         "ply, csv, npy, vtp: the distance at each vertex of the input, in its order, as vertices.ply and so "
         "on; ";
@@ -96,6 +104,7 @@ void add_write_option(CLI::App& app, MapFiles& files, bool with_vertices) {
          help + "or none")
       ->delimiter(',')
       ->allow_extra_args(false)
+      ->check(CLI::Validator(page_is_possible, ""))
       ->check(one_of(choices))
       ->type_name("LIST")
       ->default_str(fmt::format("{}", fmt::join(by_default, ",")));

@@ -12,9 +12,11 @@
 
 /// Which files of a map are written.
 struct MapFiles {
-  bool exr = true;                                          ///< map.exr
-  bool png = true;                                          ///< distance.png, voronoi.png and direction.png
-  bool glb = true;                                          ///< model.glb
+  bool exr = true;  ///< map.exr
+  bool png = true;  ///< distance.png, voronoi.png and direction.png
+  bool glb = true;  ///< model.glb
+  /// report.html: written by the commands that offer it, as it contains their report
+  bool html = true;
   bool texture = false;                                     ///< distance_texture.png and .json
   bool ply = false, csv = false, npy = false, vtp = false;  ///< vertices.ply, ...
 
@@ -29,15 +31,16 @@ struct MapFiles {
 /// Of all files that can be written.
 [[nodiscard]] std::vector<std::string> all_names();
 
-/// --write, which sets `files`; `with_vertices`: also to files of the input's vertices.
-void add_write_option(CLI::App& app, MapFiles& files, bool with_vertices);
+/// --write, which sets `files`; `of_one_input`: also to files of the input's vertices, and to report.html if
+/// this build can write it.
+void add_write_option(CLI::App& app, MapFiles& files, bool of_one_input);
 
 /// --channels, which sets `layers`.
 void add_channels_option(CLI::App& app, sdm::ExrLayers& layers);
 
-/// Writes the files concurrently. `at_vertices`: the distance at each vertex of the surface's mesh.
-/// `picture`: as given, of the texture; `fixed`: the same by fixed_colors(), of the pictures and the model.
-/// `exr`: of map.exr.
+/// Writes the files but report.html concurrently. `at_vertices`: the distance at each vertex of the surface's
+/// mesh. `picture`: as given, of the texture; `fixed`: the same by fixed_colors(), of the pictures and the
+/// model. `exr`: of map.exr.
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
                      const sdm::DistanceMap& map, std::span<const float> at_vertices,
                      const sdm::PictureOptions& picture, const sdm::PictureOptions& fixed,

@@ -75,7 +75,10 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   report["texels_without_value"] = map.beyond_max_distance;
   report["time_ms"] = {{"import", import_ms}, {"atlas", atlas_ms},   {"sites", sites_ms},
                        {"map", map_ms},       {"export", export_ms}, {"total", import_ms + total.lap()}};
-  write_text(folder / "report.json", to_text(report));
+  const std::string text = to_text(report);
+  if (command.files.html)
+    sdm::write_html(folder / "report.html", surface, map, at_vertices, text, {.up = picture.up});
+  write_text(folder / "report.json", text);
   return report;
 }
 
@@ -133,7 +136,8 @@ void add_self_command(CLI::App& app) {
       app.add_subcommand("self", "Compute the distance from every point of a mesh to the rest of the mesh");
   self->footer(
       "Each face excludes a neighbourhood; distances are measured to all other faces.\n"
-      "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb and report.json.\n\n"
+      "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb, report.html and "
+      "report.json.\n\n"
       "Example, distances to parts that are at least 5 away along the surface:\n"
       "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
   const auto command = std::make_shared<SelfCommand>();

@@ -102,9 +102,9 @@ struct PictureOptions {
 /// Returns `options` with the colormap and the range that they stand for on a map with these statistics, for
 /// pictures that share a scale. The range ends at the 99th percentile of |distance| (of the area), so that a
 /// few outliers do not take the colours from the rest: −p99 to p99 if the colormap is diverging, otherwise
-/// the range of the map cut at ±p99; with a tolerance, well beyond its limits. If the percentile is within the
-/// accuracy, it ends at the largest |distance|. Throws sdm::Error unless a range is finite and increasing and
-/// a tolerance too. Cost: O(1).
+/// the range of the map cut at ±p99; with a tolerance, well beyond its limits. If the percentile is within
+/// the accuracy, it ends at the largest |distance|. Throws sdm::Error unless a range is finite and increasing
+/// and a tolerance too. Cost: O(1).
 [[nodiscard]] SDM_API PictureOptions fixed_colors(const PictureOptions& options,
                                                   const DistanceStatistics& distances);
 
@@ -215,5 +215,24 @@ SDM_API void write_plot_png(const std::filesystem::path& file, const std::string
 /// not scaled.
 SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        std::span<const float> vertex_distances, const PictureOptions& options = {});
+
+struct HtmlOptions {
+  const Mesh* other = nullptr;  ///< O2, shown as a ghost; none: O1 only
+  UpAxis up = UpAxis::y;        ///< the axis of the meshes that points up
+};
+
+/// Whether write_html can write: whether sdm was built with SDM_BUILD_REPORT.
+[[nodiscard]] SDM_API bool can_write_html();
+
+/// report.html: one file that opens in a browser, from disk and without a network. It shows the verdict and
+/// the numbers of `report`, the JSON text of report.json, and O1 in 3D, where every value under the cursor is
+/// that of a texel of the map, bit-identical. Of maps larger than 1024² texels, one texel of each square is
+/// in the page; of O1 with more than 400,000 triangles, a coarser copy whose vertices have their own
+/// distances; of O2 with more than 300,000, its box. The page states each of these. `vertex_distances`: as
+/// for write_glb. Also throws sdm::Error if the map or the distances belong to another surface, and if
+/// can_write_html() is false. Cost: linear, some tens of milliseconds for 1024² texels.
+SDM_API void write_html(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                        std::span<const float> vertex_distances, const std::string& report,
+                        const HtmlOptions& options = {});
 
 }  // namespace sdm

@@ -35,8 +35,12 @@ inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
   return names;
 }
 
-inline const std::vector<std::string> kResults{"direction.png", "distance.png", "map.exr",
-                                               "model.glb",     "report.json",  "voronoi.png"};
+inline const std::vector<std::string> kResults = [] {
+  std::vector<std::string> names{"direction.png", "distance.png", "map.exr",
+                                 "model.glb",     "report.json",  "voronoi.png"};
+  if (can_write_html()) names.insert(names.begin() + 4, "report.html");
+  return names;
+}();
 
 /// Two tori, the second one of them 0.3 units to the right of the first: they cross.
 struct TwoTori {

@@ -34,9 +34,6 @@ constexpr std::array<Rgb, 11> kDiverging{{{5, 48, 97},
                                           {178, 24, 43},
                                           {103, 0, 31}}};
 constexpr std::array<Rgb, 3> kPaper2006{{{255, 0, 0}, {255, 255, 0}, {0, 255, 0}}};
-constexpr Rgb kWithin{92, 184, 92};
-constexpr std::array<Rgb, 3> kAbove{{{255, 214, 94}, {240, 120, 40}, {165, 15, 21}}};
-constexpr std::array<Rgb, 3> kBelow{{{150, 200, 235}, {60, 130, 200}, {8, 48, 107}}};
 
 // The nearest integer to `x` in [0, 255]. Not std::lround, which is a call for every channel of every texel.
 std::uint8_t to_byte(float x) {
@@ -79,6 +76,12 @@ std::uint32_t scramble(std::uint32_t x) {
 }
 
 }  // namespace
+
+std::span<const Rgb> colors_of(Colormap map) {
+  if (map == Colormap::diverging) return kDiverging;
+  if (map == Colormap::paper2006) return kPaper2006;
+  return kViridis;
+}
 
 Rgb ColorScale::operator()(double distance) const {
   if (!std::isfinite(distance)) return kNoValue;

@@ -3,6 +3,7 @@
 
 #include <sdm/io.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -16,6 +17,16 @@ struct Rgb {
 
 inline constexpr Rgb kBackground{222, 224, 228};  ///< texels that no face owns
 inline constexpr Rgb kNoValue{128, 130, 134};  ///< owned texels without a value, beyond the maximum distance
+
+/// Within the tolerance: pale, so that it differs from the colours beyond also for those who see green and
+/// orange alike.
+inline constexpr Rgb kWithin{168, 222, 194};
+/// Beyond the tolerance, from its edge to the end of the scale.
+inline constexpr std::array<Rgb, 3> kAbove{{{255, 214, 94}, {240, 120, 40}, {165, 15, 21}}};
+inline constexpr std::array<Rgb, 3> kBelow{{{150, 200, 235}, {60, 130, 200}, {8, 48, 107}}};
+
+/// The colours of a colormap at equal steps, between which it is linear. Not of Colormap::automatic.
+[[nodiscard]] std::span<const Rgb> colors_of(Colormap map);
 
 /// A map from distances to colours, continuous except at the edges of the tolerance bands.
 struct ColorScale {

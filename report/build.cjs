@@ -1,0 +1,24 @@
+// Bundles the page into one HTML file: node build.cjs OUTPUT. Packages are found by NODE_PATH or in node_modules.
+const { buildSync } = require('esbuild');
+const { readFileSync, writeFileSync } = require('fs');
+const { join } = require('path');
+
+function bundle(file) {
+  const { outputFiles } = buildSync({
+    entryPoints: [join(__dirname, 'src', file)],
+    bundle: true,
+    minify: true,
+    write: false,
+    format: 'iife',
+    target: ['chrome100', 'firefox113', 'safari16.4'],
+    charset: 'utf8',
+    legalComments: 'inline',
+  });
+  return outputFiles[0].text.trim();
+}
+
+// A function as the replacement: in a string, $& and the like have a meaning.
+const page = readFileSync(join(__dirname, 'src', 'page.html'), 'utf8')
+  .replace('/* style */', () => bundle('page.css'))
+  .replace('/* program */', () => bundle('main.ts'));
+writeFileSync(process.argv[2], page);

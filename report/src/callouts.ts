@@ -1,0 +1,96 @@
+// Labels at points of the part that stay, with their values.
+import { byId, make, makeSvg } from './dom';
+import { place, signedText } from './numbers';
+import type { Vec } from './page_data';
+import type { View } from './view';
+
+export interface Callout {
+  distance: number;
+  point: Vec; ///< of the mesh
+  at: Vec; ///< the same in units of the model
+  detail: string;
+}
+
+interface Placed extends Callout {
+  number: number;
+  hidden: boolean;
+  label: HTMLElement;
+  dot: SVGElement;
+  line: SVGElement;
+  item: HTMLElement;
+}
+
+export class Callouts {
+  private readonly placed: Placed[] = [];
+  private count = 0;
+  private timer = 0;
+
+  constructor(
+    private readonly view: View,
+    private readonly unit: string,
+    private readonly isSigned: boolean,
+    private readonly show: (at: Vec) => void,
+  ) {}
+
+  add(callout: Callout): void {
+    const number = ++this.count;
+    const value = `${signedText(callout.distance, this.isSigned)}${this.unit}`;
+    const remove = () => this.remove(number);
+    const item = make(
+      'li',
+      { value: number },
+      make('button', { type: 'button', class: 'link', click: () => this.show(callout.at), 'aria-label': `Show callout ${number}, ${value}` }, value),
+      ` at (${place(callout.point)})${callout.detail ? `, ${callout.detail}` : ''} `,
+      make('button', { type: 'button', class: 'remove', click: remove, 'aria-label': `Remove callout ${number}` }, '×'),
+    );
+    const label = make('div', { class: 'callout' }, make('b', {}, String(number)), ` ${value}`);
+    const dot = makeSvg('circle', { r: 4 });
+    const line = makeSvg('line', {});
+    byId('labels').append(label);
+    byId('leaders').append(line, dot);
+    byId('callout-list').append(item);
+    byId('callouts').hidden = false;
+    this.placed.push({ ...callout, number, hidden: false, label, dot, line, item });
+    this.update();
+  }
+
+  private remove(number: number): void {
+    const index = this.placed.findIndex((c) => c.number === number);
+    if (index < 0) return;
+    const [callout] = this.placed.splice(index, 1);
+    for (const element of [callout.label, callout.dot, callout.line, callout.item]) element.remove();
+    byId('callouts').hidden = this.placed.length === 0;
+    this.view.canvas.focus();
+  }
+
+  /// After each picture: labels follow the points; soon after the last one, those behind the part fade.
+  update(): void {
+    const { clientWidth, clientHeight } = this.view.canvas;
+    for (const c of this.placed) {
+      const { x, y, behind } = this.view.place(c.at);
+      const right = x < clientWidth * 0.6;
+      const lx = Math.min(Math.max(x + (right ? 26 : -26), 4), clientWidth - 4);
+      const ly = Math.min(Math.max(y - 30, 14), clientHeight - 14);
+      c.label.style.transform = `translate(${lx}px, ${ly}px) translate(${right ? '0' : '-100%'}, -50%)`;
+      c.dot.setAttribute('cx', String(x));
+      c.dot.setAttribute('cy', String(y));
+      c.line.setAttribute('x1', String(x));
+      c.line.setAttribute('y1', String(y));
+      c.line.setAttribute('x2', String(lx));
+      c.line.setAttribute('y2', String(ly));
+      for (const element of [c.label, c.dot, c.line]) {
+        element.classList.toggle('outside', behind);
+        element.classList.toggle('behind', c.hidden);
+      }
+    }
+    window.clearTimeout(this.timer);
+    if (this.placed.length > 0) this.timer = window.setTimeout(() => this.findHidden(), 120);
+  }
+
+  private findHidden(): void {
+    for (const c of this.placed) {
+      c.hidden = this.view.isHidden(c.at);
+      for (const element of [c.label, c.dot, c.line]) element.classList.toggle('behind', c.hidden);
+    }
+  }
+}

@@ -1,0 +1,241 @@
+// Sliders and choices, and the state that they set.
+import type { Mode, Scale } from './color_scale';
+import { byId, make } from './dom';
+import { text } from './numbers';
+import type { AreaByValue, Report } from './page_data';
+import { isSigned, limitsOf } from './verdict';
+
+export interface State {
+  scale: Scale;
+  section: { axis: 0 | 1 | 2 | null; at: number; flipped: boolean }; ///< at: 0 to 1 along the box
+  ghost: boolean;
+}
+
+const kSteps = 1000;
+
+interface SliderOptions {
+  id: string;
+  label: string;
+  unit: string;
+  value: number;
+  toValue: (t: number) => number; ///< t from 0 to 1
+  toSlider: (value: number) => number;
+  isValid: (value: number) => boolean;
+  set: (value: number) => void;
+}
+
+/// A slider and a field for the same number.
+class Slider {
+  readonly element: HTMLElement;
+  private readonly range: HTMLInputElement;
+  private readonly field: HTMLInputElement;
+
+  constructor(private readonly options: SliderOptions) {
+    const { id, label, unit } = options;
+    this.range = make('input', {
+      type: 'range',
+      id,
+      min: 0,
+      max: kSteps,
+      step: 1,
+      input: () => this.changed(this.rounded(options.toValue(Number(this.range.value) / kSteps)), this.range),
+    });
+    this.field = make('input', {
+      type: 'number',
+      step: 'any',
+      'aria-label': `${label}${unit ? `, in ${unit}` : ''}`,
+      input: () => this.changed(Number(this.field.value), this.field),
+    });
+    this.element = make(
+      'div',
+      { class: 'slider' },
+      make('label', { for: id }, label),
+      this.range,
+      make('span', { class: 'field' }, this.field, unit),
+    );
+    this.show(options.value);
+  }
+
+  // Fields show what a person would type.
+  private rounded(value: number): number {
+    return Number(value.toPrecision(4));
+  }
+
+  private changed(value: number, by: HTMLInputElement): void {
+    const valid = by.value !== '' && this.options.isValid(value);
+    this.field.setAttribute('aria-invalid', String(!valid));
+    if (!valid) return;
+    this.show(value, by);
+    this.options.set(value);
+  }
+
+  show(value: number, except?: HTMLInputElement): void {
+    if (except !== this.range) this.range.value = String(Math.round(kSteps * this.options.toSlider(value)));
+    if (except !== this.field) this.field.value = String(Number(value.toPrecision(6)));
+    this.range.setAttribute('aria-valuetext', `${text(value)} ${this.options.unit}`);
+  }
+}
+
+
+/// Fills the form. `onChange` is called after each change; `look` with the name of a side.
+export function makeControls(
+  report: Report,
+  area: AreaByValue,
+  hasGhost: boolean,
+  ghostShown: boolean,
+  onChange: (state: State) => void,
+  look: (side: string) => void,
+): State {
+  const unit = report.units ?? '';
+  const signs = isSigned(report);
+  const p99 = typeof report.distance?.p99_abs === 'number' ? (report.distance.p99_abs as number) : 0;
+  const [least, most] = [report.extremes?.min?.distance ?? area.lo, report.extremes?.max?.distance ?? area.hi];
+  const largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
+  const limits = limitsOf(report);
+  const [lo, hi] = report.colors?.range ?? [least < 0 ? -largest : least, Math.max(most, least + largest * 1e-6)];
+  const startMode = (report.colors?.map ?? (least < 0 && most > 0 ? 'diverging' : 'viridis')) as Mode;
+  const start = (): State => ({
+    scale: {
+      mode: startMode,
+      lo,
+      hi: hi > lo ? hi : lo + 1,
+      lower: limits?.lower ?? -(p99 || largest),
+      upper: limits?.upper ?? (p99 || largest),
+      accuracy: report.accuracy ?? 0,
+    },
+    section: { axis: null, at: 0.5, flipped: false },
+    ghost: ghostShown,
+  });
+  let state = start();
+
+  const changed = () => onChange(state);
+  const top = 1.2 * Math.max(largest, Math.abs(lo), Math.abs(hi), Math.abs(state.scale.upper), Math.abs(state.scale.lower));
+  // Cubic, so that small numbers can be set although a single outlier is far away.
+  const cubic = { toValue: (t: number) => top * t ** 3, toSlider: (x: number) => Math.cbrt(Math.min(1, Math.max(0, x / top))) };
+  const [from, to] = [Math.min(least, lo), Math.max(most, hi)];
+  const linear = {
+    toValue: (t: number) => from + t * (to - from),
+    toSlider: (x: number) => Math.min(1, Math.max(0, (x - from) / (to - from || 1))),
+  };
+  const positive = (x: number) => Number.isFinite(x) && x > 0;
+  const reach = () => Math.max(Math.abs(state.scale.lo), Math.abs(state.scale.hi));
+  const sliders = {
+    reach: new Slider({
+      id: 'range', label: signs ? 'Colours up to ±' : 'Colours up to', unit, value: reach(), ...cubic, isValid: positive,
+      set: (x) => { state.scale.hi = x; state.scale.lo = signs || state.scale.mode === 'diverging' ? -x : 0; changed(); },
+    }),
+    lo: new Slider({
+      id: 'range-lo', label: 'Colours from', unit, value: state.scale.lo, ...linear, isValid: (x) => x < state.scale.hi,
+      set: (x) => { state.scale.lo = x; changed(); },
+    }),
+    hi: new Slider({
+      id: 'range-hi', label: 'Colours to', unit, value: state.scale.hi, ...linear, isValid: (x) => x > state.scale.lo,
+      set: (x) => { state.scale.hi = x; changed(); },
+    }),
+    tolerance: new Slider({
+      id: 'tolerance', label: signs ? 'Tolerance ±' : 'Tolerance', unit, value: state.scale.upper, ...cubic,
+      isValid: (x) => Number.isFinite(x) && x >= 0,
+      set: (x) => { state.scale.upper = x; state.scale.lower = -x; changed(); },
+    }),
+    lower: new Slider({
+      id: 'tolerance-lower', label: 'Lower limit', unit, value: state.scale.lower,
+      toValue: (t) => top * (2 * t - 1) ** 3, toSlider: (x) => (1 + Math.cbrt(Math.min(1, Math.max(-1, x / top)))) / 2,
+      isValid: (x) => x <= state.scale.upper, set: (x) => { state.scale.lower = x; changed(); },
+    }),
+    upper: new Slider({
+      id: 'tolerance-upper', label: 'Upper limit', unit, value: state.scale.upper,
+      toValue: (t) => top * (2 * t - 1) ** 3, toSlider: (x) => (1 + Math.cbrt(Math.min(1, Math.max(-1, x / top)))) / 2,
+      isValid: (x) => x >= state.scale.lower, set: (x) => { state.scale.upper = x; changed(); },
+    }),
+  };
+  const oneTolerance = !limits || limits.lower === -limits.upper;
+
+  const select = (id: string, label: string, options: [string, string][], value: string, set: (value: string) => void) => {
+    const element = make('select', { id, change: () => set(element.value) });
+    for (const [key, name] of options) element.append(make('option', { value: key, selected: key === value }, name));
+    return [make('div', { class: 'choice' }, make('label', { for: id }, label), element), element] as const;
+  };
+  const check = (id: string, label: string, value: boolean, set: (value: boolean) => void) => {
+    const element = make('input', { type: 'checkbox', id, change: () => set(element.checked) });
+    element.checked = value;
+    return [make('div', { class: 'check' }, element, make('label', { for: id }, label)), element] as const;
+  };
+
+  const showSliders = () => {
+    const { mode } = state.scale;
+    const symmetric = mode === 'diverging' || mode === 'tolerance';
+    sliders.reach.element.hidden = !symmetric;
+    sliders.lo.element.hidden = sliders.hi.element.hidden = symmetric;
+    sliders.reach.show(reach());
+    sliders.lo.show(state.scale.lo);
+    sliders.hi.show(state.scale.hi);
+  };
+  const modes: [string, string][] = [
+    ['tolerance', 'Tolerance bands'],
+    ['diverging', 'Blue – white – red, about zero'],
+    ['viridis', 'Viridis'],
+  ];
+  if (startMode === 'paper2006') modes.push(['paper2006', 'Red – yellow – green']);
+  const [modeRow, modeSelect] = select('mode', 'Colours', modes, startMode, (value) => {
+    state.scale.mode = value as Mode;
+    if (value === 'diverging') state.scale.hi = reach(), (state.scale.lo = -state.scale.hi);
+    if (value === 'tolerance') {
+      state.scale.hi = Math.max(reach(), 2 * state.scale.upper);
+      state.scale.lo = signs ? Math.min(-reach(), 2 * state.scale.lower) : 0;
+    }
+    if (value === 'viridis') (state.scale.lo = Math.max(least, -reach())), (state.scale.hi = Math.min(most, reach()));
+    if (!(state.scale.lo < state.scale.hi)) [state.scale.lo, state.scale.hi] = [lo, hi];
+    showSliders();
+    changed();
+  });
+  const [sectionRow, sectionSelect] = select(
+    'section', 'Section', [['', 'None'], ['0', 'Across x'], ['1', 'Across y'], ['2', 'Across z']], '',
+    (value) => {
+      state.section.axis = value === '' ? null : (Number(value) as 0 | 1 | 2);
+      sectionDetails.hidden = value === '';
+      changed();
+    },
+  );
+  const sectionRange = make('input', {
+    type: 'range', id: 'section-at', min: 0, max: kSteps, value: kSteps / 2,
+    input: () => { state.section.at = Number(sectionRange.value) / kSteps; changed(); },
+  });
+  const [flipRow, flipBox] = check('section-flip', 'Other side', false, (value) => { state.section.flipped = value; changed(); });
+  const sectionDetails = make('div', { class: 'slider', hidden: true }, make('label', { for: 'section-at' }, 'Section at'), sectionRange, flipRow);
+  const [ghostRow, ghostBox] = check('ghost', 'Show the reference as a ghost', ghostShown, (value) => { state.ghost = value; changed(); });
+  const [viewRow, viewSelect] = select(
+    'side', 'View from',
+    [['', 'Choose…'], ['corner', 'Corner'], ['front', 'Front'], ['back', 'Back'], ['left', 'Left'], ['right', 'Right'], ['top', 'Top'], ['bottom', 'Bottom']],
+    '', (value) => { if (value) look(value); viewSelect.value = ''; },
+  );
+  const resetButton = make('button', {
+    type: 'button',
+    id: 'reset',
+    click: () => {
+      state = start();
+      modeSelect.value = startMode;
+      sectionSelect.value = '';
+      sectionRange.value = String(kSteps / 2);
+      flipBox.checked = false;
+      sectionDetails.hidden = true;
+      ghostBox.checked = ghostShown;
+      for (const slider of [sliders.tolerance, sliders.upper]) slider.show(state.scale.upper);
+      sliders.lower.show(state.scale.lower);
+      showSliders();
+      look('corner');
+      changed();
+    },
+  }, 'Reset');
+
+  byId('form').replaceChildren(
+    modeRow,
+    sliders.reach.element, sliders.lo.element, sliders.hi.element,
+    ...(oneTolerance ? [sliders.tolerance.element] : [sliders.lower.element, sliders.upper.element]),
+    make('p', { id: 'what-if', role: 'status', 'aria-live': 'polite' }),
+    viewRow, sectionRow, sectionDetails, ...(hasGhost ? [ghostRow] : []),
+    resetButton,
+  );
+  byId('form').addEventListener('submit', (event) => event.preventDefault());
+  showSliders();
+  return state;
+}

@@ -1,0 +1,299 @@
+// The page of report.html: the text first, then the part.
+import { Callouts } from './callouts';
+import { makeControls, State } from './controls';
+import { byId, make, table } from './dom';
+import { drawHistogram } from './histogram';
+import { drawLegend } from './legend';
+import { exactText, percent, place, signedText } from './numbers';
+import { PageData, readData, readReport, Report, Vec, Worst } from './page_data';
+import { Hit, pointOf, toMesh, toModel, Value, valueAt } from './pick';
+import { inputsOf, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
+import { isSigned, judge, limitsText, unitOf, verdictOf } from './verdict';
+import { View } from './view';
+
+const kSites = ['vertex', 'edge', 'face'];
+
+function siteText(site: number): string {
+  return site === 0xffffffff ? '' : `${kSites[site & 3]} ${site >>> 2} of the reference`;
+}
+
+function showVerdict(report: Report): void {
+  const { verdict, sentence } = verdictOf(report);
+  const signs: Record<string, string> = { PASS: '✓', FAIL: '✗', 'NOT DECIDED': '?', MEASURED: 'i' };
+  byId('verdict').className = verdict.toLowerCase().replace(' ', '-');
+  byId('verdict').replaceChildren(make('span', { 'aria-hidden': 'true' }, signs[verdict]), ` ${verdict}`);
+  byId('sentence').textContent = sentence;
+  document.title = `${verdict}: ${titleOf(report)}`;
+  byId('title').textContent = titleOf(report);
+}
+
+/// The normal of a hit triangle, towards the viewer's side of the surface.
+function normalOf({ model }: PageData, { triangle }: Hit): Vec {
+  const normal: Vec = [0, 0, 0];
+  for (let corner = 0; corner < 3; ++corner)
+    for (let k = 0; k < 3; ++k) normal[k] += model.normal[3 * model.triangle[3 * triangle + corner] + k];
+  return normal;
+}
+
+/// The normal at the vertex of the model nearest to a point.
+function normalNear({ model }: PageData, at: Vec): Vec {
+  const p = model.position;
+  let best = 0;
+  let least = Infinity;
+  for (let i = 0; i < p.length; i += 3) {
+    const away = (p[i] - at[0]) ** 2 + (p[i + 1] - at[1]) ** 2 + (p[i + 2] - at[2]) ** 2;
+    if (away < least) [best, least] = [i, away];
+  }
+  return [model.normal[best], model.normal[best + 1], model.normal[best + 2]];
+}
+
+class Page {
+  private readonly view: View;
+  private readonly callouts: Callouts;
+  private readonly signs: boolean;
+  private readonly unit: string;
+  private state: State;
+
+  constructor(
+    private readonly report: Report,
+    private readonly data: PageData,
+  ) {
+    this.signs = isSigned(report);
+    this.unit = unitOf(report);
+    const { measured } = inputsOf(report);
+    this.view = new View(byId('view'), data, data.page.colors, measured?.closed ?? false, () => this.callouts?.update());
+    this.callouts = new Callouts(this.view, this.unit, this.signs, (at) => this.lookAt(at));
+    const ghostShown = this.apart();
+    this.state = makeControls(
+      report,
+      data.area,
+      data.ghost !== null,
+      ghostShown,
+      (state) => this.apply(state),
+      (side) => this.view.look(side),
+    );
+    this.apply(this.state);
+    this.listen();
+    this.showWorst();
+    showOmissions(data);
+  }
+
+  /// Whether the reference is beside the part: then it hides nothing and is shown from the start.
+  private apart(): boolean {
+    const { ghost, model } = this.data;
+    if (!ghost) return false;
+    const range = (p: Float32Array, k: number) => {
+      let [least, most] = [Infinity, -Infinity];
+      for (let i = k; i < p.length; i += 3) [least, most] = [Math.min(least, p[i]), Math.max(most, p[i])];
+      return [least, most];
+    };
+    return [0, 1, 2].some((k) => {
+      const [a, b] = range(model.position, k);
+      const [c, d] = range(ghost.position, k);
+      return b < c || d < a;
+    });
+  }
+
+  private apply(state: State): void {
+    this.state = state;
+    const { scale, section, ghost } = state;
+    const { colors } = this.data.page;
+    this.view.setScale(scale, colors);
+    this.view.setGhost(ghost);
+    if (section.axis === null) {
+      this.view.setCut(null);
+    } else {
+      const p = this.data.model.position;
+      let [least, most] = [Infinity, -Infinity];
+      for (let i = section.axis; i < p.length; i += 3) [least, most] = [Math.min(least, p[i]), Math.max(most, p[i])];
+      const sign = section.flipped ? -1 : 1;
+      const normal: Vec = [0, 0, 0];
+      normal[section.axis] = sign;
+      this.view.setCut({ normal, offset: sign * (least + section.at * (most - least)) });
+    }
+    const hasGaps = (this.report.beyond_max_distance ?? 0) > 0 || ((this.report.texels_without_value as number) ?? 0) > 0;
+    drawLegend(scale, colors, this.report.units ?? '', hasGaps);
+    this.drawHistogram();
+    this.showWhatIf(state);
+  }
+
+  private drawHistogram(): void {
+    const { scale } = this.state;
+    drawHistogram(this.data.area, scale, this.data.page.colors, scale, this.report.units ?? '');
+  }
+
+  private showWhatIf({ scale }: State): void {
+    const outside = 1 - this.data.area.within(scale.lower - scale.accuracy, scale.upper + scale.accuracy);
+    const { verdict, sentence } = judge(this.report, scale, outside);
+    byId('what-if').replaceChildren(
+      `With ${limitsText(scale, this.report)}: `,
+      make('b', {}, verdict === 'MEASURED' ? sentence : verdict),
+      verdict === 'MEASURED' ? '' : `. About ${percent(outside)} of the area is out of it.`,
+    );
+  }
+
+  private listen(): void {
+    const { canvas } = this.view;
+    let next: (() => void) | null = null;
+    const later = (action: () => void) => {
+      if (!next) requestAnimationFrame(() => { next?.(); next = null; });
+      next = action;
+    };
+    const at = (event: PointerEvent): [number, number] => [event.offsetX, event.offsetY];
+    let pressed: [number, number] | null = null;
+    canvas.addEventListener('pointermove', (event) => {
+      const [x, y] = at(event);  // now: after its dispatch an event has no target that they refer to
+      if (event.buttons === 0) later(() => this.probe(x, y));
+    });
+    canvas.addEventListener('pointerdown', (event) => {
+      pressed = event.button === 0 ? at(event) : null;
+    });
+    canvas.addEventListener('pointerup', (event) => {
+      const [x, y] = at(event);
+      if (!pressed || Math.hypot(x - pressed[0], y - pressed[1]) > 4) return;
+      pressed = null;
+      this.probe(x, y);
+      this.addCallout(x, y);
+    });
+    canvas.addEventListener('keydown', (event) => this.key(event));
+    canvas.addEventListener('focus', () => byId('view').classList.toggle('keyboard', canvas.matches(':focus-visible')));
+    canvas.addEventListener('blur', () => byId('view').classList.remove('keyboard'));
+    const print = (on: boolean) => {
+      byId('view').classList.toggle('printing', on);
+      this.view.resize();
+      this.view.drawNow();
+    };
+    window.addEventListener('beforeprint', () => print(true));
+    window.addEventListener('afterprint', () => print(false));
+    new ResizeObserver(() => this.drawHistogram()).observe(byId('histogram-chart'));
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const actions: Record<string, () => void> = {
+      ArrowLeft: () => this.view.turn(-10, 0),
+      ArrowRight: () => this.view.turn(10, 0),
+      ArrowUp: () => this.view.turn(0, 10),
+      ArrowDown: () => this.view.turn(0, -10),
+      '+': () => this.view.zoom(0.85),
+      '=': () => this.view.zoom(0.85),
+      '-': () => this.view.zoom(1 / 0.85),
+      Home: () => this.view.look('corner'),
+      Enter: () => this.addCallout(...this.middle()),
+    };
+    const action = actions[event.key];
+    if (!action) return;
+    event.preventDefault();
+    byId('view').classList.add('keyboard');
+    action();
+    this.probe(...this.middle());
+  }
+
+  private middle(): [number, number] {
+    return [this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2];
+  }
+
+  private found(x: number, y: number): { hit: Hit; value: Value } | null {
+    const hit = this.view.hitAt(x, y);
+    return hit ? { hit, value: valueAt(this.data.model, this.data.map, hit) } : null;
+  }
+
+  private probe(x: number, y: number): void {
+    const found = this.found(x, y);
+    const values = byId('probe-values');
+    if (!found) {
+      values.replaceChildren();
+      return;
+    }
+    const { hit, value } = found;
+    const point = toMesh(this.data.model, pointOf(this.data.model, hit));
+    const row = (label: string, text: string, id: string) => [
+      make('div', {}, make('dt', {}, label), make('dd', { id }, text)),
+    ];
+    values.replaceChildren(
+      ...row('Distance', Number.isNaN(value.distance) ? 'none in range' : `${exactText(value.distance)}${this.unit}`, 'probe-distance'),
+      ...row('Position', place(point), 'probe-position'),
+      ...(value.site === 0xffffffff ? [] : row('Nearest', siteText(value.site), 'probe-site')),
+      ...(value.texel
+        ? row(this.data.map.step > 1 ? `Texels (${this.data.map.step}² each)` : 'Texel', value.texel.join(', '), 'probe-texel')
+        : row('Of', 'the nearest vertex', 'probe-texel')),
+    );
+  }
+
+  private addCallout(x: number, y: number): void {
+    const found = this.found(x, y);
+    if (!found || Number.isNaN(found.value.distance)) return;
+    const at = pointOf(this.data.model, found.hit);
+    this.callouts.add({
+      distance: found.value.distance,
+      point: toMesh(this.data.model, at),
+      at,
+      detail: siteText(found.value.site),
+    });
+  }
+
+  private lookAt(at: Vec, hit?: Hit): void {
+    const normal = hit ? normalOf(this.data, hit) : normalNear(this.data, at);
+    this.view.look({ point: at, normal });
+    byId('part').scrollIntoView({ block: 'nearest' });
+  }
+
+  private showWorst(): void {
+    const { worst } = this.data.page;
+    const rows = worst.map((w: Worst, i: number) => {
+      const value = `${signedText(w.distance, this.signs)}${this.unit}`;
+      const show = () => {
+        const at = toModel(this.data.model, w.point);
+        this.callouts.add({ distance: w.distance, point: w.point, at, detail: '' });
+        this.lookAt(at);
+      };
+      return [
+        String(i + 1),
+        make('button', { type: 'button', class: 'link', click: show, 'aria-label': `Show place ${i + 1}, ${value}` }, value),
+        place(w.point),
+        w.texel ? 'measured point' : 'vertex of the part',
+      ];
+    });
+    byId('worst-table').replaceChildren(
+      rows.length === 0
+        ? make('p', {}, 'No point of the part has a distance other than 0.')
+        : table(['', 'Distance', 'Position', 'At'], rows, 'The places with the largest distances'),
+      make('p', { class: 'hint' }, 'The largest distances by size, at places that are at least 6 % of the part\u2019s size apart. Choose one to see it.'),
+    );
+  }
+
+  /// For tests: what is under a place of the canvas.
+  inspect(x: number, y: number) {
+    const found = this.found(x, y);
+    return found && { ...found.value, point: toMesh(this.data.model, pointOf(this.data.model, found.hit)) };
+  }
+}
+
+async function main(): Promise<void> {
+  const report = readReport();
+  showVerdict(report);
+  showNumbers(report);
+  showInputs(report);
+  showMethod(report);
+  showMore(report);
+  const message = byId('message');
+  const fail = (text: string) => {
+    message.textContent = text;
+    byId('view').classList.add('failed');
+  };
+  if (typeof DecompressionStream === 'undefined') {
+    fail('This browser is too old to show the part: it cannot unpack the map. Chrome 103, Firefox 113 and Safari 16.4 can. The numbers are complete.');
+    return;
+  }
+  try {
+    const data = await readData();
+    const page = new Page(report, data);
+    message.remove();
+    Object.assign(window, { sdmPage: page });
+    document.documentElement.dataset.ready = 'yes';
+  } catch (error) {
+    fail(`The part cannot be shown (${error instanceof Error ? error.message : String(error)}). The numbers are complete.`);
+  }
+}
+
+void main();

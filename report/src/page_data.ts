@@ -1,0 +1,293 @@
+// What the page contains: the text of report.json, and the part with its values.
+import { Arrays, ArrayIndex, cornersOfCodes, floatOfKey, floatsOfOrdered, summed, unpacked, unzigzag } from './arrays';
+
+export type Vec = [number, number, number];
+type Color = Vec;
+
+export interface Extreme {
+  distance: number;
+  point: Vec;
+  at: 'texel' | 'vertex';
+}
+export interface Input {
+  file: string;
+  transform: string;
+  vertices: number;
+  triangles: number;
+  closed: boolean;
+  degenerate_faces: number;
+  duplicate_faces: number;
+}
+
+/// report.json, as far as the page knows it. Any key may be missing: reports of `sdm self` have fewer.
+export interface Report {
+  version?: string;
+  o1?: Input;
+  o2?: Input;
+  mesh?: Input;
+  measured_on?: 'o1' | 'o2';
+  units?: string;
+  atlas?: { kind: string; resolution: number; charts: number; texels: number };
+  engine?: string;
+  max_distance?: number | null;
+  colors?: { map: string; range: [number, number]; range_from: string };
+  sign?: { method: string; reason: string };
+  distance?: Record<string, number | string | null>;
+  extremes?: { min: Extreme | null; max: Extreme | null };
+  texels_with_value?: number;
+  beyond_max_distance?: number;
+  boundary_texels?: number;
+  accuracy?: number | null;
+  error_bound?: number | null;
+  precision?: number | null;
+  tolerance?: {
+    value: number | null;
+    lower?: number;
+    upper?: number;
+    verdict?: string;
+    within: boolean;
+    certified: boolean;
+    deciding_precision?: number | null;
+    exceeded_area_fraction: number;
+  };
+  notes?: string[];
+  time_ms?: Record<string, number>;
+  [key: string]: unknown;
+}
+
+export interface Worst {
+  distance: number;
+  point: Vec;
+  texel?: [number, number];
+}
+
+interface PageJson {
+  version: string;
+  up: 'y' | 'z';
+  colors: Record<'viridis' | 'diverging' | 'paper2006' | 'within' | 'above' | 'below' | 'no_value', Color[]>;
+  map: { width: number; height: number; step: number };
+  model: { origin: Vec; step: number; triangles_of_mesh: number };
+  ghost?: { origin: Vec; step: number; box: { lo: Vec; hi: Vec }; triangles_of_mesh: number };
+  worst: Worst[];
+  area: { lo: number; hi: number };
+  arrays: ArrayIndex;
+}
+
+/// The texels of the page: all of the map, or of a larger map one of each square of step² texels.
+export interface TexelMap {
+  width: number;
+  height: number;
+  step: number;
+  chart: Uint32Array; ///< of each texel, 0 without an owner
+  distance: Float32Array; ///< of each texel; NaN without a value or an owner
+  site: Uint32Array | null; ///< 4 · number + type of each texel, 0xFFFFFFFF without one
+}
+
+/// The triangles of the part. Positions are relative to `centre` in units of `size`, so that they fit single
+/// precision for parts of any size and place.
+export interface Model {
+  centre: Vec;
+  size: number;
+  position: Float32Array;
+  normal: Int8Array; ///< three a vertex, times 127
+  distance: Float32Array; ///< of each vertex
+  triangle: Uint32Array;
+  place: Float32Array | null; ///< in texels of the page; null: a coarser copy, with values at its vertices
+  chart: Uint32Array | null; ///< of each triangle
+  trianglesOfMesh: number;
+}
+
+export interface Ghost {
+  position: Float32Array;
+  triangle: Uint32Array;
+  trianglesOfMesh: number;
+  isBox: boolean;
+}
+
+export interface PageData {
+  page: PageJson;
+  map: TexelMap;
+  model: Model;
+  ghost: Ghost | null;
+  area: AreaByValue;
+}
+
+function textOf(id: string): string {
+  return document.getElementById(id)?.textContent ?? '';
+}
+
+export function readReport(): Report {
+  return JSON.parse(textOf('report')) as Report;
+}
+export function reportText(): string {
+  return textOf('report');
+}
+export function readPage(): PageJson {
+  return JSON.parse(textOf('page')) as PageJson;
+}
+
+function texelMap(page: PageJson, arrays: Arrays): TexelMap {
+  const { width, height, step } = page.map;
+  const chart = summed(arrays.get('chart')!);
+  const ordered = new Uint32Array(width * height).fill(0xffffffff);
+  const differences = arrays.get('distance')!;
+  const packedSites = arrays.get('site');
+  const sites = packedSites ? summed(packedSites) : null;
+  const site = sites ? new Uint32Array(width * height).fill(0xffffffff) : null;
+  let last = 0;
+  for (let y = 0, i = 0, owned = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x, ++i) {
+      if (chart[i] === 0) continue;
+      const left = x > 0 && chart[i - 1] !== 0;
+      const above = y > 0 && chart[i - width] !== 0;
+      let guess = last;
+      if (left && above && chart[i - width - 1] !== 0)
+        guess = ordered[i - 1] + ordered[i - width] - ordered[i - width - 1];
+      else if (left) guess = ordered[i - 1];
+      else if (above) guess = ordered[i - width];
+      ordered[i] = unzigzag(differences[owned]) + guess;
+      last = ordered[i];
+      if (site) site[i] = sites![owned];
+      ++owned;
+    }
+  return { width, height, step, chart, distance: floatsOfOrdered(ordered), site };
+}
+
+function toCentre(steps: Uint32Array, from: { origin: Vec; step: number }, centre: Vec, size: number): Float32Array {
+  const result = new Float32Array(steps.length);
+  const scale = from.step / size;
+  const shift = from.origin.map((x, k) => (x - centre[k]) / size);
+  for (let i = 0; i < steps.length; ++i) result[i] = steps[i] * scale + shift[i % 3];
+  return result;
+}
+
+// Unit vectors folded onto an octahedron, whose lower half lies in the corners of the square.
+function unfoldedNormals(packed: Uint32Array): Int8Array {
+  const result = new Int8Array(3 * packed.length);
+  for (let i = 0; i < packed.length; ++i) {
+    let x = ((packed[i] & 255) - 127.5) / 127.5;
+    let y = ((packed[i] >> 8) - 127.5) / 127.5;
+    const z = 1 - Math.abs(x) - Math.abs(y);
+    if (z < 0) [x, y] = [(1 - Math.abs(y)) * Math.sign(x), (1 - Math.abs(x)) * Math.sign(y)];
+    const scale = 127 / Math.hypot(x, y, z);
+    result[3 * i] = Math.round(x * scale);
+    result[3 * i + 1] = Math.round(y * scale);
+    result[3 * i + 2] = Math.round(z * scale);
+  }
+  return result;
+}
+
+function largestIn(steps: Uint32Array): Vec {
+  const largest: Vec = [0, 0, 0];
+  for (let i = 0; i < steps.length; ++i) if (steps[i] > largest[i % 3]) largest[i % 3] = steps[i];
+  return largest;
+}
+
+function readModel(page: PageJson, arrays: Arrays): Model {
+  const steps = summed(arrays.get('position')!, 3);
+  const extent = largestIn(steps).map((x) => x * page.model.step);
+  const centre = page.model.origin.map((x, k) => x + extent[k] / 2) as Vec;
+  const size = Math.hypot(...extent) / 2 || 1;
+  const places = arrays.get('place');
+  const charts = arrays.get('triangle_chart');
+  return {
+    centre,
+    size,
+    position: toCentre(steps, page.model, centre, size),
+    normal: unfoldedNormals(arrays.get('normal')!),
+    distance: floatsOfOrdered(summed(arrays.get('vertex_distance')!)),
+    triangle: cornersOfCodes(arrays.get('triangle')!),
+    place: places ? Float32Array.from(summed(places, 2), (x) => x / 64) : null,
+    chart: charts ? summed(charts) : null,
+    trianglesOfMesh: page.model.triangles_of_mesh,
+  };
+}
+
+function readGhost(page: PageJson, arrays: Arrays, { centre, size }: Model): Ghost | null {
+  const ghost = page.ghost;
+  if (!ghost) return null;
+  const steps = arrays.get('ghost_position');
+  if (steps)
+    return {
+      position: toCentre(summed(steps, 3), ghost, centre, size),
+      triangle: cornersOfCodes(arrays.get('ghost_triangle')!),
+      trianglesOfMesh: ghost.triangles_of_mesh,
+      isBox: false,
+    };
+  const ends = [ghost.box.lo, ghost.box.hi];
+  const position = new Float32Array(24);
+  for (let corner = 0; corner < 8; ++corner)
+    for (let k = 0; k < 3; ++k) position[3 * corner + k] = (ends[(corner >> k) & 1][k] - centre[k]) / size;
+  const sides = [0, 1, 3, 2, 4, 5, 7, 6, 0, 1, 5, 4, 2, 3, 7, 6, 0, 2, 6, 4, 1, 3, 7, 5];
+  const triangle: number[] = [];
+  for (let s = 0; s < sides.length; s += 4)
+    triangle.push(sides[s], sides[s + 1], sides[s + 2], sides[s], sides[s + 2], sides[s + 3]);
+  return { position, triangle: Uint32Array.from(triangle), trianglesOfMesh: ghost.triangles_of_mesh, isBox: true };
+}
+
+/// The fraction of the area up to a distance: of src/io/write/report/area_by_value.h.
+export class AreaByValue {
+  private readonly edges: number[] = []; ///< of the bins of floats: [from, to) of each
+  private readonly sums = [0];
+  private readonly binSums = [0];
+
+  constructor(
+    readonly lo: number,
+    readonly hi: number,
+    keys: Uint32Array,
+    areaOfKey: Float32Array,
+    areaOfBin: Float32Array,
+  ) {
+    keys.forEach((key, i) => {
+      this.edges.push(floatOfKey(key), floatOfKey(key + 1));
+      this.sums.push(this.sums[i] + areaOfKey[i]);
+    });
+    areaOfBin.forEach((area, i) => this.binSums.push(this.binSums[i] + area));
+  }
+
+  /// The fraction of the area with a value whose distance is at most d.
+  upTo(d: number): number {
+    if (this.edges.length === 0 || d < this.lo) return 0;
+    if (d >= this.hi) return 1;
+    const bins = this.binSums.length - 1;
+    const width = (this.hi - this.lo) / bins;
+    // The bin of floats with d, or the one before it.
+    let first = 0;
+    let last = this.edges.length / 2 - 1;
+    while (first < last) {
+      const middle = (first + last + 1) >> 1;
+      if (this.edges[2 * middle] <= d) first = middle;
+      else last = middle - 1;
+    }
+    const from = Math.max(this.edges[2 * first], this.lo);
+    const to = Math.min(this.edges[2 * first + 1], this.hi);
+    const part = to > from ? Math.min(1, Math.max(0, (d - from) / (to - from))) : 1;
+    const byFloat = this.sums[first] + part * (this.sums[first + 1] - this.sums[first]);
+    if (to - from <= width) return byFloat;
+    const at = Math.min((d - this.lo) / width, bins - 1e-9);
+    const bin = Math.floor(at);
+    return this.binSums[bin] + (at - bin) * (this.binSums[bin + 1] - this.binSums[bin]);
+  }
+
+  within(lower: number, upper: number): number {
+    return Math.max(0, this.upTo(upper) - this.upTo(lower));
+  }
+}
+
+function floats(numbers: Uint32Array): Float32Array {
+  return new Float32Array(numbers.buffer);
+}
+
+export async function readData(): Promise<PageData> {
+  const page = readPage();
+  const arrays = await unpacked(page.arrays, textOf('arrays'));
+  const model = readModel(page, arrays);
+  const area = new AreaByValue(
+    page.area.lo,
+    page.area.hi,
+    arrays.get('area_key')!,
+    floats(arrays.get('area_of_key')!),
+    floats(arrays.get('area_of_bin')!),
+  );
+  return { page, map: texelMap(page, arrays), model, ghost: readGhost(page, arrays, model), area };
+}

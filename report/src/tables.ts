@@ -1,0 +1,230 @@
+// The text of the page: numbers, inputs and method.
+import { byId, make, table } from './dom';
+import { count, percent, place, signedText, text } from './numbers';
+import { Input, PageData, Report, reportText } from './page_data';
+import { isSigned, unitOf } from './verdict';
+
+function fileName(path: string): string {
+  return path.split(/[\\/]/).pop() || path;
+}
+
+/// The measured mesh and the one that distances go to.
+export function inputsOf(report: Report): { measured?: Input; reference?: Input } {
+  if (report.mesh) return { measured: report.mesh };
+  return report.measured_on === 'o2'
+    ? { measured: report.o2, reference: report.o1 }
+    : { measured: report.o1, reference: report.o2 };
+}
+
+export function titleOf(report: Report): string {
+  const { measured, reference } = inputsOf(report);
+  if (!measured) return 'Distance report';
+  return reference
+    ? `${fileName(measured.file)} compared with ${fileName(reference.file)}`
+    : `${fileName(measured.file)}: distance to itself`;
+}
+
+export function showNumbers(report: Report): void {
+  const d = report.distance ?? {};
+  const unit = unitOf(report);
+  const signs = isSigned(report);
+  const rows: string[][] = [];
+  const value = (key: string) => (typeof d[key] === 'number' ? (d[key] as number) : null);
+  const add = (label: string, key: string, kind: string, withSign = false) => {
+    const x = value(key);
+    if (x !== null) rows.push([label, `${signedText(x, withSign && signs)}${unit}`, kind]);
+  };
+  const extremes = report.extremes;
+  const bound = report.error_bound;
+  const sampled =
+    typeof bound === 'number' ? `measured; at most ${text(bound, 3)}${unit} more in between` : 'measured';
+  // A distance below the accuracy may as well be 0.
+  const shown = (x: number) =>
+    Math.abs(x) <= (report.accuracy ?? 0) ? `0${unit}` : `${signedText(x, signs)}${unit}`;
+  if (extremes?.max)
+    rows.push([signs ? 'Largest (most outside)' : 'Largest', shown(extremes.max.distance), sampled]);
+  else add('Largest', 'max', 'measured', true);
+  if (extremes?.min)
+    rows.push([signs ? 'Smallest (most inside)' : 'Smallest', shown(extremes.min.distance), sampled.replace('more', 'less')]);
+  else add('Smallest', 'min', 'measured', true);
+  const estimate = 'estimate over the area';
+  add('Mean', 'mean', estimate, true);
+  if (signs) add('Mean of the absolute distance', 'mean_abs', estimate);
+  add('Root mean square', 'rms', estimate);
+  add('Standard deviation', 'stddev', estimate);
+  add('Median', 'p50', estimate, true);
+  add(signs ? '95 % of the area is closer than' : '95th percentile', 'p95_abs', estimate);
+  add(signs ? '99 % of the area is closer than' : '99th percentile', 'p99_abs', estimate);
+  const samples = report.texels_with_value;
+  if (samples !== undefined) rows.push(['Measured points', count(samples), 'exact']);
+  if ((report.beyond_max_distance ?? 0) > 0)
+    rows.push(['Points farther than the limit', count(report.beyond_max_distance!), 'exact']);
+  byId('numbers-table').replaceChildren(table(['Distance', 'Value', 'Kind'], rows, 'Distances'));
+}
+
+export function showInputs(report: Report): void {
+  const { measured, reference } = inputsOf(report);
+  const inputs = [measured, reference].filter((x): x is Input => x !== undefined);
+  const head = ['', ...(reference ? ['Measured part', 'Reference'] : ['Part'])];
+  const row = (label: string, of: (input: Input) => string) => [label, ...inputs.map(of)];
+  const faults = (i: Input) =>
+    [
+      i.degenerate_faces > 0 ? `${count(i.degenerate_faces)} triangles without area` : '',
+      i.duplicate_faces > 0 ? `${count(i.duplicate_faces)} repeated triangles` : '',
+    ]
+      .filter(Boolean)
+      .join(', ') || 'none';
+  byId('inputs-table').replaceChildren(
+    table(
+      head,
+      [
+        row('File', (i) => i.file),
+        row('Triangles', (i) => count(i.triangles)),
+        row('Vertices', (i) => count(i.vertices)),
+        row('Watertight', (i) => (i.closed ? 'yes' : 'no')),
+        row('Faults', faults),
+        row('Moved by', (i) => i.transform || 'nothing'),
+      ],
+      'The meshes',
+    ),
+  );
+}
+
+function sentence(...parts: (string | false | undefined)[]): HTMLElement {
+  return make('p', {}, parts.filter(Boolean).join(' '));
+}
+
+export function showMethod(report: Report): void {
+  const unit = unitOf(report);
+  const { atlas, sign, error_bound: bound, accuracy } = report;
+  const reference = report.mesh ? 'the rest of the part' : 'the reference';
+  const out: HTMLElement[] = [];
+  out.push(
+    sentence(
+      atlas &&
+        `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the texels of a texture of ${atlas.resolution} × ${atlas.resolution}.`,
+      `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
+      typeof accuracy === 'number' && `Each of these distances is exact to ${text(accuracy, 2)}${unit}.`,
+    ),
+  );
+  if (typeof bound === 'number')
+    out.push(
+      sentence(
+        `Error bound: no point of the part is farther than ${text(bound)}${unit} from a measured point, and a distance cannot change faster than the point moves.`,
+        `So at any point of the part, the distance differs from that of the nearest measured point by at most ${text(bound)}${unit}.`,
+        `This is proven, not estimated; --precision makes it as small as needed.`,
+      ),
+    );
+  if (sign)
+    out.push(
+      sentence(
+        sign.method === 'none'
+          ? `Distances have no sign (${sign.reason}).`
+          : `Positive is outside ${reference}, negative is inside (${sign.reason}).`,
+        sign.method === 'winding' && 'The reference is not watertight, so inside and outside are estimates.',
+      ),
+    );
+  if (report.boundary_texels)
+    out.push(
+      sentence(
+        `${count(report.boundary_texels)} points are nearest to an open edge of the reference: they may lie beside the part of the surface that it covers.`,
+      ),
+    );
+  for (const note of report.notes ?? []) out.push(make('p', { class: 'note' }, `Note: ${note}.`));
+  const total = report.time_ms?.total;
+  out.push(
+    sentence(
+      `Made by sdm ${report.version ?? ''}${report.engine ? `, engine ${report.engine}` : ''}${total ? `, in ${text(total / 1000, 2)} s` : ''}.`,
+      'Words in this report: "exact" and "bounded" numbers hold for the whole surface or say by how much they may differ; "estimate" means computed from the measured points only.',
+    ),
+  );
+  byId('method-text').replaceChildren(...out);
+}
+
+/// What this page leaves out of large inputs.
+export function showOmissions({ map, model, ghost }: PageData): void {
+  const out: HTMLElement[] = [];
+  if (map.step > 1)
+    out.push(
+      sentence(
+        `This page contains one of each ${map.step} × ${map.step} measured points; all of them are in map.exr. Verdict and numbers are from all points.`,
+      ),
+    );
+  if (!model.place)
+    out.push(
+      sentence(
+        `The part has ${count(model.trianglesOfMesh)} triangles; the 3D view shows a coarser copy of ${count(model.triangle.length / 3)}. Its vertices are vertices of the part with their own exact distances, of each neighbourhood the one with the largest.`,
+      ),
+    );
+  if (ghost?.isBox)
+    out.push(sentence(`The reference has ${count(ghost.trianglesOfMesh)} triangles; the 3D view shows only its box.`));
+  byId('method-text').append(...out);
+}
+
+const kShown = new Set([
+  'version', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'sign',
+  'distance', 'extremes', 'texels_with_value', 'texels_without_value', 'negative_texels', 'beyond_max_distance',
+  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'tolerance', 'notes', 'time_ms', 'histogram',
+]);
+
+function isScalar(value: unknown): boolean {
+  return value === null || typeof value !== 'object';
+}
+
+function cell(key: string, value: unknown): string {
+  if (value === null) return key === 'lower' || key === 'upper' ? 'no limit' : 'none';
+  if (typeof value === 'number') {
+    if (/fraction/.test(key)) return percent(value);
+    return Number.isInteger(value) ? count(value) : text(value);
+  }
+  if (Array.isArray(value) && value.every((x) => typeof x === 'number')) return place(value as [number, number, number]);
+  return String(value);
+}
+
+function label(key: string): string {
+  const words = key.replace(/[_.]/g, ' ');
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/// The scalars of an object and of the objects in it, by their paths.
+function flattened(value: object, prefix = ''): [string, unknown][] {
+  return Object.entries(value).flatMap(([key, x]): [string, unknown][] => {
+    const path = prefix ? `${prefix}.${key}` : key;
+    if (isScalar(x) || (Array.isArray(x) && x.every((y) => typeof y === 'number'))) return [[path, x]];
+    return Array.isArray(x) ? [] : flattened(x as object, path);
+  });
+}
+
+const kMostColumns = 9;
+
+function tableOf(key: string, value: unknown): HTMLElement | null {
+  if (Array.isArray(value)) {
+    const rows = value.filter((x) => x !== null && typeof x === 'object').map((x) => flattened(x as object));
+    if (rows.length === 0) return null;
+    const columns = [...new Set(rows.flatMap((row) => row.map(([path]) => path)))].slice(0, kMostColumns);
+    return table(
+      ['', ...columns.map(label)],
+      rows.map((row, i) => [String(i + 1), ...columns.map((c) => cell(c, Object.fromEntries(row)[c] ?? null))]),
+      label(key),
+    );
+  }
+  const rows = flattened(value as object);
+  return rows.length === 0 ? null : table(['', 'Value'], rows.map(([path, x]) => [label(path), cell(path, x)]), label(key));
+}
+
+/// Every key of the report that the page does not know, as far as it can be a table; and the text itself.
+export function showMore(report: Report): void {
+  const out: Node[] = [];
+  const add = (title: string, value: unknown) => {
+    const content = tableOf(title, value);
+    if (content) out.push(make('h3', {}, label(title)), content);
+  };
+  for (const [key, value] of Object.entries(report)) {
+    if (kShown.has(key) || isScalar(value)) continue;
+    add(key, value);
+    if (!Array.isArray(value))
+      for (const [inner, x] of Object.entries(value as object)) if (Array.isArray(x) && x.some((y) => !isScalar(y))) add(`${key}: ${inner}`, x);
+  }
+  out.push(make('details', {}, make('summary', {}, 'report.json'), make('pre', { tabindex: '0' }, reportText())));
+  byId('more-tables').replaceChildren(...out);
+}

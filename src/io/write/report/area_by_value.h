@@ -1,0 +1,28 @@
+// How the area of a surface is distributed over the distances.
+#pragma once
+
+#include <sdm/map.h>
+#include <sdm/surface.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace sdm::io {
+
+/// The area of the texels with a value, in two sets of bins: those of floats that agree in their upper 16
+/// bits (1/128 of their size wide), which are fine near 0, and bins of equal width, which are fine anywhere
+/// else. The area between two edges of bins is exact but for rounding.
+struct AreaByValue {
+  std::vector<std::uint32_t> keys;  ///< of the bins that are not empty, ascending: see below
+  std::vector<float> area_of_key;   ///< fraction of the area
+  double lo = 0, hi = 0;            ///< the least and the largest distance
+  std::vector<float> area;          ///< the same of kBins bins of equal width from lo to hi
+
+  static constexpr std::size_t kBins = 2048;
+};
+
+/// The key of a float: the upper 16 bits of a number in the order of the floats, which is that of their bits,
+/// inverted if the sign is set, otherwise with the sign set. Cost: linear, all cores.
+[[nodiscard]] AreaByValue area_by_value(const Surface& surface, const DistanceMap& map);
+
+}  // namespace sdm::io

@@ -1,0 +1,129 @@
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/threads.h>
+#include <sdm/version.h>
+
+#include <bit>
+#include <new>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/memory.h"
+#include "io/write/atomic_file.h"
+#include "io/write/pictures/color_scale.h"
+#include "io/write/report/area_by_value.h"
+#include "io/write/report/page_model.h"
+#include "io/write/report/worst_places.h"
+#include "io/write/report_page.h"
+
+namespace sdm {
+
+using namespace io;
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kDataPlace = "<!-- data -->";  // in the page
+
+std::vector<std::uint32_t> bits_of(std::span<const float> values) {
+  std::vector<std::uint32_t> bits;
+  for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value));
+  return bits;
+}
+
+Json colors_json() {
+  const auto list = [](std::span<const Rgb> colors) {
+    Json json = Json::array();
+    for (const Rgb& c : colors) json.push_back({c.r, c.g, c.b});
+    return json;
+  };
+  return {{"viridis", list(colors_of(Colormap::viridis))},
+          {"diverging", list(colors_of(Colormap::diverging))},
+          {"paper2006", list(colors_of(Colormap::paper2006))},
+          {"within", list({&kWithin, 1})},
+          {"above", list(kAbove)},
+          {"below", list(kBelow)},
+          {"no_value", list({&kNoValue, 1})}};
+}
+
+Json worst_json(const Surface& surface, std::span<const Place> places) {
+  Json json = Json::array();
+  for (const Place& place : places) {
+    Json& entry = json.emplace_back();
+    entry["distance"] = place.distance;
+    entry["point"] = place.point;
+    if (place.texel != kNone)
+      entry["texel"] = {place.texel % surface.resolution(), place.texel / surface.resolution()};
+  }
+  return json;
+}
+
+/// JSON as the content of a <script> element, which ends at "</script" and may not contain "<!--".
+std::string as_script(const std::string& json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json)
+    if (c == '<')
+      text += "\\u003c";
+    else
+      text += c;
+  return text;
+}
+
+}  // namespace
+
+bool can_write_html() {
+  return true;
+}
+
+void write_html(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                std::span<const float> vertex_distances, const std::string& report,
+                const HtmlOptions& options) try {
+  if (map.distance.size() != surface.texel_faces().size() ||
+      vertex_distances.size() != surface.mesh().positions.size())
+    throw Error("cannot write " + file.string() + ": the map or the distances belong to another surface");
+  AtomicFile out(file);
+
+  Json page, map_json, model, ghost;
+  PackedArrays arrays, model_arrays, ghost_arrays;
+  std::vector<Place> worst;
+  AreaByValue area;
+  run_concurrently({[&] { map_json = add_map(arrays, surface, map); },
+                    [&] { model = add_model(model_arrays, surface, vertex_distances); },
+                    [&] {
+                      if (options.other) ghost = add_ghost(ghost_arrays, *options.other);
+                    },
+                    [&] { worst = worst_places(surface, map, vertex_distances); },
+                    [&] { area = area_by_value(surface, map); }});
+  arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
+  arrays.add("area_key", area.keys);
+  arrays.add("area_of_key", bits_of(area.area_of_key));
+  arrays.add("area_of_bin", bits_of(area.area));
+  page["version"] = kVersion;
+  page["up"] = options.up == UpAxis::z ? "z" : "y";
+  page["colors"] = colors_json();
+  page["map"] = map_json;
+  page["model"] = model;
+  if (options.other) page["ghost"] = ghost;
+  page["worst"] = worst_json(surface, worst);
+  page["area"] = {{"lo", area.lo}, {"hi", area.hi}};
+  arrays.compress();
+  page["arrays"] = arrays.index();
+
+  const std::string_view html = kPageHtml.bytes;
+  const std::size_t middle = html.find(kDataPlace);
+  out.stream() << html.substr(0, middle) << R"(<script type="application/json" id="report">)"
+               << as_script(report) << "</script>\n"
+               << R"(<script type="application/json" id="page">)"
+               << as_script(page.dump(-1, ' ', false, Json::error_handler_t::ignore)) << "</script>\n"
+               << R"(<script type="text/plain" id="arrays">)" << arrays.text() << "</script>"
+               << html.substr(middle + kDataPlace.size());
+  out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
+}
+
+}  // namespace sdm

@@ -1,0 +1,210 @@
+// Checks a report.html in headless Chromium: node check_page.cjs CHECK PAGE [ARGUMENT...]. Packages are found from the
+// current folder. Prints what is wrong and exits with 1.
+const assert = require('assert');
+const { existsSync, readFileSync } = require('fs');
+const { createRequire } = require('module');
+const { delimiter, join } = require('path');
+const { pathToFileURL } = require('url');
+const { chromium } = createRequire(process.cwd() + '/')('playwright-core');
+
+const [check, file, ...rest] = process.argv.slice(2);
+
+function findBrowser() {
+  const folders = process.env.PATH.split(delimiter);
+  const found = folders.map((folder) => join(folder, 'chromium')).find(existsSync);
+  assert(found, 'chromium is needed for this test (Debian package chromium)');
+  return found;
+}
+
+const numbers = (path) => {
+  const bytes = readFileSync(path);
+  return bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length);
+};
+const plain = (text) => text.replace(/\u2212/g, '-').replace(/[\u00a0\u202f]/g, ' ');
+
+const checks = {
+  // The values at many points of several views are those of the map at the texel there, bit by bit, and the texel is
+  // the one at the point: |z − height| changes no faster than the point moves.
+  async values(page, exrDistance, exrSite, exrSiteType, resolution, height, bound) {
+    const distance = new Float32Array(numbers(exrDistance));
+    const site = new Uint32Array(numbers(exrSite));
+    const type = new Uint32Array(numbers(exrSiteType));
+    let hits = 0;
+    for (const side of ['corner', 'front', 'top', 'bottom']) {
+      await page.selectOption('#side', side);
+      await page.evaluate(() => new Promise(requestAnimationFrame));
+      const found = await page.evaluate(() => {
+        const { clientWidth, clientHeight } = document.getElementById('canvas');
+        const result = [];
+        for (let x = 5; x < clientWidth; x += 13)
+          for (let y = 5; y < clientHeight; y += 13) {
+            const hit = window.sdmPage.inspect(x, y);
+            if (hit) result.push({ ...hit, x, y });
+          }
+        return result;
+      });
+      for (const hit of found) {
+        assert(hit.texel, 'a point without a texel');
+        const texel = hit.texel[1] * Number(resolution) + hit.texel[0];
+        assert.strictEqual(hit.distance, distance[texel], `texel ${hit.texel}`);
+        assert.strictEqual(hit.site >>> 2, site[texel]);
+        assert.strictEqual(hit.site & 3, type[texel]);
+        const exact = Math.abs(hit.point[2] - Number(height));
+        assert(Math.abs(exact - hit.distance) <= Number(bound), `${exact} at ${hit.point}, ${hit.distance} shown`);
+      }
+      hits += found.length;
+      // The same by the mouse: the text is the shortest number that is this float.
+      const canvas = await page.locator('#canvas').boundingBox();
+      for (const hit of found.filter((_, i) => i % 97 === 0)) {
+        await page.mouse.move(canvas.x + hit.x, canvas.y + hit.y);
+        await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+        const there = await page.evaluate(() => window.sdmPage.inspect(...window.pointer));
+        if (!there) continue; // the cursor is on whole pixels
+        const shown = plain(await page.textContent('#probe-distance')).split(' ')[0];
+        assert.strictEqual(Math.fround(Number(shown)), distance[there.texel[1] * Number(resolution) + there.texel[0]]);
+        assert.strictEqual(await page.textContent('#probe-texel'), there.texel.join(', '));
+      }
+    }
+    assert(hits > 500, `only ${hits} points were on the part`);
+  },
+
+  async recolours(page) {
+    const picture = () => page.locator('#canvas').screenshot();
+    const legend = () => page.innerHTML('#legend');
+    const chart = () => page.innerHTML('#histogram-chart svg');
+    const setField = async (id, value) => {
+      await page.locator(`.slider:has(#${id}) input[type=number]`).fill(value);
+      await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    };
+    let before = [await picture(), await legend(), await chart()];
+    const expectChange = async (what) => {
+      const now = [await picture(), await legend(), await chart()];
+      now.forEach((x, i) => assert(String(x) !== String(before[i]), `${what} did not change picture ${i}`));
+      before = now;
+    };
+    await page.selectOption('#mode', 'diverging');
+    await expectChange('the colormap');
+    await setField('range', '0.5');
+    await expectChange('the range');
+    await page.selectOption('#mode', 'tolerance');
+    await expectChange('bands');
+    await setField('tolerance', '0.1');
+    await expectChange('the tolerance');
+    assert.match(await page.textContent('#what-if'), /FAIL/);
+    await setField('tolerance', '100');
+    assert.match(await page.textContent('#what-if'), /PASS/);
+    // By the keyboard alone.
+    await page.focus('#tolerance');
+    const value = await page.inputValue('#tolerance');
+    await page.keyboard.press('ArrowLeft');
+    assert.notStrictEqual(await page.inputValue('#tolerance'), value);
+    // A section shows the inside; the reset takes it away.
+    before = [await picture(), '', ''];
+    await page.selectOption('#section', '0');
+    const cut = await picture();
+    assert(!cut.equals(before[0]), 'a section did not change the picture');
+    await page.click('#ghost');
+    assert(!(await picture()).equals(cut), 'the ghost did not change the picture');
+    await page.click('#reset');
+    assert.strictEqual(await page.inputValue('#section'), '');
+  },
+
+  async callouts(page) {
+    const canvas = await page.locator('#canvas').boundingBox();
+    const at = await page.evaluate(() => {
+      const { clientWidth, clientHeight } = document.getElementById('canvas');
+      for (let y = clientHeight / 2; y < clientHeight; y += 3)
+        for (let x = 10; x < clientWidth; x += 7) {
+          const hit = window.sdmPage.inspect(x, y);
+          if (hit && window.sdmPage.inspect(x + 6, y + 6)) return { x: x + 3, y: y + 3 };
+        }
+    });
+    await page.mouse.click(canvas.x + at.x, canvas.y + at.y);
+    const distance = await page.evaluate(() => window.sdmPage.inspect(...window.pointer).distance);
+    const label = () => page.textContent('.callout >> nth=0');
+    const text = await label();
+    const shown = Number(plain(text).split(' ')[1]);
+    assert(Math.abs(shown - distance) <= 1e-3 * Math.abs(distance), `${text} for ${distance}`);
+    const place = () => page.getAttribute('.callout >> nth=0', 'style');
+    const before = await place();
+    // Dragging turns the part: the callout moves with it and adds no other.
+    await page.mouse.move(canvas.x + 200, canvas.y + 100);
+    await page.mouse.down();
+    await page.mouse.move(canvas.x + 260, canvas.y + 130, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForFunction((old) => document.querySelector('.callout').getAttribute('style') !== old, before);
+    assert.strictEqual(await label(), text);
+    assert.strictEqual(await page.locator('.callout').count(), 1);
+    // The largest distances are places to look at.
+    await page.click('#worst-table tbody tr:first-child button');
+    assert.strictEqual(await page.locator('.callout').count(), 2);
+    assert.ok((await page.textContent('.callout >> nth=1')).includes(await page.textContent('#worst-table tbody button >> nth=0')));
+    // By the keyboard: the point in the middle, which is now the largest distance.
+    await page.focus('#canvas');
+    await page.keyboard.press('Enter');
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('+');
+    assert.strictEqual(await page.locator('#callout-list li').count(), 3);
+    await page.click('#callout-list li >> nth=0 >> .remove');
+    assert.strictEqual(await page.locator('.callout').count(), 2);
+    assert.notStrictEqual(await label(), text);
+  },
+
+  // Every control and picture has a name for screen readers, and headings are in order.
+  async names(page) {
+    const session = await page.context().newCDPSession(page);
+    const { nodes } = await session.send('Accessibility.getFullAXTree');
+    const roles = new Set(['button', 'slider', 'spinbutton', 'combobox', 'checkbox', 'link', 'image', 'img', 'application', 'table', 'region', 'DisclosureTriangle']);
+    const named = nodes.filter((node) => !node.ignored && roles.has(node.role?.value));
+    assert(named.length > 20, 'controls were found');
+    for (const node of named) assert(node.name?.value, `a ${node.role.value} without a name: ${JSON.stringify(node.properties)}`);
+    const levels = await page.$$eval('h1, h2, h3', (list) => list.map((h) => Number(h.tagName[1])));
+    levels.forEach((level, i) => assert(i === 0 ? level === 1 : level <= levels[i - 1] + 1, `headings ${levels}`));
+    assert.strictEqual(await page.getAttribute('html', 'lang'), 'en');
+  },
+
+  async prints(page) {
+    const pdf = (await page.pdf({ preferCSSPageSize: true })).toString('latin1');
+    const pages = pdf.match(/\/Type\s*\/Page\b(?!s)/g).length;
+    assert.strictEqual(pages, 2, `${pages} pages`);
+  },
+
+  // Opens, and says these words; any words if none are given.
+  async says(page, ...words) {
+    const text = plain(await page.innerText('body'));
+    for (const word of words) assert(text.includes(word), `no "${word}" in: ${text}`);
+  },
+};
+
+(async () => {
+  const browser = await chromium.launch({
+    executablePath: findBrowser(),
+    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
+  try {
+    const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+    const faults = [];
+    page.on('console', (message) => faults.push(`console: ${message.text()}`));
+    page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
+    const url = pathToFileURL(file).href;
+    page.on('request', (request) => {
+      if (request.url() !== url && !request.url().startsWith('data:')) faults.push(`request: ${request.url()}`);
+    });
+    await page.goto(url);
+    await page
+      .waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 })
+      .catch(async () => assert.fail(`the page says: ${await page.textContent('#message')} ${faults}`));
+    await page.evaluate(() =>
+      document.getElementById('canvas').addEventListener('pointermove', (event) => {
+        window.pointer = [event.offsetX, event.offsetY];
+      }),
+    );
+    await checks[check](page, ...rest);
+    assert.deepStrictEqual(faults, []);
+  } finally {
+    await browser.close();
+  }
+})().catch((error) => {
+  console.error(error.message);
+  process.exitCode = 1;
+});

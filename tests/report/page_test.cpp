@@ -1,0 +1,175 @@
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/samples.h"
+#include "support/made_up_maps.h"
+#include "support/run_sdm.h"
+
+namespace sdm::test {
+namespace {
+
+using Json = nlohmann::json;
+using ::testing::HasSubstr;
+
+std::string quoted(const std::string& text) {
+  return std::string("'").append(text).append("'");
+}
+
+/// Runs a check of check_page.cjs, in a browser.
+bool passes(const std::string& check, const std::string& page, const std::vector<std::string>& more = {}) {
+  std::string command("cd '" SDM_REPORT_PACKAGES "' && node '" SDM_CHECK_PAGE "' ");
+  command.append(check).append(" ").append(quoted(page));
+  for (const std::string& argument : more) command.append(" ").append(quoted(argument));
+  return std::system(command.c_str()) == 0;
+}
+
+/// A channel of an EXR file as raw numbers in a file of its own.
+void dump(const std::filesystem::path& exr_file, const char* channel, Imf::PixelType type,
+          const std::filesystem::path& raw) {
+  Imf::InputFile exr(exr_file.c_str());
+  const auto box = exr.header().dataWindow();
+  const std::size_t n = static_cast<std::size_t>(box.max.x) + 1;
+  std::vector<std::uint32_t> bits(n * (static_cast<std::size_t>(box.max.y) + 1));
+  Imf::FrameBuffer frame;
+  frame.insert(channel, Imf::Slice(type, reinterpret_cast<char*>(bits.data()), 4, 4 * n));
+  exr.setFrameBuffer(frame);
+  exr.readPixels(0, box.max.y);
+  std::ofstream(raw, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bits.data()), static_cast<std::streamsize>(4 * bits.size()));
+}
+
+/// A torus above a square: the distance is the height, |z + 2|.
+struct Page : ::testing::Test {
+  static constexpr double kHeight = -2;
+  TemporaryFolder folder;
+  std::string o1 = write_obj(folder / "part.obj", ring(24)),
+              o2 = write_obj(folder / "plane.obj", square(8, kHeight));
+  std::string out = folder / "out";
+
+  /// Maps, and returns the report.
+  Json map(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"map", o1, o2, "-o", out, "--write", "exr,html"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = run_sdm(arguments);
+    EXPECT_TRUE(run.code == 0 || run.code == 3) << run.err;
+    return Json::parse(contents(out + "/report.json"));
+  }
+  [[nodiscard]] std::string page() const { return out + "/report.html"; }
+};
+
+TEST_F(Page, ShowsTheValuesOfTheMap) {
+  for (const std::string atlas : {"charts", "triangles"}) {
+    const Json report = map({"--resolution", "256", "--atlas", atlas, "--units", "mm"});
+    dump(out + "/map.exr", "distance.D", Imf::FLOAT, folder / "distance");
+    dump(out + "/map.exr", "site.id", Imf::UINT, folder / "site");
+    dump(out + "/map.exr", "site.type", Imf::UINT, folder / "type");
+    const double bound = 2 * report["error_bound"].get<double>() + 1e-5;
+    EXPECT_TRUE(passes("values", page(),
+                       {folder / "distance", folder / "site", folder / "type", "256", std::to_string(kHeight),
+                        std::to_string(bound)}))
+        << atlas;
+  }
+}
+
+TEST_F(Page, RecoloursAtOnce) {
+  map({"--resolution", "256"});
+  EXPECT_TRUE(passes("recolours", page()));
+}
+
+TEST_F(Page, CalloutsStay) {
+  map({"--resolution", "256"});
+  EXPECT_TRUE(passes("callouts", page()));
+}
+
+TEST_F(Page, EveryControlHasAName) {
+  map({"--resolution", "128", "--tolerance", "3"});
+  EXPECT_TRUE(passes("names", page()));
+}
+
+TEST_F(Page, PrintsToTwoPages) {
+  map({"--resolution", "128", "--tolerance", "3"});
+  EXPECT_TRUE(passes("prints", page()));
+}
+
+// The largest distance is 2.4, at vertices.
+TEST_F(Page, StatesTheVerdict) {
+  map({"--resolution", "64", "--tolerance", "3"});
+  EXPECT_TRUE(passes("says", page(), {"PASS", "Every point of the surface is within the tolerance of 3."}));
+  map({"--resolution", "64", "--tolerance", "2"});
+  EXPECT_TRUE(passes("says", page(), {"FAIL", "A distance of 2.4 was found"}));
+  const Json open = map({"--resolution", "64", "--tolerance", "2.41"});
+  ASSERT_FALSE(open["tolerance"]["certified"]);
+  EXPECT_TRUE(passes("says", page(), {"NOT DECIDED", "with --precision 0.0099"}));
+  const Json decided = map({"--precision", "0.0099", "--tolerance", "2.41"});
+  EXPECT_TRUE(decided["tolerance"]["certified"]);
+  EXPECT_TRUE(passes("says", page(), {"PASS"}));
+}
+
+TEST_F(Page, ShowsHostileAndUnusualReports) {
+  const std::string script = folder / "<!--<script>alert(1)";
+  o1 = write_obj(script, ring(8));
+  map({"--resolution", "64", "--units", "<b>\u00b5m</b>"});
+  EXPECT_TRUE(passes("says", page(), {"<!--<script>alert(1)", "<b>\u00b5m</b>"}));
+  // Nothing in range; some of it.
+  map({"--resolution", "64", "--max-distance", "0.1"});
+  EXPECT_TRUE(passes("says", page(), {"MEASURED", "No point of the part has a distance"}));
+  map({"--resolution", "64", "--max-distance", "2", "--tolerance", "2"});
+  EXPECT_TRUE(passes("says", page(), {"FAIL", "no value"}));
+}
+
+TEST_F(Page, ShowsSelfDistances) {
+  const Outcome run =
+      run_sdm({"self", o1, "-o", out, "--resolution", "64", "--write", "html", "--geodesic", "0.5"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(passes("says", page(), {"distance to itself", "MEASURED"}));
+}
+
+// Keys that the page does not know become tables; a large map is shown by some of its texels.
+TEST_F(Page, ShowsWhatItDoesNotKnow) {
+  const Field field = [](const Vec3& p) { return 1e30 * p[0]; };
+  const Surface surface(ring(24, 1e30, {1e31, 0, 0}), {.resolution = 2048});
+  const Json report{
+      {"o1",
+       {{"file", "part"},
+        {"transform", ""},
+        {"vertices", 1},
+        {"triangles", 1},
+        {"closed", true},
+        {"degenerate_faces", 0},
+        {"duplicate_faces", 0}}},
+      {"new_numbers", {{"first", 1.5}, {"second_fraction", 0.25}, {"inner", {{"third", nullptr}}}}},
+      {"bands", {{{"lower", nullptr}, {"upper", 1}, {"area_fraction", 0.5}}}},
+      {"odd", {1, "two", nullptr, Json::array()}}};
+  const std::string file = folder / "report.html";
+  write_html(file, surface, map_of(surface, field), at_vertices(surface.mesh(), field), report.dump());
+  EXPECT_TRUE(
+      passes("says", file, {"New numbers", "1.5", "25 %", "Bands", "no limit", "50 %", "one of each 2 × 2"}));
+}
+
+TEST_F(Page, IsRefusedForAnotherSurface) {
+  const Field field = [](const Vec3&) { return 1; };
+  const Surface surface(ring(6), {.resolution = 64}), other(ring(6), {.resolution = 32});
+  EXPECT_THROW(
+      write_html(folder / "a.html", surface, map_of(other, field), at_vertices(surface.mesh(), field), "{}"),
+      Error);
+  EXPECT_THROW(write_html(folder / "a.html", surface, map_of(surface, field), {}, "{}"), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.html"));
+}
+
+TEST(PageSources, HaveCorrectTypes) {
+  EXPECT_EQ(
+      std::system("cd '" SDM_REPORT_PACKAGES "' && node node_modules/typescript/bin/tsc -p tsconfig.json"),
+      0);
+}
+
+}  // namespace
+}  // namespace sdm::test
