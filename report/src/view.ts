@@ -149,7 +149,8 @@ export class View {
       uniforms: {
         values: { value: texture },
         byVertex: { value: model.place === null },
-        showBacks: { value: !isClosed },
+        // The folds of a coarser copy are not the inside of the part.
+        showBacks: { value: !isClosed || model.place === null },
         cut: { value: [0, 0, 0, 1] },
         cutColor: { value: new Vector3(0.72, 0.72, 0.74) },
         mode: { value: 0 },
