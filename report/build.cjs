@@ -10,7 +10,7 @@ function bundle(file) {
     minify: true,
     write: false,
     format: 'iife',
-    target: ['chrome100', 'firefox113', 'safari16.4'],
+    target: ['chrome103', 'firefox113', 'safari16.4'],
     charset: 'utf8',
     legalComments: 'inline',
   });
