@@ -37,7 +37,10 @@ set(order
   io/read
   io/read/frames
   io/read/gltf
+  io/write/compression
   io/write/pictures
+  io/write/model
+  io/write/report
   io/write)
 
 # Another engine is before the table of engines.

@@ -2,7 +2,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "io/write/atomic_file.h"
-#include "io/write/deflate.h"
+#include "io/write/compression/deflate.h"
 #include "io/write/gutter.h"
 
 #include <OpenEXR/openexr.h>

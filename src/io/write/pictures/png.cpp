@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "io/write/deflate.h"
+#include "io/write/compression/deflate.h"
 
 namespace sdm::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "io/write/deflate.h"
+#include "io/write/compression/deflate.h"
 
 namespace sdm::io {
 namespace {

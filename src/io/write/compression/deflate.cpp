@@ -1,4 +1,4 @@
-#include "io/write/deflate.h"
+#include "io/write/compression/deflate.h"
 
 #include <isa-l/igzip_lib.h>
 
