@@ -77,7 +77,7 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
                        {"map", map_ms},       {"export", export_ms}, {"total", import_ms + total.lap()}};
   const std::string text = to_text(report);
   if (command.files.html)
-    sdm::write_html(folder / "report.html", surface, map, at_vertices, text, {.up = picture.up});
+    sdm::write_html(folder / "report.html", surface, map, at_vertices, text, {.up = command.picture.up});
   write_text(folder / "report.json", text);
   return report;
 }

@@ -190,7 +190,7 @@ function label(key: string): string {
 function flattened(value: object, prefix = ''): [string, unknown][] {
   return Object.entries(value).flatMap(([key, x]): [string, unknown][] => {
     const path = prefix ? `${prefix}.${key}` : key;
-    if (isScalar(x) || (Array.isArray(x) && x.every((y) => typeof y === 'number'))) return [[path, x]];
+    if (isScalar(x) || (Array.isArray(x) && x.length > 0 && x.every((y) => typeof y === 'number'))) return [[path, x]];
     return Array.isArray(x) ? [] : flattened(x as object, path);
   });
 }

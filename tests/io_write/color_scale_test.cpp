@@ -119,14 +119,12 @@ TEST(ColorScale, ToleranceBandsChangeExactlyAtTheTolerance) {
 }
 
 TEST(ColorScale, BandsOfATolerancePerSideChangeAtItsLimits) {
-  const ColorScale scale =
-      color_scale(map_with({-3, 3}, SignMethod::exact), {.tolerance = Tolerance(-0.25, 0.5)});
+  const ColorScale scale = scale_of({-3, 3}, {.tolerance = Tolerance(-0.25, 0.5)});
   EXPECT_EQ(scale(0.5), scale(-0.25));
   EXPECT_GT(scale(std::nextafter(0.5, 1)).r, scale(std::nextafter(0.5, 1)).b);
   EXPECT_GT(scale(std::nextafter(-0.25, -1)).b, scale(std::nextafter(-0.25, -1)).r);
   // A clearance: what is too close is below it.
-  const ColorScale clearance =
-      color_scale(map_with({0, 3}, SignMethod::none), {.tolerance = Tolerance(1, 2)});
+  const ColorScale clearance = scale_of({0, 3}, {.tolerance = Tolerance(1, 2)});
   EXPECT_NE(clearance(0.5), clearance(1.5));
   EXPECT_NE(clearance(0.5), clearance(2.5));
   EXPECT_EQ(clearance(1), clearance(2));

@@ -40,8 +40,8 @@ set(order
   io/write/compression
   io/write/pictures
   io/write/model
-  io/write/report
-  io/write)
+  io/write
+  io/write/report)
 
 # Another engine is before the table of engines.
 file(GLOB engines LIST_DIRECTORIES true RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/engine/*)

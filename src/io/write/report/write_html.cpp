@@ -14,9 +14,9 @@
 #include "io/write/atomic_file.h"
 #include "io/write/pictures/color_scale.h"
 #include "io/write/report/area_by_value.h"
+#include "io/write/report/embedded_page.h"
 #include "io/write/report/page_model.h"
 #include "io/write/report/worst_places.h"
-#include "io/write/report_page.h"
 
 namespace sdm {
 
