@@ -1,11 +1,12 @@
-/// Deforming meshes in files: fixed connectivity, positions for each frame. All functions throw an sdm::Error
-/// that names the file, the frame and the fault.
+/// Deforming meshes in files: positions for each frame, and fixed triangles unless asked for. All functions
+/// throw an sdm::Error that names the file, the frame and the fault.
 ///
 /// Threads: an object is used by one thread at a time; different objects may be used concurrently.
 #pragma once
 
 #include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
 
 #include <filesystem>
 #include <memory>
@@ -17,6 +18,22 @@ namespace sdm {
 struct SequenceOptions {
   /// For glTF animations: frames per second, from the first key to the last; 0: one frame per key.
   double rate = 0;
+  /// Vertices and faces may be added and removed between numbered files; see MeshSequence::change.
+  bool allow_topology = false;
+};
+
+/// How a frame differs from the one that was read before.
+struct TopologyChange {
+  /// From the mesh before to that of the frame, moved vertices included. Empty if the triangles are the same;
+  /// the vertices may have moved then.
+  MeshEdit edit{};
+  /// Too little stays for an edit: the mesh of the frame is another one, with numbers of its own.
+  bool replaced = false;
+
+  [[nodiscard]] bool none() const {
+    return !replaced && edit.removed_faces.empty() && edit.reconnected_faces.empty() &&
+           edit.added_vertices.empty() && edit.added_faces.empty();
+  }
 };
 
 /// Reads a sequence in one of these forms:
@@ -41,19 +58,34 @@ class SDM_API MeshSequence {
   MeshSequence(MeshSequence&&) noexcept;
   MeshSequence& operator=(MeshSequence&&) noexcept;
 
-  /// The first frame. Its triangles are those of all frames.
+  /// The first frame, whose triangles are those of all frames. With SequenceOptions::allow_topology: the
+  /// frame that was read last, initially the first one.
   [[nodiscard]] const Mesh& mesh() const;
   [[nodiscard]] std::size_t frame_count() const;
   /// The name of a frame in [0, frame_count()), for messages: "walk_0007.ply", "frame 7 of motion.npy", ...
   [[nodiscard]] std::string frame_name(std::size_t frame) const;
 
   /// Reads the positions of a frame, one for each vertex of mesh(); they are valid until the next call.
-  /// Frames may be read in any order. Throws if the frame is out of range, missing or damaged, if its
-  /// vertices or faces differ from those of the first frame, if a coordinate is not finite or beyond 1e37,
-  /// and if vertices that are welded in the first frame have different positions; other frames can still be
-  /// read. NPY and glTF allocate nothing. Cost: linear in the size of the frame's file; for NPY, in that of
-  /// the frame.
+  /// Frames may be read in any order. Throws if the frame is out of range, missing or damaged, if a
+  /// coordinate is not finite or beyond 1e37, and, unless SequenceOptions::allow_topology is set, if its
+  /// vertices or faces differ from those of the first frame or if vertices that are welded there have
+  /// different positions; other frames can still be read. NPY and glTF allocate nothing. Cost: linear in the
+  /// size of the frame's file; for NPY, in that of the frame.
   [[nodiscard]] std::span<const Vec3> positions(std::size_t frame);
+
+  /// With SequenceOptions::allow_topology: how mesh() has changed in the last successful call of positions().
+  /// Vertices and faces that stay keep their numbers, as MeshEdit describes. What stays:
+  ///  - A vertex is the one with the same number in the file before, so files must only add vertices at the
+  ///    end of their lists. If a list has become shorter, or if no face of the file before shares a vertex
+  ///    with another (STL), numbers mean nothing: then a vertex is the one that was at the same position.
+  ///  - A face stays if the file before has one of the same vertices in the same order, wherever it is in the
+  ///    list and with whichever vertex it begins. Polygons that stay are not triangulated again.
+  ///  - Vertices at the same position are one, as in read_mesh, and stay one up to 1e-6 of the diagonal of
+  ///    the mesh. If they part, faces are reconnected: to tear a mesh, let its faces refer to copies of
+  ///    vertices that are at the same position in the frame in which they appear.
+  ///  - If fewer than half of the faces stay, of this frame or the one before, the mesh is replaced.
+  /// Texture coordinates of added faces are zero.
+  [[nodiscard]] const TopologyChange& change() const;
 
  private:
   struct Impl;

@@ -57,10 +57,15 @@ class FileFrames : public FrameSource {
     return file.empty() ? fmt::format("number {}", files_.number(frame)) : file.filename().string();
   }
 
-  void read(std::size_t frame, std::vector<Vec3>& positions) override {
+  bool has_polygons() const override { return true; }
+  PolygonMesh polygons_of(std::size_t frame) override {
     const fs::path file = files_.file(frame);
     if (file.empty()) throw Error("there is no file with that number");
-    PolygonMesh polygons = read_file(file);
+    return read_file(file);
+  }
+
+  void read(std::size_t frame, std::vector<Vec3>& positions) override {
+    PolygonMesh polygons = polygons_of(frame);
     require_same_faces(polygons);
     positions = std::move(polygons.positions);
   }

@@ -25,6 +25,10 @@ class FrameSource {
   [[nodiscard]] virtual std::string name(std::size_t frame) const = 0;
   /// Reads the positions of all vertices in the file. Only their number is checked.
   virtual void read(std::size_t frame, std::vector<Vec3>& positions) = 0;
+  /// Whether frames have polygons of their own, which may differ from those of the first.
+  [[nodiscard]] virtual bool has_polygons() const { return false; }
+  /// Reads the polygons of a frame. Only if has_polygons().
+  [[nodiscard]] virtual PolygonMesh polygons_of(std::size_t) { return {}; }
 };
 
 /// Mesh files in a folder, mesh files whose names match a pattern, or one mesh file.

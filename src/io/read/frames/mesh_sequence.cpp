@@ -3,10 +3,12 @@
 #include <sdm/sequence.h>
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/geometry/vec.h"
 #include "io/read/file_bytes.h"
+#include "io/read/frames/changing_mesh.h"
 #include "io/read/frames/frame_source.h"
 #include "io/read/read_polygons.h"
 #include "mesh/validate.h"
@@ -62,14 +64,19 @@ struct MeshSequence::Impl {
   std::vector<std::uint32_t> renumbered;  // the vertex of mesh for each vertex in the files, or kNone
   double weld_tolerance = 0;              // how far apart welded vertices may move
   std::vector<Vec3> file_positions, positions;
+  std::optional<io::ChangingMesh> changing;  // instead of the above, if the topology may change
 
-  void open(double rate);
+  void open(const SequenceOptions& options);
   void read(std::size_t frame);
 };
 
-void MeshSequence::Impl::open(double rate) {
-  source = io::open_source(input, rate);
-  const io::PolygonMesh polygons = source->take_polygons();
+void MeshSequence::Impl::open(const SequenceOptions& options) {
+  source = io::open_source(input, options.rate);
+  io::PolygonMesh polygons = source->take_polygons();
+  if (options.allow_topology && source->has_polygons()) {
+    io::with_error_prefix(source->polygons_name(), [&] { changing.emplace(std::move(polygons)); });
+    return;
+  }
   mesh = io::with_error_prefix(source->polygons_name(), [&] { return io::to_mesh(polygons, renumbered); });
   constexpr double kRounding = 1e-6;
   weld_tolerance = kRounding * diagonal(bounds(mesh));
@@ -106,14 +113,19 @@ MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& opti
     throw Error(
         "the rate of a sequence must be a number of frames per second, or 0 for one frame at every key");
   impl_->input = input;
-  io::with_error_prefix(input, [&] { impl_->open(options.rate); });
+  io::with_error_prefix(input, [&] { impl_->open(options); });
 }
 MeshSequence::~MeshSequence() = default;
 MeshSequence::MeshSequence(MeshSequence&&) noexcept = default;
 MeshSequence& MeshSequence::operator=(MeshSequence&&) noexcept = default;
 
 const Mesh& MeshSequence::mesh() const {
-  return impl_->mesh;
+  return impl_->changing ? impl_->changing->mesh() : impl_->mesh;
+}
+
+const TopologyChange& MeshSequence::change() const {
+  static const TopologyChange kNoChange;
+  return impl_->changing ? impl_->changing->change() : kNoChange;
 }
 
 std::size_t MeshSequence::frame_count() const {
@@ -128,10 +140,14 @@ std::span<const Vec3> MeshSequence::positions(std::size_t frame) {
   if (frame >= frame_count())
     throw Error(
         fmt::format("{}: there is no frame {}; the sequence has {}", impl_->input, frame, frame_count()));
-  if (frame_count() == 1) return impl_->mesh.positions;
-  io::with_error_prefix(fmt::format("{}: frame {} ({})", impl_->input, frame, frame_name(frame)),
-                        [&] { impl_->read(frame); });
-  return impl_->positions;
+  if (frame_count() == 1) return mesh().positions;
+  io::with_error_prefix(fmt::format("{}: frame {} ({})", impl_->input, frame, frame_name(frame)), [&] {
+    if (impl_->changing)
+      impl_->changing->follow(impl_->source->polygons_of(frame));
+    else
+      impl_->read(frame);
+  });
+  return impl_->changing ? mesh().positions : impl_->positions;
 }
 
 }  // namespace sdm

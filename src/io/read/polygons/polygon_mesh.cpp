@@ -145,23 +145,25 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
 }
 
 Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered,
-             std::vector<std::uint32_t>& triangle_ends) {
+             std::vector<std::uint32_t>& triangle_ends, std::vector<Triangle>* places) {
   check_indices(polygons);
   Mesh mesh;
   renumbered = weld(polygons, mesh);
   const bool with_uvs = all_corners_have_uvs(polygons);
   const std::size_t triangle_count = polygons.corners.size() - 2 * polygons.ends.size();
   mesh.triangles.reserve(triangle_count);
+  if (places) places->clear(), places->reserve(triangle_count);
   if (with_uvs) mesh.corner_uvs.reserve(triangle_count);
 
   triangle_ends.clear();
   triangle_ends.reserve(polygons.ends.size());
   Triangulator triangulator;
-  std::vector<std::uint32_t> places;
+  std::vector<std::uint32_t> gathered;
   std::vector<Vec3> points;
   const auto add_triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const auto vertex = [&](std::uint32_t place) { return renumbered[polygons.corners[place]]; };
     mesh.triangles.push_back({vertex(a), vertex(b), vertex(c)});
+    if (places) places->push_back({a, b, c});
     const auto uv = [&](std::uint32_t place) { return polygons.uvs[polygons.corner_uvs[place]]; };
     if (with_uvs) mesh.corner_uvs.push_back({uv(a), uv(b), uv(c)});
   };
@@ -170,12 +172,12 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
     if (end - begin == 3) {
       add_triangle(begin, begin + 1, begin + 2);
     } else {
-      gather(polygons.corners, renumbered, begin, end, places);
+      gather(polygons.corners, renumbered, begin, end, gathered);
       points.clear();
-      for (const std::uint32_t place : places)
+      for (const std::uint32_t place : gathered)
         points.push_back(mesh.positions[renumbered[polygons.corners[place]]]);
       for (const auto& t : triangulator.triangulate(points))
-        add_triangle(places[t[0]], places[t[1]], places[t[2]]);
+        add_triangle(gathered[t[0]], gathered[t[1]], gathered[t[2]]);
     }
     triangle_ends.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
     begin = end;

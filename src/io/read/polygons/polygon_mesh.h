@@ -51,8 +51,10 @@ struct PolygonMesh {
 /// vertices are in the order of their first occurrence in the file.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered);
 
-/// As above. Also sets, for each polygon, one past its last triangle in the mesh.
+/// As above. Also sets, for each polygon, one past its last triangle in the mesh, and `places`, unless null,
+/// to the indices in PolygonMesh::corners of each triangle's corners.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered,
-                           std::vector<std::uint32_t>& triangle_ends);
+                           std::vector<std::uint32_t>& triangle_ends,
+                           std::vector<Triangle>* places = nullptr);
 
 }  // namespace sdm::io
