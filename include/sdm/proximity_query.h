@@ -3,6 +3,7 @@
 
 #include <sdm/api.h>
 #include <sdm/map.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/shape.h>
 #include <sdm/transform.h>
 
@@ -95,13 +96,19 @@ class SDM_API ProximityQuery {
   void set_pose(int body, const Transform& pose);
   [[nodiscard]] Transform pose(int body) const;
 
-  /// Moves the vertices of the bodies, keeping their triangles and poses; other triangles need a new
-  /// ProximityQuery. An empty span leaves a body unchanged. Throws sdm::Error, and changes nothing, for a
-  /// wrong number of positions, a coordinate that is not finite, or a body whose Shape is shared with
-  /// anything else. Cost: that of Sites::refit and, with an atlas, Surface::refit. Neither this nor the
-  /// queries allocate memory once the bodies have been through similar poses, unless a solid intersects
-  /// itself.
+  /// Moves the vertices of the bodies, keeping their triangles and poses. An empty span leaves a body
+  /// unchanged. Throws sdm::Error, and changes nothing, for a wrong number of positions, a coordinate that is
+  /// not finite, or a body whose Shape is shared with anything else. Cost: that of Sites::refit and, with an
+  /// atlas, Surface::refit. Neither this nor the queries allocate memory once the bodies have been through
+  /// similar poses, unless a solid intersects itself.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
+
+  /// Changes the mesh of a body, 0 or 1, as Sites::edit and, with an atlas, Surface::edit do, which keeps
+  /// faces, texels and their numbers. The ids of its contacts may change. Throws sdm::Error, and changes
+  /// nothing, as they do and for a body whose Shape is shared. Cost: theirs, and a pass over the tree.
+  void edit(int body, const MeshEdit& edit);
+  /// Replaces the shape of a body, 0 or 1, in the same pose. Cost: constant.
+  void replace(int body, Shape shape);
 
   // Results are computed by the first call after a body has moved.
 

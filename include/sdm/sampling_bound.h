@@ -89,6 +89,10 @@ class SDM_API RelativeError {
   /// sdm::Error when its number of faces differs.
   [[nodiscard]] double of(const SamplingBound& now) const;
 
+  /// As of(), also after edits of the surface, or for the bound of another layout of it: the error of the map
+  /// now, relative to that of the first shape.
+  [[nodiscard]] double of_edited(const SamplingBound& now) const;
+
   /// Sets errors[f], for each face f, to now.face_radii()[f] / w_f ≥ e_f, likewise; infinite where w_f is 0,
   /// as r_f(0) may then be 0 as well. Cost: linear.
   void of_faces(const SamplingBound& now, std::span<double> errors) const;

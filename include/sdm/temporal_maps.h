@@ -7,13 +7,15 @@
 #include <sdm/map.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace sdm {
 
-/// For every texel of a fixed atlas: the minimum, maximum and mean distance over the added maps. NaN where no
-/// face owns the texel, or where it was beyond the maximum distance in one of the maps. Self maps mark the
+/// For every texel of an atlas: the minimum, maximum and mean distance over the added maps. NaN where no
+/// face owns the texel, where another face or none owned it in an earlier map, or where it
+/// was beyond the maximum distance in one of the maps. Self maps mark the
 /// latter by +∞ instead: the minimum is then that over the other maps.
 class SDM_API TemporalMaps {
  public:
@@ -33,6 +35,11 @@ class SDM_API TemporalMaps {
   /// Adds a map. Throws sdm::Error if its size differs from that of earlier maps. Cost: O(n) in texels,
   /// all cores.
   void add(const DistanceMap& map);
+
+  /// Follows an edit of the surface: texels whose face stays keep their statistics, all others become NaN for
+  /// good. `before`: Surface::texel_faces() before Surface::edit. Throws sdm::Error if the sizes do not
+  /// match. Cost: O(n) in texels.
+  void follow_edit(std::span<const std::uint32_t> before, const Surface& edited);
 
   [[nodiscard]] std::size_t maps() const { return state_.maps; }
   [[nodiscard]] std::uint32_t resolution() const { return state_.resolution; }

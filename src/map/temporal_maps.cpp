@@ -2,6 +2,7 @@
 #include <sdm/temporal_maps.h>
 
 #include <cmath>
+#include <limits>
 #include <new>
 #include <string>
 #include <utility>
@@ -43,6 +44,24 @@ void TemporalMaps::add(const DistanceMap& map) try {
     });
   }
   ++state.maps;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("maps over time");
+}
+
+void TemporalMaps::follow_edit(std::span<const std::uint32_t> before, const Surface& edited) try {
+  if (state_.maps == 0) return;
+  const std::span<const std::uint32_t> now = edited.texel_faces();
+  if (before.size() != state_.sum.size() || edited.resolution() != state_.resolution ||
+      now.size() < before.size())
+    throw Error("maps over time of " + std::to_string(state_.sum.size()) +
+                " texels cannot follow the edit of an atlas of " + std::to_string(before.size()) +
+                "; they belong to another surface");
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  state_.least.resize(now.size(), kNaN);
+  state_.largest.resize(now.size(), kNaN);
+  state_.sum.resize(now.size(), kNaN);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (now[i] != before[i]) state_.least[i] = state_.largest[i] = kNaN, state_.sum[i] = kNaN;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("maps over time");
 }

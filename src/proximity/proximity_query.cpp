@@ -20,6 +20,7 @@ struct ProximityQuery::Impl {
   }
   // The faces that were closest before are most likely near the closest ones now.
   void begin() { answers.begin(bodies[0], bodies[1], answers.closest_faces()); }
+  void begin_anew() { answers.begin(bodies[0], bodies[1]); }
 };
 
 namespace {
@@ -66,6 +67,19 @@ void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
       if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
     impl_->begin();
   });
+}
+
+void ProximityQuery::edit(int body, const MeshEdit& edit) {
+  impl_->bodies[body].require_own_shape();
+  with_memory([&] {
+    impl_->bodies[body].edit(edit);
+    impl_->begin_anew();
+  });
+}
+
+void ProximityQuery::replace(int body, Shape shape) {
+  impl_->bodies[body].replace(std::move(shape));
+  impl_->begin_anew();
 }
 
 const BoundedLength& ProximityQuery::separation() {

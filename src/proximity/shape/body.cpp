@@ -18,6 +18,14 @@ void Body::refit(std::span<const Vec3> positions) {
   follow_positions();
 }
 
+void Body::edit(const MeshEdit& edit) {
+  if (surface_) surface_->edit(edit);  // may throw for want of room, the sites only for what it throws for
+  sites_.edit(edit);
+  inside_.reset();
+  follow_positions();
+  contact_parts_ = shape::contact_parts(internals(sites_));
+}
+
 const Surface& Body::surface() const {
   if (!surface_)
     throw Error(

@@ -22,6 +22,8 @@ class Body {
 
   /// Moves the vertices to positions that are valid for this mesh (see validate_positions).
   void refit(std::span<const Vec3> positions);
+  /// Changes the mesh. Throws sdm::Error, and changes nothing, as Surface::edit and Sites::edit do.
+  void edit(const MeshEdit& edit);
 
   /// Throws sdm::Error if there is no atlas.
   [[nodiscard]] const Surface& surface() const;
@@ -38,7 +40,7 @@ class Body {
   /// The boundary of the solid. Requires a call of require_boundary().
   [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
 
-  /// See contact_parts(), of the first shape.
+  /// See contact_parts(), of the first shape or that after the last edit.
   [[nodiscard]] std::span<const std::uint32_t> contact_parts() const { return contact_parts_; }
 
  private:

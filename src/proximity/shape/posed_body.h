@@ -4,6 +4,7 @@
 #include <sdm/shape.h>
 
 #include <span>
+#include <utility>
 
 #include "mesh/similarity.h"
 #include "proximity/shape/body.h"
@@ -19,11 +20,23 @@ class PosedBody {
     pose_ = mesh::Similarity::of(pose);
     follow();
   }
+  /// Throws sdm::Error if another Shape shares the mesh.
+  void require_own_shape() const;
   /// Throws sdm::Error for positions that are not valid for the mesh, and if another Shape shares it.
   void check_refit(std::span<const Vec3> positions) const;
   /// Moves the vertices to positions that were checked; they are in the frame of the mesh.
   void refit(std::span<const Vec3> positions) {
     internals(shape_)->refit(positions);
+    follow();
+  }
+
+  /// Requires a shape of its own. Throws as Body::edit does.
+  void edit(const MeshEdit& edit) {
+    internals(shape_)->edit(edit);
+    follow();
+  }
+  void replace(Shape shape) {
+    shape_ = std::move(shape);
     follow();
   }
 

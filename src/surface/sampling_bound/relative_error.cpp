@@ -36,6 +36,10 @@ double RelativeError::of(const SamplingBound& now) const {
   return ratio(now.value(), largest_);
 }
 
+double RelativeError::of_edited(const SamplingBound& now) const {
+  return ratio(now.value(), largest_);
+}
+
 void RelativeError::of_faces(const SamplingBound& now, std::span<double> errors) const {
   check_faces(now.face_radii().size(), first_.size());
   check_faces(errors.size(), first_.size());
