@@ -16,9 +16,11 @@
 #include "output_folder.h"
 #include "pair_options.h"
 #include "progress_line.h"
-#include "scenes/placement.h"
+#include "sequence_body.h"
+#include "sequence_bound.h"
 #include "sequence_report.h"
 #include "sequence_state.h"
+#include "sequence_temporal.h"
 #include "stopwatch.h"
 
 namespace fs = std::filesystem;
@@ -32,7 +34,7 @@ struct SequenceCommand {
   std::filesystem::path out;
   int maps_every = 0;
   double rate = 0;
-  bool keep_going = false, no_temporal = false, resume = false;
+  bool keep_going = false, no_temporal = false, resume = false, allow_topology = false;
 };
 
 /// All that affects the files, except the inputs, by the names of the options.
@@ -47,6 +49,7 @@ Json options_of(const SequenceCommand& command) {
           {"--resolution", command.atlas.resolution},
           {"--maps", command.maps_every},
           {"--rate", command.rate},
+          {"--allow-topology", command.allow_topology},
           {"--no-temporal", command.no_temporal}};
 }
 
@@ -65,43 +68,13 @@ std::vector<fs::path> earlier_files(const fs::path& folder, bool resumed) {
   return files;
 }
 
-/// A body: its sequence of meshes and its placement.
-class Body {
- public:
-  Body(const std::string& input, const std::string& steps, double rate)
-      : input_(input),
-        sequence_(input, {.rate = rate}),
-        steps_(sdm::scenes::without_fit(sequence_.mesh(), sdm::scenes::parse_placement(steps))) {}
+sdm::SequenceOptions sequence_options(const SequenceCommand& command) {
+  return {.rate = command.rate, .allow_topology = command.allow_topology};
+}
 
-  [[nodiscard]] const std::string& input() const { return input_; }
-  [[nodiscard]] std::size_t frames() const { return sequence_.frame_count(); }
-  [[nodiscard]] bool still() const { return frames() == 1; }
-  [[nodiscard]] sdm::Mesh first() const {
-    sdm::Mesh mesh = sequence_.mesh();
-    sdm::scenes::place(mesh, steps_);
-    return mesh;
-  }
-  /// The placed positions of a frame. Requires a moving body.
-  [[nodiscard]] std::span<const sdm::Vec3> positions(std::size_t frame) {
-    const std::span<const sdm::Vec3> read = sequence_.positions(frame);
-    placed_.assign(read.begin(), read.end());
-    sdm::scenes::place(placed_, steps_);
-    return placed_;
-  }
-
- private:
-  std::string input_;
-  sdm::MeshSequence sequence_;
-  std::vector<sdm::scenes::PlacementStep> steps_;
-  std::vector<sdm::Vec3> placed_;
-};
-
-std::size_t common_frames(const Body& a, const Body& b) {
-  if (a.still()) return b.frames();
-  if (b.still() || a.frames() == b.frames()) return a.frames();
-  throw sdm::Error(fmt::format(
-      "{} has {} frames and {} has {}; give two sequences of the same length, or one mesh at rest", a.input(),
-      a.frames(), b.input(), b.frames()));
+std::size_t count_faces(const sdm::Mesh& mesh) {
+  return mesh.triangles.size() -
+         static_cast<std::size_t>(std::ranges::count_if(mesh.triangles, sdm::is_removed));
 }
 
 /// Processes the frames of one command.
@@ -112,20 +85,18 @@ class FrameLoop {
         resumed_(command.resume ? incomplete_run(command.out, options_of(command)) : std::nullopt),
         out_(command.out, earlier_files(command.out, resumed_.has_value())),
         progress_(command.pair.quiet),
-        o1_(command.pair.o1, command.pair.transform_o1, command.rate),
-        o2_(command.pair.o2, command.pair.transform_o2, command.rate),
-        count_(common_frames(o1_, o2_)),
+        bodies_{Body(command.pair.o1, command.pair.transform_o1, sequence_options(command)),
+                Body(command.pair.o2, command.pair.transform_o2, sequence_options(command))},
+        count_(common_frames(bodies_[0], bodies_[1])),
         lines_(out_.staging() / "frames.jsonl", std::ios::binary) {
     command_.atlas.progress = progress_.callback();
     state_.options = options_of(command);
-    state_.meshes = {hash_of(o1_.first()), hash_of(o2_.first())};
+    const std::array<sdm::Mesh, 2> first{bodies_[0].mesh(), bodies_[1].mesh()};
+    state_.meshes = {hash_of(first[0]), hash_of(first[1])};
     if (resumed_) check_meshes();
-    query_.emplace(sdm::Shape(o1_.first(), command_.atlas), sdm::Shape(o2_.first(), command_.atlas),
+    query_.emplace(sdm::Shape(first[0], command_.atlas), sdm::Shape(first[1], command_.atlas),
                    command_.pair.options);
-    for (int b = 0; b < 2; ++b) {
-      bounds_.emplace_back(query_->surface(b));
-      errors_.emplace_back(query_->surface(b), bounds_.back());
-    }
+    for (int b = 0; b < 2; ++b) bounds_.emplace_back(query_->surface(b));
   }
 
   /// Writes the results of all frames, or of those before an interrupt or the first bad frame, which is then
@@ -176,8 +147,8 @@ class FrameLoop {
   void check_meshes() const {
     for (int b = 0; b < 2; ++b)
       if (resumed_->meshes[b] != state_.meshes[b])
-        refuse_to_resume(command_.out, fmt::format("{} is not the mesh of the interrupted run",
-                                                   (b == 0 ? o1_ : o2_).input()));
+        refuse_to_resume(command_.out,
+                         fmt::format("{} is not the mesh of the interrupted run", bodies_[b].input()));
     if (resumed_->frames.size() > count_)
       refuse_to_resume(command_.out,
                        fmt::format("the inputs have {} frames and the interrupted run has finished {}",
@@ -194,6 +165,9 @@ class FrameLoop {
       frame.index = i;
       try {
         move(frame);
+        for (int b = 0; b < 2; ++b)
+          if (bounds_[b].has_history()) bounds_[b].measure(query_->surface(b));
+        if (!is_bad(resumed_->frames[i].line)) temporal_.pass();
       } catch (const sdm::Cancelled&) {
         throw;
       } catch (const sdm::Error&) {  // as in the interrupted run, if the hashes agree
@@ -202,7 +176,7 @@ class FrameLoop {
         refuse_to_resume(command_.out, fmt::format("frame {} is not that of the interrupted run", i));
     }
     state_.frames = std::move(resumed_->frames);
-    state_.temporal = std::move(resumed_->temporal);
+    temporal_.resume(std::move(resumed_->temporal));
     for (const auto& [line, hash] : state_.frames) {
       if (is_bad(line))
         bad_.push_back(bad_frame_from(line));
@@ -237,14 +211,14 @@ class FrameLoop {
     frame.patches = contacts.empty() ? 0 : contacts.back().patch + 1;
     frame.time.query = watch.lap();
     for (int b = 0; b < 2; ++b) {
-      bounds_[b].refit(query_->surface(b));
+      bounds_[b].measure(query_->surface(b));
       frame.error_bound[b] = bounds_[b].value();
-      frame.relative_error[b] = errors_[b].of(bounds_[b]);
+      frame.relative_error[b] = bounds_[b].relative_error();
     }
     frame.time.error = watch.lap();
     const bool write = command_.maps_every > 0 && index % static_cast<std::size_t>(command_.maps_every) == 0;
     if (write || !command_.no_temporal) sdm::compute_map(query_->surface(0), query_->sites(1), {}, map_);
-    if (!command_.no_temporal) state_.temporal.add(map_);
+    if (!command_.no_temporal) temporal_.add(query_->surface(0), map_);
     frame.time.map = watch.lap();
     if (write) write_map(index);
     frame.time.write = watch.lap();
@@ -254,24 +228,54 @@ class FrameLoop {
     state_.frames.push_back({line, hash_});
   }
 
-  // Both bodies are read before either is moved.
+  // Both bodies are read before either is moved. Changes of the topology are followed at once, as they are
+  // relative to the frame that was read before.
   void move(Frame& frame) {
     Stopwatch watch;
     std::array<std::span<const sdm::Vec3>, 2> positions;
     hash_ = {};
     for (int b = 0; b < 2; ++b) {
-      Body& body = b == 0 ? o1_ : o2_;
+      Body& body = bodies_[b];
       if (body.still()) continue;
-      positions[b] = body.positions(frame.index);
-      hash_[b] = hash_of(positions[b]);
+      body.read(frame.index);
+      hash_[b] = body.hash();
+      frame.time.read += watch.lap();
+      if (const sdm::TopologyChange change = body.change(); !change.none())
+        follow(b, change, frame);
+      else
+        positions[b] = body.positions();
+      frame.time.update += watch.lap();
     }
-    frame.time.read = watch.lap();
     try {
       query_->refit(positions[0], positions[1]);
+      for (int b = 0; b < 2; ++b)
+        if (std::exchange(edited_[b], false)) bounds_[b].rebuild(query_->surface(b));
     } catch (const sdm::Error& error) {
       throw sdm::Error(fmt::format("frame {}: {}", frame.index, error.what()), error.remedy());
     }
-    frame.time.update = watch.lap();
+    frame.time.update += watch.lap();
+  }
+
+  void follow(int b, const sdm::TopologyChange& change, Frame& frame) {
+    edited_[b] = true;
+    const std::size_t faces_before = count_faces(query_->sites(b).mesh());
+    bool replaced = change.replaced;
+    if (!replaced) try {
+        if (b == 0) temporal_.before_edit(query_->surface(0));
+        query_->edit(b, change.edit);
+      } catch (const sdm::Error&) {  // the atlas has no room
+        replaced = true;
+      }
+    if (replaced) {
+      query_->replace(b, sdm::Shape(bodies_[b].mesh(), command_.atlas));
+      if (b == 0) temporal_.before_restart();
+    }
+    bodies_[b].followed();
+    frame.topology[b] = {
+        .removed_faces = replaced ? faces_before : change.edit.removed_faces.size(),
+        .reconnected_faces = replaced ? 0 : change.edit.reconnected_faces.size(),
+        .added_faces = replaced ? count_faces(query_->sites(b).mesh()) : change.edit.added_faces.size(),
+        .new_layout = replaced};
   }
 
   void write_map(std::size_t index) {
@@ -293,46 +297,52 @@ class FrameLoop {
     if (!lines_) throw_write_failure(folder / "frames.jsonl");
     write_text(folder / "frames.csv", to_csv(frames_));
     if (!frames_.empty()) write_plot(folder / "plot.png", frames_, command_.pair.units);
-    if (state_.temporal.maps() > 0) write_temporal(folder);
-    if (!complete()) state_.write(folder / SequenceState::kFile);
+    const sdm::TemporalMaps temporal = temporal_.of(query_->surface(0));
+    if (temporal.maps() > 0) write_temporal(folder, temporal);
+    if (complete()) return;
+    state_.temporal = temporal_.maps();
+    state_.write(folder / SequenceState::kFile);
   }
 
   void print_summary() const {
-    std::cout << fmt::format("{}, {}\n{}  results    {}/: frames.jsonl frames.csv{}{}{}\n", o1_.input(),
-                             o2_.input(), summary(frames_, bad_, command_.pair.units), command_.out.string(),
-                             frames_.empty() ? "" : " plot.png",
-                             state_.temporal.maps() > 0 ? " temporal.exr min.png mean.png max.png" : "",
-                             command_.maps_every > 0 ? " maps/" : "");
+    const bool temporal = temporal_.of(query_->surface(0)).maps() > 0;
+    std::cout << fmt::format(
+        "{}, {}\n{}  results    {}/: frames.jsonl frames.csv{}{}{}\n", bodies_[0].input(), bodies_[1].input(),
+        summary(frames_, bad_, command_.pair.units), command_.out.string(),
+        frames_.empty() ? "" : " plot.png", temporal ? " temporal.exr min.png mean.png max.png" : "",
+        command_.maps_every > 0 ? " maps/" : "");
   }
 
-  void write_temporal(const fs::path& folder) {
+  void write_temporal(const fs::path& folder, const sdm::TemporalMaps& temporal) {
     const sdm::Surface& surface = query_->surface(0);
-    sdm::write_exr(folder / "temporal.exr", surface, state_.temporal);
+    sdm::write_exr(folder / "temporal.exr", surface, temporal);
     // The picture needs the other layers of a map.
-    if (map_.distance.empty()) sdm::compute_map(surface, query_->sites(1), {}, map_);
+    if (map_.distance.size() != surface.texel_faces().size())
+      sdm::compute_map(surface, query_->sites(1), {}, map_);
     const auto draw = [&](const char* file, std::span<const float> values) {
       std::ranges::copy(values, map_.distance.begin());
       sdm::write_distance_png(folder / file, surface, map_, {.units = command_.pair.units});
     };
-    draw("min.png", state_.temporal.least());
-    draw("mean.png", state_.temporal.mean());
-    draw("max.png", state_.temporal.largest());
+    draw("min.png", temporal.least());
+    draw("mean.png", temporal.mean());
+    draw("max.png", temporal.largest());
   }
 
   SequenceCommand command_;
   std::optional<SequenceState> resumed_;  // its parts move to state_
   OutputFolder out_;
   ProgressLine progress_;
-  Body o1_, o2_;
+  std::array<Body, 2> bodies_;
   std::size_t count_;
   std::ofstream lines_;
   std::optional<sdm::ProximityQuery> query_;
-  std::vector<sdm::SamplingBound> bounds_;  // one for each body
-  std::vector<sdm::RelativeError> errors_;  // one for each body
+  std::vector<FrameBound> bounds_;  // one for each body
   std::vector<Frame> frames_;
   std::vector<BadFrame> bad_;
   std::array<std::optional<std::uint64_t>, 2> hash_;  // of the positions of the current frame
   SequenceState state_;
+  TemporalRecorder temporal_;
+  std::array<bool, 2> edited_{};  // bodies, since their bounds were built
   bool stopped_ = false, interrupted_ = false;
   sdm::DistanceMap map_;
 };
@@ -363,6 +373,9 @@ void add_sequence_command(CLI::App& app) {
   sequence->add_option("--rate", command->rate, "glTF animations: frames per second; 0: one frame per key")
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
       ->type_name("FPS");
+  sequence->add_flag("--allow-topology", command->allow_topology,
+                     "Numbered files may add and remove vertices and faces between frames; what stays keeps "
+                     "its texels, and maps over time are of what stays");
   sequence->add_flag("--resume", command->resume,
                      "Continue an interrupted run in the same folder, with the same inputs and options; "
                      "without one, start from the first frame");

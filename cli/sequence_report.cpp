@@ -14,6 +14,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+constexpr const char* kBodies[] = {"o1", "o2"};
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // With the precision of a float; empty for NaN.
@@ -59,6 +61,25 @@ sdm::BoundedLength length_from(const Json& json) {
   return length;
 }
 
+// Empty if the topology does not change.
+std::string topology_summary(const std::vector<Frame>& frames) {
+  std::size_t changes = 0;
+  std::array<const Frame*, 2> new_layout{};  // the last one
+  for (const Frame& frame : frames) {
+    changes += frame.topology[0] || frame.topology[1];
+    for (int b = 0; b < 2; ++b)
+      if (frame.topology[b] && frame.topology[b]->new_layout) new_layout[b] = &frame;
+  }
+  if (changes == 0) return {};
+  std::string text = fmt::format("  topology   changes in {} frames\n", changes);
+  for (int b = 0; b < 2; ++b)
+    if (new_layout[b])
+      text += fmt::format("  note       frame {} of {} could not keep the layout of the frame before{}\n",
+                          new_layout[b]->index, b == 0 ? "O1" : "O2",
+                          b == 0 ? "; maps over time begin there" : "");
+  return text;
+}
+
 }  // namespace
 
 Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
@@ -74,6 +95,12 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   json["error_bound"] = {{"kind", "bounded"}, {"o1", frame.error_bound[0]}, {"o2", frame.error_bound[1]}};
   json["relative_error"] = {
       {"kind", "bounded"}, {"o1", frame.relative_error[0]}, {"o2", frame.relative_error[1]}};
+  for (int b = 0; b < 2; ++b)
+    if (const auto& topology = frame.topology[b])
+      json["topology"][kBodies[b]] = {{"removed_faces", topology->removed_faces},
+                                      {"reconnected_faces", topology->reconnected_faces},
+                                      {"added_faces", topology->added_faces},
+                                      {"new_layout", topology->new_layout}};
   const FrameTimes& t = frame.time;
   json["time_ms"] = {{"read", t.read}, {"update", t.update}, {"query", t.query},  {"error", t.error},
                      {"map", t.map},   {"write", t.write},   {"total", t.total()}};
@@ -106,6 +133,12 @@ Frame frame_from(const Json& line) {
   };
   frame.error_bound = of_bodies("error_bound");
   frame.relative_error = of_bodies("relative_error");
+  for (int b = 0; b < 2 && line.contains("topology"); ++b)
+    if (const Json& all = line.at("topology"); all.contains(kBodies[b])) {
+      const Json& body = all.at(kBodies[b]);
+      frame.topology[b] = {body.at("removed_faces"), body.at("reconnected_faces"), body.at("added_faces"),
+                           body.at("new_layout")};
+    }
   const Json& t = line.at("time_ms");
   frame.time = {t.at("read"), t.at("update"), t.at("query"), t.at("error"), t.at("map"), t.at("write")};
   return frame;
@@ -180,6 +213,7 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
   const auto relative = [](const Frame& f) { return std::max(f.relative_error[0], f.relative_error[1]); };
   text += fmt::format("  error      up to {} times that of the first frame\n",
                       number(relative(*std::ranges::max_element(frames, {}, relative))));
+  text += topology_summary(frames);
   const auto ms = [&](double FrameTimes::*step) {
     return number(std::round(100 * median(frames, [=](const Frame& f) { return f.time.*step; })) / 100);
   };

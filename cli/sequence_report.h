@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,21 @@ struct FrameTimes {
   [[nodiscard]] double total() const { return read + update + query + error + map + write; }
 };
 
+/// How the topology of a body has changed since the frame before.
+struct TopologyReport {
+  std::size_t removed_faces = 0, reconnected_faces = 0, added_faces = 0;
+  bool new_layout = false;  ///< nothing stays: the body has another mesh and another atlas
+};
+
 struct Frame {
   std::size_t index = 0;
   sdm::BoundedLength separation;
   sdm::BoundedBool colliding;
   std::optional<sdm::BoundedLength> depth;
   std::size_t contacts = 0, patches = 0;
-  std::array<double, 2> error_bound{};     ///< of each body: covering radius
-  std::array<double, 2> relative_error{};  ///< of each body: see sdm::RelativeError
+  std::array<double, 2> error_bound{};                      ///< of each body: covering radius
+  std::array<double, 2> relative_error{};                   ///< of each body: see sdm::RelativeError
+  std::array<std::optional<TopologyReport>, 2> topology{};  ///< of bodies that have changed
   FrameTimes time;
 };
 

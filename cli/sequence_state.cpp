@@ -70,6 +70,7 @@ void SequenceState::write(const std::filesystem::path& file) const {
   const sdm::TemporalMaps::State& maps = temporal.state();
   header["maps"] = maps.maps;
   header["resolution"] = maps.resolution;
+  header["texels"] = maps.sum.size();
   std::ofstream out(file, std::ios::binary);
   out << header.dump() << '\n';
   write_array(out, maps.least);
@@ -93,7 +94,7 @@ SequenceState SequenceState::read(const std::filesystem::path& file) try {
   sdm::TemporalMaps::State maps;
   maps.maps = header.at("maps");
   maps.resolution = header.at("resolution");
-  const std::size_t texels = maps.maps == 0 ? 0 : std::size_t{maps.resolution} * maps.resolution;
+  const std::size_t texels = header.at("texels");
   constexpr std::size_t kBytesPerTexel = 2 * sizeof(float) + sizeof(double);
   const std::uintmax_t size = std::filesystem::file_size(file);
   const std::uintmax_t rest = size - std::min<std::uintmax_t>(size, line.size() + 1);

@@ -305,6 +305,96 @@ TEST_F(Resume, RefusesOtherOptionsAndInputs) {
   expect_refusal(into(out, {"--resume"}), "frame 3 is not that of the interrupted run");
 }
 
+/// Faces disappear and appear again, and once there is another mesh.
+struct ResumeTopology : Resume {
+  ResumeTopology() {
+    for (int i = 0; i < kFrames; ++i) write_frame(i, changing(i));
+  }
+  static Mesh changing(int i) {
+    Mesh mesh = i < 30 ? shape(i) : ring(14, 1, {0.25 * (i - 35), 0, 0.01 * i});
+    const auto faces = mesh.triangles.begin() + (i % 5) * 20;
+    if (i % 3 != 0) mesh.triangles.erase(faces, faces + 9 + i % 4);
+    Mesh ball = moved(sphere(1), {0.125 * i, 2.5, 0});
+    if (i % 7 < 3) ball.triangles.clear();  // its vertices stay in the file
+    return joined(mesh, ball);
+  }
+};
+
+TEST_F(ResumeTopology, EveryFrameIsAsByItself) {
+  const std::string other = folder / "other";
+  std::filesystem::create_directory(other);
+  std::vector<Mesh> others;
+  for (int i = 0; i < kFrames; ++i) {
+    others.push_back(ring(16, 1, {0.3, 0, 0}));
+    if (i >= 10) others.back().triangles.erase(others.back().triangles.begin() + 40 - i % 20);
+    write_obj(std::filesystem::path(other) / (std::to_string(i) + ".obj"), others.back());
+  }
+  std::vector<std::string> arguments = into(out, {"--allow-topology"});
+  arguments[2] = other;
+  const Outcome run = run_sdm(arguments);
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::vector<Json> all = lines();
+  ASSERT_EQ(all.size(), std::size_t{kFrames});
+  std::size_t edits = 0, layouts = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    SCOPED_TRACE(i);
+    const Json& line = all[static_cast<std::size_t>(i)];
+    ProximityQuery query(changing(i), others[static_cast<std::size_t>(i)]);
+    EXPECT_NEAR(line["separation"]["value"], query.separation().value, 1e-12);
+    EXPECT_EQ(line["colliding"]["value"], query.colliding().value);
+    ASSERT_EQ(line["penetration_depth"].is_null(), !query.penetration_depth().has_value());
+    if (query.penetration_depth()) {
+      EXPECT_LE(line["penetration_depth"]["lower"], query.penetration_depth()->upper);
+      EXPECT_GE(line["penetration_depth"]["upper"], query.penetration_depth()->lower);
+    }
+    EXPECT_GT(line["error_bound"]["o1"], 0);
+    if (!line.contains("topology")) continue;
+    EXPECT_EQ(line["topology"].contains("o1"),
+              i > 0 && (i == 30 || changing(i).triangles != changing(i - 1).triangles));
+    if (!line["topology"].contains("o1")) continue;
+    const Json& change = line["topology"]["o1"];
+    EXPECT_EQ(change["new_layout"], i == 30);
+    const auto faces = [&](int frame) { return static_cast<double>(changing(frame).triangles.size()); };
+    EXPECT_EQ(faces(i) - faces(i - 1),
+              change["added_faces"].get<double>() - change["removed_faces"].get<double>());
+    ++(i == 30 ? layouts : edits);
+  }
+  EXPECT_EQ(layouts, 1u);
+  EXPECT_GT(edits, 20u);
+}
+
+TEST_F(ResumeTopology, TheSummarySaysWhatChanged) {
+  const Outcome run = run_sdm(sequence({"--allow-topology"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("\n  topology   changes in "));
+  EXPECT_THAT(run.out,
+              HasSubstr("\n  note       frame 30 of O1 could not keep the layout of the frame before; "
+                        "maps over time begin there\n"));
+  EXPECT_EQ(run_sdm(sequence()).code, 1) << "without the option";
+}
+
+TEST_F(ResumeTopology, EndsWithTheFilesOfAnUninterruptedRun) {
+  const std::size_t first = interrupt({"--allow-topology"}, 12);
+  expect_refusal(into(out, {"--resume"}), "the interrupted run had another --allow-topology");
+  EXPECT_GT(interrupt({"--allow-topology", "--resume"}, static_cast<int>(first) + 5), first);
+  ASSERT_EQ(run_sdm(into(out, {"--allow-topology", "--resume"})).code, 0);
+  expect_whole({"--allow-topology"});
+}
+
+// Each change is relative to the frame before it that could be read.
+TEST_F(ResumeTopology, SkipsFramesThatCannotBeRead) {
+  for (const int bad : {3, 13, 30, 40}) std::filesystem::remove(moving + "/" + std::to_string(bad) + ".obj");
+  write_frame(20, ring(12, 1, {std::nan(""), 0, 0}));
+  interrupt({"--allow-topology", "--keep-going"}, 15);
+  ASSERT_EQ(run_sdm(into(out, {"--allow-topology", "--keep-going", "--resume"})).code, 0);
+  expect_whole({"--allow-topology", "--keep-going"});
+  for (const Json& line : lines())
+    if (!line.contains("error")) {
+      ProximityQuery query(changing(line["frame"]), read_mesh(o2));
+      EXPECT_NEAR(line["separation"]["value"], query.separation().value, 1e-12) << line["frame"];
+    }
+}
+
 TEST_F(Resume, RefusesADamagedState) {
   interrupt();
   std::filesystem::resize_file(out + "/resume.state", std::filesystem::file_size(out + "/resume.state") - 1);
