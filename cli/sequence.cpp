@@ -19,6 +19,7 @@
 #include "sequence_body.h"
 #include "sequence_bound.h"
 #include "sequence_report.h"
+#include "sequence_resolution.h"
 #include "sequence_state.h"
 #include "sequence_temporal.h"
 #include "stopwatch.h"
@@ -33,7 +34,7 @@ struct SequenceCommand {
   sdm::AtlasOptions atlas{.resolution = 512};
   std::filesystem::path out;
   int maps_every = 0;
-  double rate = 0;
+  double rate = 0, map_precision = 0;
   bool keep_going = false, no_temporal = false, resume = false, allow_topology = false;
 };
 
@@ -47,6 +48,7 @@ Json options_of(const SequenceCommand& command) {
           {"--margin", pair.options.contact_margin},
           {"--precision", pair.options.depth_precision},
           {"--resolution", command.atlas.resolution},
+          {"--map-precision", command.map_precision},
           {"--maps", command.maps_every},
           {"--rate", command.rate},
           {"--allow-topology", command.allow_topology},
@@ -85,8 +87,7 @@ class FrameLoop {
         resumed_(command.resume ? incomplete_run(command.out, options_of(command)) : std::nullopt),
         out_(command.out, earlier_files(command.out, resumed_.has_value())),
         progress_(command.pair.quiet),
-        bodies_{Body(command.pair.o1, command.pair.transform_o1, sequence_options(command)),
-                Body(command.pair.o2, command.pair.transform_o2, sequence_options(command))},
+        bodies_{open_o1(), Body(command.pair.o2, command.pair.transform_o2, sequence_options(command))},
         count_(common_frames(bodies_[0], bodies_[1])),
         lines_(out_.staging() / "frames.jsonl", std::ios::binary) {
     command_.atlas.progress = progress_.callback();
@@ -94,7 +95,10 @@ class FrameLoop {
     const std::array<sdm::Mesh, 2> first{bodies_[0].mesh(), bodies_[1].mesh()};
     state_.meshes = {hash_of(first[0]), hash_of(first[1])};
     if (resumed_) check_meshes();
-    query_.emplace(sdm::Shape(first[0], command_.atlas), sdm::Shape(first[1], command_.atlas),
+    atlases_ = {command_.atlas, command_.atlas};
+    if (command_.map_precision > 0) atlases_[0].resolution = first_resolution();
+    state_.resolution = atlases_[0].resolution;
+    query_.emplace(sdm::Shape(first[0], atlases_[0]), sdm::Shape(first[1], atlases_[1]),
                    command_.pair.options);
     for (int b = 0; b < 2; ++b) bounds_.emplace_back(query_->surface(b));
   }
@@ -142,6 +146,18 @@ class FrameLoop {
     return fmt::format("{}, {:.1f} per second", text, static_cast<double>(done) / seconds);
   }
 
+  [[nodiscard]] Body open_o1() const {
+    return {command_.pair.o1, command_.pair.transform_o1, sequence_options(command_)};
+  }
+
+  [[nodiscard]] std::uint32_t first_resolution() {
+    if (resumed_) return resumed_->resolution;
+    return resolution_for_frames([&] { return open_o1(); }, command_.atlas, command_.map_precision,
+                                 [&](std::size_t frame) {
+                                   progress_.step(fmt::format("measuring frame {} of {}", frame + 1, count_));
+                                 });
+  }
+
   [[nodiscard]] bool complete() const { return state_.frames.size() == count_; }
 
   void check_meshes() const {
@@ -165,8 +181,8 @@ class FrameLoop {
       frame.index = i;
       try {
         move(frame);
-        for (int b = 0; b < 2; ++b)
-          if (bounds_[b].has_history()) bounds_[b].measure(query_->surface(b));
+        if (command_.map_precision > 0 || bounds_[0].has_history() || bounds_[1].has_history())
+          measure(frame);
         if (!is_bad(resumed_->frames[i].line)) temporal_.pass();
       } catch (const sdm::Cancelled&) {
         throw;
@@ -203,6 +219,8 @@ class FrameLoop {
       return;
     }
     Stopwatch watch;
+    measure(frame);
+    frame.time.error = watch.lap();
     frame.separation = query_->separation();
     frame.colliding = query_->colliding();
     frame.depth = query_->penetration_depth();
@@ -210,12 +228,6 @@ class FrameLoop {
     frame.contacts = contacts.size();
     frame.patches = contacts.empty() ? 0 : contacts.back().patch + 1;
     frame.time.query = watch.lap();
-    for (int b = 0; b < 2; ++b) {
-      bounds_[b].measure(query_->surface(b));
-      frame.error_bound[b] = bounds_[b].value();
-      frame.relative_error[b] = bounds_[b].relative_error();
-    }
-    frame.time.error = watch.lap();
     const bool write = command_.maps_every > 0 && index % static_cast<std::size_t>(command_.maps_every) == 0;
     if (write || !command_.no_temporal) sdm::compute_map(query_->surface(0), query_->sites(1), {}, map_);
     if (!command_.no_temporal) temporal_.add(query_->surface(0), map_);
@@ -267,7 +279,7 @@ class FrameLoop {
         replaced = true;
       }
     if (replaced) {
-      query_->replace(b, sdm::Shape(bodies_[b].mesh(), command_.atlas));
+      query_->replace(b, sdm::Shape(bodies_[b].mesh(), atlases_[b]));
       if (b == 0) temporal_.before_restart();
     }
     bodies_[b].followed();
@@ -276,6 +288,29 @@ class FrameLoop {
         .reconnected_faces = replaced ? 0 : change.edit.reconnected_faces.size(),
         .added_faces = replaced ? count_faces(query_->sites(b).mesh()) : change.edit.added_faces.size(),
         .new_layout = replaced};
+  }
+
+  void measure(Frame& frame) {
+    bounds_[0].measure(query_->surface(0), command_.map_precision);
+    bounds_[1].measure(query_->surface(1), 0);
+    if (command_.map_precision > 0 && bounds_[0].value() > command_.map_precision) refine(frame);
+    for (int b = 0; b < 2; ++b) {
+      frame.error_bound[b] = bounds_[b].value();
+      frame.relative_error[b] = bounds_[b].relative_error();
+    }
+    frame.resolution = query_->surface(0).resolution();
+  }
+
+  // A frame that could not be read when the resolution was chosen, or whose atlas is new, may need a finer
+  // one.
+  void refine(Frame& frame) {
+    const sdm::Mesh mesh = query_->surface(0).mesh();
+    atlases_[0].resolution = sdm::resolution_for(mesh, atlases_[0], command_.map_precision);
+    query_->replace(0, sdm::Shape(mesh, atlases_[0]));
+    bounds_[0].rebuild(query_->surface(0));
+    temporal_.before_restart();
+    if (!frame.topology[0]) frame.topology[0].emplace();
+    frame.topology[0]->new_layout = true;
   }
 
   void write_map(std::size_t index) {
@@ -335,6 +370,7 @@ class FrameLoop {
   std::array<Body, 2> bodies_;
   std::size_t count_;
   std::ofstream lines_;
+  std::array<sdm::AtlasOptions, 2> atlases_;
   std::optional<sdm::ProximityQuery> query_;
   std::vector<FrameBound> bounds_;  // one for each body
   std::vector<Frame> frames_;
@@ -365,6 +401,13 @@ void add_sequence_command(CLI::App& app) {
   const auto command = std::make_shared<SequenceCommand>();
   add_options(*sequence, command->pair, {"A sequence, or a mesh at rest", "The other sequence or mesh"});
   add_resolution_option(*sequence, command->atlas, "both bodies' maps");
+  sequence
+      ->add_option(
+          "--map-precision", command->map_precision,
+          "A resolution of O1's map for which its error bound is at most EPS in every frame, instead "
+          "of --resolution; reads all frames beforehand")
+      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->type_name("EPS");
   add_output_option(*sequence, command->out);
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")

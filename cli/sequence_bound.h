@@ -12,19 +12,21 @@ class FrameBound {
   void rebuild(const sdm::Surface& surface) {
     bound_ = sdm::SamplingBound(surface);
     built_ = bound_.value();
-    edited_ = true;
+    rebuilt_ = true;
   }
   /// Parts that a tear separates are near each other when it happens: samples are then assigned to points
   /// across the tear, which the bound has to follow as these move away. So after edits, the samples are
-  /// assigned again when the bound has grown.
-  void measure(const sdm::Surface& surface) {
+  /// assigned again when the bound has grown, and whenever it is above `limit`, unless that is 0.
+  void measure(const sdm::Surface& surface, double limit) {
     bound_.refit(surface);
-    if (edited_ && bound_.value() > kGrowth * built_) rebuild(surface);
+    if ((rebuilt_ && value() > kGrowth * built_) || (limit > 0 && value() > limit)) rebuild(surface);
   }
   /// Whether the bound depends on which frames were measured before.
-  [[nodiscard]] bool has_history() const { return edited_; }
+  [[nodiscard]] bool has_history() const { return rebuilt_; }
 
   [[nodiscard]] double value() const { return bound_.value(); }
+  /// See sdm::SamplingBound.
+  [[nodiscard]] double value_after(double motion) const { return bound_.value_after(motion); }
   /// See sdm::RelativeError.
   [[nodiscard]] double relative_error() const { return first_.of_edited(bound_); }
 
@@ -34,5 +36,5 @@ class FrameBound {
   sdm::SamplingBound bound_;
   sdm::RelativeError first_;
   double built_;
-  bool edited_ = false;
+  bool rebuilt_ = false;
 };

@@ -95,6 +95,7 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   json["error_bound"] = {{"kind", "bounded"}, {"o1", frame.error_bound[0]}, {"o2", frame.error_bound[1]}};
   json["relative_error"] = {
       {"kind", "bounded"}, {"o1", frame.relative_error[0]}, {"o2", frame.relative_error[1]}};
+  json["resolution"] = frame.resolution;
   for (int b = 0; b < 2; ++b)
     if (const auto& topology = frame.topology[b])
       json["topology"][kBodies[b]] = {{"removed_faces", topology->removed_faces},
@@ -133,6 +134,7 @@ Frame frame_from(const Json& line) {
   };
   frame.error_bound = of_bodies("error_bound");
   frame.relative_error = of_bodies("relative_error");
+  frame.resolution = line.at("resolution");
   for (int b = 0; b < 2 && line.contains("topology"); ++b)
     if (const Json& all = line.at("topology"); all.contains(kBodies[b])) {
       const Json& body = all.at(kBodies[b]);
@@ -213,6 +215,9 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
   const auto relative = [](const Frame& f) { return std::max(f.relative_error[0], f.relative_error[1]); };
   text += fmt::format("  error      up to {} times that of the first frame\n",
                       number(relative(*std::ranges::max_element(frames, {}, relative))));
+  const auto error = [](const Frame& f) { return f.error_bound[0]; };
+  text += fmt::format("  map error  at most {}{} in all frames (bounded)\n",
+                      number(error(*std::ranges::max_element(frames, {}, error))), unit);
   text += topology_summary(frames);
   const auto ms = [&](double FrameTimes::*step) {
     return number(std::round(100 * median(frames, [=](const Frame& f) { return f.time.*step; })) / 100);

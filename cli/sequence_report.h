@@ -5,6 +5,7 @@
 #include <sdm/sdm.h>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -32,6 +33,7 @@ struct Frame {
   std::array<double, 2> error_bound{};                      ///< of each body: covering radius
   std::array<double, 2> relative_error{};                   ///< of each body: see sdm::RelativeError
   std::array<std::optional<TopologyReport>, 2> topology{};  ///< of bodies that have changed
+  std::uint32_t resolution = 0;                             ///< texels per row of O1's atlas
   FrameTimes time;
 };
 

@@ -70,6 +70,7 @@ void SequenceState::write(const std::filesystem::path& file) const {
   const sdm::TemporalMaps::State& maps = temporal.state();
   header["maps"] = maps.maps;
   header["resolution"] = maps.resolution;
+  header["first_resolution"] = resolution;
   header["texels"] = maps.sum.size();
   std::ofstream out(file, std::ios::binary);
   out << header.dump() << '\n';
@@ -91,6 +92,7 @@ SequenceState SequenceState::read(const std::filesystem::path& file) try {
   for (const Json& frame : header.at("frames"))
     state.frames.push_back(
         {frame.at("line"), {hash_from(frame.at("hash").at(0)), hash_from(frame.at("hash").at(1))}});
+  state.resolution = header.at("first_resolution");
   sdm::TemporalMaps::State maps;
   maps.maps = header.at("maps");
   maps.resolution = header.at("resolution");

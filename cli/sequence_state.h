@@ -30,6 +30,7 @@ struct SequenceState {
 
   nlohmann::ordered_json options;         ///< all that affect results, by their names
   std::array<std::uint64_t, 2> meshes{};  ///< hashes of the first frame of each body
+  std::uint32_t resolution = 0;           ///< of the first layout of O1
   std::vector<Frame> frames;              ///< from frame 0 on
   sdm::TemporalMaps temporal;             ///< of `frames`
 

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 
 #include "cli/samples.h"
+#include "support/oracle.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 
@@ -138,6 +140,55 @@ TEST_F(SequenceCommand, ReplacesAllFilesOfAnEarlierRun) {
   ASSERT_EQ(run_sdm(sequence({"--maps", "5"})).code, 0);
   ASSERT_EQ(run_sdm(sequence({"--no-temporal"})).code, 0);
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"frames.csv", "frames.jsonl", "plot.png"}));
+}
+
+// And true: no point of the surface is farther from its nearest sample.
+TEST_F(SequenceCommand, KeepsTheErrorBoundBelowAPrecision) {
+  constexpr double kPrecision = 0.1;
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 12; ++i) {  // stretched up to three times, while it moves fast
+    meshes.push_back(ring(12, 1, {0, 0, 0}));
+    for (Vec3& p : meshes.back().positions) p = {p[0] + 2 * i, p[1] * (1 + 2 * std::sin(i * 0.3)), p[2]};
+    write_frame(i, meshes.back());
+  }
+  const Outcome run = run_sdm(sequence({"--map-precision", "0.1", "--maps", "5"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("  map error  at most "));
+  const std::vector<Json> all = lines();
+  ASSERT_EQ(all.size(), 12u);
+  Surface surface(meshes[0], {.resolution = all[0]["resolution"]});
+  SamplingBound bound(surface);
+  EXPECT_LT(bound.value(), kPrecision / 2) << "the first frame alone would need less";
+  double largest = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i]["resolution"], surface.resolution()) << "one resolution for all frames";
+    EXPECT_FALSE(all[i].contains("topology"));
+    const double reported = all[i]["error_bound"]["o1"];
+    largest = std::max(largest, reported);
+    EXPECT_LE(reported, kPrecision);
+    surface.refit(meshes[i].positions);
+    bound.refit(surface);
+    EXPECT_LE(reported, bound.value());
+    const oracle::CgalPoints samples(surface.sample_points());
+    std::mt19937 random(1);
+    for (const Triangle& t : meshes[i].triangles) {
+      const double a = std::uniform_real_distribution<>(0, 1)(random), b = a / 2;
+      Vec3 p;
+      for (int k = 0; k < 3; ++k)
+        p[k] = (1 - a) * meshes[i].positions[t[0]][k] + (a - b) * meshes[i].positions[t[1]][k] +
+               b * meshes[i].positions[t[2]][k];
+      EXPECT_LE(samples.distance(p), reported);
+    }
+  }
+  EXPECT_GT(largest, 0.7 * kPrecision) << "finer than needed";
+}
+
+TEST_F(SequenceCommand, RefusesAPrecisionThatNoAtlasHas) {
+  const Outcome run = run_sdm(sequence({"--map-precision", "1e-9"}));
+  EXPECT_EQ(run.code, 1);
+  EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_EQ(run_sdm(sequence({"--map-precision", "0"})).code, 2);
 }
 
 /// The first torus passes the second one four times, stretched more and more: some results depend on shapes
@@ -361,6 +412,30 @@ TEST_F(ResumeTopology, EveryFrameIsAsByItself) {
   }
   EXPECT_EQ(layouts, 1u);
   EXPECT_GT(edits, 20u);
+}
+
+TEST_F(ResumeTopology, KeepsTheErrorBoundBelowAPrecision) {
+  const std::vector<std::string> more{"--allow-topology", "--map-precision", "0.15"};
+  interrupt(more, 25);
+  std::vector<std::string> resume = into(out, more);
+  resume.push_back("--resume");
+  ASSERT_EQ(run_sdm(resume).code, 0);
+  for (const Json& line : lines()) EXPECT_LE(line["error_bound"]["o1"], 0.15) << line["frame"];
+  expect_whole(more);
+}
+
+// Unless it can be read later.
+TEST_F(Resume, AFrameThatAppearsLaterMayNeedAFinerAtlas) {
+  std::filesystem::remove(moving + "/20.obj");
+  EXPECT_EQ(run_sdm(into(out, {"--map-precision", "0.1"})).code, 1);
+  Mesh large = shape(20);
+  for (Vec3& p : large.positions) p[2] *= 8;
+  write_frame(20, large);
+  ASSERT_EQ(run_sdm(into(out, {"--map-precision", "0.1", "--resume"})).code, 0);
+  const std::vector<Json> all = lines();
+  for (const Json& line : all) EXPECT_LE(line["error_bound"]["o1"], 0.1) << line["frame"];
+  EXPECT_GT(all[20]["resolution"], all[19]["resolution"]);
+  EXPECT_EQ(all[20]["topology"]["o1"]["new_layout"], true);
 }
 
 TEST_F(ResumeTopology, TheSummarySaysWhatChanged) {
