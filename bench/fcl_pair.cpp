@@ -4,6 +4,8 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
+#include <limits>
+
 namespace sdm::bench {
 namespace {
 
@@ -52,6 +54,20 @@ bool FclPair::collide(const Affine& pose) const {
   fcl::CollisionResultd result;
   fcl::collide(impl_->o1.get(), impl_->in_place, impl_->o2.get(), transform_of(pose), request, result);
   return result.isCollision();
+}
+
+FclPair::Contacts FclPair::contacts(const Affine& pose) const {
+  const fcl::CollisionRequestd request(std::numeric_limits<std::size_t>::max(), true);
+  fcl::CollisionResultd result;
+  fcl::collide(impl_->o1.get(), impl_->in_place, impl_->o2.get(), transform_of(pose), request, result);
+  Contacts contacts{.count = result.numContacts()};
+  for (std::size_t i = 0; i < contacts.count; ++i)
+    if (const fcl::Contactd& contact = result.getContact(i);
+        i == 0 || contact.penetration_depth > contacts.deepest) {
+      contacts.deepest = contact.penetration_depth;
+      for (int k = 0; k < 3; ++k) contacts.deepest_normal[k] = contact.normal(k);
+    }
+  return contacts;
 }
 
 }  // namespace sdm::bench

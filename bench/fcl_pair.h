@@ -20,6 +20,14 @@ class FclPair {
   /// Whether the surfaces intersect; the search ends at the first contact.
   [[nodiscard]] bool collide(const Affine& pose) const;
 
+  struct Contacts {
+    std::size_t count = 0;  ///< points at which triangles intersect
+    Vec3 deepest_normal{};  ///< of the one with the largest depth, from O1 to O2
+    double deepest = 0;
+  };
+  /// All contacts: those of every pair of triangles that intersect.
+  [[nodiscard]] Contacts contacts(const Affine& pose) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

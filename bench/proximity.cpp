@@ -1,6 +1,11 @@
 // Exact separation and collision of two meshes against FCL, in poses that are far, near, touching,
 // penetrating and concentric. A repetition is a pose; every result is compared with FCL's before both are
-// timed. Searches know nothing of other poses. Also the time of ProximityQuery::contacts in the poses without
+// timed. Searches know nothing of other poses.
+//
+// Contacts are timed in poses that have some: of ProximityQuery::contacts, with set_pose, against all
+// contacts of FCL. The two are not the same: FCL's are the points of every pair of triangles that intersect,
+// ours those that a solver needs. Compared is whether there are any, and for bodies that barely intersect
+// whether the deepest ones push to the same side (same_side). Also the time of ours in the poses without
 // contact.
 //
 //   build/dev/bench/proximity [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
@@ -12,6 +17,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +36,8 @@
 
 namespace sdm::bench {
 namespace {
+
+constexpr double kShallow = 0.02;  // depth, of the size of both bodies
 
 /// Times in microseconds, one per pose.
 struct Times {
@@ -57,6 +65,25 @@ Row row(std::string name, const Times& times) {
            {"faster_in", faster / static_cast<double>(times.ours.size())}}};
 }
 
+/// Of poses with contacts.
+struct ContactTimes : Times {
+  std::vector<double> our_count, fcl_count;
+
+  void count(std::size_t our_contacts, std::size_t fcl_contacts) {
+    our_count.push_back(static_cast<double>(our_contacts));
+    fcl_count.push_back(static_cast<double>(fcl_contacts));
+  }
+};
+
+Row row(std::string name, const ContactTimes& times) {
+  if (times.ours.empty()) return {std::move(name), {{"poses", 0}}};
+  Row result = row(std::move(name), static_cast<const Times&>(times));
+  result.figures.insert(result.figures.end(), {{"ours", median(times.our_count)},
+                                               {"fcl", median(times.fcl_count)},
+                                               {"poses", static_cast<double>(times.ours.size())}});
+  return result;
+}
+
 Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
   const auto& [m1, m2] = meshes;
   const Sites o1(m1), o2(m2);
@@ -67,6 +94,8 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
   Times separation, collision;
   ProximityQuery query(m1, m2);
   std::vector<double> no_contacts;
+  ContactTimes shallow, deep;
+  std::vector<double> same_side;
   std::size_t wrong = 0;
   for (const Affine& pose : random_poses(o1, o2, static_cast<std::size_t>(trial.repetitions), random)) {
     const exact::MeshPair posed{internals(o1), internals(o2), pose};
@@ -83,9 +112,21 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
     collision.add(contender([&] { (void)collide(); }), contender([&] { (void)fcl.collide(pose); }));
     const auto find_contacts = [&] {
       query.set_pose(1, mesh::Similarity{.map = pose}.transform());
-      return query.contacts().size();
+      return query.contacts();
     };
-    if (find_contacts() == 0) {
+    const FclPair::Contacts theirs = fcl.contacts(pose);
+    if (const std::span<const Contact> contacts = find_contacts(); !contacts.empty()) {
+      wrong += !query.colliding().value;
+      const bool is_shallow = contacts[0].depth < kShallow * size;
+      if (is_shallow && theirs.count > 0)
+        same_side.push_back(dot(contacts[0].normal, theirs.deepest_normal) < 0);
+      ContactTimes& times = is_shallow ? shallow : deep;
+      times.count(contacts.size(), theirs.count);
+      times.add(contender([&] { (void)find_contacts(); }), contender([&] { (void)fcl.contacts(pose); }));
+    } else {
+      // Surfaces that just touch may have contacts or not.
+      wrong += theirs.count > 0 && query.colliding().value && query.penetration_depth() &&
+               query.penetration_depth()->lower > 1e-9 * size;
       Stopwatch watch;
       constexpr int kTimes = 20;
       for (int i = 0; i < kTimes; ++i) (void)find_contacts();
@@ -97,6 +138,9 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
       .verified = wrong == 0,
       .rows = {row("separation", separation),
                row("collision", collision),
+               row("contacts, shallow", shallow),
+               row("contacts, deep", deep),
+               {"deepest contacts", {{"same_side", mean(same_side)}}},
                {"no contacts", {{"ours_us", median(no_contacts)}, {"p99_us", quantile(no_contacts, 0.99)}}}}};
 }
 
@@ -138,7 +182,7 @@ int main(int argc, char** argv) {
   using namespace sdm::bench;
   return run_program(argc, argv,
                      {.name = "proximity",
-                      .description = "Exact separation and collision against FCL",
+                      .description = "Exact separation, collision and contacts against FCL",
                       .repetition = "poses",
                       .cases = cases()});
 }
