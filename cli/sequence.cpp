@@ -253,19 +253,27 @@ class FrameLoop {
       hash_[b] = body.hash();
       frame.time.read += watch.lap();
       if (const sdm::TopologyChange change = body.change(); !change.none())
-        follow(b, change, frame);
+        naming(frame, [&] { follow(b, change, frame); });
       else
         positions[b] = body.positions();
       frame.time.update += watch.lap();
     }
-    try {
+    naming(frame, [&] {
       query_->refit(positions[0], positions[1]);
       for (int b = 0; b < 2; ++b)
-        if (std::exchange(edited_[b], false)) bounds_[b].rebuild(query_->surface(b));
-    } catch (const sdm::Error& error) {
-      throw sdm::Error(fmt::format("frame {}: {}", frame.index, error.what()), error.remedy());
-    }
+        if (edited_[b]) bounds_[b].rebuild(query_->surface(b)), edited_[b] = false;
+    });
     frame.time.update += watch.lap();
+  }
+
+  // Errors of `work` name the frame.
+  template <class Work>
+  static void naming(const Frame& frame, const Work& work) try {
+    work();
+  } catch (const sdm::Cancelled&) {
+    throw;
+  } catch (const sdm::Error& error) {
+    throw sdm::Error(fmt::format("frame {}: {}", frame.index, error.what()), error.remedy());
   }
 
   void follow(int b, const sdm::TopologyChange& change, Frame& frame) {
