@@ -38,8 +38,9 @@ class SDM_API SamplingBound {
 
   /// Measures the radii again after Surface::refit of the same surface. The assignment of pieces to samples
   /// does not change: the bound remains valid, and remains tight as long as neighbouring points stay
-  /// together. Throws sdm::Error, and changes nothing, when the number of faces or samples differs. Allocates
-  /// nothing. Cost: linear in faces, samples and pieces, all cores; much less than construction.
+  /// together. Throws sdm::Error, and changes nothing, for another surface, and after Surface::edit: a bound
+  /// must then be built again. Allocates nothing. Cost: linear in faces, samples and pieces, all cores; much
+  /// less than construction.
   void refit(const Surface& surface);
 
   /// The largest radius: no point of the surface is farther from its nearest sample.
@@ -80,8 +81,8 @@ class SDM_API SamplingBound {
 class SDM_API RelativeError {
  public:
   /// Computes lower bounds on r(0) and r_f(0) from the present shape of the surface; `bound` must be its
-  /// bound. Throws sdm::Error if there is not enough memory. Cost: a few nearest-sample searches per face,
-  /// all cores.
+  /// bound. Throws sdm::Error if it is not, and if there is not enough memory. Cost: a few nearest-sample
+  /// searches per face, all cores.
   RelativeError(const Surface& first_shape, const SamplingBound& bound);
 
   /// Returns now.value() / w ≥ e, where w ≤ r(0) is the distance from some point of the first shape to its

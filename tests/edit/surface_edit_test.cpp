@@ -255,5 +255,25 @@ TEST(SurfaceEdit, RefitsFollowAnEdit) {
   expect_bounded(surface, random);
 }
 
+// Even if the numbers of faces and samples are the same.
+TEST(SurfaceEdit, ABoundFromBeforeTheEditIsRefused) {
+  Surface surface(test::ring(10), {.resolution = 64});
+  SamplingBound bound(surface);
+  surface.refit(test::ring(10, 1.5).positions);
+  bound.refit(surface);
+  Surface same = std::move(surface);
+  bound.refit(same);
+  const double before = bound.value();
+  const std::size_t faces = same.mesh().triangles.size(), samples = same.sample_texels().size();
+  same.edit({.reconnected_faces = {{0, {0, 1, 2}}}});
+  ASSERT_EQ(same.mesh().triangles.size(), faces);
+  ASSERT_EQ(same.sample_texels().size(), samples);
+  EXPECT_THROW(bound.refit(same), Error);
+  EXPECT_THROW(RelativeError(same, bound), Error);
+  EXPECT_EQ(bound.value(), before);
+  bound = SamplingBound(same);
+  bound.refit(same);
+}
+
 }  // namespace
 }  // namespace sdm

@@ -1,4 +1,6 @@
 // Sorts the pieces of a surface into the order in which a PieceAssignment uses them: by block, then by face.
+#include <sdm/error.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -110,7 +112,7 @@ class PieceAssignmentBuilder {
   }
 
   void append(const BlockFaces& block, std::span<const FacePiece> pieces) {
-    auto& [block_ends, faces, squares, all_pieces] = result_;
+    auto& [identity, block_ends, faces, squares, all_pieces] = result_;
     const auto first_square = static_cast<std::uint32_t>(squares.size());
     const auto first_piece = static_cast<std::uint32_t>(all_pieces.size());
     for (FaceInBlock part : block.faces) {
@@ -131,8 +133,14 @@ class PieceAssignmentBuilder {
   std::vector<std::uint8_t> whole_square_;  ///< as of FacePieces
 };
 
-PieceAssignment::PieceAssignment(const Surface& surface) {
+PieceAssignment::PieceAssignment(const Surface& surface) : identity_(internals(surface).identity) {
   PieceAssignmentBuilder(surface, *this).build();
+}
+
+void PieceAssignment::require_same(const Surface& surface) const {
+  if (internals(surface).identity != identity_)
+    throw Error(
+        "the sampling bound was built for another surface, or before an edit of this one; build it again");
 }
 
 }  // namespace sdm::surface

@@ -3,6 +3,7 @@
 
 #include <sdm/surface.h>
 
+#include <memory>
 #include <vector>
 
 #include "surface/sample_blocks.h"
@@ -10,6 +11,8 @@
 #include "surface/sampling_bound/measure_pieces.h"
 
 namespace sdm::surface {
+
+struct Identity;
 
 /// Half the longer diagonal of a texel's square on the surface, given its edges: the largest distance from
 /// the centre to a point of the square.
@@ -24,7 +27,7 @@ namespace sdm::surface {
 /// their faces, so it is valid for any positions of the vertices. Only the radii depend on the positions;
 /// they are computed for all samples, or block by block. See docs/theory.md, "The error bound".
 ///
-/// All functions take the surface that this was built for, with any positions.
+/// All functions take the surface that this was built for, not edited since, with any positions.
 ///
 /// Memory: 1 byte per sample, 36 bytes per face and block in which it has samples or pieces, and 36 bytes per
 /// piece. There is about one piece for every two squares crossed by an edge of a face, and one for every
@@ -33,6 +36,9 @@ class PieceAssignment {
  public:
   /// Assigns each piece to a nearby sample. Cost: linear in texels and pieces, all cores.
   explicit PieceAssignment(const Surface& surface);
+
+  /// Throws sdm::Error if this was built for another surface, or before an edit of this one.
+  void require_same(const Surface& surface) const;
 
   struct Radii {
     std::vector<float> samples;  ///< the largest distance from each sample to its pieces
@@ -77,7 +83,8 @@ class PieceAssignment {
   void measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
                      std::span<float> radii, const Take& take_face) const;
 
-  std::vector<std::uint32_t> block_ends_;  ///< of each block's faces
+  std::shared_ptr<const Identity> identity_;  ///< of the surface
+  std::vector<std::uint32_t> block_ends_;     ///< of each block's faces
   std::vector<FaceInBlock> faces_in_blocks_;
   /// Samples, relative to the first of their block, in whose square the face contains an end of each
   /// diagonal, so that half the longer one is the radius. All parts of other squares are among the pieces.

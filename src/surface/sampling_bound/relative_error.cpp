@@ -22,11 +22,15 @@ void check_faces(std::size_t count, std::size_t expected) {
                 std::to_string(expected) + "; compare a surface with its own initial geometry");
 }
 
+std::vector<double> lower_bounds(const Surface& first_shape, const SamplingBound& bound) {
+  internals(bound).require_same(first_shape);
+  return internals(bound).radius_lower_bounds(first_shape, bound.value());
+}
+
 }  // namespace
 
 RelativeError::RelativeError(const Surface& first_shape, const SamplingBound& bound) try
-    : first_(internals(bound).radius_lower_bounds(first_shape, bound.value())),
-      largest_(*std::ranges::max_element(first_)) {
+    : first_(lower_bounds(first_shape, bound)), largest_(*std::ranges::max_element(first_)) {
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the sampling bound of the atlas");
 }

@@ -1,24 +1,11 @@
-#include <sdm/error.h>
 #include <sdm/sampling_bound.h>
 
 #include <new>
-#include <string>
 
 #include "core/memory.h"
 #include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm {
-namespace {
-
-void check_count(std::size_t count, std::size_t expected, const char* items) {
-  if (count != expected)
-    throw Error("the sampling bound of a surface of " + std::to_string(expected) + ' ' + items +
-                " cannot be refitted to one of " + std::to_string(count) +
-                "; refit it to the surface that it was built from");
-}
-
-}  // namespace
-
 struct SamplingBound::Impl {
   surface::PieceAssignment pieces;
   surface::PieceAssignment::Radii radii;
@@ -35,8 +22,7 @@ SamplingBound::SamplingBound(SamplingBound&&) noexcept = default;
 SamplingBound& SamplingBound::operator=(SamplingBound&&) noexcept = default;
 
 void SamplingBound::refit(const Surface& surface) {
-  check_count(surface.mesh().triangles.size(), face_radii().size(), "faces");
-  check_count(surface.sample_texels().size(), sample_radii().size(), "samples");
+  impl_->pieces.require_same(surface);
   impl_->pieces.measure(surface, impl_->radii);
 }
 
