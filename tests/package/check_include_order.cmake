@@ -23,6 +23,7 @@ set(order
   engine/gl
   engine/table
   map
+  registration
   hausdorff
   rays
   proximity/exact
