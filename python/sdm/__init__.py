@@ -1,0 +1,73 @@
+"""Surface distance maps between triangle meshes, and exact proximity.
+
+Arrays in, arrays out: vertices and points are n × 3 numbers of any dtype and order, faces m × 3 integers. Lengths are in
+the units of the meshes. Distances are negative inside a closed mesh where they are signed. Errors are raised as
+``sdm.Error``, with one sentence that names the object, the fault and the remedy.
+
+>>> distance_map = sdm.map(sphere, box, resolution=256)
+>>> distance_map.distance.shape
+(256, 256)
+>>> closest = sdm.closest_points(*box, [[2, 0.5, 0.5]])
+>>> closest.point
+array([[1. , 0.5, 0.5]])
+"""
+
+from ._core import (
+    BoundedBool,
+    BoundedLength,
+    Cancelled,
+    ClosestPoints,
+    Contacts,
+    DistanceStatistics,
+    Error,
+    Mesh,
+    MultiBodyQuery,
+    NearestMap,
+    Pairs,
+    ProximityQuery,
+    SelfProximityQuery,
+    Shape,
+    Sites,
+    Surface,
+    __version__,
+    engines,
+    fit_to_unit,
+    read,
+    thread_limit,
+)
+from ._closest_points import NONE, SiteType, closest_points
+from ._distance_map import DistanceMap, MapBounds, map
+
+__all__ = [
+    "BoundedBool",
+    "BoundedLength",
+    "Cancelled",
+    "ClosestPoints",
+    "Contacts",
+    "DistanceMap",
+    "DistanceStatistics",
+    "Error",
+    "MapBounds",
+    "Mesh",
+    "MultiBodyQuery",
+    "NONE",
+    "NearestMap",
+    "Pairs",
+    "ProximityQuery",
+    "SelfProximityQuery",
+    "Shape",
+    "SiteType",
+    "Sites",
+    "Surface",
+    "closest_points",
+    "engines",
+    "fit_to_unit",
+    "map",
+    "read",
+    "thread_limit",
+]
+
+# Tracebacks, reprs and pickles name what users import.
+for _name in __all__:
+    if isinstance(globals()[_name], type):
+        globals()[_name].__module__ = "sdm"

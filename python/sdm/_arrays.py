@@ -1,0 +1,67 @@
+"""Arrays that are not yet of the dtype and order of the library, and the messages for those that cannot be."""
+
+import numpy as np
+
+from ._core import Error
+
+
+def _shape(shape: tuple) -> str:
+    return "(" + ", ".join(str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
+
+
+def _numpy(array: object, name: str) -> np.ndarray:
+    """An array of any kind as NumPy's, without a copy where that is possible."""
+    try:
+        if not isinstance(array, np.ndarray) and hasattr(array, "__dlpack__"):
+            device = array.__dlpack_device__()[0]
+            if device != 1:
+                raise Error(f"{name} must be in the memory of the CPU; copy the array to the CPU first")
+            try:
+                return np.from_dlpack(array)
+            except (BufferError, RuntimeError, TypeError):  # such as tensors that require gradients
+                return np.asarray(array)
+        return np.asarray(array)
+    except Error:
+        raise
+    except Exception as fault:
+        raise Error(f"{name} must be an array of numbers ({fault})") from None
+
+
+def _numbers(array: object, name: str, kinds: str, what: str, shape: tuple) -> np.ndarray:
+    numbers = _numpy(array, name)
+    fits = numbers.ndim == len(shape) and all(n in (m, None) for m, n in zip(numbers.shape, shape))
+    if not fits:
+        expected = _shape(tuple("n" if n is None else n for n in shape))
+        raise Error(f"{name} must have the shape {expected}, not {_shape(numbers.shape)}")
+    if numbers.dtype.kind not in kinds:
+        raise Error(f"{name} must be {what}, not {numbers.dtype}")
+    return numbers
+
+
+def _floats(array: object, name: str, shape: tuple) -> np.ndarray:
+    numbers = _numbers(array, name, "fiu", "real numbers", shape)
+    with np.errstate(over="ignore"):  # of longer floats: infinity, which the library rejects
+        numbers = numbers.astype(np.float64, order="C", copy=False)
+    return np.require(numbers, requirements=["C", "ALIGNED"])
+
+
+def points(array: object, name: str) -> np.ndarray:
+    return _floats(array, name, (None, 3))
+
+
+def matrix(array: object, name: str) -> np.ndarray:
+    return _floats(array, name, (4, 4))
+
+
+def corner_uvs(array: object, name: str) -> np.ndarray:
+    return _floats(array, name, (None, 3, 2))
+
+
+def triangles(array: object, name: str) -> np.ndarray:
+    numbers = _numbers(array, name, "iu", "integers", (None, 3))
+    if numbers.size and numbers.dtype != np.uint32:
+        outside = (numbers < 0) | (numbers > 0xFFFFFFFE)
+        if outside.any():
+            face, corner = np.argwhere(outside)[0]
+            raise Error(f"index out of range: face {face} refers to vertex {numbers[face, corner]}")
+    return np.require(numbers.astype(np.uint32, order="C", copy=False), requirements=["C", "ALIGNED"])

@@ -1,0 +1,84 @@
+"""Meshes in the forms of other packages, recognised by their attributes. None of the packages is imported."""
+
+import os
+
+import numpy as np
+
+from ._core import Error, Mesh, read
+
+_FORMS = (
+    "a mesh must be (vertices, faces), a path, or a mesh of sdm, trimesh, open3d, pyvista or meshio, not "
+)
+
+
+def _of_corners(uvs: np.ndarray, vertices: object, faces: np.ndarray) -> "np.ndarray | None":
+    """Texture coordinates of corners, from those of vertices."""
+    if uvs is None or np.shape(uvs) != (len(vertices), 2) or len(faces) == 0:
+        return None
+    return np.asarray(uvs)[np.asarray(faces)]
+
+
+def _trimesh(mesh: object) -> tuple:
+    uvs = getattr(getattr(mesh, "visual", None), "uv", None)
+    return mesh.vertices, mesh.faces, _of_corners(uvs, mesh.vertices, mesh.faces)
+
+
+def _open3d_legacy(mesh: object) -> tuple:
+    faces = np.asarray(mesh.triangles)
+    uvs = np.asarray(getattr(mesh, "triangle_uvs", ()))
+    return np.asarray(mesh.vertices), faces, uvs.reshape(-1, 3, 2) if len(uvs) == 3 * len(faces) > 0 else None
+
+
+def _open3d_tensor(mesh: object) -> tuple:
+    triangle = mesh.triangle
+    uvs = triangle["texture_uvs"].cpu().numpy() if "texture_uvs" in triangle else None
+    return mesh.vertex["positions"].cpu().numpy(), triangle["indices"].cpu().numpy(), uvs
+
+
+def _pyvista(mesh: object) -> tuple:
+    def all_triangles(faces: np.ndarray) -> bool:
+        return len(faces) % 4 == 0 and bool((faces[::4] == 3).all())
+
+    faces = np.asarray(mesh.faces)
+    if not all_triangles(faces):
+        mesh = mesh.triangulate()
+        faces = np.asarray(mesh.faces)
+    if not all_triangles(faces):
+        raise Error("the mesh of pyvista has faces that are no polygons; extract its surface first")
+    faces = faces.reshape(-1, 4)[:, 1:]
+    uvs = getattr(mesh, "active_texture_coordinates", None)
+    return mesh.points, faces, _of_corners(uvs, mesh.points, faces)
+
+
+def _meshio(mesh: object) -> tuple:
+    triangles = []
+    for block in mesh.cells:
+        if block.type == "triangle":
+            triangles.append(np.asarray(block.data))
+        elif block.type == "quad":
+            corners = np.asarray(block.data)
+            triangles.append(corners[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3))
+        elif block.type not in ("vertex", "line"):
+            raise Error(f"the mesh of meshio has cells of type '{block.type}'; only triangles and quads are surfaces")
+    return mesh.points, np.concatenate(triangles) if triangles else np.empty((0, 3), np.uint32), None
+
+
+def parts(mesh: object, faces: object) -> "Mesh | tuple":
+    """Returns a Mesh, or (vertices, faces, texture coordinates of corners or None)."""
+    if faces is not None:
+        return mesh, faces, None
+    if isinstance(mesh, (str, os.PathLike)):
+        return read(mesh)
+    if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
+        return mesh[0], mesh[1], None
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return _trimesh(mesh)
+    if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
+        return _open3d_legacy(mesh)
+    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):
+        return _open3d_tensor(mesh)
+    if hasattr(mesh, "points") and hasattr(mesh, "faces"):
+        return _pyvista(mesh)
+    if hasattr(mesh, "points") and isinstance(getattr(mesh, "cells", None), list):
+        return _meshio(mesh)
+    raise Error(_FORMS + type(mesh).__name__)

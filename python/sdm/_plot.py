@@ -1,0 +1,58 @@
+"""Pictures of maps by matplotlib."""
+
+import numpy as np
+
+from ._core import Error
+
+
+def _colours(values: np.ndarray, cmap: "str | None") -> tuple:
+    """A colour map and its range: diverging and symmetric if there are both signs."""
+    from matplotlib import colormaps
+    from matplotlib.colors import Normalize
+
+    finite = values[np.isfinite(values)]
+    low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
+    diverging = low < 0 < high
+    if diverging:
+        high = max(-low, high)
+        low = -high
+    return colormaps[cmap or ("RdBu_r" if diverging else "viridis")], Normalize(low, high)
+
+
+def plot(distance_map: object, ax: object, kind: str, cmap: "str | None", units: str) -> object:
+    if kind not in ("surface", "atlas"):
+        raise Error(f"kind must be one of surface, atlas, not '{kind}'")
+    try:
+        import matplotlib.pyplot as plt
+        from matplotlib.cm import ScalarMappable
+    except ImportError:
+        raise Error("plot() needs matplotlib; install it with pip install sdm[viz]") from None
+
+    label = f"distance [{units}]" if units else "distance"
+    if kind == "atlas":
+        ax = ax or plt.figure().add_subplot()
+        colours, norm = _colours(distance_map.distance, cmap)
+        picture = ax.imshow(distance_map.distance, cmap=colours, norm=norm)
+        ax.figure.colorbar(picture, ax=ax, label=label)
+        ax.set_axis_off()
+        return ax
+
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    ax = ax or plt.figure().add_subplot(projection="3d")
+    corners = distance_map.surface.vertices[distance_map.surface.faces]
+    values = distance_map.at_vertices()[distance_map.surface.faces].mean(axis=1)
+    colours, norm = _colours(values, cmap)
+    # Lambertian shading from above the viewer's left; faces without a value are grey.
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    light = np.array([0.4, -0.5, 0.77])
+    shade = 0.6 + 0.4 * np.abs(np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0) @ light)
+    rgba = np.where(np.isfinite(values)[:, None], colours(norm(np.nan_to_num(values))), (0.6, 0.6, 0.6, 1.0))
+    rgba[:, :3] *= shade[:, None]
+    ax.add_collection3d(Poly3DCollection(corners, facecolors=rgba, linewidths=0, antialiased=False))
+    low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    ax.set_box_aspect(np.maximum(high - low, 1e-3 * (high - low).max()))
+    ax.figure.colorbar(ScalarMappable(norm, colours), ax=ax, label=label, shrink=0.7)
+    return ax

@@ -1,0 +1,60 @@
+#include "arrays.h"
+
+#include <sdm/error.h>
+
+#include <cstring>
+#include <string>
+
+namespace sdm::python {
+namespace {
+
+// The slow path, for all that is not float64 or uint32 in C order: python/sdm/_arrays.py.
+nb::object converted(const char* function, nb::handle array, const char* name) {
+  return nb::module_::import_("sdm._arrays").attr(function)(array, name);
+}
+
+}  // namespace
+
+Points::Points(nb::handle array, const char* name) {
+  if (!nb::try_cast(array, array_, false))
+    array_ = nb::cast<decltype(array_)>(converted("points", array, name));
+}
+
+std::span<const Vec3> Points::get() const {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  return {reinterpret_cast<const Vec3*>(array_.data()), array_.shape(0)};
+}
+
+std::vector<Triangle> triangles(nb::handle array, const char* name) {
+  nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> indices;
+  if (!nb::try_cast(array, indices, false))
+    indices = nb::cast<decltype(indices)>(converted("triangles", array, name));
+  static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
+  const auto* first = reinterpret_cast<const Triangle*>(indices.data());
+  return {first, first + indices.shape(0)};
+}
+
+std::vector<std::array<Vec2, 3>> corner_uvs(nb::handle array) {
+  using Uvs = nb::ndarray<const double, nb::shape<-1, 3, 2>, nb::c_contig, nb::device::cpu>;
+  const auto uvs = nb::cast<Uvs>(converted("corner_uvs", array, "corner_uvs"));
+  const auto* first = reinterpret_cast<const std::array<Vec2, 3>*>(uvs.data());
+  return {first, first + uvs.shape(0)};
+}
+
+Transform transform(nb::handle matrix, const char* name) {
+  using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
+  Matrix numbers;
+  if (!nb::try_cast(matrix, numbers, false)) numbers = nb::cast<Matrix>(converted("matrix", matrix, name));
+  Transform result;
+  std::memcpy(result.rows.data(), numbers.data(), sizeof(result.rows));
+  if (result.rows[3] != std::array<double, 4>{0, 0, 0, 1})
+    throw Error(std::string(name) + " must be an affine matrix: its last row is not (0, 0, 0, 1)");
+  return result;
+}
+
+nb::object matrix(const Transform& transform) {
+  std::vector<std::array<std::array<double, 4>, 4>> rows{transform.rows};
+  return array_of<double>(std::move(rows), {4, 4});
+}
+
+}  // namespace sdm::python

@@ -1,0 +1,99 @@
+// NumPy and DLPack arrays in, NumPy arrays out.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <sdm/mesh.h>
+#include <sdm/transform.h>
+#include <sdm/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace sdm::python {
+
+namespace nb = nanobind;
+
+/// The n × 3 numbers of an array: the caller's own if they are float64 in C order, otherwise a copy.
+class Points {
+ public:
+  /// `name`: of the argument, for messages. Throws sdm::Error for anything but n × 3 real numbers.
+  Points(nb::handle array, const char* name);
+
+  [[nodiscard]] std::span<const Vec3> get() const;
+
+ private:
+  nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> array_;
+};
+
+/// Copies m × 3 integers. Throws sdm::Error for any other array, and for numbers that are no index.
+[[nodiscard]] std::vector<Triangle> triangles(nb::handle array, const char* name);
+/// Copies m × 3 × 2 numbers.
+[[nodiscard]] std::vector<std::array<Vec2, 3>> corner_uvs(nb::handle array);
+/// Reads a 4 × 4 matrix whose last row is (0, 0, 0, 1).
+[[nodiscard]] Transform transform(nb::handle matrix, const char* name);
+[[nodiscard]] nb::object matrix(const Transform& transform);
+
+namespace detail {
+template <class Owned>
+nb::capsule capsule_of(Owned* owned) {
+  return {owned, [](void* p) noexcept { delete static_cast<Owned*>(p); }};
+}
+}  // namespace detail
+
+/// A NumPy array of this shape that takes over the memory of `values`, whose elements consist of Scalars.
+template <class Scalar, class Element>
+nb::object array_of(std::vector<Element>&& values, std::initializer_list<std::size_t> shape) {
+  auto owned = std::make_unique<std::vector<Element>>(std::move(values));
+  auto* data = reinterpret_cast<Scalar*>(owned->data());
+  const nb::capsule owner = detail::capsule_of(owned.release());
+  return nb::cast(nb::ndarray<nb::numpy, Scalar>(data, shape, owner));
+}
+
+/// A read-only NumPy array of memory that belongs to `owner`.
+template <class Scalar, class Element>
+nb::object view_of(std::span<const Element> values, std::initializer_list<std::size_t> shape,
+                   nb::handle owner) {
+  const auto* data = reinterpret_cast<const Scalar*>(values.data());
+  return nb::cast(nb::ndarray<nb::numpy, const Scalar>(data, shape, owner));
+}
+template <class Scalar, class Element>
+nb::object view_of(const std::vector<Element>& values, std::initializer_list<std::size_t> shape,
+                   nb::handle owner) {
+  return view_of<Scalar>(std::span<const Element>(values), shape, owner);
+}
+
+/// A NumPy array with one row for each of `items`: get(item) returns a Scalar or a std::array of them.
+template <class Items, class Get>
+nb::object column(const Items& items, Get get) {
+  using Row = std::remove_cvref_t<decltype(get(items[0]))>;
+  std::vector<Row> rows(items.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = get(items[i]);
+  if constexpr (requires { typename Row::value_type::value_type; }) {
+    constexpr std::size_t n = std::tuple_size_v<Row>, m = std::tuple_size_v<typename Row::value_type>;
+    return array_of<typename Row::value_type::value_type>(std::move(rows), {items.size(), n, m});
+  } else if constexpr (requires { typename Row::value_type; }) {
+    return array_of<typename Row::value_type>(std::move(rows), {items.size(), std::tuple_size_v<Row>});
+  } else {
+    return array_of<Row>(std::move(rows), {items.size()});
+  }
+}
+
+/// An array that is made by the first access.
+class LazyArray {
+ public:
+  template <class Make>
+  const nb::object& get(Make make) {
+    if (!array_.is_valid()) array_ = make();
+    return array_;
+  }
+
+ private:
+  nb::object array_;
+};
+
+}  // namespace sdm::python

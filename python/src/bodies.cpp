@@ -1,0 +1,316 @@
+// Proximity of many bodies.
+#include <nanobind/stl/optional.h>
+#include <sdm/error.h>
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include "proximity.h"
+
+namespace sdm::python {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+struct PyMultiBodyQuery {
+  MultiBodyQuery query;
+  Access access;
+};
+
+struct PyPairs {
+  std::vector<PairProximity> pairs;
+  LazyArray bodies, separation, separation_bounds, witness, colliding, depth, depth_bounds;
+};
+
+struct PyNearestMap {
+  NearestMap nearest;
+  LazyArray valid;
+};
+
+// The query throws for one that is too large.
+std::size_t index_of(std::int64_t body) {
+  if (body < 0) throw Error("there is no body " + std::to_string(body));
+  return static_cast<std::size_t>(body);
+}
+
+std::array<double, 2> bounds_of(const BoundedLength& length) {
+  if (length.certainty == Certainty::exact) return {length.value, length.value};
+  return {length.lower, length.upper};
+}
+
+void bind_pairs(nb::module_& module) {
+  using P = PyPairs;
+  const auto pair_column = [](LazyArray P::*array, auto get) {
+    return [array, get](P& self) { return (self.*array).get([&] { return column(self.pairs, get); }); };
+  };
+  nb::class_<P>(module, "Pairs",
+                "The pairs of near bodies as arrays with one row each, sorted by first, then second body.")
+      .def_prop_ro("bodies",
+                   pair_column(&P::bodies,
+                               [](const PairProximity& p) {
+                                 return std::array{p.first, p.second};
+                               }),
+                   nb::sig("def bodies(self) -> numpy.ndarray"),
+                   "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
+      .def_prop_ro("separation",
+                   pair_column(&P::separation, [](const PairProximity& p) { return p.separation.value; }),
+                   nb::sig("def separation(self) -> numpy.ndarray"),
+                   "The smallest distances of their surfaces, (n,) float64; exact.")
+      .def_prop_ro("witness",
+                   pair_column(&P::witness,
+                               [](const PairProximity& p) {
+                                 constexpr Vec3 none{kNan, kNan, kNan};
+                                 return p.separation.witness.value_or(std::array{none, none});
+                               }),
+                   nb::sig("def witness(self) -> numpy.ndarray"),
+                   "A point of O1 and one of O2 that are the separation apart, (n, 2, 3) float64; NaN if "
+                   "there is none.")
+      .def_prop_ro(
+          "colliding",
+          [](P& self) {
+            return self.colliding.get([&] {
+              std::vector<std::uint8_t> flags(self.pairs.size());
+              for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = self.pairs[i].colliding.value;
+              return array_of<bool>(std::move(flags), {self.pairs.size()});
+            });
+          },
+          nb::sig("def colliding(self) -> numpy.ndarray"), "Whether they collide, (n,) bool; exact.")
+      .def_prop_ro(
+          "penetration_depth",
+          pair_column(
+              &P::depth,
+              [](const PairProximity& p) { return p.penetration_depth ? p.penetration_depth->value : kNan; }),
+          nb::sig("def penetration_depth(self) -> numpy.ndarray"),
+          "The penetration depths, (n,) float64: 0 if they do not collide, NaN if neither is a solid.")
+      .def_prop_ro(
+          "penetration_depth_bounds",
+          pair_column(&P::depth_bounds,
+                      [](const PairProximity& p) {
+                        return p.penetration_depth ? bounds_of(*p.penetration_depth) : std::array{kNan, kNan};
+                      }),
+          nb::sig("def penetration_depth_bounds(self) -> numpy.ndarray"),
+          "Lower and upper bounds on the penetration depths, (n, 2) float64.")
+      .def("__len__", [](const P& self) { return self.pairs.size(); })
+      .def("__repr__", [](const P& self) { return nb::str("sdm.Pairs({})").format(self.pairs.size()); });
+}
+
+template <class Scalar, class Element>
+nb::object texel_view(nb::handle self, const std::vector<Element>& values) {
+  const DistanceMap& map = nb::cast<const PyNearestMap&>(self).nearest.map;
+  if constexpr (sizeof(Element) == sizeof(Scalar)) {
+    return view_of<Scalar>(values, {map.rows(), map.resolution}, self);
+  } else {
+    return view_of<Scalar>(values, {map.rows(), map.resolution, sizeof(Element) / sizeof(Scalar)}, self);
+  }
+}
+
+void bind_nearest_map(nb::module_& module) {
+  using M = PyNearestMap;
+  nb::class_<M>(module, "NearestMap",
+                "The distances from the texels of a body to the nearest other body. Arrays are read-only, "
+                "with row 0 at "
+                "the top.")
+      .def_prop_ro(
+          "distance",
+          [](nb::handle self) {
+            return texel_view<float>(self, nb::cast<const M&>(self).nearest.map.distance);
+          },
+          nb::sig("def distance(self) -> numpy.ndarray"),
+          "(H, W) float32, negative inside the other body if that is a solid; NaN where there is no value.")
+      .def_prop_ro(
+          "vector",
+          [](nb::handle self) {
+            return texel_view<float>(self, nb::cast<const M&>(self).nearest.map.vector);
+          },
+          nb::sig("def vector(self) -> numpy.ndarray"),
+          "From the texel to the closest point, (H, W, 3) float32.")
+      .def_prop_ro(
+          "site",
+          [](nb::handle self) {
+            return texel_view<std::uint32_t>(self, nb::cast<const M&>(self).nearest.map.site);
+          },
+          nb::sig("def site(self) -> numpy.ndarray"),
+          "The closest site of the other body, (H, W) uint32, or NONE.")
+      .def_prop_ro(
+          "site_type",
+          [](nb::handle self) {
+            return texel_view<std::uint8_t>(self, nb::cast<const M&>(self).nearest.map.site_type);
+          },
+          nb::sig("def site_type(self) -> numpy.ndarray"), "Its SiteType, (H, W) uint8.")
+      .def_prop_ro(
+          "body",
+          [](nb::handle self) {
+            return texel_view<std::uint32_t>(self, nb::cast<const M&>(self).nearest.body);
+          },
+          nb::sig("def body(self) -> numpy.ndarray"), "The index of the other body, (H, W) uint32, or NONE.")
+      .def_prop_ro(
+          "valid",
+          [](M& self) {
+            return self.valid.get([&] {
+              const auto& bodies = self.nearest.body;
+              std::vector<std::uint8_t> flags(bodies.size());
+              for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = bodies[i] != kNone;
+              return array_of<bool>(std::move(flags), {self.nearest.map.rows(), self.nearest.map.resolution});
+            });
+          },
+          nb::sig("def valid(self) -> numpy.ndarray"), "Whether a texel has a value, (H, W) bool.");
+}
+
+MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {
+  std::vector<Shape> shapes;
+  std::size_t i = 0;
+  for (const nb::handle body : nb::iter(bodies)) {
+    try {
+      shapes.push_back(shape_of(body));
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      throw Error("body " + std::to_string(i) + ": " + error.what());
+    }
+    ++i;
+  }
+  return MultiBodyQuery(std::move(shapes), options);
+}
+
+}  // namespace
+
+void bind_bodies(nb::module_& module) {
+  bind_pairs(module);
+  bind_nearest_map(module);
+  using Q = PyMultiBodyQuery;
+  nb::class_<Q>(module, "MultiBodyQuery",
+                "Proximity of bodies that move and deform, each against all others.\n\n"
+                "bodies: each any form of a mesh (see Mesh), or a Shape, which many bodies can share.\n"
+                "max_distance: > 0, in units of the meshes. Pairs farther apart are not reported.\n"
+                "depth_precision, contact_margin: as of ProximityQuery.\n\n"
+                "A call raises Error while another thread uses the object.\n\n"
+                ">>> shape = sdm.Shape(box)\n"
+                ">>> query = sdm.MultiBodyQuery([shape] * 3, max_distance=1.5)\n"
+                ">>> poses = np.tile(np.eye(4), (3, 1, 1))\n"
+                ">>> poses[:, 0, 3] = [0, 2, 4]\n"
+                ">>> query.set_poses(poses)\n"
+                ">>> query.pairs().bodies\n"
+                "array([[0, 1],\n"
+                "       [1, 2]], dtype=uint32)")
+      .def(
+          "__init__",
+          [](Q* self, nb::handle bodies, double max_distance, double depth_precision, double contact_margin) {
+            new (self) Q{query_of(bodies, {.max_distance = max_distance,
+                                           .depth_precision = depth_precision,
+                                           .contact_margin = contact_margin}),
+                         {}};
+          },
+          nb::arg("bodies").none(), nb::kw_only(),
+          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("depth_precision") = 0.0,
+          nb::arg("contact_margin") = 0.0,
+          nb::sig(
+              "def __init__(self, bodies: collections.abc.Iterable[object], *, max_distance: float = ..., "
+              "depth_precision: float = 0.0, contact_margin: float = 0.0) -> None"))
+      .def("__len__", [](const Q& self) { return self.query.size(); })
+      .def(
+          "set_pose",
+          [](Q& self, std::int64_t body, nb::handle pose) {
+            const Transform matrix = transform(pose, "pose");
+            const auto lock = self.access.change();
+            self.query.set_pose(index_of(body), matrix);
+          },
+          nb::arg("body"), nb::arg("pose").none(),
+          nb::sig("def set_pose(self, body: int, pose: object) -> None"),
+          "Sets the pose of a body, as ProximityQuery.set_pose().")
+      .def(
+          "set_poses",
+          [](Q& self, nb::handle poses) {
+            std::vector<Transform> transforms;
+            for (const nb::handle pose : nb::iter(poses)) transforms.push_back(transform(pose, "pose"));
+            const auto lock = self.access.change();
+            self.query.set_poses(transforms);
+          },
+          nb::arg("poses").none(), nb::sig("def set_poses(self, poses: object) -> None"),
+          "Sets the poses of all bodies, (n, 4, 4) numbers.")
+      .def(
+          "pose",
+          [](const Q& self, std::int64_t body) {
+            const auto lock = self.access.use();
+            return matrix(self.query.pose(index_of(body)));
+          },
+          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.ndarray"),
+          "The pose of a body, (4, 4) float64.")
+      .def(
+          "refit",
+          [](Q& self, std::int64_t body, nb::handle vertices) {
+            const Points positions(vertices, "vertices");
+            if (positions.get().empty()) throw Error("vertices is empty");  // would leave the body unchanged
+            const auto lock = self.access.change();
+            run_short([&] { self.query.refit(index_of(body), positions.get()); });
+          },
+          nb::arg("body"), nb::arg("vertices").none(),
+          nb::sig("def refit(self, body: int, vertices: object) -> None"),
+          "Moves the vertices of a body, (n, 3) numbers, keeping its faces and its pose. Raises Error, and "
+          "changes\n"
+          "nothing, for a body that does not exist or whose Shape is shared, another number of vertices, or "
+          "coordinates\n"
+          "that are not finite. Cost: linear.")
+      .def(
+          "pairs",
+          [](Q& self) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PyPairs>();
+            run_short([&] {
+              const auto pairs = self.query.pairs();
+              result->pairs.assign(pairs.begin(), pairs.end());
+            });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership,
+          "Returns all pairs that collide or whose separation is at most max_distance.")
+      .def(
+          "contacts",
+          [](Q& self) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PyContacts>();
+            result->has_bodies = true;
+            run_short([&] {
+              for (const BodyContact& contact : self.query.contacts()) {
+                result->contacts.push_back(contact.contact);
+                result->bodies.push_back({contact.first, contact.second});
+              }
+            });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership,
+          "Returns the contacts of all pairs, those of each as by ProximityQuery.contacts().")
+      .def(
+          "nearest_map",
+          [](const Q& self, std::int64_t body) {
+            const auto lock = self.access.use();
+            auto result = std::make_unique<PyNearestMap>();
+            run_short([&] { self.query.nearest_map(index_of(body), result->nearest); });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership, nb::arg("body"),
+          "Returns the distances from the texels of a body to the nearest other body; texels with none "
+          "within\n"
+          "max_distance have no value. Raises Error for a body that does not exist, or whose Shape has no "
+          "resolution.")
+      .def(
+          "distances_at_vertices",
+          [](const Q& self, std::int64_t body, double max_distance) {
+            const auto lock = self.access.use();
+            std::vector<float> distances;
+            run_short(
+                [&] { distances = nearest_distances_at_vertices(self.query, index_of(body), max_distance); });
+            const std::size_t count = distances.size();
+            return array_of<float>(std::move(distances), {count});
+          },
+          nb::arg("body"), nb::kw_only(), nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::sig(
+              "def distances_at_vertices(self, body: int, *, max_distance: float = ...) -> numpy.ndarray"),
+          "Returns the distance from each vertex of a body to the nearest other body, (n,) float32, signed "
+          "as in\n"
+          "nearest_map(); NaN where none is within max_distance.")
+      .def("__repr__",
+           [](const Q& self) { return nb::str("sdm.MultiBodyQuery({} bodies)").format(self.query.size()); });
+}
+
+}  // namespace sdm::python

@@ -1,0 +1,109 @@
+// Exceptions, engines, threads.
+#include <nanobind/stl/unique_ptr.h>
+
+#include "objects.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+namespace sdm::python {
+namespace {
+
+template <class Value, std::size_t n>
+using Names = std::array<std::pair<const char*, Value>, n>;
+
+constexpr Names<SignMethod, 4> kSigns{{{"automatic", SignMethod::automatic},
+                                       {"none", SignMethod::none},
+                                       {"exact", SignMethod::exact},
+                                       {"winding", SignMethod::winding}}};
+constexpr Names<AtlasKind, 3> kAtlases{
+    {{"charts", AtlasKind::charts}, {"triangles", AtlasKind::triangles}, {"uv", AtlasKind::uv}}};
+
+template <class Value, std::size_t n>
+Value value_of(const Names<Value, n>& names, const std::string& argument, const std::string& name) {
+  const auto found = std::ranges::find_if(names, [&](const auto& entry) { return name == entry.first; });
+  if (found != names.end()) return found->second;
+  std::string all;
+  for (const auto& entry : names) all += (all.empty() ? "" : ", ") + std::string(entry.first);
+  throw Error(argument + " must be one of " + all + ", not '" + name + "'");
+}
+
+template <class Value, std::size_t n>
+const char* name_in(const Names<Value, n>& names, Value value) {
+  return std::ranges::find(names, value, &std::pair<const char*, Value>::second)->first;
+}
+
+// with thread_limit(4): ...
+struct PyThreadLimit {
+  unsigned count;
+  std::unique_ptr<ThreadLimit> limit;
+};
+
+}  // namespace
+
+std::shared_ptr<const Engine> engine_of(const char* name) {
+  return make_engine(name);
+}
+SignMethod sign_of(const char* name) {
+  return value_of(kSigns, "sign", name);
+}
+const char* name_of(SignMethod method) {
+  return name_in(kSigns, method);
+}
+AtlasKind atlas_of(const char* name) {
+  return value_of(kAtlases, "atlas", name);
+}
+const char* name_of(AtlasKind kind) {
+  return name_in(kAtlases, kind);
+}
+
+void bind_errors(nb::module_& module) {
+  // Translators are tried from the last one on.
+  static nb::exception<Error> error(module, "Error", PyExc_ValueError);
+  static nb::exception<Cancelled> cancelled(module, "Cancelled", error.ptr());
+  error.attr("__doc__") =
+      "An input that cannot be used, or a resource that is missing.\n\n"
+      "The message is one sentence that names the object, the fault and the remedy. A subclass of "
+      "ValueError.";
+  cancelled.attr("__doc__") = "A progress callback returned False; there is no result.";
+
+  module.def(
+      "engines",
+      [] {
+        nb::list names;
+        for (const EngineInfo& info : engines()) names.append(nb::str(info.name.data(), info.name.size()));
+        return names;
+      },
+      nb::sig("def engines() -> list[str]"),
+      "Returns the names of all engines, the default one first.\n\n"
+      ">>> sdm.engines()[0]\n'cpu'");
+
+  nb::class_<PyThreadLimit>(
+      module, "thread_limit",
+      "Limits the threads that the library uses while a ``with`` block runs.\n\n"
+      "count: 0 means all cores. The smallest of several limits is in force, in all threads of\n"
+      "the process.\n\n"
+      ">>> with sdm.thread_limit(1):\n"
+      "...     distance_map = sdm.map(sphere, box, resolution=64)\n")
+      .def(
+          "__init__",
+          [](PyThreadLimit* self, unsigned count) {
+            new (self) PyThreadLimit{count, nullptr};
+          },
+          nb::arg("count"))
+      .def(
+          "__enter__",
+          [](nb::handle self) {
+            auto& limit = nb::cast<PyThreadLimit&>(self);
+            limit.limit = std::make_unique<ThreadLimit>(limit.count);
+            return nb::borrow(self);
+          },
+          nb::sig("def __enter__(self) -> thread_limit"))
+      .def(
+          "__exit__", [](PyThreadLimit& self, const nb::args&) { self.limit.reset(); },
+          nb::sig("def __exit__(self, *exception: object) -> None"));
+}
+
+}  // namespace sdm::python

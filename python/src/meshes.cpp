@@ -1,0 +1,134 @@
+// Meshes from Python objects and files.
+#include <sdm/io.h>
+
+#include "arrays.h"
+#include "objects.h"
+
+namespace sdm::python {
+
+nb::object positions_view(const Positions& positions) {
+  const nb::capsule owner = detail::capsule_of(new Positions(positions));
+  return view_of<double>(*positions, {positions->size(), 3}, owner);
+}
+
+nb::object faces_view(const Mesh& mesh, nb::handle owner) {
+  return view_of<std::uint32_t>(mesh.triangles, {mesh.triangles.size(), 3}, owner);
+}
+
+Mesh mesh_of(nb::handle mesh, nb::handle faces) {
+  if (faces.is_none()) {
+    if (nb::isinstance<PyMesh>(mesh)) return nb::cast<const PyMesh&>(mesh).mesh;
+    if (nb::isinstance<PySites>(mesh)) return nb::cast<const PySites&>(mesh).sites.mesh();
+    if (nb::isinstance<PySurface>(mesh)) return nb::cast<const PySurface&>(mesh).surface.mesh();
+  }
+  const nb::object parts = nb::module_::import_("sdm._meshes").attr("parts")(mesh, faces);
+  if (nb::isinstance<PyMesh>(parts)) return nb::cast<const PyMesh&>(parts).mesh;
+  const Points positions(parts[0], "the vertices");
+  Mesh result{.positions = {positions.get().begin(), positions.get().end()},
+              .triangles = triangles(parts[1], "the faces"),
+              .corner_uvs = {}};
+  if (!parts[2].is_none()) result.corner_uvs = corner_uvs(parts[2]);
+  return result;
+}
+
+void bind_meshes(nb::module_& module) {
+  nb::class_<PyMesh>(
+      module, "Mesh",
+      "A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.\n\n"
+      "Accepts the same forms of a mesh as every function of this package:\n\n"
+      "- two arrays ``(vertices, faces)``: n × 3 numbers of any dtype, m × 3 integers\n"
+      "- the path of an OBJ, PLY, STL, OFF, glTF, GLB or 3DS file\n"
+      "- ``Mesh``, ``Sites``, ``Surface``\n"
+      "- ``trimesh.Trimesh``, ``open3d.geometry.TriangleMesh``, ``open3d.t.geometry.TriangleMesh``,\n"
+      "  ``pyvista.PolyData``, ``meshio.Mesh``\n\n"
+      "Faces are counter-clockwise seen from outside. Raises Error for an object that is no mesh, for\n"
+      "an index out of range, for coordinates that are NaN or beyond 1e37, and if no face has an area.\n\n"
+      ">>> mesh = sdm.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\n"
+      ">>> mesh.vertices.shape, mesh.faces.dtype\n"
+      "((3, 3), dtype('uint32'))\n"
+      ">>> vertices, faces = mesh")
+      .def(
+          "__init__",
+          [](PyMesh* self, nb::handle mesh, nb::handle faces) {
+            Mesh value = mesh_of(mesh, faces);
+            validate(value);
+            new (self) PyMesh{std::move(value)};
+          },
+          nb::arg("mesh").none(), nb::arg("faces") = nb::none(),
+          nb::sig("def __init__(self, mesh: object, faces: object = None) -> None"))
+      .def_prop_ro(
+          "vertices",
+          [](nb::handle self) {
+            const auto& positions = nb::cast<const PyMesh&>(self).mesh.positions;
+            return view_of<double>(positions, {positions.size(), 3}, self);
+          },
+          nb::sig("def vertices(self) -> numpy.ndarray"), "The positions, (n, 3) float64, read-only.")
+      .def_prop_ro(
+          "faces", [](nb::handle self) { return faces_view(nb::cast<const PyMesh&>(self).mesh, self); },
+          nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+      .def_prop_ro(
+          "corner_uvs",
+          [](nb::handle self) -> nb::object {
+            const auto& uvs = nb::cast<const PyMesh&>(self).mesh.corner_uvs;
+            if (uvs.empty()) return nb::none();
+            return view_of<double>(uvs, {uvs.size(), 3, 2}, self);
+          },
+          nb::sig("def corner_uvs(self) -> numpy.ndarray | None"),
+          "Texture coordinates of the corners of each face, (m, 3, 2) float64, read-only; None if there are "
+          "none.")
+      .def(
+          "__iter__",
+          [](nb::handle self) { return nb::iter(nb::make_tuple(self.attr("vertices"), self.attr("faces"))); },
+          nb::sig("def __iter__(self) -> collections.abc.Iterator[numpy.ndarray]"))
+      .def(
+          "transformed",
+          [](const PyMesh& self, nb::handle matrix) {
+            auto moved = std::make_unique<PyMesh>(self);
+            sdm::transform(moved->mesh, python::transform(matrix, "the transform"));
+            return moved.release();
+          },
+          nb::rv_policy::take_ownership, nb::arg("matrix").none(),
+          nb::sig("def transformed(self, matrix: object) -> Mesh"),
+          "Returns the mesh moved by a 4 × 4 affine matrix, for column vectors. A reflection also reverses "
+          "the "
+          "faces, so\n"
+          "that they keep facing outwards.\n\n"
+          ">>> mesh = sdm.Mesh(box).transformed(np.diag([2, 1, 1, 1]))\n"
+          ">>> mesh.vertices.max(axis=0)\n"
+          "array([2., 1., 1.])")
+      .def("__repr__", [](const PyMesh& self) {
+        return nb::str("sdm.Mesh({} vertices, {} faces)")
+            .format(self.mesh.positions.size(), self.mesh.triangles.size());
+      });
+
+  module.def(
+      "fit_to_unit", [](nb::handle mesh) { return matrix(fit_to_unit(mesh_of(mesh, nb::none()))); },
+      nb::arg("mesh").none(), nb::sig("def fit_to_unit(mesh: object) -> numpy.ndarray"),
+      "Returns the uniform scaling and translation that make the longest side of a mesh's bounds 1 and "
+      "centre "
+      "them at\n"
+      "the origin, as a (4, 4) float64 matrix for column vectors.\n\n"
+      ">>> sdm.fit_to_unit(sdm.Mesh(box).transformed(np.diag([2, 2, 2, 1])))[0]\n"
+      "array([ 0.5,  0. ,  0. , -0.5])");
+
+  module.def(
+      "read",
+      [](nb::handle file) {
+        const nb::str path(nb::module_::import_("os").attr("fspath")(file));
+        const std::filesystem::path name(path.c_str());
+        return new PyMesh{run_short([&] { return read_mesh(name); })};
+      },
+      nb::rv_policy::take_ownership, nb::arg("file").none(),
+      nb::sig("def read(file: str | os.PathLike) -> Mesh"),
+      "Reads a mesh file: OBJ, PLY, STL, OFF, glTF, GLB or 3DS.\n\n"
+      "The format is detected from the content, then from the extension. Polygons are triangulated, node\n"
+      "transforms are applied, and all meshes of the file are merged into one. Vertices used by faces keep "
+      "their\n"
+      "order; bit-identical positions become one vertex. Raises Error, naming the file and the fault.\n\n"
+      ">>> sdm.read('no such file.ply')\n"
+      "Traceback (most recent call last):\n"
+      "    ...\n"
+      "sdm.Error: ...\n");
+}
+
+}  // namespace sdm::python

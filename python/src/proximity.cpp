@@ -1,0 +1,288 @@
+// Proximity of two bodies.
+#include "proximity.h"
+
+#include <nanobind/stl/optional.h>
+#include <sdm/error.h>
+
+#include <memory>
+#include <string>
+
+namespace sdm::python {
+namespace {
+
+struct PyProximityQuery {
+  ProximityQuery query;
+  Access access;
+};
+
+int checked(int body) {
+  if (body != 0 && body != 1)
+    throw Error("there is no body " + std::to_string(body) + "; the bodies are 0 and 1");
+  return body;
+}
+
+void bind_lengths(nb::module_& module) {
+  nb::class_<BoundedLength>(
+      module, "BoundedLength",
+      "A length with its bounds, in units of the meshes. ``float()`` of it is the value.")
+      .def_ro("value", &BoundedLength::value)
+      .def_prop_ro(
+          "certainty", [](const BoundedLength& self) { return name_of(self.certainty); },
+          "'exact': computed from the triangles, accurate to 1e-6 of the diagonal of both bodies' box; "
+          "'bounded': the true value lies between the bounds.")
+      .def_ro("lower", &BoundedLength::lower, "lower ≤ truth.")
+      .def_ro("upper", &BoundedLength::upper, "truth ≤ upper.")
+      .def_prop_ro(
+          "witness",
+          [](const BoundedLength& self) -> nb::object {
+            if (!self.witness) return nb::none();
+            std::vector<std::array<Vec3, 2>> rows{*self.witness};
+            return array_of<double>(std::move(rows), {2, 3});
+          },
+          nb::sig("def witness(self) -> numpy.ndarray | None"),
+          "A point of O1 and a point of O2 that are ``value`` apart, (2, 3) float64; None where no pair of "
+          "points\n"
+          "attains the value.")
+      .def("__float__", [](const BoundedLength& self) { return self.value; })
+      .def("__repr__", [](const BoundedLength& self) {
+        if (self.certainty == Certainty::exact)
+          return nb::str("sdm.BoundedLength({:.9g}, exact)").format(self.value);
+        return nb::str("sdm.BoundedLength({:.9g}, in [{:.9g}, {:.9g}])")
+            .format(self.value, self.lower, self.upper);
+      });
+  nb::class_<BoundedBool>(module, "BoundedBool",
+                          "A yes/no result with its certainty. ``bool()`` of it is the value.")
+      .def_ro("value", &BoundedBool::value)
+      .def_prop_ro(
+          "certainty", [](const BoundedBool& self) { return name_of(self.certainty); }, "'exact'.")
+      .def("__bool__", [](const BoundedBool& self) { return self.value; })
+      .def("__repr__", [](const BoundedBool& self) {
+        return nb::str("sdm.BoundedBool({}, {})").format(self.value, name_of(self.certainty));
+      });
+}
+
+template <class Get>
+auto contact_column(LazyArray PyContacts::*array, Get get) {
+  return [array, get](PyContacts& self) {
+    return (self.*array).get([&] { return column(self.contacts, get); });
+  };
+}
+
+void bind_contacts(nb::module_& module) {
+  nb::class_<PyContacts>(
+      module, "Contacts",
+      "Contacts as arrays with one row each, sorted by patch, the patch with the deepest contact\n"
+      "first, and by decreasing depth within a patch; those of many bodies first by pair of bodies.")
+      .def_prop_ro("point1", contact_column(&PyContacts::point1, [](const Contact& c) { return c.point1; }),
+                   nb::sig("def point1(self) -> numpy.ndarray"), "The points of O1, (n, 3) float64.")
+      .def_prop_ro("point2", contact_column(&PyContacts::point2, [](const Contact& c) { return c.point2; }),
+                   nb::sig("def point2(self) -> numpy.ndarray"), "The points of O2, (n, 3) float64.")
+      .def_prop_ro("normal", contact_column(&PyContacts::normal, [](const Contact& c) { return c.normal; }),
+                   nb::sig("def normal(self) -> numpy.ndarray"),
+                   "Unit vectors along which moving O1 separates it from O2, (n, 3) float64:\n"
+                   "(point2 - point1) / depth; where depth is 0, O2's outward normal.")
+      .def_prop_ro(
+          "depth", contact_column(&PyContacts::depth, [](const Contact& c) { return c.depth; }),
+          nb::sig("def depth(self) -> numpy.ndarray"),
+          "±|point2 - point1|, (n,) float64; positive if the point in contact is inside the other body.")
+      .def_prop_ro(
+          "patch", contact_column(&PyContacts::patch, [](const Contact& c) { return c.patch; }),
+          nb::sig("def patch(self) -> numpy.ndarray"),
+          "The patch of each contact, (n,) uint32: contacts on connected parts of a surface share one.")
+      .def_prop_ro("faces", contact_column(&PyContacts::faces, [](const Contact& c) { return c.faces; }),
+                   nb::sig("def faces(self) -> numpy.ndarray"),
+                   "A face of O1 that contains point1 and one of O2 that contains point2, (n, 2) uint32.")
+      .def_prop_ro("barycentric",
+                   contact_column(&PyContacts::barycentric, [](const Contact& c) { return c.barycentric; }),
+                   nb::sig("def barycentric(self) -> numpy.ndarray"),
+                   "The barycentric coordinates of the points in these faces, (n, 2, 3) float64.")
+      .def_prop_ro("id", contact_column(&PyContacts::id, [](const Contact& c) { return c.id; }),
+                   nb::sig("def id(self) -> numpy.ndarray"),
+                   "Identifies what is in contact, (n,) uint64: unique among the contacts of a pair of "
+                   "bodies, and the\n"
+                   "same in all frames.")
+      .def_prop_ro(
+          "bodies",
+          [](PyContacts& self) -> nb::object {
+            if (!self.has_bodies) return nb::none();
+            return self.body.get([&] { return column(self.bodies, [](const auto& pair) { return pair; }); });
+          },
+          nb::sig("def bodies(self) -> numpy.ndarray | None"),
+          "The indices of O1 and O2, (n, 2) uint32, for MultiBodyQuery; otherwise None.")
+      .def("__len__", [](const PyContacts& self) { return self.contacts.size(); })
+      .def("__repr__",
+           [](const PyContacts& self) { return nb::str("sdm.Contacts({})").format(self.contacts.size()); });
+}
+
+void bind_shape(nb::module_& module) {
+  nb::class_<PyShape>(
+      module, "Shape",
+      "A mesh prepared for proximity queries, which any number of bodies can share: a thousand bodies of\n"
+      "one shape need the memory of one.\n\n"
+      "mesh, faces: as Mesh. resolution: texels per side of an atlas, for maps of the body; None: no\n"
+      "atlas. Raises Error for a mesh that cannot be used.\n\n"
+      ">>> shape = sdm.Shape(box)\n"
+      ">>> query = sdm.ProximityQuery(shape, shape)")
+      .def(
+          "__init__",
+          [](PyShape* self, nb::handle mesh, nb::handle faces, std::optional<std::uint32_t> resolution,
+             nb::handle progress) {
+            const Mesh value = mesh_of(mesh, faces);
+            run(progress, [&](const Progress& report) {
+              if (resolution) {
+                const AtlasOptions atlas{.resolution = *resolution, .progress = report};
+                new (self) PyShape{Shape(value, atlas)};
+              } else {
+                new (self) PyShape{Shape(value)};
+              }
+            });
+          },
+          nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(),
+          nb::arg("resolution") = nb::none(), nb::arg("progress") = nb::none(),
+          nb::sig("def __init__(self, mesh: object, faces: object = None, *, resolution: int | None = None, "
+                  "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> None"))
+      .def_prop_ro(
+          "faces",
+          [](nb::handle self) {
+            return faces_view(nb::cast<const PyShape&>(self).shape.sites().mesh(), self);
+          },
+          nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+      .def("__repr__", [](const PyShape& self) {
+        const Mesh& mesh = self.shape.sites().mesh();
+        return nb::str("sdm.Shape({} vertices, {} faces)")
+            .format(mesh.positions.size(), mesh.triangles.size());
+      });
+}
+
+}  // namespace
+
+const char* name_of(Certainty certainty) {
+  return certainty == Certainty::exact ? "exact" : certainty == Certainty::bounded ? "bounded" : "estimate";
+}
+
+Shape shape_of(nb::handle body) {
+  if (nb::isinstance<PyShape>(body)) return nb::cast<const PyShape&>(body).shape;
+  const Mesh mesh = mesh_of(body, nb::none());
+  return run_short([&] { return Shape(mesh); });
+}
+
+void bind_proximity(nb::module_& module) {
+  bind_lengths(module);
+  bind_contacts(module);
+  bind_shape(module);
+  using Q = PyProximityQuery;
+  nb::class_<Q>(
+      module, "ProximityQuery",
+      "Proximity of two bodies that move and deform: separation, collision, penetration depth, contacts.\n\n"
+      "o1, o2: each any form of a mesh (see Mesh), or a Shape.\n"
+      "depth_precision: the bounds on the penetration depth are at most this far apart; 0: 1/1000 of the\n"
+      "diagonal of the smaller body's box.\n"
+      "contact_margin: contacts are reported for points inside the other body or within this distance.\n"
+      "Both in units of the meshes, ≥ 0.\n\n"
+      "A closed, orientable body is a solid; any other one is a surface without an inside. All results are\n"
+      "in space, with both bodies in their poses, and are computed by the first call after a body has "
+      "moved.\n"
+      "A call raises Error while another thread uses the object.\n\n"
+      ">>> query = sdm.ProximityQuery(box, box)\n"
+      ">>> query.set_pose(1, [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])\n"
+      ">>> query.separation()\n"
+      "sdm.BoundedLength(2, exact)\n"
+      ">>> bool(query.colliding())\n"
+      "False")
+      .def(
+          "__init__",
+          [](Q* self, nb::handle o1, nb::handle o2, double depth_precision, double contact_margin) {
+            const ProximityOptions options{.depth_precision = depth_precision,
+                                           .contact_margin = contact_margin};
+            new (self) Q{ProximityQuery(shape_of(o1), shape_of(o2), options), {}};
+          },
+          nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("depth_precision") = 0.0,
+          nb::arg("contact_margin") = 0.0,
+          nb::sig("def __init__(self, o1: object, o2: object, *, depth_precision: float = 0.0, "
+                  "contact_margin: float = "
+                  "0.0) -> None"))
+      .def(
+          "set_pose",
+          [](Q& self, int body, nb::handle pose) {
+            const Transform matrix = transform(pose, "pose");
+            const auto lock = self.access.change();
+            self.query.set_pose(checked(body), matrix);
+          },
+          nb::arg("body"), nb::arg("pose").none(),
+          nb::sig("def set_pose(self, body: int, pose: object) -> None"),
+          "Sets the pose of a body, 0 or 1: a 4 × 4 matrix from the frame of its mesh to space, for column "
+          "vectors, of\n"
+          "a rotation, a uniform scale and a translation. Initially the identity. Raises Error, and changes "
+          "nothing, if\n"
+          "it differs from such a matrix by more than 1e-5 of the scale. Cost: constant.")
+      .def(
+          "pose",
+          [](const Q& self, int body) {
+            const auto lock = self.access.use();
+            return matrix(self.query.pose(checked(body)));
+          },
+          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.ndarray"),
+          "The pose of a body, (4, 4) float64.")
+      .def(
+          "refit",
+          [](Q& self, nb::handle o1, nb::handle o2) {
+            const OptionalPoints first(o1, "o1"), second(o2, "o2");
+            const auto lock = self.access.change();
+            run_short([&] { self.query.refit(first.get(), second.get()); });
+          },
+          nb::arg("o1") = nb::none(), nb::arg("o2") = nb::none(),
+          nb::sig("def refit(self, o1: object = None, o2: object = None) -> None"),
+          "Moves the vertices of the bodies, (n, 3) numbers each; None leaves a body unchanged. Raises "
+          "Error, and changes\n"
+          "nothing, for another number of vertices, coordinates that are not finite, or a body whose Shape "
+          "is shared.\n"
+          "Cost: linear.")
+      .def(
+          "separation",
+          [](Q& self) {
+            const auto lock = self.access.change();
+            return run_short([&] { return self.query.separation(); });
+          },
+          "Returns the smallest distance between the two surfaces: exact, and 0 if they intersect.")
+      .def(
+          "colliding",
+          [](Q& self) {
+            const auto lock = self.access.change();
+            return run_short([&] { return self.query.colliding(); });
+          },
+          "Returns whether the surfaces intersect or one body is a solid that contains part of the other. "
+          "Exact.")
+      .def(
+          "penetration_depth",
+          [](Q& self) {
+            const auto lock = self.access.change();
+            return run_short([&] { return self.query.penetration_depth(); });
+          },
+          nb::sig("def penetration_depth(self) -> BoundedLength | None"),
+          "Returns the largest distance from a surface point of either body that lies inside the other to "
+          "the boundary\n"
+          "of that other body: exactly 0 if they do not collide, otherwise bounded; None if neither body is "
+          "a solid.")
+      .def(
+          "contacts",
+          [](Q& self) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PyContacts>();
+            run_short([&] {
+              const auto contacts = self.query.contacts();
+              result->contacts.assign(contacts.begin(), contacts.end());
+            });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership,
+          "Returns the contacts of both bodies: none if they are farther apart than the margin.\n\n"
+          ">>> query = sdm.ProximityQuery(box, box, contact_margin=0.1)\n"
+          ">>> query.set_pose(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.05], [0, 0, 0, 1]])\n"
+          ">>> contacts = query.contacts()\n"
+          ">>> contacts.depth.max().round(6)\n"
+          "-0.05")
+      .def("__repr__", [](const Q&) { return "sdm.ProximityQuery()"; });
+  bind_self_proximity(module);
+}
+
+}  // namespace sdm::python

@@ -1,0 +1,54 @@
+// What the queries of two bodies, of many, and of one and itself have in common.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <sdm/sdm.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "arrays.h"
+#include "objects.h"
+
+namespace sdm::python {
+
+[[nodiscard]] const char* name_of(Certainty certainty);
+
+/// Contacts, with the bodies that they belong to if there are many; arrays are made by the first access.
+struct PyContacts {
+  std::vector<Contact> contacts;
+  std::vector<std::array<std::uint32_t, 2>> bodies;
+  bool has_bodies = false;
+  LazyArray point1, point2, normal, depth, patch, faces, barycentric, id, body;
+};
+
+/// A mesh prepared for proximity queries, as of sdm.Shape.
+struct PyShape {
+  Shape shape;
+};
+
+/// The shape of a Shape, or a new one of any other mesh.
+[[nodiscard]] Shape shape_of(nb::handle body);
+
+/// Positions for a refit; none for None.
+class OptionalPoints {
+ public:
+  OptionalPoints(nb::handle array, const char* name) {
+    if (array.is_none()) return;
+    points_.emplace(array, name);
+    // An empty span would leave the body unchanged.
+    if (points_->get().empty()) throw Error(std::string(name) + " has no vertices");
+  }
+  [[nodiscard]] std::span<const Vec3> get() const {
+    return points_ ? points_->get() : std::span<const Vec3>();
+  }
+
+ private:
+  std::optional<Points> points_;
+};
+
+void bind_self_proximity(nb::module_& module);
+
+}  // namespace sdm::python

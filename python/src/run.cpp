@@ -1,0 +1,126 @@
+#include "run.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace sdm::python {
+namespace {
+
+using namespace std::chrono_literals;
+
+// What the computing thread and the waiting one tell each other.
+class Exchange {
+ public:
+  // On the computing thread. Returns false to cancel.
+  bool report(std::string_view step, double fraction) {
+    if (cancelled_) return false;
+    std::unique_lock lock(mutex_);
+    report_ = {std::string(step), fraction};
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return !report_; });
+    return !cancelled_;
+  }
+  void finish() {
+    const std::lock_guard lock(mutex_);
+    finished_ = true;
+    changed_.notify_all();
+  }
+  [[nodiscard]] bool cancelled() const { return cancelled_; }
+
+  // On the waiting thread. Calls on_report for every report, and on_pause when there is none for a while;
+  // they return false to cancel.
+  template <class OnReport, class OnPause>
+  void wait(OnReport on_report, OnPause on_pause) {
+    std::unique_lock lock(mutex_);
+    while (!finished_) {
+      const bool woken = changed_.wait_for(lock, 50ms, [&] { return report_ || finished_; });
+      if (woken && !report_) continue;
+      const std::optional<Report> report = report_;
+      lock.unlock();
+      const bool go_on = cancelled_ || (report ? on_report(report->step, report->fraction) : on_pause());
+      lock.lock();
+      if (!go_on) cancelled_ = true;
+      if (report) {
+        report_.reset();
+        changed_.notify_all();
+      }
+    }
+  }
+
+ private:
+  struct Report {
+    std::string step;
+    double fraction;
+  };
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Report> report_;
+  bool finished_ = false;
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace
+
+void run(nb::handle progress, const std::function<void(const Progress&)>& work) {
+  const bool reports = !progress.is_none();
+  if (reports && PyCallable_Check(progress.ptr()) == 0) throw Error("progress must be callable, or None");
+  Exchange exchange;
+  std::exception_ptr failure, raised;  // of the computation, of Python
+  {
+    const nb::gil_scoped_release released;
+    std::thread computation([&] {
+      try {
+        work([&](std::string_view step, double fraction) {
+          return reports ? exchange.report(step, fraction) : !exchange.cancelled();
+        });
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      exchange.finish();
+    });
+    // Python code, whose exceptions cancel.
+    const auto guarded = [&](auto call) {
+      const nb::gil_scoped_acquire acquired;
+      try {
+        return call();
+      } catch (...) {
+        raised = std::current_exception();
+        return false;
+      }
+    };
+    const auto signals = [] {
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+      return true;
+    };
+    exchange.wait(
+        [&](const std::string& step, double fraction) {
+          return guarded([&] {
+            const nb::object answer = progress(step.c_str(), fraction);
+            return signals() && !answer.is(nb::handle(Py_False));
+          });
+        },
+        [&] { return guarded(signals); });
+    computation.join();
+  }
+  if (raised) std::rethrow_exception(raised);
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::shared_lock<std::shared_mutex> Access::use() const {
+  std::shared_lock lock(mutex_, std::try_to_lock);
+  if (!lock) throw Error("the object is being changed by another call; wait for its end");
+  return lock;
+}
+
+std::unique_lock<std::shared_mutex> Access::change() {
+  std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) throw Error("the object is in use by another call; wait for its end");
+  return lock;
+}
+
+}  // namespace sdm::python

@@ -1,0 +1,41 @@
+// Long computations: without the GIL, with progress, cancellation and interrupts.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <sdm/error.h>
+#include <sdm/progress.h>
+
+#include <functional>
+#include <mutex>
+#include <shared_mutex>
+
+namespace sdm::python {
+
+namespace nb = nanobind;
+
+/// Runs `work` on a thread of its own while this one, without the GIL, waits for it. Calls
+/// progress(step, fraction), if it is not None, on this thread, and lets Python handle signals about twenty
+/// times a second. If progress returns False, `work` is cancelled, and throws Cancelled; if it raises, or a
+/// signal does (KeyboardInterrupt), `work` is cancelled and the exception is raised. Work that takes no
+/// progress is completed first.
+void run(nb::handle progress, const std::function<void(const Progress&)>& work);
+
+/// Runs short work on this thread, without the GIL.
+template <class Work>
+auto run_short(Work work) {
+  const nb::gil_scoped_release released;
+  return work();
+}
+
+/// Lets several calls use an object, or one change it. A call that would have to wait for another one throws
+/// sdm::Error instead, so that no callback can block itself.
+class Access {
+ public:
+  [[nodiscard]] std::shared_lock<std::shared_mutex> use() const;
+  [[nodiscard]] std::unique_lock<std::shared_mutex> change();
+
+ private:
+  mutable std::shared_mutex mutex_;
+};
+
+}  // namespace sdm::python

@@ -1,0 +1,96 @@
+// Proximity of a mesh to itself.
+#include <nanobind/stl/optional.h>
+#include <sdm/error.h>
+
+#include <limits>
+#include <optional>
+
+#include "proximity.h"
+
+namespace sdm::python {
+namespace {
+
+struct PySelfProximityQuery {
+  SelfProximityQuery query;
+  Access access;
+};
+
+}  // namespace
+
+void bind_self_proximity(nb::module_& module) {
+  using Q = PySelfProximityQuery;
+  nb::class_<Q>(module, "SelfProximityQuery",
+                "Proximity of a deforming mesh to itself. Results are exact: computed from the triangles.\n\n"
+                "rest: any form of a mesh (see Mesh), at rest.\n"
+                "rings: a face excludes itself and this many rings of faces around it, connected by shared "
+                "vertices; ≥ 1.\n"
+                "geodesic: instead of rings, exclude everything closer than this along the surface at rest.\n"
+                "max_distance: of separation(), > 0. Both in units of the mesh.\n"
+                "progress: called as progress(step, fraction), on this thread; False cancels.\n\n"
+                "A call raises Error while another thread uses the object.\n\n"
+                ">>> query = sdm.SelfProximityQuery(sphere, geodesic=1.5)\n"
+                ">>> 1 < query.separation().value < 2\n"
+                "True")
+      .def(
+          "__init__",
+          [](Q* self, nb::handle rest, std::uint32_t rings, std::optional<double> geodesic,
+             double max_distance, nb::handle progress) {
+            Mesh mesh = mesh_of(rest, nb::none());
+            run(progress, [&](const Progress& report) {
+              const SelfProximityOptions options{.exclusion = {.rings = rings, .geodesic = geodesic},
+                                                 .max_distance = max_distance,
+                                                 .progress = report};
+              new (self) Q{SelfProximityQuery(std::move(mesh), options), {}};
+            });
+          },
+          nb::arg("rest").none(), nb::kw_only(), nb::arg("rings") = 1, nb::arg("geodesic") = nb::none(),
+          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("progress") = nb::none(),
+          nb::sig("def __init__(self, rest: object, *, rings: int = 1, geodesic: float | None = None, "
+                  "max_distance: "
+                  "float = ..., progress: collections.abc.Callable[[str, float], bool | None] | None = None) "
+                  "-> None"))
+      .def(
+          "refit",
+          [](Q& self, nb::handle vertices) {
+            const Points positions(vertices, "vertices");
+            const auto lock = self.access.change();
+            run_short([&] { self.query.refit(positions.get()); });
+          },
+          nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
+          "Moves the vertices, (n, 3) numbers; the excluded faces stay the same. Raises Error, and changes "
+          "nothing, for\n"
+          "another number of vertices or coordinates that are not finite or beyond 1e37. Cost: linear.")
+      .def(
+          "separation",
+          [](Q& self) {
+            const auto lock = self.access.change();
+            return run_short([&] { return self.query.separation(); });
+          },
+          nb::sig("def separation(self) -> BoundedLength | None"),
+          "Returns the smallest distance between two faces that do not exclude each other, 0 if they "
+          "intersect; None if\n"
+          "there are none within max_distance. The witness is a point on each, the face of lower index "
+          "first.")
+      .def(
+          "contacts",
+          [](Q& self, double margin) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PyContacts>();
+            run_short([&] {
+              const auto contacts = self.query.contacts(margin);
+              result->contacts.assign(contacts.begin(), contacts.end());
+            });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership, nb::arg("margin"),
+          "Returns the contacts of faces within ``margin``, in units of the mesh, of a face that they do not "
+          "exclude, with\n"
+          "the nearest such face. depth is -|point2 - point1|, as a surface has no inside.")
+      .def("__repr__", [](const Q& self) {
+        const Mesh& mesh = self.query.sites().mesh();
+        return nb::str("sdm.SelfProximityQuery({} vertices, {} faces)")
+            .format(mesh.positions.size(), mesh.triangles.size());
+      });
+}
+
+}  // namespace sdm::python

@@ -1,0 +1,251 @@
+// Sites and closest points.
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "arrays.h"
+#include "closest.h"
+#include "objects.h"
+
+namespace sdm::python {
+namespace {
+
+// More points are searched on another thread, so that they can be interrupted.
+constexpr std::size_t kShort = 4096;
+
+struct QueryOptions {
+  double max_distance;
+  const char* sign;
+  bool gradients;
+  const char* engine;
+  nb::handle progress;
+};
+
+std::unique_ptr<PyClosestPoints> closest(nb::handle self, nb::handle points, const QueryOptions& query) {
+  const auto& sites = nb::cast<const PySites&>(self);
+  const Points p(points, "points");
+  const auto lock = sites.access.use();
+  MapOptions options{.sign = sign_of(query.sign), .max_distance = query.max_distance};
+  const bool cpu = query.engine == std::string_view("cpu");
+  if (!cpu) options.engine = engine_of(query.engine);
+
+  auto result = std::make_unique<PyClosestPoints>();
+  result->sites = nb::borrow(self);
+  result->positions = sites.positions;
+  const auto search = [&](const Progress& progress) {
+    options.progress = progress;
+    result->found = closest_points(sites.sites, p.get(), options);
+    if (options.sign != SignMethod::none) {
+      const SignMethod sign = choose_sign(sites.sites, options.sign).method;
+      if (sign != SignMethod::none) result->inside = inside_flags(sites.sites, p.get(), result->found, sign);
+    }
+    if (query.gradients) result->set_gradients(p.get());
+  };
+  if (p.get().size() <= kShort && cpu && query.progress.is_none()) {
+    run_short([&] { search({}); });
+  } else {
+    run(query.progress, search);
+  }
+  return result;
+}
+
+constexpr const char* kClosestPoints =
+    "The closest points of a mesh to n query points. Arrays are made by the first access.";
+
+void bind_closest_points(nb::module_& module) {
+  nb::class_<PyClosestPoints>(module, "ClosestPoints", kClosestPoints)
+      .def_prop_ro(
+          "distance", &PyClosestPoints::distance, nb::sig("def distance(self) -> numpy.ndarray"),
+          "The distances, (n,) float64, in units of the mesh; negative inside the mesh if they are signed. "
+          "Infinite where nothing is within max_distance.")
+      .def_prop_ro("point", &PyClosestPoints::point, nb::sig("def point(self) -> numpy.ndarray"),
+                   "The closest points, (n, 3) float64; NaN where there is none.")
+      .def_prop_ro("face", &PyClosestPoints::face, nb::sig("def face(self) -> numpy.ndarray"),
+                   "A face that contains the closest point, (n,) uint32; NONE where there is none.")
+      .def_prop_ro(
+          "barycentric", &PyClosestPoints::barycentric, nb::sig("def barycentric(self) -> numpy.ndarray"),
+          "The barycentric coordinates of the closest point in its face, (n, 3) float64: not negative, with "
+          "a sum of 1 to rounding. Exactly 0 for corners that the site does not have. NaN where there is "
+          "none.")
+      .def_prop_ro(
+          "site", &PyClosestPoints::site, nb::sig("def site(self) -> numpy.ndarray"),
+          "The closest vertex, edge or face, (n,) uint32: an index into the vertices, Sites.edges or the "
+          "faces, by site_type; NONE where there is none.")
+      .def_prop_ro("site_type", &PyClosestPoints::site_type, nb::sig("def site_type(self) -> numpy.ndarray"),
+                   "The kind of each site, (n,) uint8: a SiteType.")
+      .def_prop_ro(
+          "gradient", &PyClosestPoints::gradient, nb::sig("def gradient(self) -> numpy.ndarray | None"),
+          "The derivative of the distance by the query point, (n, 3) float64, if gradients were requested, "
+          "else None: a unit vector. 0 where the distance is 0, where it is not differentiable, and where "
+          "there is no closest point. Where several points are equally close, the derivative for the one "
+          "that was found.")
+      .def("vertex_gradients", &PyClosestPoints::vertex_gradients,
+           nb::sig("def vertex_gradients(self) -> tuple[numpy.ndarray, numpy.ndarray]"),
+           "The derivatives of the distances by the vertices, if gradients were requested.\n\n"
+           "Returns (vertices, derivatives): (n, 3) uint32 and (n, 3, 3) float64. Distance i depends on the "
+           "vertices\n"
+           "vertices[i] only; its derivative by the position of vertices[i, k] is derivatives[i, k]. All are "
+           "0 where\n"
+           "there is no closest point. Raises Error without gradients.\n\n"
+           ">>> closest = sdm.closest_points([[0, 0, 0], [3, 0, 0], [0, 3, 0]], [[0, 1, 2]], [[1, 1, 2]],\n"
+           "...                              gradients=True)\n"
+           ">>> vertices, derivatives = closest.vertex_gradients()\n"
+           ">>> closest.gradient[0, 2], derivatives[0, :, 2].sum().round(12)\n"
+           "(1.0, -1.0)")
+      .def("__len__", [](const PyClosestPoints& self) { return self.found.size(); })
+      .def("__repr__", [](const PyClosestPoints& self) {
+        return nb::str("sdm.ClosestPoints({} points)").format(self.found.size());
+      });
+}
+
+}  // namespace
+
+void bind_sites(nb::module_& module) {
+  bind_closest_points(module);
+  nb::class_<PySites>(
+      module, "Sites",
+      "The object that distances are measured to (O2): the faces, edges and vertices of a mesh,\n"
+      "prepared for queries.\n\n"
+      "mesh, faces: as Mesh. Raises Error for a mesh that cannot be used. Cost: O(m log m) for m faces,\n"
+      "all cores. Several threads may query an object at the same time; refit() raises Error while they\n"
+      "do.\n\n"
+      ">>> sites = sdm.Sites(box)\n"
+      ">>> sites.closest_points([[2, 0.5, 0.5]]).point\n"
+      "array([[1. , 0.5, 0.5]])\n"
+      ">>> sites.signed_distance([[0.5, 0.5, 0.75]])\n"
+      "array([-0.25])")
+      .def(
+          "__init__",
+          [](PySites* self, nb::handle mesh, nb::handle faces) {
+            Mesh value = mesh_of(mesh, faces);
+            run_short([&] { new (self) PySites(std::move(value)); });
+          },
+          nb::arg("mesh").none(), nb::arg("faces") = nb::none(),
+          nb::sig("def __init__(self, mesh: object, faces: object = None) -> None"))
+      .def(
+          "closest_points",
+          [](nb::handle self, nb::handle points, double max_distance, const char* sign, bool gradients,
+             const char* engine, nb::handle progress) {
+            return closest(self, points, {max_distance, sign, gradients, engine, progress}).release();
+          },
+          nb::rv_policy::take_ownership, nb::arg("points").none(), nb::kw_only(),
+          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("sign") = "none",
+          nb::arg("gradients") = false, nb::arg("engine") = "cpu", nb::arg("progress") = nb::none(),
+          nb::sig(
+              "def closest_points(self, points: object, *, max_distance: float = ..., sign: str = 'none', "
+              "gradients: bool = False, engine: str = 'cpu', progress: collections.abc.Callable[[str, "
+              "float], "
+              "bool | None] | None = None) -> ClosestPoints"),
+          "Returns the closest point of the mesh to each of n points.\n\n"
+          "points: (n, 3) numbers. float64 in C order is used without a copy, and must not change during the "
+          "call.\n"
+          "max_distance: > 0, in units of the mesh; points farther away have no closest point.\n"
+          "sign: 'none': unsigned distances; 'exact': negative inside a closed, orientable mesh; 'winding': "
+          "also for\n"
+          "other meshes, by generalised winding numbers, an estimate of insideness; 'automatic': exact where "
+          "the mesh\n"
+          "allows it, else none.\n"
+          "gradients: whether the result has the derivatives of the distances.\n"
+          "engine: 'cpu' or 'reference'; the site is closest to within 1e-6 of the diagonal of both, or to "
+          "double\n"
+          "rounding. The distance is that to this site, in double precision.\n"
+          "progress: called as progress(step, fraction), on this thread; False cancels.\n\n"
+          "Raises Error for points that are not finite or beyond 1e37, and for a sign that the mesh does not "
+          "allow;\n"
+          "Cancelled. Cost: one search per point, all cores.\n\n"
+          ">>> closest = sdm.Sites(box).closest_points([[2, 0.5, 0.25], [2, 2, 2]])\n"
+          ">>> closest.distance\n"
+          "array([1.        , 1.73205081])\n"
+          ">>> closest.site_type == [sdm.SiteType.FACE, sdm.SiteType.VERTEX]\n"
+          "array([ True,  True])")
+      .def(
+          "signed_distance",
+          [](nb::handle self, nb::handle points, const char* sign, double max_distance, nb::handle progress) {
+            return closest(self, points, {max_distance, sign, false, "cpu", progress})->distance();
+          },
+          nb::arg("points").none(), nb::kw_only(), nb::arg("sign") = "exact",
+          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("progress") = nb::none(),
+          nb::sig(
+              "def signed_distance(self, points: object, *, sign: str = 'exact', max_distance: float = ..., "
+              "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
+              "numpy.ndarray"),
+          "Returns the distances of n points, (n,) float64, negative inside the mesh.\n\n"
+          "As closest_points(), with a sign. Raises Error for an open mesh, unless sign is 'winding'.\n\n"
+          ">>> sdm.Sites(box).signed_distance([[0.5, 0.5, 0.5], [2, 0.5, 0.5]])\n"
+          "array([-0.5,  1. ])")
+      .def(
+          "contains",
+          [](nb::handle self, nb::handle points, const char* sign, nb::handle progress) {
+            const auto found = closest(
+                self, points, {std::numeric_limits<double>::infinity(), sign, false, "cpu", progress});
+            std::vector<std::uint8_t> inside = std::move(found->inside);
+            inside.resize(found->found.size());
+            return array_of<bool>(std::move(inside), {found->found.size()});
+          },
+          nb::arg("points").none(), nb::kw_only(), nb::arg("sign") = "exact",
+          nb::arg("progress") = nb::none(),
+          nb::sig("def contains(self, points: object, *, sign: str = 'exact', "
+                  "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
+                  "numpy.ndarray"),
+          "Returns whether each of n points lies inside the mesh, (n,) bool.\n\n"
+          "As the sign of signed_distance(): exact at points farther from the mesh than 1e-6 of the "
+          "diagonal.\n\n"
+          ">>> sdm.Sites(box).contains([[0.5, 0.5, 0.5], [2, 0.5, 0.5]])\n"
+          "array([ True, False])")
+      .def(
+          "refit",
+          [](PySites& self, nb::handle vertices) {
+            const Points positions(vertices, "vertices");
+            const auto lock = self.access.change();
+            run_short([&] {
+              self.sites.refit(positions.get());
+              self.positions =
+                  std::make_shared<std::vector<Vec3>>(positions.get().begin(), positions.get().end());
+            });
+            ++self.shape;
+          },
+          nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
+          "Moves the vertices and keeps the faces.\n\n"
+          "vertices: (n, 3) numbers. Earlier results do not change. Raises Error, and changes nothing, for "
+          "another\n"
+          "number of vertices, for coordinates that are not finite or beyond 1e37, and while another call "
+          "uses the\n"
+          "object. Cost: linear, a fraction of building the object.\n\n"
+          ">>> sites = sdm.Sites(box)\n"
+          ">>> sites.refit(sites.vertices + [0, 0, 1])\n"
+          ">>> sites.signed_distance([[0.5, 0.5, 0.75]])\n"
+          "array([0.25])")
+      .def_prop_ro(
+          "vertices", [](const PySites& self) { return positions_view(self.positions); },
+          nb::sig("def vertices(self) -> numpy.ndarray"),
+          "The positions, (n, 3) float64, read-only. The array does not change with a refit.")
+      .def_prop_ro(
+          "faces",
+          [](nb::handle self) { return faces_view(nb::cast<const PySites&>(self).sites.mesh(), self); },
+          nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+      .def_prop_ro(
+          "edges",
+          [](nb::handle self) {
+            const auto edges = nb::cast<const PySites&>(self).sites.edges();
+            return view_of<std::uint32_t>(edges, {edges.size(), 2}, self);
+          },
+          nb::sig("def edges(self) -> numpy.ndarray"),
+          "The two vertices of each edge, the smaller index first, in lexicographic order, (e, 2) uint32, "
+          "read-only.")
+      .def_prop_ro(
+          "closed", [](const PySites& self) { return self.sites.closed(); },
+          "Whether every edge has exactly two faces.")
+      .def_prop_ro(
+          "orientable", [](const PySites& self) { return self.sites.orientable(); },
+          "Whether the faces can be oriented consistently.")
+      .def("__repr__", [](const PySites& self) {
+        const Mesh& mesh = self.sites.mesh();
+        return nb::str("sdm.Sites({} vertices, {} faces, {})")
+            .format(mesh.positions.size(), mesh.triangles.size(), self.sites.closed() ? "closed" : "open");
+      });
+}
+
+}  // namespace sdm::python

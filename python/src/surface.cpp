@@ -1,0 +1,202 @@
+// Surfaces, and a surface built beside sites.
+#include <sdm/error.h>
+#include <sdm/sampling_bound.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "arrays.h"
+#include "objects.h"
+
+namespace sdm::python {
+namespace {
+
+constexpr std::uint32_t kDefaultResolution = 1024;
+
+struct Layout {
+  AtlasOptions options;
+  std::optional<double> precision;
+};
+
+Layout layout(nb::handle resolution, nb::handle precision, const char* atlas, double max_stretch,
+              std::int64_t gutter) {
+  if (!resolution.is_none() && !precision.is_none())
+    throw Error("resolution and precision exclude each other; give one of them");
+  Layout result;
+  result.options.kind = atlas_of(atlas);
+  const auto unsigned_of = [](std::int64_t value, const char* name) {
+    if (value < 0 || value > 0xFFFFFFFE) throw Error(std::string(name) + " is out of range");
+    return static_cast<std::uint32_t>(value);
+  };
+  result.options.resolution =
+      resolution.is_none()
+          ? kDefaultResolution
+          : unsigned_of(nb::cast<std::int64_t>(nb::int_(nb::borrow(resolution))), "resolution");
+  result.options.max_stretch = max_stretch;
+  result.options.gutter = unsigned_of(gutter, "gutter");
+  if (!precision.is_none()) result.precision = nb::cast<double>(nb::float_(nb::borrow(precision)));
+  return result;
+}
+
+std::unique_ptr<PySurface> built(Mesh mesh, Layout layout, const Progress& progress) {
+  layout.options.progress = progress;
+  if (layout.precision) layout.options.resolution = resolution_for(mesh, layout.options, *layout.precision);
+  return std::make_unique<PySurface>(std::move(mesh), layout.options);
+}
+
+#define SDM_LAYOUT_ARGUMENTS                                                                          \
+  nb::arg("resolution") = nb::none(), nb::arg("precision") = nb::none(), nb::arg("atlas") = "charts", \
+  nb::arg("max_stretch") = AtlasOptions{}.max_stretch, nb::arg("gutter") = AtlasOptions{}.gutter
+
+}  // namespace
+
+void bind_surface(nb::module_& module) {
+  nb::class_<PySurface>(
+      module, "Surface",
+      "The surface on which distances are measured (O1): a mesh laid out in a square texture.\n\n"
+      "mesh, faces: as Mesh.\n"
+      "resolution: texels per side, 16 to 32768; 1024 by default.\n"
+      "precision: instead of the resolution, the largest distance allowed from a point of the surface\n"
+      "to the nearest texel's centre, in units of the mesh.\n"
+      "atlas: 'charts': clusters of faces; 'triangles': single faces, without distortion; 'uv': the\n"
+      "mesh's own texture coordinates.\n"
+      "max_stretch: bounds the growth of lengths from atlas to surface, for charts; in (1, 100].\n"
+      "gutter: free texels around each chart.\n"
+      "progress: called as progress(step, fraction), on this thread; False cancels.\n\n"
+      "Raises Error for a mesh or options that cannot be used; Cancelled.\n\n"
+      ">>> surface = sdm.Surface(sphere, resolution=256)\n"
+      ">>> surface.texel_faces.shape\n"
+      "(256, 256)\n"
+      ">>> surface.covering_radius() < 0.05\n"
+      "True")
+      .def(
+          "__init__",
+          [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle resolution, nb::handle precision,
+             const char* atlas, double max_stretch, std::int64_t gutter, nb::handle progress) {
+            const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
+            Mesh value = mesh_of(mesh, faces);
+            run(progress, [&](const Progress& report) {
+              AtlasOptions atlas_options = options.options;
+              atlas_options.progress = report;
+              if (options.precision)
+                atlas_options.resolution = resolution_for(value, atlas_options, *options.precision);
+              new (self) PySurface(std::move(value), atlas_options);
+            });
+          },
+          nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(), SDM_LAYOUT_ARGUMENTS,
+          nb::arg("progress") = nb::none(),
+          nb::sig("def __init__(self, mesh: object, faces: object = None, *, resolution: int | None = None, "
+                  "precision: float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, gutter: "
+                  "int = 1, "
+                  "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> None"))
+      .def(
+          "refit",
+          [](PySurface& self, nb::handle vertices) {
+            const Points positions(vertices, "vertices");
+            const auto lock = self.access.change();
+            run_short([&] {
+              self.surface.refit(positions.get());
+              self.positions =
+                  std::make_shared<std::vector<Vec3>>(positions.get().begin(), positions.get().end());
+            });
+            ++self.shape;
+          },
+          nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
+          "Moves the vertices and keeps the faces and the atlas.\n\n"
+          "vertices: (n, 3) numbers. Maps computed before keep their distances. Raises Error, and changes "
+          "nothing, for\n"
+          "another number of vertices, for coordinates that are not finite or beyond 1e37, and while another "
+          "call uses\n"
+          "the object. Cost: linear.")
+      .def(
+          "covering_radius",
+          [](const PySurface& self) {
+            const auto lock = self.access.use();
+            return run_short([&] { return covering_radius(self.surface); });
+          },
+          "Returns an upper bound on the distance from any point of the surface to the nearest texel's "
+          "centre, in\n"
+          "units of the mesh. Cost: linear in texels and faces, all cores.")
+      .def_prop_ro(
+          "resolution", [](const PySurface& self) { return self.surface.resolution(); }, "Texels per row.")
+      .def_prop_ro(
+          "atlas", [](const PySurface& self) { return name_of(self.surface.atlas_kind()); },
+          "The kind of the atlas: 'charts', 'triangles' or 'uv'.")
+      .def_prop_ro(
+          "chart_count", [](const PySurface& self) { return self.surface.chart_count(); },
+          "The number of charts.")
+      .def_prop_ro(
+          "utilisation", [](const PySurface& self) { return self.surface.utilisation(); },
+          "The fraction of texels that a face owns.")
+      .def_prop_ro(
+          "max_stretch", [](const PySurface& self) { return self.surface.max_stretch(); },
+          "The largest factor by which a length grows from atlas to surface, for the first shape.")
+      .def_prop_ro(
+          "vertices", [](const PySurface& self) { return positions_view(self.positions); },
+          nb::sig("def vertices(self) -> numpy.ndarray"),
+          "The positions, (n, 3) float64, read-only. The array does not change with a refit.")
+      .def_prop_ro(
+          "faces",
+          [](nb::handle self) { return faces_view(nb::cast<const PySurface&>(self).surface.mesh(), self); },
+          nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+      .def_prop_ro(
+          "texel_faces",
+          [](nb::handle self) {
+            const Surface& surface = nb::cast<const PySurface&>(self).surface;
+            return view_of<std::uint32_t>(surface.texel_faces(), {surface.rows(), surface.resolution()},
+                                          self);
+          },
+          nb::sig("def texel_faces(self) -> numpy.ndarray"),
+          "The face that owns each texel, or NONE, (H, W) uint32, read-only; row 0 at the top.")
+      .def("__repr__", [](const PySurface& self) {
+        const Mesh& mesh = self.surface.mesh();
+        return nb::str("sdm.Surface({} vertices, {} faces, {}² texels)")
+            .format(mesh.positions.size(), mesh.triangles.size(), self.surface.resolution());
+      });
+
+  // For sdm.map: both objects, built beside each other.
+  module.def(
+      "prepare",
+      [](nb::handle a, nb::handle b, nb::handle motion, nb::handle resolution, nb::handle precision,
+         const char* atlas, double max_stretch, std::int64_t gutter, nb::handle progress) {
+        const bool has_surface = nb::isinstance<PySurface>(a), has_sites = nb::isinstance<PySites>(b);
+        if (has_surface && !(resolution.is_none() && precision.is_none()))
+          throw Error("a Surface has its resolution; give another form of the mesh for another one");
+        if (has_surface && !motion.is_none())
+          throw Error("a Surface cannot be transformed; refit() it, or give another form of the mesh");
+        const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
+        Mesh on = has_surface ? Mesh{} : mesh_of(a, nb::none());
+        Mesh to = has_sites ? Mesh{} : mesh_of(b, nb::none());
+        std::optional<Transform> matrix;
+        if (!motion.is_none()) matrix = python::transform(motion, "transform");
+        std::unique_ptr<PySurface> surface;
+        std::unique_ptr<PySites> sites;
+        run(progress, [&](const Progress& report) {
+          std::vector<std::function<void()>> tasks;
+          if (!has_surface) {
+            tasks.emplace_back([&] {
+              validate(on);
+              if (matrix) transform(on, *matrix);
+              surface = built(std::move(on), options, report);
+            });
+          }
+          if (!has_sites) tasks.emplace_back([&] { sites = std::make_unique<PySites>(std::move(to)); });
+          run_concurrently(tasks);
+        });
+        const auto object_of = [](auto& owned, nb::handle given) -> nb::object {
+          return owned ? nb::cast(owned.release(), nb::rv_policy::take_ownership) : nb::borrow(given);
+        };
+        return nb::make_tuple(object_of(surface, a), object_of(sites, b));
+      },
+      nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(), nb::arg("transform") = nb::none(),
+      SDM_LAYOUT_ARGUMENTS, nb::arg("progress") = nb::none(),
+      nb::sig(
+          "def prepare(a: object, b: object, *, transform: object = None, resolution: int | None = None, "
+          "precision: "
+          "float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, gutter: int = 1, progress: "
+          "collections.abc.Callable[[str, float], bool | None] | None = None) -> tuple[Surface, Sites]"));
+}
+
+}  // namespace sdm::python

@@ -1,0 +1,184 @@
+"""Closest points, signs and derivatives, by brute force and by finite differences."""
+
+import numpy as np
+import pytest
+
+import meshes
+import oracle
+import sdm
+import sdm._gradients
+
+RANDOM = np.random.default_rng(7)
+POINTS = RANDOM.uniform(-2, 2, (500, 3))
+CASES = {"box": meshes.box(), "sphere": meshes.sphere(), "soup": meshes.soup(1)}
+
+
+@pytest.fixture(params=CASES)
+def mesh(request):
+    return CASES[request.param]
+
+
+def test_against_brute_force(mesh):
+    vertices, faces = mesh
+    distances, points = oracle.closest_points(vertices, faces, POINTS)
+    found = sdm.closest_points(vertices, faces, POINTS)
+    # The site is closest to within 1e-6 of the diagonal of the mesh and the points.
+    np.testing.assert_allclose(found.distance, distances, rtol=0, atol=7e-6)
+    reference = sdm.closest_points(vertices, faces, POINTS, engine="reference")
+    np.testing.assert_allclose(reference.distance, distances, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(reference.point, points, atol=1e-7)
+    np.testing.assert_allclose(np.linalg.norm(found.point - POINTS, axis=1), found.distance, atol=1e-14)
+
+
+def test_faces_and_weights_give_the_point(mesh):
+    vertices, faces = mesh
+    found = sdm.closest_points(vertices, faces, POINTS)
+    corners = vertices[faces[found.face]]
+    np.testing.assert_allclose(np.einsum("nk,nkx->nx", found.barycentric, corners), found.point, atol=1e-14)
+    assert (found.barycentric >= 0).all()
+    np.testing.assert_allclose(found.barycentric.sum(axis=1), 1, atol=1e-14)
+
+
+def test_sites(mesh):
+    vertices, faces = mesh
+    sites = sdm.Sites(mesh)
+    found = sites.closest_points(POINTS)
+    zeros = (found.barycentric == 0).sum(axis=1)
+    for point, face, site, kind, zero in zip(found.point, found.face, found.site, found.site_type, zeros):
+        if kind == sdm.SiteType.VERTEX:
+            assert zero == 2 and site in faces[face]
+            np.testing.assert_allclose(point, vertices[site], atol=1e-14)
+        elif kind == sdm.SiteType.EDGE:
+            assert zero >= 1 and set(sites.edges[site]) < set(faces[face])
+        else:
+            assert kind == sdm.SiteType.FACE and site == face
+
+
+def test_nothing_within_the_maximum_distance():
+    found = sdm.Sites(meshes.box()).closest_points([[5, 0, 0], [1.5, 0.5, 0.5]], max_distance=1, gradients=True)
+    assert found.distance.tolist() == [np.inf, 0.5]
+    assert found.face[0] == found.site[0] == sdm.NONE and found.site_type[0] == sdm.SiteType.NONE
+    assert np.isnan(found.point[0]).all() and np.isnan(found.barycentric[0]).all()
+    assert (found.gradient[0] == 0).all() and (found.vertex_gradients()[1][0] == 0).all()
+
+
+@pytest.mark.parametrize("mesh", [meshes.box(), meshes.sphere()], ids=["box", "sphere"])
+def test_signs(mesh):
+    inside = oracle.winding_numbers(*mesh, POINTS) > 0.5
+    sites = sdm.Sites(mesh)
+    np.testing.assert_array_equal(sites.contains(POINTS), inside)
+    np.testing.assert_array_equal(sites.contains(POINTS, sign="winding"), inside)
+    unsigned = sites.closest_points(POINTS).distance
+    np.testing.assert_array_equal(sites.signed_distance(POINTS), np.where(inside, -unsigned, unsigned))
+    np.testing.assert_array_equal(sites.closest_points(POINTS, sign="automatic").distance, sites.signed_distance(POINTS))
+
+
+def test_open_meshes_have_no_exact_sign():
+    vertices, faces = meshes.sphere()
+    sites = sdm.Sites(vertices, faces[1:])
+    assert not sites.closed
+    for query in (sites.signed_distance, sites.contains):
+        with pytest.raises(sdm.Error, match="O2 is open"):
+            query(POINTS)
+    # By generalised winding numbers; points near the hole are left out.
+    far = np.linalg.norm(POINTS - vertices[faces[0]].mean(axis=0), axis=1) > 0.5
+    inside = oracle.winding_numbers(vertices, faces[1:], POINTS) > 0.5
+    np.testing.assert_array_equal(sites.contains(POINTS, sign="winding")[far], inside[far])
+    assert (sites.closest_points(POINTS, sign="automatic").distance >= 0).all()
+
+
+def test_refit():
+    vertices, faces = meshes.sphere()
+    sites = sdm.Sites(vertices, faces)
+    before = sites.closest_points(POINTS)
+    old_vertices = sites.vertices
+    moved = vertices * [1, 2, 0.5] + 0.25
+    sites.refit(moved)
+    expected = sdm.closest_points(moved, faces, POINTS)
+    np.testing.assert_array_equal(sites.closest_points(POINTS).distance, expected.distance)
+    np.testing.assert_array_equal(sites.vertices, moved)
+    # Earlier results are those of the earlier shape, also where they are computed by the first access.
+    np.testing.assert_array_equal(old_vertices, vertices)
+    first = sdm.closest_points(vertices, faces, POINTS)
+    np.testing.assert_array_equal(before.barycentric, first.barycentric)
+    np.testing.assert_array_equal(before.point, first.point)
+    for bad in (vertices[1:], vertices * np.nan, vertices[:, :2], "text"):
+        with pytest.raises(sdm.Error):
+            sites.refit(bad)
+    np.testing.assert_array_equal(sites.vertices, moved)
+
+
+def test_options_out_of_range():
+    sites = sdm.Sites(meshes.box())
+    for options in ({"sign": "inside"}, {"engine": "fast"}, {"engine": "gl"}, {"max_distance": 0}, {"max_distance": -1},
+                    {"max_distance": np.nan}, {"progress": 3}):  # fmt: skip
+        with pytest.raises(sdm.Error):
+            sites.closest_points(POINTS, **options)
+    with pytest.raises(sdm.Error, match="gradients=True"):
+        sites.closest_points(POINTS).vertex_gradients()
+    assert sites.closest_points(POINTS).gradient is None
+
+
+def differences(function, x, step=1e-6):
+    """Central differences of a function of an array, shape (*values, *x)."""
+    columns = []
+    for index in np.ndindex(x.shape):
+        sides = []
+        for sign in (1, -1):
+            moved = x.copy()
+            moved[index] += sign * step
+            sides.append(function(moved))
+        columns.append((sides[0] - sides[1]) / (2 * step))
+    return np.stack(columns, axis=-1).reshape(*columns[0].shape, *x.shape)
+
+
+@pytest.mark.parametrize("sign", ["none", "exact"])
+def test_derivatives_by_finite_differences(sign):
+    vertices, faces = meshes.box()
+    vertices = vertices + np.random.default_rng(3).normal(0, 0.05, vertices.shape)
+    points = np.random.default_rng(4).uniform(-0.7, 1.7, (40, 3))
+
+    def distance(p, v):
+        return sdm.closest_points(v, faces, p, sign=sign, engine="reference").distance
+
+    found = sdm.closest_points(vertices, faces, points, sign=sign, gradients=True, engine="reference")
+    by_points = differences(lambda p: distance(p, vertices), points)
+    expected = np.zeros_like(by_points)
+    expected[np.arange(len(points)), np.arange(len(points))] = found.gradient
+    np.testing.assert_allclose(by_points, expected, atol=1e-7)
+    np.testing.assert_allclose(np.linalg.norm(found.gradient, axis=1), 1, atol=1e-12)
+
+    by_vertices = differences(lambda v: distance(points, v), vertices)
+    where, derivatives = found.vertex_gradients()
+    expected = np.zeros_like(by_vertices)
+    for i, (corners, values) in enumerate(zip(where, derivatives)):
+        for corner, value in zip(corners, values):
+            expected[i, corner] += value
+    np.testing.assert_allclose(by_vertices, expected, atol=1e-7)
+
+    # The chain rule of sdm.torch, without torch.
+    upstream = np.random.default_rng(5).normal(size=len(points))
+    np.testing.assert_allclose(sdm._gradients.of_points(found, upstream),
+                               np.einsum("n,npx->px", upstream, by_points), atol=1e-6)  # fmt: skip
+    np.testing.assert_allclose(sdm._gradients.of_vertices(found, upstream, len(vertices)),
+                               np.einsum("n,nvx->vx", upstream, by_vertices), atol=1e-6)  # fmt: skip
+
+
+def test_derivatives_are_0_on_the_surface():
+    vertices, faces = meshes.box()
+    found = sdm.closest_points(vertices, faces, [[1, 0.5, 0.25]], gradients=True)
+    assert found.distance[0] == 0 and (found.gradient == 0).all()
+
+
+def test_torch():
+    torch = pytest.importorskip("torch")
+    import sdm.torch
+
+    vertices, faces = (torch.tensor(a) for a in meshes.box())
+    vertices.requires_grad_()
+    points = torch.tensor(np.random.default_rng(4).uniform(-0.7, 1.7, (20, 3)), requires_grad=True)
+    for sign in ("none", "exact"):
+        assert torch.autograd.gradcheck(lambda p, v: sdm.torch.distance(p, v, faces, sign=sign), (points, vertices))
+    assert sdm.torch.distance(points.float(), vertices, faces).dtype == torch.float32
+    sites = sdm.Sites(vertices, faces)  # tensors that require gradients
+    np.testing.assert_array_equal(sites.closest_points(points.detach()).distance, sites.closest_points(points).distance)

@@ -1,0 +1,89 @@
+"""Docstrings: every public name has one, and their examples run. The code of README.md and docs/python.md runs, too."""
+
+import doctest
+import inspect
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import meshes
+import sdm
+
+ROOT = Path(__file__).resolve().parents[2]
+MESHES = Path("/usr/share/glmark2/models")
+
+
+def public_objects():
+    yield "sdm", sdm
+    for name in sdm.__all__:
+        if name == "NONE":
+            continue
+        value = getattr(sdm, name)
+        yield f"sdm.{name}", value
+        if inspect.isclass(value) and not issubclass(value, (Exception, int)):
+            for member in dir(value):
+                if not member.startswith("_"):
+                    yield f"sdm.{name}.{member}", getattr(value, member)
+
+
+# Fields whose names say it all.
+PLAIN = re.compile(r"sdm\.(DistanceStatistics|BoundedLength|BoundedBool|SiteType)\.\w+|sdm.MapBounds\.\w+")
+
+
+@pytest.mark.parametrize("name", [name for name, _ in public_objects()])
+def test_docstrings(name):
+    value = dict(public_objects())[name]
+    text = inspect.getdoc(value)
+    assert PLAIN.fullmatch(name) or text, f"{name} has no docstring"
+    names = {"sdm": sdm, "np": np, "box": sdm.Mesh(meshes.box()), "sphere": sdm.Mesh(meshes.sphere())}
+    test = doctest.DocTestParser().get_doctest(text or "", names, name, None, 0)
+    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL)
+    assert runner.run(test).failed == 0, name
+
+
+def blocks(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_pages(page, tmp_path, monkeypatch):
+    """The blocks of a page, one after the other, in a folder with the meshes that they name."""
+    import shutil
+
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    for name in ("bunny.obj", "horse.3ds"):
+        shutil.copy(MESHES / name, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    found = blocks(page)
+    assert found
+    names = {}
+    for block in found:
+        if "import torch" in block and not has_torch():
+            continue
+        exec(compile(block, page, "exec"), names)
+    assert (tmp_path / "distance.png").stat().st_size > 10_000
+
+
+def has_torch():
+    try:
+        import torch  # noqa: F401
+    except ImportError:
+        return False
+    return True
+
+
+def test_types_are_shipped():
+    folder = Path(sdm.__file__).parent
+    assert (folder / "py.typed").exists()
+    stub = (folder / "_core.pyi").read_text(encoding="utf-8")
+    compile(stub, "_core.pyi", "exec")
+    for name in ("Sites", "Surface", "ClosestPoints", "ProximityQuery"):
+        assert f"class {name}:" in stub
+
+
+def test_version():
+    assert sdm.__version__ == (ROOT / "VERSION").read_text().strip()

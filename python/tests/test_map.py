@@ -1,0 +1,244 @@
+"""Maps, their bounds and their files."""
+
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import meshes
+import oracle
+import sdm
+
+
+@pytest.fixture(scope="module")
+def distance_map():
+    return sdm.map(meshes.sphere(), meshes.box(), resolution=256)
+
+
+def rotation_and_shift():
+    c, s = np.cos(0.5), np.sin(0.5)
+    return np.array([[c, -s, 0, 0.5], [s, c, 0, -1], [0, 0, 1, 2], [0, 0, 0, 1]])
+
+
+def test_arrays(distance_map):
+    m = distance_map
+    assert m.distance.shape == m.face.shape == m.site.shape == m.site_type.shape == m.valid.shape == (256, 256)
+    assert m.vector.shape == m.position.shape == m.normal.shape == (256, 256, 3)
+    types = {"distance": "f4", "vector": "f4", "position": "f8", "normal": "f4", "face": "u4", "site": "u4",
+             "site_type": "u1", "valid": "?"}  # fmt: skip
+    for name, dtype in types.items():
+        array = getattr(m, name)
+        assert array.dtype == np.dtype(dtype) and array.flags.c_contiguous and not array.flags.writeable, name
+        assert getattr(m, name) is array or name == "face"
+    np.testing.assert_array_equal(m.valid, m.face != sdm.NONE)
+    np.testing.assert_array_equal(m.valid, np.isfinite(m.distance))
+    assert m.sign == "exact" and m.sign_reason
+
+
+def test_values(distance_map):
+    m, (vertices, faces) = distance_map, meshes.sphere()
+    where = np.flatnonzero(m.valid.ravel())[::37]
+    position, vector = m.position.reshape(-1, 3)[where], m.vector.reshape(-1, 3)[where]
+    distance, owner = m.distance.ravel()[where], m.face.ravel()[where]
+    corners = vertices[faces[owner]]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    np.testing.assert_allclose(m.normal.reshape(-1, 3)[where], normal, atol=1e-6)
+    np.testing.assert_allclose(((position - corners[:, 0]) * normal).sum(axis=1), 0, atol=1e-14)
+    expected, closest = oracle.closest_points(*meshes.box(), position)
+    inside = oracle.winding_numbers(*meshes.box(), position) > 0.5
+    accuracy = m.bounds.accuracy
+    np.testing.assert_allclose(distance, np.where(inside, -expected, expected), atol=accuracy)
+    np.testing.assert_allclose(np.linalg.norm(vector, axis=1), expected, atol=accuracy)
+
+
+@pytest.mark.parametrize("engine", ["reference", "gl"])
+def test_engines_agree(distance_map, engine):
+    if engine == "gl":
+        try:
+            other = sdm.map(meshes.sphere(), meshes.box(), resolution=256, engine="gl")
+        except sdm.Error as error:
+            pytest.skip(str(error))
+    else:
+        other = sdm.map(meshes.sphere(), meshes.box(), resolution=256, engine="reference")
+    np.testing.assert_array_equal(other.face, distance_map.face)
+    np.testing.assert_allclose(other.distance, distance_map.distance, atol=other.bounds.accuracy + distance_map.bounds.accuracy)
+
+
+@pytest.mark.parametrize("sign", ["automatic", "none"])
+def test_bounds_hold_between_texels(sign):
+    m = sdm.map(meshes.sphere(), meshes.box(), resolution=64, sign=sign)
+    vertices, faces = meshes.sphere()
+    weights = np.random.default_rng(1).dirichlet((1, 1, 1), size=(len(faces), 50))
+    points = np.einsum("fnk,fkx->fnx", weights, vertices[faces]).reshape(-1, 3)
+    sites = sdm.Sites(meshes.box())
+    distances = sites.closest_points(points, sign=sign).distance
+    assert m.bounds.lower <= distances.min() and distances.max() <= m.bounds.upper
+    assert m.bounds.upper - distances.max() <= 2 * m.bounds.covering_radius
+    assert m.bounds.covering_radius <= m.surface.covering_radius() * (1 + 1e-6)
+
+
+def test_bounds_of_estimated_signs_hold_for_absolute_distances():
+    vertices, faces = meshes.box()
+    m = sdm.map(meshes.sphere(radius=0.4, center=(0.5, 0.5, 0.9)), (vertices, faces[1:]), resolution=64, sign="winding")
+    assert m.bounds.lower == -m.bounds.upper and np.nanmax(np.abs(m.distance)) <= m.bounds.upper
+
+
+def test_statistics_and_vertices(distance_map):
+    s = distance_map.statistics()
+    values = distance_map.distance[distance_map.valid]
+    assert s.texels == distance_map.valid.sum() and s.negative_texels == (values < 0).sum()
+    assert (s.min, s.max) == (values.min(), values.max()) and s.min < s.p50 < s.p95 < s.p99 <= s.max
+    assert "DistanceStatistics" in repr(s)
+    vertices, _ = meshes.sphere()
+    at_vertices = distance_map.at_vertices()
+    expected = sdm.Sites(meshes.box()).signed_distance(vertices).astype(np.float32)
+    np.testing.assert_array_equal(at_vertices, expected)
+
+
+def test_prepared_surface_and_sites():
+    surface, sites = sdm.Surface(meshes.sphere(), resolution=128), sdm.Sites(meshes.box())
+    m = sdm.map(surface, sites)
+    assert m.surface is surface and m.sites is sites
+    np.testing.assert_array_equal(m.distance, sdm.map(meshes.sphere(), meshes.box(), resolution=128).distance)
+    with pytest.raises(sdm.Error, match="has its resolution"):
+        sdm.map(surface, sites, resolution=64)
+    with pytest.raises(sdm.Error, match="cannot be transformed"):
+        sdm.map(surface, sites, transform=np.eye(4))
+
+
+def test_refitted_objects_make_a_map_stale():
+    surface, sites = sdm.Surface(meshes.sphere(), resolution=64), sdm.Sites(meshes.box())
+    m = sdm.map(surface, sites)
+    kept = m.distance.copy()
+    surface.refit(surface.vertices * 2)
+    for stale in (lambda: m.position, lambda: m.normal, m.statistics, m.at_vertices, lambda: m.bounds, lambda: repr(m)):
+        with pytest.raises(sdm.Error, match="refitted"):
+            stale()
+    np.testing.assert_array_equal(m.distance, kept)
+    again = sdm.map(surface, sites)
+    np.testing.assert_array_equal(again.face, m.face)
+    sites.refit(sites.vertices + 1)
+    with pytest.raises(sdm.Error, match="refitted"):
+        again.at_vertices()
+    again.statistics()
+
+
+def test_transform():
+    matrix = rotation_and_shift()
+    vertices, faces = meshes.sphere()
+    moved = sdm.map((vertices, faces), meshes.box(), resolution=128, transform=matrix)
+    expected = vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    np.testing.assert_allclose(moved.surface.vertices, expected, atol=1e-14)
+    np.testing.assert_allclose(sdm.Mesh(vertices, faces).transformed(matrix.astype(np.float32)).vertices, expected, atol=1e-6)
+    # A reflection keeps the faces outwards.
+    mirror = np.diag([-1, 1, 1, 1])
+    assert (sdm.Mesh(vertices, faces).transformed(mirror).faces != faces).any()
+    for bad in (np.eye(3), np.eye(4) * 2, np.full((4, 4), np.nan), "text", [[1, 2], [3, 4]]):
+        with pytest.raises(sdm.Error):
+            sdm.map((vertices, faces), meshes.box(), resolution=64, transform=bad)
+
+
+def test_options():
+    m = sdm.map(meshes.sphere(), meshes.box(), precision=0.05)
+    assert m.bounds.covering_radius <= 0.05
+    with pytest.raises(sdm.Error, match="exclude each other"):
+        sdm.map(meshes.sphere(), meshes.box(), precision=0.05, resolution=64)
+    for options in ({"resolution": 8}, {"resolution": -1}, {"resolution": 2**40}, {"precision": -1}, {"precision": np.nan},
+                    {"atlas": "uv"}, {"atlas": "other"}, {"engine": "other"}, {"sign": "other"}, {"max_distance": 0},
+                    {"max_stretch": 0}, {"gutter": -1}):  # fmt: skip
+        with pytest.raises(sdm.Error):
+            sdm.map(meshes.sphere(), meshes.box(), **{"resolution": 64, **options} if "precision" not in options else options)
+    near = sdm.map(meshes.sphere(), meshes.box(), resolution=64, max_distance=0.3)
+    assert 0 < near.valid.sum() < (near.face != sdm.NONE).sum() and near.bounds.upper == np.inf
+    assert sdm.map(meshes.sphere(), meshes.box(), resolution=64, atlas="triangles").surface.atlas == "triangles"
+
+
+def test_progress_and_cancellation():
+    steps = []
+    sdm.map(meshes.sphere(), meshes.box(), resolution=64, progress=lambda step, fraction: steps.append((step, fraction)))
+    assert {"map"} <= {step for step, _ in steps} and all(0 <= fraction <= 1 for _, fraction in steps)
+    with pytest.raises(sdm.Cancelled):
+        sdm.map(meshes.sphere(), meshes.box(), resolution=64, progress=lambda step, fraction: False)
+    assert issubclass(sdm.Cancelled, sdm.Error) and issubclass(sdm.Error, ValueError)
+
+    def fails(step, fraction):
+        raise KeyError(step)
+
+    with pytest.raises(KeyError):
+        sdm.map(meshes.sphere(), meshes.box(), resolution=64, progress=fails)
+    with pytest.raises(KeyError):
+        sdm.closest_points(*meshes.box(), np.zeros((10, 3)), progress=fails)
+    # A callback may use the objects that it waits for, but not change them.
+    sites = sdm.Sites(meshes.box())
+    errors = []
+
+    def meddles(step, fraction):
+        sites.closest_points([[0, 0, 0]])
+        try:
+            sites.refit(sites.vertices)
+        except sdm.Error as error:
+            errors.append(str(error))
+
+    sites.closest_points(np.zeros((10, 3)), progress=meddles)
+    assert errors and "in use" in errors[0]
+
+
+def test_interrupts():
+    # Sent by another thread while the computation runs; a search of all these points would take seconds.
+    program = """
+import os, signal, threading, time
+import numpy as np, sdm
+points = np.random.default_rng(0).uniform(-1, 1, (6_000_000, 3))
+vertices = np.random.default_rng(1).uniform(-1, 1, (60_000, 3))
+sites = sdm.Sites(vertices, np.arange(60_000).reshape(-1, 3))
+threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    sites.closest_points(points)
+    print("finished")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.stdout == "interrupted\n", result.stderr
+
+
+def test_files(distance_map, tmp_path):
+    for name, head in (("m.exr", b"v/1\x01"), ("m.png", b"\x89PNG"), ("m.glb", b"glTF"), ("M.PLY", b"ply\n")):
+        distance_map.save(tmp_path / name)
+        assert (tmp_path / name).read_bytes()[:4] == head
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["M.PLY", "m.exr", "m.glb", "m.png"]
+    read = sdm.read(tmp_path / "M.PLY")
+    np.testing.assert_array_equal(read.vertices, distance_map.surface.vertices)
+    np.testing.assert_array_equal(read.faces, distance_map.surface.faces)
+    assert distance_map.at_vertices().tobytes()[:4] in (tmp_path / "M.PLY").read_bytes()
+    distance_map.save(str(tmp_path / "options.png"), colormap="viridis", range=(0, 1), units="mm", size=64)
+    width, height = struct.unpack(">II", (tmp_path / "options.png").read_bytes()[16:24])
+    assert width > 64 and height >= 64
+    for name in ("m.jpg", "m", "no such folder/m.png", "no such folder/m.ply", "no such folder/m.exr"):
+        with pytest.raises(sdm.Error, match=name.split("/")[0]):
+            distance_map.save(tmp_path / name)
+    for options in ({"colormap": "jet"}, {"range": (1, 0)}, {"range": (0, np.nan)}, {"size": 0}, {"tolerance": -1}):
+        with pytest.raises(sdm.Error):
+            distance_map.save(tmp_path / "bad.png", **options)
+    assert not (tmp_path / "bad.png").exists()
+
+
+def test_notebooks(distance_map):
+    html = distance_map._repr_html_()
+    assert "data:image/png;base64," in html and "exact" in html and len(html) < 200_000
+    assert repr(distance_map).startswith("sdm.DistanceMap(256 × 256 texels, distance ")
+
+
+def test_plots(distance_map):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    for kind in ("surface", "atlas"):
+        ax = distance_map.plot(kind=kind, units="mm")
+        ax.figure.canvas.draw()
+        assert [a.get_ylabel() for a in ax.figure.axes[1:]] == ["distance [mm]"]
+    with pytest.raises(sdm.Error, match="kind"):
+        distance_map.plot(kind="other")
+    matplotlib.pyplot.close("all")

@@ -1,0 +1,167 @@
+"""Two bodies, many bodies, a mesh and itself."""
+
+import threading
+
+import numpy as np
+import pytest
+
+import meshes
+import sdm
+
+
+def shift(*offset):
+    pose = np.eye(4)
+    pose[:3, 3] = offset
+    return pose
+
+
+def test_separation():
+    query = sdm.ProximityQuery(meshes.box(), meshes.sphere(steps=3))
+    query.set_pose(1, shift(4, 0.5, 0.5))
+    np.testing.assert_array_equal(query.pose(1), shift(4, 0.5, 0.5))
+    separation = query.separation()
+    assert separation.certainty == "exact" and separation.value == pytest.approx(2, abs=1e-2)
+    assert separation.lower <= float(separation) <= separation.upper
+    assert np.linalg.norm(separation.witness[1] - separation.witness[0]) == pytest.approx(separation.value)
+    colliding = query.colliding()
+    assert not colliding and colliding.certainty == "exact"
+    assert query.penetration_depth().value == 0 and len(query.contacts()) == 0
+    # The separation is that of the closest points of a dense sampling, from above.
+    vertices = meshes.sphere(steps=3)[0] + [4, 0.5, 0.5]
+    assert separation.value <= sdm.Sites(meshes.box()).closest_points(vertices).distance.min() + 1e-12
+
+
+def test_contacts_and_depth():
+    query = sdm.ProximityQuery(meshes.box(), meshes.box(), contact_margin=0.1, depth_precision=1e-3)
+    query.set_pose(0, shift(0.1, 0.2, 0.75))
+    assert query.colliding() and query.separation().value == 0
+    depth = query.penetration_depth()
+    assert depth.certainty == "bounded" and depth.lower <= depth.value <= depth.upper <= depth.lower + 1.1e-3
+    assert repr(depth).startswith("sdm.BoundedLength(")
+    contacts = query.contacts()
+    n = len(contacts)
+    assert n > 0 and contacts.bodies is None
+    shapes = {"point1": (n, 3), "point2": (n, 3), "normal": (n, 3), "depth": (n,), "patch": (n,), "faces": (n, 2),
+              "barycentric": (n, 2, 3), "id": (n,)}  # fmt: skip
+    for name, shape in shapes.items():
+        assert getattr(contacts, name).shape == shape
+    assert contacts.faces.dtype == np.uint32 and contacts.id.dtype == np.uint64
+    np.testing.assert_allclose(contacts.point1 + contacts.depth[:, None] * contacts.normal, contacts.point2, atol=1e-12)
+    for side, (pose, points) in enumerate(((query.pose(0), contacts.point1), (query.pose(1), contacts.point2))):
+        vertices, faces = meshes.box()
+        corners = (vertices @ pose[:3, :3].T + pose[:3, 3])[faces[contacts.faces[:, side]]]
+        np.testing.assert_allclose(np.einsum("nk,nkx->nx", contacts.barycentric[:, side], corners), points, atol=1e-12)
+
+
+def test_refit_and_shared_shapes():
+    vertices, faces = meshes.box()
+    query = sdm.ProximityQuery((vertices, faces), (vertices + [3, 0, 0], faces))
+    query.refit(o2=vertices + [2, 0, 0])
+    assert query.separation().value == 1
+    query.refit(vertices - [1, 0, 0])
+    assert query.separation().value == 2
+    shape = sdm.Shape(vertices, faces)
+    shared = sdm.ProximityQuery(shape, shape)
+    with pytest.raises(sdm.Error, match="share"):
+        shared.refit(vertices)
+    for bad in (lambda: query.refit(vertices[1:]), lambda: query.refit(vertices * np.nan), lambda: query.set_pose(2, np.eye(4)),
+                lambda: query.set_pose(-1, np.eye(4)), lambda: query.pose(7), lambda: query.refit(np.empty((0, 3))), lambda: query.set_pose(0, np.diag([1, 2, 3, 1])),
+                lambda: query.set_pose(0, np.eye(3)), lambda: sdm.ProximityQuery(shape, shape, contact_margin=-1),
+                lambda: sdm.ProximityQuery(shape, 3)):  # fmt: skip
+        with pytest.raises(sdm.Error):
+            bad()
+
+
+def test_many_bodies():
+    shape = sdm.Shape(meshes.box(), resolution=64)
+    query = sdm.MultiBodyQuery([shape, shape, meshes.sphere(radius=0.5), shape], max_distance=1.2)
+    assert len(query) == 4
+    query.set_poses([shift(0, 0, 0), shift(2, 0, 0), shift(4, 0.5, 0.5), shift(2.4, 0.5, 0)])
+    pairs = query.pairs()
+    assert pairs.bodies.tolist() == [[0, 1], [1, 2], [1, 3], [2, 3]]
+    np.testing.assert_allclose(pairs.separation, [1, 0.5, 0, 0.1], atol=1e-2)
+    assert pairs.colliding.tolist() == [False, False, True, False] and pairs.witness.shape == (4, 2, 3)
+    single = sdm.ProximityQuery(shape, shape)
+    single.set_pose(0, query.pose(1))
+    single.set_pose(1, query.pose(3))
+    assert pairs.penetration_depth[2] == single.penetration_depth().value
+    bounds = pairs.penetration_depth_bounds
+    assert (bounds[:, 0] <= pairs.penetration_depth).all() and (pairs.penetration_depth <= bounds[:, 1]).all()
+    contacts = query.contacts()
+    assert contacts.bodies.shape == (len(contacts), 2) and [1, 3] in contacts.bodies.tolist()
+
+    nearest = query.nearest_map(0)
+    assert nearest.distance.shape == nearest.body.shape == nearest.valid.shape == (64, 64)
+    assert nearest.vector.shape == (64, 64, 3)
+    assert set(np.unique(nearest.body)) == {1, sdm.NONE}
+    np.testing.assert_array_equal(nearest.valid, np.isfinite(nearest.distance))
+    assert np.nanmin(query.distances_at_vertices(0)) == 1
+
+    for bad in (lambda: query.set_pose(4, np.eye(4)), lambda: query.set_poses([np.eye(4)]), lambda: query.nearest_map(2),
+                lambda: query.nearest_map(9), lambda: query.refit(0, meshes.box()[0]), lambda: query.refit(2, [[0, 0, 0]]), lambda: query.refit(2, None), lambda: query.refit(2, np.empty((0, 3))),
+                lambda: query.pose(-1),
+                lambda: sdm.MultiBodyQuery([shape], max_distance=-1)):  # fmt: skip
+        with pytest.raises(sdm.Error):
+            bad()
+    with pytest.raises(sdm.Error, match="body 1"):
+        sdm.MultiBodyQuery([shape, (meshes.box()[0], meshes.box()[1] + 1)])
+    empty = sdm.MultiBodyQuery([])
+    assert len(empty) == 0 and empty.pairs().bodies.shape == (0, 2) and len(empty.contacts()) == 0
+    query.refit(2, meshes.sphere(radius=0.25)[0])
+    assert query.pairs().separation[1] == pytest.approx(0.75, abs=1e-2)
+
+
+def test_self_proximity():
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+    vertices = np.concatenate([square, square + [0, 0, 0.1]])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])
+    query = sdm.SelfProximityQuery((vertices, faces))
+    separation = query.separation()
+    assert separation.certainty == "exact" and separation.value == pytest.approx(0.1)
+    query.refit(vertices * [1, 1, 2])
+    assert query.separation().value == pytest.approx(0.2)
+    contacts = query.contacts(0.3)
+    assert len(contacts) > 0 and (contacts.depth >= -0.3).all()
+    assert sdm.SelfProximityQuery(meshes.box(), geodesic=10.0).separation() is None
+    for bad in (lambda: query.contacts(-1), lambda: query.contacts(np.nan), lambda: query.refit(vertices[1:]),
+                lambda: sdm.SelfProximityQuery((vertices, faces), rings=0),
+                lambda: sdm.SelfProximityQuery((vertices, faces), geodesic=-1.0)):  # fmt: skip
+        with pytest.raises(sdm.Error):
+            bad()
+
+
+def test_threads():
+    """Threads may search the same sites; a refit beside them succeeds or raises an error."""
+    sites = sdm.Sites(meshes.sphere(steps=4))
+    points = np.random.default_rng(0).uniform(-1, 1, (20_000, 3))
+    expected = sites.closest_points(points).distance
+    vertices, failures, done = sites.vertices, [], threading.Event()
+
+    def search():
+        for _ in range(5):
+            try:
+                if not (sites.closest_points(points).distance == expected).all():
+                    failures.append("another result")
+            except sdm.Error as error:
+                if "being changed" not in str(error):
+                    failures.append(str(error))
+        done.set()
+
+    threads = [threading.Thread(target=search) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    while not done.is_set():
+        try:
+            sites.refit(vertices)
+        except sdm.Error as error:
+            assert "in use" in str(error)
+        done.wait(0.001)
+    for thread in threads:
+        thread.join()
+    assert not failures
+
+
+def test_thread_limit():
+    with sdm.thread_limit(1):
+        one = sdm.map(meshes.sphere(), meshes.box(), resolution=64)
+    np.testing.assert_array_equal(one.distance, sdm.map(meshes.sphere(), meshes.box(), resolution=64).distance)
