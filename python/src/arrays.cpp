@@ -1,7 +1,9 @@
 #include "arrays.h"
 
 #include <sdm/error.h>
+#include <sdm/threads.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -14,6 +16,15 @@ nb::object converted(const char* function, nb::handle array, const char* name) {
 }
 
 }  // namespace
+
+void for_parts(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& body) {
+  constexpr std::size_t kPart = 1 << 15;
+  if (count <= kPart) return body(0, count);
+  std::vector<std::function<void()>> tasks;
+  for (std::size_t begin = 0; begin < count; begin += kPart)
+    tasks.emplace_back([&body, begin, end = std::min(count, begin + kPart)] { body(begin, end); });
+  run_concurrently(tasks);
+}
 
 Points::Points(nb::handle array, const char* name) {
   if (!nb::try_cast(array, array_, false))

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -67,19 +68,34 @@ nb::object view_of(const std::vector<Element>& values, std::initializer_list<std
   return view_of<Scalar>(std::span<const Element>(values), shape, owner);
 }
 
-/// A NumPy array with one row for each of `items`: get(item) returns a Scalar or a std::array of them.
+/// Calls body(begin, end) for parts of `count` items, on all cores if there are many. Needs no GIL.
+void for_parts(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// A NumPy array with one row for each of `items`: get(item) returns a Scalar, or a std::array of them or of
+/// arrays of them. Calls it concurrently, without the GIL.
 template <class Items, class Get>
 nb::object column(const Items& items, Get get) {
   using Row = std::remove_cvref_t<decltype(get(items[0]))>;
-  std::vector<Row> rows(items.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = get(items[i]);
+  auto rows = std::make_unique_for_overwrite<Row[]>(items.size());
+  {
+    const nb::gil_scoped_release released;
+    for_parts(items.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) rows[i] = get(items[i]);
+    });
+  }
+  const auto array = [&]<class Scalar>(Scalar*, std::initializer_list<std::size_t> shape) {
+    auto* data = reinterpret_cast<Scalar*>(rows.get());
+    const nb::capsule owner(rows.release(), [](void* p) noexcept { delete[] static_cast<Row*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, Scalar>(data, shape, owner));
+  };
   if constexpr (requires { typename Row::value_type::value_type; }) {
-    constexpr std::size_t n = std::tuple_size_v<Row>, m = std::tuple_size_v<typename Row::value_type>;
-    return array_of<typename Row::value_type::value_type>(std::move(rows), {items.size(), n, m});
+    using Inner = typename Row::value_type;
+    return array(static_cast<typename Inner::value_type*>(nullptr),
+                 {items.size(), std::tuple_size_v<Row>, std::tuple_size_v<Inner>});
   } else if constexpr (requires { typename Row::value_type; }) {
-    return array_of<typename Row::value_type>(std::move(rows), {items.size(), std::tuple_size_v<Row>});
+    return array(static_cast<typename Row::value_type*>(nullptr), {items.size(), std::tuple_size_v<Row>});
   } else {
-    return array_of<Row>(std::move(rows), {items.size()});
+    return array(static_cast<Row*>(nullptr), {items.size()});
   }
 }
 

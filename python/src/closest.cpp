@@ -38,17 +38,19 @@ Vec3 weights_in_face(const std::array<Vec3, 3>& corners, const Vec3& p) {
 void PyClosestPoints::set_gradients(std::span<const Vec3> points) {
   has_gradients_ = true;
   gradients.assign(found.size(), Vec3{});
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const double distance = distance_of(i);
-    if (found[i].type == SiteType::none || distance == 0) continue;
-    const Vec3 to_point = minus(points[i], found[i].point);
-    for (int k = 0; k < 3; ++k) gradients[i][k] = to_point[k] / distance;
-  }
+  for_parts(found.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double distance = distance_of(i);
+      if (found[i].type == SiteType::none || distance == 0) continue;
+      const Vec3 to_point = minus(points[i], found[i].point);
+      for (int k = 0; k < 3; ++k) gradients[i][k] = to_point[k] / distance;
+    }
+  });
 }
 
 Vec3 PyClosestPoints::barycentric_of(const ClosestPoint& closest) const {
   if (closest.type == SiteType::none) return {kNan, kNan, kNan};
-  const Sites& mesh = nb::cast<const PySites&>(sites).sites;
+  const Sites& mesh = sites->sites;
   const Triangle& triangle = mesh.mesh().triangles[closest.face];
   Vec3 weights{};
   if (closest.type == SiteType::face) {
@@ -77,9 +79,7 @@ void PyClosestPoints::require_gradients() const {
 
 nb::object PyClosestPoints::distance() {
   return distance_.get([&] {
-    std::vector<double> rows(found.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = distance_of(i);
-    return array_of<double>(std::move(rows), {found.size()});
+    return column(found, [this](const ClosestPoint& c) { return distance_of(&c - found.data()); });
   });
 }
 
@@ -116,7 +116,7 @@ nb::object PyClosestPoints::gradient() {
 
 nb::object PyClosestPoints::vertex_gradients() const {
   require_gradients();
-  const auto& triangles = nb::cast<const PySites&>(sites).sites.mesh().triangles;
+  const auto& triangles = sites->sites.mesh().triangles;
   std::vector<Triangle> vertices(found.size());
   std::vector<std::array<Vec3, 3>> derivatives(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {

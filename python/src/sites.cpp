@@ -33,7 +33,8 @@ std::unique_ptr<PyClosestPoints> closest(nb::handle self, nb::handle points, con
   if (!cpu) options.engine = engine_of(query.engine);
 
   auto result = std::make_unique<PyClosestPoints>();
-  result->sites = nb::borrow(self);
+  result->owner = nb::borrow(self);
+  result->sites = &sites;
   result->positions = sites.positions;
   const auto search = [&](const Progress& progress) {
     options.progress = progress;
