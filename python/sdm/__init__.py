@@ -29,12 +29,12 @@ from ._core import (
     Shape,
     Sites,
     Surface,
-    __version__,
     engines,
     fit_to_unit,
     read,
     thread_limit,
 )
+from ._core import version as __version__
 from ._closest_points import NONE, SiteType, closest_points
 from ._distance_map import DistanceMap, MapBounds, map
 

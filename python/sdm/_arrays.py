@@ -1,5 +1,7 @@
 """Arrays that are not yet of the dtype and order of the library, and the messages for those that cannot be."""
 
+from typing import Any
+
 import numpy as np
 
 from ._core import Error
@@ -9,7 +11,7 @@ def _shape(shape: tuple) -> str:
     return "(" + ", ".join(str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
 
 
-def _numpy(array: object, name: str) -> np.ndarray:
+def _numpy(array: Any, name: str) -> np.ndarray:
     """An array of any kind as NumPy's, without a copy where that is possible."""
     try:
         if not isinstance(array, np.ndarray) and hasattr(array, "__dlpack__"):
@@ -27,7 +29,7 @@ def _numpy(array: object, name: str) -> np.ndarray:
         raise Error(f"{name} must be an array of numbers ({fault})") from None
 
 
-def _numbers(array: object, name: str, kinds: str, what: str, shape: tuple) -> np.ndarray:
+def _numbers(array: Any, name: str, kinds: str, what: str, shape: tuple) -> np.ndarray:
     numbers = _numpy(array, name)
     fits = numbers.ndim == len(shape) and all(n in (m, None) for m, n in zip(numbers.shape, shape))
     if not fits:
@@ -38,26 +40,26 @@ def _numbers(array: object, name: str, kinds: str, what: str, shape: tuple) -> n
     return numbers
 
 
-def _floats(array: object, name: str, shape: tuple) -> np.ndarray:
+def _floats(array: Any, name: str, shape: tuple) -> np.ndarray:
     numbers = _numbers(array, name, "fiu", "real numbers", shape)
     with np.errstate(over="ignore"):  # of longer floats: infinity, which the library rejects
         numbers = numbers.astype(np.float64, order="C", copy=False)
     return np.require(numbers, requirements=["C", "ALIGNED"])
 
 
-def points(array: object, name: str) -> np.ndarray:
+def points(array: Any, name: str) -> np.ndarray:
     return _floats(array, name, (None, 3))
 
 
-def matrix(array: object, name: str) -> np.ndarray:
+def matrix(array: Any, name: str) -> np.ndarray:
     return _floats(array, name, (4, 4))
 
 
-def corner_uvs(array: object, name: str) -> np.ndarray:
+def corner_uvs(array: Any, name: str) -> np.ndarray:
     return _floats(array, name, (None, 3, 2))
 
 
-def triangles(array: object, name: str) -> np.ndarray:
+def triangles(array: Any, name: str) -> np.ndarray:
     numbers = _numbers(array, name, "iu", "integers", (None, 3))
     if numbers.size and numbers.dtype != np.uint32:
         outside = (numbers < 0) | (numbers > 0xFFFFFFFE)

@@ -5,6 +5,7 @@ import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -170,7 +171,7 @@ class DistanceMap:
             progress=progress,
         )
 
-    def plot(self, ax: object = None, *, kind: str = "surface", cmap: "str | None" = None, units: str = "") -> object:
+    def plot(self, ax: object = None, *, kind: str = "surface", cmap: "str | None" = None, units: str = "") -> Any:
         """Draws the map with matplotlib, which ``pip install sdm[viz]`` installs, and returns the axes.
 
         ax: axes to draw into, three-dimensional ones for a surface; None: of a new figure. kind: 'surface': O1, each face

@@ -1,6 +1,7 @@
 """Meshes in the forms of other packages, recognised by their attributes. None of the packages is imported."""
 
 import os
+from typing import Any
 
 import numpy as np
 
@@ -11,31 +12,31 @@ _FORMS = (
 )
 
 
-def _of_corners(uvs: np.ndarray, vertices: object, faces: np.ndarray) -> "np.ndarray | None":
+def _of_corners(uvs: Any, vertices: Any, faces: np.ndarray) -> "np.ndarray | None":
     """Texture coordinates of corners, from those of vertices."""
     if uvs is None or np.shape(uvs) != (len(vertices), 2) or len(faces) == 0:
         return None
     return np.asarray(uvs)[np.asarray(faces)]
 
 
-def _trimesh(mesh: object) -> tuple:
+def _trimesh(mesh: Any) -> tuple:
     uvs = getattr(getattr(mesh, "visual", None), "uv", None)
     return mesh.vertices, mesh.faces, _of_corners(uvs, mesh.vertices, mesh.faces)
 
 
-def _open3d_legacy(mesh: object) -> tuple:
+def _open3d_legacy(mesh: Any) -> tuple:
     faces = np.asarray(mesh.triangles)
     uvs = np.asarray(getattr(mesh, "triangle_uvs", ()))
     return np.asarray(mesh.vertices), faces, uvs.reshape(-1, 3, 2) if len(uvs) == 3 * len(faces) > 0 else None
 
 
-def _open3d_tensor(mesh: object) -> tuple:
+def _open3d_tensor(mesh: Any) -> tuple:
     triangle = mesh.triangle
     uvs = triangle["texture_uvs"].cpu().numpy() if "texture_uvs" in triangle else None
     return mesh.vertex["positions"].cpu().numpy(), triangle["indices"].cpu().numpy(), uvs
 
 
-def _pyvista(mesh: object) -> tuple:
+def _pyvista(mesh: Any) -> tuple:
     def all_triangles(faces: np.ndarray) -> bool:
         return len(faces) % 4 == 0 and bool((faces[::4] == 3).all())
 
@@ -50,7 +51,7 @@ def _pyvista(mesh: object) -> tuple:
     return mesh.points, faces, _of_corners(uvs, mesh.points, faces)
 
 
-def _meshio(mesh: object) -> tuple:
+def _meshio(mesh: Any) -> tuple:
     triangles = []
     for block in mesh.cells:
         if block.type == "triangle":
@@ -63,7 +64,7 @@ def _meshio(mesh: object) -> tuple:
     return mesh.points, np.concatenate(triangles) if triangles else np.empty((0, 3), np.uint32), None
 
 
-def parts(mesh: object, faces: object) -> "Mesh | tuple":
+def parts(mesh: Any, faces: object) -> "Mesh | tuple":
     """Returns a Mesh, or (vertices, faces, texture coordinates of corners or None)."""
     if faces is not None:
         return mesh, faces, None

@@ -1,5 +1,7 @@
 """Pictures of maps by matplotlib."""
 
+from typing import Any
+
 import numpy as np
 
 from ._core import Error
@@ -19,7 +21,7 @@ def _colours(values: np.ndarray, cmap: "str | None") -> tuple:
     return colormaps[cmap or ("RdBu_r" if diverging else "viridis")], Normalize(low, high)
 
 
-def plot(distance_map: object, ax: object, kind: str, cmap: "str | None", units: str) -> object:
+def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) -> Any:
     if kind not in ("surface", "atlas"):
         raise Error(f"kind must be one of surface, atlas, not '{kind}'")
     try:

@@ -5,7 +5,7 @@
 NB_MODULE(_core, module) {
   using namespace sdm::python;
   module.doc() = "The compiled part of the package sdm, which exports its names.";
-  module.attr("__version__") = sdm::kVersion;
+  module.attr("version") = sdm::kVersion;
   bind_errors(module);
   bind_meshes(module);
   bind_sites(module);

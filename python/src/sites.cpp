@@ -201,10 +201,11 @@ void bind_sites(nb::module_& module) {
           [](PySites& self, nb::handle vertices) {
             const Points positions(vertices, "vertices");
             const auto lock = self.access.change();
-            run_short([&] {
-              self.sites.refit(positions.get());
-              self.positions =
-                  std::make_shared<std::vector<Vec3>>(positions.get().begin(), positions.get().end());
+            self.positions = run_short([&] {
+              const std::span<const Vec3> given = positions.get();
+              auto kept = std::make_shared<std::vector<Vec3>>(given.begin(), given.end());
+              self.sites.refit(*kept);
+              return kept;
             });
             ++self.shape;
           },

@@ -96,10 +96,11 @@ void bind_surface(nb::module_& module) {
           [](PySurface& self, nb::handle vertices) {
             const Points positions(vertices, "vertices");
             const auto lock = self.access.change();
-            run_short([&] {
-              self.surface.refit(positions.get());
-              self.positions =
-                  std::make_shared<std::vector<Vec3>>(positions.get().begin(), positions.get().end());
+            self.positions = run_short([&] {
+              const std::span<const Vec3> given = positions.get();
+              auto kept = std::make_shared<std::vector<Vec3>>(given.begin(), given.end());
+              self.surface.refit(*kept);
+              return kept;
             });
             ++self.shape;
           },
