@@ -6,6 +6,10 @@ NB_MODULE(_core, module) {
   using namespace sdm::python;
   module.doc() = "The compiled part of the package sdm, which exports its names.";
   module.attr("version") = sdm::kVersion;
+  // Python does not free what modules refer to when it exits, which is no leak. The tests switch the warnings
+  // on.
+  nb::set_leak_warnings(false);
+  module.def("set_leak_warnings", &nb::set_leak_warnings, nb::arg("on"));
   bind_errors(module);
   bind_meshes(module);
   bind_sites(module);

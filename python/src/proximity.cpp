@@ -279,7 +279,7 @@ void bind_proximity(nb::module_& module) {
           ">>> query = sdm.ProximityQuery(box, box, contact_margin=0.1)\n"
           ">>> query.set_pose(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.05], [0, 0, 0, 1]])\n"
           ">>> contacts = query.contacts()\n"
-          ">>> contacts.depth.max().round(6)\n"
+          ">>> float(contacts.depth.max().round(6))\n"
           "-0.05")
       .def("__repr__", [](const Q&) { return "sdm.ProximityQuery()"; });
   bind_self_proximity(module);

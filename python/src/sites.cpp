@@ -94,8 +94,8 @@ void bind_closest_points(nb::module_& module) {
            ">>> closest = sdm.closest_points([[0, 0, 0], [3, 0, 0], [0, 3, 0]], [[0, 1, 2]], [[1, 1, 2]],\n"
            "...                              gradients=True)\n"
            ">>> vertices, derivatives = closest.vertex_gradients()\n"
-           ">>> closest.gradient[0, 2], derivatives[0, :, 2].sum().round(12)\n"
-           "(1.0, -1.0)")
+           ">>> closest.gradient[0].tolist(), float(derivatives[0, :, 2].sum().round(12))\n"
+           "([0.0, 0.0, 1.0], -1.0)")
       .def("__len__", [](const PyClosestPoints& self) { return self.found.size(); })
       .def("__repr__", [](const PyClosestPoints& self) {
         return nb::str("sdm.ClosestPoints({} points)").format(self.found.size());

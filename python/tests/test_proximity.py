@@ -1,6 +1,9 @@
 """Two bodies, many bodies, a mesh and itself."""
 
+import subprocess
+import sys
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -159,6 +162,50 @@ def test_threads():
     for thread in threads:
         thread.join()
     assert not failures
+
+
+def test_nothing_leaks():
+    """nanobind counts its objects when Python exits."""
+    program = """
+import sys
+import sdm, sdm._core
+sys.path.insert(0, sys.argv[1])
+import meshes
+sdm._core.set_leak_warnings(True)
+
+def use():
+    sites = sdm.Sites(meshes.box())
+    found = sites.closest_points([[2, 0, 0]], gradients=True)
+    arrays = [found.distance, found.barycentric, found.vertex_gradients(), sites.vertices, sites.edges]
+    m = sdm.map(meshes.sphere(), sites, resolution=64, progress=lambda step, fraction: None)
+    arrays += [m.distance, m.position, m.valid, m.face, m.at_vertices(), m.bounds, m.statistics()]
+    shape = sdm.Shape(meshes.box(), resolution=64)
+    query = sdm.MultiBodyQuery([shape, shape], contact_margin=1)
+    arrays += [query.pairs().separation, query.contacts().point1, query.nearest_map(0).distance]
+    for wrong in (lambda: sdm.Sites(3), lambda: sdm.map(1, 2), lambda: sites.closest_points(3)):
+        try:
+            wrong()
+        except sdm.Error:
+            pass
+    try:
+        sdm.map(meshes.sphere(), sites, resolution=64, progress=lambda step, fraction: False)
+    except sdm.Cancelled:
+        pass
+    return arrays
+
+use()
+"""
+    result = subprocess.run([sys.executable, "-c", program, str(Path(__file__).parent)], capture_output=True, text=True)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_objects_that_are_not_built():
+    for kind in (sdm.Sites, sdm.Surface, sdm.Mesh, sdm.ProximityQuery, sdm.MultiBodyQuery):
+        with pytest.raises(TypeError), pytest.warns(RuntimeWarning, match="uninitialized"):
+            repr(kind.__new__(kind))
+    sites = sdm.Sites(meshes.box())
+    with pytest.raises(TypeError), pytest.warns(RuntimeWarning, match="already-initialized"):
+        sites.__init__(meshes.sphere())
 
 
 def test_thread_limit():
