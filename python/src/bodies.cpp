@@ -180,19 +180,22 @@ void bind_bodies(nb::module_& module) {
   bind_nearest_map(module);
   using Q = PyMultiBodyQuery;
   nb::class_<Q>(module, "MultiBodyQuery",
-                "Proximity of bodies that move and deform, each against all others.\n\n"
-                "bodies: each any form of a mesh (see Mesh), or a Shape, which many bodies can share.\n"
-                "max_distance: > 0, in units of the meshes. Pairs farther apart are not reported.\n"
-                "depth_precision, contact_margin: as of ProximityQuery.\n\n"
-                "A call raises Error while another thread uses the object.\n\n"
-                ">>> shape = sdm.Shape(box)\n"
-                ">>> query = sdm.MultiBodyQuery([shape] * 3, max_distance=1.5)\n"
-                ">>> poses = np.tile(np.eye(4), (3, 1, 1))\n"
-                ">>> poses[:, 0, 3] = [0, 2, 4]\n"
-                ">>> query.set_poses(poses)\n"
-                ">>> query.pairs().bodies\n"
-                "array([[0, 1],\n"
-                "       [1, 2]], dtype=uint32)")
+                R"(Proximity of bodies that move and deform, each against all others.
+
+bodies: each any form of a mesh (see Mesh), or a Shape, which many bodies can share.
+max_distance: > 0, in units of the meshes. Pairs farther apart are not reported.
+depth_precision, contact_margin: as of ProximityQuery.
+
+A call raises Error while another thread uses the object.
+
+>>> shape = sdm.Shape(box)
+>>> query = sdm.MultiBodyQuery([shape] * 3, max_distance=1.5)
+>>> poses = np.tile(np.eye(4), (3, 1, 1))
+>>> poses[:, 0, 3] = [0, 2, 4]
+>>> query.set_poses(poses)
+>>> query.pairs().bodies
+array([[0, 1],
+       [1, 2]], dtype=uint32))")
       .def(
           "__init__",
           [](Q* self, nb::handle bodies, double max_distance, double depth_precision, double contact_margin) {
@@ -246,11 +249,9 @@ void bind_bodies(nb::module_& module) {
           },
           nb::arg("body"), nb::arg("vertices").none(),
           nb::sig("def refit(self, body: int, vertices: object) -> None"),
-          "Moves the vertices of a body, (n, 3) numbers, keeping its faces and its pose. Raises Error, and "
-          "changes\n"
-          "nothing, for a body that does not exist or whose Shape is shared, another number of vertices, or "
-          "coordinates\n"
-          "that are not finite. Cost: linear.")
+          R"(Moves the vertices of a body, (n, 3) numbers, keeping its faces and its pose. Raises Error,
+and changes nothing, for a body that does not exist or whose Shape is shared, another number of vertices,
+or coordinates that are not finite. Cost: linear.)")
       .def(
           "pairs",
           [](Q& self) {
@@ -289,10 +290,9 @@ void bind_bodies(nb::module_& module) {
             return result.release();
           },
           nb::rv_policy::take_ownership, nb::arg("body"),
-          "Returns the distances from the texels of a body to the nearest other body; texels with none "
-          "within\n"
-          "max_distance have no value. Raises Error for a body that does not exist, or whose Shape has no "
-          "resolution.")
+          R"(Returns the distances from the texels of a body to the nearest other body; texels with none
+within max_distance have no value. Raises Error for a body that does not exist, or whose Shape has no
+resolution.)")
       .def(
           "distances_at_vertices",
           [](const Q& self, std::int64_t body, double max_distance) {
@@ -306,9 +306,8 @@ void bind_bodies(nb::module_& module) {
           nb::arg("body"), nb::kw_only(), nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
           nb::sig(
               "def distances_at_vertices(self, body: int, *, max_distance: float = ...) -> numpy.ndarray"),
-          "Returns the distance from each vertex of a body to the nearest other body, (n,) float32, signed "
-          "as in\n"
-          "nearest_map(); NaN where none is within max_distance.")
+          R"(Returns the distance from each vertex of a body to the nearest other body, (n,) float32,
+signed as in nearest_map(); NaN where none is within max_distance.)")
       .def("__repr__",
            [](const Q& self) { return nb::str("sdm.MultiBodyQuery({} bodies)").format(self.query.size()); });
 }

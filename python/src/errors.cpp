@@ -64,9 +64,9 @@ void bind_errors(nb::module_& module) {
   static nb::exception<Error> error(module, "Error", PyExc_ValueError);
   static nb::exception<Cancelled> cancelled(module, "Cancelled", error.ptr());
   error.attr("__doc__") =
-      "An input that cannot be used, or a resource that is missing.\n\n"
-      "The message is one sentence that names the object, the fault and the remedy. A subclass of "
-      "ValueError.";
+      R"(An input that cannot be used, or a resource that is missing.
+
+The message is one sentence that names the object, the fault and the remedy. A subclass of ValueError.)";
   cancelled.attr("__doc__") = "A progress callback returned False; there is no result.";
 
   module.def(
@@ -77,16 +77,20 @@ void bind_errors(nb::module_& module) {
         return names;
       },
       nb::sig("def engines() -> list[str]"),
-      "Returns the names of all engines, the default one first.\n\n"
-      ">>> sdm.engines()[0]\n'cpu'");
+      R"(Returns the names of all engines, the default one first.
 
-  nb::class_<PyThreadLimit>(
-      module, "thread_limit",
-      "Limits the threads that the library uses while a ``with`` block runs.\n\n"
-      "count: 0 means all cores. The smallest of several limits is in force, in all threads of\n"
-      "the process.\n\n"
-      ">>> with sdm.thread_limit(1):\n"
-      "...     distance_map = sdm.map(sphere, box, resolution=64)\n")
+>>> sdm.engines()[0]
+'cpu')");
+
+  nb::class_<PyThreadLimit>(module, "thread_limit",
+                            R"(Limits the threads that the library uses while a ``with`` block runs.
+
+count: 0 means all cores. The smallest of several limits is in force, in all threads of
+the process.
+
+>>> with sdm.thread_limit(1):
+...     distance_map = sdm.map(sphere, box, resolution=64)
+)")
       .def(
           "__init__",
           [](PyThreadLimit* self, unsigned count) {

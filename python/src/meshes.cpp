@@ -34,19 +34,23 @@ Mesh mesh_of(nb::handle mesh, nb::handle faces) {
 void bind_meshes(nb::module_& module) {
   nb::class_<PyMesh>(
       module, "Mesh",
-      "A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.\n\n"
-      "Accepts the same forms of a mesh as every function of this package:\n\n"
-      "- two arrays ``(vertices, faces)``: n × 3 numbers of any dtype, m × 3 integers\n"
-      "- the path of an OBJ, PLY, STL, OFF, glTF, GLB or 3DS file\n"
-      "- ``Mesh``, ``Sites``, ``Surface``\n"
-      "- ``trimesh.Trimesh``, ``open3d.geometry.TriangleMesh``, ``open3d.t.geometry.TriangleMesh``,\n"
-      "  ``pyvista.PolyData``, ``meshio.Mesh``\n\n"
-      "Faces are counter-clockwise seen from outside. Raises Error for an object that is no mesh, for\n"
-      "an index out of range, for coordinates that are NaN or beyond 1e37, and if no face has an area.\n\n"
-      ">>> mesh = sdm.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\n"
-      ">>> mesh.vertices.shape, mesh.faces.dtype\n"
-      "((3, 3), dtype('uint32'))\n"
-      ">>> vertices, faces = mesh")
+      R"(A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.
+
+Accepts the same forms of a mesh as every function of this package:
+
+- two arrays ``(vertices, faces)``: n × 3 numbers of any dtype, m × 3 integers
+- the path of an OBJ, PLY, STL, OFF, glTF, GLB or 3DS file
+- ``Mesh``, ``Sites``, ``Surface``
+- ``trimesh.Trimesh``, ``open3d.geometry.TriangleMesh``, ``open3d.t.geometry.TriangleMesh``,
+  ``pyvista.PolyData``, ``meshio.Mesh``
+
+Faces are counter-clockwise seen from outside. Raises Error for an object that is no mesh, for
+an index out of range, for coordinates that are NaN or beyond 1e37, and if no face has an area.
+
+>>> mesh = sdm.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+>>> mesh.vertices.shape, mesh.faces.dtype
+((3, 3), dtype('uint32'))
+>>> vertices, faces = mesh)")
       .def(
           "__init__",
           [](PyMesh* self, nb::handle mesh, nb::handle faces) {
@@ -89,13 +93,12 @@ void bind_meshes(nb::module_& module) {
           },
           nb::rv_policy::take_ownership, nb::arg("matrix").none(),
           nb::sig("def transformed(self, matrix: object) -> Mesh"),
-          "Returns the mesh moved by a 4 × 4 affine matrix, for column vectors. A reflection also reverses "
-          "the "
-          "faces, so\n"
-          "that they keep facing outwards.\n\n"
-          ">>> mesh = sdm.Mesh(box).transformed(np.diag([2, 1, 1, 1]))\n"
-          ">>> mesh.vertices.max(axis=0)\n"
-          "array([2., 1., 1.])")
+          R"(Returns the mesh moved by a 4 × 4 affine matrix, for column vectors. A reflection also
+reverses the faces, so that they keep facing outwards.
+
+>>> mesh = sdm.Mesh(box).transformed(np.diag([2, 1, 1, 1]))
+>>> mesh.vertices.max(axis=0)
+array([2., 1., 1.]))")
       .def("__repr__", [](const PyMesh& self) {
         return nb::str("sdm.Mesh({} vertices, {} faces)")
             .format(self.mesh.positions.size(), self.mesh.triangles.size());
@@ -104,12 +107,11 @@ void bind_meshes(nb::module_& module) {
   module.def(
       "fit_to_unit", [](nb::handle mesh) { return matrix(fit_to_unit(mesh_of(mesh, nb::none()))); },
       nb::arg("mesh").none(), nb::sig("def fit_to_unit(mesh: object) -> numpy.ndarray"),
-      "Returns the uniform scaling and translation that make the longest side of a mesh's bounds 1 and "
-      "centre "
-      "them at\n"
-      "the origin, as a (4, 4) float64 matrix for column vectors.\n\n"
-      ">>> sdm.fit_to_unit(sdm.Mesh(box).transformed(np.diag([2, 2, 2, 1])))[0]\n"
-      "array([ 0.5,  0. ,  0. , -0.5])");
+      R"(Returns the uniform scaling and translation that make the longest side of a mesh's bounds 1 and
+centre them at the origin, as a (4, 4) float64 matrix for column vectors.
+
+>>> sdm.fit_to_unit(sdm.Mesh(box).transformed(np.diag([2, 2, 2, 1])))[0]
+array([ 0.5,  0. ,  0. , -0.5]))");
 
   module.def(
       "read",
@@ -120,15 +122,17 @@ void bind_meshes(nb::module_& module) {
       },
       nb::rv_policy::take_ownership, nb::arg("file").none(),
       nb::sig("def read(file: str | os.PathLike) -> Mesh"),
-      "Reads a mesh file: OBJ, PLY, STL, OFF, glTF, GLB or 3DS.\n\n"
-      "The format is detected from the content, then from the extension. Polygons are triangulated, node\n"
-      "transforms are applied, and all meshes of the file are merged into one. Vertices used by faces keep "
-      "their\n"
-      "order; bit-identical positions become one vertex. Raises Error, naming the file and the fault.\n\n"
-      ">>> sdm.read('no such file.ply')\n"
-      "Traceback (most recent call last):\n"
-      "    ...\n"
-      "sdm.Error: ...\n");
+      R"(Reads a mesh file: OBJ, PLY, STL, OFF, glTF, GLB or 3DS.
+
+The format is detected from the content, then from the extension. Polygons are triangulated, node
+transforms are applied, and all meshes of the file are merged into one. Vertices used by faces keep their
+order; bit-identical positions become one vertex. Raises Error, naming the file and the fault.
+
+>>> sdm.read('no such file.ply')
+Traceback (most recent call last):
+    ...
+sdm.Error: ...
+)");
 }
 
 }  // namespace sdm::python

@@ -40,9 +40,8 @@ void bind_lengths(nb::module_& module) {
             return array_of<double>(std::move(rows), {2, 3});
           },
           nb::sig("def witness(self) -> numpy.ndarray | None"),
-          "A point of O1 and a point of O2 that are ``value`` apart, (2, 3) float64; None where no pair of "
-          "points\n"
-          "attains the value.")
+          R"(A point of O1 and a point of O2 that are ``value`` apart, (2, 3) float64; None where no pair
+of points attains the value.)")
       .def("__float__", [](const BoundedLength& self) { return self.value; })
       .def("__repr__", [](const BoundedLength& self) {
         if (self.certainty == Certainty::exact)
@@ -71,16 +70,16 @@ auto contact_column(LazyArray PyContacts::*array, Get get) {
 void bind_contacts(nb::module_& module) {
   nb::class_<PyContacts>(
       module, "Contacts",
-      "Contacts as arrays with one row each, sorted by patch, the patch with the deepest contact\n"
-      "first, and by decreasing depth within a patch; those of many bodies first by pair of bodies.")
+      R"(Contacts as arrays with one row each, sorted by patch, the patch with the deepest contact
+first, and by decreasing depth within a patch; those of many bodies first by pair of bodies.)")
       .def_prop_ro("point1", contact_column(&PyContacts::point1, [](const Contact& c) { return c.point1; }),
                    nb::sig("def point1(self) -> numpy.ndarray"), "The points of O1, (n, 3) float64.")
       .def_prop_ro("point2", contact_column(&PyContacts::point2, [](const Contact& c) { return c.point2; }),
                    nb::sig("def point2(self) -> numpy.ndarray"), "The points of O2, (n, 3) float64.")
       .def_prop_ro("normal", contact_column(&PyContacts::normal, [](const Contact& c) { return c.normal; }),
                    nb::sig("def normal(self) -> numpy.ndarray"),
-                   "Unit vectors along which moving O1 separates it from O2, (n, 3) float64:\n"
-                   "(point2 - point1) / depth; where depth is 0, O2's outward normal.")
+                   R"(Unit vectors along which moving O1 separates it from O2, (n, 3) float64:
+(point2 - point1) / depth; where depth is 0, O2's outward normal.)")
       .def_prop_ro(
           "depth", contact_column(&PyContacts::depth, [](const Contact& c) { return c.depth; }),
           nb::sig("def depth(self) -> numpy.ndarray"),
@@ -96,11 +95,11 @@ void bind_contacts(nb::module_& module) {
                    contact_column(&PyContacts::barycentric, [](const Contact& c) { return c.barycentric; }),
                    nb::sig("def barycentric(self) -> numpy.ndarray"),
                    "The barycentric coordinates of the points in these faces, (n, 2, 3) float64.")
-      .def_prop_ro("id", contact_column(&PyContacts::id, [](const Contact& c) { return c.id; }),
-                   nb::sig("def id(self) -> numpy.ndarray"),
-                   "Identifies what is in contact, (n,) uint64: unique among the contacts of a pair of "
-                   "bodies, and the\n"
-                   "same in all frames.")
+      .def_prop_ro(
+          "id", contact_column(&PyContacts::id, [](const Contact& c) { return c.id; }),
+          nb::sig("def id(self) -> numpy.ndarray"),
+          R"(Identifies what is in contact, (n,) uint64: unique among the contacts of a pair of bodies, and
+the same in all frames.)")
       .def_prop_ro(
           "bodies",
           [](PyContacts& self) -> nb::object {
@@ -117,12 +116,14 @@ void bind_contacts(nb::module_& module) {
 void bind_shape(nb::module_& module) {
   nb::class_<PyShape>(
       module, "Shape",
-      "A mesh prepared for proximity queries, which any number of bodies can share: a thousand bodies of\n"
-      "one shape need the memory of one.\n\n"
-      "mesh, faces: as Mesh. resolution: texels per side of an atlas, for maps of the body; None: no\n"
-      "atlas. Raises Error for a mesh that cannot be used.\n\n"
-      ">>> shape = sdm.Shape(box)\n"
-      ">>> query = sdm.ProximityQuery(shape, shape)")
+      R"(A mesh prepared for proximity queries, which any number of bodies can share: a thousand bodies of
+one shape need the memory of one.
+
+mesh, faces: as Mesh. resolution: texels per side of an atlas, for maps of the body; None: no
+atlas. Raises Error for a mesh that cannot be used.
+
+>>> shape = sdm.Shape(box)
+>>> query = sdm.ProximityQuery(shape, shape))")
       .def(
           "__init__",
           [](PyShape* self, nb::handle mesh, nb::handle faces, std::optional<std::uint32_t> resolution,
@@ -173,22 +174,24 @@ void bind_proximity(nb::module_& module) {
   using Q = PyProximityQuery;
   nb::class_<Q>(
       module, "ProximityQuery",
-      "Proximity of two bodies that move and deform: separation, collision, penetration depth, contacts.\n\n"
-      "o1, o2: each any form of a mesh (see Mesh), or a Shape.\n"
-      "depth_precision: the bounds on the penetration depth are at most this far apart; 0: 1/1000 of the\n"
-      "diagonal of the smaller body's box.\n"
-      "contact_margin: contacts are reported for points inside the other body or within this distance.\n"
-      "Both in units of the meshes, ≥ 0.\n\n"
-      "A closed, orientable body is a solid; any other one is a surface without an inside. All results are\n"
-      "in space, with both bodies in their poses, and are computed by the first call after a body has "
-      "moved.\n"
-      "A call raises Error while another thread uses the object.\n\n"
-      ">>> query = sdm.ProximityQuery(box, box)\n"
-      ">>> query.set_pose(1, [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])\n"
-      ">>> query.separation()\n"
-      "sdm.BoundedLength(2, exact)\n"
-      ">>> bool(query.colliding())\n"
-      "False")
+      R"(Proximity of two bodies that move and deform: separation, collision, penetration depth, contacts.
+
+o1, o2: each any form of a mesh (see Mesh), or a Shape.
+depth_precision: the bounds on the penetration depth are at most this far apart; 0: 1/1000 of the
+diagonal of the smaller body's box.
+contact_margin: contacts are reported for points inside the other body or within this distance.
+Both in units of the meshes, ≥ 0.
+
+A closed, orientable body is a solid; any other one is a surface without an inside. All results are
+in space, with both bodies in their poses, and are computed by the first call after a body has moved.
+A call raises Error while another thread uses the object.
+
+>>> query = sdm.ProximityQuery(box, box)
+>>> query.set_pose(1, [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+>>> query.separation()
+sdm.BoundedLength(2, exact)
+>>> bool(query.colliding())
+False)")
       .def(
           "__init__",
           [](Q* self, nb::handle o1, nb::handle o2, double depth_precision, double contact_margin) {
@@ -210,11 +213,9 @@ void bind_proximity(nb::module_& module) {
           },
           nb::arg("body"), nb::arg("pose").none(),
           nb::sig("def set_pose(self, body: int, pose: object) -> None"),
-          "Sets the pose of a body, 0 or 1: a 4 × 4 matrix from the frame of its mesh to space, for column "
-          "vectors, of\n"
-          "a rotation, a uniform scale and a translation. Initially the identity. Raises Error, and changes "
-          "nothing, if\n"
-          "it differs from such a matrix by more than 1e-5 of the scale. Cost: constant.")
+          R"(Sets the pose of a body, 0 or 1: a 4 × 4 matrix from the frame of its mesh to space, for
+column vectors, of a rotation, a uniform scale and a translation. Initially the identity. Raises Error, and
+changes nothing, if it differs from such a matrix by more than 1e-5 of the scale. Cost: constant.)")
       .def(
           "pose",
           [](const Q& self, int body) {
@@ -232,11 +233,9 @@ void bind_proximity(nb::module_& module) {
           },
           nb::arg("o1") = nb::none(), nb::arg("o2") = nb::none(),
           nb::sig("def refit(self, o1: object = None, o2: object = None) -> None"),
-          "Moves the vertices of the bodies, (n, 3) numbers each; None leaves a body unchanged. Raises "
-          "Error, and changes\n"
-          "nothing, for another number of vertices, coordinates that are not finite, or a body whose Shape "
-          "is shared.\n"
-          "Cost: linear.")
+          R"(Moves the vertices of the bodies, (n, 3) numbers each; None leaves a body unchanged. Raises
+Error, and changes nothing, for another number of vertices, coordinates that are not finite, or a body
+whose Shape is shared. Cost: linear.)")
       .def(
           "separation",
           [](Q& self) {
@@ -259,10 +258,9 @@ void bind_proximity(nb::module_& module) {
             return run_short([&] { return self.query.penetration_depth(); });
           },
           nb::sig("def penetration_depth(self) -> BoundedLength | None"),
-          "Returns the largest distance from a surface point of either body that lies inside the other to "
-          "the boundary\n"
-          "of that other body: exactly 0 if they do not collide, otherwise bounded; None if neither body is "
-          "a solid.")
+          R"(Returns the largest distance from a surface point of either body that lies inside the other to
+the boundary of that other body: exactly 0 if they do not collide, otherwise bounded; None if neither body
+is a solid.)")
       .def(
           "contacts",
           [](Q& self) {
@@ -275,12 +273,13 @@ void bind_proximity(nb::module_& module) {
             return result.release();
           },
           nb::rv_policy::take_ownership,
-          "Returns the contacts of both bodies: none if they are farther apart than the margin.\n\n"
-          ">>> query = sdm.ProximityQuery(box, box, contact_margin=0.1)\n"
-          ">>> query.set_pose(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.05], [0, 0, 0, 1]])\n"
-          ">>> contacts = query.contacts()\n"
-          ">>> float(contacts.depth.max().round(6))\n"
-          "-0.05")
+          R"(Returns the contacts of both bodies: none if they are farther apart than the margin.
+
+>>> query = sdm.ProximityQuery(box, box, contact_margin=0.1)
+>>> query.set_pose(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.05], [0, 0, 0, 1]])
+>>> contacts = query.contacts()
+>>> float(contacts.depth.max().round(6))
+-0.05)")
       .def("__repr__", [](const Q&) { return "sdm.ProximityQuery()"; });
   bind_self_proximity(module);
 }

@@ -20,17 +20,19 @@ struct PySelfProximityQuery {
 void bind_self_proximity(nb::module_& module) {
   using Q = PySelfProximityQuery;
   nb::class_<Q>(module, "SelfProximityQuery",
-                "Proximity of a deforming mesh to itself. Results are exact: computed from the triangles.\n\n"
-                "rest: any form of a mesh (see Mesh), at rest.\n"
-                "rings: a face excludes itself and this many rings of faces around it, connected by shared "
-                "vertices; ≥ 1.\n"
-                "geodesic: instead of rings, exclude everything closer than this along the surface at rest.\n"
-                "max_distance: of separation(), > 0. Both in units of the mesh.\n"
-                "progress: called as progress(step, fraction), on this thread; False cancels.\n\n"
-                "A call raises Error while another thread uses the object.\n\n"
-                ">>> query = sdm.SelfProximityQuery(sphere, geodesic=1.5)\n"
-                ">>> 1 < query.separation().value < 2\n"
-                "True")
+                R"(Proximity of a deforming mesh to itself. Results are exact: computed from the triangles.
+
+rest: any form of a mesh (see Mesh), at rest.
+rings: a face excludes itself and this many rings of faces around it, connected by shared vertices; ≥ 1.
+geodesic: instead of rings, exclude everything closer than this along the surface at rest.
+max_distance: of separation(), > 0. Both in units of the mesh.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+A call raises Error while another thread uses the object.
+
+>>> query = sdm.SelfProximityQuery(sphere, geodesic=1.5)
+>>> 1 < query.separation().value < 2
+True)")
       .def(
           "__init__",
           [](Q* self, nb::handle rest, std::uint32_t rings, std::optional<double> geodesic,
@@ -57,9 +59,9 @@ void bind_self_proximity(nb::module_& module) {
             run_short([&] { self.query.refit(positions.get()); });
           },
           nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
-          "Moves the vertices, (n, 3) numbers; the excluded faces stay the same. Raises Error, and changes "
-          "nothing, for\n"
-          "another number of vertices or coordinates that are not finite or beyond 1e37. Cost: linear.")
+          R"(Moves the vertices, (n, 3) numbers; the excluded faces stay the same. Raises Error, and
+changes nothing, for another number of vertices or coordinates that are not finite or beyond 1e37. Cost:
+linear.)")
       .def(
           "separation",
           [](Q& self) {
@@ -67,10 +69,9 @@ void bind_self_proximity(nb::module_& module) {
             return run_short([&] { return self.query.separation(); });
           },
           nb::sig("def separation(self) -> BoundedLength | None"),
-          "Returns the smallest distance between two faces that do not exclude each other, 0 if they "
-          "intersect; None if\n"
-          "there are none within max_distance. The witness is a point on each, the face of lower index "
-          "first.")
+          R"(Returns the smallest distance between two faces that do not exclude each other, 0 if they
+intersect; None if there are none within max_distance. The witness is a point on each, the face of lower
+index first.)")
       .def(
           "contacts",
           [](Q& self, double margin) {
@@ -83,9 +84,8 @@ void bind_self_proximity(nb::module_& module) {
             return result.release();
           },
           nb::rv_policy::take_ownership, nb::arg("margin"),
-          "Returns the contacts of faces within ``margin``, in units of the mesh, of a face that they do not "
-          "exclude, with\n"
-          "the nearest such face. depth is -|point2 - point1|, as a surface has no inside.")
+          R"(Returns the contacts of faces within ``margin``, in units of the mesh, of a face that they do
+not exclude, with the nearest such face. depth is -|point2 - point1|, as a surface has no inside.)")
       .def("__repr__", [](const Q& self) {
         const Mesh& mesh = self.query.sites().mesh();
         return nb::str("sdm.SelfProximityQuery({} vertices, {} faces)")

@@ -85,17 +85,17 @@ void bind_closest_points(nb::module_& module) {
           "that was found.")
       .def("vertex_gradients", &PyClosestPoints::vertex_gradients,
            nb::sig("def vertex_gradients(self) -> tuple[numpy.ndarray, numpy.ndarray]"),
-           "The derivatives of the distances by the vertices, if gradients were requested.\n\n"
-           "Returns (vertices, derivatives): (n, 3) uint32 and (n, 3, 3) float64. Distance i depends on the "
-           "vertices\n"
-           "vertices[i] only; its derivative by the position of vertices[i, k] is derivatives[i, k]. All are "
-           "0 where\n"
-           "there is no closest point. Raises Error without gradients.\n\n"
-           ">>> closest = sdm.closest_points([[0, 0, 0], [3, 0, 0], [0, 3, 0]], [[0, 1, 2]], [[1, 1, 2]],\n"
-           "...                              gradients=True)\n"
-           ">>> vertices, derivatives = closest.vertex_gradients()\n"
-           ">>> closest.gradient[0].tolist(), float(derivatives[0, :, 2].sum().round(12))\n"
-           "([0.0, 0.0, 1.0], -1.0)")
+           R"(The derivatives of the distances by the vertices, if gradients were requested.
+
+Returns (vertices, derivatives): (n, 3) uint32 and (n, 3, 3) float64. Distance i depends on the vertices
+vertices[i] only; its derivative by the position of vertices[i, k] is derivatives[i, k]. All are 0 where
+there is no closest point. Raises Error without gradients.
+
+>>> closest = sdm.closest_points([[0, 0, 0], [3, 0, 0], [0, 3, 0]], [[0, 1, 2]], [[1, 1, 2]],
+...                              gradients=True)
+>>> vertices, derivatives = closest.vertex_gradients()
+>>> closest.gradient[0].tolist(), float(derivatives[0, :, 2].sum().round(12))
+([0.0, 0.0, 1.0], -1.0))")
       .def("__len__", [](const PyClosestPoints& self) { return self.found.size(); })
       .def("__repr__", [](const PyClosestPoints& self) {
         return nb::str("sdm.ClosestPoints({} points)").format(self.found.size());
@@ -108,16 +108,18 @@ void bind_sites(nb::module_& module) {
   bind_closest_points(module);
   nb::class_<PySites>(
       module, "Sites",
-      "The object that distances are measured to (O2): the faces, edges and vertices of a mesh,\n"
-      "prepared for queries.\n\n"
-      "mesh, faces: as Mesh. Raises Error for a mesh that cannot be used. Cost: O(m log m) for m faces,\n"
-      "all cores. Several threads may query an object at the same time; refit() raises Error while they\n"
-      "do.\n\n"
-      ">>> sites = sdm.Sites(box)\n"
-      ">>> sites.closest_points([[2, 0.5, 0.5]]).point\n"
-      "array([[1. , 0.5, 0.5]])\n"
-      ">>> sites.signed_distance([[0.5, 0.5, 0.75]])\n"
-      "array([-0.25])")
+      R"(The object that distances are measured to (O2): the faces, edges and vertices of a mesh,
+prepared for queries.
+
+mesh, faces: as Mesh. Raises Error for a mesh that cannot be used. Cost: O(m log m) for m faces,
+all cores. Several threads may query an object at the same time; refit() raises Error while they
+do.
+
+>>> sites = sdm.Sites(box)
+>>> sites.closest_points([[2, 0.5, 0.5]]).point
+array([[1. , 0.5, 0.5]])
+>>> sites.signed_distance([[0.5, 0.5, 0.75]])
+array([-0.25]))")
       .def(
           "__init__",
           [](PySites* self, nb::handle mesh, nb::handle faces) {
@@ -140,28 +142,26 @@ void bind_sites(nb::module_& module) {
               "gradients: bool = False, engine: str = 'cpu', progress: collections.abc.Callable[[str, "
               "float], "
               "bool | None] | None = None) -> ClosestPoints"),
-          "Returns the closest point of the mesh to each of n points.\n\n"
-          "points: (n, 3) numbers. float64 in C order is used without a copy, and must not change during the "
-          "call.\n"
-          "max_distance: > 0, in units of the mesh; points farther away have no closest point.\n"
-          "sign: 'none': unsigned distances; 'exact': negative inside a closed, orientable mesh; 'winding': "
-          "also for\n"
-          "other meshes, by generalised winding numbers, an estimate of insideness; 'automatic': exact where "
-          "the mesh\n"
-          "allows it, else none.\n"
-          "gradients: whether the result has the derivatives of the distances.\n"
-          "engine: 'cpu' or 'reference'; the site is closest to within 1e-6 of the diagonal of both, or to "
-          "double\n"
-          "rounding. The distance is that to this site, in double precision.\n"
-          "progress: called as progress(step, fraction), on this thread; False cancels.\n\n"
-          "Raises Error for points that are not finite or beyond 1e37, and for a sign that the mesh does not "
-          "allow;\n"
-          "Cancelled. Cost: one search per point, all cores.\n\n"
-          ">>> closest = sdm.Sites(box).closest_points([[2, 0.5, 0.25], [2, 2, 2]])\n"
-          ">>> closest.distance\n"
-          "array([1.        , 1.73205081])\n"
-          ">>> closest.site_type == [sdm.SiteType.FACE, sdm.SiteType.VERTEX]\n"
-          "array([ True,  True])")
+          R"(Returns the closest point of the mesh to each of n points.
+
+points: (n, 3) numbers. float64 in C order is used without a copy, and must not change during the call.
+max_distance: > 0, in units of the mesh; points farther away have no closest point.
+sign: 'none': unsigned distances; 'exact': negative inside a closed, orientable mesh; 'winding': also for
+other meshes, by generalised winding numbers, an estimate of insideness; 'automatic': exact where the mesh
+allows it, else none.
+gradients: whether the result has the derivatives of the distances.
+engine: 'cpu' or 'reference'; the site is closest to within 1e-6 of the diagonal of both, or to double
+rounding. The distance is that to this site, in double precision.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+Raises Error for points that are not finite or beyond 1e37, and for a sign that the mesh does not allow;
+Cancelled. Cost: one search per point, all cores.
+
+>>> closest = sdm.Sites(box).closest_points([[2, 0.5, 0.25], [2, 2, 2]])
+>>> closest.distance
+array([1.        , 1.73205081])
+>>> closest.site_type == [sdm.SiteType.FACE, sdm.SiteType.VERTEX]
+array([ True,  True]))")
       .def(
           "signed_distance",
           [](nb::handle self, nb::handle points, const char* sign, double max_distance, nb::handle progress) {
@@ -173,10 +173,12 @@ void bind_sites(nb::module_& module) {
               "def signed_distance(self, points: object, *, sign: str = 'exact', max_distance: float = ..., "
               "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
               "numpy.ndarray"),
-          "Returns the distances of n points, (n,) float64, negative inside the mesh.\n\n"
-          "As closest_points(), with a sign. Raises Error for an open mesh, unless sign is 'winding'.\n\n"
-          ">>> sdm.Sites(box).signed_distance([[0.5, 0.5, 0.5], [2, 0.5, 0.5]])\n"
-          "array([-0.5,  1. ])")
+          R"(Returns the distances of n points, (n,) float64, negative inside the mesh.
+
+As closest_points(), with a sign. Raises Error for an open mesh, unless sign is 'winding'.
+
+>>> sdm.Sites(box).signed_distance([[0.5, 0.5, 0.5], [2, 0.5, 0.5]])
+array([-0.5,  1. ]))")
       .def(
           "contains",
           [](nb::handle self, nb::handle points, const char* sign, nb::handle progress) {
@@ -191,11 +193,12 @@ void bind_sites(nb::module_& module) {
           nb::sig("def contains(self, points: object, *, sign: str = 'exact', "
                   "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
                   "numpy.ndarray"),
-          "Returns whether each of n points lies inside the mesh, (n,) bool.\n\n"
-          "As the sign of signed_distance(): exact at points farther from the mesh than 1e-6 of the "
-          "diagonal.\n\n"
-          ">>> sdm.Sites(box).contains([[0.5, 0.5, 0.5], [2, 0.5, 0.5]])\n"
-          "array([ True, False])")
+          R"(Returns whether each of n points lies inside the mesh, (n,) bool.
+
+As the sign of signed_distance(): exact at points farther from the mesh than 1e-6 of the diagonal.
+
+>>> sdm.Sites(box).contains([[0.5, 0.5, 0.5], [2, 0.5, 0.5]])
+array([ True, False]))")
       .def(
           "refit",
           [](PySites& self, nb::handle vertices) {
@@ -210,16 +213,16 @@ void bind_sites(nb::module_& module) {
             ++self.shape;
           },
           nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
-          "Moves the vertices and keeps the faces.\n\n"
-          "vertices: (n, 3) numbers. Earlier results do not change. Raises Error, and changes nothing, for "
-          "another\n"
-          "number of vertices, for coordinates that are not finite or beyond 1e37, and while another call "
-          "uses the\n"
-          "object. Cost: linear, a fraction of building the object.\n\n"
-          ">>> sites = sdm.Sites(box)\n"
-          ">>> sites.refit(sites.vertices + [0, 0, 1])\n"
-          ">>> sites.signed_distance([[0.5, 0.5, 0.75]])\n"
-          "array([0.25])")
+          R"(Moves the vertices and keeps the faces.
+
+vertices: (n, 3) numbers. Earlier results do not change. Raises Error, and changes nothing, for another
+number of vertices, for coordinates that are not finite or beyond 1e37, and while another call uses the
+object. Cost: linear, a fraction of building the object.
+
+>>> sites = sdm.Sites(box)
+>>> sites.refit(sites.vertices + [0, 0, 1])
+>>> sites.signed_distance([[0.5, 0.5, 0.75]])
+array([0.25]))")
       .def_prop_ro(
           "vertices", [](const PySites& self) { return positions_view(self.positions); },
           nb::sig("def vertices(self) -> numpy.ndarray"),

@@ -55,22 +55,25 @@ std::unique_ptr<PySurface> built(Mesh mesh, Layout layout, const Progress& progr
 void bind_surface(nb::module_& module) {
   nb::class_<PySurface>(
       module, "Surface",
-      "The surface on which distances are measured (O1): a mesh laid out in a square texture.\n\n"
-      "mesh, faces: as Mesh.\n"
-      "resolution: texels per side, 16 to 32768; 1024 by default.\n"
-      "precision: instead of the resolution, the largest distance allowed from a point of the surface\n"
-      "to the nearest texel's centre, in units of the mesh.\n"
-      "atlas: 'charts': clusters of faces; 'triangles': single faces, without distortion; 'uv': the\n"
-      "mesh's own texture coordinates.\n"
-      "max_stretch: bounds the growth of lengths from atlas to surface, for charts; in (1, 100].\n"
-      "gutter: free texels around each chart.\n"
-      "progress: called as progress(step, fraction), on this thread; False cancels.\n\n"
-      "Raises Error for a mesh or options that cannot be used; Cancelled.\n\n"
-      ">>> surface = sdm.Surface(sphere, resolution=256)\n"
-      ">>> surface.texel_faces.shape\n"
-      "(256, 256)\n"
-      ">>> surface.covering_radius() < 0.05\n"
-      "True")
+      R"(The surface on which distances are measured (O1): a mesh laid out in a square texture.
+
+mesh, faces: as Mesh.
+resolution: texels per side, 16 to 32768; 1024 by default.
+precision: instead of the resolution, the largest distance allowed from a point of the surface
+to the nearest texel's centre, in units of the mesh.
+atlas: 'charts': clusters of faces; 'triangles': single faces, without distortion; 'uv': the
+mesh's own texture coordinates.
+max_stretch: bounds the growth of lengths from atlas to surface, for charts; in (1, 100].
+gutter: free texels around each chart.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+Raises Error for a mesh or options that cannot be used; Cancelled.
+
+>>> surface = sdm.Surface(sphere, resolution=256)
+>>> surface.texel_faces.shape
+(256, 256)
+>>> surface.covering_radius() < 0.05
+True)")
       .def(
           "__init__",
           [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle resolution, nb::handle precision,
@@ -105,21 +108,19 @@ void bind_surface(nb::module_& module) {
             ++self.shape;
           },
           nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
-          "Moves the vertices and keeps the faces and the atlas.\n\n"
-          "vertices: (n, 3) numbers. Maps computed before keep their distances. Raises Error, and changes "
-          "nothing, for\n"
-          "another number of vertices, for coordinates that are not finite or beyond 1e37, and while another "
-          "call uses\n"
-          "the object. Cost: linear.")
+          R"(Moves the vertices and keeps the faces and the atlas.
+
+vertices: (n, 3) numbers. Maps computed before keep their distances. Raises Error, and changes nothing, for
+another number of vertices, for coordinates that are not finite or beyond 1e37, and while another call uses
+the object. Cost: linear.)")
       .def(
           "covering_radius",
           [](const PySurface& self) {
             const auto lock = self.access.use();
             return run_short([&] { return covering_radius(self.surface); });
           },
-          "Returns an upper bound on the distance from any point of the surface to the nearest texel's "
-          "centre, in\n"
-          "units of the mesh. Cost: linear in texels and faces, all cores.")
+          R"(Returns an upper bound on the distance from any point of the surface to the nearest texel's
+centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
       .def_prop_ro(
           "resolution", [](const PySurface& self) { return self.surface.resolution(); }, "Texels per row.")
       .def_prop_ro(

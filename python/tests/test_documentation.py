@@ -2,7 +2,10 @@
 
 import doctest
 import inspect
+import os
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -51,8 +54,6 @@ def blocks(page):
 @pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
 def test_pages(page, tmp_path, monkeypatch):
     """The blocks of a page, one after the other, in a folder with the meshes that they name."""
-    import shutil
-
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     for name in ("bunny.obj", "horse.3ds"):
@@ -66,6 +67,19 @@ def test_pages(page, tmp_path, monkeypatch):
             continue
         exec(compile(block, page, "exec"), names)
     assert (tmp_path / "distance.png").stat().st_size > 10_000
+
+
+@pytest.mark.skipif("SDM_COMMAND" not in os.environ, reason="the command is not built")
+def test_the_picture_is_that_of_the_command(tmp_path):
+    """The README's program and ./demo draw the same picture."""
+    bunny, horse = MESHES / "bunny.obj", MESHES / "horse.3ds"
+    options = ["--transform-o1", "fit", "--transform-o2", "fit,translate:0.8:0:0", "--write", "png", "--quiet"]
+    subprocess.run([os.environ["SDM_COMMAND"], "map", bunny, horse, "-o", tmp_path / "out", *options], check=True)
+    beside = sdm.fit_to_unit(horse)
+    beside[0, 3] += 0.8
+    distance_map = sdm.map(bunny, sdm.read(horse).transformed(beside), transform=sdm.fit_to_unit(bunny))
+    distance_map.save(tmp_path / "distance.png")
+    assert (tmp_path / "distance.png").read_bytes() == (tmp_path / "out" / "distance.png").read_bytes()
 
 
 def has_torch():
