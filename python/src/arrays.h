@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>
@@ -66,6 +67,16 @@ template <class Scalar, class Element>
 nb::object view_of(const std::vector<Element>& values, std::initializer_list<std::size_t> shape,
                    nb::handle owner) {
   return view_of<Scalar>(std::span<const Element>(values), shape, owner);
+}
+
+/// The same for one Element per texel of a map: one Scalar each, or as many as it consists of.
+template <class Scalar, class Element>
+nb::object texels_of(const std::vector<Element>& values, const DistanceMap& map, nb::handle owner) {
+  if constexpr (sizeof(Element) == sizeof(Scalar)) {
+    return view_of<Scalar>(values, {map.rows(), map.resolution}, owner);
+  } else {
+    return view_of<Scalar>(values, {map.rows(), map.resolution, sizeof(Element) / sizeof(Scalar)}, owner);
+  }
 }
 
 /// Calls body(begin, end) for parts of `count` items, on all cores if there are many. Needs no GIL.

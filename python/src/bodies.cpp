@@ -20,7 +20,7 @@ struct PyMultiBodyQuery {
 
 struct PyPairs {
   std::vector<PairProximity> pairs;
-  LazyArray bodies, separation, separation_bounds, witness, colliding, depth, depth_bounds;
+  LazyArray bodies, separation, witness, colliding, depth, depth_bounds;
 };
 
 struct PyNearestMap {
@@ -95,16 +95,6 @@ void bind_pairs(nb::module_& module) {
       .def("__repr__", [](const P& self) { return nb::str("sdm.Pairs({})").format(self.pairs.size()); });
 }
 
-template <class Scalar, class Element>
-nb::object texel_view(nb::handle self, const std::vector<Element>& values) {
-  const DistanceMap& map = nb::cast<const PyNearestMap&>(self).nearest.map;
-  if constexpr (sizeof(Element) == sizeof(Scalar)) {
-    return view_of<Scalar>(values, {map.rows(), map.resolution}, self);
-  } else {
-    return view_of<Scalar>(values, {map.rows(), map.resolution, sizeof(Element) / sizeof(Scalar)}, self);
-  }
-}
-
 void bind_nearest_map(nb::module_& module) {
   using M = PyNearestMap;
   nb::class_<M>(module, "NearestMap",
@@ -114,34 +104,39 @@ void bind_nearest_map(nb::module_& module) {
       .def_prop_ro(
           "distance",
           [](nb::handle self) {
-            return texel_view<float>(self, nb::cast<const M&>(self).nearest.map.distance);
+            const NearestMap& n = nb::cast<const M&>(self).nearest;
+            return texels_of<float>(n.map.distance, n.map, self);
           },
           nb::sig("def distance(self) -> numpy.ndarray"),
           "(H, W) float32, negative inside the other body if that is a solid; NaN where there is no value.")
       .def_prop_ro(
           "vector",
           [](nb::handle self) {
-            return texel_view<float>(self, nb::cast<const M&>(self).nearest.map.vector);
+            const NearestMap& n = nb::cast<const M&>(self).nearest;
+            return texels_of<float>(n.map.vector, n.map, self);
           },
           nb::sig("def vector(self) -> numpy.ndarray"),
           "From the texel to the closest point, (H, W, 3) float32.")
       .def_prop_ro(
           "site",
           [](nb::handle self) {
-            return texel_view<std::uint32_t>(self, nb::cast<const M&>(self).nearest.map.site);
+            const NearestMap& n = nb::cast<const M&>(self).nearest;
+            return texels_of<std::uint32_t>(n.map.site, n.map, self);
           },
           nb::sig("def site(self) -> numpy.ndarray"),
           "The closest site of the other body, (H, W) uint32, or NONE.")
       .def_prop_ro(
           "site_type",
           [](nb::handle self) {
-            return texel_view<std::uint8_t>(self, nb::cast<const M&>(self).nearest.map.site_type);
+            const NearestMap& n = nb::cast<const M&>(self).nearest;
+            return texels_of<std::uint8_t>(n.map.site_type, n.map, self);
           },
           nb::sig("def site_type(self) -> numpy.ndarray"), "Its SiteType, (H, W) uint8.")
       .def_prop_ro(
           "body",
           [](nb::handle self) {
-            return texel_view<std::uint32_t>(self, nb::cast<const M&>(self).nearest.body);
+            const NearestMap& n = nb::cast<const M&>(self).nearest;
+            return texels_of<std::uint32_t>(n.body, n.map, self);
           },
           nb::sig("def body(self) -> numpy.ndarray"), "The index of the other body, (H, W) uint32, or NONE.")
       .def_prop_ro(

@@ -78,16 +78,6 @@ std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char*
   return result;
 }
 
-template <class Scalar, class Element>
-nb::object texel_view(nb::handle self, const std::vector<Element>& values) {
-  const auto& map = nb::cast<const PyMap&>(self);
-  if constexpr (sizeof(Element) == sizeof(Scalar)) {
-    return view_of<Scalar>(values, {map.rows(), map.map.resolution}, self);
-  } else {
-    return view_of<Scalar>(values, {map.rows(), map.map.resolution, sizeof(Element) / sizeof(Scalar)}, self);
-  }
-}
-
 nb::object positions(const PyMap& self) {
   const auto lock = self.use_surface();
   auto values = run_short([&] {
@@ -242,22 +232,30 @@ void bind_map(nb::module_& module) {
           "sites", [](const PyMap& self) { return self.sites_object; }, nb::sig("def sites(self) -> Sites"))
       .def_prop_ro(
           "distance",
-          [](nb::handle self) { return texel_view<float>(self, nb::cast<const PyMap&>(self).map.distance); },
+          [](nb::handle self) {
+            const DistanceMap& map = nb::cast<const PyMap&>(self).map;
+            return texels_of<float>(map.distance, map, self);
+          },
           nb::sig("def distance(self) -> numpy.ndarray"))
       .def_prop_ro(
           "vector",
-          [](nb::handle self) { return texel_view<float>(self, nb::cast<const PyMap&>(self).map.vector); },
+          [](nb::handle self) {
+            const DistanceMap& map = nb::cast<const PyMap&>(self).map;
+            return texels_of<float>(map.vector, map, self);
+          },
           nb::sig("def vector(self) -> numpy.ndarray"))
       .def_prop_ro(
           "site",
           [](nb::handle self) {
-            return texel_view<std::uint32_t>(self, nb::cast<const PyMap&>(self).map.site);
+            const DistanceMap& map = nb::cast<const PyMap&>(self).map;
+            return texels_of<std::uint32_t>(map.site, map, self);
           },
           nb::sig("def site(self) -> numpy.ndarray"))
       .def_prop_ro(
           "site_type",
           [](nb::handle self) {
-            return texel_view<std::uint8_t>(self, nb::cast<const PyMap&>(self).map.site_type);
+            const DistanceMap& map = nb::cast<const PyMap&>(self).map;
+            return texels_of<std::uint8_t>(map.site_type, map, self);
           },
           nb::sig("def site_type(self) -> numpy.ndarray"))
       .def("position", &positions, nb::sig("def position(self) -> numpy.ndarray"))

@@ -279,8 +279,7 @@ is a solid.)")
 >>> query.set_pose(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.05], [0, 0, 0, 1]])
 >>> contacts = query.contacts()
 >>> float(contacts.depth.max().round(6))
--0.05)")
-      .def("__repr__", [](const Q&) { return "sdm.ProximityQuery()"; });
+-0.05)");
   bind_self_proximity(module);
 }
 

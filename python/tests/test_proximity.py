@@ -200,7 +200,7 @@ use()
 
 
 def test_objects_that_are_not_built():
-    for kind in (sdm.Sites, sdm.Surface, sdm.Mesh, sdm.ProximityQuery, sdm.MultiBodyQuery):
+    for kind in (sdm.Sites, sdm.Surface, sdm.Mesh, sdm.Shape, sdm.MultiBodyQuery):
         with pytest.raises(TypeError), pytest.warns(RuntimeWarning, match="uninitialized"):
             repr(kind.__new__(kind))
     sites = sdm.Sites(meshes.box())
