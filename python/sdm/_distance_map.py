@@ -133,33 +133,31 @@ class DistanceMap:
         *,
         colormap: str = "automatic",
         range: "tuple[float, float] | None" = None,
-        tolerance: "float | None" = None,
+        tolerance: "float | tuple[float, float] | None" = None,
         units: str = "",
         size: int = 2048,
         progress: "Progress | None" = None,
     ) -> None:
         """Writes the map, in the format of the file's extension.
 
-        ====  =====================================================================================================
-        .exr  all values: distance.D, vector.X/Y/Z, site.id, site.type, face.id, coverage.A
-        .png  the distances in colours, with a legend
-        .glb  the surface with the distances as a texture, and as ``_DISTANCE`` for each vertex
-        .ply  the surface with the distance of each vertex as its property ``quality``, all vertices in their order
-        ====  =====================================================================================================
+        ===================  ======================================================================================
+        .exr                 all values: distance.D, vector.X/Y/Z, site.id, site.type, face.id, coverage.A
+        .png                 the distances in colours, with a legend
+        .glb                 the surface with the distances as a texture, and as ``_DISTANCE`` for each vertex
+        .ply .csv .npy .vtp  the distance of each vertex, in the order of the vertices; in .ply and .vtp with the faces
+        ===================  ======================================================================================
 
         The options are those of the colours. colormap: 'automatic' (diverging if there are both signs, else viridis),
         'viridis', 'diverging' or 'paper2006'. range: of the colours; by default from the map. tolerance: bands, green
-        within ±tolerance. units: shown in the legend ('mm', ...); they scale a .glb to metres. size: the most pixels a
-        side. The complete file appears, or none. Raises Error, naming the file and the fault.
+        within ±tolerance, or from the first to the second number. units: shown in the legend ('mm', ...); they scale a
+        .glb to metres. size: the most pixels a side. The complete file appears, or none. Raises Error, naming the file and the fault.
         """
         name = os.fspath(file)
         if not isinstance(name, str):
             name = os.fsdecode(name)
         suffix = os.path.splitext(name)[1].lower()
-        if suffix == ".ply":
-            return _write_ply(name, self.surface, self.at_vertices(progress=progress))
-        if suffix not in (".exr", ".png", ".glb"):
-            raise Error(f"{name}: a map is saved as .exr, .png, .glb or .ply, not as '{suffix}'")
+        if suffix not in (".exr", ".png", ".glb", ".ply", ".csv", ".npy", ".vtp"):
+            raise Error(f"{name}: a map is saved as .exr, .png, .glb, .ply, .csv, .npy or .vtp, not as '{suffix}'")
         self._core.write(
             suffix[1:],
             name,
@@ -211,30 +209,6 @@ class DistanceMap:
 def _frozen(array: np.ndarray) -> np.ndarray:
     array.flags.writeable = False
     return array
-
-
-def _write_ply(name: str, surface: Surface, distances: np.ndarray) -> None:
-    vertices = np.empty(len(distances), [("x", "<f8"), ("y", "<f8"), ("z", "<f8"), ("quality", "<f4")])
-    vertices["x"], vertices["y"], vertices["z"] = surface.vertices.T
-    vertices["quality"] = distances
-    faces = np.empty(len(surface.faces), [("count", "u1"), ("corners", "<u4", 3)])
-    faces["count"], faces["corners"] = 3, surface.faces
-    header = (
-        "ply\nformat binary_little_endian 1.0\n"
-        f"element vertex {len(vertices)}\nproperty double x\nproperty double y\nproperty double z\nproperty float quality\n"
-        f"element face {len(faces)}\nproperty list uchar uint vertex_indices\nend_header\n"
-    )
-    part = f"{name}.{os.getpid()}.part"
-    try:
-        with open(part, "wb") as file:
-            file.write(header.encode())
-            file.write(vertices.tobytes())
-            file.write(faces.tobytes())
-        os.replace(part, name)
-    except OSError as fault:
-        if os.path.exists(part):
-            os.remove(part)
-        raise Error(f"{name}: cannot be written ({fault.strerror})") from None
 
 
 def map(

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -162,16 +164,42 @@ Colormap colormap_of(const std::string& name) {
   throw Error("colormap must be one of automatic, viridis, diverging, paper2006, not '" + name + "'");
 }
 
+// The accepted distances: a number, or the least and the most.
+Tolerance tolerance_of(nb::handle value, const DistanceMap& map) {
+  Tolerance tolerance;
+  if (nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value)) {
+    if (nb::len(value) != 2) throw Error("tolerance must be a number, or the least and the most distance");
+    tolerance = {nb::cast<double>(nb::float_(value[0])), nb::cast<double>(nb::float_(value[1]))};
+  } else {
+    tolerance = nb::cast<double>(nb::float_(nb::borrow(value)));
+  }
+  if (!(tolerance.lo <= tolerance.hi) || !std::isfinite(tolerance.hi - tolerance.lo))
+    throw Error("tolerance must be a finite number that is not negative, or two, the smaller one first");
+  if (tolerance.needs_sign() && map.sign.method == SignMethod::none)
+    throw Error("a tolerance that differs by the sign needs signed distances, but the map is unsigned");
+  return tolerance;
+}
+
+// The mesh of the surface as if it had been read from a file.
+FileVertices file_vertices(const Mesh& mesh) {
+  FileVertices result{.positions = mesh.positions, .mesh_vertex = {}, .corners = {}, .ends = {}};
+  result.mesh_vertex.resize(mesh.positions.size());
+  std::iota(result.mesh_vertex.begin(), result.mesh_vertex.end(), 0u);
+  for (const Triangle& triangle : mesh.triangles) {
+    result.corners.insert(result.corners.end(), triangle.begin(), triangle.end());
+    result.ends.push_back(static_cast<std::uint32_t>(result.corners.size()));
+  }
+  return result;
+}
+
 void write(const PyMap& self, const std::string& format, const std::string& file, const std::string& colormap,
-           std::optional<std::pair<double, double>> range, std::optional<double> tolerance,
-           const std::string& units, std::uint32_t largest, nb::handle progress) {
+           std::optional<std::pair<double, double>> range, nb::handle tolerance, const std::string& units,
+           std::uint32_t largest, nb::handle progress) {
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
-  PictureOptions picture{
-      .colormap = colormap_of(colormap), .tolerance = tolerance, .units = units, .largest = largest};
+  PictureOptions picture{.colormap = colormap_of(colormap), .units = units, .largest = largest};
   if (largest < 16) throw Error("size must be at least 16 pixels");
-  if (tolerance && !(*tolerance >= 0 && std::isfinite(*tolerance)))
-    throw Error("tolerance must be a finite number, and not negative");
+  if (!tolerance.is_none()) picture.tolerance = tolerance_of(tolerance, self.map);
   if (range) {
     if (!(range->first < range->second) || !std::isfinite(range->second - range->first))
       throw Error("range must be two finite numbers, the smaller one first");
@@ -181,8 +209,15 @@ void write(const PyMap& self, const std::string& format, const std::string& file
   if (std::isfinite(accuracy)) picture.accuracy = accuracy;
   const std::filesystem::path path(file);
   const Surface& surface = self.on->surface;
+  using WriteVertices = void (*)(const std::filesystem::path&, const FileVertices&, std::span<const float>);
+  const std::map<std::string, WriteVertices> of_vertices{{"ply", write_vertices_ply},
+                                                         {"csv", write_vertices_csv},
+                                                         {"npy", write_vertices_npy},
+                                                         {"vtp", write_vertices_vtp}};
   run(progress, [&](const Progress& report) {
-    if (format == "exr") {
+    if (const auto found = of_vertices.find(format); found != of_vertices.end()) {
+      found->second(path, file_vertices(surface.mesh()), self.vertex_distances(report));
+    } else if (format == "exr") {
       std::vector<std::uint8_t> boundary;
       if (!self.to->sites.closed()) boundary = boundary_mask(self.to->sites, self.map);
       write_exr(path, surface, self.map, boundary);
@@ -202,15 +237,19 @@ void bind_statistics(nb::module_& module) {
       "Distances are NaN if there are none. Estimates for the surface: DistanceMap.bounds holds everywhere.")
       .def_ro("texels", &S::texels, "The number of texels that have a value.")
       .def_ro("negative_texels", &S::negative_texels, "The number of those inside.")
+      .def_ro("negative_area_fraction", &S::negative_area_fraction, "Their fraction of the area, in [0, 1].")
       .def_ro("min", &S::min)
       .def_ro("max", &S::max)
       .def_ro("mean", &S::mean)
       .def_ro("rms", &S::rms)
       .def_ro("stddev", &S::stddev, "About the mean.")
+      .def_ro("p01", &S::p01, "A percentile, weighted by area.")
+      .def_ro("p05", &S::p05)
       .def_ro("p50", &S::p50, "The median, weighted by area.")
       .def_ro("p95", &S::p95)
       .def_ro("p99", &S::p99)
       .def_ro("mean_abs", &S::mean_abs, "Of the absolute distances.")
+      .def_ro("max_abs", &S::max_abs)
       .def_ro("p50_abs", &S::p50_abs)
       .def_ro("p95_abs", &S::p95_abs)
       .def_ro("p99_abs", &S::p99_abs)
@@ -287,7 +326,8 @@ void bind_map(nb::module_& module) {
            nb::arg("progress") = nb::none(),
            nb::sig("def write(self, format: str, file: str, *, colormap: str = 'automatic', range: "
                    "tuple[float, float] | "
-                   "None = None, tolerance: float | None = None, units: str = '', size: int = 2048, "
+                   "None = None, tolerance: float | tuple[float, float] | None = None, units: str = '', "
+                   "size: int = 2048, "
                    "progress: object = "
                    "None) -> None"));
 

@@ -213,14 +213,23 @@ def test_files(distance_map, tmp_path):
     read = sdm.read(tmp_path / "M.PLY")
     np.testing.assert_array_equal(read.vertices, distance_map.surface.vertices)
     np.testing.assert_array_equal(read.faces, distance_map.surface.faces)
-    assert distance_map.at_vertices().tobytes()[:4] in (tmp_path / "M.PLY").read_bytes()
+    at_vertices = distance_map.at_vertices()
+    assert at_vertices[:1].tobytes() in (tmp_path / "M.PLY").read_bytes()
+    for name in ("m.npy", "m.csv", "m.vtp"):
+        distance_map.save(tmp_path / name)
+    np.testing.assert_array_equal(np.load(tmp_path / "m.npy"), at_vertices)
+    table = np.loadtxt(tmp_path / "m.csv", delimiter=",", skiprows=1)
+    np.testing.assert_array_equal(table[:, 1:4], distance_map.surface.vertices)
+    np.testing.assert_array_equal(table[:, 4].astype(np.float32), at_vertices)
     distance_map.save(str(tmp_path / "options.png"), colormap="viridis", range=(0, 1), units="mm", size=64)
+    distance_map.save(tmp_path / "bands.png", tolerance=(-0.1, 0.2))
     width, height = struct.unpack(">II", (tmp_path / "options.png").read_bytes()[16:24])
     assert width > 64 and height >= 64
     for name in ("m.jpg", "m", "no such folder/m.png", "no such folder/m.ply", "no such folder/m.exr"):
         with pytest.raises(sdm.Error, match=name.split("/")[0]):
             distance_map.save(tmp_path / name)
-    for options in ({"colormap": "jet"}, {"range": (1, 0)}, {"range": (0, np.nan)}, {"size": 0}, {"tolerance": -1}):
+    for options in ({"colormap": "jet"}, {"range": (1, 0)}, {"range": (0, np.nan)}, {"size": 0}, {"tolerance": -1}, {"tolerance": (1, 0)},
+                    {"tolerance": (0, 1, 2)}):  # fmt: skip
         with pytest.raises(sdm.Error):
             distance_map.save(tmp_path / "bad.png", **options)
     assert not (tmp_path / "bad.png").exists()
