@@ -15,7 +15,7 @@ class PointMeshDistance(torch.autograd.Function):
     """The function behind distance()."""
 
     @staticmethod
-    def forward(ctx, points, vertices, faces, sign, max_distance):  # noqa: D102
+    def forward(ctx, points, vertices, faces, sign, max_distance):
         sites = Sites(vertices.detach().cpu().numpy(), faces.detach().cpu().numpy())
         closest = sites.closest_points(
             points.detach().cpu().numpy(), sign=sign, max_distance=max_distance, gradients=True
@@ -27,7 +27,7 @@ class PointMeshDistance(torch.autograd.Function):
 
     @staticmethod
     @torch.autograd.function.once_differentiable
-    def backward(ctx, upstream):  # noqa: D102
+    def backward(ctx, upstream):
         upstream = upstream.detach().cpu().double().numpy()
         of_points = of_vertices = None
         if ctx.needs_input_grad[0]:

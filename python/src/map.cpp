@@ -97,12 +97,12 @@ nb::object positions(const PyMap& self) {
 std::vector<Vec3f> face_normals(const Mesh& mesh) {
   std::vector<Vec3f> normals(mesh.triangles.size());
   for (std::size_t f = 0; f < normals.size(); ++f) {
-    const auto& [a, b, c] = mesh.triangles[f];
-    const auto edge = [&](std::uint32_t to) {
-      const Vec3 &p = mesh.positions[a], &q = mesh.positions[to];
+    const Triangle& corners = mesh.triangles[f];
+    const auto edge = [&](int to) {
+      const Vec3 &p = mesh.positions[corners[0]], &q = mesh.positions[corners[to]];
       return Vec3{q[0] - p[0], q[1] - p[1], q[2] - p[2]};
     };
-    const Vec3 u = edge(b), v = edge(c);
+    const Vec3 u = edge(1), v = edge(2);
     const Vec3 n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     const double length = std::hypot(n[0], n[1], n[2]);
     for (int k = 0; k < 3; ++k) normals[f][k] = static_cast<float>(n[k] / length);

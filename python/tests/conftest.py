@@ -5,7 +5,7 @@ import hypothesis
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
-import meshes  # noqa: E402
+import meshes
 
 # The same examples in every run; no time limit, as other tests run at the same time.
 hypothesis.settings.register_profile("tests", derandomize=True, deadline=None, max_examples=50, database=None)

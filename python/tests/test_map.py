@@ -47,7 +47,7 @@ def test_values(distance_map):
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     np.testing.assert_allclose(m.normal.reshape(-1, 3)[where], normal, atol=1e-6)
     np.testing.assert_allclose(((position - corners[:, 0]) * normal).sum(axis=1), 0, atol=1e-14)
-    expected, closest = oracle.closest_points(*meshes.box(), position)
+    expected, _ = oracle.closest_points(*meshes.box(), position)
     inside = oracle.winding_numbers(*meshes.box(), position) > 0.5
     accuracy = m.bounds.accuracy
     np.testing.assert_allclose(distance, np.where(inside, -expected, expected), atol=accuracy)
