@@ -1,12 +1,13 @@
 // Bundles the page into one HTML file: node build.cjs OUTPUT. Packages are found by NODE_PATH or in node_modules.
 const { buildSync } = require('esbuild');
 const { readFileSync, writeFileSync } = require('fs');
-const { join } = require('path');
+const { delimiter, join } = require('path');
 
 function bundle(file) {
   const { outputFiles } = buildSync({
     entryPoints: [join(__dirname, 'src', file)],
     bundle: true,
+    nodePaths: (process.env.NODE_PATH || '').split(delimiter),
     minify: true,
     write: false,
     format: 'iife',
