@@ -23,9 +23,10 @@ constexpr double kMostTiles = 1e6;    // from the origin
 constexpr double kMostPieces = 1 << 24;
 
 // The range of tiles that a face meets by more than rounding, in one direction.
-std::array<double, 2> tile_range(const std::array<Vec2, 3>& uv, int axis) {
+std::array<std::int32_t, 2> tile_range(const std::array<Vec2, 3>& uv, int axis) {
   const auto [lo, hi] = std::minmax({uv[0][axis], uv[1][axis], uv[2][axis]});
-  const double first = std::floor(lo + kOutside), last = std::ceil(hi - kOutside) - 1;
+  const auto first = static_cast<std::int32_t>(std::floor(lo + kOutside));
+  const auto last = static_cast<std::int32_t>(std::ceil(hi - kOutside)) - 1;
   return {first, std::max(first, last)};
 }
 
@@ -68,15 +69,15 @@ class FaceCuts {
     added_.clear();
     first_ = true;
     const auto columns = tile_range(uv, 0), rows = tile_range(uv, 1);
-    for (double u = columns[0]; u <= columns[1]; ++u) {
+    for (std::int32_t u = columns[0]; u <= columns[1]; ++u) {
       const Piece column =
           clipped(clipped(whole, 0, u, u > columns[0] ? 1 : 0), 0, u + 1, u < columns[1] ? -1 : 0);
-      for (double v = rows[0]; v <= rows[1]; ++v)
+      for (std::int32_t v = rows[0]; v <= rows[1]; ++v)
         add(face, clipped(clipped(column, 1, v, v > rows[0] ? 1 : 0), 1, v + 1, v < rows[1] ? -1 : 0),
-            {u, v});
+            {1.0 * u, 1.0 * v});
     }
     // Nothing but slivers: the face stays where it is, within the first of its tiles up to their width.
-    if (first_) add(face, whole, {columns[0], rows[0]}, 0);
+    if (first_) add(face, whole, {1.0 * columns[0], 1.0 * rows[0]}, 0);
     ++result_.cut_faces;
   }
 
@@ -156,7 +157,7 @@ UvTiles uv_tiles(const Mesh& mesh) try {
     if (u[0] < u[1] || v[0] < v[1])
       result.crossing.push_back(f);
     else
-      tiles[{static_cast<std::int32_t>(v[0]), static_cast<std::int32_t>(u[0])}].push_back(f);
+      tiles[{v[0], u[0]}].push_back(f);
   }
   for (auto& [place, faces] : tiles) result.tiles.push_back({place[1], place[0], std::move(faces)});
   return result;
@@ -181,7 +182,7 @@ WrappedUvs wrap_uvs(const Mesh& mesh, const UvTiles& tiles) try {
   double pieces = 0;
   for (const std::uint32_t f : tiles.crossing) {
     const auto u = tile_range(mesh.corner_uvs.at(f), 0), v = tile_range(mesh.corner_uvs.at(f), 1);
-    pieces += (u[1] - u[0] + 1) * (v[1] - v[0] + 1);
+    pieces += (u[1] - u[0] + 1.0) * (v[1] - v[0] + 1.0);
   }
   if (pieces > kMostPieces)
     throw Error(

@@ -22,6 +22,7 @@ set(order
   engine/gl/polygons
   engine/gl
   engine/table
+  map/statistics
   map
   registration
   hausdorff
@@ -42,7 +43,8 @@ set(order
   io/write/pictures
   io/write/model
   io/write
-  io/write/report)
+  io/write/report
+  io/write/vertices)
 
 # Another engine is before the table of engines.
 file(GLOB engines LIST_DIRECTORIES true RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/engine/*)

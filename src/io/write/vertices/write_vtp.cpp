@@ -10,7 +10,7 @@
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
-#include "io/write/vertex_values.h"
+#include "io/write/vertices/vertex_values.h"
 
 namespace sdm {
 

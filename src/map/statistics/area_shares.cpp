@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "map/tolerance_limits.h"
-#include "map/weighted_texels.h"
+#include "map/statistics/tolerance_limits.h"
+#include "map/statistics/weighted_texels.h"
 
 namespace sdm {
 namespace {

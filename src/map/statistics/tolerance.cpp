@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/geometry/vec.h"
-#include "map/tolerance_limits.h"
+#include "map/statistics/tolerance_limits.h"
 
 namespace sdm {
 

@@ -1,4 +1,4 @@
-#include "map/weighted_texels.h"
+#include "map/statistics/weighted_texels.h"
 
 #include <sdm/error.h>
 

@@ -12,7 +12,7 @@
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
 #include "io/write/npy.h"
-#include "io/write/vertex_values.h"
+#include "io/write/vertices/vertex_values.h"
 
 namespace sdm {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "map/weighted_statistics.h"
-#include "map/weighted_texels.h"
+#include "map/statistics/weighted_statistics.h"
+#include "map/statistics/weighted_texels.h"
 
 namespace sdm {
 

@@ -9,9 +9,9 @@
 #include "core/disjoint_sets.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
-#include "map/tolerance_limits.h"
-#include "map/weighted_statistics.h"
-#include "map/weighted_texels.h"
+#include "map/statistics/tolerance_limits.h"
+#include "map/statistics/weighted_statistics.h"
+#include "map/statistics/weighted_texels.h"
 
 namespace sdm {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "map/weighted_percentiles.h"
+#include "map/statistics/weighted_percentiles.h"
 
 namespace sdm::map {
 
