@@ -31,7 +31,8 @@ void place_corners(const Mesh& mesh, const FaceGeometry& faces, std::uint32_t re
     for (int k = 0; k < 3; ++k) {
       const auto [u, v] = mesh.corner_uvs[f][k];
       if (!(u >= -kOutside && u <= 1 + kOutside && v >= -kOutside && v <= 1 + kOutside))
-        fail("those of face " + std::to_string(f) + " lie outside [0, 1], where they would have to be wrapped");
+        fail("those of face " + std::to_string(f) +
+             " lie outside [0, 1], where they would have to be wrapped");
       layout.corners[f][k] = {std::clamp(u, 0.0, 1.0) * n, (1 - std::clamp(v, 0.0, 1.0)) * n};
     }
     const auto& [a, b, c] = layout.corners[f];
