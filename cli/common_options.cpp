@@ -51,7 +51,17 @@ void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::stri
       ->capture_default_str();
 }
 
-void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range) {
+void add_sign_option(CLI::App& app, sdm::SignMethod& sign) {
+  add_choice<sdm::SignMethod>(app, "--sign", sign,
+                              "How the inside of O2 (negative) is determined; auto: exact if O2 is "
+                              "closed and orientable, otherwise none",
+                              {{"auto", sdm::SignMethod::automatic},
+                               {"none", sdm::SignMethod::none},
+                               {"exact", sdm::SignMethod::exact},
+                               {"winding", sdm::SignMethod::winding}});
+}
+
+void add_color_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range) {
   add_choice<sdm::Colormap>(app, "--colormap", picture.colormap,
                             "Colormap; auto: diverging if distances have both signs, otherwise viridis",
                             {{"auto", sdm::Colormap::automatic},
@@ -64,6 +74,10 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
       ->expected(2)
       ->check(number("a number", [](double) { return true; }))
       ->type_name("LO HI");
+}
+
+void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range) {
+  add_color_options(app, picture, range);
   app.add_option(
          "--picture-size", picture.largest,
          "The most pixels a side of the pictures and of the model's texture; of a larger map, they show "

@@ -21,6 +21,11 @@ CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
                                    const std::string& maps = "the map");
 /// `mesh` describes the parametrised mesh in the help text.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
+/// --sign.
+void add_sign_option(CLI::App& app, sdm::SignMethod& sign);
+/// --colormap and --range.
+void add_color_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
+/// These, --picture-size and --units.
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance);
 /// Adds --units, --margin and --precision, for commands that print proximity.

@@ -7,6 +7,7 @@
 #include "info.h"
 #include "map.h"
 #include "output_folder.h"
+#include "points.h"
 #include "progress_line.h"
 #include "proximity.h"
 #include "scene.h"
@@ -67,6 +68,7 @@ int run(int argc, char** argv) {
       "  sdm map --help");
   try {
     add_map_command(app);
+    add_points_command(app);
     add_proximity_command(app);
     add_hausdorff_command(app);
     add_bodies_command(app);

@@ -59,13 +59,7 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_option("--max-distance", c.map.max_distance, "Texels farther than this have no value")
       ->check(positive)
       ->type_name("D");
-  add_choice<sdm::SignMethod>(app, "--sign", c.map.sign,
-                              "How the inside of O2 (negative) is determined; auto: exact if O2 is "
-                              "closed and orientable, otherwise none",
-                              {{"auto", sdm::SignMethod::automatic},
-                               {"none", sdm::SignMethod::none},
-                               {"exact", sdm::SignMethod::exact},
-                               {"winding", sdm::SignMethod::winding}});
+  add_sign_option(app, c.map.sign);
   add_engine_option(app, c.engine);
   app.add_option("--gl-device", c.gl.device,
                  "gl: the device, by its number in `sdm devices` or part of its name")

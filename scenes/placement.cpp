@@ -167,6 +167,30 @@ void place(std::span<Vec3> points, const std::vector<PlacementStep>& steps) {
   for (const PlacementStep& step : steps) apply_step(points, step);
 }
 
+Transform transform_of(const std::vector<PlacementStep>& steps) {
+  Transform result;
+  for (PlacementStep step : steps) {
+    read_file(step);
+    switch (step.kind) {
+      case PlacementStep::Kind::scale:
+        result = Transform::scaling(step.value[0]) * result;
+        break;
+      case PlacementStep::Kind::rotate:
+        result = Transform::rotation(step.value) * result;
+        break;
+      case PlacementStep::Kind::translate:
+        result = Transform::translation(step.value) * result;
+        break;
+      case PlacementStep::Kind::matrix:
+        result = step.matrix * result;
+        break;
+      default:
+        throw Error("transform step 'fit' needs a mesh");
+    }
+  }
+  return result;
+}
+
 std::vector<PlacementStep> without_fit(Mesh mesh, const std::vector<PlacementStep>& steps) {
   std::vector<PlacementStep> result;
   for (PlacementStep step : steps) {

@@ -38,6 +38,9 @@ void place(Mesh& mesh, const std::vector<PlacementStep>& steps);
 /// The same for points. Also throws sdm::Error for `fit`, which needs a mesh.
 void place(std::span<Vec3> points, const std::vector<PlacementStep>& steps);
 
+/// Returns the steps as one map, with its rounding. Throws sdm::Error for `fit`, and as read_matrix does.
+[[nodiscard]] Transform transform_of(const std::vector<PlacementStep>& steps);
+
 /// Returns the steps with each `fit` replaced by its translation and scale for this mesh, and each file by
 /// its matrix, so that all frames of a sequence are placed like the first. Throws as place does.
 [[nodiscard]] std::vector<PlacementStep> without_fit(Mesh mesh, const std::vector<PlacementStep>& steps);

@@ -18,6 +18,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   [[nodiscard]] std::ostream& stream() { return stream_; }
+  /// The temporary file, for what is written before to be read or changed.
+  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
   /// Throws sdm::Error if a write has failed, for example because the disk is full.
   void check() const;
   /// Throws as check() does.

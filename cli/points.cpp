@@ -1,0 +1,241 @@
+#include "points.h"
+
+#include <sdm/points.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "alignment.h"
+#include "common_options.h"
+#include "format.h"
+#include "option_checks.h"
+#include "output_folder.h"
+#include "progress_line.h"
+#include "report.h"
+#include "scenes/placement.h"
+#include "stopwatch.h"
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PointsCommand {
+  std::string cloud, o2, transform_o1, transform_o2;
+  std::filesystem::path out;
+  AlignCommand align;
+  sdm::MapOptions map;
+  sdm::PictureOptions picture;
+  std::vector<double> range;
+  unsigned threads = 0;
+  bool json = false, quiet = false;
+};
+
+struct PointsOutcome {
+  sdm::PointDistances found;
+  std::optional<AlignOutcome> aligned;
+  double accuracy = 0;
+  double import_ms = 0, align_ms = 0, points_ms = 0;
+
+  [[nodiscard]] bool within(const PointsCommand& command) const {
+    return !command.picture.tolerance || found.beyond_tolerance == 0;
+  }
+};
+
+const char* sign_name(sdm::SignMethod method) {
+  return method == sdm::SignMethod::exact ? "exact" : method == sdm::SignMethod::winding ? "winding" : "none";
+}
+
+Json extreme_json(const sdm::PointExtreme& extreme) {
+  if (std::isnan(extreme.distance)) return nullptr;
+  return {
+      {"distance", extreme.distance}, {"point", extreme.point}, {"at", "point"}, {"index", extreme.index}};
+}
+
+Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcome& outcome) {
+  const sdm::PointDistances& found = outcome.found;
+  Json report;
+  report["version"] = sdm::kVersion;
+  report["o1"] = {{"file", command.cloud},
+                  {"transform", command.transform_o1},
+                  {"points", found.points},
+                  {"invalid_points", found.invalid},
+                  {"normals", found.has_normals}};
+  report["o2"] = to_json(o2);
+  report["measured_on"] = "o1";
+  report["units"] = command.picture.units;
+  if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned);
+  report["engine"] = "cpu";
+  report["max_distance"] = command.map.max_distance;  // null: no limit
+  report["sign"] = {{"method", sign_name(found.sign.method)}, {"reason", found.sign.reason}};
+  report["distance"] = to_json(found.distance);
+  report["distance"]["kind"] = "bounded";
+  report["distance"]["weights"] = "points";
+  report["extremes"] = {{"min", extreme_json(found.min)}, {"max", extreme_json(found.max)}};
+  report["points_with_value"] = found.distance.texels;
+  report["negative_points"] = found.distance.negative_texels;
+  report["beyond_max_distance"] = found.beyond_max_distance;
+  report["accuracy"] = outcome.accuracy;
+  report["accuracy_kind"] = "bounded";
+  if (command.picture.tolerance)
+    report["tolerance"] = {{"value", *command.picture.tolerance},
+                           {"exceeded_points", found.beyond_tolerance},
+                           {"exceeded_point_fraction",
+                            static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points)},
+                           {"within", outcome.within(command)}};
+  report["notes"] = outcome.aligned ? notes(*outcome.aligned) : std::vector<std::string>();
+  report["time_ms"] = {
+      {"import", outcome.import_ms}, {"align", outcome.align_ms}, {"points", outcome.points_ms}};
+  return report;
+}
+
+std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) {
+  const sdm::PointDistances& found = outcome.found;
+  const sdm::DistanceStatistics& d = found.distance;
+  const std::string unit = unit_suffix(command.picture.units);
+  std::string text = fmt::format("{} -> {}\n", command.cloud, command.o2);
+  if (outcome.aligned) text += summary(*outcome.aligned, command.picture.units);
+  text += fmt::format("  points    {}\n", found.points);
+  if (found.invalid > 0) text += fmt::format("            {} have no coordinates\n", found.invalid);
+  if (d.texels == 0) {
+    text += "  distance  no point has a value\n";
+  } else {
+    text += fmt::format("  distance  min {}   mean {}   max {}{}\n", number(d.min), number(d.mean),
+                        number(d.max), unit);
+    if (found.sign.method != sdm::SignMethod::none)
+      text +=
+          fmt::format("            {} % of the points are inside (negative)\n",
+                      number(100.0 * static_cast<double>(d.negative_texels) / static_cast<double>(d.texels)));
+  }
+  if (found.sign.method == sdm::SignMethod::none)
+    text += fmt::format("            unsigned: {}\n", found.sign.reason);
+  if (found.beyond_max_distance > 0)
+    text += fmt::format("            {} points are farther than --max-distance\n", found.beyond_max_distance);
+  if (command.picture.tolerance) {
+    if (outcome.within(command)) {
+      text += "  tolerance met at all points\n";
+    } else {
+      const bool below = std::abs(found.min.distance) > std::abs(found.max.distance);
+      const sdm::PointExtreme& most = below ? found.min : found.max;
+      text += fmt::format(
+          "  tolerance exceeded at {} % of the points; {}{} at point {} ({} {} {})\n",
+          number(100.0 * static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points)),
+          number(most.distance), unit, most.index, number(most.point[0]), number(most.point[1]),
+          number(most.point[2]));
+    }
+  }
+  if (outcome.aligned)
+    for (const std::string& note : notes(*outcome.aligned)) text += fmt::format("  note      {}\n", note);
+  return text;
+}
+
+// The alignment of a sample of the points, after their placement.
+AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& placement,
+                          const sdm::Sites& sites, const sdm::Progress& progress) {
+  constexpr std::size_t kSample = 1 << 18;
+  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample);
+  if (sample.points.empty()) throw sdm::Error(command.cloud + ": there are no points with coordinates");
+  sdm::transform(sample.points, placement);
+  sdm::Transform turn = placement;
+  for (auto& row : turn.rows) row[3] = 0;
+  turn.rows[3] = {0, 0, 0, 1};
+  for (sdm::Vec3& n : sample.normals) n = turn(n);
+  return align_points(sample.points, sample.normals, sites, command.align, progress);
+}
+
+/// Returns the exit code.
+int run(PointsCommand command) {
+  Stopwatch total, watch;
+  limit_threads(command.threads);
+  OutputFolder out(command.out, {"points.ply", "alignment.json", "report.json"});
+  ProgressLine progress(command.quiet);
+  command.map.progress = progress.callback();
+  if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
+
+  progress.step("import");
+  sdm::PointDistancesOptions options{.map = command.map, .picture = command.picture};
+  options.placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1));
+  Input o2 = load_input("o2", command.o2, command.transform_o2);
+  PointsOutcome outcome;
+  Json report;
+  out.fill([&] {
+    const sdm::Sites sites(o2.mesh);
+    inspect(o2);
+    outcome.import_ms = watch.lap();
+    if (command.align.on) {
+      progress.step("align");
+      outcome.aligned = align_sample(command, options.placement, sites, progress.callback());
+      options.placement = outcome.aligned->alignment.transform * options.placement;
+      write_text(out.staging() / "alignment.json", to_text(to_json(*outcome.aligned)));
+    }
+    outcome.align_ms = watch.lap();
+    // The accuracy is relative to the size of both; O2 has it at least.
+    options.picture.accuracy = sdm::engine_accuracy(sdm::engines().front(), o2.mesh, o2.mesh);
+    outcome.found = sdm::measure_points(command.cloud, sites, out.staging() / "points.ply", options);
+    const sdm::Box& box = outcome.found.bounds;
+    outcome.accuracy =
+        sdm::engine_accuracy(sdm::engines().front(), o2.mesh, {{box.lo, box.hi}, {{0, 1, 1}}, {}});
+    outcome.points_ms = watch.lap();
+    report = report_of(command, o2, outcome);
+    write_text(out.staging() / "report.json", to_text(report));
+  });
+
+  if (command.json)
+    std::cout << to_text(report);
+  else if (!command.quiet)
+    std::cout << text_of(command, outcome)
+              << fmt::format("  time      {} s\n  results   {}/: {}points.ply report.json\n",
+                             number(std::round(total.lap()) / 1000, 6), command.out.string(),
+                             outcome.aligned ? "alignment.json " : "");
+  return outcome.within(command) ? 0 : 3;
+}
+
+}  // namespace
+
+void add_points_command(CLI::App& app) {
+  CLI::App* points =
+      app.add_subcommand("points", "Compute the distance from every point of a cloud to a mesh");
+  points->footer(
+      "Writes points.ply (the points in their order, with distance, closest face and colours) and "
+      "report.json.\n"
+      "Clouds of any size are read in parts.\n"
+      "Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.\n\n"
+      "Example:\n"
+      "  sdm points scan.ply part.stl -o out --align --tolerance 0.1 --units mm");
+  const auto command = std::make_shared<PointsCommand>();
+  PointsCommand& c = *command;
+  points->add_option("CLOUD", c.cloud, fmt::format("The point cloud ({})", sdm::point_format_names()))
+      ->required();
+  points
+      ->add_option("O2", c.o2,
+                   fmt::format("The mesh that distances are measured to ({})", sdm::mesh_format_names()))
+      ->required();
+  add_output_option(*points, c.out);
+  add_transform_option(*points, "--transform-o1", "The cloud (without fit)", c.transform_o1);
+  add_transform_option(*points, "--transform-o2", "O2", c.transform_o2);
+  add_align_options(*points, c.align);
+  points->add_option("--max-distance", c.map.max_distance, "Points farther than this have no value")
+      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->type_name("D");
+  add_sign_option(*points, c.map.sign);
+  points
+      ->add_option(
+          "--tolerance", c.picture.tolerance,
+          "Colour the points by bands, and exit with code 3 if any distance exceeds D, inside or outside")
+      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
+      ->type_name("D");
+  add_color_options(*points, c.picture, c.range);
+  points->add_option("--units", c.picture.units, "Units of the cloud and the mesh, for printed values")
+      ->type_name("NAME");
+  add_run_options(*points, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
+  points->callback([command] {
+    check_range(command->range);
+    if (command->picture.tolerance && *command->picture.tolerance > command->map.max_distance)
+      throw CLI::ValidationError(
+          "--tolerance", "must not be greater than --max-distance, beyond which points have no value");
+    if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
+  });
+}

@@ -1,0 +1,254 @@
+#include <sdm/closest_points.h>
+#include <sdm/error.h>
+#include <sdm/points.h>
+#include <sdm/sign.h>
+#include <sdm/threads.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <new>
+#include <string>
+
+#include "core/geometry/vec.h"
+#include "core/memory.h"
+#include "io/read/byte_scanner.h"
+#include "io/write/atomic_file.h"
+#include "io/write/little_endian.h"
+#include "io/write/pictures/color_scale.h"
+#include "map/weighted_percentiles.h"
+
+namespace sdm {
+
+using namespace io;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// The binary rows of the file written.
+struct Row {
+  std::size_t normal_bytes = 0;
+
+  [[nodiscard]] std::size_t distance_at() const { return 3 * sizeof(double) + normal_bytes; }
+  [[nodiscard]] std::size_t colour_at() const { return distance_at() + sizeof(float) + sizeof(std::int32_t); }
+  [[nodiscard]] std::size_t size() const { return colour_at() + 3; }
+};
+
+/// Points of a cloud, and what is found for them.
+struct Chunk {
+  std::vector<Vec3> points, normals;
+  std::vector<float> distances;
+  std::vector<std::uint32_t> faces;
+};
+
+/// Normals are moved by the cofactors of the linear part, which keep them perpendicular to surfaces.
+Vec3 moved_normal(const Transform& map, const Vec3& n) {
+  const auto row = [&](int k) { return Vec3{map.rows[k][0], map.rows[k][1], map.rows[k][2]}; };
+  const Vec3 result{dot(cross(row(1), row(2)), n), dot(cross(row(2), row(0)), n),
+                    dot(cross(row(0), row(1)), n)};
+  return normalized(result);
+}
+
+class Measurement {
+ public:
+  Measurement(const std::filesystem::path& cloud, const Sites& sites, const PointDistancesOptions& options)
+      : reader_(cloud), cloud_(cloud.string()), sites_(sites), options_(options) {
+    if (options.chunk == 0) throw Error("the number of points in memory must be greater than 0");
+    result_.has_normals = reader_.has_normals();
+    result_.sign = choose_sign(sites, options.map.sign);
+    row_.normal_bytes = result_.has_normals ? 3 * sizeof(float) : 0;
+    result_.min.distance = result_.max.distance = kNan;
+  }
+
+  PointDistances write(const std::filesystem::path& ply) {
+    if (!reader_.count()) count_points();
+    AtomicFile file(ply);
+    write_header(file.stream());
+    const auto rows_begin = static_cast<std::uint64_t>(file.stream().tellp());
+    measure_all(file);
+    if (result_.points == 0) throw Error(cloud_ + ": there are no points");
+    file.stream().flush();
+    file.check();
+    find_percentiles(file.temporary(), rows_begin);
+    colour(file.temporary(), rows_begin);
+    file.commit();
+    return result_;
+  }
+
+ private:
+  // Text without a header has to be read for its number of points, which the header of the result needs.
+  void count_points() {
+    PointReader again(cloud_);
+    Chunk chunk;
+    while (again.read(options_.chunk, chunk.points, chunk.normals)) counted_ += chunk.points.size();
+  }
+
+  void write_header(std::ostream& out) const {
+    out << "ply\nformat binary_little_endian 1.0\nelement vertex " << reader_.count().value_or(counted_)
+        << "\nproperty double x\nproperty double y\nproperty double z\n";
+    if (result_.has_normals) out << "property float nx\nproperty float ny\nproperty float nz\n";
+    out << "property float distance\nproperty int face\n"
+           "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  }
+
+  void measure_all(AtomicFile& file) {
+    Chunk current, next;
+    bool more = reader_.read(options_.chunk, current.points, current.normals);
+    const std::uint64_t all = reader_.count().value_or(counted_);
+    while (more) {
+      run_concurrently({[&] { measure(current); },
+                        [&] { more = reader_.read(options_.chunk, next.points, next.normals); }});
+      append(file.stream(), current);
+      file.check();
+      std::swap(current, next);
+      if (options_.map.progress &&
+          !options_.map.progress("points", static_cast<double>(result_.points) /
+                                               static_cast<double>(std::max<std::uint64_t>(all, 1))))
+        throw Cancelled();
+    }
+  }
+
+  void measure(Chunk& chunk) const {
+    for (Vec3& p : chunk.points) p = options_.placement(p);
+    for (Vec3& n : chunk.normals) n = moved_normal(options_.placement, n);
+    // Points without a measurement are replaced by a point of O2, which costs nothing.
+    std::vector<Vec3> queries = chunk.points;
+    const Vec3 anywhere = sites_.mesh().positions[sites_.mesh().triangles[0][0]];
+    for (Vec3& q : queries)
+      if (!finite(q)) q = anywhere;
+    MapOptions map = options_.map;
+    map.progress = {};
+    const std::vector<ClosestPoint> closest = closest_points(sites_, queries, map);
+    const std::vector<std::uint8_t> inside = inside_flags(sites_, queries, closest, result_.sign.method);
+    chunk.distances.assign(queries.size(), static_cast<float>(kNan));
+    chunk.faces.assign(queries.size(), kNone);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      if (!finite(chunk.points[i]) || closest[i].type == SiteType::none) continue;
+      chunk.distances[i] = static_cast<float>(inside[i] ? -closest[i].distance : closest[i].distance);
+      chunk.faces[i] = closest[i].face;
+    }
+  }
+
+  // Adds the chunk to the sums, and its rows, without colours, to the file.
+  void append(std::ostream& out, const Chunk& chunk) {
+    std::string bytes;
+    bytes.reserve(chunk.points.size() * row_.size());
+    for (std::size_t i = 0; i < chunk.points.size(); ++i) {
+      add(chunk.points[i], chunk.distances[i]);
+      for (const double x : chunk.points[i]) append_little_endian(bytes, x);
+      if (result_.has_normals)
+        for (const double x : chunk.normals[i]) append_little_endian(bytes, static_cast<float>(x));
+      append_little_endian(bytes, chunk.distances[i]);
+      append_little_endian(bytes, static_cast<std::int32_t>(chunk.faces[i]));
+      bytes.append(3, '\0');
+    }
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+
+  void add(const Vec3& point, float d) {
+    const std::uint64_t index = result_.points++;
+    const bool valid = finite(point), has_value = !std::isnan(d);
+    if (valid) extend(result_.bounds, point);
+    result_.invalid += !valid;
+    result_.beyond_max_distance += valid && !has_value;
+    const PictureOptions& picture = options_.picture;
+    result_.beyond_tolerance +=
+        picture.tolerance && valid && !(std::abs(d) <= *picture.tolerance + picture.accuracy);
+    if (!has_value) return;
+    DistanceStatistics& s = result_.distance;
+    ++s.texels, s.negative_texels += d < 0;
+    sum_ += d, square_ += double{d} * d, magnitude_ += std::abs(d);
+    if (!(result_.min.distance <= d)) result_.min = {d, point, index};
+    if (!(result_.max.distance >= d)) result_.max = {d, point, index};
+  }
+
+  // Calls visit(row) for the rows from `begin` to `end` of the file.
+  template <class Stream, class Visit>
+  void for_each_row(Stream& file, std::uint64_t rows_begin, std::uint64_t begin, std::uint64_t end,
+                    const Visit& visit) const {
+    constexpr std::uint64_t kRows = 1 << 14;
+    std::string bytes;
+    for (std::uint64_t first = begin; first < end; first += kRows) {
+      const auto place = static_cast<std::streamoff>(rows_begin + first * row_.size());
+      bytes.resize(static_cast<std::size_t>(std::min(kRows, end - first)) * row_.size());
+      file.seekg(place);
+      if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+        throw Error(cloud_ + ": the distances cannot be read back");
+      for (std::size_t at = 0; at < bytes.size(); at += row_.size()) visit(bytes.data() + at);
+      if constexpr (std::is_same_v<Stream, std::fstream>) {
+        file.seekp(place);
+        file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+      }
+    }
+  }
+
+  void find_percentiles(const std::filesystem::path& written, std::uint64_t rows_begin) {
+    DistanceStatistics& s = result_.distance;
+    if (s.texels == 0) {
+      s.min = s.max = s.mean = s.rms = s.stddev = s.p50 = s.p95 = s.p99 = kNan;
+      s.mean_abs = s.p50_abs = s.p95_abs = s.p99_abs = kNan;
+      return;
+    }
+    const auto count = static_cast<double>(s.texels);
+    s.min = result_.min.distance, s.max = result_.max.distance;
+    s.mean = sum_ / count, s.rms = std::sqrt(square_ / count), s.mean_abs = magnitude_ / count;
+    s.stddev = std::sqrt(std::max(0.0, square_ / count - s.mean * s.mean));
+    constexpr std::size_t kParts = 16;
+    constexpr std::array kShares{0.50, 0.95, 0.99};
+    const auto find = [&](bool magnitudes) {
+      const auto for_each = [&](std::size_t part, const auto& visit) {
+        std::ifstream file(written, std::ios::binary);
+        for_each_row(file, rows_begin, part * result_.points / kParts, (part + 1) * result_.points / kParts,
+                     [&](const char* row) {
+                       const auto d = load<float>(row + row_.distance_at());
+                       if (!std::isnan(d)) visit(magnitudes ? std::abs(d) : d, 1.0f);
+                     });
+      };
+      return map::WeightedPercentiles::find(kParts, for_each, kShares);
+    };
+    const std::vector<float> values = find(false), magnitudes = s.negative_texels == 0 ? values : find(true);
+    s.p50 = values[0], s.p95 = values[1], s.p99 = values[2];
+    s.p50_abs = magnitudes[0], s.p95_abs = magnitudes[1], s.p99_abs = magnitudes[2];
+  }
+
+  void colour(const std::filesystem::path& written, std::uint64_t rows_begin) const {
+    DistanceMap extremes;
+    extremes.sign = result_.sign;
+    if (result_.distance.texels > 0)
+      extremes.distance = {static_cast<float>(result_.min.distance),
+                           static_cast<float>(result_.max.distance)};
+    const ColorScale scale = color_scale(extremes, options_.picture);
+    std::fstream file(written, std::ios::binary | std::ios::in | std::ios::out);
+    for_each_row(file, rows_begin, 0, result_.points, [&](char* row) {
+      const auto d = load<float>(row + row_.distance_at());
+      const Rgb rgb = std::isnan(d) ? kNoValue : scale(d);
+      row[row_.colour_at()] = static_cast<char>(rgb.r);
+      row[row_.colour_at() + 1] = static_cast<char>(rgb.g);
+      row[row_.colour_at() + 2] = static_cast<char>(rgb.b);
+    });
+    file.close();
+    if (!file) throw Error(cloud_ + ": the colours cannot be written; the disk may be full");
+  }
+
+  PointReader reader_;
+  std::string cloud_;
+  const Sites& sites_;
+  const PointDistancesOptions& options_;
+  Row row_;
+  PointDistances result_;
+  std::uint64_t counted_ = 0;
+  double sum_ = 0, square_ = 0, magnitude_ = 0;
+};
+
+}  // namespace
+
+PointDistances measure_points(const std::filesystem::path& cloud, const Sites& sites,
+                              const std::filesystem::path& ply, const PointDistancesOptions& options) try {
+  return Measurement(cloud, sites, options).write(ply);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the points of " + cloud.string());
+}
+
+}  // namespace sdm

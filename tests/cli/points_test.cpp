@@ -1,0 +1,322 @@
+// `sdm points`, and the library behind it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <sdm/points.h>
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <random>
+
+#include "cli/samples.h"
+#include "core/geometry/vec.h"
+#include "sites/closest_on_face.h"
+#include "support/error_of.h"
+#include "support/meshes.h"
+#include "support/points.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+template <class T>
+void append(std::string& bytes, T value, bool swapped = false) {
+  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if (swapped) std::ranges::reverse(raw);
+  bytes.append(raw.data(), raw.size());
+}
+
+/// A row of points.ply.
+struct Row {
+  Vec3 point{}, normal{};
+  float distance = 0;
+  std::int32_t face = -1;
+  std::array<std::uint8_t, 3> rgb{};
+};
+
+std::vector<Row> read_rows(const std::filesystem::path& file, bool normals) {
+  const std::string bytes = contents(file);
+  const std::size_t begin = bytes.find("end_header\n") + 11;
+  const std::size_t size = 24 + (normals ? 12 : 0) + 8 + 3;
+  EXPECT_EQ((bytes.size() - begin) % size, 0u);
+  std::vector<Row> rows;
+  for (std::size_t at = begin; at + size <= bytes.size(); at += size) {
+    Row& row = rows.emplace_back();
+    const char* from = bytes.data() + at;
+    std::memcpy(row.point.data(), from, 24), from += 24;
+    for (int k = 0; normals && k < 3; ++k, from += 4) {
+      float x;
+      std::memcpy(&x, from, 4), row.normal[k] = x;
+    }
+    std::memcpy(&row.distance, from, 4), std::memcpy(&row.face, from + 4, 4),
+        std::memcpy(row.rgb.data(), from + 8, 3);
+  }
+  return rows;
+}
+
+struct PointsCommand : ::testing::Test {
+  TemporaryFolder folder;
+  Mesh mesh = joined(cube(1), ring(16, 0.5, {2.5, 0.4, 0.2}));
+  std::string o2 = write_obj(folder / "part.obj", mesh);
+  std::string out = folder / "out";
+  std::vector<Vec3> points = made_points();
+
+  static std::vector<Vec3> made_points() {
+    std::mt19937 random(1);
+    std::vector<Vec3> result;
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p = random_point({{-2, -2, -2}, {4, 2, 2}}, random);
+      result.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+    }
+    return result;
+  }
+
+  std::string with(const std::string& name, const std::string& contents) const {
+    std::ofstream(folder / name, std::ios::binary) << contents;
+    return folder / name;
+  }
+  std::string xyz(const std::vector<Vec3>& from) const {
+    std::string text;
+    for (const Vec3& p : from) text += fmt::format("{} {} {}\n", p[0], p[1], p[2]);
+    return with("cloud.xyz", text);
+  }
+  Outcome run(const std::string& cloud, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"points", cloud, o2, "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+  /// The signed distance by a search of all faces.
+  double oracle(const Vec3& p) const {
+    const Sites sites(mesh);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
+      least = std::min(least, sites::closest_on_face(internals(sites), f, p).distance);
+    const bool in_cube = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) < 1;
+    return in_cube ? -least : least;
+  }
+};
+
+TEST_F(PointsCommand, DistancesAreThoseOfAllFacesInTheOrderOfTheInput) {
+  const Outcome found = run(xyz(points), {"--json"});
+  ASSERT_EQ(found.code, 0) << found.err;
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"points.ply", "report.json"}));
+  EXPECT_EQ(found.out, contents(out + "/report.json"));
+  const std::vector<Row> rows = read_rows(out + "/points.ply", false);
+  ASSERT_EQ(rows.size(), points.size());
+  const Sites sites(mesh);
+  double sum = 0, largest = -1e9;
+  std::size_t inside = 0, at = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].point, points[i]);
+    // In the ring the sign is the command's; the cube is simple enough for an oracle.
+    if (i % 10 == 0 && points[i][0] < 1.5) {
+      EXPECT_NEAR(rows[i].distance, oracle(points[i]), 1e-5);
+    }
+    ASSERT_GE(rows[i].face, 0);
+    const ClosestPoint c =
+        sites::closest_on_face(internals(sites), static_cast<std::uint32_t>(rows[i].face), points[i]);
+    EXPECT_NEAR(c.distance, std::abs(rows[i].distance), 1e-5);
+    sum += rows[i].distance, inside += rows[i].distance < 0;
+    if (rows[i].distance > largest) largest = rows[i].distance, at = i;
+  }
+  const Json report = Json::parse(found.out);
+  EXPECT_EQ(report["o1"]["points"], points.size());
+  EXPECT_EQ(report["o1"]["normals"], false);
+  EXPECT_EQ(report["points_with_value"], points.size());
+  EXPECT_EQ(report["negative_points"], inside);
+  EXPECT_GT(inside, 10u);
+  EXPECT_NEAR(report["distance"]["mean"], sum / 3000, 1e-9);
+  EXPECT_EQ(report["distance"]["weights"], "points");
+  EXPECT_EQ(report["extremes"]["max"]["index"], at);
+  EXPECT_EQ(report["extremes"]["max"]["distance"], largest);
+  std::vector<float> sorted;
+  for (const Row& row : rows) sorted.push_back(row.distance);
+  std::ranges::sort(sorted);
+  EXPECT_EQ(report["distance"]["p50"], sorted[1499]);
+  EXPECT_EQ(report["distance"]["p95"], sorted[2849]);
+  for (float& d : sorted) d = std::abs(d);
+  std::ranges::sort(sorted);
+  EXPECT_EQ(report["distance"]["p99_abs"], sorted[2969]);
+}
+
+// Parts of any size, and all formats, give the same result.
+TEST_F(PointsCommand, FormatsAndPartsAgree) {
+  std::string ply =
+      "ply\nformat ascii 1.0\ncomment x\nelement vertex 3000\nproperty float x\nproperty float y\n"
+      "property uchar red\nproperty float z\nend_header\n";
+  std::string little =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3000\nproperty double x\nproperty double y\n"
+      "property double z\nproperty uchar red\nelement face 0\nproperty list uchar int vertex_indices\n"
+      "end_header\n";
+  std::string big =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 3000\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  const std::string pcd =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 2\n"
+      "WIDTH 3000\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3000\nDATA ";
+  std::string ascii = pcd + "ascii\n", binary = pcd + "binary\n";
+  std::string csv = "x,y,z,intensity\n";
+  for (const Vec3& p : points) {
+    ply += fmt::format("{} {} 7 {}\n", p[0], p[1], p[2]);
+    csv += fmt::format("{},{},{},0.5\r\n", p[0], p[1], p[2]);
+    ascii += fmt::format("{} {} {} 1 2\n", p[0], p[1], p[2]);
+    for (const double x : p) {
+      append(little, x), append(big, static_cast<float>(x), true), append(binary, static_cast<float>(x));
+    }
+    little += '\x07', binary += "\x01\x02\x03\x04\x05\x06\x07\x08";
+  }
+  const Sites sites(mesh);
+  const std::filesystem::path expected = folder / "expected.ply", found = folder / "found.ply";
+  const PointDistances first = measure_points(xyz(points), sites, expected);
+  for (const std::string& file : {with("a.ply", ply), with("b.ply", little), with("c.ply", big),
+                                  with("a.pcd", ascii), with("b.pcd", binary), with("a.csv", csv)}) {
+    const PointDistances other = measure_points(file, sites, found, {.chunk = 777});
+    EXPECT_EQ(contents(found), contents(expected)) << file;
+    EXPECT_EQ(other.distance.p95_abs, first.distance.p95_abs);
+    EXPECT_EQ(other.distance.mean, first.distance.mean);
+  }
+}
+
+TEST_F(PointsCommand, NormalsAreKeptAndTurned) {
+  const std::string cloud = with("n.xyz", "0 0 3 0 0 1\n3 0 0 1 0 0\n");
+  ASSERT_EQ(run(cloud, {"--transform-o1", "rotate:0:90:0,scale:2"}).code, 0);
+  const std::vector<Row> rows = read_rows(out + "/points.ply", true);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].point, (Vec3{6, 0, 0}));
+  EXPECT_EQ(rows[0].normal, (Vec3{1, 0, 0}));
+  EXPECT_EQ(rows[1].normal, (Vec3{0, 0, -1}));
+  ASSERT_EQ(run(with("c.xyz", "0 0 3 255 0 1\n3 0 0 1 0 0\n")).code, 0) << "colours";
+  EXPECT_EQ(read_rows(out + "/points.ply", false).size(), 2u);
+}
+
+// Places without a measurement keep their rows.
+TEST_F(PointsCommand, InvalidAndFarPoints) {
+  const std::string cloud = with("gaps.xyz", "0 0 3\nnan nan nan\n0 0 1.5\n0 inf 0\n50 0 0\n");
+  const Outcome found = run(cloud, {"--json", "--max-distance", "10", "--tolerance", "1"});
+  ASSERT_EQ(found.code, 3) << found.err;
+  const Json report = Json::parse(found.out);
+  EXPECT_EQ(report["o1"]["points"], 5);
+  EXPECT_EQ(report["o1"]["invalid_points"], 2);
+  EXPECT_EQ(report["beyond_max_distance"], 1);
+  EXPECT_EQ(report["points_with_value"], 2);
+  EXPECT_EQ(report["tolerance"]["exceeded_points"], 2);
+  EXPECT_EQ(report["extremes"]["max"]["index"], 0);
+  const std::vector<Row> rows = read_rows(out + "/points.ply", false);
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[0].distance, 2);
+  EXPECT_EQ(rows[2].distance, 0.5f);
+  for (const int i : {1, 3, 4}) {
+    EXPECT_TRUE(std::isnan(rows[i].distance));
+    EXPECT_EQ(rows[i].face, -1);
+    EXPECT_EQ(rows[i].rgb, rows[1].rgb);
+  }
+  EXPECT_NE(rows[0].rgb, rows[2].rgb);
+  EXPECT_EQ(run(cloud, {"--max-distance", "100", "--tolerance", "60"}).code, 0);
+  EXPECT_EQ(run(with("none.xyz", "nan 0 0\n"), {}).code, 0);
+}
+
+TEST_F(PointsCommand, AlignsTheCloud) {
+  std::mt19937 random(4);
+  mesh = joined(cube(1), ring(16, 0.5, {0.9, 0.4, 0.2}));
+  o2 = write_obj(folder / "joined.obj", mesh);
+  std::vector<Vec3> scan = random_surface_points(mesh, 5000, random);
+  for (std::size_t i = 0; i < scan.size(); i += 100) scan[i] = random_point(bounds(mesh), random);
+  const std::string cloud = xyz(placed(scan, "rotate:1:-2:1,translate:0.04:0.02:-0.03"));
+  const Outcome found = run(cloud, {"--align", "--json"});
+  ASSERT_EQ(found.code, 0) << found.err;
+  const Json report = Json::parse(found.out);
+  EXPECT_LT(report["distance"]["p95_abs"], 1e-9);
+  EXPECT_EQ(report["alignment"], Json::parse(contents(out + "/alignment.json")));
+  const std::string ply = contents(out + "/points.ply"), matrix = folder / "matrix.json";
+  std::filesystem::copy_file(out + "/alignment.json", matrix);
+  ASSERT_EQ(run(cloud, {"--transform-o1", "matrix:" + matrix}).code, 0);
+  EXPECT_EQ(contents(out + "/points.ply"), ply);
+  EXPECT_FALSE(std::filesystem::exists(out + "/alignment.json"));
+}
+
+TEST_F(PointsCommand, BadFilesAreOneSentence) {
+  const auto refused = [&](const std::string& name, const std::string& contents, const char* fault) {
+    const std::string file = with(name, contents);
+    const Outcome found = run(file);
+    EXPECT_EQ(found.code, 1) << contents;
+    EXPECT_THAT(found.err, AllOf(HasSubstr(file + ": "), HasSubstr(fault)));
+    EXPECT_EQ(std::ranges::count(found.err, '\n'), 1);
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 2\n";
+  const std::string xyz_fields = "property float x\nproperty float y\nproperty float z\nend_header\n";
+  refused("a.xyz", "", "is empty");
+  refused("a.xyz", "Dear Sir or Madam", "unknown format");
+  refused("a.xyz", "1 2 3\n4 5\n", "line 2: 2 numbers where 3 are needed");
+  refused("a.xyz", "1 2 3\n4 5 x\n", "line 2: expected numbers only");
+  refused("a.las", "LASF\x01\x02\x03", "LAS and LAZ are not supported");
+  refused("a.ply", ply + "property float x\nend_header\n", "no fields x, y and z");
+  refused("a.ply", ply + xyz_fields + "1 2 3\n", "ends after 1 of 2 points");
+  refused("a.ply", ply + xyz_fields + "1 2 3\n1 2 3 4\n", "4 numbers where 3");
+  refused("a.ply", ply + "property list uchar int x\nend_header\n", "have a list");
+  refused("a.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty int x\nend_header\n1\n", "no vertices");
+  refused("a.ply", "ply\nformat ascii 1.0\nelement camera 1\nproperty int c\nelement vertex 1\n" + xyz_fields,
+          "element camera precedes");
+  refused("a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n" + xyz_fields + "abc",
+          "more than the file can hold");
+  const std::string pcd =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n";
+  refused("a.pcd", pcd + "DATA binary_compressed\n", "binary_compressed; only ascii and binary");
+  refused("a.pcd", pcd + "DATA binary\nabc", "more than the file can hold");
+  refused("a.pcd", pcd, "no line DATA");
+  refused("a.pcd", "FIELDS x y z\nSIZE 4\nTYPE F\nDATA ascii\n", "different numbers of values");
+  refused("a.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nDATA ascii\n1 2 3\n", "no number of points");
+  refused("a.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE I F F\nPOINTS 1\nDATA ascii\n1 2 3\n",
+          "not one number of type F");
+  refused("a.pcd", "FIELDS x y z\nSIZE 4 4 -4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n",
+          "not a whole number");
+  refused("a.pcd", "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n",
+          "type that does not exist");
+  EXPECT_THAT(run(folder / "missing.xyz").err, HasSubstr("there is no such file"));
+  EXPECT_THAT(run(folder.path()).err, HasSubstr("this is a folder"));
+  EXPECT_THAT(run(xyz(points), {"--transform-o1", "fit"}).err, HasSubstr("'fit' needs a mesh"));
+  EXPECT_EQ(run(xyz(points), {"--tolerance", "2", "--max-distance", "1"}).code, 2);
+}
+
+TEST(PointReader, ReadsInParts) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.xyz") << "# comment\n5\n1 2 3\n\n4 5 6 // last column\n7 8 9";
+  PointReader reader(folder / "a.xyz");
+  EXPECT_FALSE(reader.count());
+  EXPECT_FALSE(reader.has_normals());
+  std::vector<Vec3> points, normals;
+  ASSERT_TRUE(reader.read(2, points, normals));
+  EXPECT_EQ(points, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
+  ASSERT_TRUE(reader.read(2, points, normals));
+  EXPECT_EQ(points, (std::vector<Vec3>{{7, 8, 9}}));
+  EXPECT_FALSE(reader.read(2, points, normals));
+}
+
+TEST(PointReader, SamplesAllPartsOfAFile) {
+  const TemporaryFolder folder;
+  std::ofstream file(folder / "a.xyz");
+  for (int i = 0; i < 10000; ++i) file << i << " 0 0\n";
+  file << "nan 0 0\n";
+  file.close();
+  const PointSample sample = sample_points(folder / "a.xyz", 1000);
+  ASSERT_EQ(sample.points.size(), 1000u);
+  double mean = 0;
+  for (const Vec3& p : sample.points) mean += p[0] / 1000;
+  EXPECT_NEAR(mean, 5000, 400) << "four standard deviations of the mean";
+  EXPECT_EQ(sample_points(folder / "a.xyz", 20000).points.size(), 10000u);
+}
+
+}  // namespace
+}  // namespace sdm::test
