@@ -58,6 +58,10 @@ class Measurement {
     if (options.chunk == 0) throw Error("the number of points in memory must be greater than 0");
     result_.has_normals = reader_.has_normals();
     result_.sign = choose_sign(sites, options.map.sign);
+    if (options.picture.tolerance && options.picture.tolerance->needs_sign() &&
+        result_.sign.method == SignMethod::none)
+      throw Error("the tolerance depends on the sign of the distances, which are unsigned: " +
+                  result_.sign.reason);
     row_.normal_bytes = result_.has_normals ? 3 * sizeof(float) : 0;
     result_.min.distance = result_.max.distance = kNan;
   }
@@ -155,7 +159,8 @@ class Measurement {
     result_.beyond_max_distance += valid && !has_value;
     const PictureOptions& picture = options_.picture;
     result_.beyond_tolerance +=
-        picture.tolerance && valid && !(std::abs(d) <= *picture.tolerance + picture.accuracy);
+        picture.tolerance && valid &&
+        !(d >= picture.tolerance->lo - picture.accuracy && d <= picture.tolerance->hi + picture.accuracy);
     if (!has_value) return;
     DistanceStatistics& s = result_.distance;
     ++s.texels, s.negative_texels += d < 0;
@@ -187,16 +192,18 @@ class Measurement {
   void find_percentiles(const std::filesystem::path& written, std::uint64_t rows_begin) {
     DistanceStatistics& s = result_.distance;
     if (s.texels == 0) {
-      s.min = s.max = s.mean = s.rms = s.stddev = s.p50 = s.p95 = s.p99 = kNan;
-      s.mean_abs = s.p50_abs = s.p95_abs = s.p99_abs = kNan;
+      s.min = s.max = s.mean = s.rms = s.stddev = s.p01 = s.p05 = s.p50 = s.p95 = s.p99 = kNan;
+      s.mean_abs = s.max_abs = s.p50_abs = s.p95_abs = s.p99_abs = kNan;
       return;
     }
     const auto count = static_cast<double>(s.texels);
     s.min = result_.min.distance, s.max = result_.max.distance;
+    s.max_abs = std::max(std::abs(s.min), std::abs(s.max));
+    s.negative_area_fraction = static_cast<double>(s.negative_texels) / count;
     s.mean = sum_ / count, s.rms = std::sqrt(square_ / count), s.mean_abs = magnitude_ / count;
     s.stddev = std::sqrt(std::max(0.0, square_ / count - s.mean * s.mean));
     constexpr std::size_t kParts = 16;
-    constexpr std::array kShares{0.50, 0.95, 0.99};
+    constexpr std::array kShares{0.01, 0.05, 0.50, 0.95, 0.99};
     const auto find = [&](bool magnitudes) {
       const auto for_each = [&](std::size_t part, const auto& visit) {
         std::ifstream file(written, std::ios::binary);
@@ -209,8 +216,8 @@ class Measurement {
       return map::WeightedPercentiles::find(kParts, for_each, kShares);
     };
     const std::vector<float> values = find(false), magnitudes = s.negative_texels == 0 ? values : find(true);
-    s.p50 = values[0], s.p95 = values[1], s.p99 = values[2];
-    s.p50_abs = magnitudes[0], s.p95_abs = magnitudes[1], s.p99_abs = magnitudes[2];
+    s.p01 = values[0], s.p05 = values[1], s.p50 = values[2], s.p95 = values[3], s.p99 = values[4];
+    s.p50_abs = magnitudes[2], s.p95_abs = magnitudes[3], s.p99_abs = magnitudes[4];
   }
 
   void colour(const std::filesystem::path& written, std::uint64_t rows_begin) const {
