@@ -3,6 +3,7 @@
 #include <sdm/points.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "alignment.h"
 #include "common_options.h"
 #include "format.h"
+#include "map_numbers.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
@@ -45,10 +47,6 @@ struct PointsOutcome {
   }
 };
 
-const char* sign_name(sdm::SignMethod method) {
-  return method == sdm::SignMethod::exact ? "exact" : method == sdm::SignMethod::winding ? "winding" : "none";
-}
-
 Json extreme_json(const sdm::PointExtreme& extreme) {
   if (std::isnan(extreme.distance)) return nullptr;
   return {
@@ -81,7 +79,8 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
   report["accuracy"] = outcome.accuracy;
   report["accuracy_kind"] = "bounded";
   if (command.picture.tolerance)
-    report["tolerance"] = {{"value", *command.picture.tolerance},
+    report["tolerance"] = {{"lower", command.picture.tolerance->lo},
+                           {"upper", command.picture.tolerance->hi},
                            {"exceeded_points", found.beyond_tolerance},
                            {"exceeded_point_fraction",
                             static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points)},
@@ -118,7 +117,8 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
     if (outcome.within(command)) {
       text += "  tolerance met at all points\n";
     } else {
-      const bool below = std::abs(found.min.distance) > std::abs(found.max.distance);
+      const bool below = command.picture.tolerance->lo - found.min.distance >
+                         found.max.distance - command.picture.tolerance->hi;
       const sdm::PointExtreme& most = below ? found.min : found.max;
       text += fmt::format(
           "  tolerance exceeded at {} % of the points; {}{} at point {} ({} {} {})\n",
@@ -221,19 +221,15 @@ void add_points_command(CLI::App& app) {
       ->check(number("a positive number", [](double x) { return x > 0; }))
       ->type_name("D");
   add_sign_option(*points, c.map.sign);
-  points
-      ->add_option(
-          "--tolerance", c.picture.tolerance,
-          "Colour the points by bands, and exit with code 3 if any distance exceeds D, inside or outside")
-      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
-      ->type_name("D");
+  add_tolerance_option(*points, c.picture.tolerance);
   add_color_options(*points, c.picture, c.range);
   points->add_option("--units", c.picture.units, "Units of the cloud and the mesh, for printed values")
       ->type_name("NAME");
   add_run_options(*points, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   points->callback([command] {
     check_range(command->range);
-    if (command->picture.tolerance && *command->picture.tolerance > command->map.max_distance)
+    if (const auto& t = command->picture.tolerance;
+        t && std::max(std::abs(t->lo), std::abs(t->hi)) > command->map.max_distance)
       throw CLI::ValidationError(
           "--tolerance", "must not be greater than --max-distance, beyond which points have no value");
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
