@@ -44,7 +44,8 @@ set(order
   io/write/model
   io/write
   io/write/report
-  io/write/vertices)
+  io/write/vertices
+  io/points)
 
 # Another engine is before the table of engines.
 file(GLOB engines LIST_DIRECTORIES true RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/engine/*)

@@ -15,7 +15,7 @@
 #include "io/read/byte_scanner.h"
 #include "io/read/file_bytes.h"
 #include "io/read/frames/frame_source.h"
-#include "io/read/frames/npy_header.h"
+#include "io/read/npy_header.h"
 #include "io/read/read_polygons.h"
 
 namespace sdm::io {

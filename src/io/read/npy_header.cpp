@@ -1,4 +1,4 @@
-#include "io/read/frames/npy_header.h"
+#include "io/read/npy_header.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
