@@ -79,6 +79,8 @@ struct ProximityOptions {
 /// parts of its surface that have the inside on one side only.
 ///
 /// Threads: an object is used by one thread at a time; objects that share shapes may be used concurrently.
+///
+/// Functions of one body take its number, 0 or 1, and throw sdm::Error for any other.
 class SDM_API ProximityQuery {
  public:
   /// Throws sdm::Error as Sites does, and for options that are out of range. Cost: that of the sites of both

@@ -2,6 +2,7 @@
 #include <sdm/proximity_query.h>
 
 #include <new>
+#include <string>
 
 #include "core/memory.h"
 #include "proximity/pair/pair_answers.h"
@@ -30,6 +31,11 @@ const ProximityOptions& checked(const ProximityOptions& options) {
   return options;
 }
 
+void check_body(int body) {
+  if (body != 0 && body != 1)
+    throw Error("there is no body " + std::to_string(body) + " in a query of two; use 0 or 1");
+}
+
 // Calls `work`, whose errors of memory become sdm::Error.
 template <class Work>
 decltype(auto) with_memory(const Work& work) try {
@@ -50,11 +56,13 @@ ProximityQuery::ProximityQuery(ProximityQuery&&) noexcept = default;
 ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;
 
 void ProximityQuery::set_pose(int body, const Transform& pose) {
+  check_body(body);
   impl_->bodies[body].set_pose(pose);
   impl_->begin();
 }
 
 Transform ProximityQuery::pose(int body) const {
+  check_body(body);
   return impl_->bodies[body].pose().transform();
 }
 
@@ -70,6 +78,7 @@ void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
 }
 
 void ProximityQuery::edit(int body, const MeshEdit& edit) {
+  check_body(body);
   impl_->bodies[body].require_own_shape();
   with_memory([&] {
     impl_->bodies[body].edit(edit);
@@ -78,6 +87,7 @@ void ProximityQuery::edit(int body, const MeshEdit& edit) {
 }
 
 void ProximityQuery::replace(int body, Shape shape) {
+  check_body(body);
   impl_->bodies[body].replace(std::move(shape));
   impl_->begin_anew();
 }
@@ -97,9 +107,11 @@ std::span<const Contact> ProximityQuery::contacts() {
 }
 
 const Surface& ProximityQuery::surface(int body) const {
+  check_body(body);
   return impl_->bodies[body].body().surface();
 }
 const Sites& ProximityQuery::sites(int body) const {
+  check_body(body);
   return impl_->bodies[body].body().sites();
 }
 }  // namespace sdm

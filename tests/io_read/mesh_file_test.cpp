@@ -61,8 +61,7 @@ TEST(FaceNames, OfGltfMeshesAndMaterials) {
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
   };
   const Mesh mesh = tetrahedron();
-  const std::string uri =
-      R"(,"uri":"data:;base64,)" + base64(gltf_buffer(mesh)) + "\"";
+  const std::string uri = R"(,"uri":"data:;base64,)" + base64(gltf_buffer(mesh)) + "\"";
   const std::string json = gltf_json(mesh, R"([{"mesh":0,"name":"node"}])", uri);
   EXPECT_THAT(names_of(file_of("a.gltf", json), "object"), ElementsAre("node", "node", "node", "node"));
   const std::string named =

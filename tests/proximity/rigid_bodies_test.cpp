@@ -79,6 +79,18 @@ std::vector<Mesh> various() {
 }
 
 // The atlas of a body that deforms is that of its first shape, as with poses.
+// A third body was read from beyond the array of two.
+TEST(RigidBodies, ThereAreTwo) {
+  ProximityQuery query(test::cube(1), test::cube(1));
+  for (const int body : {-1, 2}) {
+    EXPECT_THROW(query.set_pose(body, {}), Error);
+    EXPECT_THROW((void)query.pose(body), Error);
+    EXPECT_THROW((void)query.sites(body), Error);
+    EXPECT_THROW(query.replace(body, Shape(test::cube(1))), Error);
+    EXPECT_THROW(query.edit(body, {}), Error);
+  }
+}
+
 TEST(RigidBodies, AgreeWithMovedVertices) {
   const std::vector<Mesh> meshes = various();
   std::mt19937 random(3);

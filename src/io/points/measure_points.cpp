@@ -17,7 +17,7 @@
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
 #include "io/write/pictures/color_scale.h"
-#include "map/weighted_percentiles.h"
+#include "map/statistics/weighted_percentiles.h"
 
 namespace sdm {
 

@@ -90,7 +90,8 @@ void begin_names(const GltfDocument& document, const GltfInstance& instance, con
   const std::string node = name_of(document.item("nodes", instance.node), "");
   mesh.objects.begin(mesh.ends.size(), name_of(document.item("meshes", instance.mesh), node));
   std::string material;
-  if (const auto index = primitive.find("material"); index != primitive.end() && index->is_number_unsigned()) {
+  if (const auto index = primitive.find("material");
+      index != primitive.end() && index->is_number_unsigned()) {
     const auto materials = document.root().find("materials");
     const std::string number = fmt::format("material {}", index->get<std::size_t>());
     const bool exists = materials != document.root().end() && index->get<std::size_t>() < materials->size();
