@@ -184,8 +184,8 @@ struct TextureRange {
 
 /// distance_texture.png: the distance of every texel as 16-bit grey, without legend or colours, at the size
 /// of the atlas: lower + value / 65535 · (upper − lower). The range is that of options.range, by default that
-/// of the colours of distance.png without a tolerance; distances beyond it are clamped. Gutters are filled as
-/// in map.exr; texels beyond them, or without a value, are 0. Returns the range.
+/// of all distances, symmetric about 0 if the colormap is diverging; distances beyond it are clamped. Gutters
+/// are filled as in map.exr; texels beyond them, or without a value, are 0. Returns the range.
 SDM_API TextureRange write_distance_texture(const std::filesystem::path& file, const Surface& surface,
                                             const DistanceMap& map, const PictureOptions& options = {});
 /// distance_texture.json: the range of a texture, with its name and units.

@@ -221,12 +221,7 @@ class Measurement {
   }
 
   void colour(const std::filesystem::path& written, std::uint64_t rows_begin) const {
-    DistanceMap extremes;
-    extremes.sign = result_.sign;
-    if (result_.distance.texels > 0)
-      extremes.distance = {static_cast<float>(result_.min.distance),
-                           static_cast<float>(result_.max.distance)};
-    const ColorScale scale = color_scale(extremes, options_.picture);
+    const ColorScale scale = color_scale(fixed_colors(options_.picture, result_.distance));
     std::fstream file(written, std::ios::binary | std::ios::in | std::ios::out);
     for_each_row(file, rows_begin, 0, result_.points, [&](char* row) {
       const auto d = load<float>(row + row_.distance_at());
