@@ -87,7 +87,8 @@ struct Termination : ::testing::TestWithParam<Command>, TwoTori {
     return result;
   }
   static bool has_times(const std::string& name) {
-    return name.ends_with("report.json") || name.starts_with("frames.") || name == "plot.png";
+    return name.ends_with("report.json") || name.ends_with("report.html") || name.starts_with("frames.") ||
+           name == "plot.png";
   }
   /// Each of the files is whole, and all of them are there if the results are said to be complete.
   static void expect_consistent(const Files& files, const Files& whole) {
@@ -96,6 +97,9 @@ struct Termination : ::testing::TestWithParam<Command>, TwoTori {
       EXPECT_FALSE(text.empty()) << name;
       if (!has_times(name)) {
         EXPECT_TRUE(text == whole.at(name)) << name;
+      }
+      if (name.ends_with("report.html")) {
+        EXPECT_TRUE(text.ends_with("</html>\n")) << name;
       }
       if (fs::path(name).filename() == GetParam().concluding) {
         EXPECT_GE(files.size(), whole.size() - others(whole)) << name;
