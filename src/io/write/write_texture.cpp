@@ -10,7 +10,7 @@
 #include "io/write/atomic_file.h"
 #include "io/write/gutter.h"
 #include "io/write/pictures/color_scale.h"
-#include "io/write/pictures/gray_png.h"
+#include "io/write/pictures/png.h"
 
 namespace sdm {
 
@@ -31,7 +31,6 @@ TextureRange write_distance_texture(const std::filesystem::path& file, const Sur
 
   AtomicFile out(file);
   write_gray_png(out.stream(), n, surface.rows(), [&](std::uint32_t y, std::span<std::uint16_t> pixels) {
-    out.check();
     for (std::uint32_t x = 0; x < n; ++x) {
       const std::uint32_t texel = gutter.source(x, y);
       const double d = texel == kNone ? scale.lo : map.distance[texel];

@@ -16,7 +16,15 @@ namespace sdm::io {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using Row = std::function<void(std::uint32_t, std::span<Rgb>)>;
+
+// The bytes of the pixels of row y, as the file stores them.
+using Row = std::function<void(std::uint32_t y, std::span<std::uint8_t> bytes)>;
+
+struct Format {
+  int color_type, bit_depth;
+  std::uint32_t pixel_bytes;
+};
+constexpr Format kColours{PNG_COLOR_TYPE_RGB, 8, 3}, kGrey{PNG_COLOR_TYPE_GRAY, 16, 2};
 
 static_assert(sizeof(Rgb) == 3, "rows of Rgb are the bytes of the image");
 
@@ -38,11 +46,13 @@ void flush(png_structp) {}
 
 // libpng jumps back into these two functions if it fails. They then return false, and must own nothing that
 // needs destruction.
-bool write_header(const PngWriter& writer, std::uint32_t width, std::uint32_t height) {
+bool write_header(const PngWriter& writer, std::uint32_t width, std::uint32_t height, const Format& format) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
-  png_set_IHDR(writer.png, writer.info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_set_IHDR(writer.png, writer.info, width, height, format.bit_depth, format.color_type,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  // Grey values are numbers, which have no colour space.
+  if (format.color_type == PNG_COLOR_TYPE_RGB)
+    png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_write_info(writer.png, writer.info);
   return true;
 }
@@ -62,34 +72,34 @@ struct Strip {
   std::size_t size = 0;  ///< before compression
 };
 
-// Each row as the filter "sub" stores it: its number, 1, and the differences from the pixel before.
-Strip compressed(std::uint32_t begin, std::uint32_t end, std::uint32_t width, bool last, const Row& row) {
-  std::vector<Rgb> pixels(width);
-  Bytes filtered((std::size_t{3} * width + 1) * (end - begin));
+// Each row as the filter "sub" stores it: its number, 1, and the differences from the pixel before, byte by
+// byte.
+Strip compressed(std::uint32_t begin, std::uint32_t end, std::size_t row_bytes, std::size_t pixel_bytes,
+                 bool last, const Row& row) {
+  Bytes bytes(row_bytes), filtered((row_bytes + 1) * (end - begin));
   std::uint8_t* to = filtered.data();
   for (std::uint32_t y = begin; y < end; ++y) {
-    row(y, pixels);
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(pixels.data());
-    const std::size_t count = std::size_t{3} * width;
+    row(y, bytes);
     *to++ = 1;
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, count); ++i) to[i] = bytes[i];
-    for (std::size_t i = 3; i < count; ++i) to[i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - 3]);
-    to += count;
+    for (std::size_t i = 0; i < std::min(pixel_bytes, row_bytes); ++i) to[i] = bytes[i];
+    for (std::size_t i = pixel_bytes; i < row_bytes; ++i)
+      to[i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - pixel_bytes]);
+    to += row_bytes;
   }
   return {deflate_part(filtered, last), adler32_z(1, filtered.data(), filtered.size()), filtered.size()};
 }
 
-}  // namespace
-
-void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height, const Row& row) {
+void write(std::ostream& stream, std::uint32_t width, std::uint32_t height, const Format& format,
+           const Row& row) {
   const PngWriter writer;
   if (writer.info == nullptr) throw Error("libpng cannot start: not enough memory");
   png_set_write_fn(writer.png, &stream, write_bytes, flush);
-  check(write_header(writer, width, height));
+  check(write_header(writer, width, height, format));
 
+  const std::size_t row_bytes = std::size_t{format.pixel_bytes} * width;
   constexpr std::size_t kStripBytes = 1 << 18;
   constexpr std::uint32_t kGroup = 8;  // strips in memory
-  const auto strip_rows = static_cast<std::uint32_t>(std::max<std::size_t>(1, kStripBytes / (3 * width + 1)));
+  const auto strip_rows = static_cast<std::uint32_t>(std::max<std::size_t>(1, kStripBytes / (row_bytes + 1)));
   const std::uint32_t strips = (height + strip_rows - 1) / strip_rows;
   check(write_chunk(writer, "IDAT", {0x78, 0x01}));  // zlib's header: a window of 32 KiB, fast compression
   uLong checksum = 1;
@@ -99,8 +109,8 @@ void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height, 
     parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto strip = first + static_cast<std::uint32_t>(i);
-        group[i] = compressed(strip * strip_rows, std::min(height, (strip + 1) * strip_rows), width,
-                              strip + 1 == strips, row);
+        group[i] = compressed(strip * strip_rows, std::min(height, (strip + 1) * strip_rows), row_bytes,
+                              format.pixel_bytes, strip + 1 == strips, row);
       }
     });
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -112,6 +122,27 @@ void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height, 
   for (int i = 0; i < 4; ++i) end[i] = static_cast<std::uint8_t>(checksum >> (24 - 8 * i));
   check(write_chunk(writer, "IDAT", end));
   check(write_chunk(writer, "IEND", {}));
+}
+
+}  // namespace
+
+void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
+               const std::function<void(std::uint32_t, std::span<Rgb>)>& row) {
+  write(stream, width, height, kColours, [&](std::uint32_t y, std::span<std::uint8_t> bytes) {
+    row(y, {reinterpret_cast<Rgb*>(bytes.data()), width});
+  });
+}
+
+void write_gray_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
+                    const std::function<void(std::uint32_t, std::span<std::uint16_t>)>& row) {
+  write(stream, width, height, kGrey, [&](std::uint32_t y, std::span<std::uint8_t> bytes) {
+    std::vector<std::uint16_t> values(width);
+    row(y, values);
+    for (std::size_t x = 0; x < width; ++x) {  // the more significant byte first
+      bytes[2 * x] = static_cast<std::uint8_t>(values[x] >> 8);
+      bytes[2 * x + 1] = static_cast<std::uint8_t>(values[x]);
+    }
+  });
 }
 
 }  // namespace sdm::io

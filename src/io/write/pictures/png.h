@@ -1,4 +1,4 @@
-// 8-bit RGB images as PNG, in strips of rows that all threads compress.
+// Images as PNG, in strips of rows that all threads compress.
 #pragma once
 
 #include "io/write/pictures/color_scale.h"
@@ -10,9 +10,13 @@
 
 namespace sdm::io {
 
-/// Writes `height` rows; `row(y, pixels)` fills each, called from several threads at once and in any order.
-/// Optimised for speed rather than size. Does not check the stream, whose state records failures.
+/// Writes `height` rows of 8-bit RGB; `row(y, pixels)` fills each, called from several threads at once and in
+/// any order. Optimised for speed rather than size. Does not check the stream, whose state records failures.
 void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
                const std::function<void(std::uint32_t y, std::span<Rgb> pixels)>& row);
+
+/// The same for 16-bit grey values, which are numbers, not brightnesses: the file has no colour space.
+void write_gray_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
+                    const std::function<void(std::uint32_t y, std::span<std::uint16_t> values)>& row);
 
 }  // namespace sdm::io
