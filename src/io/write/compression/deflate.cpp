@@ -1,6 +1,7 @@
 #include "io/write/compression/deflate.h"
 
 #include <isa-l/igzip_lib.h>
+#include <sdm/error.h>
 
 namespace sdm::io {
 namespace {
@@ -36,7 +37,9 @@ std::vector<std::uint8_t> zlib_compressed(std::span<const std::uint8_t> bytes) {
 std::vector<std::uint8_t> deflate_part(std::span<const std::uint8_t> bytes, bool last) {
   // Stored blocks of at most 65535 bytes with headers of 5, if nothing is saved.
   const std::size_t most = bytes.size() + 5 * (bytes.size() / 65535 + 1) + 64;
-  return compressed(bytes, most, IGZIP_DEFLATE, last ? NO_FLUSH : FULL_FLUSH);
+  std::vector<std::uint8_t> part = compressed(bytes, most, IGZIP_DEFLATE, last ? NO_FLUSH : FULL_FLUSH);
+  if (part.empty()) throw Error("ISA-L failed to compress an image");  // rather than a damaged file
+  return part;
 }
 
 }  // namespace sdm::io
