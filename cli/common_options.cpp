@@ -33,7 +33,7 @@ CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, cons
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh) {
   add_choice<sdm::AtlasKind>(
       app, "--atlas", atlas.kind,
-      "How " + mesh + " is parametrised: few charts, one chart per triangle, or its own UVs",
+      "How " + mesh + " is parametrised: few charts, pairs of triangles without distortion, or its own UVs",
       {{"charts", sdm::AtlasKind::charts},
        {"triangles", sdm::AtlasKind::triangles},
        {"uv", sdm::AtlasKind::uv}});

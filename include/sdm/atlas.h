@@ -11,7 +11,7 @@ namespace sdm {
 
 enum class AtlasKind {
   charts,     ///< clusters of faces with similar normals, each projected orthogonally
-  triangles,  ///< one chart per triangle, mapped without distortion
+  triangles,  ///< pairs of adjacent triangles, each unfolded across the common edge: without distortion
   uv,         ///< the mesh's own texture coordinates
 };
 

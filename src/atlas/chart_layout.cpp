@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "atlas/charts/cluster.h"
+#include "atlas/charts/pairs.h"
 #include "atlas/charts/shape.h"
 #include "atlas/charts/split.h"
 #include "atlas/layout.h"
@@ -17,13 +18,6 @@ namespace {
 // Larger values would not improve the charts, and this one keeps their axes well away from the planes of
 // their faces.
 constexpr double kMaxStretch = 100;
-
-std::vector<Chart> single_faces(const FaceGeometry& faces) {
-  std::vector<Chart> charts;
-  for (std::uint32_t f = 0; f < faces.normal.size(); ++f)
-    if (faces.area[f] > 0) charts.push_back({faces.normal[f], {f}});
-  return charts;
-}
 
 void report(const Progress& progress, double fraction) {
   if (progress && !progress("atlas", fraction)) throw Cancelled();
@@ -56,7 +50,7 @@ double scale_of(const Placement& placement) {
 }
 
 std::vector<Chart> make_charts(const Mesh& mesh, const FaceGeometry& faces, const AtlasOptions& options) {
-  if (options.kind == AtlasKind::triangles) return single_faces(faces);
+  if (options.kind == AtlasKind::triangles) return pair_faces(mesh, faces);
   std::vector<Chart> charts = cluster_faces(mesh, faces, 1 / std::min(options.max_stretch, kMaxStretch));
   report(options.progress, kClustered);
   return split_overlaps(mesh, faces, std::move(charts));
@@ -72,16 +66,22 @@ Layout placed_charts(const Mesh& mesh, const FaceGeometry& faces, std::vector<Ch
   parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const auto& [matrix, offset] = placements[c];
-      const ShapeFrame& frame = shapes[c].frame;
       const double scale = scale_of(placements[c]);
-      std::array<Vec3, 2> plane;
-      for (int k = 0; k < 2; ++k)
-        plane[k] = (1 / scale) * (matrix[k][0] * frame.right + matrix[k][1] * frame.down);
+      const auto plane = [&](const ShapeFrame& frame) {
+        std::array<Vec3, 2> axes;
+        for (int k = 0; k < 2; ++k)
+          axes[k] = (1 / scale) * (matrix[k][0] * frame.right + matrix[k][1] * frame.down);
+        return axes;
+      };
+      const std::array<Vec3, 2> projected = plane(shapes[c].frame), unfolded = plane(shapes[c].unfolded);
+      const bool pair = charts[c].unfolded;
       for (std::size_t i = 0; i < charts[c].faces.size(); ++i) {
         const std::uint32_t f = charts[c].faces[i];
         for (int k = 0; k < 3; ++k) layout.corners[f][k] = placements[c].apply(shapes[c].triangles[i][k]);
-        layout.maps[f] = {layout.corners[f][0], lifted(plane, scale, charts[c].axis, faces.normal[f])};
-        if (charts[c].faces.size() > 1)
+        layout.maps[f] = {layout.corners[f][0],
+                          pair && i == 1 ? lifted(unfolded, scale, faces.normal[f], faces.normal[f])
+                                         : lifted(projected, scale, charts[c].axis, faces.normal[f])};
+        if (charts[c].faces.size() > 1 && !pair)
           least_cos[c] = std::min(least_cos[c], dot(faces.normal[f], charts[c].axis));
       }
       layout.charts[c] = std::move(charts[c].faces);

@@ -119,11 +119,62 @@ TEST(Triangles, AreIsometricAndKeepTheInvariants) {
   expect_packed(surface, options);
   test::expect_stretch(surface);
   EXPECT_EQ(surface.max_stretch(), 1);
-  EXPECT_EQ(surface.chart_count(), surface.mesh().triangles.size());
 }
 
-// Faces are far smaller than texels: each still owns one.
-TEST(Triangles, SmallOnesOwnOneTexelEach) {
+// A chart is a face or two; the two share an edge, and both map its ends to the same points.
+TEST(Triangles, ArePairedAcrossAnEdge) {
+  for (const char* file : {"double-torus-example.off", "elephant-with-holes.off"}) {
+    SCOPED_TRACE(file);
+    const Surface surface(test::load(file), {.kind = AtlasKind::triangles, .resolution = 1024});
+    const std::vector<Triangle>& triangles = surface.mesh().triangles;
+    std::vector<std::vector<std::uint32_t>> charts(surface.chart_count());
+    for (std::uint32_t f = 0; f < triangles.size(); ++f)
+      if (const std::uint32_t chart = surface.face_charts()[f]; chart != kNone) charts[chart].push_back(f);
+    for (const std::vector<std::uint32_t>& faces : charts) {
+      ASSERT_LE(faces.size(), 2u);
+      if (faces.size() < 2) continue;
+      int common = 0;
+      for (const std::uint32_t v : triangles[faces[0]]) {
+        if (std::ranges::count(triangles[faces[1]], v) == 0) continue;
+        ++common;
+        const Vec3& p = surface.mesh().positions[v];
+        const Vec2 gap = surface.to_atlas(faces[0], p) - surface.to_atlas(faces[1], p);
+        EXPECT_LE(std::hypot(gap[0], gap[1]), 1e-6);
+      }
+      EXPECT_EQ(common, 2);
+    }
+    EXPECT_LE(surface.chart_count(), 0.55 * static_cast<double>(triangles.size()));
+  }
+}
+
+// Faces that cannot be unfolded are charts of their own: neighbours across an edge of three faces, with
+// another orientation, or across an edge so short that its direction is rounding.
+TEST(Triangles, OfBranchesTurnedFacesAndNeedlesStaySingle) {
+  const auto charts = [](std::vector<Vec3> positions, std::vector<Triangle> triangles) {
+    const AtlasOptions options{.kind = AtlasKind::triangles, .resolution = 64};
+    Mesh mesh;
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    const Surface surface(mesh, options);
+    expect_packed(surface, options);
+    EXPECT_EQ(surface.max_stretch(), 1);
+    return surface.chart_count();
+  };
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0.5}, {0, 0, 1}};
+  EXPECT_EQ(charts(points, {{0, 1, 2}, {1, 0, 3}}), 1u);
+  EXPECT_EQ(charts(points, {{0, 1, 2}, {0, 1, 3}}), 2u);
+  EXPECT_EQ(charts(points, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}), 3u);
+  EXPECT_EQ(charts(points, {{0, 1, 2}, {0, 2, 1}}), 2u);  // they share all three edges
+  const double tiny = 1e-16;
+  EXPECT_LE(charts({{1, 0, 0}, {1 + 2 * tiny, 0, 0}, {0, 1, 0}, {0, -1, 0.5}}, {{0, 1, 2}, {1, 0, 3}}), 2u);
+}
+
+TEST(Triangles, FillMostOfTheAtlas) {
+  EXPECT_GE(Surface(test::load("head.off"), {.kind = AtlasKind::triangles}).utilisation(), 0.7);
+}
+
+// Faces are far smaller than texels: each chart still owns one.
+TEST(Triangles, SmallOnesOwnATexel) {
   const AtlasOptions options{.kind = AtlasKind::triangles, .resolution = 256};
   expect_packed(Surface(test::load("pig.off"), options), options);
 }

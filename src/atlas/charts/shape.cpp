@@ -63,41 +63,74 @@ std::vector<OuterSide> outer_sides(const FaceGeometry& faces, const Chart& chart
   return sides;
 }
 
-ShapeFrame upright_frame(const Mesh& mesh, const Chart& chart, std::span<const OuterSide> sides) {
-  const auto [right, up] = tangent_frame(chart.axis);
-  ShapeFrame frame{mesh.positions[mesh.triangles[chart.faces[0]][0]], right, -up, {}};
+// A frame in the plane of a face that agrees with `frame` of another face on their common edge.
+ShapeFrame unfolded_frame(const Mesh& mesh, const FaceGeometry& faces, const Chart& chart,
+                          const ShapeFrame& frame) {
+  const auto [first, second] = std::pair(chart.faces[0], chart.faces[1]);
+  const auto k = std::ranges::find(faces.neighbours[first], second) - faces.neighbours[first].begin();
+  const Triangle& t = mesh.triangles[first];
+  const Vec3& start = mesh.positions[t[k]];
+  const Vec3 edge = normalized(mesh.positions[t[(k + 1) % 3]] - start);
+  // Turns the direction normal to the edge in the plane of the first face into that of the second.
+  const Vec3 from = cross(faces.normal[first], edge), to = cross(faces.normal[second], edge);
+  const auto unfold = [&](const Vec3& v) { return dot(v, edge) * edge + dot(v, from) * to; };
+  return {start, unfold(frame.right), unfold(frame.down), -1.0 * frame.project(start)};
+}
+
+// The corners of a chart's faces in shape coordinates. A common corner of unfolded faces has the same ones.
+void project_faces(const Mesh& mesh, const Chart& chart, Shape& shape) {
+  shape.triangles.clear();
+  for (const std::uint32_t f : chart.faces)
+    shape.triangles.push_back(
+        project_face(mesh, chart.unfolded && f == chart.faces[1] ? shape.unfolded : shape.frame, f));
+  if (!chart.unfolded) return;
+  const Triangle &first = mesh.triangles[chart.faces[0]], &second = mesh.triangles[chart.faces[1]];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (first[i] == second[j]) shape.triangles[1][j] = shape.triangles[0][i];
+}
+
+// Turns a frame by the angle of the unit vector `side`, whose lower corner is then `lo`.
+ShapeFrame turned(const ShapeFrame& frame, const Vec2& side, const Vec2& lo) {
+  return {frame.origin, side[0] * frame.right + side[1] * frame.down,
+          side[0] * frame.down - side[1] * frame.right,
+          Vec2{dot(side, frame.corner), cross(side, frame.corner)} + lo};
+}
+
+// Turns the shape so that its smallest bounding rectangle is axis-aligned, with its lower corner at (0, 0).
+void turn_upright(const Mesh& mesh, const Chart& chart, std::span<const OuterSide> sides, Shape& shape) {
   std::vector<Vec2> points;
   points.reserve(sides.size());
-  for (const auto& [face, corner] : sides)
-    points.push_back(frame.project(mesh.positions[mesh.triangles[chart.faces[face]][corner]]));
+  for (const auto& [face, corner] : sides) points.push_back(shape.triangles[face][corner]);
   const Vec2 side = least_rectangle(points);
-  const Vec3 turned_right = side[0] * frame.right + side[1] * frame.down;
-  const Vec3 turned_down = side[0] * frame.down - side[1] * frame.right;
-  frame.right = turned_right;
-  frame.down = turned_down;
   Vec2 lo = {dot(side, points[0]), cross(side, points[0])};
   for (const Vec2& p : points) {
     lo[0] = std::min(lo[0], dot(side, p));
     lo[1] = std::min(lo[1], cross(side, p));
   }
-  frame.corner = lo;
-  return frame;
+  shape.frame = turned(shape.frame, side, lo);
+  if (chart.unfolded) shape.unfolded = turned(shape.unfolded, side, lo);
+  project_faces(mesh, chart, shape);
 }
 
 Shape chart_shape(const Mesh& mesh, const FaceGeometry& faces, const Chart& chart,
                   std::span<const std::uint32_t> charts) {
   Shape shape;
   const std::vector<OuterSide> sides = outer_sides(faces, chart, charts);
-  shape.frame = upright_frame(mesh, chart, sides);
+  const auto [right, up] = tangent_frame(chart.axis);
+  shape.frame = {mesh.positions[mesh.triangles[chart.faces[0]][0]], right, -up, {}};
+  if (chart.unfolded) shape.unfolded = unfolded_frame(mesh, faces, chart, shape.frame);
   shape.triangles.reserve(chart.faces.size());
+  project_faces(mesh, chart, shape);
+  turn_upright(mesh, chart, sides, shape);
   double largest_area = -1;
-  for (const std::uint32_t f : chart.faces) {
-    const auto& t = shape.triangles.emplace_back(project_face(mesh, shape.frame, f));
+  for (std::uint32_t i = 0; i < shape.triangles.size(); ++i) {
+    const auto& t = shape.triangles[i];
     const double area = 0.5 * std::abs(cross(t[1] - t[0], t[2] - t[0]));
     shape.area += area;
     if (area > largest_area) {
       largest_area = area;
-      shape.largest = static_cast<std::uint32_t>(shape.triangles.size() - 1);
+      shape.largest = i;
     }
   }
   for (const auto& [face, k] : sides) {

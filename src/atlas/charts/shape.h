@@ -11,7 +11,7 @@
 
 namespace sdm::atlas {
 
-/// An isometric frame of a chart's projection. Shape coordinates of p: (right·(p − origin), down·(p −
+/// An isometric frame of a chart's plane. Shape coordinates of p: (right·(p − origin), down·(p −
 /// origin)) − corner. Seen from outside, `right` points to the right and `down` down: right × down = −axis.
 struct ShapeFrame {
   Vec3 origin{}, right{}, down{};
@@ -22,6 +22,8 @@ struct ShapeFrame {
 
 struct Shape {
   ShapeFrame frame;
+  ShapeFrame
+      unfolded;  ///< of the second face of an unfolded chart: takes the plane of this face to the chart
   std::vector<std::array<Vec2, 3>> triangles;  ///< shape coordinates of the chart's faces, in their order
   std::uint32_t largest = 0;                   ///< the triangle with the largest area
   /// The directed sides across which the neighbour is not in the chart: closed curves, holes included.

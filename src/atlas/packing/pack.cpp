@@ -19,7 +19,7 @@ namespace {
 
 // Above this many cells per side, a cell is a square of several texels: charts are then large and lose little
 // space by it. Many small charts get more cells.
-constexpr double kCells = 2048, kCellsPerChart = 10;
+constexpr double kCells = 2048, kCellsPerChart = 32;
 // The search tries this many scales at a time, regardless of the number of threads, and stops at this
 // precision, a fraction of the atlas area.
 constexpr int kTrials = 2;
