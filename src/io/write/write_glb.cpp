@@ -11,6 +11,7 @@
 
 #include <sdm/error.h>
 #include <sdm/io.h>
+#include <sdm/threads.h>
 #include <sdm/version.h>
 #include <tiny_gltf.h>
 
@@ -39,32 +40,50 @@ struct GlbModel {
 
   GlbModel() { model.buffers.emplace_back(); }
 
-  int add_view(const void* bytes, std::size_t size, int target) {
+  void reserve(std::span<const ModelVertices> vertices, std::size_t image) {
+    std::size_t bytes = image + 64;  // alignment
+    for (const ModelVertices& part : vertices)
+      bytes += part.triangles.size() * sizeof(Triangle) + part.place.size() * 9 * sizeof(float);
+    model.buffers[0].data.reserve(bytes);
+  }
+
+  int add_view(std::size_t size, int target) {
     auto& data = model.buffers[0].data;
-    data.resize((data.size() + 3) / 4 * 4);  // accessors of floats start at multiples of 4
-    if (data.size() + size > std::numeric_limits<std::uint32_t>::max() - (1u << 20))
+    const std::size_t begin = (data.size() + 3) / 4 * 4;  // accessors of floats start at multiples of 4
+    if (begin + size > std::numeric_limits<std::uint32_t>::max() - (1u << 20))
       throw Error("the model exceeds the 4 GB limit of GLB files");
+    data.resize(begin + size);
     tinygltf::BufferView view;
     view.buffer = 0;
-    view.byteOffset = data.size();
+    view.byteOffset = begin;
     view.byteLength = size;
     view.target = target;
-    const auto* begin = static_cast<const unsigned char*>(bytes);
-    data.insert(data.end(), begin, begin + size);
     model.bufferViews.push_back(view);
     return static_cast<int>(model.bufferViews.size()) - 1;
   }
+  [[nodiscard]] unsigned char* view_bytes(int view) {
+    return model.buffers[0].data.data() + model.bufferViews[static_cast<std::size_t>(view)].byteOffset;
+  }
 
-  /// `Element`: a scalar or an array of N scalars, consistent with `type`.
-  template <class Element>
-  int add_accessor(const std::vector<Element>& values, int type, int component_type, int target) {
+  /// `Element`: a scalar or an array of N scalars, consistent with `type`. Sets the elements by fill(i,
+  /// element), in parallel.
+  template <class Element, class Fill>
+  int add_accessor(std::size_t count, int type, int component_type, int target, const Fill& fill) {
     tinygltf::Accessor accessor;
-    accessor.bufferView = add_view(values.data(), values.size() * sizeof(Element), target);
+    accessor.bufferView = add_view(count * sizeof(Element), target);
     accessor.componentType = component_type;
     accessor.type = type;
     accessor.count =
-        values.size() * sizeof(Element) /
+        count * sizeof(Element) /
         (4 * static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type))));
+    unsigned char* const bytes = view_bytes(accessor.bufferView);
+    parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Element element;
+        fill(i, element);
+        std::memcpy(bytes + i * sizeof(Element), &element, sizeof(Element));
+      }
+    });
     model.accessors.push_back(accessor);
     return static_cast<int>(model.accessors.size()) - 1;
   }
@@ -99,41 +118,42 @@ struct Model {
 
 void add_primitive(GlbModel& glb, const Model& model, const ModelVertices& vertices, bool with_distances) {
   if (vertices.triangles.empty()) return;
-  std::vector<Vec3f> positions, normals;
-  std::vector<std::array<float, 2>> uvs;  // in [0, 1], v down
-  std::vector<float> distances;
-  Vec3f lo, hi;
-  lo.fill(std::numeric_limits<float>::infinity()), hi.fill(-std::numeric_limits<float>::infinity());
-  for (std::size_t i = 0; i < vertices.place.size(); ++i) {
-    const std::uint32_t vertex = model.normals.vertex[vertices.normal[i]];
-    const Vec3 p = model.mesh.positions[vertex] - model.place.origin;
-    const Vec3f& q = positions.emplace_back(
-        Vec3f{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], q[k]), hi[k] = std::max(hi[k], q[k]);
-    normals.push_back(model.normals.normals[vertices.normal[i]]);
-    const auto part = [&](int k) {
-      return static_cast<float>(std::clamp(vertices.place[i][k] / model.extent[k], 0.0, 1.0));
-    };
-    uvs.push_back({part(0), part(1)});
-    distances.push_back(model.vertex_distances[vertex]);
-  }
-
+  const std::size_t count = vertices.place.size();
+  const auto vertex = [&](std::size_t i) { return model.normals.vertex[vertices.normal[i]]; };
   tinygltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
   primitive.material = 0;
-  primitive.indices =
-      glb.add_accessor(vertices.triangles, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                       TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-  const auto add_attribute = [&](const char* name, const auto& values, int type) {
-    return primitive.attributes[name] =
-               glb.add_accessor(values, type, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
+  primitive.indices = glb.add_accessor<Triangle>(
+      vertices.triangles.size(), TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+      TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, [&](std::size_t i, Triangle& t) { t = vertices.triangles[i]; });
+  const auto add_attribute = [&]<class Element>(const char* name, int type, Element /*kind*/,
+                                                const auto& fill) {
+    return primitive.attributes[name] = glb.add_accessor<Element>(count, type, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                                                                  TINYGLTF_TARGET_ARRAY_BUFFER, fill);
   };
-  auto& accessor = glb.model.accessors[add_attribute("POSITION", positions, TINYGLTF_TYPE_VEC3)];
+  const auto position = [&](std::size_t i, Vec3f& q) {
+    const Vec3 p = model.mesh.positions[vertex(i)] - model.place.origin;
+    for (int k = 0; k < 3; ++k) q[k] = static_cast<float>(p[k]);
+  };
+  auto& accessor = glb.model.accessors[add_attribute("POSITION", TINYGLTF_TYPE_VEC3, Vec3f{}, position)];
+  Vec3f lo, hi, q;
+  lo.fill(std::numeric_limits<float>::infinity()), hi.fill(-std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < count; ++i) {
+    position(i, q);
+    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], q[k]), hi[k] = std::max(hi[k], q[k]);
+  }
   accessor.minValues.assign(lo.begin(), lo.end());
   accessor.maxValues.assign(hi.begin(), hi.end());
-  add_attribute("NORMAL", normals, TINYGLTF_TYPE_VEC3);
-  add_attribute("TEXCOORD_0", uvs, TINYGLTF_TYPE_VEC2);
-  if (with_distances) add_attribute("_DISTANCE", distances, TINYGLTF_TYPE_SCALAR);
+  add_attribute("NORMAL", TINYGLTF_TYPE_VEC3, Vec3f{},
+                [&](std::size_t i, Vec3f& n) { n = model.normals.normals[vertices.normal[i]]; });
+  add_attribute("TEXCOORD_0", TINYGLTF_TYPE_VEC2, std::array<float, 2>{},  // in [0, 1], v down
+                [&](std::size_t i, std::array<float, 2>& uv) {
+                  for (int k = 0; k < 2; ++k)
+                    uv[k] = static_cast<float>(std::clamp(vertices.place[i][k] / model.extent[k], 0.0, 1.0));
+                });
+  if (with_distances)
+    add_attribute("_DISTANCE", TINYGLTF_TYPE_SCALAR, 0.0f,
+                  [&](std::size_t i, float& d) { d = model.vertex_distances[vertex(i)]; });
   glb.model.meshes[0].primitives.push_back(primitive);
 }
 
@@ -153,23 +173,30 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
       if (shown[pixel] != kNone) distance[pixel] = map.distance[shown[pixel]];
     }
   });
-  const auto seed = [&](double x, double y, float d) {
-    if (!(x >= 0 && y >= 0 && x < n && y < rows)) return;
-    const std::size_t pixel = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);
-    if (shown[pixel] != kNone) return;
-    shown[pixel] = 0;
-    distance[pixel] = d;
-  };
-  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
-    if (surface.face_charts()[face] == kNone) continue;
-    const auto corners = surface.atlas_corners(face);
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = mesh.triangles[face][k];
-      const Vec2 at = (1.0 / picture.step()) * corners[k];
-      for (const double dx : {-0.5, 0.5})
-        for (const double dy : {-0.5, 0.5}) seed(at[0] + dx, at[1] + dy, vertex_distances[vertex]);
+  // Free pixels beside corners, found in parallel, are filled in the order of the faces.
+  using Seed = std::pair<std::size_t, float>;
+  constexpr std::size_t kFaces = 1 << 15;
+  std::vector<std::vector<Seed>> seeds((mesh.triangles.size() + kFaces - 1) / kFaces);
+  parallel_for(seeds.size(), 1, [&](std::size_t begin, std::size_t end) {
+    const auto charts = surface.face_charts();
+    const double pixels = 1.0 / picture.step();
+    for (std::size_t face = begin * kFaces; face < std::min(end * kFaces, mesh.triangles.size()); ++face) {
+      if (charts[face] == kNone) continue;
+      const auto corners = surface.atlas_corners(static_cast<std::uint32_t>(face));
+      for (int k = 0; k < 3; ++k)
+        for (const double dx : {-0.5, 0.5})
+          for (const double dy : {-0.5, 0.5}) {
+            const double x = pixels * corners[k][0] + dx, y = pixels * corners[k][1] + dy;
+            if (!(x >= 0 && y >= 0 && x < n && y < rows)) continue;
+            const std::size_t pixel = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);
+            if (shown[pixel] == kNone)
+              seeds[face / kFaces].emplace_back(pixel, vertex_distances[mesh.triangles[face][k]]);
+          }
     }
-  }
+  });
+  for (const std::vector<Seed>& some : seeds)
+    for (const auto& [pixel, d] : some)
+      if (std::exchange(shown[pixel], 0) == kNone) distance[pixel] = d;
   const Gutter gutter(n, shown);
   std::ostringstream png;
   write_png(png, n, rows, [&](std::uint32_t y, std::span<Rgb> pixels) {
@@ -181,10 +208,26 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
   return std::move(png).str();
 }
 
+/// The faces all of whose corners have a distance, and the others: glTF forbids NaN, so these form a separate
+/// primitive, without _DISTANCE.
+std::array<std::vector<std::uint32_t>, 2> faces_by_distance(const Mesh& mesh,
+                                                            std::span<const float> vertex_distances) {
+  std::array<std::vector<std::uint32_t>, 2> faces;
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+    const auto& [a, b, c] = mesh.triangles[face];
+    if (a == b || b == c || c == a) continue;  // also a removed face; the validator reports such triangles
+    const bool known =
+        std::ranges::all_of(mesh.triangles[face], [&](auto v) { return std::isfinite(vertex_distances[v]); });
+    faces[known ? 0 : 1].push_back(face);
+  }
+  return faces;
+}
+
 void add_material(GlbModel& glb, const std::string& png, bool unlit) {
   tinygltf::Model& model = glb.model;
   tinygltf::Image image;
-  image.bufferView = glb.add_view(png.data(), png.size(), 0);
+  image.bufferView = glb.add_view(png.size(), 0);
+  std::ranges::copy(png, glb.view_bytes(image.bufferView));
   image.mimeType = "image/png";
   model.images.push_back(image);
   // No mip levels: they would blend charts that are neighbours only in the atlas.
@@ -228,40 +271,45 @@ void add_scene(GlbModel& glb, const Placement& place, UpAxis up) {
   glb.model.asset.generator = std::string("sdm ") + kVersion;
 }
 
-}  // namespace
-
-void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-               std::span<const float> vertex_distances, const PictureOptions& options) try {
+GlbModel make_model(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
+                    const PictureOptions& options) {
   const Mesh& mesh = surface.mesh();
-  if (vertex_distances.size() != mesh.positions.size())
-    throw Error("cannot write " + file.string() +
-                ": pass one distance for each vertex of the surface's mesh");
-  // glTF forbids NaN: faces with a vertex without a value form a separate primitive, without _DISTANCE.
-  std::array<std::vector<std::uint32_t>, 2> faces;
-  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
-    const auto& [a, b, c] = mesh.triangles[face];
-    if (a == b || b == c || c == a) continue;  // also a removed face; the validator reports such triangles
-    const bool known =
-        std::ranges::all_of(mesh.triangles[face], [&](auto v) { return std::isfinite(vertex_distances[v]); });
-    faces[known ? 0 : 1].push_back(face);
-  }
   const AtlasPicture picture(surface, options.largest);
-  const ShadingNormals normals = shading_normals(mesh);
+  const ColorScale scale = color_scale(surface, map, options);
+  ShadingNormals normals;
+  std::array<ModelVertices, 2> vertices;
+  std::string png;
+  run_concurrently({[&] {
+                      normals = shading_normals(mesh);
+                      const auto faces = faces_by_distance(mesh, vertex_distances);
+                      for (int k = 0; k < 2; ++k) vertices[k] = model_vertices(surface, normals, faces[k]);
+                    },
+                    [&] { png = texture_png(surface, map, scale, picture, vertex_distances); }});
   const Model model{
       .mesh = mesh,
       .normals = normals,
       .place = placement(mesh, options.units),
       .extent = {1.0 * picture.width() * picture.step(), 1.0 * picture.height() * picture.step()},
       .vertex_distances = vertex_distances};
-
-  AtomicFile out(file);
   GlbModel glb;
   glb.model.meshes.emplace_back().name = "O1";
-  add_primitive(glb, model, model_vertices(surface, normals, faces[0]), true);
-  add_primitive(glb, model, model_vertices(surface, normals, faces[1]), false);
-  const ColorScale scale = color_scale(surface, map, options);
-  add_material(glb, texture_png(surface, map, scale, picture, vertex_distances), options.unlit);
+  glb.reserve(vertices, png.size());
+  add_primitive(glb, model, vertices[0], true);
+  add_primitive(glb, model, vertices[1], false);
+  add_material(glb, png, options.unlit);
   add_scene(glb, model.place, options.up);
+  return glb;
+}
+
+}  // namespace
+
+void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+               std::span<const float> vertex_distances, const PictureOptions& options) try {
+  if (vertex_distances.size() != surface.mesh().positions.size())
+    throw Error("cannot write " + file.string() +
+                ": pass one distance for each vertex of the surface's mesh");
+  AtomicFile out(file);
+  const GlbModel glb = make_model(surface, map, vertex_distances, options);
   tinygltf::TinyGLTF().WriteGltfSceneToStream(&glb.model, out.stream(), false, true);
   out.commit();
 } catch (const std::bad_alloc&) {

@@ -2,6 +2,7 @@
 
 #include <sdm/mesh_edit.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -29,7 +30,9 @@ FaceShape shape_of(const Mesh& mesh, const Triangle& triangle) {
   for (int k = 0; k < 3; ++k) {
     const Vec3 &a = edges[k], b = -edges[(k + 2) % 3];
     shape.normal[k] = static_cast<float>(normal[k]);
-    shape.angles[k] = static_cast<float>(std::atan2(norm(cross(a, b)), dot(a, b)));
+    // Relative to their size, as squares of lengths may underflow in single precision.
+    const double sine = norm(cross(a, b)), cosine = dot(a, b), scale = 1 / std::max(sine, std::abs(cosine));
+    shape.angles[k] = std::atan2(static_cast<float>(scale * sine), static_cast<float>(scale * cosine));
   }
   return shape;
 }
@@ -78,12 +81,16 @@ ShadingNormals shading_normals(const Mesh& mesh) {
       result.corner[face][k] = sheet;
     }
   }
-  for (const Vec3& sum : sums) {
-    const Vec3 n = normalized(sum);
-    result.normals.push_back(
-        n == Vec3{} ? Vec3f{0, 0, 1}
-                    : Vec3f{static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])});
-  }
+  result.normals.resize(sums.size());
+  parallel_for(sums.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t sheet = begin; sheet < end; ++sheet) {
+      const Vec3 n = normalized(sums[sheet]);
+      if (n == Vec3{})
+        result.normals[sheet] = {0, 0, 1};
+      else
+        for (int c = 0; c < 3; ++c) result.normals[sheet][c] = static_cast<float>(n[c]);
+    }
+  });
   return result;
 }
 
