@@ -111,6 +111,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   outcome.time.import = import_ms;
 
   std::unique_ptr<sdm::Surface> surface;
+  std::vector<float> at_vertices;
   sdm::run_concurrently({
       [&] {
         Stopwatch watch;
@@ -122,9 +123,13 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
         Stopwatch watch;
         if (!sites) sites = std::make_unique<sdm::Sites>(to.mesh);
         outcome.time.sites = watch.lap();
+        // While the atlas leaves a core idle:
         outcome.embedded = sdm::is_embedded(*sites);
+        sdm::MapOptions options = command.map;
+        options.progress = nullptr;  // the atlas reports
+        at_vertices = sdm::distances_at_vertices(mesh, *sites, options);
       },
-      [&] { inspect(on), inspect(to); },  // while the atlas leaves a core idle
+      [&] { inspect(on), inspect(to); },
   });
 
   const std::optional<sdm::Tolerance>& tolerance = command.picture.tolerance;
@@ -137,7 +142,6 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
 
   Stopwatch map_watch;
   const sdm::DistanceMap map = sdm::compute_map(*surface, *sites, command.map);
-  const auto at_vertices = sdm::distances_at_vertices(mesh, *sites, command.map);
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
