@@ -147,7 +147,10 @@ TEST(Descent, AgreesWithTheReferenceOnRandomScenes) {
     }
     const test::UseSimdTarget target(targets[seed % targets.size()]);
     const double limit = seed % 4 == 0 ? 0.1 * extent : std::numeric_limits<double>::infinity();
-    const auto found = closest_points(sites, queries, {.max_distance = limit});
+    auto found = closest_points(sites, queries, {.max_distance = limit});
+    if (seed % 3 == 1)  // one at a time
+      for (std::size_t i = 0; i < queries.size(); ++i)
+        found[i] = closest_points(sites, {&queries[i], 1}, {.max_distance = limit})[0];
     const auto expected = closest_points(sites, queries, {.engine = make_engine("reference")});
     Box scene = bounds(mesh);
     for (const Vec3& q : queries) extend(scene, q);
@@ -162,6 +165,30 @@ TEST(Descent, AgreesWithTheReferenceOnRandomScenes) {
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(within, 50000u);
   EXPECT_GT(beyond, 1000u);
+}
+
+// A packet of points that are far apart has no use for a candidate list: each is searched for by itself.
+TEST(Descent, AgreesWithTheReferenceOnScatteredPoints) {
+  for (const Mesh& mesh : {test::sphere(5), test::needles(1e-4), test::height_field(60), test::fan(3000)}) {
+    const Sites sites(mesh);
+    const Box box = bounds(mesh);
+    const double tolerance = 1e-6 * diagonal(box);
+    for (const test::SimdTarget target : test::simd_targets()) {
+      SCOPED_TRACE(test::name(target));
+      const test::UseSimdTarget use(target);
+      std::mt19937 random(3);
+      std::vector<Vec3> queries(60);
+      for (Vec3& q : queries) q = test::random_point({2 * box.lo - box.hi, 2 * box.hi - box.lo}, random);
+      const auto found = closest_points(sites, queries);
+      for (std::size_t i = 0; i < queries.size(); ++i) {
+        const ClosestPoint expected = reference::reference_closest(internals(sites), queries[i],
+                                                                   std::numeric_limits<double>::infinity());
+        ASSERT_NEAR(found[i].distance, expected.distance, tolerance);
+        ASSERT_NEAR(test::distance_to_site(sites, found[i].type, found[i].site, queries[i]),
+                    found[i].distance, tolerance);
+      }
+    }
+  }
 }
 
 }  // namespace

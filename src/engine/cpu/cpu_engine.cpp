@@ -11,6 +11,9 @@
 namespace sdm::cpu {
 namespace {
 
+// So few points are searched one at a time: a packet would consist mostly of padding.
+constexpr std::size_t kFew = 8;
+
 // A bound in the unit frame, enlarged so that rounding never excludes a site within max_distance.
 float unit_limit(const UnitFrame& frame, double max_distance) {
   return static_cast<float>(std::min((1 + 1e-5) * frame.scale * max_distance + 1e-6, 1e18));
@@ -26,8 +29,13 @@ void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, dou
   for (std::size_t begin = 0; begin < points.size(); begin += PointGroup::kMostPoints) {
     const std::span<const Vec3> queries =
         points.subspan(begin, std::min(PointGroup::kMostPoints, points.size() - begin));
-    const bool some_far_away = descent->points.place(queries, sites.frame);
-    find_winners(sites.wide, sites.regions, limit, *descent);
+    bool some_far_away = false;
+    if (queries.size() <= kFew) {
+      std::fill_n(descent->winners, PointGroup::kPacket, SiteId::kUnsettled);
+    } else {
+      some_far_away = descent->points.place(queries, sites.frame);
+      find_winners(sites.wide, sites.regions, limit, *descent);
+    }
     if (some_far_away)
       for (std::size_t i = 0; i < queries.size(); ++i)
         if (PointGroup::far_away(sites.frame.to_unit(queries[i]))) descent->winners[i] = SiteId::kUnsettled;

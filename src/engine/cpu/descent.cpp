@@ -22,6 +22,9 @@ namespace {
 // A shared candidate list pays off where the group has at least this many points for each leaf of O2's tree
 // within reach, or at most kFewPoints points. Otherwise its subgroups are traversed separately. (Measured.)
 constexpr std::size_t kPointsPerLeaf = 14, kFewPoints = 64;
+// Scattered points have no use for a list: with more leaves than this for each, the points of a packet are
+// searched one at a time. (Measured.)
+constexpr std::size_t kLeavesPerPoint = 16;
 // Lists of up to this many sites are evaluated for all packets of a ball instead of being filtered further:
 // more where there are only four packets. (Measured.)
 constexpr std::size_t few_sites(int level) {
@@ -102,9 +105,12 @@ class Search {
     if (uses(Idea::last_nearest) && nearest.found) last_ = nearest;
     const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
     const size_t points = PointGroup::points_at(level);
-    const size_t most_leaves =
-        points > kFewPoints ? points / kPointsPerLeaf : std::numeric_limits<size_t>::max();
+    const size_t most_leaves = points > kFewPoints ? points / kPointsPerLeaf : points * kLeavesPerPoint;
     if (!find_leaves(reach, most_leaves)) {
+      if (level == 0) {
+        std::fill_n(s_.winners + PointGroup::kPacket * index, PointGroup::kPacket, SiteId::kUnsettled);
+        return;
+      }
       for_children(level, index, [&](size_t child) { start(level - 1, child); });
       return;
     }
