@@ -20,67 +20,115 @@ namespace {
 
 using inside::Sides;
 
-// Parts are evaluated together, at least this many, the deepest bounds first: more would evaluate parts that
-// the others rule out, fewer would not share searches. Of many open parts, a fraction: neighbours are then
-// among them.
-constexpr std::size_t kBatch = 64, kFraction = 4;
+// Of many open parts, a fraction is evaluated together: neighbours are then among them, and share searches.
+constexpr std::size_t kFraction = 64;
 constexpr std::uint64_t kFaceStep = std::uint64_t{1} << 32;  // between the places of faces
+// Nodes larger than this, relative to the smaller body, are divided at once: hardly any is excluded as a
+// whole.
+constexpr double kCoarse = 1.0 / 16;
+// The cosine between directions that are nearly the same.
+constexpr double kSameDirection = 0.9999;
+constexpr int kFirstDirections = 3;
+
+Vec3 middle(const Box& box) {
+  return 0.5 * (box.lo + box.hi);
+}
 
 }  // namespace
 
 Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other,
                         double precision) {
-  bodies_ = bodies, to_other_ = to_other;
-  Depth depth;
-  double settled = 0;
-  sure_ = precision;
+  bodies_ = bodies, to_other_ = to_other, precision_ = precision;
+  coarse_ = kCoarse * std::min(diagonal(bodies[0]->box()), diagonal(bodies[1]->box()));
+  depth_ = {}, settled_ = 0, sure_ = precision;
   open_.clear(), all_.clear();
+  for (int body = 0; body < 2; ++body)
+    if (bodies[1 - body]->body().solid()) find_exits(body);
   for (int body = 0; body < 2; ++body)
     if (bodies[1 - body]->body().solid()) add_children({.body = body, .node = 0});
   while (!open_.empty()) {
-    parts_.clear();
-    const std::size_t most = std::max(kBatch, open_.size() / kFraction);
-    while (!open_.empty() && parts_.size() < most) {
-      std::ranges::pop_heap(open_, {}, &Open::upper);
-      const Open deepest = open_.back();
-      open_.pop_back();
-      if (deepest.upper > sure_)
-        parts_.push_back(all_[deepest.part]);
-      else
-        settled = std::max(settled, deepest.upper);
-    }
+    take_deepest();
     std::ranges::sort(parts_, {}, [](const Part& part) { return std::pair(part.body, part.place); });
     values_.assign(parts_.size(), {});
     constexpr std::size_t kGrain = 256;
     parallel_for(parts_.size(), kGrain, [&](std::size_t begin, std::size_t end) { evaluate(begin, end); });
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const Part& part = parts_[i];
-      const Value& value = values_[i];
-      if (part.node != kNone || !(unit(part.body) * value.lower > depth.lower)) continue;
-      depth.lower = unit(part.body) * value.lower;
-      depth.value = unit(part.body) * value.value;
-      depth.points.reset();
-      if (!value.boundary) continue;
-      const Affine& pose = bodies[1 - part.body]->pose().map;
-      const Vec3 p = pose(part.centre), q = pose(*value.boundary);
-      depth.points = part.body == 0 ? std::array{p, q} : std::array{q, p};
-    }
-    sure_ = depth.lower + precision;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      if (parts_[i].node == kNone && improve(parts_[i], values_[i]))
+        exits_[parts_[i].body].add(normalized(*values_[i].boundary - parts_[i].centre));
     for (const Part& part : parts_) {
       // The distance to the boundary of a solid that intersects itself has bounds that no division tightens.
       const bool finest =
           part.node == kNone && unit(part.body) * part.radius <= std::max(0.125 * precision, part.gap);
       if (part.upper <= sure_ || finest)
-        settled = std::max(settled, part.upper);
+        settle(part.upper);
       else
         divide(part);
     }
   }
-  depth.upper = std::max(depth.lower, settled);
-  return depth;
+  depth_.upper = std::max(depth_.lower, settled_);
+  return depth_;
+}
+
+// Steps towards a deep point: the point of the body that is farthest from the exit in some direction, and the
+// direction from there to the boundary.
+void DepthSearch::find_exits(int body) {
+  ExitDirections& exits = exits_[body];
+  const shape::Body &leaving = bodies_[body]->body(), &other = bodies_[1 - body]->body();
+  exits.start(internals(leaving.sites()), internals(other.sites()), to_other_[body]);
+  Vec3 direction = normalized(to_other_[body].map(middle(leaving.box())) - middle(other.box()));
+  if (direction == Vec3{}) direction = {1, 0, 0};
+  for (int i = 0; i < kFirstDirections; ++i) {
+    exits.add(direction);
+    const Vec3 p = exits.farthest_from_exit();
+    parts_.assign(1, {.body = body, .at = {p, p, p}, .centre = p});
+    values_.assign(1, {});
+    evaluate(0, 1);
+    if (!improve(parts_[0], values_[0])) return;
+    const Vec3 next = normalized(*values_[0].boundary - p);
+    if (dot(next, direction) > kSameDirection) return;
+    direction = next;
+  }
+}
+
+// Whether the value at the centre of a part is the largest found so far, with a known point of the boundary.
+bool DepthSearch::improve(const Part& part, const Value& value) {
+  if (!(unit(part.body) * value.lower > depth_.lower)) return false;
+  depth_.lower = unit(part.body) * value.lower;
+  depth_.value = unit(part.body) * value.value;
+  depth_.points.reset();
+  sure_ = depth_.lower + precision_;
+  if (!value.boundary) return false;
+  const Affine& pose = bodies_[1 - part.body]->pose().map;
+  const Vec3 p = pose(part.centre), q = pose(*value.boundary);
+  depth_.points = part.body == 0 ? std::array{p, q} : std::array{q, p};
+  return true;
+}
+
+// Sets parts_ to those with the deepest bounds.
+void DepthSearch::take_deepest() {
+  parts_.clear();
+  while (!open_.empty() && parts_.size() <= open_.size() / kFraction) {
+    std::ranges::pop_heap(open_, {}, &Open::upper);
+    Part part = all_[open_.back().part];
+    open_.pop_back();
+    const ExitDirections& exits = exits_[part.body];
+    if (part.upper > sure_ && part.exits < exits.size())
+      part.upper =
+          std::min(part.upper, unit(part.body) * (part.node == kNone
+                                                      ? exits.bound(part.at, part.exits)
+                                                      : exits.bound(part.centre, part.radius, part.exits)));
+    part.exits = exits.size();
+    if (part.upper <= sure_)
+      settle(part.upper);
+    else if (part.node != kNone && unit(part.body) * part.radius > coarse_)
+      divide(part);
+    else
+      parts_.push_back(part);
+  }
 }
 
 void DepthSearch::add(const Part& part) {
+  if (part.upper <= sure_) return settle(part.upper);
   open_.push_back({part.upper, static_cast<std::uint32_t>(all_.size())});
   all_.push_back(part);
   std::ranges::push_heap(open_, {}, &Open::upper);
@@ -99,7 +147,10 @@ void DepthSearch::divide(const Part& part) {
 
 void DepthSearch::add_triangle(const Corners& at, const Part& parent, std::uint64_t place,
                                std::uint64_t step) {
-  Part part{.body = parent.body, .at = at, .place = place, .step = step, .upper = parent.upper};
+  const ExitDirections& exits = exits_[parent.body];
+  Part part{.body = parent.body, .at = at, .place = place, .step = step, .exits = exits.size()};
+  part.upper = std::min(parent.upper, unit(part.body) * exits.bound(at));
+  if (part.upper <= sure_) return settle(part.upper);
   part.centre = (1.0 / 3) * (at[0] + at[1] + at[2]);
   for (const Vec3& corner : at) part.radius = std::max(part.radius, norm(corner - part.centre));
   if (parent.near) part.upper = std::min(part.upper, unit(part.body) * bound_by(*parent.near, part));
@@ -118,26 +169,37 @@ double DepthSearch::bound_by(const BoundaryPart& near, const Part& triangle) con
 // The children of a node of the tree, or the faces of a leaf, unless they are beyond the box of the other
 // body.
 void DepthSearch::add_children(const Part& parent) {
+  if (hierarchy::WideTree::is_leaf(parent.node)) return add_faces(parent);
   const int body = parent.body;
-  const std::uint32_t node = parent.node;
   const sites::SitesData& sites = internals(bodies_[body]->body().sites());
   const Box& other = bodies_[1 - body]->body().box();
-  const mesh::Similarity& to_other = to_other_[body];
-  if (hierarchy::WideTree::is_leaf(node)) {
-    const std::uint32_t leaf = hierarchy::WideTree::leaf_number(node);
-    for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i) {
-      const auto& [a, b, c] = sites.mesh.triangles[sites.regions.owners[i].face];
-      const auto at = [&](std::uint32_t vertex) { return to_other.map(sites.mesh.positions[vertex]); };
-      add_triangle({at(a), at(b), at(c)}, parent, i * kFaceStep, kFaceStep);
-    }
-    return;
-  }
-  const hierarchy::WideTree::Node& wide = sites.wide.nodes[node];
+  const hierarchy::WideTree::Node& wide = sites.wide.nodes[parent.node];
+  const ExitDirections::OfChildren by_exits = exits_[body].bound_children(wide);
   for (std::uint32_t i = 0; i < wide.count; ++i) {
-    Part part{.body = body, .node = wide.child[i], .place = wide.source[i], .upper = parent.upper};
-    const auto [centre, radius] = shape::ball_of_child(sites, node, i, to_other);
+    Part part{.body = body, .node = wide.child[i], .place = wide.source[i], .exits = exits_[body].size()};
+    part.upper = std::min(parent.upper, unit(body) * by_exits[i]);
+    if (part.upper <= sure_) {
+      settle(part.upper);
+      continue;
+    }
+    const auto [centre, radius] = shape::ball_of_child(sites, parent.node, i, to_other_[body]);
     part.centre = centre, part.radius = radius;
     if (box_distance({part.centre, part.centre}, other) <= part.radius) add(part);
+  }
+}
+
+void DepthSearch::add_faces(const Part& parent) {
+  const sites::SitesData& sites = internals(bodies_[parent.body]->body().sites());
+  const Affine& map = to_other_[parent.body].map;
+  const std::uint32_t leaf = hierarchy::WideTree::leaf_number(parent.node);
+  for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i) {
+    const auto& [a, b, c] = sites.mesh.triangles[sites.regions.owners[i].face];
+    const auto& at = sites.mesh.positions;
+    const double upper = unit(parent.body) * exits_[parent.body].bound_in_body({at[a], at[b], at[c]});
+    if (upper <= sure_)
+      settle(upper);
+    else
+      add_triangle({map(at[a]), map(at[b]), map(at[c])}, parent, i * kFaceStep, kFaceStep);
   }
 }
 
@@ -190,7 +252,7 @@ void DepthSearch::evaluate(Part& part, Value& value, double distance, bool insid
     if (found.point) nearest = {kNone, *found.point};
   }
   most += part.radius;
-  if (nearest && part.node == kNone) {
+  if (nearest && part.node == kNone && part.radius > 0) {
     most = std::min(most, bound_by(*nearest, part));
     part.near = nearest;
   }

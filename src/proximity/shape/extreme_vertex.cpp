@@ -1,0 +1,69 @@
+#include "proximity/shape/extreme_vertex.h"
+
+#include <limits>
+
+#include "core/geometry/vec.h"
+
+namespace sdm::shape {
+namespace {
+
+constexpr int kWidth = hierarchy::WideTree::kWidth;
+
+class Search {
+ public:
+  Search(const sites::SitesData& sites, const Vec3& u) : sites_(sites), u_(u) {
+    for (int k = 0; k < 3; ++k) unit_u_[k] = static_cast<float>(u[k]);
+  }
+
+  ExtremeVertex find() {
+    open(0);
+    return best_;
+  }
+
+ private:
+  // The child with the largest bound first.
+  void open(std::uint32_t index) {
+    const hierarchy::WideTree::Node& node = sites_.wide.nodes[index];
+    float most[kWidth] = {};
+    for (int k = 0; k < 3; ++k) {
+      const float* far = unit_u_[k] > 0 ? node.hi[k] : node.lo[k];
+      for (int i = 0; i < kWidth; ++i) most[i] += unit_u_[k] * far[i];
+    }
+    for (std::uint32_t left = (1u << node.count) - 1; left != 0;) {
+      std::uint32_t largest = kWidth;
+      for (std::uint32_t i = 0; i < node.count; ++i)
+        if ((left >> i & 1) != 0 && (largest == kWidth || most[i] > most[largest])) largest = i;
+      if (!(most[largest] >= limit_)) return;
+      left &= ~(1u << largest);
+      if (hierarchy::WideTree::is_leaf(node.child[largest]))
+        compare(hierarchy::WideTree::leaf_number(node.child[largest]));
+      else
+        open(node.child[largest]);
+    }
+  }
+
+  void compare(std::uint32_t leaf) {
+    constexpr float kRounding = 4e-6F;  // of the bounds, in the unit frame
+    for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
+      for (const std::uint32_t vertex : sites_.mesh.triangles[sites_.regions.owners[i].face]) {
+        const Vec3& x = sites_.mesh.positions[vertex];
+        if (const double along = dot(u_, x); along > best_.along) best_ = {along, x};
+      }
+    limit_ =
+        static_cast<float>(sites_.frame.scale * (best_.along - dot(u_, sites_.frame.origin))) - kRounding;
+  }
+
+  const sites::SitesData& sites_;
+  const Vec3 u_;
+  float unit_u_[3];
+  float limit_ = -std::numeric_limits<float>::infinity();  // nodes below this are no farther than the best
+  ExtremeVertex best_{.along = -std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace
+
+ExtremeVertex extreme_vertex(const sites::SitesData& sites, const Vec3& u) {
+  return Search(sites, u).find();
+}
+
+}  // namespace sdm::shape
