@@ -135,7 +135,7 @@ struct MultiBodyQuery::Impl {
     return found != hints.end() && found->pair == pair ? found->faces : pair::kNoFaces;
   }
   std::span<const Sweep::Pair> near_pairs(double reach) {
-    std::ranges::transform(bodies, boxes.begin(), &shape::PosedBody::box);
+    std::ranges::transform(bodies, boxes.begin(), &shape::PosedBody::tight_box);
     return sweep.near_pairs(boxes, reach);
   }
 

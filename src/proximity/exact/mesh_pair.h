@@ -3,6 +3,7 @@
 
 #include <sdm/sites.h>
 
+#include <array>
 #include <limits>
 
 #include "core/geometry/affine.h"
@@ -10,6 +11,10 @@
 #include "sites/sites_data.h"
 
 namespace sdm::exact {
+
+/// A face of each of two meshes.
+using FacePair = std::array<std::uint32_t, 2>;
+inline constexpr FacePair kNoFaces{kNone, kNone};
 
 /// O1 in place, and O2 moved by `pose`. No vertices are copied.
 struct MeshPair {

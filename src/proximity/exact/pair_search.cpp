@@ -8,35 +8,65 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "proximity/exact/face_lanes-inl.h"
+#include "proximity/exact/triangle_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::exact::HWY_NAMESPACE {
 
 using Entry = PairWorkspace::Entry;
+using Candidate = PairWorkspace::Candidate;
+using Tie = PairWorkspace::Tie;
+
+constexpr double kNoDistance = std::numeric_limits<double>::infinity();
 
 // `separate`: searches for the closest faces, otherwise for any that intersect.
 template <bool separate>
 class PairSearch {
  public:
   PairSearch(const MeshPair& pair, double bound, PairWorkspace& workspace)
-      : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), w_(workspace) {
-    best_.distance = bound;
-    limit_ = maps_.round_up(bound);
+      : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), w_(workspace), bound_(bound) {
+    limit_ = maps_.round_up(bound + maps_.rounding());
+  }
+
+  // Any direction bounds distances from below, and that from one body to the other bounds most.
+  void look_ahead() {
+    Vec3 middle[2];
+    for (int side = 0; side < 2; ++side) {
+      const hierarchy::FloatBox& box = sites_[side]->tree.box(0);
+      for (int k = 0; k < 3; ++k) middle[side][k] = 0.5 * (double{box.lo[k]} + box.hi[k]);
+      middle[side] = sites_[side]->frame.origin + (1 / sites_[side]->frame.scale) * middle[side];
+    }
+    direction_ = maps_.direction(pair_.pose(middle[1]) - middle[0]);
+  }
+
+  // Faces that bound the search from the start.
+  void begin_with(const FacePair& faces) {
+    const PointPair closest = closest_points(pair_.face1(faces[0]), pair_.face2(faces[1]));
+    restrict(std::sqrt(closest.squared));
+    direction_ = maps_.direction(closest.point2 - closest.point1);
   }
 
   Separation run() {
     w_.overlapping.assign(1, {});
-    w_.apart.clear();
+    w_.apart.clear(), w_.candidates.clear(), w_.ties.clear();
     Entry entry;
-    while (!best_.intersecting && next(entry))
-      if (entry.leaves())
+    while (!intersection_.intersecting) {
+      const bool more = next(entry);
+      if (more && entry.leaves())
         compare_leaves(entry);
-      else
+      else if (more)
         open(entry);
-    return best_.face1 == kNone ? Separation{} : best_;
+      else if (w_.candidates.empty())
+        break;
+      // Many at a time, unless the limit is still loose.
+      if (!more || least_ == kNoDistance || w_.candidates.size() >= TrianglePairs::kLanes)
+        compare_candidates();
+    }
+    return intersection_.intersecting ? intersection_ : closest();
   }
 
  private:
@@ -123,20 +153,23 @@ class PairSearch {
     if (discs_apart(entry)) return;  // the direction may have improved since the leaves were paired
     for (int side = 0; side < 2; ++side) load_faces(side, entry.place[side].leaf_number());
     const LeafFaces &a = faces_[0], &b = faces_[1];
-    Candidate candidates[kWidth * kWidth];
-    size_t count = 0;
     const Lanes d;
+    Candidate touching[kWidth * kWidth];
+    size_t count = 0;
     for (uint32_t j = 0; j < b.count(); ++j) {
       alignas(64) float least[kWidth];
       for (size_t i = 0; i < kWidth; i += hn::Lanes(d))
         hn::Store(in_units(face_distances(a, i, b, j, direction_)), d, least + i);
       for (uint32_t i = 0; i < a.count(); ++i) {
-        // 0 for all that may intersect: how far below depends on the closest faces found so far.
-        candidates[count] = {std::max(least[i], 0.0f), a.first() + i, b.first() + j};
-        count += !(least[i] > limit_);
+        if (least[i] > limit_) continue;
+        const Candidate candidate{least[i], a.first() + i, b.first() + j};
+        if (least[i] > 0)
+          w_.candidates.push_back(candidate);
+        else
+          touching[count++] = candidate;
       }
     }
-    compare(candidates, count);
+    find_intersection({touching, count});
   }
 
   HWY_INLINE Vec in_units(Vec distance) const {
@@ -144,68 +177,109 @@ class PairSearch {
     return hn::Mul(hn::Set(d, maps_.unit[0]), hn::Sub(distance, hn::Set(d, maps_.to[0].error)));
   }
 
-  // Faces by their position in the order of the trees.
-  struct Candidate {
-    float least;
-    uint32_t owner1, owner2;
-
-    /// Of equally near ones, that with the smaller numbers: the order does not depend on which others there
-    /// are.
-    bool before(const Candidate& other) const {
-      return least < other.least ||
-             (least == other.least && std::pair(owner1, owner2) < std::pair(other.owner1, other.owner2));
-    }
-  };
-
-  // Nearest first, which excludes most of the others.
-  void compare(Candidate* candidates, size_t count) {
-    for (; count > 0 && !best_.intersecting; --count) {
-      Candidate* nearest = candidates;
-      for (size_t i = 1; i < count; ++i)
-        if (candidates[i].before(*nearest)) nearest = candidates + i;
-      if (nearest->least > limit_) return;
-      compare(*nearest);
-      *nearest = candidates[count - 1];
+  // Of candidates that may intersect, the first that do, in the order of the trees; the others may be
+  // closest.
+  void find_intersection(std::span<Candidate> touching) {
+    std::ranges::sort(touching, {}, [](const Candidate& c) { return std::pair(c.owner1, c.owner2); });
+    for (const Candidate& candidate : touching) {
+      const FacePair faces = faces_of(candidate);
+      const Corners a = pair_.face1(faces[0]), b = pair_.face2(faces[1]);
+      if (squared_box_distance(a, b) > 0 || !triangles_intersect(a, b)) {
+        if constexpr (separate) w_.candidates.push_back({0, candidate.owner1, candidate.owner2});
+        continue;
+      }
+      const Vec3 point = common_point(a, b);
+      intersection_ = {0, true, point, point, faces[0], faces[1]};
+      return;
     }
   }
 
-  void compare(const Candidate& candidate) {
-    constexpr double kAbove = 1 + 1e-12;  // larger than the rounding error of squares: ties must be compared
-    const uint32_t face1 = sites_[0]->tree.items[candidate.owner1],
-                   face2 = sites_[1]->tree.items[candidate.owner2];
-    const Corners a = pair_.face1(face1), b = pair_.face2(face2);
-    // Most pairs end here if the meshes have details too fine for single precision.
-    if (squared_box_distance(a, b) > kAbove * best_.distance * best_.distance) return;
-    if (!(candidate.least > 0) && triangles_intersect(a, b)) {
-      const Vec3 point = common_point(a, b);
-      best_ = {0, true, point, point, face1, face2};
-      return;
-    }
+  FacePair faces_of(const Candidate& candidate) const {
+    return {sites_[0]->tree.items[candidate.owner1], sites_[1]->tree.items[candidate.owner2]};
+  }
+
+  // Nearest first, which excludes most of the others if there are many.
+  void compare_candidates() {
+    std::vector<Candidate>& all = w_.candidates;
     if constexpr (separate) {
-      const PointPair closest = closest_points(a, b);
-      const double distance = std::sqrt(closest.squared);
-      if (distance > best_.distance || (distance == best_.distance && best_.face1 != kNone &&
-                                        !(std::pair(face1, face2) < std::pair(best_.face1, best_.face2))))
-        return;
-      best_ = {distance, false, closest.point1, closest.point2, face1, face2};
-      limit_ = maps_.round_up(distance);
+      if (all.size() > TrianglePairs::kLanes) std::ranges::sort(all, {}, &Candidate::least);
+      for (size_t next = 0; next < all.size() && !(all[next].least > limit_);) next = compare_some(next);
+    }
+    all.clear();
+  }
+
+  // Compares as many candidates as there are lanes, from `next` on. Returns the first one after them.
+  size_t compare_some(size_t next) {
+    const double most = limit();
+    FacePair faces[TrianglePairs::kLanes];
+    size_t count = 0;
+    for (; next < w_.candidates.size() && count < TrianglePairs::kLanes; ++next) {
+      const FacePair pair = faces_of(w_.candidates[next]);
+      const Corners a = pair_.face1(pair[0]), b = pair_.face2(pair[1]);
+      // Most pairs end here if the meshes have details too fine for single precision.
+      if (squared_box_distance(a, b) > most * most) continue;
+      pairs_.set(count, a, b);
+      faces[count++] = pair;
+    }
+    double squared[TrianglePairs::kLanes];
+    pairs_.squared_distances(count, squared);
+    for (size_t i = 0; i < count; ++i) {
+      const double distance = std::sqrt(squared[i]);
+      if (distance > limit()) continue;
+      w_.ties.push_back({distance, faces[i]});
+      if (!(distance < least_)) continue;
+      const bool closer = distance < least_ - maps_.rounding();
+      restrict(distance);
+      if (!closer) continue;
+      std::erase_if(w_.ties, [&](const Tie& tie) { return tie.distance > limit(); });
+      const PointPair closest = closest_points(pair_.face1(faces[i][0]), pair_.face2(faces[i][1]));
       direction_ = maps_.direction(closest.point2 - closest.point1);
     }
+    return next;
+  }
+
+  // Faces at larger distances than this are not closest.
+  double limit() const { return std::min(least_, bound_) + maps_.rounding(); }
+  void restrict(double distance) {
+    least_ = std::min(least_, distance);
+    limit_ = maps_.round_up(limit());
+  }
+
+  // The result depends on which pairs are tied, not on the order in which they were found.
+  Separation closest() const {
+    FacePair first = kNoFaces;
+    double least = kNoDistance;
+    for (const Tie& tie : w_.ties) least = std::min(least, tie.distance);
+    for (const Tie& tie : w_.ties)
+      if (tie.distance <= least + maps_.rounding()) first = std::min(first, tie.faces);
+    if (first == kNoFaces) return {};
+    const PointPair points = closest_points(pair_.face1(first[0]), pair_.face2(first[1]));
+    const double distance = std::sqrt(points.squared);
+    if (distance > bound_) return {};
+    return {distance, false, points.point1, points.point2, first[0], first[1]};
   }
 
   const MeshPair& pair_;
   const sites::SitesData* sites_[2];
   const UnitMaps maps_;
   PairWorkspace& w_;
-  Separation best_;
+  const double bound_;
+  double least_ = kNoDistance;  // the smallest distance of two faces that is known
+  Separation intersection_;
   float limit_;          // pairs farther than this are excluded
   Direction direction_;  // from the closest point of O1 found so far to that of O2
   LeafFaces faces_[2];
   uint32_t loaded_[2] = {kNone, kNone};  // the leaves they were loaded from
+  TrianglePairs pairs_;
 };
 
-Separation FindClosest(const MeshPair& pair, double bound, PairWorkspace& workspace) {
-  return PairSearch<true>(pair, bound, workspace).run();
+Separation FindClosest(const MeshPair& pair, double bound, PairWorkspace& workspace, const FacePair& hint) {
+  PairSearch<true> search(pair, bound, workspace);
+  if (hint != kNoFaces)
+    search.begin_with(hint);
+  else
+    search.look_ahead();
+  return search.run();
 }
 Separation FindIntersection(const MeshPair& pair, PairWorkspace& workspace) {
   return PairSearch<false>(pair, 0, workspace).run();
@@ -220,11 +294,8 @@ namespace sdm::exact {
 HWY_EXPORT(FindClosest);
 HWY_EXPORT(FindIntersection);
 
-Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace) {
-  return HWY_DYNAMIC_DISPATCH(FindClosest)(pair, bound, workspace);
-}
-double face_distance(const MeshPair& pair, std::uint32_t face1, std::uint32_t face2) {
-  return std::sqrt(closest_points(pair.face1(face1), pair.face2(face2)).squared);
+Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace, const FacePair& hint) {
+  return HWY_DYNAMIC_DISPATCH(FindClosest)(pair, bound, workspace, hint);
 }
 
 Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace) {

@@ -46,19 +46,31 @@ struct PairWorkspace {
     std::vector<Entry> entries_;
   };
 
+  /// Faces by their position in the order of the trees, and a lower bound on their distance.
+  struct Candidate {
+    float least;
+    std::uint32_t owner1, owner2;
+  };
+  /// Faces that may be closest, and their distance.
+  struct Tie {
+    double distance;
+    FacePair faces;
+  };
+
   std::vector<Entry> overlapping;  ///< a stack
   Heap apart;
+  std::vector<Candidate> candidates;  ///< still to be compared
+  std::vector<Tie> ties;              ///< at the smallest distance found so far, to rounding
 };
 
 /// Finds the closest points of the two surfaces, if their distance is at most `bound`. Of several pairs of
-/// faces at the same distance, the one with the smallest numbers: the result does not depend on the bound.
-/// Cost: logarithmic if few faces are candidates, in the worst case all pairs of candidates; single-threaded,
-/// without allocation once the workspace has grown.
-[[nodiscard]] Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace);
-
-/// The distance of two faces: a bound on that of the surfaces, the tighter the nearer the faces are to the
-/// closest ones.
-[[nodiscard]] double face_distance(const MeshPair& pair, std::uint32_t face1, std::uint32_t face2);
+/// faces at the same distance, to rounding, the one with the smallest numbers.
+///
+/// `hint`: faces of O1 and O2 that may be close to each other; they change how long the search takes, not its
+/// result. Cost: logarithmic if few faces are candidates, in the worst case all pairs of candidates;
+/// single-threaded, without allocation once the workspace has grown.
+[[nodiscard]] Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace,
+                                      const FacePair& hint = kNoFaces);
 
 /// Finds two faces, one of each surface, that have a point in common, if any; decided exactly.
 [[nodiscard]] Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace);

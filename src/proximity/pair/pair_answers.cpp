@@ -68,6 +68,8 @@ std::span<const Contact> PairAnswers::contacts() {
 
 bool PairAnswers::within(double distance) {
   if (box_distance(bodies_[0]->box(), bodies_[1]->box()) > distance) return false;
+  const shape::Ball &ball1 = bodies_[0]->ball(), &ball2 = bodies_[1]->ball();
+  if (norm(ball2.centre - ball1.centre) > distance + ball1.radius + ball2.radius) return false;
   if (distance > 0 && !separation_ && !find_closest(distance)) intersecting_ = false;
   return (separation_ && separation_->value <= distance) || colliding().value;
 }
@@ -79,10 +81,7 @@ exact::MeshPair PairAnswers::meshes() const {
 // Computes separation_ if it is at most `bound`, and returns whether it is.
 bool PairAnswers::find_closest(double bound) {
   const mesh::Similarity& pose = bodies_[0]->pose();
-  bound /= pose.scale;
-  if (closest_faces_ != kNoFaces)
-    bound = std::min(bound, exact::face_distance(meshes(), closest_faces_[0], closest_faces_[1]));
-  const exact::Separation c = exact::find_closest(meshes(), bound, workspace_);
+  const exact::Separation c = exact::find_closest(meshes(), bound / pose.scale, workspace_, closest_faces_);
   if (c.face1 == kNone) return false;
   intersecting_ = c.intersecting;
   closest_faces_ = {c.face1, c.face2};

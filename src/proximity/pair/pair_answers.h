@@ -17,9 +17,7 @@ namespace sdm::pair {
 /// Throws sdm::Error unless both are finite and at least 0.
 void check_options(double contact_margin, double depth_precision);
 
-/// A face of each of two bodies.
-using FacePair = std::array<std::uint32_t, 2>;
-inline constexpr FacePair kNoFaces{kNone, kNone};
+using exact::FacePair, exact::kNoFaces;
 
 /// Results as documented at ProximityQuery, each computed on first use. Memory is reused from pair to pair;
 /// results do not depend on earlier pairs.

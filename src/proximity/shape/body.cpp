@@ -2,9 +2,41 @@
 
 #include <sdm/error.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/vec.h"
 #include "proximity/shape/contact_parts.h"
 
 namespace sdm::shape {
+namespace {
+
+// The ball about a point that contains the boxes two levels below the root of the tree.
+Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
+  constexpr double kRounding = 1e-6;  // of the boxes, in units of the frame
+  const Vec3 c = sites.frame.to_unit(centre);
+  double squared = 0;
+  const auto include = [&](const hierarchy::WideTree::Node& node, std::uint32_t i) {
+    double to_corner = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double x = std::max(c[k] - node.lo[k][i], node.hi[k][i] - c[k]);
+      to_corner += x * x;
+    }
+    squared = std::max(squared, to_corner);
+  };
+  const hierarchy::WideTree::Node& root = sites.wide.nodes[0];
+  for (std::uint32_t i = 0; i < root.count; ++i) {
+    if (hierarchy::WideTree::is_leaf(root.child[i])) {
+      include(root, i);
+      continue;
+    }
+    const hierarchy::WideTree::Node& node = sites.wide.nodes[root.child[i]];
+    for (std::uint32_t j = 0; j < node.count; ++j) include(node, j);
+  }
+  return {centre, (std::sqrt(squared) + kRounding) / sites.frame.scale};
+}
+
+}  // namespace
 
 Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
   if (atlas) surface_.emplace(mesh, *atlas);
@@ -39,6 +71,7 @@ void Body::require_boundary() const {
 
 void Body::follow_positions() {
   box_ = bounds(sites_.mesh());
+  ball_ = ball_about(0.5 * (box_.lo + box_.hi), internals(sites_));
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
   if (inside_)
     inside_->refit();

@@ -12,6 +12,7 @@
 
 #include "inside/inside.h"
 #include "inside/solid_boundary.h"
+#include "proximity/shape/node_ball.h"
 
 namespace sdm::shape {
 
@@ -30,6 +31,8 @@ class Body {
   [[nodiscard]] const Sites& sites() const { return sites_; }
   /// The bounding box of all faces.
   [[nodiscard]] const Box& box() const { return box_; }
+  /// A ball about the middle of the box that contains all faces: of round bodies, it is smaller than the box.
+  [[nodiscard]] const Ball& ball() const { return ball_; }
   /// Whether it is a solid, with an inside.
   [[nodiscard]] bool solid() const { return internals(sites_).is_solid(); }
   [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
@@ -49,6 +52,7 @@ class Body {
   std::optional<Surface> surface_;
   Sites sites_;
   Box box_;
+  Ball ball_;
   std::optional<inside::InsideTest> inside_;
   std::vector<std::uint32_t> contact_parts_;
 

@@ -3,6 +3,7 @@
 
 #include <sdm/shape.h>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -44,13 +45,30 @@ class PosedBody {
   [[nodiscard]] const mesh::Similarity& pose() const { return pose_; }
   /// A box that contains the posed body.
   [[nodiscard]] const Box& box() const { return box_; }
+  /// A ball that contains it.
+  [[nodiscard]] const Ball& ball() const { return ball_; }
+  /// What the box has in common with that of the ball, which is smaller for bodies that are round and turned.
+  [[nodiscard]] Box tight_box() const {
+    const Vec3 reach{ball_.radius, ball_.radius, ball_.radius};
+    Box box{ball_.centre - reach, ball_.centre + reach};
+    for (int k = 0; k < 3; ++k)
+      box.lo[k] = std::max(box.lo[k], box_.lo[k]), box.hi[k] = std::min(box.hi[k], box_.hi[k]);
+    return box;
+  }
 
  private:
-  void follow() { box_ = image(pose_.map, body().box()); }
+  void follow() {
+    constexpr double kRounding = 1e-15;  // of mapped points
+    box_ = image(pose_.map, body().box());
+    const auto& [centre, radius] = body().ball();
+    ball_ = {pose_.map(centre), pose_.scale * radius};
+    ball_.radius += kRounding * (norm(pose_.map.offset) + pose_.scale * (norm(centre) + radius));
+  }
 
   Shape shape_;
   mesh::Similarity pose_;
   Box box_;
+  Ball ball_;
 };
 
 }  // namespace sdm::shape
