@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kPointsPerLeaf = 14, kFewPoints = 64;
 // Scattered points have no use for a list: with more leaves than this for each, the points of a packet are
 // searched one at a time. (Measured.)
-constexpr std::size_t kLeavesPerPoint = 16;
+constexpr std::size_t kLeavesPerPoint = 4;
 // Lists of up to this many sites are evaluated for all packets of a ball instead of being filtered further:
 // more where there are only four packets. (Measured.)
 constexpr std::size_t few_sites(int level) {

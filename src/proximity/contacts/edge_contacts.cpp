@@ -69,7 +69,9 @@ void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, do
   for_faces_near(edge, sites, limit, [&](std::uint32_t face) {
     const auto& [i, j, k] = sites.mesh.triangles[face];
     const Corners corners{sites.mesh.positions[i], sites.mesh.positions[j], sites.mesh.positions[k]};
-    const PointPair closest = closest_or_common({edge.a, edge.b, edge.b}, corners);
+    const Corners segment{edge.a, edge.b, edge.b};
+    if (squared_box_distance(segment, corners) > limit * limit) return;
+    const PointPair closest = closest_or_common(segment, corners);
     const double distance = std::sqrt(closest.squared);
     if (distance > limit) return;
     const auto distance_at = [&](double t) {
