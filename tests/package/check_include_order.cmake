@@ -26,6 +26,7 @@ set(order
   map
   registration
   hausdorff
+  volume
   rays
   proximity/exact
   proximity/shape

@@ -1,0 +1,14 @@
+// Scan conversion of characteristic polyhedra in a narrow band (Mauch 2003; Sigg, Peikert & Gross 2003).
+#pragma once
+
+#include <span>
+
+#include "volume/field_writer.h"
+
+namespace sdm::volume {
+
+/// Computes the distances within the band, unsigned, and their sites if `winners` has one entry per point of
+/// the grid. Fills the counters and the working memory of the report.
+void scan_convert(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners);
+
+}  // namespace sdm::volume

@@ -1,0 +1,268 @@
+#include "volume/sweep_slices.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "volume/draw_span.h"
+#include "volume/drawn_sites.h"
+#include "volume/slice_polygon.h"
+#include "volume/slice_store.h"
+
+namespace sdm::volume {
+namespace {
+
+// What distinguishes the methods.
+struct SweepRules {
+  bool regions;  // sites are clipped by all walls of their region, not only by those that distances require
+  bool bounds;   // the largest distance of a slice bounds that of the next
+  bool retires;  // sites without influence on a slice are culled from later ones
+
+  explicit SweepRules(FieldMethod method)
+      : regions(method == FieldMethod::linear_factorization),
+        bounds(method != FieldMethod::brute_force),
+        retires(method != FieldMethod::brute_force) {}
+};
+
+// The part of a slice in which a site is drawn.
+struct SlicePolygon {
+  std::uint32_t site;  // its place among the active ones
+  gl::ConvexPolygon drawn;
+  bool may_retire = false;
+  gl::ConvexPolygon tested;  // the larger part in which it is tested whether the site influences the slice
+};
+
+// Sites whose polygons are clipped by one thread.
+struct Chunk {
+  std::vector<SlicePolygon> polygons;
+  std::uint64_t culled = 0, empty = 0;
+};
+
+// Sweeps a plane over the slices, from the lowest z up.
+//
+// Bounds: distances are 1-Lipschitz, so no distance in a slice exceeds the largest one of the slice before by
+// more than dz. With the largest distance d, a site that is dz away from the slice is drawn within the radius
+// √(d² − dz²) (SOM04).
+//
+// Retiring: the points closest to a site form a set V that contains, with x, the segment from x to its
+// closest point of the site. So if a site lies below a slice that V does not meet, V does not meet any slice
+// above. V does not meet the slice if, at every grid point g, the site is farther than the distance there by
+// more than 2 r, where r is half a cell's diagonal: any x of the slice is within r of some g, and the
+// difference of the two distances is 2-Lipschitz. It suffices to test the points within r of the site's
+// polygon. The distance drawn for a face or edge, that of its plane or line, is a lower bound on that of the
+// site. This requires that the segment crosses the slice inside the grid: only sites above whose box the grid
+// extends are retired.
+class SliceSweep {
+ public:
+  SliceSweep(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners)
+      : task_(task),
+        report_(field.report),
+        grid_(task.grid, task.sites.frame),
+        method_(task.options.method),
+        rules_(task, grid_),
+        sites_(drawn_sites(task.sites)),
+        store_(task, field, winners),
+        radius_(0.5 * std::hypot(grid_.step[0], grid_.step[1])) {
+    active_.resize(sites_.size());
+    for (std::uint32_t i = 0; i < active_.size(); ++i) active_[i] = i;
+  }
+
+  void run() {
+    double reach = method_.bounds ? first_bound() : rules_.limit;
+    for (std::uint32_t k = 0; k < grid_.dims[2]; ++k) {
+      const Progress& progress = task_.options.progress;
+      if (progress && !progress("field", k / (grid_.dims[2] + 0.0))) throw Cancelled();
+      const Slice slice(grid_, k);
+      clip(slice, reach);
+      draw(slice);
+      const double largest = store(k);
+      if (method_.retires) retire();
+      if (method_.bounds) reach = std::min(rules_.limit, largest + grid_.step[2] + rules_.margin);
+    }
+    if (task_.options.progress && !task_.options.progress("field", 1)) throw Cancelled();
+    report_.sites = sites_.size();
+    report_.pairs = std::uint64_t{sites_.size()} * grid_.dims[2];
+    report_.working_bytes = working_bytes();
+  }
+
+ private:
+  static constexpr std::size_t kChunk = 256;  // sites
+  static constexpr std::uint32_t kBand = 16;  // rows drawn by one thread
+
+  // An upper bound on the distances in the first slice: to some of the sites.
+  [[nodiscard]] double first_bound() const {
+    constexpr std::size_t kTried = 256;
+    double bound = rules_.limit;
+    const Slice slice(grid_, 0);
+    const double u = grid_.dims[0] - 1.0, v = grid_.dims[1] - 1.0;
+    for (std::size_t i = 0; i < sites_.size(); i += 1 + sites_.size() / kTried) {
+      double farthest = 0;
+      for (const Vec2& corner : {Vec2{0, 0}, Vec2{u, 0}, Vec2{0, v}, Vec2{u, v}})
+        farthest = std::max(farthest, norm(slice.point(corner) - sites_[i].region.corners[0]));
+      bound = std::min(bound, farthest + rules_.margin);
+    }
+    return bound;
+  }
+
+  // Clips the active sites to the slice; no distance in it exceeds `reach`.
+  void clip(const Slice& slice, double reach) {
+    chunks_.resize((active_.size() + kChunk - 1) / kChunk);
+    parallel_for(chunks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) {
+        Chunk& chunk = chunks_[c];
+        chunk.polygons.clear();
+        chunk.culled = chunk.empty = 0;
+        for (std::size_t a = kChunk * c; a < std::min(active_.size(), kChunk * (c + 1)); ++a)
+          clip(slice, reach, static_cast<std::uint32_t>(a), chunk);
+      }
+    });
+    keep_.assign(active_.size(), 1);
+    report_.pairs_culled += sites_.size() - active_.size();
+    for (const Chunk& chunk : chunks_) {
+      report_.pairs_culled += chunk.culled;
+      report_.pairs_empty += chunk.empty;
+      for (const SlicePolygon& p : chunk.polygons) keep_[p.site] = p.may_retire ? 0 : 1;
+    }
+  }
+
+  void clip(const Slice& slice, double reach, std::uint32_t active, Chunk& chunk) const {
+    const DrawnSite& site = sites_[active_[active]];
+    const double gap = slice.gap(site);
+    if (method_.bounds && gap > reach) {
+      ++chunk.culled;
+      return;
+    }
+    const int walls = method_.regions ? site.region.wall_count : site.region.strict_walls;
+    const auto within = [&](double distance, double slack) {
+      const double radius = std::sqrt(std::max(0.0, distance * distance - gap * gap)) + slack;
+      return slice.clip(method_.bounds ? slice.around(site, radius) : slice.whole(), site.region, walls,
+                        slack);
+    };
+    SlicePolygon polygon{active, within(reach, rules_.slack), method_.retires && may_retire(slice, site), {}};
+    if (polygon.may_retire) polygon.tested = within(reach + radius_, rules_.slack + radius_);
+    if (polygon.drawn.empty()) ++chunk.empty;
+    if (!polygon.drawn.empty() || polygon.may_retire) chunk.polygons.push_back(polygon);
+  }
+
+  [[nodiscard]] bool may_retire(const Slice& slice, const DrawnSite& site) const {
+    if (!(site.box.hi[2] < slice.z())) return false;
+    for (int k = 0; k < 2; ++k)
+      if (site.box.lo[k] < grid_.at(k, 0) || site.box.hi[k] > grid_.at(k, grid_.dims[k] - 1)) return false;
+    return true;
+  }
+
+  void draw(const Slice& slice) {
+    const std::uint32_t width = grid_.dims[0], height = grid_.dims[1];
+    const auto limit = static_cast<float>(rules_.limit * rules_.limit);
+    bands_.resize((height + kBand - 1) / kBand);
+    std::atomic<std::uint64_t> evaluations{0};
+    parallel_for(bands_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      thread_local PolygonRows rows;
+      for (std::size_t b = begin; b < end; ++b) {
+        const auto first = static_cast<std::uint32_t>(kBand * b), last = std::min(first + kBand, height);
+        DepthRows& band = bands_[b];
+        band.reset(width, last - first, limit);
+        std::uint64_t count = 0;
+        for (const Chunk& chunk : chunks_)
+          for (const SlicePolygon& polygon : chunk.polygons) {
+            const DrawnSite& site = sites_[active_[polygon.site]];
+            rows.find(polygon.drawn, first, last, width);
+            count += draw(slice, site, rows, first, band);
+            if (polygon.may_retire && !kept(polygon.site)) {
+              rows.find(polygon.tested, first, last, width);
+              if (influences(slice, site, rows, first, band)) keep(polygon.site);
+            }
+          }
+        evaluations += count;
+      }
+    });
+    report_.evaluations += evaluations;
+  }
+
+  // Draws a site in the rows; returns the number of points.
+  static std::uint64_t draw(const Slice& slice, const DrawnSite& site, const PolygonRows& rows,
+                            std::uint32_t first_row, DepthRows& band) {
+    std::uint64_t count = 0;
+    for (std::uint32_t r = 0; r < rows.count(); ++r) {
+      const auto [begin, end] = rows.points(r);
+      if (begin == end) continue;
+      const std::size_t at = (rows.first() + r - first_row) * band.stride + begin;
+      draw_span(band.squared.data() + at, band.winner.data() + at, end - begin,
+                span_vector(slice, site, begin, rows.first() + r), site.code);
+      count += end - begin;
+    }
+    return count;
+  }
+
+  [[nodiscard]] bool influences(const Slice& slice, const DrawnSite& site, const PolygonRows& rows,
+                                std::uint32_t first_row, const DepthRows& band) const {
+    const auto reach = static_cast<float>(2 * radius_ + rules_.margin);
+    for (std::uint32_t r = 0; r < rows.count(); ++r) {
+      const auto [begin, end] = rows.points(r);
+      const std::size_t at = (rows.first() + r - first_row) * band.stride + begin;
+      if (comes_within(band.squared.data() + at, end - begin,
+                       span_vector(slice, site, begin, rows.first() + r), reach))
+        return true;
+    }
+    return false;
+  }
+
+  /// Returns the largest distance of the slice.
+  double store(std::uint32_t k) {
+    largest_.assign(bands_.size(), 0);
+    parallel_for(bands_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        const auto first = static_cast<std::uint32_t>(kBand * b);
+        for (std::uint32_t j = first; j < std::min(first + kBand, grid_.dims[1]); ++j)
+          largest_[b] = std::max(largest_[b], store_.store(bands_[b], j - first, j, k));
+      }
+    });
+    return std::sqrt(double{*std::max_element(largest_.begin(), largest_.end())});
+  }
+
+  void retire() {
+    std::size_t kept = 0;
+    for (std::size_t a = 0; a < active_.size(); ++a)
+      if (keep_[a] != 0) active_[kept++] = active_[a];
+    active_.resize(kept);
+  }
+
+  // Set by the threads of several bands.
+  [[nodiscard]] bool kept(std::uint32_t active) {
+    return std::atomic_ref(keep_[active]).load(std::memory_order_relaxed) != 0;
+  }
+  void keep(std::uint32_t active) { std::atomic_ref(keep_[active]).store(1, std::memory_order_relaxed); }
+
+  [[nodiscard]] std::size_t working_bytes() const {
+    std::size_t bytes =
+        sites_.capacity() * sizeof(DrawnSite) + active_.capacity() * sizeof(std::uint32_t) + keep_.capacity();
+    for (const Chunk& chunk : chunks_) bytes += chunk.polygons.capacity() * sizeof(SlicePolygon);
+    for (const DepthRows& band : bands_) bytes += band.bytes();
+    return bytes;
+  }
+
+  const FieldTask& task_;
+  FieldReport& report_;
+  const UnitGrid grid_;
+  const SweepRules method_;
+  const SliceRules rules_;
+  const std::vector<DrawnSite> sites_;
+  const SliceStore store_;
+  const double radius_;                // no point of a slice is farther from all points of the grid
+  std::vector<std::uint32_t> active_;  // sites that are not retired, in order
+  std::vector<std::uint8_t> keep_;     // of each of them: it may influence slices above
+  std::vector<Chunk> chunks_;
+  std::vector<DepthRows> bands_;
+  std::vector<float> largest_;  // squared distance of each band
+};
+
+}  // namespace
+
+void sweep_slices(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners) {
+  SliceSweep(task, field, winners).run();
+}
+
+}  // namespace sdm::volume
