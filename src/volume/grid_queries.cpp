@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/geometry/spatial_order.h"
 #include "core/parallel.h"
+#include "engine/blocks.h"
 #include "volume/grid.h"
 
 namespace sdm::volume {
@@ -107,20 +109,26 @@ class NearBalls {
   double slack_;
 };
 
+// In an order in which neighbours are near each other.
 std::vector<std::size_t> near_bricks(const Bricks& bricks, const Grid& grid, const NearBalls& near_balls) {
-  constexpr std::size_t kGrain = 4096;
+  std::vector<Ball> balls(bricks.total());
+  std::vector<Vec3> centres(bricks.total());
+  for (std::size_t b = 0; b < balls.size(); ++b) {
+    balls[b] = ball_of(grid, bricks.first_point(b), bricks.size);
+    centres[b] = balls[b].centre;
+  }
+  const std::vector<std::uint32_t> order = spatial_order(centres);
   std::vector<std::uint8_t> is_near(bricks.total());
-  parallel_for(bricks.total(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Ball> balls;
-    for (std::size_t b = begin; b < end; ++b)
-      balls.push_back(ball_of(grid, bricks.first_point(b), bricks.size));
+  engine::for_each_block(order.size(), {}, {}, [&](std::size_t begin, std::size_t end) {
+    std::vector<Ball> block;
+    for (std::size_t i = begin; i < end; ++i) block.push_back(balls[order[i]]);
     std::vector<std::uint8_t> near;
-    near_balls.find(balls, near);
-    std::copy(near.begin(), near.end(), is_near.begin() + static_cast<std::ptrdiff_t>(begin));
+    near_balls.find(block, near);
+    std::ranges::copy(near, is_near.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   std::vector<std::size_t> result;
-  for (std::size_t b = 0; b < is_near.size(); ++b)
-    if (is_near[b] != 0) result.push_back(b);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    if (is_near[i] != 0) result.push_back(order[i]);
   return result;
 }
 
