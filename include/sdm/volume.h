@@ -114,6 +114,9 @@ struct DistanceField {
   std::vector<std::uint32_t> site;  ///< index of the closest site among those of its type; empty unless asked
   std::vector<SiteType> site_type;  ///< empty unless asked for
   double band = std::numeric_limits<double>::infinity();
+  /// Upper bound on the error of a distance, rounding to float included: FieldMethodInfo::relative_error
+  /// times the diagonal of the box of O2 and the grid.
+  double accuracy = 0;
   SignUsed sign;
   std::size_t beyond_band = 0;  ///< points without a value
   FieldReport report;
@@ -134,44 +137,51 @@ struct DistanceField {
 /// bounds that hold because distances are 1-Lipschitz.
 struct FieldSample {
   double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN outside the grid, and beside a NaN
-  double lower = -std::numeric_limits<double>::infinity();
+  double lower = -std::numeric_limits<double>::infinity();  ///< lower ≤ distance ≤ upper
   double upper = std::numeric_limits<double>::infinity();
+  double magnitude = 0;  ///< ≤ |distance|: beyond the band of a signed field more than the two imply
 };
 
-/// |value − truth| ≤ interpolation_error(grid). Points outside the grid have bounds from its nearest point.
-/// Throws sdm::Error for a coordinate that is NaN, or a field whose arrays do not fit its grid. Cost:
-/// constant per point.
+/// |value − distance| ≤ interpolation_error(grid) + field.accuracy, unless signs are estimates
+/// (SignMethod::winding), where bounds hold for either sign. Points outside the grid have bounds from
+/// its nearest point. Throws sdm::Error for a coordinate that is not finite, or a field whose arrays do not
+/// fit its grid. Cost: constant per point, all cores.
 [[nodiscard]] SDM_API std::vector<FieldSample> sample_field(const DistanceField& field,
                                                             std::span<const Vec3> points);
 
-/// Half the diagonal of a cell: the largest error of an interpolated distance, besides that of the values.
+/// Half the diagonal of a cell. An interpolated distance is a mean of the distances at the corners c of the
+/// cell, with weights w, each of which differs from that at the point p by at most |c − p|; and
+/// Σ w |c − p| ≤ √(Σ w |c − p|²) = √(Σ h² t (1 − t)), over the axes with spacing h and place t in the cell.
 [[nodiscard]] SDM_API double interpolation_error(const Grid& grid);
 
 struct FieldProximityOptions {
-  /// O1 is sampled at its vertices, and inside its edges and faces at points at most this far apart; 0: the
-  /// smallest spacing of the grid.
+  /// O1 is sampled at the corners of the triangles that its faces are divided into, with sides of at most
+  /// this length; 0: the smallest spacing of the grid.
   double sample_spacing = 0;
   Progress progress{};
 };
 
-/// Proximity of O1 and O2 from O2's field, as volumetric methods determine it: for comparison only, since
-/// ProximityQuery has exact results.
+/// Proximity of the surface of O1 and O2 from the field of O2, as volumetric methods determine it: for
+/// comparison, since ProximityQuery has exact results. Values are estimates, between bounds that hold for all
+/// points of O1's surface, not only for the samples.
 struct FieldProximity {
-  /// The smallest |distance| of a sample: an estimate, with bounds that hold for the surfaces.
-  BoundedLength separation;
-  /// The largest depth of a sample inside O2, 0 if there is none; empty for an unsigned field. Bounds hold
-  /// for the points of O1.
+  BoundedLength separation;  ///< between the surfaces: the smallest |value| of a sample
+  /// How far the surface of O1 reaches into O2: the largest −value of a sample, 0 if none is inside. Empty
+  /// for an unsigned field.
   std::optional<BoundedLength> depth;
-  bool colliding = false;  ///< as those methods decide it: some sample has a distance ≤ 0
-  /// Certain: a sample is inside, or no point of O1 is, by the bounds.
-  bool collision_decided = false;
+  /// As those methods decide it: the value of a sample is not positive, or for an unsigned field not above
+  /// error_bound. `exact` where the bounds imply it: a sample is inside O2, or no point of O1's surface is
+  /// inside or on it; otherwise an estimate.
+  BoundedBool colliding;
   std::size_t samples = 0;
-  std::size_t without_value = 0;  ///< samples outside the grid or beyond the band
-  double error_bound = 0;         ///< of interpolation and of sampling together
+  std::size_t without_value = 0;  ///< samples outside the grid or beside points beyond the band
+  double covering_radius = 0;     ///< no point of O1's surface is farther from all samples
+  /// Of the values, as far as samples have one: interpolation_error, field.accuracy and covering_radius.
+  double error_bound = 0;
 };
 
-/// Throws sdm::Error as sample_field does, if O1 is unusable (see validate), for a spacing that is negative,
-/// or if there would be too many samples; Cancelled. Cost: linear in the samples, all cores.
+/// Throws sdm::Error as sample_field does, if O1 is unusable (see validate), for a spacing that is negative
+/// or NaN, or if there would be more than 10^10 samples; Cancelled. Cost: linear in the samples, all cores.
 [[nodiscard]] SDM_API FieldProximity field_proximity(const DistanceField& field, const Mesh& o1,
                                                      const FieldProximityOptions& options = {});
 

@@ -76,6 +76,7 @@ DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOpt
   field.band = options.band;
   field.sign = choose_sign(sites, options.sign);
   field.report.method = options.method;
+  field.accuracy = length_of_error(method, grid, sites.mesh());
   const bool is_signed = field.sign.method != SignMethod::none;
   const bool by_engine = options.method == FieldMethod::best || options.method == FieldMethod::reference;
   const bool by_winners = !by_engine && (is_signed || options.sites);
@@ -83,7 +84,7 @@ DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOpt
 
   Stopwatch watch;
   const sites::SitesData& data = internals(sites);
-  const inside::InsideTest is_inside(data, field.sign.method, length_of_error(method, grid, data.mesh));
+  const inside::InsideTest is_inside(data, field.sign.method, field.accuracy);
   const FieldTask task{sites, data, grid, options, is_inside, is_signed};
   std::vector<std::uint32_t> winners;  // for signs and sites
   if (by_winners) winners.assign(grid.size(), kNone);
