@@ -44,6 +44,7 @@ set(order
   io/write/pictures
   io/write/model
   io/write
+  io/write/fields
   io/write/report
   io/write/vertices
   io/points)

@@ -13,9 +13,10 @@
 
 namespace sdm {
 
-std::string io::npy_header(std::string_view type, std::span<const std::uint64_t> shape) {
+std::string io::npy_header(std::string_view type, std::span<const std::uint64_t> shape, NpyOrder order) {
   constexpr std::size_t kHeaderSize = 128;
-  std::string dictionary = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}{}), }}", type,
+  std::string dictionary = fmt::format("{{'descr': '{}', 'fortran_order': {}, 'shape': ({}{}), }}", type,
+                                       order == NpyOrder::first_fastest ? "True" : "False",
                                        fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
   std::string header = "\x93NUMPY";
   header += {'\1', '\0'};

@@ -8,8 +8,12 @@
 
 namespace sdm::io {
 
-/// The header of NPY version 1.0 (NumPy's NEP 1) for numbers of `type`, such as "<f4", with the last index
-/// varying fastest. Padded to 128 bytes for every shape; `shape` has at most three indices.
-[[nodiscard]] std::string npy_header(std::string_view type, std::span<const std::uint64_t> shape);
+/// The index that varies fastest from one number to the next.
+enum class NpyOrder { last_fastest, first_fastest };
+
+/// The header of NPY version 1.0 (NumPy's NEP 1) for numbers of `type`, such as "<f4". Padded to 128 bytes
+/// for every shape; `shape` has at most three indices.
+[[nodiscard]] std::string npy_header(std::string_view type, std::span<const std::uint64_t> shape,
+                                     NpyOrder order = NpyOrder::last_fastest);
 
 }  // namespace sdm::io
