@@ -35,3 +35,4 @@
 #include <sdm/uv_tiles.h>
 #include <sdm/version.h>
 #include <sdm/vertex_distances.h>
+#include <sdm/volume.h>

@@ -117,6 +117,7 @@ struct DistanceField {
   /// Upper bound on the error of a distance, rounding to float included: FieldMethodInfo::relative_error
   /// times the diagonal of the box of O2 and the grid.
   double accuracy = 0;
+  Box o2_bounds{};  ///< no point outside of it is inside O2
   SignUsed sign;
   std::size_t beyond_band = 0;  ///< points without a value
   FieldReport report;
@@ -144,8 +145,8 @@ struct FieldSample {
 
 /// |value − distance| ≤ interpolation_error(grid) + field.accuracy, unless signs are estimates
 /// (SignMethod::winding), where bounds hold for either sign. Points outside the grid have bounds from
-/// its nearest point. Throws sdm::Error for a coordinate that is not finite, or a field whose arrays do not
-/// fit its grid. Cost: constant per point, all cores.
+/// its nearest point and from the box of O2. Throws sdm::Error for a coordinate that is not finite, or a
+/// field whose arrays do not fit its grid. Cost: constant per point, all cores.
 [[nodiscard]] SDM_API std::vector<FieldSample> sample_field(const DistanceField& field,
                                                             std::span<const Vec3> points);
 
@@ -165,7 +166,8 @@ struct FieldProximityOptions {
 /// comparison, since ProximityQuery has exact results. Values are estimates, between bounds that hold for all
 /// points of O1's surface, not only for the samples.
 struct FieldProximity {
-  BoundedLength separation;  ///< between the surfaces: the smallest |value| of a sample
+  /// Between the surfaces: the smallest |value| of a sample; `upper` if none has a value.
+  BoundedLength separation;
   /// How far the surface of O1 reaches into O2: the largest −value of a sample, 0 if none is inside. Empty
   /// for an unsigned field.
   std::optional<BoundedLength> depth;

@@ -41,12 +41,11 @@ std::string name_of(const Grid& grid) {
          std::to_string(grid.dims[2]) + " points";
 }
 
-// Numbers of points are below 2^60, so no number of bytes here overflows.
 void allocate(DistanceField& field, bool with_sites, std::size_t more_bytes_per_point) {
   const std::size_t count = field.grid.size();
   const std::size_t bytes = sizeof(float) + (with_sites ? sizeof(std::uint32_t) + sizeof(SiteType) : 0);
-  constexpr std::size_t kMost = std::size_t{1} << 58;
-  require_memory(count < kMost ? count * (bytes + more_bytes_per_point) : kMost, name_of(field.grid));
+  static_assert(sizeof(float) + 2 * sizeof(std::uint32_t) + sizeof(SiteType) < 16);  // for up to 2^60 points
+  require_memory(count * (bytes + more_bytes_per_point), name_of(field.grid));
   field.distance.assign(count, std::numeric_limits<float>::quiet_NaN());
   if (with_sites) {
     field.site.assign(count, kNone);
@@ -76,6 +75,7 @@ DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOpt
   field.band = options.band;
   field.sign = choose_sign(sites, options.sign);
   field.report.method = options.method;
+  field.o2_bounds = bounds(sites.mesh());
   field.accuracy = length_of_error(method, grid, sites.mesh());
   const bool is_signed = field.sign.method != SignMethod::none;
   const bool by_engine = options.method == FieldMethod::best || options.method == FieldMethod::reference;

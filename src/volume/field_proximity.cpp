@@ -127,7 +127,8 @@ FieldProximity field_proximity(const DistanceField& field, const Mesh& o1,
   result.samples = all.samples;
   result.without_value = all.without_value;
   result.error_bound = interpolation_error(field.grid) + field.accuracy + result.covering_radius;
-  result.separation = length(all.nearest, all.nearest_lower, all.nearest_upper);
+  result.separation = length(std::isfinite(all.nearest) ? all.nearest : all.nearest_upper, all.nearest_lower,
+                             all.nearest_upper);
   if (sign != SignMethod::none) {
     result.depth = length(std::max(-all.lowest, 0.0), -all.lowest_upper, -all.lowest_lower);
     if (sign == SignMethod::winding) result.depth->certainty = Certainty::estimate;

@@ -86,6 +86,9 @@ FieldSample Interpolation::operator()(const Vec3& p) const {
     include(sample, d, norm(grid.point(at[0], at[1], at[2]) - p) + field_.accuracy, field_);
   }
   if (!outside) sample.value = value;
+  const double apart = norm(gap(field_.o2_bounds, {p, p}));
+  sample.magnitude = std::max(sample.magnitude, apart);
+  if (apart > 0 && field_.sign.method == SignMethod::exact) sample.lower = std::max(sample.lower, apart);
   complete(sample, field_.sign.method);
   return sample;
 }
