@@ -14,6 +14,7 @@
 #include "self.h"
 #include "sequence.h"
 #include "usage_error.h"
+#include "volume.h"
 
 #include <sdm/error.h>
 #include <sdm/version.h>
@@ -74,6 +75,7 @@ int run(int argc, char** argv) {
     add_bodies_command(app);
     add_sequence_command(app);
     add_self_command(app);
+    add_volume_command(app);
     add_info_command(app);
     add_devices_command(app);
     add_scene_command(app);
