@@ -40,7 +40,8 @@ const std::vector<Command> kCommands{
     {"sequence", {"sequence", "FRAMES", "O2", "--maps", "2", "-o", "OUT"}, "frames.jsonl"},
     {"scene", {"scene", "letters", "--frames", "4", "-o", "OUT"}, "scene.json"},
     {"scene_ply", {"scene", "letters", "--frames", "4", "--format", "ply", "-o", "OUT"}, "scene.json"},
-    {"info", {"info", "O1", "--self-intersections", "OUT/pairs.csv"}, "pairs.csv"}};
+    {"info", {"info", "O1", "--self-intersections", "OUT/pairs.csv"}, "pairs.csv"},
+    {"volume", {"volume", "O2", "--grid", "70", "70", "70", "--sites", "-o", "OUT/field.vti"}, "field.vti"}};
 
 struct Termination : ::testing::TestWithParam<Command>, TwoTori {
   using Files = std::map<std::string, std::string>;  // contents by names relative to the folder
@@ -63,7 +64,8 @@ struct Termination : ::testing::TestWithParam<Command>, TwoTori {
       if (a.starts_with("OUT")) a.replace(0, 3, out);
     }
     const std::string& name = arguments[0];
-    if (name != "scene" && name != "info") arguments.insert(arguments.end(), {"--resolution", resolution});
+    if (name != "scene" && name != "info" && name != "volume")
+      arguments.insert(arguments.end(), {"--resolution", resolution});
     return arguments;
   }
   /// All files but those in staging folders.
