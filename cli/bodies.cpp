@@ -51,11 +51,11 @@ void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies,
     bodies.nearest_map(body, nearest);
     const std::filesystem::path folder = out.staging(fmt::to_string(body));
     std::vector<float> at_vertices;
-    if (command.map_files.glb)
+    if (command.map_files.glb || command.map_files.views)
       at_vertices = sdm::nearest_distances_at_vertices(bodies, body, command.options.max_distance);
     const sdm::PictureOptions picture{.units = command.units};
-    write_map_files(folder, command.map_files, bodies.surface(body), nearest.map, at_vertices, picture,
-                    sdm::fixed_colors(picture, sdm::statistics(bodies.surface(body), nearest.map)));
+    write_map_files(folder, command.map_files, bodies.surface(body), nearest.map, at_vertices, nullptr,
+                    picture, sdm::fixed_colors(picture, sdm::statistics(bodies.surface(body), nearest.map)));
     sdm::write_npy(folder / "body.npy", nearest.map.resolution, nearest.body);
   }
 }

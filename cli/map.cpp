@@ -167,7 +167,9 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   outcome.distance = sdm::statistics(*surface, map);
   const sdm::PictureOptions fixed = sdm::fixed_colors(picture, outcome.distance);
   sdm::run_concurrently({
-      [&] { write_map_files(folder, command.files, *surface, map, at_vertices, picture, fixed, exr); },
+      [&] {
+        write_map_files(folder, command.files, *surface, map, at_vertices, &to.mesh, picture, fixed, exr);
+      },
       [&] {
         if (on.vertices) write_vertex_files(folder, command.files, *on.vertices, at_vertices);
       },

@@ -20,6 +20,7 @@ const std::vector<Kind>& kinds() {
       {"png", &MapFiles::png, false, {"distance.png", "voronoi.png", "direction.png"}},
       {"glb", &MapFiles::glb, false, {"model.glb"}},
       {"html", &MapFiles::html, true, {"report.html"}},
+      {"views", &MapFiles::views, false, {"views.png"}},
       {"texture", &MapFiles::texture, false, {"distance_texture.png", "distance_texture.json"}},
       {"ply", &MapFiles::ply, true, {"vertices.ply"}},
       {"csv", &MapFiles::csv, true, {"vertices.csv"}},
@@ -87,8 +88,8 @@ void add_write_option(CLI::App& app, MapFiles& files, bool of_one_input) {
   }
   choices.emplace_back("none");
   std::string help =
-      "The files of a map to write: exr: map.exr; png: the three pictures; glb: model.glb; texture: the "
-      "distance as 16-bit grey; ";
+      "The files of a map to write: exr: map.exr; png: the three pictures; glb: model.glb; views: "
+      "six shaded views of O1 in one picture; texture: the distance as 16-bit grey; ";
   if (files.html) help += "html: report.html; ";
   if (of_one_input)
     help +=
@@ -133,7 +134,7 @@ void add_channels_option(CLI::App& app, sdm::ExrLayers& layers) {
 }
 
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
-                     const sdm::DistanceMap& map, std::span<const float> at_vertices,
+                     const sdm::DistanceMap& map, std::span<const float> at_vertices, const sdm::Mesh* other,
                      const sdm::PictureOptions& picture, const sdm::PictureOptions& fixed,
                      const sdm::ExrOptions& exr) {
   std::vector<std::function<void()>> work;
@@ -145,6 +146,9 @@ void write_map_files(const std::filesystem::path& folder, const MapFiles& files,
     work.push_back([&] { sdm::write_direction_png(folder / "direction.png", surface, map, fixed); });
     work.push_back([&] { sdm::write_voronoi_png(folder / "voronoi.png", surface, map, fixed); });
   }
+  if (files.views)
+    work.push_back(
+        [&] { sdm::write_views_png(folder / "views.png", surface, map, at_vertices, other, fixed); });
   if (files.texture)
     work.push_back([&] {
       const char* name = "distance_texture.png";

@@ -18,6 +18,7 @@ struct MapFiles {
   /// report.html: written by the commands that offer it, as it contains their report
   bool html = true;
   bool texture = false;                                     ///< distance_texture.png and .json
+  bool views = false;                                       ///< views.png
   bool ply = false, csv = false, npy = false, vtp = false;  ///< vertices.ply, ...
 
   /// Whether there is a file of the input's vertices.
@@ -39,10 +40,10 @@ void add_write_option(CLI::App& app, MapFiles& files, bool of_one_input);
 void add_channels_option(CLI::App& app, sdm::ExrLayers& layers);
 
 /// Writes the files but report.html concurrently. `at_vertices`: the distance at each vertex of the surface's
-/// mesh. `picture`: as given, of the texture; `fixed`: the same by fixed_colors(), of the pictures and the
-/// model. `exr`: of map.exr.
+/// mesh. `other`: the other mesh of the views, or null. `picture`: as given, of the texture; `fixed`: the
+/// same by fixed_colors(), of the pictures and the model. `exr`: of map.exr.
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
-                     const sdm::DistanceMap& map, std::span<const float> at_vertices,
+                     const sdm::DistanceMap& map, std::span<const float> at_vertices, const sdm::Mesh* other,
                      const sdm::PictureOptions& picture, const sdm::PictureOptions& fixed,
                      const sdm::ExrOptions& exr = {});
 

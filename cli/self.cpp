@@ -52,11 +52,14 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   progress.step("export");
   const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
   const sdm::PictureOptions fixed = sdm::fixed_colors(command.picture, distance);
-  sdm::run_concurrently(
-      {[&] { write_map_files(folder, command.files, surface, map, at_vertices, command.picture, fixed); },
-       [&] {
-         if (input.vertices) write_vertex_files(folder, command.files, *input.vertices, at_vertices);
-       }});
+  sdm::run_concurrently({[&] {
+                           write_map_files(folder, command.files, surface, map, at_vertices, nullptr,
+                                           command.picture, fixed);
+                         },
+                         [&] {
+                           if (input.vertices)
+                             write_vertex_files(folder, command.files, *input.vertices, at_vertices);
+                         }});
   const double export_ms = watch.lap();
 
   Json report;

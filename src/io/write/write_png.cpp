@@ -4,12 +4,12 @@
 #include "io/write/pictures/color_scale.h"
 #include "io/write/pictures/legend.h"
 #include "io/write/pictures/png.h"
-#include "io/write/pictures/ticks.h"
 
 #include <sdm/io.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 namespace sdm {
@@ -17,20 +17,6 @@ namespace sdm {
 using namespace io;
 
 namespace {
-
-LegendText legend_text(const DistanceMap& map, const ColorScale& scale, const std::string& units) {
-  LegendText text{"Distance", units, {}, map.beyond_max_distance > 0};
-  float least = std::numeric_limits<float>::infinity(), most = -least;
-  for (const float d : map.distance)
-    if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
-  if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
-  if (least < scale.lo || most > scale.hi) text.notes.emplace_back("beyond: as the ends");
-  if (const auto& t = scale.tolerance)
-    text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
-                                         : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
-  text.notes.push_back(map.sign.method == SignMethod::none ? "unsigned" : "negative: inside");
-  return text;
-}
 
 // A picture of the atlas: color(texel) where a face owns the texel, otherwise the background.
 template <class Color>
@@ -52,7 +38,11 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
   const ColorScale scale = color_scale(surface, map, options);
   const AtlasPicture picture(surface, options.largest);
   const std::uint32_t n = picture.width();
-  const Picture legend = draw_legend(scale, legend_text(map, scale, options.units), picture.height());
+  float least = std::numeric_limits<float>::infinity(), most = -least;
+  for (const float d : map.distance)
+    if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
+  const Picture legend =
+      draw_legend(scale, legend_text(map, least, most, scale, options.units), picture.height());
 
   AtomicFile out(file);
   write_png(out.stream(), n + legend.width, std::max(picture.height(), legend.height),

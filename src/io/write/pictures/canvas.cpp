@@ -3,6 +3,9 @@
 #include <sdm/error.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <new>
 
 namespace sdm::io {
 namespace {
@@ -50,6 +53,24 @@ void Canvas::text(double x, double baseline, const std::string& text, double siz
   cairo_set_font_size(cairo(), size * shrink);
   cairo_move_to(cairo(), x - align * shrink * extents.x_advance, baseline);
   cairo_show_text(cairo(), text.c_str());
+}
+
+void Canvas::image(double x, double y, const Picture& picture) {
+  const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> image(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(picture.width),
+                                 static_cast<int>(picture.height)),
+      cairo_surface_destroy);
+  unsigned char* row = cairo_image_surface_get_data(image.get());
+  if (row == nullptr) throw std::bad_alloc();
+  const Rgb* pixel = picture.pixels.data();
+  for (std::uint32_t i = 0; i < picture.height; ++i, row += cairo_image_surface_get_stride(image.get())) {
+    auto* rgb = reinterpret_cast<std::uint32_t*>(row);
+    for (std::uint32_t k = 0; k < picture.width; ++k, ++pixel)
+      rgb[k] = std::uint32_t{pixel->r} << 16 | std::uint32_t{pixel->g} << 8 | pixel->b;
+  }
+  cairo_surface_mark_dirty(image.get());
+  cairo_set_source_surface(cairo(), image.get(), x, y);
+  cairo_paint(cairo());
 }
 
 Picture Canvas::picture(const std::string& what) {

@@ -21,6 +21,8 @@ class Canvas {
   /// 0.5: it is centred.
   void text(double x, double baseline, const std::string& text, double size, double room, bool bold = false,
             double align = 0);
+  /// Copies a picture to (x, y), pixel by pixel on a canvas of zoom 1.
+  void image(double x, double y, const Picture& picture);
   /// Throws sdm::Error if drawing failed; `what` names the picture in the message.
   [[nodiscard]] Picture picture(const std::string& what);
 

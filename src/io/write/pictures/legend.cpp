@@ -56,6 +56,18 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom
 
 }  // namespace
 
+LegendText legend_text(const DistanceMap& map, double least, double most, const ColorScale& scale,
+                       const std::string& units) {
+  LegendText text{"Distance", units, {}, map.beyond_max_distance > 0};
+  if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
+  if (least < scale.lo || most > scale.hi) text.notes.emplace_back("beyond: as the ends");
+  if (const auto& t = scale.tolerance)
+    text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
+                                         : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
+  text.notes.push_back(map.sign.method == SignMethod::none ? "unsigned" : "negative: inside");
+  return text;
+}
+
 Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32_t resolution) {
   const double zoom = std::clamp(resolution / 1024.0, 0.6, 4.0);
   const double height = std::clamp(resolution / zoom, kMinHeight, kMaxHeight);

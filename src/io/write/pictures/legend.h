@@ -1,6 +1,8 @@
 // The legend beside a map: colour bar, ticks, range, units.
 #pragma once
 
+#include <sdm/map.h>
+
 #include "io/write/pictures/color_scale.h"
 #include "io/write/pictures/picture.h"
 
@@ -15,6 +17,10 @@ struct LegendText {
   std::vector<std::string> notes;  ///< one per line, below the bar
   bool has_missing = false;        ///< explains the colour of texels without a value
 };
+
+/// Describes a map whose distances are from `least` to `most`; there are none if least > most.
+[[nodiscard]] LegendText legend_text(const DistanceMap& map, double least, double most,
+                                     const ColorScale& scale, const std::string& units);
 
 /// Draws a legend for a map of `resolution` rows. The legend may be lower than that or, for small maps,
 /// higher.

@@ -1,0 +1,51 @@
+// Which face of a mesh is seen at each sample of a picture.
+#pragma once
+
+#include <sdm/mesh.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace sdm::io {
+
+/// A parallel projection. Pixels are counted from the upper left corner; depth grows towards the viewer, in
+/// units of the mesh.
+struct Projection {
+  Vec3 right{1, 0, 0}, up{0, 1, 0}, towards{0, 0, 1};  ///< an orthonormal frame of the viewer
+  Vec3 centre{};                                       ///< the point in the middle of the picture
+  double scale = 1;                                    ///< pixels per unit of the mesh
+  std::uint32_t width = 1, height = 1;                 ///< pixels
+
+  /// x, y and depth of a point.
+  [[nodiscard]] Vec3 operator()(const Vec3& point) const;
+};
+
+/// kSamples² samples a pixel, in a regular grid.
+class DepthBuffer {
+ public:
+  static constexpr std::uint32_t kSamples = 2;
+
+  /// Draws all faces, from both sides. Cost: linear in faces, the rows that they cross and the samples that
+  /// they cover.
+  DepthBuffer(const Mesh& mesh, const Projection& projection);
+
+  [[nodiscard]] std::uint32_t width() const { return width_; }  ///< samples
+  [[nodiscard]] std::uint32_t height() const { return height_; }
+  /// The nearest face, kNone if there is none.
+  [[nodiscard]] std::uint32_t face(std::size_t sample) const { return face_[sample]; }
+  /// Its depth, −∞ if there is none.
+  [[nodiscard]] float depth(std::size_t sample) const { return depth_[sample]; }
+  /// The weights of the corners of a face at a sample.
+  [[nodiscard]] Vec3 weights(std::size_t sample, const Triangle& triangle) const;
+
+ private:
+  void draw(std::uint32_t face, const Triangle& triangle);
+
+  std::uint32_t width_, height_;
+  std::vector<Vec3> corners_;  // x and y in samples, and depth, of each vertex
+  std::vector<float> depth_;
+  std::vector<std::uint32_t> face_;
+};
+
+}  // namespace sdm::io

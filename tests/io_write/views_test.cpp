@@ -1,0 +1,212 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/threads.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "core/geometry/vec.h"
+#include "io/write/views/render_view.h"
+#include "io/write/views/view_layout.h"
+#include "io_write/read_png.h"
+#include "support/made_up_maps.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
+
+namespace sdm::test {
+namespace {
+
+using namespace io;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Projection looking_down(std::uint32_t width, std::uint32_t height, double scale) {
+  return {.centre = {0.5, 0.5, 0.5}, .scale = scale, .width = width, .height = height};
+}
+
+/// The depth of a face on the line through (x, y) along z; −∞ if it misses by more than `margin`, +∞ if it
+/// passes an edge more closely.
+double depth_at(const Mesh& mesh, const Triangle& t, double x, double y, double margin) {
+  const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+  const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  const double u = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area;
+  const double v = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area;
+  const double inside = std::min({u, v, 1 - u - v});
+  if (!(std::abs(inside) > margin)) return kInfinity;
+  return inside < 0 ? -kInfinity : a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2]);
+}
+
+TEST(DepthBuffer, FindsTheNearestFaceOfEverySample) {
+  std::mt19937 random(3);
+  const Mesh mesh = soup(300, random);
+  const Projection projection = looking_down(61, 47, 40);
+  const DepthBuffer buffer(mesh, projection);
+  std::size_t compared = 0;
+  for (std::uint32_t row = 0; row < buffer.height(); ++row)
+    for (std::uint32_t column = 0; column < buffer.width(); ++column) {
+      const double x = 0.5 + ((column + 0.5) / DepthBuffer::kSamples - 0.5 * projection.width) / 40;
+      const double y = 0.5 - ((row + 0.5) / DepthBuffer::kSamples - 0.5 * projection.height) / 40;
+      double nearest = -kInfinity;
+      for (const Triangle& t : mesh.triangles) nearest = std::max(nearest, depth_at(mesh, t, x, y, 1e-4));
+      if (nearest == kInfinity) continue;  // at an edge
+      const std::size_t sample = std::size_t{row} * buffer.width() + column;
+      if (nearest == -kInfinity) {
+        ASSERT_EQ(buffer.face(sample), kNone);
+        continue;
+      }
+      ASSERT_NEAR(buffer.depth(sample), nearest - 0.5, 1e-4) << row << ' ' << column;
+      const Vec3 weights = buffer.weights(sample, mesh.triangles[buffer.face(sample)]);
+      double depth = 0;
+      for (int k = 0; k < 3; ++k)
+        depth += weights[k] * mesh.positions[mesh.triangles[buffer.face(sample)][k]][2];
+      ASSERT_NEAR(depth, nearest, 1e-4);
+      ++compared;
+    }
+  EXPECT_GT(compared, 500u);
+}
+
+TEST(DepthBuffer, HasNoHolesBetweenFaces) {
+  const Mesh mesh = sphere(5);  // 20,480 faces, smaller than a sample
+  Projection projection = looking_down(80, 80, 30);
+  projection.centre = {};
+  const DepthBuffer buffer(mesh, projection);
+  for (std::uint32_t row = 0; row < buffer.height(); ++row)
+    for (std::uint32_t column = 0; column < buffer.width(); ++column) {
+      const double x = ((column + 0.5) / 2 - 40) / 30, y = ((row + 0.5) / 2 - 40) / 30, r = std::hypot(x, y);
+      const std::uint32_t face = buffer.face(std::size_t{row} * buffer.width() + column);
+      ASSERT_TRUE(r > 0.99 || face != kNone);
+      ASSERT_TRUE(r <= 1 || face == kNone);
+    }
+}
+
+TEST(ViewLayout, PlacesTheBoxInEveryCell) {
+  for (const UpAxis up : {UpAxis::y, UpAxis::z})
+    for (const Vec3& size :
+         {Vec3{1, 1, 1}, Vec3{100, 1, 1}, Vec3{1, 100, 2}, Vec3{1, 3, 0}, Vec3{2e30, 1e30, 0}}) {
+      const Box box{{5, -7, 2}, Vec3{5, -7, 2} + size};
+      const ViewLayout layout = layout_views(box, up);
+      EXPECT_LE(layout.width, 2600u);
+      EXPECT_LE(layout.height, 1400u);
+      for (const PlacedView& view : layout.views) {
+        EXPECT_NEAR(norm(cross(view.projection.right, view.projection.up) - view.projection.towards), 0, 0);
+        for (int corner = 0; corner < 8; ++corner) {
+          Vec3 point;
+          for (int k = 0; k < 3; ++k) point[k] = corner >> k & 1 ? box.hi[k] : box.lo[k];
+          const Vec3 at = view.projection(point);
+          EXPECT_GE(at[0], 0);
+          EXPECT_LE(at[0], view.projection.width);
+          EXPECT_GE(at[1], kViewTitle);
+          EXPECT_LE(at[1], view.projection.height);
+        }
+        EXPECT_LE(view.x + view.projection.width, layout.width);
+        EXPECT_LE(view.y + view.projection.height, layout.height);
+      }
+    }
+}
+
+TEST(ViewLayout, ShowsWhatIsNearOfTheOtherMesh) {
+  const Box part{{0, 0, 0}, {1, 1, 1}};
+  const Box shown = shown_box(part, {{-1e9, 0.5, 0.4}, {0.5, 1.1, 0.6}});
+  EXPECT_DOUBLE_EQ(shown.lo[0], -0.5 * std::sqrt(3));
+  EXPECT_EQ(shown.hi, (Vec3{1, 1.1, 1}));
+  EXPECT_EQ(shown.lo[1], 0);
+}
+
+/// Of a cube, distance and colour grow along x; of O2, a cube behind it, the part beside it is seen.
+struct CubeScene {
+  Surface surface{cube(), {.resolution = 256}};
+  Field field = [](const Vec3& p) { return p[0]; };
+  DistanceMap map = map_of(surface, field);
+  std::vector<float> vertices = at_vertices(surface.mesh(), field);
+};
+
+/// Whether red outweighs blue, as above 0 in the diverging colormap.
+double redness(Rgb color) {
+  return static_cast<double>(color.r) - color.b;
+}
+
+TEST(Views, ShowEachSideAsItIsSeen) {
+  const CubeScene scene;
+  const TemporaryFolder folder;
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    const PictureOptions options{.colormap = Colormap::diverging, .range = {{-1, 1}}, .up = up};
+    write_views_png(folder / "views.png", scene.surface, scene.map, scene.vertices, nullptr, options);
+    const Pixels pixels = read_png(folder / "views.png");
+    const ViewLayout layout = layout_views(bounds(scene.surface.mesh()), up);
+    // Along x from left to right: front, top and bottom; from right to left: back; the sides are one colour.
+    constexpr std::array<double, 6> kTowardsRight{1, 0, 1, -1, 0, 1}, kSide{0, -1, 0, 0, 1, 0};
+    for (int i = 0; i < 6; ++i) {
+      const PlacedView& view = layout.views[i];
+      const Vec3 middle = view.projection(Vec3{});
+      const double half = 0.7 * layout.scale;
+      const auto at = [&](double x) {
+        return redness(
+            pixels.at(std::size_t(view.x + middle[0] + x), std::size_t(view.y + middle[1] + half)));
+      };
+      EXPECT_GT(kTowardsRight[i] * (at(half) - at(-half)), kTowardsRight[i] == 0 ? -1 : 100) << view.name;
+      EXPECT_GT(kSide[i] * at(half), kSide[i] == 0 ? -1 : 20) << view.name;
+    }
+  }
+}
+
+TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
+  const CubeScene cube_scene;
+  const Mesh other = moved(cube(), {0.5, 0, -3});  // behind the cube in the front view, and to the right
+  ViewScene scene{.surface = &cube_scene.surface,
+                  .normals = shading_normals(cube_scene.surface.mesh()),
+                  .colors = std::vector<Rgb>(cube_scene.map.distance.size(), Rgb{255, 0, 0}),
+                  .vertex_distances = cube_scene.vertices,
+                  .other = &other,
+                  .other_normals = shading_normals(other)};
+  const Projection front{.scale = 20, .width = 100, .height = 100};
+  const std::vector<Vec3> places{{0.2, 0.3, 1}, {0.2, 0.3, -1}};
+  const View view = render_view(scene, front, places);
+  EXPECT_THAT(view.visible, ::testing::ElementsAre(true, false));
+  const auto at = [&](std::size_t x) { return view.picture.pixels[50 * 100 + x]; };
+  EXPECT_GT(redness(at(50)), 150);             // O1
+  EXPECT_NEAR(redness(at(75)), 0, 20);         // O2 beside it
+  EXPECT_LT(at(75).r, kViewBackground.r - 5);  // which differs from the background
+  EXPECT_EQ(at(90), kViewBackground);
+  EXPECT_EQ(at(10), kViewBackground);
+
+  scene.colors.assign(scene.colors.size(), {255, 0, 0});
+  const Mesh nearer = moved(other, {0, 0, 6});
+  scene.other = &nearer;
+  const View veiled = render_view(scene, front, places);
+  EXPECT_GT(redness(veiled.picture.pixels[50 * 100 + 55]), 60);  // O1 behind the veil
+  EXPECT_LT(redness(veiled.picture.pixels[50 * 100 + 55]), redness(at(55)));
+  EXPECT_THAT(veiled.visible, ::testing::ElementsAre(true, false));
+}
+
+TEST(Views, AreDrawnOfAnyMesh) {
+  const TemporaryFolder folder;
+  std::mt19937 random(5);
+  const Mesh far = moved(cube(1e-3), {1e12, 0, 0});
+  for (const Mesh& mesh : {single_triangle(), square(1, 0), needles(1e-9), degenerate_soup(60, 4),
+                           moved(cube(1e25), {1e30, 0, 0}), band(20, true)}) {
+    const Surface surface(mesh, {.resolution = 128});
+    const Field field = [&](const Vec3& p) { return p[1] > 0 ? std::nan("") : p[0]; };
+    const DistanceMap map = map_of(surface, field);
+    write_views_png(folder / "views.png", surface, map, at_vertices(mesh, field), &far, {.units = "mm"});
+    EXPECT_GT(read_png(folder / "views.png").width, 1000u);
+  }
+  const Surface surface(cube(), {.resolution = 64});
+  EXPECT_THROW(write_views_png(folder / "no.png", surface, {}, {}), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "no.png"));
+}
+
+TEST(Views, DoNotDependOnTheNumberOfThreads) {
+  const CubeScene scene;
+  const TemporaryFolder folder;
+  write_views_png(folder / "many.png", scene.surface, scene.map, scene.vertices, nullptr);
+  const ThreadLimit limit(1);
+  write_views_png(folder / "one.png", scene.surface, scene.map, scene.vertices, nullptr);
+  EXPECT_EQ(read_png(folder / "many.png").colors, read_png(folder / "one.png").colors);
+}
+
+}  // namespace
+}  // namespace sdm::test
