@@ -79,7 +79,8 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
   report["accuracy"] = outcome.accuracy;
   report["accuracy_kind"] = "bounded";
   if (command.picture.tolerance)
-    report["tolerance"] = {{"lower", command.picture.tolerance->lo},
+    report["tolerance"] = {{"verdict", outcome.within(command) ? "PASS" : "FAIL"},
+                           {"lower", command.picture.tolerance->lo},
                            {"upper", command.picture.tolerance->hi},
                            {"exceeded_points", found.beyond_tolerance},
                            {"exceeded_point_fraction",
@@ -115,13 +116,13 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
     text += fmt::format("            {} points are farther than --max-distance\n", found.beyond_max_distance);
   if (command.picture.tolerance) {
     if (outcome.within(command)) {
-      text += "  tolerance met at all points\n";
+      text += "  tolerance PASS: all points are within it\n";
     } else {
       const bool below = command.picture.tolerance->lo - found.min.distance >
                          found.max.distance - command.picture.tolerance->hi;
       const sdm::PointExtreme& most = below ? found.min : found.max;
       text += fmt::format(
-          "  tolerance exceeded at {} % of the points; {}{} at point {} ({} {} {})\n",
+          "  tolerance FAIL: {} % of the points are out of it; {}{} at point {} ({} {} {})\n",
           number(100.0 * static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points)),
           number(most.distance), unit, most.index, number(most.point[0]), number(most.point[1]),
           number(most.point[2]));

@@ -4,6 +4,7 @@
 #include "format.h"
 #include "output_folder.h"
 #include "progress_line.h"
+#include "scene_scan.h"
 
 #include <sdm/error.h>
 #include <sdm/io.h>
@@ -30,10 +31,13 @@ const std::map<std::string, SceneKind> kKinds{
     {"letters", SceneKind::letters}, {"bunnies", SceneKind::bunnies}, {"figure", SceneKind::figure},
     {"crowd", SceneKind::crowd},     {"cloth", SceneKind::cloth},     {"tear", SceneKind::tear}};
 
+constexpr const char* kScan = "scan";  // no sequence
+
 struct SceneCommand {
   std::string kind, format = "npy";
   fs::path out, mesh;
   int frames = 150;
+  std::size_t triangles = 80000;
   unsigned threads = 0;
   bool quiet = false;
 };
@@ -95,6 +99,8 @@ nlohmann::ordered_json describe(const SceneCommand& command, const Scene& scene,
 
 void run(const SceneCommand& command) {
   limit_threads(command.threads);
+  if (command.kind == kScan)
+    return write_made_scan(command.mesh, command.triangles, command.out, command.quiet);
   OutputFolder out(command.out, {"scene.json"});
   ProgressLine progress(command.quiet);
   const sdm::Progress report = progress.callback();
@@ -127,14 +133,15 @@ void run(const SceneCommand& command) {
 void add_scene_command(CLI::App& app) {
   CLI::App* scene = app.add_subcommand("scene", "Generate a deforming scene like those of the paper");
   const auto command = std::make_shared<SceneCommand>();
+  const std::vector<std::string> names{"letters", "bunnies", "figure", "crowd", "cloth", "tear", kScan};
   scene
       ->add_option(
           "SCENE", command->kind,
-          "colliding letters, colliding bunnies, a figure walking in a box, a crowd, a falling cloth, or a "
-          "cloth that a ball tears")
+          "colliding letters, colliding bunnies, a figure walking in a box, a crowd, a falling cloth, a "
+          "cloth that a ball tears, or a made scan of a part, which is no sequence")
       ->required()
-      ->check(CLI::IsMember(kKinds))
-      ->type_name("letters|bunnies|figure|crowd|cloth|tear");
+      ->check(CLI::IsMember(names))
+      ->type_name(fmt::format("{}", fmt::join(names, "|")));
   add_output_option(*scene, command->out);
   scene->add_option("--frames", command->frames, "Number of frames, at 60 per second")
       ->check(CLI::Range(1, 100000).description(""))
@@ -149,19 +156,32 @@ void add_scene_command(CLI::App& app) {
       ->capture_default_str();
   scene
       ->add_option("--mesh", command->mesh,
-                   "bunnies: the mesh to simplify, instead of the one of Debian's glmark2-data")
+                   "bunnies: the mesh to simplify, instead of the one of Debian's glmark2-data; scan: the "
+                   "part, a closed mesh with a flat place")
       ->type_name("FILE");
+  scene->add_option("--triangles", command->triangles, "scan: about how many, before 30 % are cut away")
+      ->check(CLI::Range(100, 100000000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
   scene->add_option("--threads", command->threads, "Threads to use, 0 for all cores")
       ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N")
       ->capture_default_str();
   scene->add_flag("--quiet", command->quiet, "Print only errors");
   scene->footer(
-      "The files are sequences for `sdm sequence`. They are bit-identical on every run.\n\n"
+      "The files are sequences for `sdm sequence`; scan writes part.ply, scan.ply and scan.xyz. They are "
+      "bit-identical on every run.\n\n"
       "Example:\n  sdm scene letters -o letters");
   scene->callback([scene, command] {
-    if (scene->count("--mesh") > 0 && command->kind != "bunnies")
-      throw CLI::ValidationError("--mesh", "requires the scene bunnies");
+    const bool scan = command->kind == kScan;
+    if (scene->count("--mesh") > 0 && command->kind != "bunnies" && !scan)
+      throw CLI::ValidationError("--mesh", "requires the scene bunnies or scan");
+    if (scan && command->mesh.empty()) throw CLI::ValidationError("--mesh", "is the part of the scene scan");
+    if (scene->count("--triangles") > 0 && !scan)
+      throw CLI::ValidationError("--triangles", "requires the scene scan");
+    for (const char* option : {"--frames", "--format"})
+      if (scan && scene->count(option) > 0)
+        throw CLI::ValidationError(option, "the scene scan is no sequence");
     run(*command);
   });
 }

@@ -160,10 +160,11 @@ class Renderer {
     };
     const double here = depth(x, y);
     if (!std::isfinite(here)) return false;
-    // Against the slope of the surface: a plane seen at a small angle has no outlines.
+    // Beyond what the slope of the surface explains: a rough plane seen at a small angle has no outlines. A
+    // step of s between neighbours is 2 here − before − after = s, of a slope of s/2.
     const auto steps = [&](double before, double after) {
       if (!std::isfinite(before) || !std::isfinite(after)) return true;
-      return 2 * here - before - after > kStep;
+      return 2 * here - before - after > kStep + 0.6 * std::abs(after - before);
     };
     const bool inner = x > 0 && y > 0 && x + 1 < projection_.width && y + 1 < projection_.height;
     return inner && (steps(depth(x - 1, y), depth(x + 1, y)) || steps(depth(x, y - 1), depth(x, y + 1)));
