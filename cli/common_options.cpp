@@ -88,10 +88,13 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
   app.add_option("--units", picture.units,
                  "Units of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
       ->type_name("NAME");
-  add_choice<sdm::UpAxis>(app, "--up", picture.up,
-                          "The axis of the meshes that points up, in model.glb and report.html",
-                          {{"y", sdm::UpAxis::y}, {"z", sdm::UpAxis::z}});
+  add_up_option(app, picture.up, "model.glb, views.png and report.html");
   app.add_flag("--unlit", picture.unlit, "model.glb without shading, in exactly the colours of the scale");
+}
+
+void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files) {
+  add_choice<sdm::UpAxis>(app, "--up", up, "The axis of the meshes that points up, in " + files,
+                          {{"y", sdm::UpAxis::y}, {"z", sdm::UpAxis::z}});
 }
 
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance) {

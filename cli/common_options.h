@@ -27,6 +27,8 @@ void add_sign_option(CLI::App& app, sdm::SignMethod& sign);
 void add_color_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
 /// These, --picture-size and --units.
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
+/// --up; `files` that it applies to, in the help text.
+void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files);
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance);
 /// Adds --units, --margin and --precision, for commands that print proximity.
 void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,

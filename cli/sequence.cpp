@@ -1,13 +1,17 @@
 #include "sequence.h"
 
 #include <sdm/io.h>
+#include <sdm/player.h>
 #include <sdm/sdm.h>
 #include <sdm/sequence.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "common_options.h"
@@ -18,6 +22,8 @@
 #include "progress_line.h"
 #include "sequence_body.h"
 #include "sequence_bound.h"
+#include "sequence_colors.h"
+#include "sequence_distances.h"
 #include "sequence_report.h"
 #include "sequence_resolution.h"
 #include "sequence_state.h"
@@ -36,7 +42,18 @@ struct SequenceCommand {
   int maps_every = 0;
   double rate = 0, map_precision = 0;
   bool keep_going = false, no_temporal = false, resume = false, allow_topology = false;
+  bool both = false, player = false;
+  sdm::PictureOptions picture;
+  std::vector<double> range;
+
+  /// Whether distances are measured in each frame.
+  [[nodiscard]] bool measures() const { return player || both || picture.tolerance; }
 };
+
+Json tolerance_json(const SequenceCommand& command) {
+  if (const auto& t = command.picture.tolerance) return {t->lo, t->hi};
+  return nullptr;
+}
 
 /// All that affects the files, except the inputs, by the names of the options.
 Json options_of(const SequenceCommand& command) {
@@ -52,18 +69,31 @@ Json options_of(const SequenceCommand& command) {
           {"--maps", command.maps_every},
           {"--rate", command.rate},
           {"--allow-topology", command.allow_topology},
-          {"--no-temporal", command.no_temporal}};
+          {"--no-temporal", command.no_temporal},
+          {"--atlas", command.atlas.kind},
+          {"--gutter", command.atlas.gutter},
+          {"--max-stretch", command.atlas.max_stretch},
+          {"--strict-uv", command.atlas.strict_uv},
+          {"--both", command.both},
+          {"--player", command.player},
+          {"--colormap", command.picture.colormap},
+          {"--range", command.range},
+          {"--tolerance", tolerance_json(command)}};
 }
+
+constexpr std::string_view kOfO2 = "_o2";  // ends the names of O2's maps
 
 /// The files of earlier runs that this run replaces.
 std::vector<fs::path> earlier_files(const fs::path& folder, bool resumed) {
   if (resumed) return {"frames.jsonl"};
-  std::vector<fs::path> files{"frames.jsonl", "frames.csv", "plot.png", "temporal.exr",
-                              "min.png",      "mean.png",   "max.png",  SequenceState::kFile};
+  std::vector<fs::path> files{"frames.jsonl", "frames.csv", "plot.png",    "temporal.exr",      "min.png",
+                              "mean.png",     "max.png",    "player.html", SequenceState::kFile};
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder / "maps", error)) {
     const fs::path& file = entry.path();
-    const bool numbered = file.stem().string().find_first_not_of("0123456789") == std::string::npos;
+    std::string name = file.stem().string();
+    if (name.ends_with(kOfO2)) name.resize(name.size() - kOfO2.size());
+    const bool numbered = name.find_first_not_of("0123456789") == std::string::npos;
     if (numbered && (file.extension() == ".exr" || file.extension() == ".png"))
       files.push_back(fs::path("maps") / file.filename());
   }
@@ -95,6 +125,10 @@ class FrameLoop {
     const std::array<sdm::Mesh, 2> first{bodies_[0].mesh(), bodies_[1].mesh()};
     state_.meshes = {hash_of(first[0]), hash_of(first[1])};
     if (resumed_) check_meshes();
+    if (!command_.range.empty()) command_.picture.range = {command_.range[0], command_.range[1]};
+    command_.picture.units = command_.pair.units;
+    if (!command_.picture.range && (command_.maps_every > 0 || command_.player)) command_.picture = colors();
+    if (command_.player) player_.emplace(first[0], first[1], command_.both);
     atlases_ = {command_.atlas, command_.atlas};
     if (command_.map_precision > 0) atlases_[0].resolution = first_resolution();
     state_.resolution = atlases_[0].resolution;
@@ -105,7 +139,8 @@ class FrameLoop {
 
   /// Writes the results of all frames, or of those before an interrupt or the first bad frame, which is then
   /// reported as Interrupted or sdm::Error.
-  void process() {
+  /// Returns whether all frames are within the tolerance, if there is one.
+  bool process() {
     out_.fill([&] {
       if (resumed_) follow();
       const std::size_t kept = state_.frames.size();
@@ -137,6 +172,9 @@ class FrameLoop {
       throw sdm::Error(
           fmt::format("{}; {} earlier frames are in {} (--keep-going skips bad frames, --resume continues)",
                       bad_.back().fault, frames_.size(), folder));
+    return std::ranges::all_of(frames_, [](const Frame& frame) {
+      return std::ranges::all_of(frame.distances, [](const auto& d) { return !d || d->within(); });
+    });
   }
 
  private:
@@ -156,6 +194,17 @@ class FrameLoop {
                                  [&](std::size_t frame) {
                                    progress_.step(fmt::format("measuring frame {} of {}", frame + 1, count_));
                                  });
+  }
+
+  [[nodiscard]] sdm::PictureOptions colors() {
+    const auto open = [&] {
+      return std::array<Body, 2>{
+          open_o1(), Body(command_.pair.o2, command_.pair.transform_o2, sequence_options(command_))};
+    };
+    return colors_for_frames(open, command_.picture, command_.both, command_.allow_topology,
+                             [&](std::size_t frame) {
+                               progress_.step(fmt::format("colours: frame {} of {}", frame + 1, count_));
+                             });
   }
 
   [[nodiscard]] bool complete() const { return state_.frames.size() == count_; }
@@ -183,7 +232,10 @@ class FrameLoop {
         move(frame);
         if (command_.map_precision > 0 || bounds_[0].has_history() || bounds_[1].has_history())
           measure(frame);
-        if (!is_bad(resumed_->frames[i].line)) temporal_.pass();
+        if (!is_bad(resumed_->frames[i].line)) {
+          temporal_.pass();
+          if (player_) player_->add(i, query_->sites(0), query_->sites(1));
+        }
       } catch (const sdm::Cancelled&) {
         throw;
       } catch (const sdm::Error&) {  // as in the interrupted run, if the hashes agree
@@ -229,10 +281,13 @@ class FrameLoop {
     frame.patches = contacts.empty() ? 0 : contacts.back().patch + 1;
     frame.time.query = watch.lap();
     const bool write = command_.maps_every > 0 && index % static_cast<std::size_t>(command_.maps_every) == 0;
-    if (write || !command_.no_temporal) sdm::compute_map(query_->surface(0), query_->sites(1), {}, map_);
+    if (write || command_.measures() || !command_.no_temporal)
+      sdm::compute_map(query_->surface(0), query_->sites(1), {}, map_);
     if (!command_.no_temporal) temporal_.add(query_->surface(0), map_);
+    if (command_.measures()) measure_distances(frame);
     frame.time.map = watch.lap();
-    if (write) write_map(index);
+    if (write) write_maps(index);
+    if (player_) player_->add(index, query_->sites(0), query_->sites(1));
     frame.time.write = watch.lap();
     const Json line = to_json(frame, contacts);
     add_line(line);
@@ -321,11 +376,26 @@ class FrameLoop {
     frame.topology[0]->new_layout = true;
   }
 
-  void write_map(std::size_t index) {
+  void measure_distances(Frame& frame) {
+    for (int b = 0; b < (command_.both ? 2 : 1); ++b) {
+      const sdm::Surface& surface = query_->surface(b);
+      const sdm::Sites& sites = query_->sites(1 - b);
+      if (b == 1) sdm::compute_map(surface, sites, {}, other_map_);
+      naming(frame, [&] {
+        frame.distances[b] = frame_distances(surface, sites, b == 0 ? map_ : other_map_, frame.error_bound[b],
+                                             command_.picture.tolerance);
+      });
+    }
+  }
+
+  void write_maps(std::size_t index) {
     const fs::path folder = out_.staging("maps");
-    sdm::write_exr(folder / fmt::format("{:04}.exr", index), query_->surface(0), map_);
-    sdm::write_distance_png(folder / fmt::format("{:04}.png", index), query_->surface(0), map_,
-                            {.units = command_.pair.units});
+    for (int b = 0; b < (command_.both ? 2 : 1); ++b) {
+      const std::string name = fmt::format("{:04}{}", index, b == 0 ? "" : kOfO2);
+      const sdm::DistanceMap& map = b == 0 ? map_ : other_map_;
+      sdm::write_exr(folder / (name + ".exr"), query_->surface(b), map);
+      sdm::write_distance_png(folder / (name + ".png"), query_->surface(b), map, command_.picture);
+    }
   }
 
   void add_line(const Json& json) {
@@ -342,6 +412,12 @@ class FrameLoop {
     if (!frames_.empty()) write_plot(folder / "plot.png", frames_, command_.pair.units);
     const sdm::TemporalMaps temporal = temporal_.of(query_->surface(0));
     if (temporal.maps() > 0) write_temporal(folder, temporal);
+    if (player_ && player_->frames() > 0)
+      player_->write(folder / "player.html", player_panels(frames_, command_.pair.units),
+                     {.names = {bodies_[0].input(), bodies_[1].input()},
+                      .units = command_.pair.units,
+                      .up = command_.picture.up,
+                      .colors = command_.picture});
     if (complete()) return;
     state_.temporal = temporal_.maps();
     state_.write(folder / SequenceState::kFile);
@@ -350,21 +426,31 @@ class FrameLoop {
   void print_summary() const {
     const bool temporal = temporal_.of(query_->surface(0)).maps() > 0;
     std::cout << fmt::format(
-        "{}, {}\n{}  results    {}/: frames.jsonl frames.csv{}{}{}\n", bodies_[0].input(), bodies_[1].input(),
-        summary(frames_, bad_, command_.pair.units), command_.out.string(),
+        "{}, {}\n{}  results    {}/: frames.jsonl frames.csv{}{}{}{}\n", bodies_[0].input(),
+        bodies_[1].input(), summary(frames_, bad_, command_.pair.units), command_.out.string(),
         frames_.empty() ? "" : " plot.png", temporal ? " temporal.exr min.png mean.png max.png" : "",
-        command_.maps_every > 0 ? " maps/" : "");
+        player_ && player_->frames() > 0 ? " player.html" : "", command_.maps_every > 0 ? " maps/" : "");
   }
 
   void write_temporal(const fs::path& folder, const sdm::TemporalMaps& temporal) {
     const sdm::Surface& surface = query_->surface(0);
     sdm::write_exr(folder / "temporal.exr", surface, temporal);
-    // The picture needs the other layers of a map.
+    // The pictures need the other layers of a map.
     if (map_.distance.size() != surface.texel_faces().size())
       sdm::compute_map(surface, query_->sites(1), {}, map_);
+    const auto use = [&](std::span<const float> values) { std::ranges::copy(values, map_.distance.begin()); };
+    sdm::PictureOptions picture = command_.picture;
+    if (!picture.range) {  // one scale for the three
+      use(temporal.least());
+      sdm::DistanceStatistics all = sdm::statistics(surface, map_);
+      use(temporal.largest());
+      const sdm::DistanceStatistics largest = sdm::statistics(surface, map_);
+      all.max = largest.max, all.p99_abs = std::max(all.p99_abs, largest.p99_abs);
+      picture = sdm::fixed_colors(picture, all);
+    }
     const auto draw = [&](const char* file, std::span<const float> values) {
-      std::ranges::copy(values, map_.distance.begin());
-      sdm::write_distance_png(folder / file, surface, map_, {.units = command_.pair.units});
+      use(values);
+      sdm::write_distance_png(folder / file, surface, map_, picture);
     };
     draw("min.png", temporal.least());
     draw("mean.png", temporal.mean());
@@ -388,7 +474,8 @@ class FrameLoop {
   TemporalRecorder temporal_;
   std::array<bool, 2> edited_{};  // bodies, since their bounds were built
   bool stopped_ = false, interrupted_ = false;
-  sdm::DistanceMap map_;
+  sdm::DistanceMap map_, other_map_;
+  std::optional<sdm::SequencePlayer> player_;
 };
 
 }  // namespace
@@ -400,7 +487,8 @@ void add_sequence_command(CLI::App& app) {
       "A sequence is a folder of numbered mesh files, a pattern such as walk_%04d.ply, mesh.obj+motion.npy\n"
       "with positions (T, V, 3), or a glTF file with morph targets; any other mesh file is a body at rest.\n"
       "Writes frames.jsonl, frames.csv, plot.png, and, for O1, the minimum, mean and maximum distance over\n"
-      "time: temporal.exr, min.png, mean.png, max.png.\n"
+      "time: temporal.exr, min.png, mean.png, max.png; with --player a page that plays the frames, "
+      "player.html.\n"
       "An interrupt (Ctrl-C, SIGTERM) or a bad frame keeps the frames that are finished; --resume computes\n"
       "the others, and then all files are those of an uninterrupted run.\n\n"
       "Example:\n"
@@ -416,7 +504,16 @@ void add_sequence_command(CLI::App& app) {
           "of --resolution; reads all frames beforehand")
       ->check(number("a positive number", [](double x) { return x > 0; }))
       ->type_name("EPS");
+  add_layout_options(*sequence, command->atlas, "each body");
   add_output_option(*sequence, command->out);
+  if (sdm::can_write_html())
+    sequence->add_flag("--player", command->player,
+                       "Write player.html, a page that plays the frames, with their distances at vertices");
+  sequence->add_flag("--both", command->both,
+                     "Also measure O2: its distances to O1, maps NNNN_o2 with --maps, colours in the player");
+  add_tolerance_option(*sequence, command->picture.tolerance);
+  add_color_options(*sequence, command->picture, command->range);
+  add_up_option(*sequence, command->picture.up, "player.html");
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
       ->check(whole_number(1, 1000000))
@@ -434,7 +531,10 @@ void add_sequence_command(CLI::App& app) {
   sequence->add_flag("--no-temporal", command->no_temporal,
                      "Do not compute maps over time; faster, because frames then need no complete map");
   sequence->callback([command] {
+    check_range(command->range);
+    if (command->player && command->allow_topology)
+      throw CLI::ValidationError("--player", "needs bodies that keep their faces: omit --allow-topology");
     limit_threads(command->pair.threads);
-    FrameLoop(*command).process();
+    if (!FrameLoop(*command).process()) throw CLI::RuntimeError(3);
   });
 }

@@ -97,6 +97,8 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
       {"kind", "bounded"}, {"o1", frame.relative_error[0]}, {"o2", frame.relative_error[1]}};
   json["resolution"] = frame.resolution;
   for (int b = 0; b < 2; ++b)
+    if (const auto& distances = frame.distances[b]) json["distance"][kBodies[b]] = to_json(*distances);
+  for (int b = 0; b < 2; ++b)
     if (const auto& topology = frame.topology[b])
       json["topology"][kBodies[b]] = {{"removed_faces", topology->removed_faces},
                                       {"reconnected_faces", topology->reconnected_faces},
@@ -135,6 +137,9 @@ Frame frame_from(const Json& line) {
   frame.error_bound = of_bodies("error_bound");
   frame.relative_error = of_bodies("relative_error");
   frame.resolution = line.at("resolution");
+  for (int b = 0; b < 2 && line.contains("distance"); ++b)
+    if (const Json& all = line.at("distance"); all.contains(kBodies[b]))
+      frame.distances[b] = distances_from(all.at(kBodies[b]));
   for (int b = 0; b < 2 && line.contains("topology"); ++b)
     if (const Json& all = line.at("topology"); all.contains(kBodies[b])) {
       const Json& body = all.at(kBodies[b]);
@@ -150,7 +155,9 @@ std::string to_csv(const std::vector<Frame>& frames) {
   std::string text =
       "frame,separation,separation_lower,separation_upper,colliding,colliding_kind,penetration_depth,"
       "depth_lower,depth_upper,contacts,patches,error_bound_o1,error_bound_o2,relative_error_o1,"
-      "relative_error_o2,read_ms,update_ms,query_ms,error_ms,map_ms,write_ms,total_ms\n";
+      "relative_error_o2";
+  for (const char* body : kBodies) text += distance_columns(body);
+  text += ",read_ms,update_ms,query_ms,error_ms,map_ms,write_ms,total_ms\n";
   for (const Frame& f : frames) {
     std::vector<std::string> cells{fmt::to_string(f.index)};
     const auto add = [&](std::initializer_list<double> values) {
@@ -166,6 +173,8 @@ std::string to_csv(const std::vector<Frame>& frames) {
     cells.push_back(fmt::to_string(f.contacts));
     cells.push_back(fmt::to_string(f.patches));
     add({f.error_bound[0], f.error_bound[1], f.relative_error[0], f.relative_error[1]});
+    for (const auto& distances : f.distances)
+      for (std::string& more : ::cells(distances)) cells.push_back(std::move(more));
     add({f.time.read, f.time.update, f.time.query, f.time.error, f.time.map, f.time.write, f.time.total()});
     text += fmt::format("{}\n", fmt::join(cells, ","));
   }
@@ -195,6 +204,30 @@ void write_plot(const std::filesystem::path& file, const std::vector<Frame>& fra
   sdm::write_plot_png(file, "frame", places, panels);
 }
 
+std::vector<sdm::PlotPanel> player_panels(const std::vector<Frame>& frames, const std::string& units) {
+  const std::string in = units.empty() ? std::string() : fmt::format(" ({})", units);
+  const auto over = [&](auto value) {
+    std::vector<double> values;
+    for (const Frame& frame : frames) values.push_back(value(frame));
+    return values;
+  };
+  std::vector<sdm::PlotPanel> panels;
+  for (int b = 0; b < 2; ++b) {
+    if (std::ranges::none_of(frames, [&](const Frame& f) { return f.distances[b].has_value(); })) continue;
+    const auto distance = [&](double FrameDistances::*which) {
+      return over([=](const Frame& f) { return f.distances[b] ? (*f.distances[b]).*which : kNaN; });
+    };
+    panels.push_back({fmt::format("Distance of O{}{}", b + 1, in),
+                      {{"max", distance(&FrameDistances::max)},
+                       {"mean", distance(&FrameDistances::mean)},
+                       {"min", distance(&FrameDistances::min)}}});
+  }
+  panels.push_back({"Separation" + in, {{"", over([](const Frame& f) { return f.separation.value; })}}});
+  panels.push_back({"Penetration depth" + in,
+                    {{"", over([](const Frame& f) { return f.depth ? f.depth->value : kNaN; })}}});
+  return panels;
+}
+
 std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame>& bad,
                     const std::string& units) {
   const std::string unit = unit_suffix(units);
@@ -218,6 +251,18 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
   const auto error = [](const Frame& f) { return f.error_bound[0]; };
   text += fmt::format("  map error  at most {}{} in all frames (bounded)\n",
                       number(error(*std::ranges::max_element(frames, {}, error))), unit);
+  for (int b = 0; b < 2; ++b)
+    if (const auto& first = frames.front().distances[b]; first && first->verdict) {
+      const auto out = std::ranges::count_if(
+          frames, [&](const Frame& f) { return f.distances[b] && !f.distances[b]->within(); });
+      const bool decided = std::ranges::none_of(frames, [&](const Frame& f) {
+        return f.distances[b] && f.distances[b]->verdict == sdm::Verdict::not_decided;
+      });
+      text += fmt::format("  tolerance  O{}: {}\n", b + 1,
+                          out > 0   ? fmt::format("FAIL in {} of {} frames", out, frames.size())
+                          : decided ? "PASS in all frames"
+                                    : "NOT DECIDED in some frames, PASS in the others");
+    }
   text += topology_summary(frames);
   const auto ms = [&](double FrameTimes::*step) {
     return number(std::round(100 * median(frames, [=](const Frame& f) { return f.time.*step; })) / 100);

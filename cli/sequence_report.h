@@ -2,6 +2,7 @@
 // in docs/proximity.md.
 #pragma once
 
+#include <sdm/io.h>
 #include <sdm/sdm.h>
 
 #include <array>
@@ -11,6 +12,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "sequence_distances.h"
 
 /// Milliseconds of the steps of a frame.
 struct FrameTimes {
@@ -30,10 +33,11 @@ struct Frame {
   sdm::BoundedBool colliding;
   std::optional<sdm::BoundedLength> depth;
   std::size_t contacts = 0, patches = 0;
-  std::array<double, 2> error_bound{};                      ///< of each body: covering radius
-  std::array<double, 2> relative_error{};                   ///< of each body: see sdm::RelativeError
-  std::array<std::optional<TopologyReport>, 2> topology{};  ///< of bodies that have changed
-  std::uint32_t resolution = 0;                             ///< texels per row of O1's atlas
+  std::array<double, 2> error_bound{};                       ///< of each body: covering radius
+  std::array<double, 2> relative_error{};                    ///< of each body: see sdm::RelativeError
+  std::array<std::optional<TopologyReport>, 2> topology{};   ///< of bodies that have changed
+  std::uint32_t resolution = 0;                              ///< texels per row of O1's atlas
+  std::array<std::optional<FrameDistances>, 2> distances{};  ///< of each body, where asked for
   FrameTimes time;
 };
 
@@ -54,6 +58,9 @@ struct BadFrame {
 
 /// frames.csv: one row for each frame that was used.
 [[nodiscard]] std::string to_csv(const std::vector<Frame>& frames);
+/// The curves of player.html, with one value for each frame.
+[[nodiscard]] std::vector<sdm::PlotPanel> player_panels(const std::vector<Frame>& frames,
+                                                        const std::string& units);
 /// plot.png: separation, depth, relative error and time over frames, with gaps for skipped frames.
 void write_plot(const std::filesystem::path& file, const std::vector<Frame>& frames,
                 const std::string& units);

@@ -1,4 +1,4 @@
-# The page of report.html: report/ bundled by esbuild into one HTML file, which the library embeds.
+# The pages of report.html and player.html: report/ bundled by esbuild into one HTML file each, which the library embeds.
 find_program(NPM npm)
 find_program(NODE NAMES node nodejs)
 if(NOT NPM OR NOT NODE)
@@ -21,15 +21,15 @@ function(sdm_npm_ci folder)
     VERBATIM)
 endfunction()
 
-# sdm_embed_report(<target> <header>): builds the page and embeds it (see sdm_embed_files).
+# sdm_embed_report(<target> <header>): builds the pages and embeds them (see sdm_embed_files).
 function(sdm_embed_report target header)
   sdm_npm_ci(${SDM_REPORT_FOLDER} --omit=dev)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/report/src/*)
-  add_custom_command(OUTPUT ${SDM_REPORT_FOLDER}/page.html
+  add_custom_command(OUTPUT ${SDM_REPORT_FOLDER}/page.html ${SDM_REPORT_FOLDER}/player.html
     COMMAND ${CMAKE_COMMAND} -E env NODE_PATH=${SDM_REPORT_FOLDER}/node_modules
-      ${NODE} ${PROJECT_SOURCE_DIR}/report/build.cjs ${SDM_REPORT_FOLDER}/page.html
+      ${NODE} ${PROJECT_SOURCE_DIR}/report/build.cjs ${SDM_REPORT_FOLDER}
     DEPENDS ${sources} ${PROJECT_SOURCE_DIR}/report/build.cjs ${SDM_REPORT_FOLDER}/packages
     COMMENT "Bundling report/"
     VERBATIM)
-  sdm_embed_files(${target}_objects HEADER ${header} NAMESPACE sdm::io FILES ${SDM_REPORT_FOLDER}/page.html)
+  sdm_embed_files(${target}_objects HEADER ${header} NAMESPACE sdm::io FILES ${SDM_REPORT_FOLDER}/page.html ${SDM_REPORT_FOLDER}/player.html)
 endfunction()

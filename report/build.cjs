@@ -1,4 +1,4 @@
-// Bundles the page into one HTML file: node build.cjs OUTPUT. Packages are found by NODE_PATH or in node_modules.
+// Bundles the pages into one HTML file each, page.html and player.html: node build.cjs FOLDER. Packages are found by NODE_PATH or in node_modules.
 const { buildSync } = require('esbuild');
 const { readFileSync, writeFileSync } = require('fs');
 const { delimiter, join } = require('path');
@@ -18,8 +18,11 @@ function bundle(file) {
   return outputFiles[0].text.trim();
 }
 
-// A function as the replacement: in a string, $& and the like have a meaning.
-const page = readFileSync(join(__dirname, 'src', 'page.html'), 'utf8')
-  .replace('/* style */', () => bundle('page.css'))
-  .replace('/* program */', () => bundle('main.ts'));
-writeFileSync(process.argv[2], page);
+// Functions as the replacements: in a string, $& and the like have a meaning.
+for (const [page, program] of [['page', 'main.ts'], ['player', 'player.ts']])
+  writeFileSync(
+    join(process.argv[2], `${page}.html`),
+    readFileSync(join(__dirname, 'src', `${page}.html`), 'utf8')
+      .replace('/* style */', () => bundle('page.css'))
+      .replace('/* program */', () => bundle(program)),
+  );

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "cli/samples.h"
+#include "io_write/read_png.h"
 #include "support/oracle.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
@@ -78,6 +79,56 @@ TEST_F(SequenceCommand, FollowsTheBodies) {
   }
   EXPECT_GT(all[6]["penetration_depth"]["value"], 0.1);
   EXPECT_THAT(run.out, HasSubstr("frames     12"));
+}
+
+TEST_F(SequenceCommand, MeasuresBothBodies) {
+  const Outcome run =
+      run_sdm({"sequence", moving, o2, "-o", out, "--resolution", "256", "--atlas", "triangles", "--both",
+               "--maps", "5", "--tolerance", "3", "--colormap", "viridis"});
+  ASSERT_EQ(run.code, 3) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("tolerance  O1: FAIL in "));
+  EXPECT_EQ(names_in(out + "/maps").size(), 12u);
+  EXPECT_TRUE(std::filesystem::exists(out + "/maps/0005_o2.exr"));
+  const std::vector<Json> all = lines();
+  bool fails = false;
+  for (const Json& line : all) {
+    for (const char* body : {"o1", "o2"}) {
+      const Json& distance = line["distance"][body];
+      EXPECT_LE(distance["min"], distance["mean"]);
+      EXPECT_LE(distance["mean"], distance["max"]);
+      const double largest =
+          std::max(std::abs(distance["min"].get<double>()), std::abs(distance["max"].get<double>()));
+      EXPECT_EQ(distance["verdict"] == "FAIL", largest > 3);
+      EXPECT_EQ(distance["exceeded_area_fraction"] > 0, largest > 3);
+      fails |= largest > 3;
+    }
+    // Apart from each other, the nearest points of both are at the separation.
+    if (const double separation = line["separation"]["value"]; separation > 0) {
+      EXPECT_GE(line["distance"]["o1"]["min"], separation - 1e-6);
+      EXPECT_NEAR(line["distance"]["o2"]["min"], separation, 0.2);
+    }
+  }
+  EXPECT_TRUE(fails);
+  const std::string csv = contents(out + "/frames.csv");
+  EXPECT_THAT(csv, HasSubstr(",distance_max_o2,verdict_o2,read_ms,"));
+  EXPECT_THAT(csv, HasSubstr(",FAIL,"));
+  EXPECT_EQ(run_sdm(sequence({"--tolerance", "100"})).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(out + "/maps/0005_o2.exr")) << "of the earlier run";
+  EXPECT_EQ(run_sdm(sequence({"--range", "2", "1"})).code, 2);
+}
+
+// The legends of all maps are the same picture.
+TEST_F(SequenceCommand, FramesShareAScale) {
+  ASSERT_EQ(run_sdm(sequence({"--maps", "3", "--no-temporal"})).code, 0);
+  std::vector<std::vector<Rgb>> bars;
+  for (const char* name : {"0000", "0003", "0009"}) {
+    const Pixels pixels = read_png(out + "/maps/" + name + ".png");
+    std::vector<Rgb>& bar = bars.emplace_back();
+    for (std::uint32_t y = 0; y < pixels.height * 6 / 10; ++y)
+      for (std::uint32_t x = 64; x < pixels.width; ++x) bar.push_back(pixels.at(x, y));
+  }
+  EXPECT_EQ(bars[0], bars[1]);
+  EXPECT_EQ(bars[0], bars[2]);
 }
 
 TEST_F(SequenceCommand, PrintsLinesAsJson) {
@@ -291,6 +342,15 @@ TEST_F(Resume, EndsWithTheFilesOfAnUninterruptedRun) {
   expect_whole();
 }
 
+TEST_F(Resume, WithAPlayerAndBothBodies) {
+  if (!can_write_html()) GTEST_SKIP() << "built without pages";
+  const std::vector<std::string> more{"--player", "--both"};
+  interrupt(more);
+  std::vector<std::string> again = more;
+  again.emplace_back("--resume");
+  ASSERT_EQ(run_sdm(into(out, again)).code, 0);
+  expect_whole(more);
+}
 TEST_F(Resume, WithoutMapsOverTime) {
   interrupt({"--no-temporal"});
   ASSERT_EQ(run_sdm(into(out, {"--resume", "--no-temporal", "--threads", "1"})).code, 0);

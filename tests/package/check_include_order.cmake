@@ -43,9 +43,11 @@ set(order
   io/write/compression
   io/write/pictures
   io/write/model
+  io/write/views
   io/write
   io/write/fields
   io/write/report
+  io/write/player
   io/write/vertices
   io/points)
 

@@ -1,4 +1,4 @@
-// Checks a report.html in headless Chromium: node check_page.cjs CHECK PAGE [ARGUMENT...]. Packages are found from the
+// Checks a report.html or player.html in headless Chromium: node check_page.cjs CHECK PAGE [ARGUMENT...]. Packages are found from the
 // current folder. Prints what is wrong and exits with 1.
 const assert = require('assert');
 const { existsSync, readFileSync } = require('fs');
@@ -167,6 +167,71 @@ const checks = {
     const pdf = (await page.pdf({ preferCSSPageSize: true })).toString('latin1');
     const pages = pdf.match(/\/Type\s*\/Page\b(?!s)/g).length;
     assert.strictEqual(pages, 2, `${pages} pages`);
+  },
+
+  // The torus at rest, its distances |z − height| of a plane that sinks by `speed` a frame; all ways to another frame.
+  async plays(page, height, speed, last) {
+    const shown = () => page.evaluate(() => window.sdmPlayer.shown);
+    const frame = async (number) => {
+      await page.evaluate((n) => window.sdmPlayer.show(n), number);
+      return page.evaluate(() => ({
+        distances: [window.sdmPlayer.distances(0), window.sdmPlayer.distances(1)],
+        positions: [window.sdmPlayer.positions(0), window.sdmPlayer.positions(1)],
+        text: document.getElementById('frame').textContent,
+        cursor: document.querySelector('.cursor').getAttribute('x1'),
+      }));
+    };
+    const cursors = [];
+    for (const number of [0, 3, Number(last)]) {
+      const { distances, positions, text, cursor } = await frame(number);
+      assert.strictEqual(text, `frame ${number} of ${last}`);
+      cursors.push(cursor);
+      const plane = Number(height) - number * Number(speed);
+      assert(distances[0].length > 500);
+      distances[0].forEach((d, i) => {
+        const exact = positions[0][3 * i + 2] - plane;
+        assert(Math.abs(d - exact) < 2e-3, `${d} at ${exact} in frame ${number}`);
+      });
+      assert(distances[1].length > 4, 'a coarse body has more vertices of its own');
+      positions[1].filter((_, i) => i % 3 === 2).forEach((z) => assert(Math.abs(z - plane) < 1e-3));
+    }
+    assert.strictEqual(new Set(cursors).size, 3, 'the cursor follows the frame');
+
+    const picture = () => page.locator('#canvas').screenshot();
+    const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    await frame(0);
+    await settle();
+    const first = await picture();
+    await page.focus('#canvas');
+    await page.keyboard.press('ArrowRight');
+    assert.strictEqual(await shown(), 1);
+    await page.focus('#time');
+    await page.keyboard.press('End');
+    assert.strictEqual(await shown(), Number(last));
+    await settle();
+    assert(!(await picture()).equals(first), 'another frame is another picture');
+    const chart = await page.locator('.chart svg').first().boundingBox();
+    await page.mouse.click(chart.x + chart.width * 0.5, chart.y + chart.height / 2);
+    const middle = await shown();
+    assert(middle > 0 && middle < Number(last), 'the chart leads to its frame');
+    await page.click('#play');
+    await page.waitForFunction((old) => window.sdmPlayer.shown !== old, middle);
+    await page.click('#play');
+    assert.strictEqual(await page.textContent('#play'), 'Play');
+    // Colours and bodies.
+    await frame(0);
+    await settle();
+    for (const [select, value] of [['#mode', 'paper2006'], ['#style1', 'hidden'], ['#style0', 'ghost']]) {
+      const before = await picture();
+      await page.selectOption(select, value);
+      await settle();
+      assert(!(await picture()).equals(before), `${select} changes the picture`);
+    }
+    const session = await page.context().newCDPSession(page);
+    const { nodes } = await session.send('Accessibility.getFullAXTree');
+    for (const node of nodes)
+      if (!node.ignored && ['button', 'slider', 'spinbutton', 'combobox', 'image', 'application'].includes(node.role?.value))
+        assert(node.name?.value, `a ${node.role.value} without a name`);
   },
 
   // Opens, and says these words; any words if none are given.

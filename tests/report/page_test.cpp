@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/player.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -168,6 +169,56 @@ TEST_F(Page, IsRefusedForAnotherSurface) {
       Error);
   EXPECT_THROW(write_html(folder / "a.html", surface, map_of(surface, field), {}, "{}"), Error);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.html"));
+}
+
+/// The torus at rest, and a plane that sinks.
+struct PlayerPage : Page {
+  static constexpr int kFrames = 9;
+  std::string sinking = folder / "sinking";
+
+  PlayerPage() {
+    std::filesystem::create_directory(sinking);
+    for (int i = 0; i < kFrames; ++i)
+      write_obj(std::filesystem::path(sinking) / fmt::format("{}.obj", i), square(8, kHeight - 0.25 * i));
+  }
+  [[nodiscard]] Outcome play(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"sequence", o1, sinking, "-o", out, "--resolution", "64", "--player"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+};
+
+TEST_F(PlayerPage, PlaysTheFrames) {
+  const Outcome run = play({"--both", "--up", "z"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr(" player.html"));
+  EXPECT_TRUE(passes("plays", out + "/player.html", {"-2", "0.25", "8"}));
+}
+
+TEST_F(PlayerPage, ShowsHostileNames) {
+  std::filesystem::rename(sinking, folder / "<!--<script>alert(1)");
+  sinking = folder / "<!--<script>alert(1)";
+  ASSERT_EQ(play({"--units", "<b>mm</b>"}).code, 0);
+  EXPECT_TRUE(passes("says", out + "/player.html", {"<!--<script>alert(1)", "<b>mm</b>", "9 frames"}));
+}
+
+TEST(SequencePlayer, ThinsOutLongSequences) {
+  const TemporaryFolder folder;
+  const Sites o1(sphere(5)), o2(square(4, -2));  // 10,242 vertices and more of the square
+  SequencePlayer player(o1.mesh(), o2.mesh(), false);
+  std::vector<double> values;
+  constexpr std::size_t kFrames = 300;
+  for (std::size_t i = 0; i < kFrames; ++i) player.add(i, o1, o2), values.push_back(static_cast<double>(i));
+  EXPECT_EQ(player.frames(), kFrames);
+  const std::vector<PlotPanel> panels{{"numbers", {{"", values}}}};
+  player.write(folder / "player.html", panels);
+  EXPECT_TRUE(
+      passes("says", folder / "player.html", {"300 frames, of which 150, one of 2, are in this page"}));
+  values.pop_back();
+  const std::vector<PlotPanel> wrong{{"numbers", {{"", values}}}};
+  EXPECT_THROW(player.write(folder / "no.html", wrong), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "no.html"));
+  EXPECT_THROW(player.add(kFrames, o2, o2), Error);
 }
 
 TEST(PageSources, HaveCorrectTypes) {

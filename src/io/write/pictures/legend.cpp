@@ -60,11 +60,12 @@ LegendText legend_text(const DistanceMap& map, double least, double most, const 
                        const std::string& units) {
   LegendText text{"Distance", units, {}, map.beyond_max_distance > 0};
   if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
-  if (least < scale.lo || most > scale.hi) text.notes.emplace_back("beyond: as the ends");
   if (const auto& t = scale.tolerance)
     text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
                                          : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
   text.notes.push_back(map.sign.method == SignMethod::none ? "unsigned" : "negative: inside");
+  // An empty line otherwise: pictures of a sequence have bars of one length.
+  text.notes.emplace_back(least < scale.lo || most > scale.hi ? "beyond: as the ends" : "");
   return text;
 }
 

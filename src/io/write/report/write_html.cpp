@@ -12,9 +12,9 @@
 
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
-#include "io/write/pictures/color_scale.h"
 #include "io/write/report/area_by_value.h"
 #include "io/write/report/embedded_page.h"
+#include "io/write/report/page_colors.h"
 #include "io/write/report/page_model.h"
 #include "io/write/report/worst_places.h"
 
@@ -34,21 +34,6 @@ std::vector<std::uint32_t> bits_of(std::span<const float> values) {
   return bits;
 }
 
-Json colors_json() {
-  const auto list = [](std::span<const Rgb> colors) {
-    Json json = Json::array();
-    for (const Rgb& c : colors) json.push_back({c.r, c.g, c.b});
-    return json;
-  };
-  return {{"viridis", list(colors_of(Colormap::viridis))},
-          {"diverging", list(colors_of(Colormap::diverging))},
-          {"paper2006", list(colors_of(Colormap::paper2006))},
-          {"within", list({&kWithin, 1})},
-          {"above", list(kAbove)},
-          {"below", list(kBelow)},
-          {"no_value", list({&kNoValue, 1})}};
-}
-
 Json worst_json(const Surface& surface, std::span<const Place> places) {
   Json json = Json::array();
   for (const Place& place : places) {
@@ -59,18 +44,6 @@ Json worst_json(const Surface& surface, std::span<const Place> places) {
       entry["texel"] = {place.texel % surface.resolution(), place.texel / surface.resolution()};
   }
   return json;
-}
-
-/// JSON as the content of a <script> element, which ends at "</script" and may not contain "<!--".
-std::string as_script(const std::string& json) {
-  std::string text;
-  text.reserve(json.size());
-  for (const char c : json)
-    if (c == '<')
-      text += "\\u003c";
-    else
-      text += c;
-  return text;
 }
 
 }  // namespace

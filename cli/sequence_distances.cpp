@@ -1,0 +1,62 @@
+#include "sequence_distances.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "format.h"
+#include "map_numbers.h"
+
+using Json = nlohmann::ordered_json;
+
+FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
+                               const sdm::DistanceMap& map, double error_bound,
+                               const std::optional<sdm::Tolerance>& tolerance) {
+  const std::vector<float> at_vertices = sdm::distances_at_vertices(surface.mesh(), sites);
+  const sdm::Extremes found = sdm::extremes(surface, map, at_vertices);
+  FrameDistances result{
+      .min = found.min.distance, .mean = sdm::statistics(surface, map).mean, .max = found.max.distance};
+  if (!tolerance) return result;
+  const double accuracy = sdm::engine_accuracy(sdm::engines().front(), surface.mesh(), sites.mesh());
+  const sdm::ToleranceVerdict verdict =
+      sdm::check_tolerance(surface, map, at_vertices, error_bound, accuracy, *tolerance);
+  result.verdict = verdict.verdict;
+  result.exceeded_area_fraction = verdict.exceeded_area_fraction;
+  return result;
+}
+
+Json to_json(const FrameDistances& d) {
+  Json json{{"kind", "estimate"}, {"min", d.min}, {"mean", d.mean}, {"max", d.max}};
+  if (d.verdict) {
+    json["verdict"] = verdict_name(*d.verdict);
+    json["exceeded_area_fraction"] = d.exceeded_area_fraction;
+  }
+  return json;
+}
+
+FrameDistances distances_from(const Json& json) {
+  const auto number = [&](const char* key) {
+    return json.at(key).is_null() ? std::numeric_limits<double>::quiet_NaN() : json.at(key).get<double>();
+  };
+  FrameDistances d{.min = number("min"), .mean = number("mean"), .max = number("max")};
+  if (!json.contains("verdict")) return d;
+  for (const sdm::Verdict verdict : {sdm::Verdict::pass, sdm::Verdict::fail, sdm::Verdict::not_decided})
+    if (json.at("verdict") == verdict_name(verdict)) d.verdict = verdict;
+  d.exceeded_area_fraction = json.at("exceeded_area_fraction");
+  return d;
+}
+
+std::string distance_columns(const std::string& body) {
+  return fmt::format(",distance_min_{0},distance_mean_{0},distance_max_{0},verdict_{0}", body);
+}
+
+std::vector<std::string> cells(const std::optional<FrameDistances>& distances) {
+  std::vector<std::string> result(4);
+  if (!distances) return result;
+  const double values[] = {distances->min, distances->mean, distances->max};
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!std::isnan(values[i])) result[i] = number(values[i], 9);
+  if (distances->verdict) result[3] = verdict_name(*distances->verdict);
+  return result;
+}

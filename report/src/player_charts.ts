@@ -1,0 +1,106 @@
+// Curves over the frames, with a cursor at the frame that is shown.
+import { make, makeSvg } from './dom';
+import { text, ticks, tickText } from './numbers';
+import type { Panel } from './player_data';
+
+const kHeight = 150;
+const kLeft = 58;
+const kTop = 10;
+const kBottom = 24;
+const kStyles = ['first', 'second', 'third']; // of curves: colour and dashes
+
+export class Chart {
+  readonly element: HTMLElement;
+  private readonly cursor: SVGElement;
+  private readonly readout: HTMLElement;
+  private readonly width: number;
+
+  /// `pick` is called with a place among `frames` when the chart is clicked.
+  constructor(private readonly panel: Panel, private readonly frames: number[], width: number, pick: (place: number) => void) {
+    this.width = Math.max(260, width);
+    const svg = makeSvg('svg', { viewBox: `0 0 ${this.width} ${kHeight}`, 'aria-hidden': 'true' });
+    this.drawAxes(svg);
+    panel.curves.forEach((curve, i) => svg.append(this.path(curve.values, kStyles[i % kStyles.length])));
+    this.cursor = makeSvg('line', { class: 'cursor', y1: kTop, y2: kHeight - kBottom });
+    svg.append(this.cursor);
+    this.readout = make('span', { class: 'readout' });
+    const picked = (event: Event) => {
+      const { left, width: shown } = svg.getBoundingClientRect();
+      const x = (((event as PointerEvent).clientX - left) / shown) * this.width;
+      const part = (x - kLeft) / (this.width - kLeft - 8);
+      pick(Math.round(Math.min(1, Math.max(0, part)) * (frames.length - 1)));
+    };
+    svg.addEventListener('pointerdown', (event) => {
+      (svg as Element).setPointerCapture((event as PointerEvent).pointerId);
+      picked(event);
+    });
+    svg.addEventListener('pointermove', (event) => {
+      if ((event as PointerEvent).buttons & 1) picked(event);
+    });
+    this.element = make(
+      'div',
+      { class: 'chart', role: 'img', 'aria-label': `${panel.title} over the frames: ${this.range()}` },
+      make('h3', {}, panel.title, ' ', this.readout),
+      svg,
+    );
+  }
+
+  show(place: number): void {
+    const x = this.x(place);
+    this.cursor.setAttribute('x1', String(x));
+    this.cursor.setAttribute('x2', String(x));
+    const values = this.panel.curves.map(({ name, values }) => `${this.panel.curves.length > 1 ? `${name} ` : ''}${text(values[place])}`);
+    this.readout.textContent = values.join(', ');
+  }
+
+  private values(): number[] {
+    return this.panel.curves.flatMap(({ values }) => values.filter((v): v is number => v !== null));
+  }
+
+  private range(): string {
+    const values = this.values();
+    return values.length === 0 ? 'no values' : `from ${text(Math.min(...values))} to ${text(Math.max(...values))}`;
+  }
+
+  private ends(): [number, number] {
+    const values = this.values();
+    let lo = Math.min(...values, Infinity);
+    let hi = Math.max(...values, -Infinity);
+    if (!(lo <= hi)) [lo, hi] = [0, 1];
+    if (lo > 0 && lo < 0.5 * hi) lo = 0;
+    return hi - lo > 1e-9 * Math.abs(hi) ? [lo, hi] : [lo - 0.5 * (Math.abs(lo) || 1), hi + 0.5 * (Math.abs(hi) || 1)];
+  }
+
+  private x(place: number): number {
+    return kLeft + (place / Math.max(1, this.frames.length - 1)) * (this.width - kLeft - 8);
+  }
+
+  private y(value: number): number {
+    const [lo, hi] = this.ends();
+    return kTop + (1 - (value - lo) / (hi - lo)) * (kHeight - kTop - kBottom);
+  }
+
+  private drawAxes(svg: SVGElement): void {
+    const [lo, hi] = this.ends();
+    const marks = ticks(lo, hi, 4);
+    const step = marks.length > 1 ? marks[1] - marks[0] : hi - lo;
+    for (const mark of marks) {
+      svg.append(makeSvg('line', { class: 'grid', x1: kLeft, x2: this.width - 8, y1: this.y(mark), y2: this.y(mark) }));
+      svg.append(makeSvg('text', { x: kLeft - 6, y: this.y(mark) + 4, 'text-anchor': 'end' }, tickText(mark, step)));
+    }
+    const last = this.frames.length - 1;
+    const places = ticks(0, Math.max(1, last), Math.max(2, this.width / 90)).filter((p) => Number.isInteger(p) && p <= last);
+    for (const place of places)
+      svg.append(makeSvg('text', { x: this.x(place), y: kHeight - 6, 'text-anchor': 'middle' }, String(this.frames[place])));
+  }
+
+  private path(values: (number | null)[], style: string): SVGElement {
+    let d = '';
+    let drawing = false;
+    values.forEach((value, place) => {
+      if (value !== null) d += `${drawing ? 'L' : 'M'}${this.x(place).toFixed(1)} ${this.y(value).toFixed(1)}${drawing ? '' : 'h0'}`;
+      drawing = value !== null;
+    });
+    return makeSvg('path', { class: `curve ${style}`, d });
+  }
+}
