@@ -20,10 +20,11 @@
 
 namespace sdm {
 
-/// Reads a point cloud from front to back: PLY (the element vertex; faces are ignored), PCD 0.7 (ascii or
-/// binary), or text with three or more numbers a line, separated by spaces, commas or semicolons ("XYZ"). The
-/// format is detected from the content. Normals are the properties nx, ny, nz or normal_x, normal_y,
-/// normal_z; in XYZ, columns 4 to 6 if they have length 1 in all of the first lines.
+/// Reads a point cloud from front to back: PLY (the element vertex; faces are ignored), PCD 0.7, LAS
+/// 1.0 to 1.4 (not LAZ), or text with three or more numbers a line, separated by spaces, commas or semicolons
+/// ("XYZ"). The format is detected from the content. Normals are the properties nx, ny, nz or normal_x,
+/// normal_y, normal_z; in XYZ, columns 4 to 6 if they have length 1 in all of the first lines.
+/// Binary_compressed PCD is one block, which is in memory as a whole.
 class SDM_API PointReader {
  public:
   /// Opens the file and reads its header. Throws sdm::Error, as read() does, with the name of the file and

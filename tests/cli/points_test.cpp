@@ -5,6 +5,7 @@
 #include <sdm/points.h>
 
 #include <fmt/format.h>
+#include <lzf.h>
 
 #include <bit>
 #include <cmath>
@@ -189,6 +190,70 @@ TEST_F(PointsCommand, FormatsAndPartsAgree) {
   }
 }
 
+/// A PCD file whose fields x, y, rgb and z are compressed, as the Point Cloud Library writes it.
+std::string compressed_pcd(const std::vector<Vec3>& points) {
+  std::string columns;
+  for (const int k : {0, 1, -1, 2})
+    for (const Vec3& p : points) k < 0 ? append(columns, 7u) : append(columns, static_cast<float>(p[k]));
+  std::string block(columns.size() + 100, '\0');
+  block.resize(lzf_compress(columns.data(), static_cast<unsigned>(columns.size()), block.data(),
+                            static_cast<unsigned>(block.size())));
+  EXPECT_FALSE(block.empty());
+  const std::string count = std::to_string(points.size());
+  std::string file = "VERSION 0.7\nFIELDS x y rgb z\nSIZE 4 4 4 4\nTYPE F F U F\nWIDTH " + count +
+                     "\nHEIGHT 1\nPOINTS " + count + "\nDATA binary_compressed\n";
+  append(file, static_cast<std::uint32_t>(block.size()));
+  append(file, static_cast<std::uint32_t>(columns.size()));
+  return file + block;
+}
+
+constexpr double kLasScale = 1.0 / 1024, kLasOffset = 3;
+
+/// A LAS file of version 1.`minor` and a point format with one more number; coordinates are rounded.
+std::string las(const std::vector<Vec3>& points, int minor, std::uint8_t format = 0) {
+  const std::size_t header = minor >= 4 ? 375 : 227, record = 22;
+  std::string file(header, '\0');
+  const auto put = [&](std::size_t at, auto value) {
+    std::string bytes;
+    append(bytes, value);
+    std::ranges::copy(bytes, file.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  std::ranges::copy(std::string_view("LASF"), file.begin());
+  put(24, std::uint8_t{1}), put(25, static_cast<std::uint8_t>(minor));
+  put(94, static_cast<std::uint16_t>(header)), put(96, static_cast<std::uint32_t>(header + 10));
+  put(104, format), put(105, static_cast<std::uint16_t>(record));
+  put(107, static_cast<std::uint32_t>(minor >= 4 ? 0 : points.size()));
+  if (minor >= 4) put(247, std::uint64_t{points.size()});
+  for (std::size_t k = 0; k < 3; ++k) put(131 + 8 * k, kLasScale), put(155 + 8 * k, kLasOffset);
+  file.append(10, '\x2a');  // a record of variable length
+  for (const Vec3& p : points) {
+    for (const double x : p)
+      append(file, static_cast<std::int32_t>(std::lround((x - kLasOffset) / kLasScale)));
+    file.append(record - 12, '\x55');
+  }
+  return file;
+}
+
+TEST_F(PointsCommand, ReadsCompressedPcdInParts) {
+  const Sites sites(mesh);
+  const std::filesystem::path expected = folder / "expected.ply", found = folder / "found.ply";
+  (void)measure_points(xyz(points), sites, expected);
+  (void)measure_points(with("c.pcd", compressed_pcd(points)), sites, found, {.chunk = 777});
+  EXPECT_EQ(contents(found), contents(expected));
+}
+
+TEST_F(PointsCommand, ReadsLas) {
+  for (Vec3& p : points)
+    for (double& x : p) x = kLasScale * std::round(x / kLasScale);
+  const Sites sites(mesh);
+  const std::filesystem::path expected = folder / "expected.ply", found = folder / "found.ply";
+  (void)measure_points(xyz(points), sites, expected);
+  for (const int minor : {0, 2, 3, 4}) {
+    (void)measure_points(with("a.las", las(points, minor)), sites, found, {.chunk = 777});
+    EXPECT_EQ(contents(found), contents(expected)) << minor;
+  }
+}
+
 TEST_F(PointsCommand, NormalsAreKeptAndTurned) {
   const std::string cloud = with("n.xyz", "0 0 3 0 0 1\n3 0 0 1 0 0\n");
   ASSERT_EQ(run(cloud, {"--transform-o1", "rotate:0:90:0,scale:2"}).code, 0);
@@ -261,7 +326,21 @@ TEST_F(PointsCommand, BadFilesAreOneSentence) {
   refused("a.xyz", "Dear Sir or Madam", "unknown format");
   refused("a.xyz", "1 2 3\n4 5\n", "line 2: 2 numbers where 3 are needed");
   refused("a.xyz", "1 2 3\n4 5 x\n", "line 2: expected numbers only");
-  refused("a.las", "LASF\x01\x02\x03", "LAS and LAZ are not supported");
+  const std::string good_las = las(points, 2), good_pcd = compressed_pcd(points);
+  refused("a.las", good_las.substr(0, 200), "the header of the LAS file is cut off");
+  refused("a.las", good_las.substr(0, 5000), "more than the file can hold");
+  refused("a.las", las(points, 2, 128 + 1), "LAZ, compressed LAS, is not supported");
+  refused("a.las", las(points, 5), "does not exist up to LAS 1.4");
+  std::string flat = good_las;
+  std::fill_n(flat.begin() + 131, 8, '\0');
+  refused("a.las", flat, "is zero or not a number");
+  refused("a.pcd", good_pcd.substr(0, good_pcd.size() - 20), "cut off or damaged");
+  std::string damaged = good_pcd;
+  std::fill(damaged.end() - 300, damaged.end(), '\xff');
+  refused("a.pcd", damaged, "cut off or damaged");
+  std::string long_pcd = good_pcd;
+  long_pcd[long_pcd.find("POINTS 3000") + 10] = '1';
+  refused("a.pcd", long_pcd, "cut off or damaged");
   refused("a.ply", ply + "property float x\nend_header\n", "no fields x, y and z");
   refused("a.ply", ply + xyz_fields + "1 2 3\n", "ends after 1 of 2 points");
   refused("a.ply", ply + xyz_fields + "1 2 3\n1 2 3 4\n", "4 numbers where 3");
@@ -273,7 +352,8 @@ TEST_F(PointsCommand, BadFilesAreOneSentence) {
           "more than the file can hold");
   const std::string pcd =
       "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n";
-  refused("a.pcd", pcd + "DATA binary_compressed\n", "binary_compressed; only ascii and binary");
+  refused("a.pcd", pcd + "DATA binary_compressed\n", "cut off or damaged");
+  refused("a.pcd", pcd + "DATA zip\n", "neither ascii, binary nor binary_compressed");
   refused("a.pcd", pcd + "DATA binary\nabc", "more than the file can hold");
   refused("a.pcd", pcd, "no line DATA");
   refused("a.pcd", "FIELDS x y z\nSIZE 4\nTYPE F\nDATA ascii\n", "different numbers of values");

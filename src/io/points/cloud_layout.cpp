@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/points/text_numbers.h"
+#include "io/read/byte_scanner.h"
 
 namespace sdm::io {
 namespace {
@@ -30,7 +31,7 @@ CloudLayout layout_of(const std::vector<Field>& fields, bool text, const char* f
   std::array<bool, 6> found{};
   for (const Field& field : fields) {
     for (std::size_t k = 0; k < 6; ++k)
-      if (!found[k] && std::ranges::count(names[k], field.name) > 0)
+      if (!found[k] && field.count == 1 && std::ranges::count(names[k], field.name) > 0)
         found[k] = true, layout.columns[k] = {layout.stride, field.type};
     layout.stride += field.count * (text ? 1 : size_of(field.type));
   }
@@ -116,11 +117,8 @@ CloudLayout pcd_layout(std::string_view bytes) {
     if (key == "HEIGHT") height = number(next_word(line));
     if (key == "DATA") data = next_word(line);
   }
-  if (data != "ascii" && data != "binary")
-    throw Error(
-        fmt::format("the data of the PCD file are {}; only ascii and binary are supported, as of "
-                    "pcl_convert_pcd_ascii_binary IN OUT 1",
-                    data == "binary_compressed" ? data : "of an unknown kind"));
+  if (data != "ascii" && data != "binary" && data != "binary_compressed")
+    throw Error("the data of the PCD file are neither ascii, binary nor binary_compressed");
   if (counts.empty()) counts.assign(names.size(), 1);
   if (names.empty() || sizes.size() != names.size() || kinds.size() != names.size() ||
       counts.size() != names.size())
@@ -135,12 +133,43 @@ CloudLayout pcd_layout(std::string_view bytes) {
   }
   CloudLayout layout = layout_of(fields, data == "ascii", "PCD file");
   layout.data_begin = at;
+  layout.compressed = data == "binary_compressed";
   if (points)
     layout.count = points;
   else if (width && height && (*height == 0 || *width <= UINT64_MAX / *height))
     layout.count = *width * *height;
   else
     throw Error("the PCD header has no number of points");
+  return layout;
+}
+
+/// ASPRS LAS 1.0 to 1.4. LAZ has the same header, with a bit set in the record format.
+CloudLayout las_layout(std::string_view bytes) {
+  constexpr std::size_t kHeader = 227, kHeader14 = 375;  // bytes
+  const auto at = [&]<class T>(std::size_t place, T) {
+    return load<T>(bytes.data() + place, std::endian::little);
+  };
+  const auto minor = bytes.size() > 25 ? static_cast<unsigned char>(bytes[25]) : 0u;
+  if (bytes.size() < (minor >= 4 ? kHeader14 : kHeader)) throw Error("the header of the LAS file is cut off");
+  const auto format = static_cast<unsigned char>(bytes[104]);
+  if (format >= 64)
+    throw Error("LAZ, compressed LAS, is not supported; convert the cloud to LAS, for example with laszip");
+  if (bytes[24] != 1 || minor > 4 || format > 10)
+    throw Error("the LAS file is of a version or a point format that does not exist up to LAS 1.4");
+  CloudLayout layout;
+  layout.has_scale = true;
+  layout.data_begin = at(96, std::uint32_t{});
+  layout.stride = at(105, std::uint16_t{});
+  layout.count = at(107, std::uint32_t{});
+  if (minor >= 4) layout.count = at(247, std::uint64_t{});
+  if (layout.stride < 20 || layout.data_begin < kHeader)
+    throw Error("the header of the LAS file has impossible sizes; it is damaged");
+  for (std::size_t k = 0; k < 3; ++k) {
+    layout.columns[k] = {4 * k, Type::int32};
+    layout.scale[k] = at(131 + 8 * k, double{}), layout.offset[k] = at(155 + 8 * k, double{});
+    if (!std::isfinite(layout.scale[k]) || !std::isfinite(layout.offset[k]) || layout.scale[k] == 0)
+      throw Error("the scale or the offset in the header of the LAS file is zero or not a number");
+  }
   return layout;
 }
 
@@ -165,7 +194,8 @@ CloudLayout xyz_layout(std::string_view bytes) {
     unit += numbers.size() >= 6 && std::abs(std::hypot(numbers[3], numbers[4], numbers[5]) - 1) < kLength;
   }
   if (rows == 0)
-    throw Error("unknown format; PLY, PCD and text with three or more numbers a line (XYZ) are supported");
+    throw Error(
+        "unknown format; PLY, PCD, LAS and text with three or more numbers a line (XYZ) are supported");
   layout.has_normals = unit == rows;
   if (layout.has_normals) layout.stride = 6;
   for (std::size_t k = 0; k < layout.stride; ++k) layout.columns[k].place = k;
@@ -181,10 +211,7 @@ bool is_pcd(std::string_view bytes) {
 
 CloudLayout cloud_layout(std::string_view bytes) {
   if (bytes.empty()) throw Error("the file is empty");
-  if (bytes.starts_with("LASF"))
-    throw Error(
-        "LAS and LAZ are not supported; convert the cloud to PLY, for example with pdal translate IN "
-        "OUT.ply");
+  if (bytes.starts_with("LASF")) return las_layout(bytes);
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return ply_layout(bytes);
   if (is_pcd(bytes)) return pcd_layout(bytes);
   return xyz_layout(bytes);

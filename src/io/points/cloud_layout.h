@@ -1,6 +1,8 @@
 // Where the coordinates are in the rows of a cloud's file.
 #pragma once
 
+#include <sdm/types.h>
+
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -26,6 +28,11 @@ struct CloudLayout {
   std::size_t stride = 0;  ///< numbers, or bytes, of a row
   std::array<CloudColumn, 6> columns{};
   bool has_normals = false;
+  bool has_scale = false;  ///< coordinates are scale · number + offset
+  Vec3 scale{}, offset{};
+  /// Binary_compressed PCD: the data are two lengths and one block of LZF, with the numbers of a column
+  /// together.
+  bool compressed = false;
 };
 
 /// At most as much of a file is read for its header.

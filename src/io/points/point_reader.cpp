@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <lzf.h>
 #include <sdm/error.h>
 #include <sdm/points.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -34,11 +36,14 @@ struct PointReader::Impl {
     std::string begin(std::min<std::uint64_t>(size, kMaxCloudHeader), '\0');
     take(begin.data(), begin.size());
     layout = cloud_layout(begin);
-    if (layout.count && !layout.text && *layout.count > (size - layout.data_begin) / layout.stride)
+    if (layout.data_begin > size) throw Error("the data begin after the end of the file; it is truncated");
+    if (layout.compressed)
+      decompress();
+    else if (layout.count && !layout.text && *layout.count > (size - layout.data_begin) / layout.stride)
       throw Error(fmt::format(
           "the header declares {} points, more than the file can hold; it is truncated or damaged",
           *layout.count));
-    stream.seekg(static_cast<std::streamoff>(layout.data_begin));
+    if (!layout.compressed) stream.seekg(static_cast<std::streamoff>(layout.data_begin));
     line = 1 + static_cast<std::uint64_t>(
                    std::ranges::count(std::string_view(begin).substr(0, layout.data_begin), '\n'));
     if (layout.count) left = *layout.count;
@@ -47,6 +52,41 @@ struct PointReader::Impl {
   void take(char* to, std::size_t count) {
     if (!stream.read(to, static_cast<std::streamsize>(count)))
       throw Error("cannot be read: it became shorter while it was being read");
+  }
+
+  // Reads and decompresses the block of a PCD file into `bytes`: LZF has no parts.
+  void decompress() {
+    constexpr std::uint64_t kMostRatio = 100;  // of LZF: 264 bytes from 3
+    std::array<char, 8> sizes{};
+    stream.clear();
+    stream.seekg(static_cast<std::streamoff>(layout.data_begin));
+    const auto truncated = [] { return Error("the compressed data are cut off or damaged"); };
+    if (size - layout.data_begin < sizes.size()) throw truncated();
+    take(sizes.data(), sizes.size());
+    const auto packed = load<std::uint32_t>(sizes.data(), std::endian::little);
+    const auto unpacked = load<std::uint32_t>(sizes.data() + 4, std::endian::little);
+    if (packed > size - layout.data_begin - sizes.size() || unpacked > kMostRatio * packed ||
+        unpacked % layout.stride != 0 || unpacked / layout.stride != *layout.count)
+      throw truncated();
+    std::vector<char> block(packed);
+    take(block.data(), block.size());
+    bytes.resize(unpacked);
+    if (unpacked > 0 && lzf_decompress(block.data(), packed, bytes.data(), unpacked) != unpacked)
+      throw truncated();
+  }
+
+  // Points from the columns of `bytes`.
+  void read_columns(std::size_t count, std::vector<Vec3>& points, std::vector<Vec3>& normals) {
+    points.resize(count);
+    normals.resize(layout.has_normals ? count : 0);
+    for (std::size_t k = 0; k < (layout.has_normals ? 6u : 3u); ++k) {
+      const CloudColumn& column = layout.columns[k];
+      const char* first = bytes.data() + *layout.count * column.place;
+      for (std::size_t i = 0; i < count; ++i)
+        (k < 3 ? points[i][k] : normals[i][k - 3]) =
+            number(first + (rows + i) * size_of(column.type), {0, column.type});
+    }
+    rows += count;
   }
 
   // Replaces `text` by the next line, without its end. Returns whether there is one.
@@ -92,6 +132,9 @@ struct PointReader::Impl {
       for (std::size_t k = 0; k < (layout.has_normals ? 6u : 3u); ++k)
         (k < 3 ? points[i][k] : normals[i][k - 3]) =
             number(bytes.data() + i * layout.stride, layout.columns[k]);
+    if (!layout.has_scale) return;
+    for (Vec3& p : points)
+      for (std::size_t k = 0; k < 3; ++k) p[k] = layout.scale[k] * p[k] + layout.offset[k];
   }
 
   void read_text(std::size_t count, std::vector<Vec3>& points, std::vector<Vec3>& normals) {
@@ -146,6 +189,8 @@ bool PointReader::read(std::size_t most, std::vector<Vec3>& points, std::vector<
     if (count == 0) return false;
     if (impl_->layout.text)
       impl_->read_text(count, points, normals);
+    else if (impl_->layout.compressed)
+      impl_->read_columns(count, points, normals);
     else
       impl_->read_binary(count, points, normals);
     if (impl_->layout.count) impl_->left -= count;
@@ -154,7 +199,7 @@ bool PointReader::read(std::size_t most, std::vector<Vec3>& points, std::vector<
 }
 
 std::string point_format_names() {
-  return "PLY, PCD, XYZ text";
+  return "PLY, PCD, LAS, XYZ text";
 }
 
 PointSample sample_points(const std::filesystem::path& file, std::size_t most) {
