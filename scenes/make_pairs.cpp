@@ -1,7 +1,5 @@
 // The scenes `letters` and `bunnies`: pairs of soft bodies.
-#include <sdm/error.h>
-#include <sdm/io.h>
-
+#include "scenes/bunny.h"
 #include "scenes/letters.h"
 #include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
@@ -31,12 +29,8 @@ Mesh placed(Mesh mesh, const char* steps) {
 }
 
 Mesh bunny(const std::filesystem::path& file) {
-  constexpr const char* kDefault = "/usr/share/glmark2/models/bunny.obj";
   constexpr std::size_t kTriangles = 2000;
-  if (file.empty() && !std::filesystem::exists(kDefault))
-    throw Error(std::string("there is no mesh at ") + kDefault +
-                "; install Debian's glmark2-data, or give another mesh file");
-  return placed(reduce_mesh(read_mesh(file.empty() ? kDefault : file), kTriangles), "fit,rotate:90:0:0");
+  return placed(reduce_mesh(read_bunny(file), kTriangles), "fit,rotate:90:0:0");
 }
 
 }  // namespace
