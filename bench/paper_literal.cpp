@@ -12,117 +12,28 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "engine/gl/gl_engine.h"
 #include "harness.h"
+#include "paper/corrections.h"
 #include "scenes.h"
 #include "scenes/reduce_mesh.h"
 #include "scenes/scene.h"
-#include "sites/closest_on_face.h"
 #include "timing.h"
 
 namespace sdm::bench {
 namespace {
 
-using gl::Corrections;
-
-struct Variant {
-  std::string name;
-  Corrections corrections;
-};
-
-/// A correction, and what else must change with it.
-struct Switch {
-  const char* name;
-  void (*set)(Corrections&, bool on);
-};
-constexpr Switch kSwitches[] = {
-    {"region walls", [](Corrections& c, bool on) { c.region_walls = on; }},
-    {"affine vectors",
-     [](Corrections& c, bool on) {
-       c.affine_vectors = on;
-       c.fragment_vectors &= on;
-     }},
-    {"fragment vectors",
-     [](Corrections& c, bool on) {
-       c.fragment_vectors = on;
-       c.affine_vectors |= on;
-     }},
-    {"margins", [](Corrections& c, bool on) { c.margins = on; }},
-    {"tiles", [](Corrections& c, bool on) { c.tiles = on; }},
-    {"stencil points", [](Corrections& c, bool on) { c.stencil_points = on; }},
-};
-
-std::vector<Variant> variants() {
-  const Corrections all{}, none = Corrections::none();
-  Corrections drawn = all, confirmed = none;
-  drawn.confirmation = false;
-  confirmed.confirmation = true;
-  std::vector<Variant> result{{"all corrections", all}, {"as printed", none}};
-  const auto add = [&](const std::string& prefix, Corrections from, const Switch& which, bool on) {
-    which.set(from, on);
-    result.push_back({prefix + which.name, from});
-  };
-  for (const Switch& which : kSwitches) add("printed + ", none, which, true);
-  Corrections tiled = none;
-  tiled.tiles = true;
-  add("printed + tiles + ", tiled, kSwitches[0], true);
-  add("printed + tiles + ", tiled, kSwitches[1], true);
-  result.push_back({"printed + confirmation", confirmed});
-  for (const Switch& which : kSwitches) add("all - ", all, which, false);
-  result.push_back({"all - confirmation", drawn});
-  for (const Switch& which : kSwitches) add("all - confirmation - ", drawn, which, false);
+std::vector<paper::Variant> variants() {
+  std::vector<paper::Variant> result = paper::added_corrections();
+  std::ranges::move(paper::removed_corrections(), std::back_inserter(result));
   return result;
-}
-
-double distance_to_site(const Sites& sites, SiteType type, std::uint32_t site, const Vec3& x) {
-  const std::vector<Vec3>& p = sites.mesh().positions;
-  if (type == SiteType::face) return sites::closest_on_face(internals(sites), site, x).distance;
-  if (type == SiteType::vertex) return norm(x - p[site]);
-  const auto [i, j] = sites.edges()[site];
-  return norm(closest_on_segment(x, p[i], p[j]) - x);
-}
-
-struct Errors {
-  double largest = 0, mean = 0;  // relative to the diagonal
-  double wrong = 0, none = 0;    // percentages of texels
-};
-
-Errors errors_of(const DistanceMap& map, const DistanceMap& reference, const Surface& surface,
-                 const Sites& sites) {
-  Box box = bounds(surface.mesh());
-  extend(box, bounds(sites.mesh()));
-  const double unit = diagonal(box), tolerance = gl::kInfo.relative_error * unit;
-  Errors e;
-  for (const std::uint32_t t : surface.sample_texels()) {
-    if (map.site_type[t] == SiteType::none) {
-      ++e.none, ++e.wrong;
-      continue;
-    }
-    const double expected = std::abs(reference.distance[t]);
-    const double error = std::abs(std::abs(map.distance[t]) - expected);
-    e.largest = std::max(e.largest, error / unit);
-    e.mean += error / unit;
-    const Vec3 q = surface.texel_point(t),
-               end = q + Vec3{map.vector[t][0], map.vector[t][1], map.vector[t][2]};
-    const auto to_site = [&](const Vec3& x) {
-      return distance_to_site(sites, map.site_type[t], map.site[t], x);
-    };
-    e.wrong += error > tolerance || to_site(q) > expected + tolerance || to_site(end) > tolerance;
-  }
-  const auto texels = static_cast<double>(surface.sample_texels().size());
-  e.mean /= std::max(texels - e.none, 1.0);
-  e.wrong *= 100 / texels;
-  e.none *= 100 / texels;
-  return e;
 }
 
 Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, std::uint32_t resolution,
@@ -135,9 +46,9 @@ Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, std::uint32_
   const DistanceMap reference = map_by(make_engine("reference"));
   Outcome outcome{.verified = true};
   std::vector<Contender> contenders;
-  for (const Variant& variant : variants()) {
+  for (const paper::Variant& variant : variants()) {
     const auto engine = gl::make_gl_engine({.device = device, .clip = GlClip::stencil}, variant.corrections);
-    const Errors e = errors_of(map_by(engine), reference, surface, sites);
+    const paper::MapErrors e = paper::errors_of(map_by(engine), reference, surface, sites);
     const GlReport report = gl_report(*engine).value();
     const auto texels = static_cast<double>(report.texels);
     if (outcome.rows.empty() && e.wrong > 0) {
