@@ -7,7 +7,7 @@ if(place EQUAL -1)
 endif()
 
 # Files that the README and the guide link to exist.
-file(GLOB pages ${SOURCE_DIR}/*.md ${SOURCE_DIR}/docs/*.md)
+file(GLOB pages ${SOURCE_DIR}/*.md ${SOURCE_DIR}/docs/*.md ${SOURCE_DIR}/docs/*/*.md)
 foreach(page ${pages})
   file(READ ${page} text)
   get_filename_component(folder ${page} DIRECTORY)
