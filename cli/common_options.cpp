@@ -51,6 +51,16 @@ void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::stri
       ->capture_default_str();
 }
 
+void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
+  std::string help;
+  std::vector<std::pair<std::string, sdm::EngineInfo>> choices;
+  for (const sdm::EngineInfo& info : sdm::engines()) {
+    choices.emplace_back(info.name, info);
+    help += (help.empty() ? "" : "; ") + choices.back().first + ": " + std::string(info.summary);
+  }
+  add_choice<sdm::EngineInfo>(app, "--engine", engine, help, choices);
+}
+
 void add_sign_option(CLI::App& app, sdm::SignMethod& sign) {
   add_choice<sdm::SignMethod>(app, "--sign", sign,
                               "How the inside of O2 (negative) is determined; auto: exact if O2 is "

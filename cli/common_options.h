@@ -1,6 +1,7 @@
 // Options shared by several commands.
 #pragma once
 
+#include <sdm/engine.h>
 #include <sdm/io.h>
 #include <sdm/surface.h>
 
@@ -21,6 +22,8 @@ CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
                                    const std::string& maps = "the map");
 /// `mesh` describes the parametrised mesh in the help text.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
+/// --engine.
+void add_engine_option(CLI::App& app, sdm::EngineInfo& engine);
 /// --sign.
 void add_sign_option(CLI::App& app, sdm::SignMethod& sign);
 /// --colormap and --range.

@@ -10,20 +10,6 @@
 #include <cmath>
 #include <functional>
 
-namespace {
-
-void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
-  std::string help;
-  std::vector<std::pair<std::string, sdm::EngineInfo>> choices;
-  for (const sdm::EngineInfo& info : sdm::engines()) {
-    choices.emplace_back(info.name, info);
-    help += (help.empty() ? "" : "; ") + choices.back().first + ": " + std::string(info.summary);
-  }
-  add_choice<sdm::EngineInfo>(app, "--engine", engine, help, choices);
-}
-
-}  // namespace
-
 void add_options(CLI::App& app, MapCommand& c) {
   const auto positive = number("a positive number", [](double x) { return x > 0; });
   app.add_option("O1", c.o1,

@@ -38,6 +38,7 @@ namespace {
 struct SequenceCommand {
   PairCommand pair;
   sdm::AtlasOptions atlas{.resolution = 512};
+  sdm::EngineInfo engine = sdm::engines().front();
   std::filesystem::path out;
   int maps_every = 0;
   double rate = 0, map_precision = 0;
@@ -69,6 +70,7 @@ Json options_of(const SequenceCommand& command) {
           {"--maps", command.maps_every},
           {"--rate", command.rate},
           {"--allow-topology", command.allow_topology},
+          {"--engine", command.engine.name},
           {"--no-temporal", command.no_temporal},
           {"--atlas", command.atlas.kind},
           {"--gutter", command.atlas.gutter},
@@ -121,6 +123,8 @@ class FrameLoop {
         count_(common_frames(bodies_[0], bodies_[1])),
         lines_(out_.staging() / "frames.jsonl", std::ios::binary) {
     command_.atlas.progress = progress_.callback();
+    if (command_.engine.name == "gl") (void)sdm::gl_device({}, command_.atlas.resolution);  // fails early
+    map_options_.engine = sdm::make_engine(command_.engine.name);
     state_.options = options_of(command);
     const std::array<sdm::Mesh, 2> first{bodies_[0].mesh(), bodies_[1].mesh()};
     state_.meshes = {hash_of(first[0]), hash_of(first[1])};
@@ -282,7 +286,7 @@ class FrameLoop {
     frame.time.query = watch.lap();
     const bool write = command_.maps_every > 0 && index % static_cast<std::size_t>(command_.maps_every) == 0;
     if (write || command_.measures() || !command_.no_temporal)
-      sdm::compute_map(query_->surface(0), query_->sites(1), {}, map_);
+      sdm::compute_map(query_->surface(0), query_->sites(1), map_options_, map_);
     if (!command_.no_temporal) temporal_.add(query_->surface(0), map_);
     if (command_.measures()) measure_distances(frame);
     frame.time.map = watch.lap();
@@ -437,7 +441,7 @@ class FrameLoop {
     sdm::write_exr(folder / "temporal.exr", surface, temporal);
     // The pictures need the other layers of a map.
     if (map_.distance.size() != surface.texel_faces().size())
-      sdm::compute_map(surface, query_->sites(1), {}, map_);
+      sdm::compute_map(surface, query_->sites(1), map_options_, map_);
     const auto use = [&](std::span<const float> values) { std::ranges::copy(values, map_.distance.begin()); };
     sdm::PictureOptions picture = command_.picture;
     if (!picture.range) {  // one scale for the three
@@ -474,6 +478,7 @@ class FrameLoop {
   TemporalRecorder temporal_;
   std::array<bool, 2> edited_{};  // bodies, since their bounds were built
   bool stopped_ = false, interrupted_ = false;
+  sdm::MapOptions map_options_;
   sdm::DistanceMap map_, other_map_;
   std::optional<sdm::SequencePlayer> player_;
 };
@@ -506,6 +511,7 @@ void add_sequence_command(CLI::App& app) {
       ->type_name("EPS");
   add_layout_options(*sequence, command->atlas, "each body");
   add_output_option(*sequence, command->out);
+  add_engine_option(*sequence, command->engine);
   if (sdm::can_write_html())
     sequence->add_flag("--player", command->player,
                        "Write player.html, a page that plays the frames, with their distances at vertices");
@@ -534,6 +540,9 @@ void add_sequence_command(CLI::App& app) {
     check_range(command->range);
     if (command->player && command->allow_topology)
       throw CLI::ValidationError("--player", "needs bodies that keep their faces: omit --allow-topology");
+    // Edits add rows to atlases, which the gl engine refuses.
+    if (command->allow_topology && command->engine.name == "gl")
+      throw CLI::ValidationError("--allow-topology", "cannot be used with --engine gl");
     limit_threads(command->pair.threads);
     if (!FrameLoop(*command).process()) throw CLI::RuntimeError(3);
   });

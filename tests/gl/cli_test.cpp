@@ -1,7 +1,12 @@
-// `sdm map --engine gl` as a user runs it.
+// `sdm map --engine gl` and `sdm sequence --engine gl` as a user runs them.
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/samples.h"
 #include "support/run_sdm.h"
@@ -94,6 +99,71 @@ TEST_F(GlCommand, InvalidOptionsAreUsageErrorsAndUnknownDevicesFail) {
   EXPECT_EQ(unknown.code, 1);
   EXPECT_NE(unknown.err.find("no such device"), std::string::npos) << unknown.err;
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+std::vector<float> distances_in(const std::string& file) {
+  Imf::InputFile exr(file.c_str());
+  const auto window = exr.header().dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x) + 1,
+             height = static_cast<std::size_t>(window.max.y) + 1;
+  std::vector<float> values(width * height);
+  Imf::FrameBuffer frame;
+  frame.insert("distance.D", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float),
+                                        width * sizeof(float)));
+  exr.setFrameBuffer(frame);
+  exr.readPixels(window.min.y, window.max.y);
+  return values;
+}
+
+// The letters collide around frame 18.
+TEST(GlSequence, HasTheFramesAndMapsOfTheCpuEngine) {
+  const TemporaryFolder folder;
+  const std::string scene = folder / "letters";
+  ASSERT_EQ(run_sdm({"scene", "letters", "-o", scene, "--frames", "22", "--format", "ply"}).code, 0);
+  const auto sequence = [&](const std::string& engine) {
+    const Outcome run = run_sdm({"sequence", scene + "/E", scene + "/G", "-o", folder / engine,
+                                 "--resolution", "64", "--maps", "21", "--engine", engine});
+    EXPECT_EQ(run.code, 0) << run.err;
+    std::istringstream text(contents(folder / (engine + "/frames.jsonl")));
+    std::vector<Json> lines;
+    for (std::string line; std::getline(text, line);) {
+      lines.push_back(Json::parse(line));
+      lines.back().erase("time_ms");
+    }
+    return lines;
+  };
+  EXPECT_EQ(sequence("gl"), sequence("cpu"));
+  for (const char* map : {"0000.exr", "0021.exr"}) {
+    const std::vector<float> gl = distances_in(folder / (std::string("gl/maps/") + map)),
+                             cpu = distances_in(folder / (std::string("cpu/maps/") + map));
+    ASSERT_EQ(gl.size(), cpu.size());
+    std::size_t values = 0;
+    for (std::size_t t = 0; t < gl.size(); ++t) {
+      ASSERT_EQ(std::isnan(gl[t]), std::isnan(cpu[t])) << t;
+      if (std::isnan(gl[t])) continue;
+      ++values;
+      ASSERT_NEAR(gl[t], cpu[t], 8e-6) << t;  // 2e-6 of the diagonal of both letters, below 3, and rounding
+    }
+    EXPECT_GT(values, 1000u);
+  }
+}
+
+TEST(GlSequence, RefusesAnotherEngineForResumingAndEdits) {
+  const TemporaryFolder folder;
+  const std::string scene = folder / "letters", out = folder / "out";
+  ASSERT_EQ(run_sdm({"scene", "letters", "-o", scene, "--frames", "4", "--format", "ply"}).code, 0);
+  std::filesystem::remove(scene + "/E/00002.ply");
+  const std::vector<std::string> arguments{"sequence", scene + "/E",   scene + "/G", "-o",
+                                           out,        "--resolution", "64"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), arguments.begin(), arguments.end());
+    return run_sdm(more);
+  };
+  EXPECT_EQ(with({"--engine", "gl", "--allow-topology"}).code, 2);
+  EXPECT_EQ(with({}).code, 1);  // the missing frame
+  const Outcome other = with({"--resume", "--engine", "gl"});
+  EXPECT_EQ(other.code, 1);
+  EXPECT_NE(other.err.find("--engine"), std::string::npos) << other.err;
 }
 
 }  // namespace
