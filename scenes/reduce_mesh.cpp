@@ -31,7 +31,7 @@ Mesh reduce_mesh(const Mesh& mesh, std::size_t triangles) {
   std::vector<Triangle> kept(mesh.triangles.size());
   const std::size_t corners = meshopt_simplify(
       kept.data()->data(), mesh.triangles.data()->data(), 3 * mesh.triangles.size(), points.data()->data(),
-      points.size(), sizeof(Vec3f), 3 * triangles, kAnyError, 0, nullptr);
+      points.size(), sizeof(Vec3f), 3 * std::min(triangles, mesh.triangles.size()), kAnyError, 0, nullptr);
   kept.resize(corners / 3);
   remove_pairs(kept);
 

@@ -201,5 +201,10 @@ TEST(ReduceMesh, KeepsTheShapeAndStaysClosed) {
   EXPECT_NEAR(info.area, full.area, 0.03 * full.area);
 }
 
+TEST(ReduceMesh, KeepsMeshesOfFewerTriangles) {
+  const Mesh mesh = box_mesh({{0, 0, 0}, {1, 2, 3}});
+  EXPECT_EQ(reduce_mesh(mesh, 2000).triangles.size(), mesh.triangles.size());
+}
+
 }  // namespace
 }  // namespace sdm::scenes
