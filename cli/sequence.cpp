@@ -384,7 +384,7 @@ class FrameLoop {
     for (int b = 0; b < (command_.both ? 2 : 1); ++b) {
       const sdm::Surface& surface = query_->surface(b);
       const sdm::Sites& sites = query_->sites(1 - b);
-      if (b == 1) sdm::compute_map(surface, sites, {}, other_map_);
+      if (b == 1) sdm::compute_map(surface, sites, map_options_, other_map_);
       naming(frame, [&] {
         frame.distances[b] = frame_distances(surface, sites, b == 0 ? map_ : other_map_, frame.error_bound[b],
                                              command_.picture.tolerance);
