@@ -78,6 +78,7 @@ Json options_of(const SequenceCommand& command) {
           {"--strict-uv", command.atlas.strict_uv},
           {"--both", command.both},
           {"--player", command.player},
+          {"--up", command.picture.up},
           {"--colormap", command.picture.colormap},
           {"--range", command.range},
           {"--tolerance", tolerance_json(command)}};
