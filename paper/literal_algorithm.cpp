@@ -155,7 +155,7 @@ Figure literal_algorithm(Run& run) {
                 {"cases", nullptr}};
   const std::string about_signs = fmt::format(
       " Signs by the orientation of the closest face are wrong at {} of {} samples of the letters, in every "
-      "fifth frame, {} of which are inside; by winding numbers, at none: they are the comparison.",
+      "fifth frame, {} of which are inside; the comparison is with winding numbers.",
       signs.wrong, signs.samples, signs.inside);
   if (!run.gl) {
     figure.measured = "The maps were not measured: there is no OpenGL 4.5 device." + about_signs;

@@ -34,6 +34,7 @@ th, td { padding: 4px 12px 4px 0; text-align: right; border-bottom: 1px solid #e
 th { border-bottom-color: #8a8f96; }
 td { white-space: nowrap; }
 .comparisons td, td:first-child { white-space: normal; }
+td:first-child { min-width: 9em; }
 th:first-child, td:first-child { text-align: left; }
 .comparisons th, .comparisons td { text-align: left; }
 .legend { font-size: 14px; color: #44484e; }

@@ -7,7 +7,7 @@
 namespace sdm::paper {
 
 std::string bars(const std::string& title, const std::vector<Bar>& rows) {
-  constexpr double kWidth = 470, kNames = 218, kLabels = 62, kRow = 22, kTop = 36;
+  constexpr double kWidth = 420, kNames = 212, kLabels = 60, kRow = 22, kTop = 36;
   double most = 0;
   for (const Bar& bar : rows) most = std::max(most, bar.value);
   Svg svg(kWidth, kTop + kRow * static_cast<double>(rows.size()) + 8, title);

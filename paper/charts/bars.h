@@ -12,7 +12,7 @@ struct Bar {
   std::string label{};  ///< the value with its unit, beside the bar
 };
 
-/// Returns a row for each bar, all from the same zero, 470 units wide.
+/// Returns a row for each bar, all from the same zero, 420 units wide.
 [[nodiscard]] std::string bars(const std::string& title, const std::vector<Bar>& rows);
 
 }  // namespace sdm::paper
