@@ -107,6 +107,7 @@ Figure stencil(Run& run) {
   Json measured{{"resolution", resolution}};
   std::vector<std::string> heads{"values"};
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(kValues.size());
   for (const int values : kValues) rows.push_back({fmt::to_string(values)});
   const auto column = [&](const std::string& head, const std::vector<double>& hits) {
     heads.push_back(head);
