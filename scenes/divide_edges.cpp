@@ -39,8 +39,8 @@ bool divide_once(Mesh& mesh, double longest) {
     // Turned so that the first edge is divided and, of two, the second one as well.
     int first = 0;
     while (m[first] == kNone || (divided == 2 && m[(first + 1) % 3] == kNone)) ++first;
-    std::ranges::rotate(t, t.begin() + first);
-    std::ranges::rotate(m, m.begin() + first);
+    std::rotate(t.begin(), t.begin() + first, t.end());
+    std::rotate(m.begin(), m.begin() + first, m.end());
     if (divided == 1) {
       triangles.insert(triangles.end(), {{t[0], m[0], t[2]}, {m[0], t[1], t[2]}});
       continue;

@@ -158,6 +158,7 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
   const ViewLayout layout = layout_views(other != nullptr ? shown_box(box, bounds(*other)) : box, options.up);
   const std::vector<Mark> marks = marks_of(found, options.units);
   std::vector<Vec3> places;
+  places.reserve(marks.size());
   for (const Mark& mark : marks) places.push_back(mark.point);
 
   const ViewScene scene = scene_of(surface, map, vertex_distances, scale, other);

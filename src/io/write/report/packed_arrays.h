@@ -12,6 +12,7 @@ namespace sdm::io {
 
 /// Arrays of 32-bit numbers, each split into four planes of bytes: the low ones of all numbers, the next
 /// ones, and so on. Planes are compressed by themselves. report/src/arrays.ts unpacks them.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw
 class PackedArrays {
  public:
   /// Adds numbers as they are.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/geometry/vec.h"
 
@@ -55,9 +56,15 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle) {
   const double by_x = (a[2] * b[1] - b[2] * a[1]) / area, by_y = (b[2] * a[0] - a[2] * b[0]) / area;
   const double at = p[0][2] - by_x * p[0][0] - by_y * p[0][1];
 
-  const double first_row = std::max(0.0, std::ceil(top - 0.5 - kMargin));
-  const double last_row = std::min(height_ - 1.0, std::floor(bottom - 0.5 + kMargin));
-  for (double row = first_row; row <= last_row; ++row) {
+  // The samples whose centres are from `lo` to `hi`, of `count`: from `first` up to before `end`.
+  const auto samples = [](double lo, double hi, std::uint32_t count) {
+    const double first = std::max(0.0, std::ceil(lo - 0.5)),
+                 last = std::min(count - 1.0, std::floor(hi - 0.5));
+    return first <= last ? std::pair(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last) + 1)
+                         : std::pair(0u, 0u);
+  };
+  const auto [first_row, end_row] = samples(top - kMargin, bottom + kMargin, height_);
+  for (std::uint32_t row = first_row; row < end_row; ++row) {
     // The columns where the row's samples are on the inner side of all three edges.
     const double y = row + 0.5;
     double begin = left - kMargin, end = right + kMargin;
@@ -70,18 +77,19 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle) {
       else if (slope < 0)
         end = std::min(end, -rest / slope + kMargin);
     }
-    const double last = std::min(width_ - 1.0, std::floor(end - 0.5));
-    for (double column = std::max(0.0, std::ceil(begin - 0.5)); column <= last; ++column) {
+    const auto [first, last] = samples(begin, end, width_);
+    for (std::uint32_t column = first; column < last; ++column) {
       const auto depth =
           static_cast<float>(std::clamp(at + by_x * (column + 0.5) + by_y * y, farthest, nearest));
-      const std::size_t sample = static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column);
+      const std::size_t sample = std::size_t{row} * width_ + column;
       if (depth > depth_[sample]) depth_[sample] = depth, face_[sample] = face;
     }
   }
 }
 
 Vec3 DepthBuffer::weights(std::size_t sample, const Triangle& triangle) const {
-  const Vec2 at{static_cast<double>(sample % width_) + 0.5, static_cast<double>(sample / width_) + 0.5};
+  const std::size_t row = sample / width_, column = sample % width_;
+  const Vec2 at{static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5};
   const Vec2 p = flat(corners_[triangle[0]]);
   const Vec2 a = flat(corners_[triangle[1]]) - p, b = flat(corners_[triangle[2]]) - p, x = at - p;
   const double area = cross(a, b);
