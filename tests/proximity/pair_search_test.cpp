@@ -123,6 +123,32 @@ TEST(PairSearch, RigidMotionOfBothChangesNothing) {
   }
 }
 
+// Spheres and cubes have many pairs of faces at the smallest distance, which share a vertex or an edge.
+TEST(PairSearch, HintsChangeNoBit) {
+  std::mt19937 random(9);
+  for (const Mesh& mesh : {test::sphere(3), test::cube(), test::torus(12, 8)}) {
+    const Sites o1(mesh), o2(mesh);
+    for (int i = 0; i < 12; ++i) {
+      Affine pose = i % 2 == 0 ? Affine{} : bench::random_rotation(random);
+      pose.offset = {3 + 0.5 * (i % 4), 0.1 * (i % 3), 0};
+      const MeshPair pair{internals(o1), internals(o2), pose};
+      PairWorkspace workspace;
+      const Separation expected = find_closest(pair, kAny, workspace);
+      for (int hint = 0; hint < 20; ++hint) {
+        const auto face = [&] { return static_cast<std::uint32_t>(random() % mesh.triangles.size()); };
+        const FacePair faces = hint == 0 && expected.face1 != kNone ? FacePair{expected.face1, expected.face2}
+                                                                    : FacePair{face(), face()};
+        const Separation found = find_closest(pair, kAny, workspace, faces);
+        ASSERT_EQ(found.distance, expected.distance);
+        ASSERT_EQ(found.point1, expected.point1);
+        ASSERT_EQ(found.point2, expected.point2);
+        ASSERT_EQ(found.face1, expected.face1);
+        ASSERT_EQ(found.face2, expected.face2);
+      }
+    }
+  }
+}
+
 TEST(PairSearch, RespectsTheBound) {
   const Mesh m1 = test::load("pig.off", "fit"), m2 = test::load("cow.off", "fit");
   const Affine pose = shift(1.3, 0.2);
