@@ -22,4 +22,9 @@ AffineMap affine_map(const Surface& surface, std::uint32_t face) {
   return {sx, sy, (u - sx * x) / v};
 }
 
+Vec2 texel_centre(const Surface& surface, std::uint32_t texel) {
+  const std::uint32_t column = texel % surface.resolution(), row = texel / surface.resolution();
+  return {column + 0.5, row + 0.5};
+}
+
 }  // namespace sdm::paper

@@ -3,6 +3,8 @@
 
 #include <sdm/surface.h>
 
+#include <cstdint>
+
 namespace sdm::paper {
 
 /// A_s: scale and shear in the plane, in texels per unit of length: rows (sx, sh·sy) and (0, sy). A_r rotates
@@ -13,5 +15,8 @@ struct AffineMap {
 
 /// Decomposes M of a face with a chart by a QR factorisation. The shear is along the first edge of the face.
 [[nodiscard]] AffineMap affine_map(const Surface& surface, std::uint32_t face);
+
+/// The centre of a texel in atlas coordinates.
+[[nodiscard]] Vec2 texel_centre(const Surface& surface, std::uint32_t texel);
 
 }  // namespace sdm::paper

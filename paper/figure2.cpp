@@ -69,8 +69,7 @@ std::string in_atlas(const Surface& surface, const DistanceMap& map) {
   const Vec2 corners[] = {place(a), place(b), place(c)};
   svg.polygon(corners, {150, 190, 230}, 0.5, {kAxisColor, 1.2});
   for (const std::uint32_t t : surface.sample_texels())
-    svg.dot(place({t % surface.resolution() + 0.5, t / surface.resolution() + 0.5}), 3.6,
-            type_color(map.site_type[t]));
+    svg.dot(place(texel_centre(surface, t)), 3.6, type_color(map.site_type[t]));
   return std::move(svg).finished();
 }
 
@@ -101,12 +100,10 @@ Interpolation interpolate(const Pair& pair) {
     groups[{surface.texel_faces()[surface.sample_texels()[i]], static_cast<std::uint32_t>(closest[i].type),
             closest[i].site}]
         .push_back(i);
-  const auto uv = [&](std::size_t i) {
-    const std::uint32_t t = surface.sample_texels()[i];
-    return Vec2{t % surface.resolution() + 0.5, t / surface.resolution() + 0.5};
-  };
+  const auto uv = [&](std::size_t i) { return texel_centre(surface, surface.sample_texels()[i]); };
   Interpolation result;
-  for (const auto& [key, group] : groups) {
+  for (const auto& entry : groups) {
+    const std::vector<std::size_t>& group = entry.second;
     if (group.size() < 6) continue;
     const auto corner = [&](const Vec2& direction) {
       return *std::ranges::max_element(group, {}, [&](std::size_t i) { return dot(direction, uv(i)); });
@@ -136,9 +133,8 @@ Figure figure2(Run& run) {
   const AffineMap m = affine_map(triangle, 0);
   double residual = 0;
   for (const std::uint32_t t : triangle.sample_texels()) {
-    const Vec2 uv = triangle.to_atlas(0, triangle.texel_point(t));
-    residual = std::max({residual, std::abs(uv[0] - (t % triangle.resolution() + 0.5)),
-                         std::abs(uv[1] - (t / triangle.resolution() + 0.5))});
+    const Vec2 off = triangle.to_atlas(0, triangle.texel_point(t)) - texel_centre(triangle, t);
+    residual = std::max({residual, std::abs(off[0]), std::abs(off[1])});
   }
 
   Pair letters(run.letters().meshes(0), run.choose(512u, 256u));

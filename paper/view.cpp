@@ -107,7 +107,7 @@ io::Picture Scenery::paint(const std::function<Rgb(const Seen&)>& color) const {
     for (std::size_t y = begin; y < end; ++y)
       for (std::size_t x = 0; x < width_; ++x) {
         std::array<float, 3> sum{};
-        for (std::size_t k = 0; k < kSubsamples * kSubsamples; ++k) {
+        for (std::uint32_t k = 0; k < kSubsamples * kSubsamples; ++k) {
           const std::size_t row = y * kSubsamples + k / kSubsamples,
                             column = x * kSubsamples + k % kSubsamples;
           const Seen& s = seen_[row * width_ * kSubsamples + column];

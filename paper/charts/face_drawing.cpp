@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "paper/affine_map.h"
 #include "paper/charts/svg.h"
 
 namespace sdm::paper {
@@ -54,8 +55,10 @@ std::string atlas_with_samples(std::string_view title, const Surface& surface, d
     faces.push_back(corners);
   }
   std::vector<Vec2> samples;
-  for (const std::uint32_t t : surface.sample_texels())
-    samples.push_back({t % surface.resolution() + 0.5, -(t / surface.resolution() + 0.5)});
+  for (const std::uint32_t t : surface.sample_texels()) {
+    const Vec2 centre = texel_centre(surface, t);
+    samples.push_back({centre[0], -centre[1]});
+  }
   return draw(title, faces, samples, per_texel);
 }
 
