@@ -429,7 +429,8 @@ TEST_F(MapCommand, EnginesAtlasesAndSignsCanBeChosen) {
   EXPECT_NEAR(cpu["distance"]["mean"], reference["distance"]["mean"], 1e-6);
   const Json triangles = Json::parse(run_sdm(map({"--json", "--atlas", "triangles"})).out);
   EXPECT_EQ(triangles["atlas"]["kind"], "triangles");
-  EXPECT_EQ(triangles["atlas"]["charts"], 288);
+  EXPECT_GE(triangles["atlas"]["charts"], 288 / 2);  // pairs of faces, and what is left over
+  EXPECT_LT(triangles["atlas"]["charts"], 288);
   const Json unsigned_map = Json::parse(run_sdm(map({"--json", "--sign", "none"})).out);
   EXPECT_EQ(unsigned_map["sign"]["method"], "none");
   EXPECT_EQ(unsigned_map["negative_texels"], 0);
