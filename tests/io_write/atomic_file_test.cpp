@@ -61,7 +61,7 @@ std::string contents(const std::filesystem::path& file) {
 
 TEST_F(AllWriters, LeaveNoFilesOnAFullDisk) {
   for (std::size_t i = 0; i < writers.size(); ++i)
-    for (const rlim_t bytes : {0, 100, 1500, 6000}) {
+    for (const rlim_t bytes : {0, 100, 1500, 4000}) {
       const FileSizeLimit limit(bytes);
       try {
         writers[i](folder / "result");
