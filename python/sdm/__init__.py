@@ -13,11 +13,13 @@ array([[1. , 0.5, 0.5]])
 """
 
 from ._core import (
+    Alignment,
     BoundedBool,
     BoundedLength,
     Cancelled,
     ClosestPoints,
     Contacts,
+    DegreeOfFreedom,
     DistanceStatistics,
     Error,
     Mesh,
@@ -29,8 +31,11 @@ from ._core import (
     Shape,
     Sites,
     Surface,
+    align,
+    align_points,
     engines,
     fit_to_unit,
+    hausdorff,
     read,
     thread_limit,
 )
@@ -39,11 +44,13 @@ from ._closest_points import NONE, SiteType, closest_points
 from ._distance_map import DistanceMap, MapBounds, map
 
 __all__ = [
+    "Alignment",
     "BoundedBool",
     "BoundedLength",
     "Cancelled",
     "ClosestPoints",
     "Contacts",
+    "DegreeOfFreedom",
     "DistanceMap",
     "DistanceStatistics",
     "Error",
@@ -59,9 +66,12 @@ __all__ = [
     "SiteType",
     "Sites",
     "Surface",
+    "align",
+    "align_points",
     "closest_points",
     "engines",
     "fit_to_unit",
+    "hausdorff",
     "map",
     "read",
     "thread_limit",

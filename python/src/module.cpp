@@ -17,4 +17,5 @@ NB_MODULE(_core, module) {
   bind_map(module);
   bind_proximity(module);
   bind_bodies(module);
+  bind_surfaces(module);
 }

@@ -62,5 +62,6 @@ void bind_surface(nb::module_& module);
 void bind_map(nb::module_& module);
 void bind_proximity(nb::module_& module);
 void bind_bodies(nb::module_& module);
+void bind_surfaces(nb::module_& module);
 
 }  // namespace sdm::python

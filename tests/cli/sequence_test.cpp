@@ -416,6 +416,12 @@ TEST_F(Resume, RefusesOtherOptionsAndInputs) {
   expect_refusal(into(out, {"--resume"}), "frame 3 is not that of the interrupted run");
 }
 
+// All files, texel by texel.
+TEST_F(Resume, AllowingTopologyChangesNothingWhereItDoesNotChange) {
+  ASSERT_EQ(run_sdm(into(out, {"--allow-topology"})).code, 0);
+  expect_whole();
+}
+
 /// Faces disappear and appear again, and once there is another mesh.
 struct ResumeTopology : Resume {
   ResumeTopology() {

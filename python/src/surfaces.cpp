@@ -1,0 +1,240 @@
+// The Hausdorff distance of two surfaces, and their alignment.
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "arrays.h"
+#include "objects.h"
+
+namespace sdm::python {
+namespace {
+
+/// The sites of a Sites, in use meanwhile, or those of any other mesh.
+class SitesInUse {
+ public:
+  explicit SitesInUse(nb::handle mesh) {
+    if (nb::isinstance<PySites>(mesh)) {
+      const auto& given = nb::cast<const PySites&>(mesh);
+      lock_ = given.access.use();
+      sites_ = &given.sites;
+    } else {
+      mesh_ = mesh_of(mesh, nb::none());
+    }
+  }
+  /// Builds them, if they are not there. Needs no GIL.
+  const Sites& get() {
+    if (!sites_) sites_ = &own_.emplace(std::move(mesh_));
+    return *sites_;
+  }
+
+ private:
+  std::shared_lock<std::shared_mutex> lock_;
+  const Sites* sites_ = nullptr;
+  Mesh mesh_;
+  std::optional<Sites> own_;
+};
+
+BoundedLength hausdorff(nb::handle a, nb::handle b, double precision, bool one_sided, nb::handle progress) {
+  SitesInUse on(a), to(b);
+  BoundedLength result;
+  run(progress, [&](const Progress& report) {
+    const HausdorffOptions options{.precision = precision, .progress = report};
+    if (one_sided) {
+      result = one_sided_hausdorff(on.get().mesh(), to.get(), options).distance;
+    } else {
+      const SymmetricHausdorff both = symmetric_hausdorff(on.get(), to.get(), options);
+      result = both.larger.distance;
+      if (both.larger_from == 1 && result.witness) std::swap((*result.witness)[0], (*result.witness)[1]);
+    }
+  });
+  return result;
+}
+
+AlignOptions align_options(const char* start, nb::handle pose, std::size_t samples, int max_iterations) {
+  AlignOptions options{.samples = samples, .max_iterations = max_iterations};
+  const std::string_view name = start;
+  if (name == "principal_axes")
+    options.start = AlignStart::principal_axes;
+  else if (name != "pose")
+    throw Error("there is no start " + std::string(name) + "; use 'pose' or 'principal_axes'");
+  if (!pose.is_none()) options.pose = transform(pose, "pose");
+  return options;
+}
+
+nb::object vector_of(const Vec3& v) {
+  std::vector<Vec3> values{v};
+  return array_of<double>(std::move(values), {3});
+}
+
+void bind_alignment(nb::module_& module) {
+  using F = DegreeOfFreedom;
+  nb::class_<F>(
+      module, "DegreeOfFreedom",
+      R"(A rigid motion of the aligned O1, and how well O2 determines it: a translation and a rotation
+about an axis through the centre of O1, with |translation|² + |rotation|² = 1. A rotation of r moves O1 by r
+divided by its radius of gyration, in radians.)")
+      .def_prop_ro(
+          "translation", [](const F& self) { return vector_of(self.translation); },
+          nb::sig("def translation(self) -> numpy.ndarray"), "(3,) float64.")
+      .def_prop_ro(
+          "rotation", [](const F& self) { return vector_of(self.rotation); },
+          nb::sig("def rotation(self) -> numpy.ndarray"), "Along the axis, (3,) float64.")
+      .def_ro(
+          "determined", &F::determined,
+          "The rms distance by which the samples move along the normals of O2, per unit of motion: 0 for a "
+          "plane that moves in itself, 1 for one that moves along its normal.")
+      .def_ro(
+          "standard_error", &F::standard_error,
+          "An estimate: the standard error of the motion, as a length, if residuals are independent noise; "
+          "infinite if it is free.")
+      .def_ro("free", &F::free, "O2 is nearly unchanged by the motion, which the alignment leaves as it was.")
+      .def("__repr__", [](const F& self) {
+        return nb::str("sdm.DegreeOfFreedom(determined={:.3g}{})")
+            .format(self.determined, self.free ? ", free" : "");
+      });
+  using A = Alignment;
+  nb::class_<A>(module, "Alignment", "A rigid motion that aligns O1 to O2, and how good it is.")
+      .def_prop_ro(
+          "transform", [](const A& self) { return matrix(self.transform); },
+          nb::sig("def transform(self) -> numpy.ndarray"),
+          "Maps O1, as it was given, to its place on O2: a rotation and a translation, (4, 4) float64, for "
+          "column vectors.")
+      .def_prop_ro(
+          "rms_before", [](const A& self) { return self.before.rms; },
+          "The rms distance of samples of O1, as it was given, to O2, in units of the meshes.")
+      .def_prop_ro(
+          "rms", [](const A& self) { return self.after.rms; },
+          "The rms distance of the aligned samples to O2.")
+      .def_prop_ro(
+          "trimmed_rms", [](const A& self) { return self.after.trimmed_rms; },
+          "The same of the samples with the smallest distances, ``fraction_used`` of all.")
+      .def_ro("samples", &A::samples, "The number of samples.")
+      .def_ro("fraction_used", &A::fraction_used,
+              "Of the samples, in the last step; the others are taken for outliers.")
+      .def_ro("iterations", &A::iterations, "Steps, of all levels.")
+      .def_ro("converged", &A::converged,
+              "The last step moved O1 by less than 1e-6 of its radius of gyration.")
+      .def_prop_ro(
+          "freedoms",
+          [](const A& self) {
+            nb::list freedoms;
+            for (const F& freedom : self.freedoms) freedoms.append(nb::cast(freedom));
+            return freedoms;
+          },
+          nb::sig("def freedoms(self) -> list[DegreeOfFreedom]"),
+          "The six degrees of freedom, the best determined one first.")
+      .def("__repr__", [](const A& self) {
+        return nb::str("sdm.Alignment(rms {:.6g}, before {:.6g}, {} iterations)")
+            .format(self.after.rms, self.before.rms, self.iterations);
+      });
+}
+
+constexpr const char* kProgress =
+    "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> ";
+
+}  // namespace
+
+void bind_surfaces(nb::module_& module) {
+  bind_alignment(module);
+  static const std::string hausdorff_signature =
+      std::string(
+          "def hausdorff(a: object, b: object, *, precision: float = 0.0, one_sided: bool = False, ") +
+      kProgress + "BoundedLength";
+  module.def("hausdorff", &hausdorff, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
+             nb::arg("precision") = 0.0, nb::arg("one_sided") = false, nb::arg("progress") = nb::none(),
+             nb::sig(hausdorff_signature.c_str()),
+             R"(Returns the Hausdorff distance of two surfaces, with certified bounds.
+
+a, b: any form of a mesh (see Mesh), or Sites. Any triangle soups.
+precision: the bounds are at most this far apart, in units of the meshes; 0: 1e-6 of the diagonal of the box
+of both.
+one_sided: only the largest distance from a point of a to the closest point of b, which is 0 where a is a part
+of b; otherwise the larger one of both directions.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+The witness is a point of a and a point of b that are ``value`` apart. Nothing is sampled: lower ≤ truth ≤
+upper, rounding included. Raises Error for an unusable mesh, or a precision that is negative or NaN.
+
+>>> distance = sdm.hausdorff(box, sphere)
+>>> distance.lower <= distance.value <= distance.upper
+True
+>>> sdm.hausdorff(box, box).value
+0.0)");
+
+  static const std::string align_signature =
+      std::string(
+          "def align(o1: object, o2: object, *, start: str = 'pose', pose: object = None, "
+          "samples: int = 32768, max_iterations: int = 100, ") +
+      kProgress + "Alignment";
+  module.def(
+      "align",
+      [](nb::handle o1, nb::handle o2, const char* start, nb::handle pose, std::size_t samples,
+         int max_iterations, nb::handle progress) {
+        AlignOptions options = align_options(start, pose, samples, max_iterations);
+        const Mesh mesh = mesh_of(o1, nb::none());
+        SitesInUse to(o2);
+        Alignment result;
+        run(progress, [&](const Progress& report) {
+          options.progress = report;
+          result = align(mesh, to.get(), options);
+        });
+        return result;
+      },
+      nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("start") = "pose",
+      nb::arg("pose") = nb::none(), nb::arg("samples") = 32768, nb::arg("max_iterations") = 100,
+      nb::arg("progress") = nb::none(), nb::sig(align_signature.c_str()),
+      R"(Finds the rotation and the translation that move the surface of O1 onto O2.
+
+o1, o2: any form of a mesh (see Mesh); o2 also Sites.
+start: 'pose', at ``pose``; or 'principal_axes', where centres and principal axes of both agree, which needs
+most of the surface of O1.
+pose: a 4 × 4 matrix of a rotation and a translation; None: O1 as it is.
+samples: of the surface of O1, at least 64. max_iterations: per level of refinement.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+Point-to-plane steps of iterated closest points, in which outliers have no weight. Finds a local optimum: the
+start should be within some 20° and 10 % of the size. Raises Error for an unusable mesh and for options out of
+range.
+
+>>> moved = sdm.Mesh(box).transformed([[1, 0, 0, 0.03], [0, 1, 0, 0.02], [0, 0, 1, -0.01], [0, 0, 0, 1]])
+>>> alignment = sdm.align(moved, box)
+>>> bool(np.abs(alignment.transform[:3, 3] + [0.03, 0.02, -0.01]).max() < 1e-9)
+True)");
+
+  static const std::string align_points_signature =
+      std::string(
+          "def align_points(points: object, o2: object, *, normals: object = None, start: str = "
+          "'pose', pose: object = None, samples: int = 32768, max_iterations: int = 100, ") +
+      kProgress + "Alignment";
+  module.def(
+      "align_points",
+      [](nb::handle points, nb::handle o2, nb::handle normals, const char* start, nb::handle pose,
+         std::size_t samples, int max_iterations, nb::handle progress) {
+        AlignOptions options = align_options(start, pose, samples, max_iterations);
+        const Points p(points, "points");
+        std::optional<Points> n;
+        if (!normals.is_none()) n.emplace(normals, "normals");
+        SitesInUse to(o2);
+        Alignment result;
+        run(progress, [&](const Progress& report) {
+          options.progress = report;
+          result = align(p.get(), n ? n->get() : std::span<const Vec3>(), to.get(), options);
+        });
+        return result;
+      },
+      nb::arg("points").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("normals") = nb::none(),
+      nb::arg("start") = "pose", nb::arg("pose") = nb::none(), nb::arg("samples") = 32768,
+      nb::arg("max_iterations") = 100, nb::arg("progress") = nb::none(),
+      nb::sig(align_points_signature.c_str()),
+      R"(Finds the rotation and the translation that move points onto O2; see align().
+
+points: (n, 3) numbers, of which a pseudorandom subset is used if there are more than ``samples``.
+normals: (n, 3) numbers of any length, or None: points whose normal differs from that of O2 by more than 60°
+have no weight.
+
+>>> points = sphere.vertices + [0.01, 0, 0]
+>>> sdm.align_points(points, sphere).rms < 1e-6
+True)");
+}
+
+}  // namespace sdm::python
