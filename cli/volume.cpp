@@ -224,6 +224,8 @@ void check(const VolumeCommand& command, const CLI::App& app) {
   if (sdm::field_method(command.options.method).needs_band && command.options.band == kInfinity)
     throw CLI::ValidationError(
         "--method", fmt::format("{} needs --band", sdm::field_method(command.options.method).name));
+  if (command.options.tessellation > 0 && command.options.method != sdm::FieldMethod::brute_force)
+    throw CLI::ValidationError("--tessellation", "requires --method brute_force");
   if (command.out.empty() && command.o1.empty())
     throw CLI::ValidationError("--output", "give a file with -o, or a mesh with --proximity");
   if (command.o1.empty() && (app.count("--transform-o1") > 0 || app.count("--sample-spacing") > 0))
@@ -278,6 +280,12 @@ void add_volume_command(CLI::App& app) {
     methods.emplace_back(method.name, method.method);
   add_choice<sdm::FieldMethod>(*volume, "--method", c.options.method,
                                "How distances are computed; all have the same result", methods);
+  volume
+      ->add_option("--tessellation", c.options.tessellation,
+                   "brute_force: draw distance functions as meshes with an error of at most E, as in the "
+                   "literature, instead of evaluating them at each point; unsigned")
+      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->type_name("E");
   volume->add_flag("--sites", c.options.sites, "Also find the closest sites (in .vti)");
   volume
       ->add_option(

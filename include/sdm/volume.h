@@ -86,6 +86,11 @@ struct FieldOptions {
   /// Greater than 0, in units of the mesh. Points farther than this have no value (NaN).
   double band = std::numeric_limits<double>::infinity();
   bool sites = false;  ///< also store the closest sites
+  /// brute_force: distance functions of edges and vertices are drawn as meshes, as HCK99 and HZLM01 did,
+  /// whose distances exceed the true ones by at most this, in units of the mesh, and are never less. The
+  /// field is then unsigned, and points from the band less this on may have no value. 0: they are evaluated
+  /// at each point.
+  double tessellation = 0;
   Progress progress{};
 };
 
@@ -115,7 +120,7 @@ struct DistanceField {
   std::vector<SiteType> site_type;  ///< empty unless asked for
   double band = std::numeric_limits<double>::infinity();
   /// Upper bound on the error of a distance, rounding to float included: FieldMethodInfo::relative_error
-  /// times the diagonal of the box of O2 and the grid.
+  /// times the diagonal of the box of O2 and the grid, and FieldOptions::tessellation.
   double accuracy = 0;
   Box o2_bounds{};  ///< no point outside of it is inside O2
   SignUsed sign;
@@ -126,9 +131,10 @@ struct DistanceField {
 /// Computes the field. Every method finds the closest sites at every point of the grid, to within
 /// FieldMethodInfo::relative_error. Throws sdm::Error for a grid out of range, with a coordinate beyond 1e37
 /// or with spacings that vanish by rounding, for a sign method that O2 does not allow, for a band that is not
-/// positive, or infinite where the method needs one, or if there is not enough memory, which is checked
-/// before anything is allocated; Cancelled. All cores. Cost, for m sites and n points a side: best and
-/// reference, a search per point, or per point near O2 if there is a band; brute_force O(m n³); difi and
+/// positive, or infinite where the method needs one, for a tessellation that is negative, too fine for single
+/// precision, with another method than brute_force or with signs, or if there is not enough memory, which is
+/// checked before anything is allocated; Cancelled. All cores. Cost, for m sites and n points a side: best
+/// and reference, a search per point, or per point near O2 if there is a band; brute_force O(m n³); difi and
 /// linear_factorization O(m n) for clipping, and what culling leaves of O(m n³); csc O(m) and the points in
 /// the polyhedra.
 [[nodiscard]] SDM_API DistanceField compute_field(const Sites& sites, const Grid& grid,

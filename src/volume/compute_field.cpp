@@ -27,6 +27,20 @@ void check_options(const FieldOptions& options, const FieldMethodInfo& method) {
   if (!(options.band > 0)) throw Error("the band must be greater than 0");
   if (method.needs_band && options.band == std::numeric_limits<double>::infinity())
     throw Error("the method " + std::string(method.name) + " needs a band");
+  if (!(options.tessellation >= 0)) throw Error("the tessellation must not be negative");
+  if (options.tessellation == 0) return;
+  if (method.method != FieldMethod::brute_force)
+    throw Error("distance functions are drawn as meshes by the method brute_force only, not by " +
+                std::string(method.name));
+  if (options.sign != SignMethod::automatic && options.sign != SignMethod::none)
+    throw Error("distances of distance functions that are drawn as meshes have no sign");
+}
+
+SignUsed sign_of_field(const Sites& sites, const FieldOptions& options) {
+  if (options.tessellation > 0)
+    return {SignMethod::none,
+            "distance functions are drawn as meshes, and what is drawn closest need not be"};
+  return choose_sign(sites, options.sign);
 }
 
 // The error of the closest points that signs are decided from.
@@ -73,10 +87,10 @@ DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOpt
   DistanceField field;
   field.grid = grid;
   field.band = options.band;
-  field.sign = choose_sign(sites, options.sign);
+  field.sign = sign_of_field(sites, options);
   field.report.method = options.method;
   field.o2_bounds = bounds(sites.mesh());
-  field.accuracy = length_of_error(method, grid, sites.mesh());
+  field.accuracy = length_of_error(method, grid, sites.mesh()) + options.tessellation;
   const bool is_signed = field.sign.method != SignMethod::none;
   const bool by_engine = options.method == FieldMethod::best || options.method == FieldMethod::reference;
   const bool by_winners = !by_engine && (is_signed || options.sites);

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "volume/draw_span.h"
 #include "volume/drawn_sites.h"
 #include "volume/slice_polygon.h"
 #include "volume/slice_store.h"
+#include "volume/tessellated_distance.h"
 
 namespace sdm::volume {
 namespace {
@@ -66,6 +68,8 @@ class SliceSweep {
         sites_(drawn_sites(task.sites)),
         store_(task, field, winners),
         radius_(0.5 * std::hypot(grid_.step[0], grid_.step[1])) {
+    if (task.options.tessellation > 0)
+      (void)TessellatedDistance(tessellation(), limit());  // throws before anything is drawn
     active_.resize(sites_.size());
     for (std::uint32_t i = 0; i < active_.size(); ++i) active_[i] = i;
   }
@@ -156,21 +160,23 @@ class SliceSweep {
 
   void draw(const Slice& slice) {
     const std::uint32_t width = grid_.dims[0], height = grid_.dims[1];
-    const auto limit = static_cast<float>(rules_.limit * rules_.limit);
+    const auto squared_limit = static_cast<float>(limit() * limit());
     bands_.resize((height + kBand - 1) / kBand);
     std::atomic<std::uint64_t> evaluations{0};
     parallel_for(bands_.size(), 1, [&](std::size_t begin, std::size_t end) {
       thread_local PolygonRows rows;
+      std::optional<TessellatedDistance> mesh;  // of distance functions
+      if (task_.options.tessellation > 0) mesh.emplace(tessellation(), limit());
       for (std::size_t b = begin; b < end; ++b) {
         const auto first = static_cast<std::uint32_t>(kBand * b), last = std::min(first + kBand, height);
         DepthRows& band = bands_[b];
-        band.reset(width, last - first, limit);
+        band.reset(width, last - first, squared_limit);
         std::uint64_t count = 0;
         for (const Chunk& chunk : chunks_)
           for (const SlicePolygon& polygon : chunk.polygons) {
             const DrawnSite& site = sites_[active_[polygon.site]];
             rows.find(polygon.drawn, first, last, width);
-            count += draw(slice, site, rows, first, band);
+            count += draw(slice, site, rows, first, mesh, band);
             if (polygon.may_retire && !kept(polygon.site)) {
               rows.find(polygon.tested, first, last, width);
               if (influences(slice, site, rows, first, band)) keep(polygon.site);
@@ -182,16 +188,28 @@ class SliceSweep {
     report_.evaluations += evaluations;
   }
 
-  // Draws a site in the rows; returns the number of points.
+  // The error of distance functions drawn as meshes, in the unit frame; 0: they are evaluated.
+  [[nodiscard]] double tessellation() const { return task_.sites.frame.scale * task_.options.tessellation; }
+
+  // No point whose distance is needed is drawn with a larger one.
+  [[nodiscard]] double limit() const { return rules_.limit + tessellation(); }
+
+  // Draws a site in the rows, by its `mesh` if there is one; returns the number of points.
   static std::uint64_t draw(const Slice& slice, const DrawnSite& site, const PolygonRows& rows,
-                            std::uint32_t first_row, DepthRows& band) {
+                            std::uint32_t first_row, std::optional<TessellatedDistance>& mesh,
+                            DepthRows& band) {
     std::uint64_t count = 0;
     for (std::uint32_t r = 0; r < rows.count(); ++r) {
       const auto [begin, end] = rows.points(r);
       if (begin == end) continue;
       const std::size_t at = (rows.first() + r - first_row) * band.stride + begin;
-      draw_span(band.squared.data() + at, band.winner.data() + at, end - begin,
-                span_vector(slice, site, begin, rows.first() + r), site.code);
+      const SpanVector vector = span_vector(slice, site, begin, rows.first() + r);
+      float* squared = band.squared.data() + at;
+      std::uint32_t* winner = band.winner.data() + at;
+      if (mesh && site.region.type != SiteType::face)
+        mesh->draw_span(squared, winner, end - begin, vector, site);
+      else
+        draw_span(squared, winner, end - begin, vector, site.code);
       count += end - begin;
     }
     return count;

@@ -69,6 +69,15 @@ TEST_F(VolumeCommand, HasAllMethods) {
   }
 }
 
+TEST_F(VolumeCommand, DrawsDistanceFunctionsAsMeshes) {
+  const Outcome run = run_sdm({"volume", o2, "--spacing", "0.25", "--method", "brute_force", "--tessellation",
+                               "0.05", "--json", "-o", folder / "f.npy"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  EXPECT_NEAR(json["accuracy"], 0.05, 1e-4);
+  EXPECT_EQ(json["sign"]["method"], "none");
+}
+
 TEST_F(VolumeCommand, EstimatesProximity) {
   const std::vector<std::string> command{"volume", o2, "--spacing", "0.1", "--proximity", o1};
   std::vector<std::string> apart = command, as_json = command;
@@ -96,6 +105,8 @@ TEST_F(VolumeCommand, WrongUsage) {
       {{"--grid", "4", "0", "4", "-o", "f.vdb"}, "1 to 1048576"},
       {{"--grid", "4", "4", "9999999", "-o", "f.vdb"}, "1 to 1048576"},
       {{"--spacing", "-1", "-o", "f.vdb"}, "positive"},
+      {{"--spacing", "1", "--tessellation", "0.1", "-o", "f.vdb"}, "--method brute_force"},
+      {{"--spacing", "1", "--method", "brute_force", "--tessellation", "0", "-o", "f.vdb"}, "positive"},
       {{"--spacing", "1", "--band", "0", "-o", "f.vdb"}, "positive"},
       {{"--spacing", "1", "--method", "csc", "-o", "f.vdb"}, "csc needs --band"},
       {{"--spacing", "1", "--method", "fast", "-o", "f.vdb"}, "not one of"},
