@@ -244,8 +244,9 @@ void add_volume_command(CLI::App& app) {
   CLI::App* volume =
       app.add_subcommand("volume", "Compute the distance field of a mesh on a regular grid of points");
   volume->footer(
-      "Distances are exact at the points of the grid, by every method: `best` is the fastest one; the others "
-      "are those of the literature, for comparison, and `reference` is for verification.\n\n"
+      "Without --tessellation, distances are exact at the points of the grid, by every method: `best` is the "
+      "fastest one; the others are those of the literature, for comparison, and `reference` is for "
+      "verification.\n\n"
       "Example, a level set for other programs:\n"
       "  sdm volume part.stl --spacing 0.5 --band 1.5 -o part.vdb");
   const auto command = std::make_shared<VolumeCommand>();
@@ -279,7 +280,7 @@ void add_volume_command(CLI::App& app) {
   for (const sdm::FieldMethodInfo& method : sdm::field_methods())
     methods.emplace_back(method.name, method.method);
   add_choice<sdm::FieldMethod>(*volume, "--method", c.options.method,
-                               "How distances are computed; all have the same result", methods);
+                               "How distances are computed, with the same result by all", methods);
   volume
       ->add_option("--tessellation", c.options.tessellation,
                    "brute_force: draw distance functions as meshes with an error of at most E, as in the "

@@ -129,7 +129,7 @@ struct DistanceField {
 };
 
 /// Computes the field. Every method finds the closest sites at every point of the grid, to within
-/// FieldMethodInfo::relative_error. Throws sdm::Error for a grid out of range, with a coordinate beyond 1e37
+/// DistanceField::accuracy. Throws sdm::Error for a grid out of range, with a coordinate beyond 1e37
 /// or with spacings that vanish by rounding, for a sign method that O2 does not allow, for a band that is not
 /// positive, or infinite where the method needs one, for a tessellation that is negative, too fine for single
 /// precision, with another method than brute_force or with signs, or if there is not enough memory, which is

@@ -24,8 +24,6 @@ class TessellatedDistance {
   void draw_span(float* squared, std::uint32_t* winner, std::size_t count, const SpanVector& vector,
                  const DrawnSite& site);
 
-  [[nodiscard]] std::size_t sectors() const { return directions_.size(); }
-
  private:
   /// The radius at which the mesh has the value that it has at (x, y); at least the distance from (0, 0).
   [[nodiscard]] double radius(double x, double y) const;
