@@ -29,15 +29,6 @@ double meet(const sites::SitesData& sites, const Ray& ray, std::uint32_t face) {
   return std::numeric_limits<double>::infinity();
 }
 
-// The weights of the corners at a point of the triangle. Of a needle, areas may consist of rounding errors,
-// but its points are near its longest side.
-Vec3 weights_at(const Corners& corners, const Vec3& p) {
-  const auto& [a, b, c] = corners;
-  const auto error = [&](const Vec3& w) { return squared_norm(w[0] * a + w[1] * b + w[2] * c - p); };
-  const Vec3 by_areas = barycentric(a, b, c, p), on_side = barycentric_on_longest_side(a, b, c, p);
-  return error(by_areas) <= error(on_side) ? by_areas : on_side;
-}
-
 }  // namespace
 }  // namespace sdm::rays
 #endif
@@ -148,7 +139,8 @@ void FirstHits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch
       return false;
     });
     if (hit.face == kNone) continue;
-    hit.barycentric = weights_at(corners_of(sites, hit.face), rays[i].origin + hit.t * rays[i].direction);
+    const auto [a, b, c] = corners_of(sites, hit.face);
+    hit.barycentric = barycentric(a, b, c, rays[i].origin + hit.t * rays[i].direction);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/disjoint_sets.h"
+#include "core/geometry/barycentric.h"
 #include "core/geometry/spatial_order.h"
 #include "core/geometry/sweep.h"
 #include "core/geometry/vec.h"
@@ -256,6 +257,34 @@ TEST(SpatialOrder, AlignedPacketsAreCompact) {
 TEST(SpatialOrder, TakesNoPointsAndEqualPoints) {
   EXPECT_TRUE(spatial_order({}).empty());
   EXPECT_EQ(spatial_order(std::vector<Vec3>(5, Vec3{3, 3, 3})).size(), 5u);
+}
+
+// Weights of needles and caps are ratios of areas that may be rounding errors; their point is accurate.
+TEST(Barycentric, GivesThePointInTrianglesOfAnyShape) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0, 1), exponent(-20, 0), signed_unit(-1, 1);
+  const auto anywhere = [&] { return Vec3{signed_unit(random), signed_unit(random), signed_unit(random)}; };
+  for (int i = 0; i < 200'000; ++i) {
+    const Vec3 a = anywhere(), b = anywhere();
+    // The third corner is near a point of the line through the others, by any factor of the side.
+    const double t = i % 3 == 0 ? std::pow(10, exponent(random)) : 2 * signed_unit(random);
+    std::array corners{a, b, a + t * (b - a) + std::pow(10, exponent(random)) * anywhere()};
+    if (i % 7 == 0) corners[2] = corners[i % 2];
+    std::shuffle(corners.begin(), corners.end(), random);
+    Vec3 given{unit(random), unit(random), unit(random)};
+    for (double& w : given)
+      if (unit(random) < 0.3) w = 0;  // on sides and corners
+    const double sum = given[0] + given[1] + given[2];
+    given = sum > 0 ? (1 / sum) * given : Vec3{0, 1, 0};
+    const auto point = [&](const Vec3& w) {
+      return w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2];
+    };
+    const Vec3 p = point(given), w = barycentric(corners[0], corners[1], corners[2], p);
+    ASSERT_GE(std::ranges::min(w), 0);
+    ASSERT_NEAR(w[0] + w[1] + w[2], 1, 1e-15);
+    ASSERT_LE(norm(point(w) - p), 1e-14) << i;
+  }
+  EXPECT_EQ(barycentric({1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}), (Vec3{1, 0, 0}));
 }
 
 }  // namespace

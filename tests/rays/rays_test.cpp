@@ -343,7 +343,7 @@ TEST(RaysAlone, OfANeedleHaveWeightsAtTheirPoint) {
     if (hit.face == kNone) continue;  // beside an end, by rounding
     ASSERT_EQ(hit.face, 0u);
     const Vec3& w = hit.barycentric;
-    EXPECT_LE(norm(w[0] * a + w[1] * b + w[2] * c - p), 1e-7) << s;
+    EXPECT_LE(norm(w[0] * a + w[1] * b + w[2] * c - p), 1e-14) << s;
   }
 }
 
