@@ -7,7 +7,6 @@
 #include "core/parallel.h"
 #include "engine/blocks.h"
 #include "engine/cpu/cpu_engine.h"
-#include "engine/reference/reference_engine.h"
 #include "sites/sites_data.h"
 
 namespace sdm::registration {
@@ -88,24 +87,15 @@ Correspondences find_correspondences(const Samples& samples, const Affine& pose,
     pairs.normals[i] = tangent_normal(c, pairs.faces[i], pairs.points[i], target);
     pairs.usable[i] = !on_boundary(c, target);
   };
-  // Groups of the cpu engine take as long for a few sparse samples as for many: those are searched one by
-  // one.
-  constexpr std::size_t kSparse = 1 << 14, kGrain = 64;
-  if (count < kSparse)
-    parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        store(i, reference::reference_closest(data, pairs.points[i], limit));
+  engine::for_each_block(count, {}, "align", [&](std::size_t begin, std::size_t end) {
+    const std::span<const Vec3> block = std::span(pairs.points).subspan(begin, end - begin);
+    cpu::cpu_search(data, block, limit, [&](std::size_t first, const sites::ClosestPacket& packet) {
+      for (std::size_t k = 0; k < packet.count; ++k) {
+        const std::size_t i = begin + first + k;
+        store(i, packet.get(k, pairs.points[i]));
+      }
     });
-  else
-    engine::for_each_block(count, {}, "align", [&](std::size_t begin, std::size_t end) {
-      const std::span<const Vec3> block = std::span(pairs.points).subspan(begin, end - begin);
-      cpu::cpu_search(data, block, limit, [&](std::size_t first, const sites::ClosestPacket& packet) {
-        for (std::size_t k = 0; k < packet.count; ++k) {
-          const std::size_t i = begin + first + k;
-          store(i, packet.get(k, pairs.points[i]));
-        }
-      });
-    });
+  });
   // Where O1 is far from its place, or O2 is a soup, most of the samples may be beside it.
   if (4 * static_cast<std::size_t>(std::ranges::count(pairs.usable, 1)) < count)
     std::ranges::fill(pairs.usable, std::uint8_t{1});
