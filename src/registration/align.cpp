@@ -22,7 +22,6 @@ using namespace registration;
 
 constexpr std::size_t kCoarse = 1024;  // samples of the first level
 constexpr double kEverything = std::numeric_limits<double>::infinity();
-constexpr double kFar = 4;
 constexpr std::size_t kThin = 4096;  // samples that show which motions are determined
 
 /// The state of a registration: a pose of samples that are relative to their centre.
@@ -31,7 +30,6 @@ struct Fit {
   double cut = kEverything;
   int iterations = 0;
   bool converged = false;
-  bool outliers = false;  ///< some samples are farther than kFar times the cut
 };
 
 void check_progress(const AlignOptions& options, double fraction) {
@@ -63,7 +61,6 @@ Fit refine(const Samples& samples, Fit fit, double radius, const Target& target,
     fit.cut = trimming_cut(pairs, pivot, motions);
     const Motion motion = best_motion(pairs, pivot, motions, fit.cut);
     fit.pose = moved(fit.pose, pivot, motion);
-    fit.outliers = std::ranges::any_of(pairs.distances, [&](double d) { return d > kFar * fit.cut; });
     fit.converged = motion.norm() < tolerance * radius;
   }
   return fit;
@@ -112,15 +109,6 @@ AlignResiduals residuals(std::vector<double> distances, double fraction_used) {
   return result;
 }
 
-/// The samples in an order in which outliers do not slow down the searches of other samples.
-Samples far_ones_last(const Samples& samples, const Fit& fit, const Target& target) {
-  if (!fit.outliers) return samples;
-  const Correspondences pairs = find_correspondences(samples, fit.pose, target, kFar * fit.cut);
-  std::vector<std::uint8_t> far(pairs.distances.size());
-  std::ranges::transform(pairs.distances, far.begin(), [](double d) { return std::isinf(d); });
-  return separated(samples, far);
-}
-
 Samples relative(Samples samples, const Vec3& centre) {
   for (Vec3& p : samples.points) p = p - centre;
   return samples;
@@ -137,14 +125,13 @@ Alignment align_samples(const SampleSource& source, const Sites& o2, const Align
   const Samples given = source(options.samples);
   const auto [centre, extent] = robust_extent(given.points);
   const double radius = extent > 0 ? extent : 1;
-  Samples fine = relative(given, centre);
+  const Samples fine = relative(given, centre);
   const Samples coarse = relative(source(std::min(kCoarse, options.samples)), centre);
 
   Fit fit{{start.rows, start(centre)}};
   if (options.start == AlignStart::principal_axes) fit = best_match_of_axes(coarse, radius, target, options);
   fit = refine(coarse, fit, radius, target, options.max_iterations, kCoarseTolerance);
   check_progress(options, 0.5);
-  fine = far_ones_last(fine, fit, target);
   fit = refine(fine, fit, radius, target, options.max_iterations, kTolerance);
   check_progress(options, 1);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
@@ -38,7 +39,7 @@ void exclude_other_sides(const Samples& samples, const Affine& pose, const Targe
   std::vector<double> cosines(pairs.points.size());
   std::size_t known = 0, against = 0;
   for (std::size_t i = 0; i < cosines.size(); ++i) {
-    if (!pairs.usable[i] || std::isinf(pairs.distances[i])) continue;
+    if (!pairs.usable[i]) continue;
     cosines[i] = dot(pose.linear(samples.normals[i]), face_normals[pairs.faces[i]]);
     ++known, against += cosines[i] < 0;
   }
@@ -46,12 +47,11 @@ void exclude_other_sides(const Samples& samples, const Affine& pose, const Targe
   if (opposite)
     for (double& cosine : cosines) cosine = -cosine;
   const auto agrees = [&](std::size_t i, bool either_side) {
-    return (either_side ? std::abs(cosines[i]) : cosines[i]) >= kLeast || std::isinf(pairs.distances[i]);
+    return (either_side ? std::abs(cosines[i]) : cosines[i]) >= kLeast;
   };
   for (const bool either_side : {false, true}) {
     std::size_t left = 0;
-    for (std::size_t i = 0; i < cosines.size(); ++i)
-      left += pairs.usable[i] && !std::isinf(pairs.distances[i]) && agrees(i, either_side);
+    for (std::size_t i = 0; i < cosines.size(); ++i) left += pairs.usable[i] && agrees(i, either_side);
     if (static_cast<double>(left) < kEnough * static_cast<double>(known)) continue;
     for (std::size_t i = 0; i < cosines.size(); ++i)
       pairs.usable[i] = pairs.usable[i] && agrees(i, either_side);
@@ -70,8 +70,7 @@ Target::Target(const Sites& o2) : sites(o2) {
       for (const std::uint32_t v : data.topology.edges[edge]) boundary_vertices[v] = 1;
 }
 
-Correspondences find_correspondences(const Samples& samples, const Affine& pose, const Target& target,
-                                     double limit) {
+Correspondences find_correspondences(const Samples& samples, const Affine& pose, const Target& target) {
   const sites::SitesData& data = internals(target.sites);
   const std::size_t count = samples.points.size();
   Correspondences pairs{std::vector<Vec3>(count),          std::vector<Vec3>(count),
@@ -80,8 +79,6 @@ Correspondences find_correspondences(const Samples& samples, const Affine& pose,
   for (std::size_t i = 0; i < count; ++i) pairs.points[i] = pose(samples.points[i]);
   const auto store = [&](std::size_t i, const ClosestPoint& c) {
     pairs.distances[i] = c.distance;
-    pairs.usable[i] = 1;
-    if (c.type == SiteType::none) return;
     pairs.closest[i] = c.point;
     pairs.faces[i] = data.face_of(c.type, c.site);
     pairs.normals[i] = tangent_normal(c, pairs.faces[i], pairs.points[i], target);
@@ -89,12 +86,13 @@ Correspondences find_correspondences(const Samples& samples, const Affine& pose,
   };
   engine::for_each_block(count, {}, "align", [&](std::size_t begin, std::size_t end) {
     const std::span<const Vec3> block = std::span(pairs.points).subspan(begin, end - begin);
-    cpu::cpu_search(data, block, limit, [&](std::size_t first, const sites::ClosestPacket& packet) {
-      for (std::size_t k = 0; k < packet.count; ++k) {
-        const std::size_t i = begin + first + k;
-        store(i, packet.get(k, pairs.points[i]));
-      }
-    });
+    cpu::cpu_search(data, block, std::numeric_limits<double>::infinity(),
+                    [&](std::size_t first, const sites::ClosestPacket& packet) {
+                      for (std::size_t k = 0; k < packet.count; ++k) {
+                        const std::size_t i = begin + first + k;
+                        store(i, packet.get(k, pairs.points[i]));
+                      }
+                    });
   });
   // Where O1 is far from its place, or O2 is a soup, most of the samples may be beside it.
   if (4 * static_cast<std::size_t>(std::ranges::count(pairs.usable, 1)) < count)

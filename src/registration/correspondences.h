@@ -4,7 +4,6 @@
 #include <sdm/sites.h>
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "core/geometry/affine.h"
@@ -30,12 +29,9 @@ struct Correspondences {
   std::vector<std::uint8_t> usable;  ///< 1, but for samples beside O2 or on the other side of a wall
 };
 
-/// Finds the closest points of the samples, placed by `pose`. Samples farther than `limit` have an infinite
-/// distance and no closest point. Cost: a search per sample, all cores; large for neighbours of which some
-/// are far away.
+/// Finds the closest points of the samples, placed by `pose`. Cost: a search per sample, all cores.
 [[nodiscard]] Correspondences find_correspondences(const Samples& samples, const Affine& pose,
-                                                   const Target& target,
-                                                   double limit = std::numeric_limits<double>::infinity());
+                                                   const Target& target);
 
 /// At most `most` of the pairs, evenly spread.
 [[nodiscard]] Correspondences thinned(const Correspondences& pairs, std::size_t most);

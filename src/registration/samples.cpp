@@ -27,23 +27,6 @@ double fraction(double x) {
 
 }  // namespace
 
-Samples separated(const Samples& samples, const std::vector<std::uint8_t>& last) {
-  Samples result;
-  for (const bool part : {false, true}) {
-    Samples chosen;
-    for (std::size_t i = 0; i < samples.points.size(); ++i) {
-      if ((last[i] != 0) != part) continue;
-      chosen.points.push_back(samples.points[i]);
-      if (!samples.normals.empty()) chosen.normals.push_back(samples.normals[i]);
-    }
-    if (chosen.points.empty()) continue;
-    chosen = in_spatial_order(chosen);
-    result.points.insert(result.points.end(), chosen.points.begin(), chosen.points.end());
-    result.normals.insert(result.normals.end(), chosen.normals.begin(), chosen.normals.end());
-  }
-  return result;
-}
-
 SampleSource surface_source(const Mesh& mesh) {
   // The area of all faces up to each, relative to the largest so that squares of sizes stay in range.
   const auto sides = [&mesh](std::size_t face) {

@@ -23,7 +23,4 @@ using SampleSource = std::function<Samples(std::size_t count)>;
 /// A pseudorandom subset. The arrays must outlive the source.
 [[nodiscard]] SampleSource cloud_source(std::span<const Vec3> points, std::span<const Vec3> normals);
 
-/// The same samples, with those of `last` after the others: in groups of their own.
-[[nodiscard]] Samples separated(const Samples& samples, const std::vector<std::uint8_t>& last);
-
 }  // namespace sdm::registration

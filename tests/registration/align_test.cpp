@@ -387,5 +387,16 @@ TEST(AlignErrors, FewPointsAreNone) {
   }
 }
 
+TEST(AlignErrors, FarPointsAreNone) {
+  const Sites sites(cube());
+  for (const double far : {1e9, 1e20, 1e37}) {
+    const Alignment found = align(std::vector<Vec3>{{far, 0, 0}, {far, far, 0}, {0, far, -far}}, {}, sites);
+    for (const auto& row : found.transform.rows)
+      for (const double x : row) EXPECT_TRUE(std::isfinite(x)) << far;
+    EXPECT_NEAR(found.transform.determinant(), 1, 1e-12);
+    EXPECT_TRUE(std::isfinite(found.before.rms)) << far;
+  }
+}
+
 }  // namespace
 }  // namespace sdm
