@@ -20,11 +20,13 @@
 int main(int argc, char** argv) try {
   using namespace sdm;
   CLI::App app(
-      "Computes separation and collision of O1 and O2 in random poses of O2, with one thread. Writes arrays "
-      "without headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), poses (3 × "
-      "4, "
-      "row by row), separation and its microseconds, separation_us (float64), colliding (uint8) and "
-      "colliding_us.");
+      "Computes separation, collision and contacts of O1 and O2 in random poses of O2, with one thread. "
+      "Writes "
+      "arrays without headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), "
+      "poses "
+      "(3 × 4, row by row), separation (float64), colliding (uint8), contacts (their number, uint32), and "
+      "the "
+      "microseconds of each: separation_us, colliding_us and contacts_us.");
   std::string o1, o2;
   std::filesystem::path out;
   std::uint32_t parts = 1, count = 200;
@@ -41,9 +43,11 @@ int main(int argc, char** argv) try {
   std::mt19937 random(1);
   const std::vector<Affine> placements = bench::random_poses(Sites(m1), Sites(m2), count, random);
   ProximityQuery query(m1, m2);
-  std::vector<double> poses, separation(count), separation_us(count, std::numeric_limits<double>::infinity()),
-      colliding_us = separation_us;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<double> poses, separation(count), separation_us(count, kInfinity),
+      colliding_us(count, kInfinity), contacts_us(count, kInfinity);
   std::vector<std::uint8_t> colliding(count);
+  std::vector<std::uint32_t> contacts(count);
   for (const Affine& pose : placements)
     for (std::size_t row = 0; row < 3; ++row) {
       poses.insert(poses.end(), pose.rows[row].begin(), pose.rows[row].end());
@@ -51,18 +55,20 @@ int main(int argc, char** argv) try {
     }
   // Every pose follows another one, as in use: what the last pose leaves is no help.
   constexpr int kTurns = 3;
-  for (int turn = 0; turn < kTurns; ++turn)
-    for (const bool separate : {true, false})
-      for (std::size_t i = 0; i < count; ++i) {
-        Stopwatch watch;
-        query.set_pose(1, mesh::Similarity{.map = placements[i]}.transform());
-        if (separate)
-          separation[i] = query.separation().value;
-        else
-          colliding[i] = query.colliding().value;
-        double& best = (separate ? separation_us : colliding_us)[i];
-        best = std::min(best, 1000 * watch.lap());
-      }
+  const auto time = [&](std::vector<double>& best, const auto& answer) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Stopwatch watch;
+      query.set_pose(1, mesh::Similarity{.map = placements[i]}.transform());
+      answer(i);
+      best[i] = std::min(best[i], 1000 * watch.lap());
+    }
+  };
+  for (int turn = 0; turn < kTurns; ++turn) {
+    time(separation_us, [&](std::size_t i) { separation[i] = query.separation().value; });
+    time(colliding_us, [&](std::size_t i) { colliding[i] = query.colliding().value; });
+    time(contacts_us,
+         [&](std::size_t i) { contacts[i] = static_cast<std::uint32_t>(query.contacts().size()); });
+  }
   bench::write_array<Vec3>(out / "vertices1", m1.positions);
   bench::write_array<Vec3>(out / "vertices2", m2.positions);
   bench::write_array<Triangle>(out / "triangles1", m1.triangles);
@@ -72,6 +78,8 @@ int main(int argc, char** argv) try {
   bench::write_array<double>(out / "separation_us", separation_us);
   bench::write_array<std::uint8_t>(out / "colliding", colliding);
   bench::write_array<double>(out / "colliding_us", colliding_us);
+  bench::write_array<std::uint32_t>(out / "contacts", contacts);
+  bench::write_array<double>(out / "contacts_us", contacts_us);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "pose_samples: %s\n", error.what());
   return 1;
