@@ -384,39 +384,6 @@ TEST(PointReader, ReadsInParts) {
   EXPECT_FALSE(reader.read(2, points, normals));
 }
 
-// Damaged files are read or refused, within the memory that their size allows.
-TEST(PointReader, ReadsOrRefusesAnyBytes) {
-  const TemporaryFolder folder;
-  std::mt19937 random(9);
-  std::vector<Vec3> points;
-  for (int i = 0; i < 60; ++i) points.push_back({0.25 * i, 1, -0.5 * i});
-  const std::vector<std::string> files{las(points, 2), las(points, 4), compressed_pcd(points)};
-  std::size_t read = 0, refused = 0;
-  for (int i = 0; i < 900; ++i) {
-    std::string bytes = files[i % files.size()];
-    for (std::uint32_t k = random() % 4; k-- > 0;) {
-      // Mostly in the header.
-      const std::size_t at =
-          random() % (random() % 2 ? std::min<std::size_t>(260, bytes.size()) : bytes.size());
-      bytes[at] = static_cast<char>(random());
-    }
-    if (random() % 4 == 0) bytes.resize(random() % bytes.size());
-    std::ofstream(folder / "cloud", std::ios::binary) << bytes;
-    try {
-      PointReader reader(folder / "cloud");
-      std::vector<Vec3> part, normals;
-      std::size_t count = 0;
-      while (reader.read(7, part, normals)) count += part.size();
-      EXPECT_LE(count, 20 * bytes.size());
-      ++read;
-    } catch (const Error&) {
-      ++refused;
-    }
-  }
-  EXPECT_GT(read, 100u);
-  EXPECT_GT(refused, 100u);
-}
-
 TEST(PointReader, SamplesAllPartsOfAFile) {
   const TemporaryFolder folder;
   std::ofstream file(folder / "a.xyz");

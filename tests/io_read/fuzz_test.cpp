@@ -1,4 +1,4 @@
-// Any input gives a valid mesh or sequence, or an sdm::Error.
+// Any input gives a valid mesh, sequence, point cloud or matrix, or an sdm::Error.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,7 +77,7 @@ class Mutator {
 
 TEST(Fuzz, MutatedFiles) {
   Mutator mutator;
-  ASSERT_EQ(seeds().size(), 14u);
+  ASSERT_EQ(seeds().size(), 25u);
   for (const Seed& seed : seeds()) {
     ASSERT_TRUE(try_read(seed)) << seed.name;
     std::size_t refused = 0;
@@ -91,12 +91,13 @@ TEST(Fuzz, MutatedFiles) {
   }
 }
 
-// The least length of a cut that cannot be detected: OBJ has no end, and text may be cut within its last
-// number or after its last face.
+// The least length of a cut that cannot be detected: OBJ and XYZ have no end, and text may be cut within its
+// last number or after its last face.
 std::size_t shortest_whole(const Seed& seed) {
-  if (seed.name == "a.obj") return 0;
+  if (seed.name == "a.obj" || seed.name.ends_with(".xyz")) return 0;
   if (seed.name == "a.stl") return seed.contents.rfind("endsolid") + 8;
-  if (seed.name.ends_with(".off") || seed.name == "a.ply") return seed.contents.rfind(' ');
+  if (seed.name.ends_with(".off") || seed.name == "a.ply" || seed.name == "a.pcd" || seed.name == "a.matrix")
+    return seed.contents.rfind(' ');
   return seed.contents.size();
 }
 

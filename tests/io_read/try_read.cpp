@@ -1,12 +1,18 @@
 #include "io_read/try_read.h"
 
 #include <sdm/error.h>
+#include <sdm/io.h>
 #include <sdm/mesh.h>
+#include <sdm/points.h>
 #include <sdm/sequence.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace sdm::test {
 namespace {
@@ -23,20 +29,51 @@ std::string rest_mesh(const std::filesystem::path& folder) {
   return file;
 }
 
+void read_sequence(const std::filesystem::path& file) {
+  const bool positions_alone = file.extension() == ".npy";
+  MeshSequence sequence(positions_alone ? rest_mesh(file.parent_path()) + "+" + file.string()
+                                        : file.string());
+  try {
+    validate(sequence.mesh());
+  } catch (const Error& fault) {
+    throw std::logic_error("not a valid mesh: " + std::string(fault.what()));
+  }
+  for (std::size_t frame = 0; frame < sequence.frame_count(); ++frame)
+    require(sequence.positions(frame).size() == sequence.mesh().positions.size(), "frames of unequal size");
+}
+
+void read_points(const std::filesystem::path& file) {
+  constexpr std::size_t kMost = 2;  // in several parts
+  PointReader reader(file);
+  std::vector<Vec3> points, normals;
+  std::uint64_t count = 0;
+  while (reader.read(kMost, points, normals)) {
+    require(!points.empty() && points.size() <= kMost, "a part of another size");
+    require(normals.size() == (reader.has_normals() ? points.size() : 0), "normals of another number");
+    count += points.size();
+  }
+  require(!reader.count() || *reader.count() == count, "not as many points as the header says");
+  require(count <= std::filesystem::file_size(file), "more points than bytes");
+}
+
+void read_transform(const std::filesystem::path& file) {
+  const Transform matrix = read_matrix(file);
+  for (const auto& row : matrix.rows)
+    for (const double x : row) require(std::isfinite(x), "a matrix that is not finite");
+}
+
 }  // namespace
 
 bool try_read(const std::filesystem::path& file) {
-  const bool positions_alone = file.extension() == ".npy";
+  const std::string extension = file.extension();
+  const bool is_cloud = std::ranges::count(std::array{".xyz", ".pcd", ".las", ".cloud"}, extension) > 0;
   try {
-    MeshSequence sequence(positions_alone ? rest_mesh(file.parent_path()) + "+" + file.string()
-                                          : file.string());
-    try {
-      validate(sequence.mesh());
-    } catch (const Error& fault) {
-      throw std::logic_error("not a valid mesh: " + std::string(fault.what()));
-    }
-    for (std::size_t frame = 0; frame < sequence.frame_count(); ++frame)
-      require(sequence.positions(frame).size() == sequence.mesh().positions.size(), "frames of unequal size");
+    if (is_cloud)
+      read_points(file);
+    else if (extension == ".matrix")
+      read_transform(file);
+    else
+      read_sequence(file);
     return true;
   } catch (const Error& fault) {
     const std::string message = fault.what();
