@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Builds the documentation site.
+
+build.py SOURCE_DIR BUILD_DIR SDM: stages the pages in BUILD_DIR/source, where links between them are those of the
+repository; generates the references of the command SDM and of the C++ headers; has Sphinx run the gallery and write
+BUILD_DIR/html; and checks the links. Warnings are errors. Nothing is fetched.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import check_links
+import command_pages
+import cpp_pages
+
+SITE = Path(__file__).resolve().parent
+
+
+def staged_files(source: Path) -> dict[str, Path]:
+    """The files of the site's source folder by their place there."""
+    files = {name: source / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE", "CITATION.cff")}
+    for folder, pattern in (("docs", "**/*.md"), ("docs/images", "*.png"), ("scenes/meshes", "README.md"),
+                            ("include/sdm", "*.h")):  # fmt: skip
+        for path in (source / folder).glob(pattern):
+            if SITE not in path.parents:
+                files[str(path.relative_to(source))] = path
+    for page in SITE.glob("*.rst"):
+        files[page.name] = page
+    return files
+
+
+def main() -> None:
+    source, build, sdm = (Path(argument).resolve() for argument in sys.argv[1:])
+    staged, html = build / "source", build / "html"
+    shutil.rmtree(build, ignore_errors=True)
+
+    pages: dict[str, bytes | str] = {name: path.read_bytes() for name, path in staged_files(source).items()}
+    pages |= command_pages.pages(subprocess.check_output([sdm, "help", "--man"], text=True))
+    xml = cpp_pages.run_doxygen(source / "include/sdm", build / "doxygen")
+    pages |= cpp_pages.pages(source / "include/sdm", xml)
+    for name, content in pages.items():
+        path = staged / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+
+    environment = os.environ | {
+        "SDM_DOXYGEN_XML": str(xml),
+        "SDM_GALLERY": str(source / "docs/gallery"),
+        "MPLBACKEND": "agg",
+    }
+    built = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-b", "html", "-W", "--keep-going", "-q", "-j", "2",
+         "-c", SITE, "-d", build / "doctrees", staged, html],
+        env=environment)  # fmt: skip
+    if built.returncode != 0:
+        sys.exit("Sphinx has warnings")
+    check_links.check(html)
+    print(f"{html}/index.html")
+
+
+main()

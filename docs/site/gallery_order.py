@@ -1,0 +1,10 @@
+"""The order of the gallery."""
+
+from sphinx_gallery.sorting import _SortKey
+
+
+class Listed(_SortKey):
+    ORDER = ("first_map",)
+
+    def __call__(self, name):
+        return self.ORDER.index(name.removesuffix(".py"))
