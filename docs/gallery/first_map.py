@@ -6,8 +6,8 @@ The distance from every point of one surface to another, as a picture and as num
 """
 
 # %%
-# Two meshes of Debian's package ``glmark2-data``: a bunny, and a horse that stands next to it. Both are scaled to a
-# length of 1.
+# Two meshes of Debian's package ``glmark2-data``: a bunny, and a horse that stands next to it. Both are
+# scaled to a length of 1.
 import sdm
 
 folder = "/usr/share/glmark2/models/"
@@ -21,11 +21,13 @@ distance_map = sdm.map(bunny, horse.transformed(beside), transform=sdm.fit_to_un
 distance_map.plot().view_init(vertical_axis="y")
 
 # %%
-# A map has a value for each texel of a texture that covers the bunny. In a notebook it shows this texture, and its numbers:
+# A map has a value for each texel of a texture that covers the bunny. In a notebook it shows this texture,
+# and its numbers:
 distance_map
 
 # %%
-# The values are arrays; texels that are not part of the bunny hold NaN. What lies between texels is bounded, too:
+# The values are arrays; texels that are not part of the bunny hold NaN. What lies between texels is
+# bounded, too:
 import numpy as np
 
 bounds = distance_map.bounds

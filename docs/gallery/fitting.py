@@ -7,6 +7,8 @@ Derivatives of distances move a mesh onto a scan.
 
 # %%
 # A scan of an unknown shape: points with noise.
+#
+# sphinx_gallery_thumbnail_number = 2
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -16,7 +18,8 @@ random = np.random.default_rng(3)
 directions = random.normal(size=(6000, 3))
 directions /= np.linalg.norm(directions, axis=1, keepdims=True)
 x, y, z = directions.T
-radius = 1 + 0.25 * np.exp(-8 * ((x - 0.7) ** 2 + (y - 0.5) ** 2)) + 0.15 * np.cos(4 * np.arctan2(y, x)) * (1 - z**2)
+radius = 1 + 0.25 * np.exp(-8 * ((x - 0.7) ** 2 + (y - 0.5) ** 2))
+radius += 0.15 * np.cos(4 * np.arctan2(y, x)) * (1 - z**2)
 scan = radius[:, None] * directions + random.normal(0, 0.005, directions.shape)
 
 # %%
@@ -32,20 +35,21 @@ faces = [
 ]  # fmt: skip
 faces = np.array(faces)
 for _ in range(4):
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    edges, inverse = np.unique(edges, axis=0, return_inverse=True)
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    edges, inverse = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
     a, b, c = faces.T
     ab, bc, ca = len(vertices) + inverse.reshape(3, -1)
     vertices = np.vstack([vertices, vertices[edges].mean(axis=1)])
-    faces = np.concatenate([np.stack(f, axis=1) for f in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    faces = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1).reshape(-1, 3)
 vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
 print(len(vertices), "vertices,", len(faces), "faces")
 
 # %%
-# Gradient descent on the sum of squared distances of the points. ``vertex_gradients()`` has the derivatives of each
-# distance by the three corners of the closest face. Each step is divided by the weight that a vertex has received, and
-# smoothed along the edges.
-edges = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]]), axis=1), axis=0)
+# Gradient descent on the sum of squared distances of the points. ``vertex_gradients()`` has the
+# derivatives of each distance by the three corners of the closest face. Each step is divided by the
+# weight that a vertex has received, and smoothed along the edges.
+edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+edges = np.unique(np.sort(edges, axis=1), axis=0)
 degree = np.bincount(edges.ravel(), minlength=len(vertices))[:, None]
 sites = sdm.Sites(vertices, faces)
 history = []

@@ -6,7 +6,8 @@ A scan of a part is turned and shifted onto the part, compared with it, and judg
 """
 
 # %%
-# The part is turned on a lathe: a profile of radii and heights, revolved about an axis. Lengths are in mm.
+# The part is turned on a lathe: a profile of radii and heights, revolved about an axis. Lengths are in
+# mm.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -16,7 +17,8 @@ import sdm
 def revolve(profile, count):
     """A closed mesh of a profile, (n, 2), whose first and last points are on the axis."""
     angles = 2 * np.pi * np.arange(count) / count
-    rings = [np.stack([r * np.cos(angles), r * np.sin(angles), np.full(count, z)], axis=1) for r, z in profile[1:-1]]
+    circle = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    rings = [r * circle + [0, 0, z] for r, z in profile[1:-1]]
     vertices = np.vstack([[[0, 0, profile[0][1]]], *rings, [[0, 0, profile[-1][1]]]])
     k, next_k = np.arange(count), (np.arange(count) + 1) % count
     faces = [np.stack([0 * k, 1 + next_k, 1 + k], axis=1)]
@@ -30,16 +32,18 @@ def revolve(profile, count):
 
 def fine(corners, step):
     """The points of a polyline, at most a step apart."""
-    parts = [np.linspace(a, b, max(1, int(np.hypot(*(b - a)) / step)), endpoint=False) for a, b in zip(corners, corners[1:])]
+    parts = []
+    for a, b in zip(corners, corners[1:]):
+        parts += [np.linspace(a, b, max(1, int(np.hypot(*(b - a)) / step)), endpoint=False)]
     return np.vstack([*parts, corners[-1:]])
 
 
-corners = np.array([[0, 0], [30, 0], [30, 8], [14, 8], [12, 10], [12, 34], [9, 40], [0, 40]], float)
-part = revolve(fine(corners, 1.0), 180)
+profile = [[0, 0], [30, 0], [30, 8], [14, 8], [12, 10], [12, 34], [9, 40], [0, 40]]
+part = revolve(fine(np.array(profile, float), 1.0), 180)
 
 # %%
-# A scan of it, of which the answers are known: noise of 0.02 mm, a dent 0.3 mm deep, one side missing, and a place of its
-# own.
+# A scan of it, of which the answers are known: noise of 0.02 mm, a dent 0.3 mm deep, one side missing,
+# and a place of its own.
 random = np.random.default_rng(1)
 vertices, faces = np.array(part.vertices), part.faces
 dent = np.array([12, 0, 22.0])
@@ -49,14 +53,16 @@ vertices += random.normal(0, 0.02, vertices.shape)
 seen = vertices[:, 0] > -8
 faces = faces[seen[faces].all(axis=1)]
 turn = np.radians(2)
-move = np.array([[np.cos(turn), -np.sin(turn), 0, 0.8], [np.sin(turn), np.cos(turn), 0, -0.5], [0, 0, 1, 0.4], [0, 0, 0, 1]])
+move = np.eye(4)
+move[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+move[:3, 3] = 0.8, -0.5, 0.4
 scan = sdm.Mesh(vertices, faces).transformed(move)
 
 # %%
-# Alignment finds the place again. Turning about the axis cannot be seen on a part like this; ``freedoms`` says how well
-# each motion is determined, and what is not determined is left as it was.
+# Alignment finds the place again. Turning about the axis cannot be seen on a part like this:
+# ``freedoms`` says how well each motion is determined, and which one is free.
 alignment = sdm.align(scan, part)
-print(f"rms distance {alignment.rms_before:.4f} -> {alignment.rms:.4f} mm, {alignment.fraction_used:.1%} of the samples used")
+print(f"rms distance {alignment.rms_before:.4f} -> {alignment.rms:.4f} mm")
 for freedom in alignment.freedoms:
     print(freedom)
 
@@ -65,7 +71,8 @@ for freedom in alignment.freedoms:
 tolerance = 0.15
 distance_map = sdm.map(scan, part, transform=alignment.transform, precision=0.25)
 statistics, bounds = distance_map.statistics(), distance_map.bounds
-print(f"from {statistics.min:.3f} to {statistics.max:.3f} mm; 95 % of the area within {statistics.p95_abs:.3f} mm")
+print(f"from {statistics.min:.3f} to {statistics.max:.3f} mm")
+print(f"95 % of the area within {statistics.p95_abs:.3f} mm")
 print("no point is below", round(bounds.lower, 3), "or above", round(bounds.upper, 3))
 
 # %%

@@ -6,7 +6,7 @@ Separation and penetration depth of two bodies, one of which passes through the 
 """
 
 # %%
-# Two rings. One is threaded through the other, without touching it, and then driven through its wall.
+# Two rings. One is threaded through the other, and driven through its wall.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -14,13 +14,14 @@ import sdm
 
 
 def ring(radius, thickness, around=96, across=48):
-    u, v = np.meshgrid(2 * np.pi * np.arange(around) / around, 2 * np.pi * np.arange(across) / across, indexing="ij")
+    u, v = (2 * np.pi * np.arange(n) / n for n in (around, across))
+    u, v = np.meshgrid(u, v, indexing="ij")
     r = radius + thickness * np.cos(v)
-    vertices = np.stack([r * np.cos(u), r * np.sin(u), thickness * np.sin(v)], axis=-1).reshape(-1, 3)
+    vertices = np.stack([r * np.cos(u), r * np.sin(u), thickness * np.sin(v)], axis=-1)
     i, j = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
-    index = [(i + di) % around * across + (j + dj) % across for di, dj in ((0, 0), (1, 0), (0, 1), (1, 1))]
-    a, b, c, d = index
-    return sdm.Mesh(vertices, np.concatenate([np.stack([a, b, c], axis=-1), np.stack([b, d, c], axis=-1)]).reshape(-1, 3))
+    next_i, next_j = (i + 1) % around, (j + 1) % across
+    a, b, c, d = (i * across + j, next_i * across + j, i * across + next_j, next_i * across + next_j)
+    return sdm.Mesh(vertices.reshape(-1, 3), np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3))
 
 
 query = sdm.ProximityQuery(ring(1.0, 0.25), ring(1.0, 0.25))
@@ -42,31 +43,34 @@ for x in places:
 plt.figure(figsize=(7, 3.5))
 plt.plot(places, [s.value for s in separation], label="separation")
 plt.plot(places, [d.value for d in depth], label="penetration depth")
-plt.fill_between(places, [d.lower for d in depth], [d.upper for d in depth], color="tab:orange", alpha=0.4)
+lower, upper = [d.lower for d in depth], [d.upper for d in depth]
+plt.fill_between(places, lower, upper, color="tab:orange", alpha=0.4)
 plt.xlabel("place of the second ring")
 plt.legend()
 plt.tight_layout()
 deepest = int(np.argmax([d.value for d in depth]))
 print("a separation:", separation[-1])
-print("a depth:", depth[deepest], "between", depth[deepest].lower, "and", depth[deepest].upper)
+print("a depth:", depth[deepest])
 
 # %%
-# The deepest place, seen along the axis of the first ring: contact points, and the directions that push the bodies
-# apart.
+# Where the rings begin to touch, seen along the axis of the first one: points of it in contact, and the
+# directions in which it is pushed away.
 pose = upright.copy()
-pose[0, 3] = places[deepest]
+pose[0, 3] = 1.56
 query.set_pose(1, pose)
 contacts = query.contacts()
+x, y = contacts.point1[:, :2].T
 plt.figure(figsize=(5, 4))
-plt.scatter(*contacts.point1[:, :2].T, c=contacts.depth, cmap="viridis", s=12)
+plt.quiver(x, y, *contacts.normal[:, :2].T, contacts.depth, cmap="viridis", width=0.004)
 plt.colorbar(label="depth")
-plt.quiver(*contacts.point1[:, :2].T, *contacts.normal[:, :2].T, width=0.003, color="0.5")
-plt.gca().set_aspect("equal")
+plt.xlim(x.min() - 0.1, x.max() + 0.1)
+plt.ylim(y.min() - 0.1, y.max() + 0.1)
 print(len(contacts.depth), "contacts in", len(np.unique(contacts.patch)), "patch(es)")
 
 # %%
-# No position of the two rings touches while the second is threaded through the middle of the first:
-query.set_pose(1, upright + np.array([[0, 0, 0, 1.0], [0] * 4, [0] * 4, [0] * 4]))
+# In the middle of the hole, they are as far apart as they get:
+pose[0, 3] = 1.0
+query.set_pose(1, pose)
 print(query.separation(), bool(query.colliding()))
 
 assert all((s.value == 0) == (d.value > 0) for s, d in zip(separation, depth))
