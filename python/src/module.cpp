@@ -15,6 +15,7 @@ NB_MODULE(_core, module) {
   bind_sites(module);
   bind_surface(module);
   bind_map(module);
+  bind_parts(module);
   bind_proximity(module);
   bind_bodies(module);
   bind_surfaces(module);

@@ -1,5 +1,6 @@
 // The reference engine: one query at a time, in plain code that is easy to verify.
 #include <algorithm>
+#include <tuple>
 
 #include "core/geometry/vec.h"
 #include "engine/reference/reference_engine.h"
@@ -9,10 +10,13 @@
 namespace sdm::reference {
 namespace {
 
-// A lower bound on the distance of a point of the unit frame to a box, reduced by the rounding error of
-// double.
+// A lower bound on the computed distance of a point of the unit frame to the faces in a box.
 double lower_bound(const hierarchy::FloatBox& box, const Vec3& p) {
-  return (1 - 1e-12) * norm(gap(box, p));
+  return (1 - kSlack) * norm(gap(box, p)) - kSlack;
+}
+
+auto order(const ClosestPoint& c) {
+  return std::tuple(c.distance, c.type, c.site, c.face);
 }
 
 }  // namespace
@@ -21,15 +25,17 @@ ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q, dou
   const Vec3 unit = sites.frame.to_unit(q);
   ClosestPoint best;
   best.distance = max_distance;
-  hierarchy::traverse_best_first(
+  hierarchy::traverse_nearer_first(
       sites.tree, [&](const hierarchy::FloatBox& box) { return lower_bound(box, unit); },
-      // A node is visited even if its bound equals the best distance: O2 may lie at exactly max_distance.
+      // A node is visited even if its bound equals the best distance: the first of equally close sites is
+      // returned, and O2 may lie at exactly max_distance.
       [&](double bound) { return bound <= best.distance * sites.frame.scale; },
       [&](std::uint32_t leaf) {
         for (const std::uint32_t face : sites.tree.items_of(leaf)) {
           const ClosestPoint c = sites::closest_on_face(sites, face, q);
-          if (c.distance < best.distance || (best.type == SiteType::none && c.distance <= max_distance))
-            best = c;
+          // Without a best one yet, the type is none, which follows all others: max_distance itself is near
+          // enough.
+          if (order(c) < order(best)) best = c;
         }
       });
   if (best.type == SiteType::none) best.distance = std::numeric_limits<double>::infinity();

@@ -8,7 +8,13 @@ namespace sdm::reference {
 
 using engine::ClosestSink;
 
-/// Scalar, double precision, best-first over the binary tree; all results are accurate to rounding.
+/// No face is excluded unless its box is farther than the best distance by this fraction of the distance and
+/// of the size of O2. The distances of slivers that are computed from normals are accurate to 1e-7.
+constexpr double kSlack = 1e-6;
+
+/// Scalar, double precision, nearest child first over the binary tree; all results are accurate to rounding.
+/// The first of all faces by (distance, type, site, face): the result depends on the faces only, not on the
+/// tree.
 [[nodiscard]] ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& point,
                                              double max_distance);
 

@@ -1,0 +1,111 @@
+// What sdm.dask needs for meshes in parts: the samples of a surface, and the closest points of one part.
+#include <sdm/closest_in_parts.h>
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "arrays.h"
+#include "objects.h"
+
+namespace sdm::python {
+namespace {
+
+template <class Scalar>
+using Column = nb::ndarray<Scalar, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Rows = nb::ndarray<double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Numbers = Column<const std::uint32_t>;
+
+std::span<const std::uint32_t> numbers_of(const Numbers& array) {
+  return {array.data(), array.shape(0)};
+}
+
+// Arrays, changed in place: the fields of ClosestInParts.
+struct Best {
+  Column<double> distance;
+  Rows vector;
+  Column<std::uint32_t> site, face;
+  Column<std::uint8_t> type;
+
+  [[nodiscard]] std::vector<ClosestInParts> get() const {
+    const std::size_t count = distance.shape(0);
+    if (vector.shape(0) != count || site.shape(0) != count || face.shape(0) != count ||
+        type.shape(0) != count)
+      throw Error("the arrays of the closest points must have the same length");
+    std::vector<ClosestInParts> best(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      best[i] = {.distance = distance.data()[i],
+                 .vector = {},
+                 .site = site.data()[i],
+                 .face = face.data()[i],
+                 .type = static_cast<SiteType>(type.data()[i])};
+      std::copy_n(vector.data() + 3 * i, 3, best[i].vector.begin());
+    }
+    return best;
+  }
+  void set(std::span<const ClosestInParts> best) {
+    for (std::size_t i = 0; i < best.size(); ++i) {
+      distance.data()[i] = best[i].distance;
+      site.data()[i] = best[i].site;
+      face.data()[i] = best[i].face;
+      type.data()[i] = static_cast<std::uint8_t>(best[i].type);
+      std::ranges::copy(best[i].vector, vector.data() + 3 * i);
+    }
+  }
+};
+
+void merge(const PySites& part, const Numbers& vertices, const Numbers& edges, const Numbers& faces,
+           nb::handle queries, Best best) {
+  const Points points(queries, "queries");
+  const auto lock = part.access.use();
+  run_short([&] {
+    std::vector<ClosestInParts> results = best.get();
+    merge_closest(part.sites, {numbers_of(vertices), numbers_of(edges), numbers_of(faces)}, points.get(),
+                  results);
+    best.set(results);
+  });
+}
+
+}  // namespace
+
+void bind_parts(nb::module_& module) {
+  module.def(
+      "sample_texels",
+      [](nb::handle self) {
+        const auto texels = nb::cast<const PySurface&>(self).surface.sample_texels();
+        return view_of<std::uint32_t>(texels, {texels.size()}, self);
+      },
+      nb::arg("surface"), nb::sig("def sample_texels(surface: Surface) -> numpy.ndarray"),
+      "Returns the indices of the texels that a face owns, (n,) uint32, read-only: neighbours on the surface "
+      "follow each other.");
+  module.def(
+      "sample_points",
+      [](const PySurface& self) {
+        const auto lock = self.access.use();
+        auto points = run_short([&] { return self.surface.sample_points(); });
+        const std::size_t count = points.size();
+        return array_of<double>(std::move(points), {count, 3});
+      },
+      nb::arg("surface"), nb::sig("def sample_points(surface: Surface) -> numpy.ndarray"),
+      "Returns the surface points of sample_texels(), (n, 3) float64.");
+  module.def(
+      "merge_closest",
+      [](const PySites& part, const Numbers& vertices, const Numbers& edges, const Numbers& faces,
+         nb::handle queries, Column<double> distance, Rows vector, Column<std::uint32_t> site,
+         Column<std::uint8_t> type, Column<std::uint32_t> face) {
+        merge(part, vertices, edges, faces, queries, {distance, vector, site, face, type});
+      },
+      nb::arg("part"), nb::arg("vertices"), nb::arg("edges"), nb::arg("faces"), nb::arg("queries"),
+      nb::arg("distance"), nb::arg("vector"), nb::arg("site"), nb::arg("site_type"), nb::arg("face"),
+      nb::sig("def merge_closest(part: Sites, vertices: numpy.ndarray, edges: numpy.ndarray, faces: "
+              "numpy.ndarray, queries: "
+              "object, distance: numpy.ndarray, vector: numpy.ndarray, site: numpy.ndarray, site_type: "
+              "numpy.ndarray, face: "
+              "numpy.ndarray) -> None"),
+      "Replaces closest points, in place, by those of a part of O2 that are closer; see "
+      "sdm/closest_in_parts.h. vertices, edges, faces: their numbers in the whole O2, uint32, increasing.");
+}
+
+}  // namespace sdm::python
