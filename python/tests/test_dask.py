@@ -34,7 +34,7 @@ def save(path, mesh):
 # ---- Documentation
 
 @pytest.mark.parametrize("name", [*sdm.dask.__all__, "CohortStatistics.quantile", "CohortStatistics.save", "Parts.open",
-                                  "Parts.mesh", "Parts.numbers"])  # fmt: skip
+                                  "Parts.mesh", "Parts.numbers", "PartsMap.load", "PartsMap.save"])  # fmt: skip
 def test_docstrings(name, tmp_path):
     value = sdm.dask
     for part in name.split("."):
@@ -348,7 +348,8 @@ def test_both_meshes_in_parts(tmp_path):
     o2 = sdm.dask.split(meshes.soup(8, faces=300), tmp_path / "o2", faces_per_part=50)
     maps = sdm.dask.map_parts(o1, o2, tmp_path / "tiles", resolution=64).compute()
     assert len(maps) == len(o1) > 1
-    for part, result in enumerate(maps):
+    for part, file in enumerate(maps):
+        result = sdm.dask.PartsMap.load(file)
         whole = sdm.map(o1.mesh(part), meshes.soup(8, faces=300), resolution=64, sign="none", engine="reference")
         np.testing.assert_array_equal(result.distance, whole.distance)
         np.testing.assert_array_equal(result.site, whole.site)

@@ -1,4 +1,5 @@
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,18 @@ class PartsMap:
     visits: int
     """How often a part of O2 was searched for a tile; tiles × parts if bounds exclude none."""
     tiles: int
+    """The number of tasks."""
+
+    def save(self, file: "str | os.PathLike") -> None:
+        """Writes all arrays as .npz. The complete file appears, or none."""
+        with _files.replacing(file) as partial, open(partial, "wb") as opened:
+            np.savez(opened, **vars(self))
+
+    @classmethod
+    def load(cls, file: "str | os.PathLike") -> "PartsMap":
+        """Reads what save() has written."""
+        with np.load(file) as arrays:
+            return cls(**{name: arrays[name] if arrays[name].ndim else int(arrays[name]) for name in arrays.files})
 
 
 def map_parts(
@@ -50,8 +63,8 @@ def map_parts(
     """Describes the map of ``a`` (O1) to a mesh in parts (O2), and returns it as a Dask Delayed of a PartsMap.
 
     a: a mesh in any form, which is laid out here; or Parts, for an O1 that is too large as well: then each of its parts has
-    an atlas of its own, laid out by a task, and the result is a list of PartsMap, with a map for each part. Its faces are
-    numbered as in the part.
+    an atlas of its own, laid out by a task, and the result is a list of the files that PartsMap.load() reads, one for each
+    part. There ``face`` is numbered as in the part; Parts.numbers() has the numbers in the whole.
     parts: O2, from split().
     folder: for the tiles. A tile that is in the folder is not computed again.
     samples_per_tile: texels of a task, which are neighbours on the surface.
@@ -106,7 +119,12 @@ def map_parts(
 
 def _map_of_tiles(files: list, of_surface: str) -> PartsMap:
     with np.load(of_surface) as arrays:
-        return _assembled(files, arrays["texels"], arrays["faces"])
+        return _assembled(map(_read, files), arrays["texels"], arrays["faces"])
+
+
+def _read(file: str) -> dict:
+    with np.load(file) as arrays:
+        return dict(arrays)
 
 
 def _map_tile(points: str, begin: int, end: int, file: str, work: dict) -> str:
@@ -118,15 +136,14 @@ def _map_tile(points: str, begin: int, end: int, file: str, work: dict) -> str:
     return file
 
 
-def _map_part(folder: str, part: int, layout: dict, file: str, work: dict) -> PartsMap:
-    """The map of one part of O1."""
-    with sdm.thread_limit(work["threads"]):
-        surface = sdm.Surface(Parts.open(folder).mesh(part), **layout)
+def _map_part(folder: str, part: int, layout: dict, file: str, work: dict) -> str:
+    """Computes the map of one part of O1 unless its file is there; returns the file's name."""
     if not os.path.exists(file):
-        queries = _core.sample_points(surface)
-        with _files.replacing(file) as partial:
-            np.savez(partial, **_stored(closest_in_parts(queries, Parts.open(work["parts"]), work)))
-    return _assembled([file], np.array(_core.sample_texels(surface)), np.array(surface.texel_faces))
+        with sdm.thread_limit(work["threads"]):
+            surface = sdm.Surface(Parts.open(folder).mesh(part), **layout)
+        tile = _stored(closest_in_parts(_core.sample_points(surface), Parts.open(work["parts"]), work))
+        _assembled([tile], _core.sample_texels(surface), surface.texel_faces).save(file)
+    return file
 
 
 def _stored(found: dict) -> dict:
@@ -139,20 +156,19 @@ def _stored(found: dict) -> dict:
             "visits": found["visits"]}  # fmt: skip
 
 
-def _assembled(files: list, texels: np.ndarray, faces: np.ndarray) -> PartsMap:
+def _assembled(tiles: Iterable, texels: np.ndarray, faces: np.ndarray) -> PartsMap:
     result = {
         "distance": np.full(faces.size, np.nan, np.float32), "vector": np.full((faces.size, 3), np.nan, np.float32),
         "site": np.full(faces.size, sdm.NONE, np.uint32), "site_type": np.full(faces.size, sdm.SiteType.NONE, np.uint8),
     }  # fmt: skip
-    begin = visits = 0
-    for file in files:
-        with np.load(file) as tile:
-            owned = texels[begin : begin + len(tile["distance"])]
-            for name, values in result.items():
-                values[owned] = tile[name]
-            begin, visits = begin + len(owned), visits + int(tile["visits"])
+    begin = visits = count = 0
+    for tile in tiles:
+        owned = texels[begin : begin + len(tile["distance"])]
+        for name, values in result.items():
+            values[owned] = tile[name]
+        begin, visits, count = begin + len(owned), visits + int(tile["visits"]), count + 1
     shaped = {name: values.reshape(*faces.shape, *values.shape[1:]) for name, values in result.items()}
-    return PartsMap(face=faces, visits=visits, tiles=len(files), **shaped)
+    return PartsMap(face=faces, visits=visits, tiles=count, **shaped)
 
 
 def closest_in_parts(queries: np.ndarray, parts: Parts, work: dict) -> dict:
