@@ -4,7 +4,10 @@ import doctest
 import inspect
 import json
 import os
+import re
 import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -44,6 +47,32 @@ def test_docstrings(name, tmp_path):
     names = {"sdm": sdm, "np": np, "box": sdm.Mesh(meshes.box()), "sphere": sdm.Mesh(meshes.sphere()), "folder": tmp_path}
     test = doctest.DocTestParser().get_doctest(text, names, name, None, 0)
     assert doctest.DocTestRunner().run(test).failed == 0
+
+
+def test_page(tmp_path, monkeypatch):
+    """The blocks of docs/many-machines.md, with scans and a part: the first one as a script, the others one after the other."""
+    page = (Path(__file__).resolve().parents[2] / "docs" / "many-machines.md").read_text(encoding="utf-8")
+    script, *blocks = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scans").mkdir()
+    vertices, faces = meshes.sphere(steps=4)
+    stretched = vertices * [1, 2, 3]  # an ellipsoid, which fits in one pose
+    corners = (stretched[faces]).reshape(-1, 3, 3)
+    (tmp_path / "part.stl").write_text("solid part\n" + "".join(
+        "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x!r} {y!r} {z!r}\n" for x, y, z in face)
+        + "endloop\nendfacet\n" for face in corners.tolist()) + "endsolid part\n")  # fmt: skip
+    for k, dent in enumerate((0, 0.2)):
+        scan = stretched * (1 - dent * (vertices[:, :1] > 0.9)) + [0.02, 0, 0.01]
+        sdm.map((scan, faces), meshes.box(), resolution=64).save(f"scans/{k}.ply")
+    Path("scans/2.ply").write_text("ply")
+
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    assert re.search(r"0\.ply +PASS .*\n.*1\.ply +FAIL .*\n.*2\.ply", run.stdout), run.stdout
+    assert len(list(Path("out/maps").glob("*.png"))) == 2
+    names = {}
+    for block in blocks:
+        exec(compile(block, "docs/many-machines.md", "exec"), names)
 
 
 # ---- Many pairs
