@@ -133,7 +133,7 @@ def test_bad_inputs_are_rows(scans, tmp_path):
     pairs = [(tmp_path / name, part) for name in ("no such file.ply", "empty.ply", "garbage.stl", "cut.obj", "flat.obj",
                                                   "broken.gltf", "folder.ply")]  # fmt: skip
     pairs += [(files[0], tmp_path / "empty.ply"), ((bad, faces), part), ((vertices, faces + 99), part), (3, part),
-              (files[0], part, np.eye(3)), (files[0], part, np.full((4, 4), np.nan))]  # fmt: skip
+              (files[0], part, np.eye(3)), (files[0], part, np.full((4, 4), np.nan)), (files[0], part, "no matrix")]  # fmt: skip
     table = sdm.dask.map_pairs([*pairs, (files[0], part)], tmp_path / "out", resolution=64).compute()
     assert (table["error"][:-1] != "").all() and table["error"].iloc[-1] == ""
     assert table["mean"][:-1].isna().all() and (table["exr"][:-1] == "").all()
@@ -141,6 +141,8 @@ def test_bad_inputs_are_rows(scans, tmp_path):
         assert str(name) in error
     assert "empty.ply" in table["error"][7] and "pair 8, O1" in table["error"][8] and "NaN" in table["error"][8]
     assert len(list((tmp_path / "out" / "records").iterdir())) == 1
+    with pytest.raises(sdm.Error, match="pair 1 must be"):
+        sdm.dask.map_pairs([pairs[0], files[0]], tmp_path / "out")
     with pytest.raises(sdm.Error, match="not as '.jpg'"):
         sdm.dask.map_pairs(pairs, tmp_path / "out", save=".jpg")
     with pytest.raises(sdm.Error, match="tolerance"):
@@ -446,7 +448,8 @@ def test_copies_that_cannot_be_used(tmp_path):
     assert found.count.max() == 4
     with pytest.raises(sdm.Error, match="copy 0"):
         sdm.dask.cohort_statistics(sphere, [bad], meshes.box(), **options).compute()
-    several = sdm.dask.cohort_statistics(sphere, good, [meshes.box(high=(1, 1, k + 1)) for k in range(4)], **options).compute()
+    boxes = [meshes.box(high=(1, 1, k + 1)) for k in range(4)]
+    several = sdm.dask.cohort_statistics(sphere, good, boxes, **options).compute()
     assert several.count.max() == 4
     for arguments in ({"range": (1, 0)}, {"bins": 0}, {"copies_per_task": 0}):
         with pytest.raises(sdm.Error):

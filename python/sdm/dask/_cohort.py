@@ -106,9 +106,9 @@ def cohort_statistics(
     The other options are those of sdm.Surface and sdm.map(). threads: used by each task.
 
     Tasks compute copies_per_task copies each; their results are merged by a tree, eight at a time, whose shape depends on
-    copies_per_task and their number only. So the result is the same in every run, whatever the workers. A copy that cannot be used is
-    left out and listed in ``errors``. Memory of a worker: 2 (bins + 16) bytes for each texel and each of up to nine results that
-    are merged, twice that for 65536 copies or more.
+    copies_per_task and their number only. So the result is the same in every run, whatever the workers. A copy that cannot
+    be used is left out and listed in ``errors``. Memory of a worker: 2 (bins + 16) bytes for each texel and each of up to
+    nine results that are merged, twice that for 65536 copies or more.
     """
     low, high = float(range[0]), float(range[1])
     if not (low < high and np.isfinite(high - low)):
@@ -120,10 +120,10 @@ def cohort_statistics(
         raise sdm.Error("there are no copies")
     several = isinstance(b, list)
     if several and len(b) != len(copies):
-        raise sdm.Error(f"there are {len(copies)} copies, but {len(b)} meshes to measure to; give one, or one for each copy")
+        raise sdm.Error(f"there are {len(copies)} copies, but {len(b)} meshes to measure to; give one, or one for each")
     work = {
-        "layout": {"resolution": resolution, **layout}, "search": {"engine": engine, "sign": sign, "max_distance": max_distance},
-        "threads": threads, "low": low, "high": high, "bins": bins, "counter": np.uint16 if len(copies) < 1 << 16 else np.uint32,
+        "layout": {"resolution": resolution, **layout},
+        "search": {"engine": engine, "sign": sign, "max_distance": max_distance}, "threads": threads, "low": low, "high": high, "bins": bins, "counter": np.uint16 if len(copies) < 1 << 16 else np.uint32,
     }  # fmt: skip
     whole = dask.delayed(_meshes.portable(mesh), traverse=False)
     targets = [_meshes.portable(target) for target in (b if several else [b])]

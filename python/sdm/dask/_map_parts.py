@@ -73,7 +73,7 @@ def map_parts(
 
     A task visits the parts of O2 by increasing distance of their boxes from the tile. It reads a part only if its box is
     nearer than the closest points found so far for some texel, and keeps the four used last for other tasks of the process.
-    Memory of a worker: about 1 kB for each face of a part, five parts for each process.
+    Memory of a worker: about 0.5 kB for each face of these parts and of the one being built.
 
     The result does not depend on how O2 is divided, on tiles or on workers: it is, bit for bit, sdm.map(a, b,
     engine='reference', sign='none') for the whole O2, in which the first of equally close sites is the closest one. The
@@ -96,10 +96,10 @@ def map_parts(
     folder.mkdir(parents=True, exist_ok=True)
     if isinstance(a, Parts):
         map_part = dask.delayed(_map_part, pure=False)
-        return dask.delayed(list)([
-            map_part(a.folder, part, layout, str(folder / f"{_files.key_of(o1=a.key, part=part, layout=layout, **key)}.npz"), work)
-            for part in range(len(a))
-        ])  # fmt: skip
+        names = [_files.key_of(o1=a.key, part=part, layout=layout, **key) for part in range(len(a))]
+        return dask.delayed(list)(
+            [map_part(a.folder, part, layout, str(folder / f"{name}.npz"), work) for part, name in enumerate(names)]
+        )
 
     surface = a if isinstance(a, sdm.Surface) else sdm.Surface(a, **layout)
     points, texels = _core.sample_points(surface), _core.sample_texels(surface)
@@ -111,7 +111,7 @@ def map_parts(
         np.savez(partial, texels=texels, faces=surface.texel_faces)
     map_tile = dask.delayed(_map_tile, pure=False)
     tiles = [
-        map_tile(of_surface[0], first, min(first + samples_per_tile, len(points)), str(folder / f"{name}-{number:06}.npz"), work)
+        map_tile(of_surface[0], first, first + samples_per_tile, str(folder / f"{name}-{number:06}.npz"), work)
         for number, first in enumerate(range(0, len(points), samples_per_tile))
     ]
     return dask.delayed(_map_of_tiles, pure=False)(tiles, of_surface[1])

@@ -16,12 +16,9 @@ import numpy as np
 
 import sdm
 
-#: What a task receives for a mesh: its absolute path, (vertices, faces, texture coordinates or None), or why it is none.
-Portable = "str | tuple | sdm.Error"
-
-
 def portable(mesh: Any) -> Any:
-    """Returns a mesh in a form that can be sent to another process. Files are not opened."""
+    """Returns a mesh as tasks receive it: its absolute path, (vertices, faces, texture coordinates or None), or the error
+    that says why it is none. Files are not opened."""
     if isinstance(mesh, (str, os.PathLike)):
         return os.path.abspath(os.fsdecode(mesh))
     try:

@@ -82,8 +82,9 @@ def map_pairs(
         if suffix not in _FORMATS:
             raise sdm.Error(f"a map is saved as {', '.join(_FORMATS)}, not as '{suffix}'")
     options = {
-        "resolution": resolution, "precision": precision, "engine": engine, "sign": sign, "max_distance": max_distance,
-        "atlas": atlas, "max_stretch": max_stretch, "gutter": gutter,
+        "resolution": None if resolution is None else int(resolution),
+        "precision": None if precision is None else float(precision), "engine": engine, "sign": sign,
+        "max_distance": float(max_distance), "atlas": atlas, "max_stretch": float(max_stretch), "gutter": int(gutter),
     }  # fmt: skip
     work = {
         "map": options, "align": bool(align), "tolerance": _limits(tolerance), "formats": formats,
@@ -105,6 +106,8 @@ def map_pairs(
     row = dask.delayed(map_pair, pure=False)
     rows = []
     for number, pair in enumerate(pairs):
+        if not isinstance(pair, (tuple, list)) or len(pair) not in (2, 3):
+            raise sdm.Error(f"pair {number} must be (o1, o2) or (o1, o2, transform)")
         o1, o2, transform = (*pair, None) if len(pair) == 2 else pair
         names = _meshes.name_of(o1, f"pair {number}, O1"), _meshes.name_of(o2, f"pair {number}, O2")
         rows.append(row(names, argument(o1), argument(o2), _matrix(transform), work))
@@ -126,8 +129,12 @@ def _limits(tolerance: Any) -> "list | None":
     return [float(low), float(high)]
 
 
-def _matrix(transform: Any) -> "list | None":
-    return None if transform is None else np.asarray(transform, np.float64).tolist()
+def _matrix(transform: Any) -> Any:
+    """Returns a list, or None, or the error that says why it is no matrix."""
+    try:
+        return None if transform is None else np.asarray(transform, np.float64).tolist()
+    except (TypeError, ValueError):
+        return sdm.Error("the transform must be a 4 × 4 matrix")
 
 
 def _columns(formats: list) -> dict:
@@ -146,10 +153,12 @@ def _partition(rows: list, first: int, columns: dict) -> pd.DataFrame:
     return pd.DataFrame({name: pd.Series(values[name], index, dtype=kind) for name, kind in columns.items()})
 
 
-def map_pair(names: tuple, o1: Any, o2: Any, transform: "list | None", work: dict) -> dict:
+def map_pair(names: tuple, o1: Any, o2: Any, transform: Any, work: dict) -> dict:
     """Returns the row of a pair: from its record, or by computing the map."""
     row = {"o1": names[0], "o2": names[1]}
     try:
+        if isinstance(transform, sdm.Error):
+            raise transform
         with _meshes.naming(names[0]):
             first = _meshes.digest(o1)
         with _meshes.naming(names[1]):
@@ -163,8 +172,10 @@ def map_pair(names: tuple, o1: Any, o2: Any, transform: "list | None", work: dic
                 done = _computed(names, (o1, o2), (first, second), transform, row["key"], work)
             _files.write_json(record, done)
         row.update(done)
-    except (sdm.Error, OSError, MemoryError, TypeError) as error:
-        row["error"] = str(error) or type(error).__name__
+    except (sdm.Error, OSError) as error:
+        row["error"] = str(error)
+    except Exception as error:  # nothing that is wrong with one pair ends the others
+        row["error"] = f"{type(error).__name__}: {error}"
     return row
 
 
