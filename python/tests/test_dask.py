@@ -418,7 +418,7 @@ def test_cohort_statistics_are_those_of_numpy(tmp_path):
         exact = np.quantile(distances[:, owned], q, axis=0, method="inverted_cdf")
         assert (lower <= exact).all() and (exact <= upper).all()
         inside = (exact > found.low) & (exact <= found.high)
-        assert inside.any() and (upper - lower)[inside].max() <= found.bin_width * (1 + 1e-12)
+        assert inside.any() and (upper - lower)[inside].max() <= found.bin_width
     assert np.isnan(found.quantile(0.5)[0][~owned]).all()
     found.save(tmp_path / "statistics.npz")
     np.testing.assert_array_equal(np.load(tmp_path / "statistics.npz")["mean"], found.mean)

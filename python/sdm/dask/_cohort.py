@@ -45,7 +45,8 @@ class CohortStatistics:
 
     @property
     def bin_width(self) -> float:
-        return (self.high - self.low) / (len(self.bins) - 2)
+        """The width of the widest bin; all are equal, to rounding."""
+        return float(np.diff(_edges(self.low, self.high, len(self.bins) - 2)).max())
 
     def quantile(self, q: float) -> "tuple[np.ndarray, np.ndarray]":
         """Returns bounds (lower, upper), both (H, W) float64, on the q-quantile of the distances at each texel.
@@ -123,7 +124,8 @@ def cohort_statistics(
         raise sdm.Error(f"there are {len(copies)} copies, but {len(b)} meshes to measure to; give one, or one for each")
     work = {
         "layout": {"resolution": resolution, **layout},
-        "search": {"engine": engine, "sign": sign, "max_distance": max_distance}, "threads": threads, "low": low, "high": high, "bins": bins, "counter": np.uint16 if len(copies) < 1 << 16 else np.uint32,
+        "search": {"engine": engine, "sign": sign, "max_distance": max_distance}, "threads": threads,
+        "low": low, "high": high, "bins": bins, "counter": np.uint16 if len(copies) < 1 << 16 else np.uint32,
     }  # fmt: skip
     whole = dask.delayed(_meshes.portable(mesh), traverse=False)
     targets = [_meshes.portable(target) for target in (b if several else [b])]
