@@ -51,9 +51,10 @@ void merge_closest(const Sites& part, const PartNumbers& numbers, std::span<cons
   if (queries.size() != best.size()) throw Error("there must be one result for each query");
   double farthest = 0;
   for (const ClosestInParts& c : best) farthest = std::max(farthest, c.distance);
-  // The cpu engine's distance, within its error, bounds the search in double precision.
+  // The cpu engine's distance, within its error, bounds the search in double precision. Four times the slack,
+  // because it also has to find a site wherever there is one within the limit.
   const auto widened = [&](double distance) {
-    return (1 + reference::kSlack) * distance + reference::kSlack / data.frame.scale;
+    return (1 + 4 * reference::kSlack) * distance + 4 * reference::kSlack / data.frame.scale;
   };
   const std::vector<ClosestPoint> near =
       closest_points(part, queries, {.max_distance = widened(farthest), .progress = progress});
