@@ -230,6 +230,10 @@ SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface
 struct HtmlOptions {
   const Mesh* other = nullptr;  ///< O2, shown as a ghost; none: O1 only
   UpAxis up = UpAxis::y;        ///< the axis of the meshes that points up
+  // The size of the page, which grows with what it shows:
+  std::uint32_t largest = 1024;              ///< the most texels a side, at least 1
+  std::size_t triangles = 400'000;           ///< the most of O1; others are shown by a coarser copy
+  std::size_t triangles_of_other = 300'000;  ///< the most of O2; others are shown by their box
 };
 
 /// Whether write_html can write: whether sdm was built with SDM_BUILD_REPORT.
@@ -237,9 +241,9 @@ struct HtmlOptions {
 
 /// report.html: one file that opens in a browser, from disk and without a network. It shows the verdict and
 /// the numbers of `report`, the JSON text of report.json, and O1 in 3D, where every value under the cursor is
-/// that of a texel of the map, bit-identical. Of maps larger than 1024² texels, one texel of each square is
-/// in the page; of O1 with more than 400,000 triangles, a coarser copy whose vertices have their own
-/// distances; of O2 with more than 300,000, its box. The page states each of these. `vertex_distances`: as
+/// that of a texel of the map, bit-identical. Of larger maps than the options have, one texel of each square
+/// is in the page; of O1 with more triangles, a coarser copy whose vertices have their own distances; of O2,
+/// its box. The page states each of these. `vertex_distances`: as
 /// for write_glb. Also throws sdm::Error if the map or the distances belong to another surface, and if
 /// can_write_html() is false. Cost: linear, some tens of milliseconds for 1024² texels.
 SDM_API void write_html(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,

@@ -161,6 +161,17 @@ TEST_F(Page, ShowsWhatItDoesNotKnow) {
       passes("says", file, {"New numbers", "1.5", "25 %", "Bands", "no limit", "50 %", "one of each 2 × 2"}));
 }
 
+TEST_F(Page, IsAsSmallAsAskedFor) {
+  const Field field = [](const Vec3& p) { return p[0]; };
+  const Surface surface(ring(48), {.resolution = 512});
+  const auto values = at_vertices(surface.mesh(), field);
+  const std::string file = folder / "small.html", whole = folder / "whole.html";
+  write_html(file, surface, map_of(surface, field), values, "{}", {.largest = 128, .triangles = 500});
+  write_html(whole, surface, map_of(surface, field), values, "{}");
+  EXPECT_LT(std::filesystem::file_size(file) + 100'000, std::filesystem::file_size(whole));
+  EXPECT_TRUE(passes("says", file, {"one of each 4 × 4", "coarser copy"}));
+}
+
 TEST_F(Page, IsRefusedForAnotherSurface) {
   const Field field = [](const Vec3&) { return 1; };
   const Surface surface(ring(6), {.resolution = 64}), other(ring(6), {.resolution = 32});

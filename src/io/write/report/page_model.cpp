@@ -127,8 +127,8 @@ void add_vertices(PackedArrays& arrays, const Mesh& mesh, const ShadingNormals& 
 
 }  // namespace
 
-Json add_map(PackedArrays& arrays, const Surface& surface, const DistanceMap& map) {
-  const AtlasPicture picture(surface, kPageSide);
+Json add_map(PackedArrays& arrays, const Surface& surface, const DistanceMap& map, std::uint32_t largest) {
+  const AtlasPicture picture(surface, largest);
   const std::size_t width = picture.width(), height = picture.height();
   const auto owners = surface.texel_faces(), face_charts = surface.face_charts();
   std::vector<std::uint32_t> charts(width * height), distance(charts.size()), sites(charts.size());
@@ -158,14 +158,15 @@ Json add_map(PackedArrays& arrays, const Surface& surface, const DistanceMap& ma
   return {{"width", width}, {"height", height}, {"step", picture.step()}};
 }
 
-Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const float> vertex_distances) {
+Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const float> vertex_distances,
+               std::uint32_t largest, std::size_t most) {
   const Mesh& mesh = surface.mesh();
   const Steps steps(bounds(mesh));
   Json json = steps.json();
   const std::vector<std::uint32_t> faces = faces_by_chart(surface);
   json["triangles_of_mesh"] = faces.size();
-  if (faces.size() > kPageTriangles) {
-    const FewerVertices fewer = fewer_vertices(mesh, vertex_distances, kPageTriangles);
+  if (faces.size() > most) {
+    const FewerVertices fewer = fewer_vertices(mesh, vertex_distances, most);
     const ShadingNormals normals = shading_normals(fewer.mesh);
     // Every vertex once: with the first of its normals.
     std::vector<std::uint32_t> normal_of(fewer.mesh.positions.size(), kNone);
@@ -178,7 +179,7 @@ Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const flo
   const ShadingNormals normals = shading_normals(mesh);
   const ModelVertices vertices = model_vertices(surface, normals, faces);
   add_vertices(arrays, mesh, normals, vertices.normal, steps, vertex_distances);
-  const double scale = kStepsPerTexel / AtlasPicture(surface, kPageSide).step();
+  const double scale = kStepsPerTexel / AtlasPicture(surface, largest).step();
   std::vector<std::uint32_t> place;
   for (const Vec2& p : vertices.place)
     for (const double x : p) place.push_back(static_cast<std::uint32_t>(std::max(0.0, scale * x + 0.5)));
@@ -190,7 +191,7 @@ Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const flo
   return json;
 }
 
-Json add_ghost(PackedArrays& arrays, const Mesh& mesh) {
+Json add_ghost(PackedArrays& arrays, const Mesh& mesh, std::size_t most) {
   const Box box = bounds(mesh);
   const Steps steps(box);
   Json json = steps.json();
@@ -199,7 +200,7 @@ Json add_ghost(PackedArrays& arrays, const Mesh& mesh) {
   for (const Triangle& triangle : mesh.triangles)
     if (is_visible(triangle)) triangles.push_back(triangle);
   json["triangles_of_mesh"] = triangles.size();
-  if (triangles.size() > kPageGhostTriangles) return json;
+  if (triangles.size() > most) return json;
   std::vector<std::uint32_t> number(mesh.positions.size(), kNone), position;
   std::uint32_t count = 0;
   for (Triangle& triangle : triangles)

@@ -11,28 +11,26 @@
 
 namespace sdm::io {
 
-/// The most texels a side of the page's map, of triangles of the measured mesh, and of the other one.
-inline constexpr std::uint32_t kPageSide = 1024;
-inline constexpr std::size_t kPageTriangles = 400000, kPageGhostTriangles = 300000;
-
-/// Adds the map: texel by texel, or of a larger one a texel of each square, as pictures show it. Arrays:
+/// Adds the map: texel by texel, or if it has more than `largest` a side, a texel of each square, as pictures
+/// show it. Arrays:
 /// `chart` (of all texels of the page: 1 + the chart of the owner, 0 without one), and of the owned texels in
 /// order `distance` (see below) and `site` (4 · number + type, 0xFFFFFFFF without one; missing if a number
 /// does not fit). Returns its measures.
 [[nodiscard]] nlohmann::ordered_json add_map(PackedArrays& arrays, const Surface& surface,
-                                             const DistanceMap& map);
+                                             const DistanceMap& map, std::uint32_t largest);
 
 /// Adds the triangles of the measured mesh. Arrays: `position` (three a vertex, in steps from the origin),
 /// `place` (two, its atlas coordinates in 1/64 of a texel of the page), `normal` (octahedral, two bytes),
 /// `vertex_distance`, `triangle` (for each corner, how many vertices its vertex was before the first one that
-/// has not occurred yet), `triangle_chart` (1 + the chart of each triangle). If there are more than
-/// kPageTriangles, the vertices are fewer ones of the mesh, and without `place` and `triangle_chart`. Returns
-/// its measures.
+/// has not occurred yet), `triangle_chart` (1 + the chart of each triangle). If there are more than `most`
+/// triangles, the vertices are fewer ones of the mesh, and without `place` and `triangle_chart`. `largest`:
+/// as for add_map(). Returns its measures.
 [[nodiscard]] nlohmann::ordered_json add_model(PackedArrays& arrays, const Surface& surface,
-                                               std::span<const float> vertex_distances);
+                                               std::span<const float> vertex_distances, std::uint32_t largest,
+                                               std::size_t most);
 
 /// Adds the other mesh: `ghost_position` and `ghost_triangle`; nothing but its box if there are more than
-/// kPageGhostTriangles. Returns its measures.
-[[nodiscard]] nlohmann::ordered_json add_ghost(PackedArrays& arrays, const Mesh& mesh);
+/// `most` triangles. Returns its measures.
+[[nodiscard]] nlohmann::ordered_json add_ghost(PackedArrays& arrays, const Mesh& mesh, std::size_t most);
 
 }  // namespace sdm::io

@@ -64,10 +64,14 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   PackedArrays arrays, model_arrays, ghost_arrays;
   std::vector<Place> worst;
   AreaByValue area;
-  run_concurrently({[&] { map_json = add_map(arrays, surface, map); },
-                    [&] { model = add_model(model_arrays, surface, vertex_distances); },
+  run_concurrently({[&] { map_json = add_map(arrays, surface, map, options.largest); },
                     [&] {
-                      if (options.other) ghost = add_ghost(ghost_arrays, *options.other);
+                      model = add_model(model_arrays, surface, vertex_distances, options.largest,
+                                        options.triangles);
+                    },
+                    [&] {
+                      if (options.other)
+                        ghost = add_ghost(ghost_arrays, *options.other, options.triangles_of_other);
                     },
                     [&] { worst = worst_places(surface, map, vertex_distances); },
                     [&] { area = area_by_value(surface, map); }});
