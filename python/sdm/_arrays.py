@@ -55,8 +55,40 @@ def matrix(array: Any, name: str) -> np.ndarray:
     return _floats(array, name, (4, 4))
 
 
+def motion(poses: Any, name: str) -> np.ndarray:
+    """The poses at the start and at the end: two of them, or one for both; None: the identity."""
+    if poses is None:
+        poses = np.eye(4)
+    numbers = _numpy(poses, name)
+    if numbers.ndim == 2:
+        numbers = np.stack((numbers, numbers))
+    if numbers.shape != (2, 4, 4):
+        raise Error(f"{name} must be a 4 × 4 matrix or two of them, not an array of the shape {_shape(np.shape(poses))}")
+    return _floats(numbers, name, (2, 4, 4))
+
+
+def lengths(array: Any, name: str, count: int) -> np.ndarray:
+    """One number for each of ``count`` items, from as many or from one for all."""
+    numbers = _numpy(array, name)
+    if numbers.ndim == 0:
+        numbers = np.broadcast_to(numbers, (count,))
+    elif numbers.shape != (count,):
+        raise Error(f"{name} must be one number or have the shape ({count},), not {_shape(numbers.shape)}")
+    return _floats(numbers, name, (None,))
+
+
 def corner_uvs(array: Any, name: str) -> np.ndarray:
     return _floats(array, name, (None, 3, 2))
+
+
+def indices(array: Any, name: str) -> np.ndarray:
+    if np.shape(array) == (0,):  # a list without numbers has no integers
+        return np.empty(0, np.uint32)
+    numbers = _numbers(array, name, "iu", "integers", (None,))
+    outside = (numbers < 0) | (numbers > 0xFFFFFFFE)
+    if outside.any():
+        raise Error(f"{name} has the index {numbers[outside][0]}, which is out of range")
+    return np.require(numbers.astype(np.uint32, copy=False), requirements=["C", "ALIGNED"])
 
 
 def triangles(array: Any, name: str) -> np.ndarray:

@@ -1,8 +1,6 @@
-import base64
 import functools
-import html
+import json
 import os
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +9,7 @@ import numpy as np
 
 from . import _core
 from ._closest_points import NONE
-from ._core import DistanceStatistics, Error, Sites, Surface
+from ._core import BoundedLength, DistanceStatistics, Error, Mesh, Sites, Surface, ToleranceVerdict
 
 Progress = Callable[[str, float], "bool | None"]
 
@@ -31,10 +29,12 @@ class MapBounds:
 
 
 class DistanceMap:
-    """The distance from every texel of a surface (O1) to sites (O2). Returned by map().
+    """The distance from every texel of a surface (O1) to sites (O2). Returned by map() and self_map().
 
     Arrays have a row for each row of texels, row 0 at the top, and are read-only. Texels without a value, because no face
     owns them or nothing is within the maximum distance, hold NaN or NONE. Lengths are in the units of the meshes.
+
+    Notebooks show the surface in 3D, its picture and its numbers.
     """
 
     def __init__(self, core: "_core.Map") -> None:
@@ -70,10 +70,10 @@ class DistanceMap:
         """The unit normal of the face that owns each texel, (H, W, 3) float32; NaN where none does."""
         return _frozen(self._core.normal())
 
-    @property
+    @functools.cached_property
     def face(self) -> np.ndarray:
         """The face of O1 that owns each texel, (H, W) uint32, or NONE."""
-        return self.surface.texel_faces
+        return self._core.face()
 
     @functools.cached_property
     def site(self) -> np.ndarray:
@@ -104,7 +104,8 @@ class DistanceMap:
     def bounds(self) -> MapBounds:
         """Bounds on the distances of all points of the surface, not only of its texels.
 
-        Cost: linear in texels, all cores. Raises Error if the surface or the sites have been refitted.
+        Cost: linear in texels, all cores. Raises Error if the surface or the sites have been refitted, and for a map of a
+        surface to itself.
 
         >>> bounds = sdm.map(sphere, box, resolution=256).bounds
         >>> bounds.lower < bounds.upper
@@ -118,6 +119,76 @@ class DistanceMap:
         Cost: linear in texels, all cores. Raises Error if the surface has been refitted.
         """
         return self._core.statistics()
+
+    def hausdorff(self, precision: "float | None" = None, *, progress: "Progress | None" = None) -> BoundedLength:
+        """Returns the largest absolute distance of all points of the surface, with bounds: the one-sided Hausdorff distance.
+
+        precision: None: bounds from the texels, which are about a texel's size apart; otherwise by branch and bound on the
+        triangles, so that they are at most this far apart, in units of the meshes (0: 1e-6 of the diagonal of both).
+        The witness is a point of the surface and its closest point. Raises Error as ``bounds`` does, and for a precision
+        that is negative or NaN; Cancelled.
+
+        >>> distance = sdm.map(sphere, box, resolution=64).hausdorff()
+        >>> distance.lower <= sdm.hausdorff(sphere, box, one_sided=True).value <= distance.upper
+        True
+        """
+        return self._core.hausdorff(precision, progress)
+
+    def check(self, tolerance: "float | tuple[float, float]", *, progress: "Progress | None" = None) -> ToleranceVerdict:
+        """Returns whether the distances of all points of the surface are within a tolerance.
+
+        tolerance: ±tolerance, in units of the meshes, or the least and the most distance. Raises Error as ``bounds`` does,
+        and for a tolerance that differs by the sign if the map is unsigned; Cancelled. Cost: one search per vertex.
+
+        >>> sdm.map(sphere, box, resolution=64).check(2).verdict
+        'pass'
+        """
+        return self._core.check(tolerance, progress)
+
+    def free_distances(self) -> np.ndarray:
+        """Returns, for each texel, a radius within which there is no point of O2, (H, W) float64; 0 without a value.
+
+        The t_min of rays of length 1 that start at the texel: the distance less what the engine may be off. Raises Error as
+        ``bounds`` does.
+        """
+        return self._core.free_distances()
+
+    def ambient_occlusion(
+        self, rays: int = 64, *, max_distance: float = float("inf"), seed: int = 0, progress: "Progress | None" = None
+    ) -> np.ndarray:
+        """Returns, for each texel, how much of the hemisphere above it is free of O2, (H, W) float32: an estimate.
+
+        1: all of it; NaN where no face owns the texel. Rays start at the texel, to the side of the face's normal, with a
+        density proportional to the cosine of the angle to it. O1 does not occlude itself.
+        rays: for each texel, 1 to 65536. max_distance: > 0; O2 occludes nothing that is farther away. seed: of the
+        directions. Raises Error as ``bounds`` does; Cancelled. Cost: ``rays`` rays per texel, all cores.
+
+        >>> bool(np.nanmin(sdm.map(box, sphere, resolution=64).ambient_occlusion(16)) < 1)
+        True
+        """
+        return self._core.ambient_occlusion(rays, max_distance, seed, progress)
+
+    def report(
+        self,
+        *,
+        tolerance: "float | tuple[float, float] | None" = None,
+        units: str = "",
+        colormap: str = "automatic",
+        range: "tuple[float, float] | None" = None,
+        progress: "Progress | None" = None,
+    ) -> dict:
+        """Returns the numbers of the map with the keys of the command's report.json, for json.dump().
+
+        The options are those of save(). None stands for what has no value. Raises Error if the surface or the sites have been
+        refitted; Cancelled. Cost: one search per vertex.
+
+        >>> report = sdm.map(sphere, box, resolution=64).report(tolerance=2)
+        >>> report["tolerance"]["verdict"], report["atlas"]["resolution"]
+        ('PASS', 64)
+        """
+        return self._core.report(
+            self.at_vertices(progress=progress), tolerance=tolerance, units=units, colormap=colormap, range=range
+        )
 
     def at_vertices(self, *, progress: "Progress | None" = None) -> np.ndarray:
         """Returns the distance at each vertex of the surface, (n,) float32, signed as the map; NaN where nothing is within
@@ -136,6 +207,7 @@ class DistanceMap:
         tolerance: "float | tuple[float, float] | None" = None,
         units: str = "",
         size: int = 2048,
+        up: str = "y",
         progress: "Progress | None" = None,
     ) -> None:
         """Writes the map, in the format of the file's extension.
@@ -144,20 +216,27 @@ class DistanceMap:
         .exr                 all values: distance.D, vector.X/Y/Z, site.id, site.type, face.id, coverage.A
         .png                 the distances in colours, with a legend
         .glb                 the surface with the distances as a texture, and as ``_DISTANCE`` for each vertex
+        .html                a page that shows the surface in 3D, the numbers of report() and a histogram, without a network
         .ply .csv .npy .vtp  the distance of each vertex, in the order of the vertices; in .ply and .vtp with the faces
         ===================  ======================================================================================
 
         The options are those of the colours. colormap: 'automatic' (diverging if there are both signs, else viridis),
         'viridis', 'diverging' or 'paper2006'. range: of the colours; by default from the map. tolerance: bands, green
         within ±tolerance, or from the first to the second number. units: shown in the legend ('mm', ...); they scale a
-        .glb to metres. size: the most pixels a side. The complete file appears, or none. Raises Error, naming the file and the fault.
+        .glb to metres. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a .html. The
+        complete file appears, or none. Raises Error, naming the file and the fault.
         """
         name = os.fspath(file)
         if not isinstance(name, str):
             name = os.fsdecode(name)
         suffix = os.path.splitext(name)[1].lower()
-        if suffix not in (".exr", ".png", ".glb", ".ply", ".csv", ".npy", ".vtp"):
-            raise Error(f"{name}: a map is saved as .exr, .png, .glb, .ply, .csv, .npy or .vtp, not as '{suffix}'")
+        if suffix not in (".exr", ".png", ".glb", ".html", ".ply", ".csv", ".npy", ".vtp"):
+            raise Error(f"{name}: a map is saved as .exr, .png, .glb, .html, .ply, .csv, .npy or .vtp, not as '{suffix}'")
+        if suffix == ".html":
+            at_vertices = self.at_vertices(progress=progress)
+            report = self._core.report(at_vertices, tolerance=tolerance, units=units, colormap=colormap, range=range)
+            self._core.write_page(name, at_vertices, json.dumps(report), up=up)
+            return
         self._core.write(
             suffix[1:],
             name,
@@ -181,24 +260,9 @@ class DistanceMap:
         return _plot.plot(self, ax, kind, cmap, units)
 
     def _repr_html_(self) -> str:
-        with tempfile.TemporaryDirectory() as folder:
-            file = os.path.join(folder, "map.png")
-            self.save(file, size=256)
-            with open(file, "rb") as picture:
-                data = base64.b64encode(picture.read()).decode()
-        s = self.statistics()
-        rows = {
-            "distance": f"{s.min:.6g} to {s.max:.6g}",
-            "mean, rms": f"{s.mean:.6g}, {s.rms:.6g}",
-            "median, 95 %, 99 %": f"{s.p50:.6g}, {s.p95:.6g}, {s.p99:.6g}",
-            "sign": f"{self.sign}: {self.sign_reason}",
-            "texels": f"{s.texels} of {self.distance.shape[1]} × {self.distance.shape[0]}",
-        }
-        cells = "".join(f"<tr><th>{key}</th><td>{html.escape(value)}</td></tr>" for key, value in rows.items())
-        return (
-            '<div style="display: flex; gap: 1em; align-items: center">'
-            f'<img alt="distances" src="data:image/png;base64,{data}"><table>{cells}</table></div>'
-        )
+        from . import _notebook
+
+        return _notebook.html_of(self)
 
     def __repr__(self) -> str:
         s = self.statistics()
@@ -259,4 +323,63 @@ def map(
     )
     return DistanceMap(
         _core.compute_map(surface, sites, engine=engine, sign=sign, max_distance=max_distance, progress=progress)
+    )
+
+
+def self_map(
+    mesh: object,
+    *,
+    rest: object = None,
+    rings: int = 1,
+    geodesic: "float | None" = None,
+    max_distance: float = float("inf"),
+    resolution: "int | None" = None,
+    precision: "float | None" = None,
+    atlas: str = "charts",
+    max_stretch: float = 1.3,
+    gutter: int = 1,
+    progress: "Progress | None" = None,
+) -> DistanceMap:
+    """Computes the distance from every point of a surface to the rest of it: wall thickness, gaps, folds.
+
+    mesh: in any form (see Mesh); a Surface is used as it is.
+    rest: the same mesh before it was deformed, which decides what is near along the surface; None: ``mesh``.
+    rings: a face excludes itself and this many rings of faces around it, connected by shared vertices; ≥ 1.
+    geodesic: instead of rings, exclude everything closer than this along the surface, conservatively.
+    max_distance: > 0; anything farther is ignored. Lengths are in units of the mesh.
+    resolution, precision, atlas, max_stretch, gutter: as of Surface.
+    progress: called as progress(step, fraction), on this thread; False cancels.
+
+    Returns a DistanceMap of unsigned distances, exact but for rounding. Texels with nothing in range hold an infinite
+    distance and the site NONE. Distances jump between faces, as these exclude different ones: the map has no ``bounds``,
+    hausdorff() or check(). Raises Error for a mesh and options that cannot be used; Cancelled. Cost: a search per texel that
+    skips what is excluded, all cores.
+
+    >>> plate = sdm.Mesh(box).transformed(np.diag([10, 10, 0.5, 1]))
+    >>> thickness = sdm.self_map(plate, resolution=64, max_distance=1)
+    >>> float(np.nanmin(thickness.distance))
+    0.5
+    """
+    if not isinstance(mesh, Surface):
+        mesh = Mesh(mesh)
+    surface, sites = _core.prepare(
+        mesh,
+        mesh,
+        resolution=resolution,
+        precision=precision,
+        atlas=atlas,
+        max_stretch=max_stretch,
+        gutter=gutter,
+        progress=progress,
+    )
+    return DistanceMap(
+        _core.compute_self_map(
+            surface,
+            sites,
+            mesh if rest is None else rest,
+            rings=rings,
+            geodesic=geodesic,
+            max_distance=max_distance,
+            progress=progress,
+        )
     )

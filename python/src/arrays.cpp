@@ -36,6 +36,10 @@ std::span<const Vec3> Points::get() const {
   return {reinterpret_cast<const Vec3*>(array_.data()), array_.shape(0)};
 }
 
+Lengths::Lengths(nb::handle value, const char* name, std::size_t count)
+    : array_(nb::cast<decltype(array_)>(
+          nb::module_::import_("sdm._arrays").attr("lengths")(value, name, count))) {}
+
 std::vector<Triangle> triangles(nb::handle array, const char* name) {
   nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> indices;
   if (!nb::try_cast(array, indices, false))
@@ -45,6 +49,12 @@ std::vector<Triangle> triangles(nb::handle array, const char* name) {
   return {first, first + indices.shape(0)};
 }
 
+std::vector<std::uint32_t> indices(nb::handle array, const char* name) {
+  using Indices = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+  const auto numbers = nb::cast<Indices>(converted("indices", array, name));
+  return {numbers.data(), numbers.data() + numbers.shape(0)};
+}
+
 std::vector<std::array<Vec2, 3>> corner_uvs(nb::handle array) {
   using Uvs = nb::ndarray<const double, nb::shape<-1, 3, 2>, nb::c_contig, nb::device::cpu>;
   const auto uvs = nb::cast<Uvs>(converted("corner_uvs", array, "corner_uvs"));
@@ -52,20 +62,39 @@ std::vector<std::array<Vec2, 3>> corner_uvs(nb::handle array) {
   return {first, first + uvs.shape(0)};
 }
 
-Transform transform(nb::handle matrix, const char* name) {
-  using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
-  Matrix numbers;
-  if (!nb::try_cast(matrix, numbers, false)) numbers = nb::cast<Matrix>(converted("matrix", matrix, name));
+namespace {
+
+Transform affine(const double* numbers, const char* name) {
   Transform result;
-  std::memcpy(result.rows.data(), numbers.data(), sizeof(result.rows));
+  std::memcpy(result.rows.data(), numbers, sizeof(result.rows));
   if (result.rows[3] != std::array<double, 4>{0, 0, 0, 1})
     throw Error(std::string(name) + " must be an affine matrix: its last row is not (0, 0, 0, 1)");
   return result;
 }
 
+}  // namespace
+
+Transform transform(nb::handle matrix, const char* name) {
+  using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
+  Matrix numbers;
+  if (!nb::try_cast(matrix, numbers, false)) numbers = nb::cast<Matrix>(converted("matrix", matrix, name));
+  return affine(numbers.data(), name);
+}
+
+std::array<Transform, 2> motion(nb::handle poses, const char* name) {
+  using Matrices = nb::ndarray<const double, nb::shape<2, 4, 4>, nb::c_contig, nb::device::cpu>;
+  const auto numbers = nb::cast<Matrices>(converted("motion", poses, name));
+  return {affine(numbers.data(), name), affine(numbers.data() + 16, name)};
+}
+
 nb::object matrix(const Transform& transform) {
   std::vector<std::array<std::array<double, 4>, 4>> rows{transform.rows};
   return array_of<double>(std::move(rows), {4, 4});
+}
+
+nb::object vector_of(const Vec3& vector) {
+  std::vector<Vec3> rows{vector};
+  return array_of<double>(std::move(rows), {3});
 }
 
 }  // namespace sdm::python

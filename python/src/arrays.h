@@ -32,13 +32,30 @@ class Points {
   nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> array_;
 };
 
+/// One number for each of several items.
+class Lengths {
+ public:
+  /// `value`: a number for all items, or an array of `count`. Throws sdm::Error for anything else.
+  Lengths(nb::handle value, const char* name, std::size_t count);
+
+  [[nodiscard]] std::span<const double> get() const { return {array_.data(), array_.shape(0)}; }
+
+ private:
+  nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu> array_;
+};
+
 /// Copies m × 3 integers. Throws sdm::Error for any other array, and for numbers that are no index.
 [[nodiscard]] std::vector<Triangle> triangles(nb::handle array, const char* name);
+/// Copies k integers. Throws sdm::Error as above.
+[[nodiscard]] std::vector<std::uint32_t> indices(nb::handle array, const char* name);
 /// Copies m × 3 × 2 numbers.
 [[nodiscard]] std::vector<std::array<Vec2, 3>> corner_uvs(nb::handle array);
 /// Reads a 4 × 4 matrix whose last row is (0, 0, 0, 1).
 [[nodiscard]] Transform transform(nb::handle matrix, const char* name);
+/// Reads two such matrices, or one for both; None: the identity.
+[[nodiscard]] std::array<Transform, 2> motion(nb::handle poses, const char* name);
 [[nodiscard]] nb::object matrix(const Transform& transform);
+[[nodiscard]] nb::object vector_of(const Vec3& vector);
 
 namespace detail {
 template <class Owned>

@@ -50,7 +50,7 @@ void PyClosestPoints::set_gradients(std::span<const Vec3> points) {
 
 Vec3 PyClosestPoints::barycentric_of(const ClosestPoint& closest) const {
   if (closest.type == SiteType::none) return {kNan, kNan, kNan};
-  const Sites& mesh = sites->sites;
+  const Sites& mesh = version->get();
   const Triangle& triangle = mesh.mesh().triangles[closest.face];
   Vec3 weights{};
   if (closest.type == SiteType::face) {
@@ -96,6 +96,7 @@ nb::object PyClosestPoints::face() {
 }
 
 nb::object PyClosestPoints::barycentric() {
+  const auto lock = sites->access.use();
   return barycentric_.get(
       [&] { return column(found, [this](const ClosestPoint& c) { return barycentric_of(c); }); });
 }
@@ -116,7 +117,8 @@ nb::object PyClosestPoints::gradient() {
 
 nb::object PyClosestPoints::vertex_gradients() const {
   require_gradients();
-  const auto& triangles = sites->sites.mesh().triangles;
+  const auto lock = sites->access.use();
+  const auto& triangles = version->get().mesh().triangles;
   std::vector<Triangle> vertices(found.size());
   std::vector<std::array<Vec3, 3>> derivatives(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -15,9 +15,10 @@ namespace sdm::python {
 
 /// Holds what the search returned; the arrays are made by the first access.
 struct PyClosestPoints {
-  nb::object owner;                ///< keeps the sites
-  const PySites* sites = nullptr;  ///< for their faces and edges, which do not change
-  Positions positions;             ///< of its vertices at the time of the search
+  nb::object owner;  ///< keeps the sites
+  const PySites* sites = nullptr;
+  std::shared_ptr<SitesVersion> version;  ///< their faces and edges at the time of the search
+  Positions positions;                    ///< of its vertices at the time of the search
   std::vector<ClosestPoint> found;
   std::vector<std::uint8_t> inside;  ///< empty: unsigned
   std::vector<Vec3> gradients;       ///< empty: not requested

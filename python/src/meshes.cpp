@@ -18,8 +18,16 @@ nb::object faces_view(const Mesh& mesh, nb::handle owner) {
 Mesh mesh_of(nb::handle mesh, nb::handle faces) {
   if (faces.is_none()) {
     if (nb::isinstance<PyMesh>(mesh)) return nb::cast<const PyMesh&>(mesh).mesh;
-    if (nb::isinstance<PySites>(mesh)) return nb::cast<const PySites&>(mesh).sites.mesh();
-    if (nb::isinstance<PySurface>(mesh)) return nb::cast<const PySurface&>(mesh).surface.mesh();
+    if (nb::isinstance<PySites>(mesh)) {
+      const auto& sites = nb::cast<const PySites&>(mesh);
+      const auto lock = sites.access.use();
+      return sites.sites.mesh();
+    }
+    if (nb::isinstance<PySurface>(mesh)) {
+      const auto& surface = nb::cast<const PySurface&>(mesh);
+      const auto lock = surface.access.use();
+      return surface.surface.mesh();
+    }
   }
   const nb::object parts = nb::module_::import_("sdm._meshes").attr("parts")(mesh, faces);
   if (nb::isinstance<PyMesh>(parts)) return nb::cast<const PyMesh&>(parts).mesh;

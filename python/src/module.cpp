@@ -19,4 +19,8 @@ NB_MODULE(_core, module) {
   bind_proximity(module);
   bind_bodies(module);
   bind_surfaces(module);
+  bind_time_of_contact(module);
+  bind_volume(module);
+  bind_points(module);
+  bind_scenes(module);
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "run.h"
@@ -21,14 +22,29 @@ struct PyMesh {
   Mesh mesh;
 };
 
+/// Sites until they are edited. Results and arrays that refer to their faces and edges share this, and an
+/// edit leaves them what they refer to.
+struct SitesVersion {
+  const Sites* present;          ///< of the PySites; null once it was edited
+  std::optional<Sites> earlier;  ///< what it had before
+
+  [[nodiscard]] const Sites& get() const { return earlier ? *earlier : *present; }
+};
+
 struct PySites {
   explicit PySites(Mesh mesh)
-      : positions(std::make_shared<std::vector<Vec3>>(mesh.positions)), sites(std::move(mesh)) {}
+      : positions(std::make_shared<std::vector<Vec3>>(mesh.positions)),
+        sites(std::move(mesh)),
+        version(std::make_shared<SitesVersion>(SitesVersion{&sites, {}})) {}
 
   Positions positions;  ///< of the present shape; results and arrays keep it
   Sites sites;
-  std::uint64_t shape = 0;  ///< the number of refits
+  std::shared_ptr<SitesVersion> version;
+  std::uint64_t shape = 0;  ///< the number of refits and edits
   Access access;
+
+  /// Needs no GIL. Throws sdm::Error, and changes nothing, as Sites::edit does.
+  void edit(const MeshEdit& edit);
 };
 
 struct PySurface {
@@ -37,8 +53,14 @@ struct PySurface {
 
   Positions positions;
   Surface surface;
-  std::uint64_t shape = 0;
+  std::uint64_t shape = 0, edits = 0;  ///< the numbers of refits and edits, and of edits
   Access access;
+  // Copies for arrays, made by their first access, as an edit changes what the surface has.
+  mutable std::shared_ptr<const std::vector<Triangle>> faces;
+  mutable std::shared_ptr<const std::vector<std::uint32_t>> texel_faces;
+
+  /// Needs no GIL. Throws sdm::Error, and changes nothing, as Surface::edit does.
+  void edit(const MeshEdit& edit);
 };
 
 /// Accepts whatever python/sdm/_meshes.py does. `faces`: None, or the second array of a mesh given as two.
@@ -50,6 +72,10 @@ struct PySurface {
 [[nodiscard]] const char* name_of(SignMethod method);
 [[nodiscard]] AtlasKind atlas_of(const char* name);
 [[nodiscard]] const char* name_of(AtlasKind kind);
+
+/// Adds the method edit().
+void bind_edit(nb::class_<PySites>& sites);
+void bind_edit(nb::class_<PySurface>& surface);
 
 /// A view of positions that keeps them: it does not change with the object.
 [[nodiscard]] nb::object positions_view(const Positions& positions);
@@ -64,5 +90,9 @@ void bind_parts(nb::module_& module);
 void bind_proximity(nb::module_& module);
 void bind_bodies(nb::module_& module);
 void bind_surfaces(nb::module_& module);
+void bind_time_of_contact(nb::module_& module);
+void bind_volume(nb::module_& module);
+void bind_points(nb::module_& module);
+void bind_scenes(nb::module_& module);
 
 }  // namespace sdm::python

@@ -9,6 +9,7 @@
 #include "arrays.h"
 #include "closest.h"
 #include "objects.h"
+#include "rays.h"
 
 namespace sdm::python {
 namespace {
@@ -35,6 +36,7 @@ std::unique_ptr<PyClosestPoints> closest(nb::handle self, nb::handle points, con
   auto result = std::make_unique<PyClosestPoints>();
   result->owner = nb::borrow(self);
   result->sites = &sites;
+  result->version = sites.version;
   result->positions = sites.positions;
   const auto search = [&](const Progress& progress) {
     options.progress = progress;
@@ -51,6 +53,12 @@ std::unique_ptr<PyClosestPoints> closest(nb::handle self, nb::handle points, con
     run(query.progress, search);
   }
   return result;
+}
+
+// What keeps arrays of faces and edges, also over edits.
+nb::object version_owner(nb::handle self) {
+  const auto& sites = nb::cast<const PySites&>(self);
+  return nb::make_tuple(self, detail::capsule_of(new std::shared_ptr<SitesVersion>(sites.version)));
 }
 
 constexpr const char* kClosestPoints =
@@ -106,7 +114,7 @@ there is no closest point. Raises Error without gradients.
 
 void bind_sites(nb::module_& module) {
   bind_closest_points(module);
-  nb::class_<PySites>(
+  nb::class_<PySites> sites(
       module, "Sites",
       R"(The object that distances are measured to (O2): the faces, edges and vertices of a mesh,
 prepared for queries.
@@ -119,7 +127,8 @@ do.
 >>> sites.closest_points([[2, 0.5, 0.5]]).point
 array([[1. , 0.5, 0.5]])
 >>> sites.signed_distance([[0.5, 0.5, 0.75]])
-array([-0.25]))")
+array([-0.25]))");
+  sites
       .def(
           "__init__",
           [](PySites* self, nb::handle mesh, nb::handle faces) {
@@ -226,31 +235,48 @@ array([0.25]))")
       .def_prop_ro(
           "vertices", [](const PySites& self) { return positions_view(self.positions); },
           nb::sig("def vertices(self) -> numpy.ndarray"),
-          "The positions, (n, 3) float64, read-only. The array does not change with a refit.")
+          "The positions, (n, 3) float64, read-only. The array does not change with a refit or an edit.")
       .def_prop_ro(
           "faces",
-          [](nb::handle self) { return faces_view(nb::cast<const PySites&>(self).sites.mesh(), self); },
+          [](nb::handle self) {
+            const auto& given = nb::cast<const PySites&>(self);
+            const auto lock = given.access.use();
+            return faces_view(given.sites.mesh(), version_owner(self));
+          },
           nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
       .def_prop_ro(
           "edges",
           [](nb::handle self) {
-            const auto edges = nb::cast<const PySites&>(self).sites.edges();
-            return view_of<std::uint32_t>(edges, {edges.size(), 2}, self);
+            const auto& given = nb::cast<const PySites&>(self);
+            const auto lock = given.access.use();
+            const auto edges = given.sites.edges();
+            return view_of<std::uint32_t>(edges, {edges.size(), 2}, version_owner(self));
           },
           nb::sig("def edges(self) -> numpy.ndarray"),
           "The two vertices of each edge, the smaller index first, in lexicographic order, (e, 2) uint32, "
           "read-only.")
       .def_prop_ro(
-          "closed", [](const PySites& self) { return self.sites.closed(); },
+          "closed",
+          [](const PySites& self) {
+            const auto lock = self.access.use();
+            return self.sites.closed();
+          },
           "Whether every edge has exactly two faces.")
       .def_prop_ro(
-          "orientable", [](const PySites& self) { return self.sites.orientable(); },
+          "orientable",
+          [](const PySites& self) {
+            const auto lock = self.access.use();
+            return self.sites.orientable();
+          },
           "Whether the faces can be oriented consistently.")
       .def("__repr__", [](const PySites& self) {
+        const auto lock = self.access.use();
         const Mesh& mesh = self.sites.mesh();
         return nb::str("sdm.Sites({} vertices, {} faces, {})")
             .format(mesh.positions.size(), mesh.triangles.size(), self.sites.closed() ? "closed" : "open");
       });
+  bind_edit(sites);
+  bind_rays(module, sites);
 }
 
 }  // namespace sdm::python

@@ -46,6 +46,18 @@ std::unique_ptr<PySurface> built(Mesh mesh, Layout layout, const Progress& progr
   return std::make_unique<PySurface>(std::move(mesh), layout.options);
 }
 
+// The copy of `values` that arrays share.
+template <class Value, class Values>
+const std::shared_ptr<const std::vector<Value>>& copied(std::shared_ptr<const std::vector<Value>>& copy,
+                                                        const Values& values) {
+  if (!copy) copy = std::make_shared<std::vector<Value>>(values.begin(), values.end());
+  return copy;
+}
+template <class Value>
+nb::capsule owner_of(const std::shared_ptr<const std::vector<Value>>& values) {
+  return detail::capsule_of(new std::shared_ptr<const std::vector<Value>>(values));
+}
+
 #define SDM_LAYOUT_ARGUMENTS                                                                          \
   nb::arg("resolution") = nb::none(), nb::arg("precision") = nb::none(), nb::arg("atlas") = "charts", \
   nb::arg("max_stretch") = AtlasOptions{}.max_stretch, nb::arg("gutter") = AtlasOptions{}.gutter
@@ -53,7 +65,7 @@ std::unique_ptr<PySurface> built(Mesh mesh, Layout layout, const Progress& progr
 }  // namespace
 
 void bind_surface(nb::module_& module) {
-  nb::class_<PySurface>(
+  nb::class_<PySurface> surface_class(
       module, "Surface",
       R"(The surface on which distances are measured (O1): a mesh laid out in a square texture.
 
@@ -73,7 +85,8 @@ Raises Error for a mesh or options that cannot be used; Cancelled.
 >>> surface.texel_faces.shape
 (256, 256)
 >>> surface.covering_radius() < 0.05
-True)")
+True)");
+  surface_class
       .def(
           "__init__",
           [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle resolution, nb::handle precision,
@@ -124,6 +137,9 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
       .def_prop_ro(
           "resolution", [](const PySurface& self) { return self.surface.resolution(); }, "Texels per row.")
       .def_prop_ro(
+          "rows", [](const PySurface& self) { return self.surface.rows(); },
+          "Texels per column: as many, until edits add rows.")
+      .def_prop_ro(
           "atlas", [](const PySurface& self) { return name_of(self.surface.atlas_kind()); },
           "The kind of the atlas: 'charts', 'triangles' or 'uv'.")
       .def_prop_ro(
@@ -138,17 +154,22 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
       .def_prop_ro(
           "vertices", [](const PySurface& self) { return positions_view(self.positions); },
           nb::sig("def vertices(self) -> numpy.ndarray"),
-          "The positions, (n, 3) float64, read-only. The array does not change with a refit.")
+          "The positions, (n, 3) float64, read-only. The array does not change with a refit or an edit.")
       .def_prop_ro(
           "faces",
-          [](nb::handle self) { return faces_view(nb::cast<const PySurface&>(self).surface.mesh(), self); },
+          [](const PySurface& self) {
+            const auto lock = self.access.use();
+            const auto& faces = copied(self.faces, self.surface.mesh().triangles);
+            return view_of<std::uint32_t>(*faces, {faces->size(), 3}, owner_of(faces));
+          },
           nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
       .def_prop_ro(
           "texel_faces",
-          [](nb::handle self) {
-            const Surface& surface = nb::cast<const PySurface&>(self).surface;
-            return view_of<std::uint32_t>(surface.texel_faces(), {surface.rows(), surface.resolution()},
-                                          self);
+          [](const PySurface& self) {
+            const auto lock = self.access.use();
+            const Surface& surface = self.surface;
+            const auto& owners = copied(self.texel_faces, surface.texel_faces());
+            return view_of<std::uint32_t>(*owners, {surface.rows(), surface.resolution()}, owner_of(owners));
           },
           nb::sig("def texel_faces(self) -> numpy.ndarray"),
           "The face that owns each texel, or NONE, (H, W) uint32, read-only; row 0 at the top.")
@@ -157,6 +178,7 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
         return nb::str("sdm.Surface({} vertices, {} faces, {}² texels)")
             .format(mesh.positions.size(), mesh.triangles.size(), self.surface.resolution());
       });
+  bind_edit(surface_class);
 
   // For sdm.map: both objects, built beside each other.
   module.def(

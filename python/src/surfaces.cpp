@@ -4,35 +4,10 @@
 #include <utility>
 
 #include "arrays.h"
-#include "objects.h"
+#include "sites_in_use.h"
 
 namespace sdm::python {
 namespace {
-
-/// The sites of a Sites, in use meanwhile, or those of any other mesh.
-class SitesInUse {
- public:
-  explicit SitesInUse(nb::handle mesh) {
-    if (nb::isinstance<PySites>(mesh)) {
-      const auto& given = nb::cast<const PySites&>(mesh);
-      lock_ = given.access.use();
-      sites_ = &given.sites;
-    } else {
-      mesh_ = mesh_of(mesh, nb::none());
-    }
-  }
-  /// Builds them, if they are not there. Needs no GIL.
-  const Sites& get() {
-    if (!sites_) sites_ = &own_.emplace(std::move(mesh_));
-    return *sites_;
-  }
-
- private:
-  std::shared_lock<std::shared_mutex> lock_;
-  const Sites* sites_ = nullptr;
-  Mesh mesh_;
-  std::optional<Sites> own_;
-};
 
 BoundedLength hausdorff(nb::handle a, nb::handle b, double precision, bool one_sided, nb::handle progress) {
   SitesInUse on(a), to(b);
@@ -59,11 +34,6 @@ AlignOptions align_options(const char* start, nb::handle pose, std::size_t sampl
     throw Error("there is no start " + std::string(name) + "; use 'pose' or 'principal_axes'");
   if (!pose.is_none()) options.pose = transform(pose, "pose");
   return options;
-}
-
-nb::object vector_of(const Vec3& v) {
-  std::vector<Vec3> values{v};
-  return array_of<double>(std::move(values), {3});
 }
 
 void bind_alignment(nb::module_& module) {

@@ -1,5 +1,9 @@
 """Maps, their bounds and their files."""
 
+import html
+import json
+import os
+import re
 import struct
 import subprocess
 import sys
@@ -235,10 +239,137 @@ def test_files(distance_map, tmp_path):
     assert not (tmp_path / "bad.png").exists()
 
 
+def page_data(page, key):
+    """What a page contains as JSON."""
+    return json.loads(re.search(f'<script type="application/json" id="{key}">(.*?)</script>', page, re.DOTALL)[1])
+
+
+needs_pages = pytest.mark.skipif(not sdm._core.can_write_html(), reason="built without pages")
+
+
+@needs_pages
+def test_pages(distance_map, tmp_path):
+    distance_map.save(tmp_path / "m.HTML", tolerance=(-0.1, 2), units="mm", up="z")
+    page = (tmp_path / "m.HTML").read_text(encoding="utf-8")
+    report = page_data(page, "report")
+    assert report == json.loads(json.dumps(distance_map.report(tolerance=(-0.1, 2), units="mm")))
+    assert report["units"] == "mm" and report["tolerance"]["verdict"] == "FAIL" and page_data(page, "page")["up"] == "z"
+    with pytest.raises(sdm.Error, match="up must be"):
+        distance_map.save(tmp_path / "n.html", up="x")
+    with pytest.raises(sdm.Error, match="no such folder"):
+        distance_map.save(tmp_path / "no such folder" / "n.html")
+    assert not (tmp_path / "n.html").exists()
+
+
+@needs_pages
+@pytest.mark.skipif("SDM_COMMAND" not in os.environ, reason="the command is not built")
+def test_the_report_is_that_of_the_command(distance_map, map_in_file, tmp_path):
+    o1, o2 = map_in_file(meshes.sphere(), "o1.ply"), map_in_file(meshes.box(), "o2.ply")
+    command = [os.environ["SDM_COMMAND"], "map", o1, o2, "-o", tmp_path / "out", "--resolution", "256", "--tolerance", "0.5", "--quiet"]
+    assert subprocess.run(command).returncode == 3
+    theirs = json.loads((tmp_path / "out" / "report.json").read_text())
+    ours = json.loads(json.dumps(sdm.map(o1, o2, resolution=256).report(tolerance=0.5)))
+    for key, value in ours.items():
+        if key in ("o1", "o2"):
+            value["file"] = theirs[key]["file"]
+        expected = theirs[key]
+        if isinstance(value, dict):
+            expected = {k: v for k, v in expected.items() if k in value}
+        assert value == expected, key
+
+
 def test_notebooks(distance_map):
-    html = distance_map._repr_html_()
-    assert "data:image/png;base64," in html and "exact" in html and len(html) < 200_000
+    text = distance_map._repr_html_()
+    assert "data:image/png;base64," in text and "exact" in text
+    if sdm._core.can_write_html():
+        page = html.unescape(re.search('srcdoc="(.*?)"', text, re.DOTALL)[1])
+        assert page_data(page, "page")["map"] == {"width": 256, "height": 256, "step": 1}
+        assert len(text) < 1_000_000  # most of it is the viewer
     assert repr(distance_map).startswith("sdm.DistanceMap(256 × 256 texels, distance ")
+
+
+@needs_pages
+def test_notebooks_show_less_of_large_maps():
+    m = sdm.map(meshes.sphere(steps=7), meshes.box(), resolution=2048)
+    text = m._repr_html_()
+    page = page_data(html.unescape(re.search('srcdoc="(.*?)"', text, re.DOTALL)[1]), "page")
+    assert page["map"]["step"] == 8 and page["model"]["triangles_of_mesh"] == 8 * 4**7
+    assert len(text) < 3_000_000
+
+
+def test_hausdorff(distance_map):
+    truth = sdm.hausdorff(meshes.sphere(), meshes.box(), one_sided=True, precision=1e-9)
+    sampled = distance_map.hausdorff()
+    assert sampled.lower <= truth.value <= sampled.upper <= sampled.lower + 0.05 and sampled.certainty == "bounded"
+    np.testing.assert_allclose(np.linalg.norm(sampled.witness[1] - sampled.witness[0]), sampled.value, rtol=1e-6)
+    searched = distance_map.hausdorff(1e-7)
+    assert searched.lower - 1e-7 <= truth.value <= searched.upper <= searched.lower + 1e-7
+    assert sdm.map(meshes.sphere(), meshes.box(), resolution=64, max_distance=0.3).hausdorff().upper == np.inf
+    with pytest.raises(sdm.Error):
+        distance_map.hausdorff(-1)
+
+
+def test_tolerances(distance_map):
+    largest = float(np.nanmax(np.abs(distance_map.at_vertices())))
+    passed = distance_map.check(largest + 0.1)
+    assert passed.verdict == "pass" and passed.within and passed.certified and passed.exceeded_area_fraction == 0
+    assert passed.largest == pytest.approx(largest, rel=1e-6) and passed.tolerance == (-largest - 0.1, largest + 0.1)
+    failed = distance_map.check((-0.2, 0.3))
+    assert failed.verdict == "fail" and failed.above_area_fraction > 0 and failed.below_area_fraction > 0
+    coarse = sdm.map(meshes.sphere(), meshes.box(), resolution=64).check(largest + 0.02)
+    assert coarse.verdict == "not decided" and 0 < coarse.deciding_precision < 0.02
+    decided = sdm.map(meshes.sphere(), meshes.box(), precision=coarse.deciding_precision).check(largest + 0.02)
+    assert decided.verdict == "pass"
+    unsigned = sdm.map(meshes.sphere(), meshes.box(), resolution=64, sign="none")
+    for tolerance in ((-0.1, 0.2), -1, (1, 0), (1, 2, 3), np.nan):
+        with pytest.raises(sdm.Error):
+            unsigned.check(tolerance)
+    with pytest.raises(ValueError):
+        unsigned.check("text")
+
+
+def test_self_maps():
+    plate = meshes.box((0, 0, 0), (10, 10, 0.5))
+    m = sdm.self_map(plate, resolution=128, max_distance=2)
+    # The top and the bottom are far from each other along the surface, and 0.5 apart.
+    up = m.valid & (np.abs(m.normal[..., 2]) > 0.9)
+    middle = up & (np.abs(m.position[..., :2] - 5) < 4).all(axis=-1)
+    assert middle.any()
+    np.testing.assert_allclose(m.distance[middle], 0.5, atol=1e-6)
+    np.testing.assert_allclose(np.abs(m.vector[middle][:, 2]), 0.5, atol=1e-6)
+    assert m.sign == "none" and m.statistics().min >= 0
+    exact = sdm.SelfProximityQuery(plate, max_distance=2).separation().value
+    assert exact <= m.statistics().min + 1e-6
+    assert m.at_vertices().shape == (8,)
+    for no_bounds in (lambda: m.bounds, m.hausdorff, lambda: m.check(1), m.free_distances, m.ambient_occlusion):
+        with pytest.raises(sdm.Error, match="jump between faces"):
+            no_bounds()
+
+
+def test_exclusion_of_self_maps(tmp_path):
+    sphere = meshes.sphere(steps=3)
+    rings = sdm.self_map(sphere, resolution=128)
+    geodesic = sdm.self_map(sphere, resolution=128, geodesic=1.0)
+    assert geodesic.statistics().min > rings.statistics().max  # the straight lines of arcs of at least 1
+    assert geodesic.statistics().min >= 2 * np.sin(0.5) - 0.05
+    everything = sdm.self_map(sphere, resolution=64, geodesic=10)
+    assert not everything.valid.any() and np.isposinf(everything.distance[everything.face != sdm.NONE]).all()
+    # What is near is decided at rest: a folded sheet excludes as the flat one does.
+    flat = ([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]])
+    folded = sdm.Surface(flat, resolution=64)
+    folded.refit([[0, 0, 0], [1, 0, 0], [0, 0, 0.1], [0, 1, 0], [1, 1, 0], [0, 1, 0.1]])
+    assert not sdm.self_map(folded, rest=flat, geodesic=3).valid.any()
+    for name, head in (("s.exr", b"v/1\x01"), ("s.png", b"\x89PNG"), ("s.glb", b"glTF"), ("s.ply", b"ply\n")):
+        geodesic.save(tmp_path / name)
+        assert (tmp_path / name).read_bytes()[:4] == head
+    if sdm._core.can_write_html():
+        geodesic.save(tmp_path / "s.html")
+        assert "mesh" in page_data((tmp_path / "s.html").read_text(), "report")
+    for options in ({"rings": 0}, {"geodesic": 0}, {"max_distance": 0}, {"rest": meshes.box()}, {"rings": -1}):
+        with pytest.raises((sdm.Error, TypeError)):
+            sdm.self_map(sphere, resolution=64, **options)
+    with pytest.raises(sdm.Cancelled):
+        sdm.self_map(sphere, resolution=64, progress=lambda step, fraction: False)
 
 
 def test_plots(distance_map):

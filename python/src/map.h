@@ -1,0 +1,77 @@
+// A map, with what it was computed from.
+#pragma once
+
+#include <nanobind/stl/string.h>
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/sdm.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "objects.h"
+
+namespace sdm::python {
+
+struct PyMap {
+  nb::object surface_object, sites_object;
+  const PySurface* on = nullptr;
+  const PySites* to = nullptr;
+  // When the map was computed:
+  std::uint64_t surface_shape = 0, surface_edits = 0, sites_shape = 0;
+  MapOptions options;
+  std::string engine;  ///< its name
+  /// Of a map of a surface to itself: what each face excludes; otherwise null.
+  std::shared_ptr<const Exclusion> exclusion;
+  DistanceMap map;
+
+  [[nodiscard]] std::size_t texels() const { return map.distance.size(); }
+  [[nodiscard]] std::size_t rows() const { return map.rows(); }
+
+  /// Locks the surface, and throws if it has another shape than that of the map.
+  [[nodiscard]] auto use_surface() const {
+    auto lock = on->access.use();
+    if (on->shape != surface_shape)
+      throw Error(
+          "the surface has been refitted or edited since the map was computed; compute the map again");
+    return lock;
+  }
+  [[nodiscard]] auto use_sites() const {
+    auto lock = to->access.use();
+    if (to->shape != sites_shape)
+      throw Error("the sites have been refitted or edited since the map was computed; compute the map again");
+    return lock;
+  }
+  /// Throws for a map of a surface to itself, whose texels say nothing about the points between them.
+  void require_other_mesh() const {
+    if (exclusion)
+      throw Error(
+          "the distances of a surface to itself jump between faces, so that texels do not bound them; "
+          "SelfProximityQuery.separation() is exact");
+  }
+  /// Of a distance, for the present shapes. Self maps are exact but for rounding to float.
+  [[nodiscard]] double accuracy() const {
+    const EngineInfo& info = options.engine ? engine_info(*options.engine) : engines().front();
+    return engine_accuracy(info, on->surface.mesh(), to->sites.mesh());
+  }
+  /// The distance at each vertex of the surface.
+  [[nodiscard]] std::vector<float> vertex_distances(const Progress& progress) const;
+};
+
+/// The accepted distances: a number, or the least and the most. Throws sdm::Error for others, and for a
+/// tolerance that needs signs if distances have none.
+[[nodiscard]] Tolerance tolerance_of(nb::handle value, SignMethod sign);
+[[nodiscard]] Colormap colormap_of(const std::string& name);
+[[nodiscard]] std::optional<std::array<double, 2>> range_of(
+    const std::optional<std::pair<double, double>>& range);
+
+void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map);
+void bind_map_files(nb::module_& module, nb::class_<PyMap>& map);
+
+}  // namespace sdm::python

@@ -1,0 +1,205 @@
+// The numbers of a map: statistics, bounds, and whether it is within a tolerance.
+#include <nanobind/stl/optional.h>
+#include <sdm/hausdorff.h>
+#include <sdm/sampling_bound.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "map.h"
+
+namespace sdm::python {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Whether distances change by no more than the point moves also where they change their sign.
+bool sign_is_continuous(const PyMap& self) {
+  return self.map.sign.method == SignMethod::none || (self.to->sites.closed() && self.to->sites.orientable());
+}
+
+// (lower, upper, covering radius, accuracy): lower ≤ d(p) ≤ upper for all points p of the surface.
+nb::object bounds(const PyMap& self) {
+  self.require_other_mesh();
+  const auto lock = self.use_surface();
+  const auto sites_lock = self.use_sites();
+  double lower = kInfinity, upper = -lower, radius = 0;
+  const double accuracy = self.accuracy();
+  run_short([&] {
+    const SamplingBound bound(self.on->surface);
+    const auto texels = self.on->surface.sample_texels();
+    const auto radii = bound.sample_radii();
+    radius = bound.value();
+    const bool keep_sign = sign_is_continuous(self);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      const double d = self.map.distance[texels[i]];
+      if (!std::isfinite(d)) continue;
+      const double reach = double{radii[i]} + accuracy;
+      lower = std::min(lower, d - reach);
+      upper = std::max(upper, (keep_sign ? d : std::abs(d)) + reach);
+    }
+    if (self.map.beyond_max_distance > 0) upper = kInfinity;
+    if (self.map.sign.method == SignMethod::none) lower = std::max(lower, 0.0);
+    if (!keep_sign) lower = -upper;
+  });
+  return nb::make_tuple(lower, upper, radius, accuracy);
+}
+
+// Bounds on the largest |d(p)| of all points p of the surface, from the texels.
+BoundedLength largest_distance(const PyMap& self) {
+  const double accuracy = self.accuracy();
+  if (self.map.beyond_max_distance > 0) {  // somewhere, and not known by how much
+    const double least = std::max(0.0, self.options.max_distance - accuracy);
+    return {.value = least, .lower = least, .upper = kInfinity};
+  }
+  const Surface& surface = self.on->surface;
+  const SamplingBound bound(surface);
+  const auto texels = surface.sample_texels();
+  const auto radii = bound.sample_radii();
+  BoundedLength result;
+  std::uint32_t farthest = kNone;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const double d = std::abs(self.map.distance[texels[i]]);
+    result.upper = std::max(result.upper, d + double{radii[i]} + accuracy);
+    if (farthest != kNone && d <= result.value) continue;
+    farthest = texels[i];
+    result.value = d;
+  }
+  result.lower = std::max(0.0, result.value - accuracy);
+  if (farthest != kNone) {
+    const Vec3 from = surface.texel_point(farthest);
+    const Vec3f& v = self.map.vector[farthest];
+    result.witness = {from, Vec3{from[0] + v[0], from[1] + v[1], from[2] + v[2]}};
+  }
+  return result;
+}
+
+BoundedLength hausdorff(const PyMap& self, std::optional<double> precision, nb::handle progress) {
+  self.require_other_mesh();
+  const auto lock = self.use_surface();
+  const auto sites_lock = self.use_sites();
+  BoundedLength result;
+  run(progress, [&](const Progress& report) {
+    result = precision ? one_sided_hausdorff(self.on->surface.mesh(), self.to->sites,
+                                             {.precision = *precision, .progress = report})
+                             .distance
+                       : largest_distance(self);
+  });
+  return result;
+}
+
+const char* name_of(Verdict verdict) {
+  return verdict == Verdict::pass ? "pass" : verdict == Verdict::fail ? "fail" : "not decided";
+}
+
+ToleranceVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progress) {
+  self.require_other_mesh();
+  const Tolerance accepted = tolerance_of(tolerance, self.map.sign.method);
+  const auto lock = self.use_surface();
+  const auto sites_lock = self.use_sites();
+  ToleranceVerdict result;
+  run(progress, [&](const Progress& report) {
+    const Surface& surface = self.on->surface;
+    result = check_tolerance(surface, self.map, self.vertex_distances(report), covering_radius(surface),
+                             self.accuracy(), accepted);
+  });
+  return result;
+}
+
+void bind_statistics(nb::module_& module) {
+  using S = DistanceStatistics;
+  nb::class_<S>(
+      module, "DistanceStatistics",
+      "Statistics of the texels of a map that have a value, each weighted by its area on the surface. "
+      "Distances are NaN if there are none. Estimates for the surface: DistanceMap.bounds holds everywhere.")
+      .def_ro("texels", &S::texels, "The number of texels that have a value.")
+      .def_ro("negative_texels", &S::negative_texels, "The number of those inside.")
+      .def_ro("negative_area_fraction", &S::negative_area_fraction, "Their fraction of the area, in [0, 1].")
+      .def_ro("min", &S::min)
+      .def_ro("max", &S::max)
+      .def_ro("mean", &S::mean)
+      .def_ro("rms", &S::rms)
+      .def_ro("stddev", &S::stddev, "About the mean.")
+      .def_ro("p01", &S::p01, "A percentile, weighted by area.")
+      .def_ro("p05", &S::p05)
+      .def_ro("p50", &S::p50, "The median, weighted by area.")
+      .def_ro("p95", &S::p95)
+      .def_ro("p99", &S::p99)
+      .def_ro("mean_abs", &S::mean_abs, "Of the absolute distances.")
+      .def_ro("max_abs", &S::max_abs)
+      .def_ro("p50_abs", &S::p50_abs)
+      .def_ro("p95_abs", &S::p95_abs)
+      .def_ro("p99_abs", &S::p99_abs)
+      .def("__repr__", [](const S& s) {
+        return nb::str("sdm.DistanceStatistics(min={:.6g}, max={:.6g}, mean={:.6g}, rms={:.6g}, texels={})")
+            .format(s.min, s.max, s.mean, s.rms, s.texels);
+      });
+}
+
+void bind_verdict(nb::module_& module) {
+  using V = ToleranceVerdict;
+  nb::class_<V>(module, "ToleranceVerdict",
+                "Whether the distances of all points of a surface are within a tolerance.")
+      .def_prop_ro(
+          "verdict", [](const V& self) { return name_of(self.verdict); },
+          "'pass': every point of the surface is within the tolerance; 'fail': some texel or vertex is not; "
+          "'not decided': all texels and vertices are, but points between them may not be.")
+      .def_prop_ro(
+          "tolerance", [](const V& self) { return nb::make_tuple(self.tolerance.lo, self.tolerance.hi); },
+          nb::sig("def tolerance(self) -> tuple[float, float]"), "The least and the most accepted distance.")
+      .def_ro("largest", &V::largest,
+              "The largest absolute distance of all texels and vertices; infinite if one has no value.")
+      .def_ro("within", &V::within, "All texels and vertices are within the tolerance.")
+      .def_ro("certified", &V::certified, "The verdict holds for every point of the surface.")
+      .def_ro("exceeded_area_fraction", &V::exceeded_area_fraction,
+              "An estimate: the fraction of the area that is out of the tolerance, in [0, 1].")
+      .def_prop_ro(
+          "above_area_fraction", [](const V& self) { return self.shares.above; },
+          "The fraction with larger distances.")
+      .def_prop_ro(
+          "below_area_fraction", [](const V& self) { return self.shares.below; },
+          "The fraction with smaller ones.")
+      .def_ro(
+          "deciding_precision", &V::deciding_bound,
+          "If not decided: a ``precision`` of map() that will decide, unless a larger distance turns up; 0 "
+          "if none does.")
+      .def("__repr__", [](const V& self) {
+        return nb::str("sdm.ToleranceVerdict({!r}, largest={:.6g})")
+            .format(name_of(self.verdict), self.largest);
+      });
+}
+
+}  // namespace
+
+Tolerance tolerance_of(nb::handle value, SignMethod sign) {
+  Tolerance tolerance;
+  if (nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value)) {
+    if (nb::len(value) != 2) throw Error("tolerance must be a number, or the least and the most distance");
+    tolerance = {nb::cast<double>(nb::float_(value[0])), nb::cast<double>(nb::float_(value[1]))};
+  } else {
+    tolerance = nb::cast<double>(nb::float_(nb::borrow(value)));
+  }
+  if (!(tolerance.lo <= tolerance.hi) || !std::isfinite(tolerance.hi - tolerance.lo))
+    throw Error("tolerance must be a finite number that is not negative, or two, the smaller one first");
+  if (tolerance.needs_sign() && sign == SignMethod::none)
+    throw Error("a tolerance that differs by the sign needs signed distances, but these are unsigned");
+  return tolerance;
+}
+
+void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map) {
+  bind_statistics(module);
+  bind_verdict(module);
+  map.def("statistics",
+          [](const PyMap& self) {
+            const auto lock = self.use_surface();
+            return run_short([&] { return statistics(self.on->surface, self.map); });
+          })
+      .def("bounds", &bounds, nb::sig("def bounds(self) -> tuple[float, float, float, float]"))
+      .def("hausdorff", &hausdorff, nb::arg("precision").none(), nb::arg("progress").none())
+      .def("check", &check, nb::arg("tolerance").none(), nb::arg("progress").none());
+}
+
+}  // namespace sdm::python

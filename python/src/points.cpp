@@ -1,0 +1,148 @@
+// Point clouds in files.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <sdm/error.h>
+#include <sdm/points.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "arrays.h"
+#include "map.h"
+#include "sites_in_use.h"
+
+namespace sdm::python {
+namespace {
+
+std::filesystem::path path_of(nb::handle file) {
+  const nb::str path(nb::module_::import_("os").attr("fspath")(file));
+  return {path.c_str()};
+}
+
+nb::object read_points(nb::handle file) {
+  const std::filesystem::path path = path_of(file);
+  std::vector<Vec3> points, normals;
+  run(nb::none(), [&](const Progress&) {
+    PointReader reader(path);
+    constexpr std::size_t kChunk = 1 << 18;
+    std::vector<Vec3> next, next_normals;
+    while (reader.read(kChunk, next, next_normals)) {
+      points.insert(points.end(), next.begin(), next.end());
+      normals.insert(normals.end(), next_normals.begin(), next_normals.end());
+    }
+  });
+  const std::size_t count = points.size();
+  const bool has_normals = normals.size() == count && count > 0;
+  return nb::make_tuple(array_of<double>(std::move(points), {count, 3}),
+                        has_normals ? array_of<double>(std::move(normals), {count, 3}) : nb::none());
+}
+
+void bind_distances(nb::module_& module) {
+  using E = PointExtreme;
+  nb::class_<E>(module, "PointExtreme", "The distance of a point of a cloud.")
+      .def_ro("distance", &E::distance, "In units of the mesh; NaN if no point has one.")
+      .def_prop_ro(
+          "point", [](const E& self) { return vector_of(self.point); },
+          nb::sig("def point(self) -> numpy.ndarray"), "The point, (3,) float64.")
+      .def_ro("index", &E::index, "Its place in the file, from 0.")
+      .def("__repr__", [](const E& self) {
+        return nb::str("sdm.PointExtreme({:.6g}, index={})").format(self.distance, self.index);
+      });
+  using D = PointDistances;
+  nb::class_<D>(module, "PointDistances", "The numbers of the distances of a point cloud to a mesh.")
+      .def_ro("points", &D::points, "The number of points of the file.")
+      .def_ro("invalid", &D::invalid, "The number of those with a coordinate that is NaN or infinite.")
+      .def_ro("beyond_max_distance", &D::beyond_max_distance,
+              "The number of those without a value, besides the invalid ones.")
+      .def_ro("beyond_tolerance", &D::beyond_tolerance,
+              "The number of points that are out of the tolerance, or without a value.")
+      .def_ro("has_normals", &D::has_normals, "Whether the file has normals.")
+      .def_prop_ro(
+          "sign", [](const D& self) { return name_of(self.sign.method); },
+          "How inside and outside are distinguished: 'none', 'exact' or 'winding'.")
+      .def_prop_ro(
+          "sign_reason", [](const D& self) { return self.sign.reason; }, "Why, in words.")
+      .def_ro("min", &D::min, "The point with the smallest distance.")
+      .def_ro("max", &D::max, "The point with the largest distance.")
+      .def(
+          "statistics", [](const D& self) { return self.distance; },
+          "Returns statistics of the points with a value, each with the same weight; ``texels`` is their "
+          "number.")
+      .def("__repr__", [](const D& self) {
+        return nb::str("sdm.PointDistances({} points, {:.6g} to {:.6g})")
+            .format(self.points, self.min.distance, self.max.distance);
+      });
+}
+
+}  // namespace
+
+void bind_points(nb::module_& module) {
+  bind_distances(module);
+  module.def(
+      "read_points", &read_points, nb::arg("file").none(),
+      nb::sig("def read_points(file: str | os.PathLike) -> tuple[numpy.ndarray, numpy.ndarray | None]"),
+      R"(Reads a point cloud: PLY, PCD 0.7, LAS 1.0 to 1.4 (not LAZ), or text with three or more numbers a
+line. The format is detected from the content.
+
+Returns (points, normals): (n, 3) float64 each; normals are None if the file has none. NaN marks points without
+a measurement. Raises Error, naming the file and the fault.
+
+>>> sdm.read_points('no such file.ply')
+Traceback (most recent call last):
+    ...
+sdm.Error: ...
+)");
+
+  module.def(
+      "measure_points",
+      [](nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion, const char* engine,
+         const char* sign, double max_distance, nb::handle tolerance, const std::string& colormap,
+         std::optional<std::pair<double, double>> range, nb::handle progress) {
+        const std::filesystem::path from = path_of(cloud), ply = path_of(output);
+        SitesInUse to(o2);
+        PointDistancesOptions options{
+            .map = {.engine = engine_of(engine), .sign = sign_of(sign), .max_distance = max_distance}};
+        if (!motion.is_none()) options.placement = transform(motion, "transform");
+        options.picture.colormap = colormap_of(colormap);
+        options.picture.range = range_of(range);
+        PointDistances result;
+        run(nb::none(), [&](const Progress&) { (void)to.get(); });
+        if (!tolerance.is_none())
+          options.picture.tolerance = tolerance_of(tolerance, choose_sign(to.get(), options.map.sign).method);
+        run(progress, [&](const Progress& report) {
+          options.map.progress = report;
+          result = measure_points(from, to.get(), ply, options);
+        });
+        return result;
+      },
+      nb::arg("cloud").none(), nb::arg("o2").none(), nb::arg("output").none(), nb::kw_only(),
+      nb::arg("transform") = nb::none(), nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
+      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("tolerance") = nb::none(),
+      nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(),
+      nb::sig(
+          "def measure_points(cloud: str | os.PathLike, o2: object, output: str | os.PathLike, *, "
+          "transform: object = None, engine: str = 'cpu', sign: str = 'automatic', max_distance: float = "
+          "..., tolerance: float | tuple[float, float] | None = None, colormap: str = 'automatic', range: "
+          "tuple[float, float] | None = None, progress: collections.abc.Callable[[str, float], bool | "
+          "None] | None = None) -> PointDistances"),
+      R"(Computes the distance of each point of a file to a mesh, in parts: the cloud may be larger than the
+memory. For points in memory, use Sites.closest_points().
+
+cloud: a file of read_points(). o2: any form of a mesh (see Mesh); Sites are used as they are.
+output: a PLY file to write, with the points in their order: x, y, z, the normals if there are any, distance,
+face and colours.
+transform: a 4 × 4 affine matrix that moves the points first, such as Alignment.transform.
+engine, sign, max_distance: as of map(). tolerance, colormap, range: of the colours, as of DistanceMap.save();
+the tolerance also of ``beyond_tolerance``.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+Raises Error, naming the file and the fault; Cancelled. Cost: a search per point, and reading the distances
+back three times.)");
+}
+
+}  // namespace sdm::python

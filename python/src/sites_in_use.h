@@ -1,0 +1,41 @@
+// The sites that an argument stands for.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <sdm/sites.h>
+
+#include <optional>
+#include <shared_mutex>
+#include <utility>
+
+#include "objects.h"
+
+namespace sdm::python {
+
+/// The sites of a Sites, in use meanwhile, or those of any other mesh.
+class SitesInUse {
+ public:
+  explicit SitesInUse(nb::handle mesh) {
+    if (nb::isinstance<PySites>(mesh)) {
+      const auto& given = nb::cast<const PySites&>(mesh);
+      lock_ = given.access.use();
+      sites_ = &given.sites;
+    } else {
+      mesh_ = mesh_of(mesh, nb::none());
+    }
+  }
+  [[nodiscard]] const Mesh& mesh() const { return sites_ ? sites_->mesh() : mesh_; }
+  /// Builds them, if they are not there. Needs no GIL.
+  const Sites& get() {
+    if (!sites_) sites_ = &own_.emplace(std::move(mesh_));
+    return *sites_;
+  }
+
+ private:
+  std::shared_lock<std::shared_mutex> lock_;
+  const Sites* sites_ = nullptr;
+  Mesh mesh_;
+  std::optional<Sites> own_;
+};
+
+}  // namespace sdm::python
