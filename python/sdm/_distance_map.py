@@ -176,7 +176,7 @@ class DistanceMap:
         colormap: str = "automatic",
         range: "tuple[float, float] | None" = None,
         progress: "Progress | None" = None,
-    ) -> dict:
+    ) -> "dict[str, Any]":
         """Returns the numbers of the map with the keys of the command's report.json, for json.dump().
 
         The options are those of save(). None stands for what has no value. Raises Error if the surface or the sites have been
@@ -200,7 +200,7 @@ class DistanceMap:
 
     def save(
         self,
-        file: "str | os.PathLike",
+        file: "str | os.PathLike[str]",
         *,
         colormap: str = "automatic",
         range: "tuple[float, float] | None" = None,

@@ -294,7 +294,7 @@ void bind_map_files(nb::module_& module, nb::class_<PyMap>& map) {
            nb::arg("range") = nb::none(), nb::arg("tolerance") = nb::none(), nb::arg("units") = "",
            nb::sig("def report(self, at_vertices: numpy.ndarray, *, colormap: str = 'automatic', range: "
                    "tuple[float, float] | None = None, tolerance: float | tuple[float, float] | None = None, "
-                   "units: str = '') -> dict"))
+                   "units: str = '') -> dict[str, object]"))
       .def("write_page", &write_page, nb::arg("file"), nb::arg("at_vertices"), nb::arg("report"),
            nb::kw_only(), nb::arg("up") = "y", nb::arg("largest") = HtmlOptions{}.largest,
            nb::arg("triangles") = HtmlOptions{}.triangles,

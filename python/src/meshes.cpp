@@ -129,7 +129,7 @@ array([ 0.5,  0. ,  0. , -0.5]))");
         return new PyMesh{run_short([&] { return read_mesh(name); })};
       },
       nb::rv_policy::take_ownership, nb::arg("file").none(),
-      nb::sig("def read(file: str | os.PathLike) -> Mesh"),
+      nb::sig("def read(file: str | os.PathLike[str]) -> Mesh"),
       R"(Reads a mesh file: OBJ, PLY, STL, OFF, glTF, GLB or 3DS.
 
 The format is detected from the content, then from the extension. Polygons are triangulated, node

@@ -85,7 +85,7 @@ void bind_points(nb::module_& module) {
   bind_distances(module);
   module.def(
       "read_points", &read_points, nb::arg("file").none(),
-      nb::sig("def read_points(file: str | os.PathLike) -> tuple[numpy.ndarray, numpy.ndarray | None]"),
+      nb::sig("def read_points(file: str | os.PathLike[str]) -> tuple[numpy.ndarray, numpy.ndarray | None]"),
       R"(Reads a point cloud: PLY, PCD 0.7, LAS 1.0 to 1.4 (not LAZ), or text with three or more numbers a
 line. The format is detected from the content.
 
@@ -125,7 +125,7 @@ sdm.Error: ...
       nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("tolerance") = nb::none(),
       nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(),
       nb::sig(
-          "def measure_points(cloud: str | os.PathLike, o2: object, output: str | os.PathLike, *, "
+          "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
           "transform: object = None, engine: str = 'cpu', sign: str = 'automatic', max_distance: float = "
           "..., tolerance: float | tuple[float, float] | None = None, colormap: str = 'automatic', range: "
           "tuple[float, float] | None = None, progress: collections.abc.Callable[[str, float], bool | "

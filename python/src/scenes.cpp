@@ -92,7 +92,7 @@ Lengths are in metres, z is up. The frames are bit-identical in every run.)")
         return result;
       },
       nb::rv_policy::take_ownership, nb::arg("name"), nb::kw_only(), nb::arg("mesh") = nb::none(),
-      nb::sig("def scene(name: str, *, mesh: str | os.PathLike | None = None) -> Scene"),
+      nb::sig("def scene(name: str, *, mesh: str | os.PathLike[str] | None = None) -> Scene"),
       R"(Makes a deforming scene like those of the paper.
 
 name: 'letters': soft letters E and G that collide; 'bunnies': two soft bunnies that do the same; 'figure': a

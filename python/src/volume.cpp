@@ -181,7 +181,7 @@ because a distance changes no faster than the point moves. Raises Error for coor
             const std::filesystem::path name(path.c_str());
             run_short([&] { write_field(name, self.field); });
           },
-          nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike) -> None"),
+          nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
           R"(Writes the field: .npy (the distances, indexed [i, j, k]), .vti (VTK ImageData, for ParaView) or
 .vdb (OpenVDB). The complete file appears, or none. Raises Error, naming the file and the fault.)")
       .def("__repr__", [](const F& self) {

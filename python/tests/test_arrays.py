@@ -199,3 +199,88 @@ def test_arrays_outlive_their_objects():
         np.testing.assert_array_equal(array, copy)
     with pytest.raises(ValueError, match="read-only"):
         distance[0, 0] = 1
+
+
+
+
+LAYOUTS = {
+    "C": np.ascontiguousarray,
+    "F": np.asfortranarray,
+    "strided": lambda a: np.repeat(np.repeat(a, 2, axis=0), 3, axis=-1)[::2, ..., ::3],
+    "reversed": lambda a: np.ascontiguousarray(a[::-1])[::-1],
+    "swapped": lambda a: a.astype(a.dtype.newbyteorder()),
+    "read-only": lambda a: np.frombuffer(a.tobytes(), a.dtype).reshape(a.shape),
+    "unaligned": lambda a: np.frombuffer(b"x" + a.tobytes(), np.uint8)[1:].view(a.dtype).reshape(a.shape),
+    "dlpack": Exporter,
+    "list": lambda a: a.tolist(),
+}
+
+
+def calls():
+    """Every call that takes an array of points or indices: from the array to what must not depend on its form."""
+    vertices, faces = meshes.sphere()
+    sites, surface = sdm.Sites(vertices, faces), sdm.Surface(vertices, faces, resolution=32)
+    field = sdm.distance_field(sites, shape=(4, 4, 4))
+    points = {
+        "closest_points": lambda p: sites.closest_points(p).point,
+        "signed_distance": lambda p: sites.signed_distance(p),
+        "contains": lambda p: sites.contains(p),
+        "origins": lambda p: sites.first_hits(p, np.ones(np.shape(POINTS))).t,
+        "directions": lambda p: sites.first_hits(np.zeros(np.shape(POINTS)), p).t,
+        "occluded": lambda p: sites.occluded(p, np.ones(np.shape(POINTS))),
+        "sample": lambda p: field.sample(p).value,
+        "align_points": lambda p: sdm.align_points(p, sites, samples=64).transform,
+        "bounds": lambda p: sdm.distance_field(sites, shape=(2, 2, 2), bounds=p).distance,
+    }
+    moved = {
+        "refit": lambda v: sites.refit(v) or sites.vertices,
+        "refit of surfaces": lambda v: surface.refit(v) or surface.vertices,
+        "shapes": lambda v: sdm.Shape(v, faces).faces,
+        "self": lambda v: sdm.SelfProximityQuery((v, faces)).separation().value,
+    }
+    return points, moved
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64, np.int8, np.int16, np.int64])
+def test_every_call_takes_any_form(layout, dtype):
+    points, moved = calls()
+    corners = np.array([[-1, -2, -1], [1, 2, 3]])
+    for name, call in points.items():
+        given_points = corners if name == "bounds" else POINTS
+        expected = call(given_points.astype(np.float64))
+        np.testing.assert_array_equal(call(LAYOUTS[layout](given_points.astype(dtype))), expected, err_msg=name)
+    vertices = np.round(meshes.sphere()[0] * 4).astype(np.float64)
+    for name, call in moved.items():
+        np.testing.assert_array_equal(call(LAYOUTS[layout](vertices.astype(dtype))), call(vertices), err_msg=name)
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("dtype", [np.uint8, np.int16, np.uint32, np.int64, np.uint64])
+def test_edits_take_any_form(layout, dtype):
+    form = LAYOUTS[layout]
+    sites, expected = sdm.Sites(meshes.sphere()), sdm.Sites(meshes.sphere())
+    corners = np.array([[1, 2, 3], [4, 5, 6]])
+    one = np.array([7, 9])
+    indices = one if layout == "strided" else form(one.astype(dtype))
+    sites.edit(added_faces=form(corners.astype(dtype)), removed_faces=indices, reconnected_faces=([0], form(corners[:1].astype(dtype))))
+    expected.edit(added_faces=corners, removed_faces=one, reconnected_faces=([0], corners[:1]))
+    np.testing.assert_array_equal(sites.faces, expected.faces)
+
+
+@given(data=st.data())
+def test_slices_of_any_array(data):
+    """Views of larger arrays, whatever their strides: the numbers are those of a copy."""
+    dtype = data.draw(st.sampled_from([np.float16, np.float32, np.float64, np.int16, np.uint8]))
+    whole = data.draw(arrays.arrays(dtype, (6, 3, 4, 3), elements=st.integers(0, 9)))
+    order = data.draw(st.permutations(range(4)))
+    view = whole.transpose(order)
+    index = [data.draw(st.slices(n)) if i < 2 else data.draw(st.integers(0, n - 1)) for i, n in enumerate(view.shape)]
+    view = view[tuple(index)]
+    sites = sdm.Sites(meshes.box())
+    if view.shape[1] != 3:
+        with pytest.raises(sdm.Error, match="shape"):
+            sites.closest_points(view)
+        return
+    found = sites.closest_points(view)
+    np.testing.assert_array_equal(found.distance, sites.closest_points(view.astype(np.float64).copy()).distance)
