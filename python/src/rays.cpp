@@ -102,7 +102,7 @@ Error for coordinates or limits that are NaN, a direction of length 0 and a nega
 one traversal per ray, all cores.
 
 >>> hits = sdm.Sites(box).first_hits([[0.5, 0.25, 3], [5, 5, 5]], [[0, 0, -1], [1, 0, 0]])
->>> hits.t, hits.face[1] == sdm.NONE
+>>> hits.t, bool(hits.face[1] == sdm.NONE)
 (array([ 2., inf]), True)
 >>> np.allclose(hits.barycentric[0] @ sdm.Mesh(box).vertices[sdm.Mesh(box).faces[hits.face[0]]], [0.5, 0.25, 1])
 True)")
