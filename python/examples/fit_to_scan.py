@@ -8,7 +8,7 @@ The scan may be noisy, and may have holes. A sphere around it follows the deriva
     Σ d(p, mesh)² over points p of the scan  +  Σ d(v, scan)² over the vertices v of the mesh,
 
 with steps that are smoothed over the mesh, first with few triangles, then with more. OUTPUT has the distance of each
-vertex to the scan.
+vertex to the scan: it is large where the mesh spans a narrow gap, as between two ears, from which it is not pulled away.
 """
 
 import sys
