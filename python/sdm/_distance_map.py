@@ -223,8 +223,8 @@ class DistanceMap:
         The options are those of the colours. colormap: 'automatic' (diverging if there are both signs, else viridis),
         'viridis', 'diverging' or 'paper2006'. range: of the colours; by default from the map. tolerance: bands, green
         within ±tolerance, or from the first to the second number. units: shown in the legend ('mm', ...); they scale a
-        .glb to metres. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a .html. The
-        complete file appears, or none. Raises Error, naming the file and the fault.
+        .glb to metres. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a
+        .html. The complete file appears, or none. Raises Error, naming the file and the fault.
         """
         name = os.fspath(file)
         if not isinstance(name, str):

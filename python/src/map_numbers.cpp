@@ -21,6 +21,17 @@ bool sign_is_continuous(const PyMap& self) {
   return self.map.sign.method == SignMethod::none || (self.to->sites.closed() && self.to->sites.orientable());
 }
 
+// No texel beyond the maximum distance has a smaller distance than this. A ball inside O2 is inside its box, so
+// that no point is deeper than half of the box's shortest side.
+double least_beyond(const PyMap& self) {
+  const double max_distance = self.options.max_distance;
+  if (self.map.sign.method == SignMethod::none) return max_distance;
+  const Box box = sdm::bounds(self.to->sites.mesh());
+  double deepest = kInfinity;
+  for (int k = 0; k < 3; ++k) deepest = std::min(deepest, (box.hi[k] - box.lo[k]) / 2);
+  return deepest < max_distance ? max_distance : -deepest;
+}
+
 // (lower, upper, covering radius, accuracy): lower ≤ d(p) ≤ upper for all points p of the surface.
 nb::object bounds(const PyMap& self) {
   self.require_other_mesh();
@@ -41,7 +52,10 @@ nb::object bounds(const PyMap& self) {
       lower = std::min(lower, d - reach);
       upper = std::max(upper, (keep_sign ? d : std::abs(d)) + reach);
     }
-    if (self.map.beyond_max_distance > 0) upper = kInfinity;
+    if (self.map.beyond_max_distance > 0) {
+      upper = kInfinity;
+      lower = std::min(lower, least_beyond(self) - radius - accuracy);
+    }
     if (self.map.sign.method == SignMethod::none) lower = std::max(lower, 0.0);
     if (!keep_sign) lower = -upper;
   });

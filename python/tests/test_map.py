@@ -84,6 +84,19 @@ def test_bounds_hold_between_texels(sign):
     assert m.bounds.covering_radius <= m.surface.covering_radius() * (1 + 1e-6)
 
 
+@pytest.mark.parametrize("sign", ["automatic", "none"])
+@pytest.mark.parametrize("center", [(50, 0, 0), (0, 0, 0), (0, 0, 3)])
+def test_bounds_hold_beyond_the_maximum_distance(sign, center):
+    """Of a sphere of radius 1 that is far outside, deep inside, or partly inside of a box."""
+    box = meshes.box((-4, -4, -4), (4, 4, 4))
+    m = sdm.map(meshes.sphere(center=center), box, resolution=64, sign=sign, max_distance=0.5)
+    assert m.surface is not None and m.bounds.upper == np.inf
+    truth = sdm.Sites(box).closest_points(meshes.sphere(center=center, steps=4)[0], sign=sign).distance
+    assert m.bounds.lower <= truth.min() + 0.02  # the vertices of the finer sphere are outside of the other
+    largest = m.hausdorff()
+    assert largest.lower <= np.abs(truth).max() + 0.02 and largest.upper == np.inf
+
+
 def test_bounds_of_estimated_signs_hold_for_absolute_distances():
     vertices, faces = meshes.box()
     m = sdm.map(meshes.sphere(radius=0.4, center=(0.5, 0.5, 0.9)), (vertices, faces[1:]), resolution=64, sign="winding")
@@ -353,6 +366,7 @@ def test_exclusion_of_self_maps(tmp_path):
     assert geodesic.statistics().min > rings.statistics().max  # the straight lines of arcs of at least 1
     assert geodesic.statistics().min >= 2 * np.sin(0.5) - 0.05
     everything = sdm.self_map(sphere, resolution=64, geodesic=10)
+    assert json.dumps(everything.report(), allow_nan=False) and everything._repr_html_()
     assert not everything.valid.any() and np.isposinf(everything.distance[everything.face != sdm.NONE]).all()
     # What is near is decided at rest: a folded sheet excludes as the flat one does.
     flat = ([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]])
