@@ -26,7 +26,7 @@ def _page(distance_map: Any, folder: str) -> str:
     report = json.dumps(distance_map._core.report(at_vertices))
     distance_map._core.write_page(file, at_vertices, report, largest=_SIDE, triangles=_TRIANGLES)
     page = html.escape(_read(file).decode())
-    style = "width: 100%; height: 560px; border: 1px solid #8888; border-radius: 4px"
+    style = "width: 100%; height: 640px; border: 1px solid #8888; border-radius: 4px"
     return f'<iframe title="distances in 3D" sandbox="allow-scripts" style="{style}" srcdoc="{page}"></iframe>'
 
 

@@ -65,7 +65,7 @@ void bind_edit_of(nb::class_<Class>& bound, const char* doc) {
         const MeshEdit edit = edit_of({removed_faces, reconnected_faces, moved_vertices, added_vertices,
                                        added_faces, added_corner_uvs});
         const auto lock = self.access.change();
-        run_short([&] { self.edit(edit); });
+        self.positions = run_short([&] { return self.edit(edit); });
       },
       nb::kw_only(), nb::arg("removed_faces") = nb::none(), nb::arg("reconnected_faces") = nb::none(),
       nb::arg("moved_vertices") = nb::none(), nb::arg("added_vertices") = nb::none(),
@@ -77,13 +77,13 @@ void bind_edit_of(nb::class_<Class>& bound, const char* doc) {
       doc);
 }
 
-std::shared_ptr<const std::vector<Vec3>> positions_of(const Mesh& mesh) {
+Positions positions_of(const Mesh& mesh) {
   return std::make_shared<std::vector<Vec3>>(mesh.positions);
 }
 
 }  // namespace
 
-void PySites::edit(const MeshEdit& edit) {
+Positions PySites::edit(const MeshEdit& edit) {
   if (version.use_count() > 1) {
     Mesh mesh = sites.mesh();
     apply(mesh, edit);
@@ -95,15 +95,15 @@ void PySites::edit(const MeshEdit& edit) {
   } else {
     sites.edit(edit);
   }
-  positions = positions_of(sites.mesh());
   ++shape;
+  return positions_of(sites.mesh());
 }
 
-void PySurface::edit(const MeshEdit& edit) {
+Positions PySurface::edit(const MeshEdit& edit) {
   surface.edit(edit);
-  positions = positions_of(surface.mesh());
   faces = {}, texel_faces = {};
   ++shape, ++edits;
+  return positions_of(surface.mesh());
 }
 
 void bind_edit(nb::class_<PySites>& sites) {

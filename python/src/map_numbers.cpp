@@ -21,8 +21,8 @@ bool sign_is_continuous(const PyMap& self) {
   return self.map.sign.method == SignMethod::none || (self.to->sites.closed() && self.to->sites.orientable());
 }
 
-// No texel beyond the maximum distance has a smaller distance than this. A ball inside O2 is inside its box, so
-// that no point is deeper than half of the box's shortest side.
+// No texel beyond the maximum distance has a smaller distance than this. A ball inside O2 is inside its box,
+// so that no point is deeper than half of the box's shortest side.
 double least_beyond(const PyMap& self) {
   const double max_distance = self.options.max_distance;
   if (self.map.sign.method == SignMethod::none) return max_distance;

@@ -43,8 +43,9 @@ struct PySites {
   std::uint64_t shape = 0;  ///< the number of refits and edits
   Access access;
 
-  /// Needs no GIL. Throws sdm::Error, and changes nothing, as Sites::edit does.
-  void edit(const MeshEdit& edit);
+  /// Returns the new positions, to be kept with the GIL, which this does not need. Throws sdm::Error, and
+  /// changes nothing, as Sites::edit does.
+  [[nodiscard]] Positions edit(const MeshEdit& edit);
 };
 
 struct PySurface {
@@ -59,8 +60,8 @@ struct PySurface {
   mutable std::shared_ptr<const std::vector<Triangle>> faces;
   mutable std::shared_ptr<const std::vector<std::uint32_t>> texel_faces;
 
-  /// Needs no GIL. Throws sdm::Error, and changes nothing, as Surface::edit does.
-  void edit(const MeshEdit& edit);
+  /// As PySites::edit().
+  [[nodiscard]] Positions edit(const MeshEdit& edit);
 };
 
 /// Accepts whatever python/sdm/_meshes.py does. `faces`: None, or the second array of a mesh given as two.
