@@ -14,7 +14,7 @@ SUBJECTS = {
     "Meshes": ["types", "mesh", "mesh_edit", "transform", "self_intersections", "solid"],
     "Files": ["io", "points", "sequence", "field_files", "player"],
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "sign", "engine", "gl", "closest_points",
-                      "vertex_distances"],
+                      "closest_in_parts", "vertex_distances"],
     "Results of maps": ["statistics", "sampling_bound", "tolerance", "part_statistics", "temporal_maps"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "self_proximity_query", "time_of_contact",
                   "hausdorff"],
