@@ -7,12 +7,12 @@ Derivatives of distances move a mesh onto a scan.
 
 # %%
 # A scan of an unknown shape: points with noise.
-#
-# sphinx_gallery_thumbnail_number = 2
 import matplotlib.pyplot as plt
 import numpy as np
 
 import sdm
+
+# sphinx_gallery_thumbnail_number = 2
 
 random = np.random.default_rng(3)
 directions = random.normal(size=(6000, 3))

@@ -57,7 +57,7 @@ plt.loglog(faces, value, "o-", label="Hausdorff distance, certified")
 plt.loglog(faces, at_vertices, "s--", label="largest distance of a vertex")
 plt.xlabel("faces")
 plt.ylabel("distance")
-plt.legend()
+plt.legend(loc="upper right")
 plt.tight_layout()
 
 # %%

@@ -7,12 +7,12 @@ Distances over time of a sheet that waves above a sphere.
 
 # %%
 # The sheet, as a function of time, and the sphere.
-#
-# sphinx_gallery_thumbnail_number = 2
 import matplotlib.pyplot as plt
 import numpy as np
 
 import sdm
+
+# sphinx_gallery_thumbnail_number = 2
 
 count = 80
 line = np.linspace(-1.5, 1.5, count)
@@ -53,7 +53,7 @@ for function, name in ((np.nanmin, "smallest"), (np.nanmean, "mean"), (np.nanmax
     plt.plot(times, function(frames, axis=(1, 2)), label=name)
 plt.xlabel("time")
 plt.ylabel("distance")
-plt.legend()
+plt.legend(loc="center right")
 plt.tight_layout()
 
 # %%
