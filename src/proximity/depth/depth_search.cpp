@@ -11,6 +11,8 @@
 #include "core/parallel.h"
 #include "engine/cpu/cpu_engine.h"
 #include "hierarchy/traverse.h"
+#include "proximity/depth/face_distances.h"
+#include "proximity/depth/mixed_bound.h"
 #include "proximity/shape/node_ball.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
@@ -29,6 +31,9 @@ constexpr double kCoarse = 1.0 / 16;
 // The cosine between directions that are nearly the same.
 constexpr double kSameDirection = 0.9999;
 constexpr int kFirstDirections = 3;
+// Of so many parts of the boundary that were found last, those that bound a triangle are chosen.
+constexpr std::size_t kRecent = 64;
+constexpr double kRounding = 1e-9;  // of distances, relative to the size of a body
 
 Vec3 middle(const Box& box) {
   return 0.5 * (box.lo + box.hi);
@@ -41,7 +46,7 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
   bodies_ = bodies, to_other_ = to_other, precision_ = precision;
   coarse_ = kCoarse * std::min(diagonal(bodies[0]->box()), diagonal(bodies[1]->box()));
   depth_ = {}, settled_ = 0, sure_ = precision;
-  open_.clear(), all_.clear();
+  open_.clear(), all_.clear(), known_[0].clear(), known_[1].clear();
   for (int body = 0; body < 2; ++body)
     if (bodies[1 - body]->body().solid()) find_exits(body);
   for (int body = 0; body < 2; ++body)
@@ -52,10 +57,13 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
     values_.assign(parts_.size(), {});
     constexpr std::size_t kGrain = 256;
     parallel_for(parts_.size(), kGrain, [&](std::size_t begin, std::size_t end) { evaluate(begin, end); });
-    for (std::size_t i = 0; i < parts_.size(); ++i)
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      learn(parts_[i]);
       if (parts_[i].node == kNone && improve(parts_[i], values_[i]))
         exits_[parts_[i].body].add(normalized(*values_[i].boundary - parts_[i].centre));
-    for (const Part& part : parts_) {
+    }
+    for (Part& part : parts_) {
+      if (part.node == kNone && part.upper > sure_) tighten(part);
       // The distance to the boundary of a solid that intersects itself has bounds that no division tightens.
       const bool finest =
           part.node == kNone && unit(part.body) * part.radius <= std::max(0.125 * precision, part.gap);
@@ -83,11 +91,16 @@ void DepthSearch::find_exits(int body) {
     parts_.assign(1, {.body = body, .at = {p, p, p}, .centre = p});
     values_.assign(1, {});
     evaluate(0, 1);
+    learn(parts_[0]);
     if (!improve(parts_[0], values_[0])) return;
     const Vec3 next = normalized(*values_[0].boundary - p);
     if (dot(next, direction) > kSameDirection) return;
     direction = next;
   }
+}
+
+void DepthSearch::learn(const Part& part) {
+  if (part.near) known_[part.body].push_back({part.centre, *part.near});
 }
 
 // Whether the value at the centre of a part is the largest found so far, with a known point of the boundary.
@@ -109,21 +122,88 @@ void DepthSearch::take_deepest() {
   parts_.clear();
   while (!open_.empty() && parts_.size() <= open_.size() / kFraction) {
     std::ranges::pop_heap(open_, {}, &Open::upper);
-    Part part = all_[open_.back().part];
+    Part& part = all_[open_.back().part];
+    if (part.upper > sure_ && !up_to_date(part)) {
+      tighten(part);
+      if (part.upper > sure_) {  // others may be deeper now
+        open_.back().upper = part.upper;
+        std::ranges::push_heap(open_, {}, &Open::upper);
+        continue;
+      }
+    }
     open_.pop_back();
-    const ExitDirections& exits = exits_[part.body];
-    if (part.upper > sure_ && part.exits < exits.size())
-      part.upper =
-          std::min(part.upper, unit(part.body) * (part.node == kNone
-                                                      ? exits.bound(part.at, part.exits)
-                                                      : exits.bound(part.centre, part.radius, part.exits)));
-    part.exits = exits.size();
     if (part.upper <= sure_)
       settle(part.upper);
     else if (part.node != kNone && unit(part.body) * part.radius > coarse_)
-      divide(part);
+      divide(Part(part));
     else
       parts_.push_back(part);
+  }
+}
+
+bool DepthSearch::up_to_date(const Part& part) const {
+  return part.exits == exits_[part.body].size() &&
+         (part.node != kNone || part.known == known_[part.body].size());
+}
+
+// By what has become known since the last time.
+void DepthSearch::tighten(Part& part) {
+  const ExitDirections& exits = exits_[part.body];
+  const double scale = unit(part.body);
+  if (part.node != kNone) {
+    part.upper = std::min(part.upper, scale * exits.bound(part.centre, part.radius, part.exits));
+    part.exits = exits.size();
+    return;
+  }
+  functions_.clear();
+  exits.values(part.at, functions_);
+  if (part.exits < exits.size())
+    part.upper = std::min(part.upper, scale * mixed_bound(functions_, sure_ / scale));
+  part.exits = exits.size();
+  if (part.upper <= sure_) return;
+  const auto known = static_cast<std::uint32_t>(known_[part.body].size());
+  if (find_near(part)) {
+    add_distances(part);
+    part.upper = std::min(part.upper, scale * mixed_bound(functions_, sure_ / scale));
+  }
+  part.known = known;
+}
+
+// Sets near_ to the two parts of the boundary that are known near the centre: its own, or that of the
+// triangle that was divided, if it has one, and those of the nearest points among the last ones. Returns
+// false if none of them is new.
+bool DepthSearch::find_near(const Part& part) {
+  const std::vector<Known>& known = known_[part.body];
+  std::array<std::size_t, 2> nearest{known.size(), known.size()};
+  std::array<double, 2> squared;
+  squared.fill(std::numeric_limits<double>::infinity());
+  for (std::size_t i = known.size() - std::min(known.size(), kRecent); i < known.size(); ++i) {
+    const double s = squared_norm(known[i].from - part.centre);
+    if (!(s < squared[1])) continue;
+    squared[1] = s, nearest[1] = i;
+    if (s < squared[0]) std::swap(squared[0], squared[1]), std::swap(nearest[0], nearest[1]);
+  }
+  const auto is_new = [&](std::size_t i) { return i < known.size() && i >= part.known; };
+  if (!is_new(nearest[0]) && !is_new(nearest[1])) return false;
+  if (nearest[1] == known.size()) nearest[1] = nearest[0];
+  for (int n = 0; n < 2; ++n) near_[n] = known[nearest[n]].near;
+  if (part.near && part.near->face != near_[0].face) near_ = {*part.near, near_[0]};
+  return true;
+}
+
+// Adds the distances to near_ to functions_.
+void DepthSearch::add_distances(Part& part) {
+  const std::array<Vec3, 4> points{part.at[0], part.at[1], part.at[2], part.centre};
+  std::array<std::array<double, 4>, 2> distances;
+  if (near_[0].face != kNone && near_[1].face != kNone)
+    distances = face_distances(internals(bodies_[1 - part.body]->body().sites()), points,
+                               {near_[0].face, near_[1].face});
+  else
+    for (int n = 0; n < 2; ++n)
+      for (int k = 0; k < 4; ++k) distances[n][k] = norm(points[k] - near_[n].point);
+  for (const auto& [a, b, c, centre] : distances) {
+    functions_.push_back({a, b, c});
+    part.reach = std::min(part.reach, centre);
   }
 }
 
@@ -148,22 +228,17 @@ void DepthSearch::divide(const Part& part) {
 void DepthSearch::add_triangle(const Corners& at, const Part& parent, std::uint64_t place,
                                std::uint64_t step) {
   const ExitDirections& exits = exits_[parent.body];
-  Part part{.body = parent.body, .at = at, .place = place, .step = step, .exits = exits.size()};
+  Part part{.body = parent.body,
+            .at = at,
+            .place = place,
+            .step = step,
+            .near = parent.near,
+            .exits = exits.size()};
   part.upper = std::min(parent.upper, unit(part.body) * exits.bound(at));
   if (part.upper <= sure_) return settle(part.upper);
   part.centre = (1.0 / 3) * (at[0] + at[1] + at[2]);
   for (const Vec3& corner : at) part.radius = std::max(part.radius, norm(corner - part.centre));
-  if (parent.near) part.upper = std::min(part.upper, unit(part.body) * bound_by(*parent.near, part));
   add(part);
-}
-
-double DepthSearch::bound_by(const BoundaryPart& near, const Part& triangle) const {
-  const sites::SitesData& sites = internals(bodies_[1 - triangle.body]->body().sites());
-  double most = 0;
-  for (const Vec3& p : triangle.at)
-    most = std::max(most, near.face == kNone ? norm(p - near.point)
-                                             : sites::closest_on_face(sites, near.face, p).distance);
-  return most;
 }
 
 // The children of a node of the tree, or the faces of a leaf, unless they are beyond the box of the other
@@ -212,7 +287,10 @@ void DepthSearch::evaluate(std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && parts_[i].body == body; ++i) centres.push_back(parts_[i].centre);
     const shape::Body& other = bodies_[1 - body]->body();
     const std::span<const Vec3> points = centres;
+    bool found = true;
     const auto take = [&](std::size_t first, const sites::ClosestPacket& closest) {
+      if (points.size() == 1) found = closest.type[0] != SiteType::none;
+      if (!found) return;
       const std::uint32_t inside = other.inside()(points.subspan(first, closest.count), closest);
       for (std::size_t k = 0; k < closest.count; ++k) {
         const std::size_t i = begin + first + k;
@@ -220,8 +298,12 @@ void DepthSearch::evaluate(std::size_t begin, std::size_t end) {
                  closest.get(k, points[first + k]));
       }
     };
-    cpu::cpu_search(internals(other.sites()), points, std::numeric_limits<double>::infinity(),
-                    std::ref(take));
+    // A face that is known to be near bounds the search, but for rounding far from the origin.
+    constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+    const double reach =
+        points.size() == 1 ? parts_[begin].reach + kRounding * diagonal(other.box()) : kAnywhere;
+    cpu::cpu_search(internals(other.sites()), points, reach, std::ref(take));
+    if (!found) cpu::cpu_search(internals(other.sites()), points, kAnywhere, std::ref(take));
     begin += centres.size();
   }
 }
@@ -238,7 +320,7 @@ void DepthSearch::evaluate(Part& part, Value& value, double distance, bool insid
   std::optional<BoundaryPart> nearest;
   const Sides sides = other.inside().sides().of_site(closest.type, closest.site);
   if (sides == Sides::boundary || sides == Sides::reversed)
-    nearest = {sites.face_of(closest.type, closest.site), {}};
+    nearest = {sites.face_of(closest.type, closest.site), closest.point};
   else if (other.inside().at_boundary(c, closest))
     nearest = {kNone, closest.point};
   value = {distance, distance, closest.point};
@@ -252,10 +334,7 @@ void DepthSearch::evaluate(Part& part, Value& value, double distance, bool insid
     if (found.point) nearest = {kNone, *found.point};
   }
   most += part.radius;
-  if (nearest && part.node == kNone && part.radius > 0) {
-    most = std::min(most, bound_by(*nearest, part));
-    part.near = nearest;
-  }
+  if (nearest) part.near = nearest;
   part.upper = std::min(part.upper, unit(part.body) * most);
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/geometry/triangle_pair.h"
 #include "proximity/depth/exit_directions.h"
+#include "proximity/depth/mixed_bound.h"
 #include "proximity/shape/posed_body.h"
 
 namespace sdm::depth {
@@ -29,16 +30,17 @@ struct Depth {
 ///   b(p) ≤ max over the corners p of a triangle of |p − G|, for a boundary face G: the distance to a convex
 ///          set is convex.
 /// The second one, with the G that is nearest to c, exceeds b(c) by the square of the size of a triangle
-/// only, and not at all above one flat face. A triangle whose centre is outside has a similar bound. So the
-/// number of parts that must be divided hardly grows as bounds are tightened. ExitDirections exclude most
-/// parts before anything is searched for them.
+/// only, and not at all above one flat face. Where several faces are nearly as close, as about the deepest
+/// points, mixed_bound() of the distances to two of them and of the ExitDirections does so, too. A triangle
+/// whose centre is outside has a similar bound. So the number of parts that must be divided hardly grows as
+/// bounds are tightened. ExitDirections exclude most parts before anything is searched for them.
 class DepthSearch {
  public:
   using Bodies = std::array<const shape::PosedBody*, 2>;
 
   /// Divides parts until the bounds are at most `precision` apart, in space, as far as those on the distance
   /// to the boundary of a solid that intersects itself are. Distances are computed to about 1e-6 of the size
-  /// of both bodies, which is not part of the bounds. Cost: some eighty searches for the closest point, more
+  /// of both bodies, which is not part of the bounds. Cost: some thirty searches for the closest point, more
   /// where surfaces are nearly parallel; all cores if there are many. Reuses its memory.
   [[nodiscard]] Depth find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other,
                            double precision);
@@ -58,9 +60,16 @@ class DepthSearch {
     Vec3 centre{};
     double radius = 0;  ///< of a ball about the centre that contains the part
     double upper = std::numeric_limits<double>::infinity();  ///< bound on b in the part, in space
-    std::optional<BoundaryPart> near{};                      ///< part of the boundary near the centre
-    double gap = 0;                                          ///< between the bounds on b(c)
-    std::size_t exits = 0;  ///< the number of exit directions that it is bounded by
+    std::optional<BoundaryPart> near{};  ///< part of the boundary near the centre or the parent's
+    double gap = 0;                      ///< between the bounds on b(c)
+    double reach = std::numeric_limits<double>::infinity();  ///< the surface is no farther from the centre
+    std::uint32_t known = 0;  ///< the number of parts of the boundary that it may be bounded by
+    std::size_t exits = 0;    ///< the number of exit directions that it is bounded by
+  };
+  /// A point, and a part of the boundary near it.
+  struct Known {
+    Vec3 from{};
+    BoundaryPart near;
   };
   struct Open {
     double upper = 0;
@@ -83,13 +92,20 @@ class DepthSearch {
   void evaluate(std::size_t begin, std::size_t end);
   void evaluate(Part& part, Value& value, double distance, bool inside, const ClosestPoint& closest) const;
   [[nodiscard]] bool improve(const Part& part, const Value& value);
-  [[nodiscard]] double bound_by(const BoundaryPart& near, const Part& triangle) const;
+  [[nodiscard]] bool up_to_date(const Part& part) const;
+  void tighten(Part& part);
+  [[nodiscard]] bool find_near(const Part& part);
+  void add_distances(Part& part);
+  void learn(const Part& part);
   [[nodiscard]] double bound_outside(const Part& part, double distance) const;
   [[nodiscard]] double unit(int body) const { return bodies_[1 - body]->pose().scale; }
 
   Bodies bodies_{};
   std::array<mesh::Similarity, 2> to_other_;
   std::array<ExitDirections, 2> exits_;  // by the body that leaves the other
+  std::array<std::vector<Known>, 2> known_;
+  std::array<BoundaryPart, 2> near_;     // to the part that is bounded
+  std::vector<CornerValues> functions_;  // that bound b in it
   double precision_ = 0, coarse_ = 0;
   Depth depth_;
   double sure_ = 0;            // what is no deeper than this does not matter

@@ -39,6 +39,14 @@ double ExitDirections::bound(const Corners& triangle, std::size_t first) const {
   return least;
 }
 
+void ExitDirections::values(const Corners& triangle, std::vector<CornerValues>& values) const {
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Direction& d = directions_[i];
+    values.push_back(
+        {d.most - dot(d.u, triangle[0]), d.most - dot(d.u, triangle[1]), d.most - dot(d.u, triangle[2])});
+  }
+}
+
 double ExitDirections::bound(const Vec3& centre, double radius, std::size_t first) const {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = first; i < size_; ++i)

@@ -7,6 +7,7 @@
 
 #include "core/geometry/triangle_pair.h"
 #include "mesh/similarity.h"
+#include "proximity/depth/mixed_bound.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {
@@ -29,6 +30,8 @@ class ExitDirections {
 
   /// The bound on b of a triangle in the frame of the solid, by the directions from `first` on.
   [[nodiscard]] double bound(const Corners& triangle, std::size_t first = 0) const;
+  /// Appends the bounds at the corners, one entry for each direction: they are linear.
+  void values(const Corners& triangle, std::vector<CornerValues>& values) const;
   /// The same for a ball.
   [[nodiscard]] double bound(const Vec3& centre, double radius, std::size_t first) const;
   /// For a triangle in the frame of the body.
