@@ -149,6 +149,55 @@ TEST(PairSearch, HintsChangeNoBit) {
   }
 }
 
+// Bodies that a plane separates, closed, open, folded and with defects, close to each other and far apart:
+// only leaves near the plane are compared.
+TEST(PairSearch, FindsTheClosestFacesAcrossAPlane) {
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal;
+  const std::vector<Mesh> meshes{test::sphere(2), test::height_field(8), test::torus(12, 6),
+                                 test::with_defects(test::sphere(1)), soup_with_defects(60, random)};
+  for (std::size_t i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    const Mesh &m1 = meshes[i % meshes.size()], &m2 = meshes[i / meshes.size() % meshes.size()];
+    Affine pose = bench::random_rotation(random);
+    const Vec3 towards = normalized(Vec3{normal(random), normal(random), normal(random)});
+    // Apart by this along the direction.
+    const double gap = std::array{0.0, 1e-6, 0.01, 0.3, 3.0}[i % 5];
+    double end1 = -kAny, end2 = kAny;
+    for (const Triangle& t : m1.triangles)
+      for (const std::uint32_t v : t) end1 = std::max(end1, dot(towards, m1.positions[v]));
+    for (const Triangle& t : m2.triangles)
+      for (const std::uint32_t v : t) end2 = std::min(end2, dot(towards, pose(m2.positions[v])));
+    pose.offset = (end1 - end2 + gap) * towards;
+    const Sites o1(m1), o2(m2);
+    const MeshPair pair{internals(o1), internals(o2), pose};
+    double expected = kAny;
+    for (std::uint32_t f = 0; f < m1.triangles.size(); ++f)
+      for (std::uint32_t g = 0; g < m2.triangles.size(); ++g)
+        expected = std::min(expected, std::sqrt(closest_or_common(pair.face1(f), pair.face2(g)).squared));
+    PairWorkspace workspace;
+    const Separation found = find_closest(pair, kAny, workspace);
+    EXPECT_NEAR(found.distance, expected, 1e-14);
+    for (int hint = 0; hint < 10; ++hint) {
+      const auto face = [&](const Mesh& mesh) {
+        return static_cast<std::uint32_t>(random() % mesh.triangles.size());
+      };
+      for (const double bound : {kAny, 1.01 * expected + 1e-9, 0.99 * expected - 1e-9}) {
+        const Separation other =
+            bound < 0 ? Separation{} : find_closest(pair, bound, workspace, {face(m1), face(m2)});
+        if (bound < expected) {
+          EXPECT_EQ(other.face1, kNone);
+          continue;
+        }
+        ASSERT_EQ(other.distance, found.distance);
+        ASSERT_EQ(other.point1, found.point1);
+        ASSERT_EQ(other.face1, found.face1);
+        ASSERT_EQ(other.face2, found.face2);
+      }
+    }
+  }
+}
+
 TEST(PairSearch, RespectsTheBound) {
   const Mesh m1 = test::load("pig.off", "fit"), m2 = test::load("cow.off", "fit");
   const Affine pose = shift(1.3, 0.2);

@@ -20,8 +20,27 @@ namespace sdm::exact::HWY_NAMESPACE {
 using Entry = PairWorkspace::Entry;
 using Candidate = PairWorkspace::Candidate;
 using Tie = PairWorkspace::Tie;
+using Place = PairWorkspace::Place;
 
 constexpr double kNoDistance = std::numeric_limits<double>::infinity();
+
+// The leaves of a surface that are nearest to the other one in some direction.
+struct Cap {
+  static constexpr size_t kMost = 32;
+
+  std::array<Place, kMost> place;
+  std::array<float, kMost> along;
+  std::array<hierarchy::WideTree::Node, kMost / kWidth> boxes;
+  size_t count = 0;
+
+  void add(const Place& leaf, float extent, const hierarchy::FloatBox& box) {
+    hierarchy::WideTree::Node& group = boxes[count / kWidth];
+    for (int k = 0; k < 3; ++k)
+      group.lo[k][count % kWidth] = box.lo[k], group.hi[k][count % kWidth] = box.hi[k];
+    place[count] = leaf, along[count] = extent;
+    ++count;
+  }
+};
 
 // `separate`: searches for the closest faces, otherwise for any that intersect.
 template <bool separate>
@@ -51,8 +70,8 @@ class PairSearch {
   }
 
   Separation run() {
-    w_.overlapping.assign(1, {});
-    w_.apart.clear(), w_.candidates.clear(), w_.ties.clear();
+    w_.overlapping.clear(), w_.apart.clear(), w_.candidates.clear(), w_.ties.clear();
+    if (!separate || !pair_caps()) w_.overlapping.assign(1, {});
     Entry entry;
     while (!intersection_.intersecting) {
       const bool more = next(entry);
@@ -82,6 +101,124 @@ class PairSearch {
     if (w_.apart.empty() || w_.apart.top().least > limit_) return false;
     entry = w_.apart.pop();
     return true;
+  }
+
+  // If a plane across the direction separates the surfaces, pairs the leaves of each that are near enough to
+  // the other one's side of it, without opening a pair of nodes. Returns whether it did.
+  bool pair_caps() {
+    if (!direction_.known) return false;
+    Place first[2];
+    float along[2];
+    for (int side = 0; side < 2; ++side) along[side] = find_first(side, first[side]);
+    if (!(extent(along[0], along[1]) > 0)) return false;
+    if (least_ == kNoDistance && !(extent(along[0], along[1]) > limit_)) {
+      // The two leaves that are nearest to the plane give a bound and a better direction.
+      compare_leaves({.place = {first[0], first[1]}});
+      compare_candidates();
+      for (int side = 0; side < 2; ++side) along[side] = find_first(side, first[side]);
+      if (!(extent(along[0], along[1]) > 0)) return false;
+    }
+    if (extent(along[0], along[1]) > limit_) return true;
+    for (int side = 0; side < 2; ++side)
+      if (!collect_cap(side, along[1 - side])) return false;
+    pair_leaves_of_caps();
+    return true;
+  }
+
+  // A lower bound on the distance of things that have these extents along the direction.
+  float extent(float along1, float along2) const {
+    return maps_.unit[0] * (along1 + along2 + direction_.offset - maps_.to[0].error);
+  }
+
+  // Lower bounds on x·u over the boxes of the children.
+  HWY_INLINE Vec along_children(int side, const hierarchy::WideTree::Node& node, size_t i) const {
+    const Lanes d;
+    Vec least = hn::Zero(d);
+    for (int k = 0; k < 3; ++k) {
+      const float u = direction_.along[side][k];
+      least = hn::MulAdd(hn::Set(d, u), hn::Load(d, (u > 0 ? node.lo : node.hi)[k] + i), least);
+    }
+    return least;
+  }
+
+  // The smallest lower bound on x·u over the leaves, and the leaf that has it.
+  float find_first(int side, Place& first) {
+    float least = std::numeric_limits<float>::infinity();
+    visit_leaves(
+        side, [&] { return least; },
+        [&](const Place& place, float) HWY_ATTR {
+          const float along = least_along(sites_[side]->regions, place.leaf_number(), direction_.along[side]);
+          if (along < least) least = along, first = place;
+          return true;
+        });
+    return least;
+  }
+
+  // The leaves that are not too far, given that the other surface extends to `along`. Returns false if there
+  // are too many.
+  bool collect_cap(int side, float along) {
+    Cap& cap = caps_[side];
+    cap.count = 0;
+    const auto far = [&](float mine) { return extent(mine, along) > limit_; };
+    const float most = limit_ / maps_.unit[0] - along - direction_.offset + 2 * maps_.to[0].error;
+    return visit_leaves(
+        side, [&] { return most; },
+        [&](const Place& place, float) HWY_ATTR {
+          const float mine = least_along(sites_[side]->regions, place.leaf_number(), direction_.along[side]);
+          if (far(mine)) return true;
+          if (cap.count == Cap::kMost) return false;
+          cap.add(place, mine, sites_[side]->tree.box(place.source));
+          return true;
+        });
+  }
+
+  // Calls visit(place, along) for the leaves whose boxes are not beyond most(), the first ones first, until
+  // it returns false.
+  template <class Most, class Visit>
+  HWY_INLINE bool visit_leaves(int side, const Most& most, const Visit& visit) {
+    const Lanes d;
+    std::vector<PairWorkspace::Ahead>& stack = w_.ahead;
+    stack.assign(1, {{}, -std::numeric_limits<float>::infinity()});
+    while (!stack.empty()) {
+      const PairWorkspace::Ahead next = stack.back();
+      stack.pop_back();
+      if (!(next.along <= most())) continue;
+      if (next.place.leaf()) {
+        if (!visit(next.place, next.along)) return false;
+        continue;
+      }
+      const hierarchy::WideTree::Node& node = sites_[side]->wide.nodes[next.place.child];
+      alignas(64) float along[kWidth];
+      for (size_t i = 0; i < kWidth; i += hn::Lanes(d))
+        hn::Store(along_children(side, node, i), d, along + i);
+      const auto base = static_cast<std::ptrdiff_t>(stack.size());
+      for (uint32_t i = 0; i < node.count; ++i) {
+        if (!(along[i] <= most())) continue;
+        auto at = stack.end();
+        while (at != stack.begin() + base && (at - 1)->along < along[i]) --at;
+        stack.insert(at, {{node.child[i], node.source[i]}, along[i]});
+      }
+    }
+    return true;
+  }
+
+  void pair_leaves_of_caps() {
+    const Lanes d;
+    const Cap &cap1 = caps_[0], &cap2 = caps_[1];
+    for (size_t j = 0; j < cap2.count; ++j) {
+      const CentredBox box(sites_[1]->tree.box(cap2.place[j].source));
+      const BoxDistances distances(maps_, direction_, 0, box);
+      for (size_t group = 0; kWidth * group < cap1.count; ++group) {
+        alignas(64) float least[kWidth];
+        for (size_t i = 0; i < kWidth; i += hn::Lanes(d))
+          hn::Store(distances(cap1.boxes[group], i), d, least + i);
+        for (size_t i = 0; i < kWidth && kWidth * group + i < cap1.count; ++i) {
+          const size_t at = kWidth * group + i;
+          const float bound = std::max(least[i], extent(cap1.along[at], cap2.along[j]));
+          if (bound <= limit_) w_.apart.push({{cap1.place[at], cap2.place[j]}, bound});
+        }
+      }
+    }
   }
 
   CentredBox box_of(const Entry& entry, int side) const {
@@ -268,6 +405,7 @@ class PairSearch {
   Separation intersection_;
   float limit_;          // pairs farther than this are excluded
   Direction direction_;  // from the closest point of O1 found so far to that of O2
+  Cap caps_[2];
   LeafFaces faces_[2];
   uint32_t loaded_[2] = {kNone, kNone};  // the leaves they were loaded from
   TrianglePairs pairs_;

@@ -57,7 +57,14 @@ struct PairWorkspace {
     FacePair faces;
   };
 
+  /// A node, and a lower bound on its extent in a direction.
+  struct Ahead {
+    Place place;
+    float along = 0;
+  };
+
   std::vector<Entry> overlapping;  ///< a stack
+  std::vector<Ahead> ahead;        ///< a stack
   Heap apart;
   std::vector<Candidate> candidates;  ///< still to be compared
   std::vector<Tie> ties;              ///< at the smallest distance found so far, to rounding
