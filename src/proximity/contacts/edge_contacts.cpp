@@ -41,6 +41,16 @@ double last_within(const Function& f, double limit, double in, double out) {
   return in;
 }
 
+// Whether both ends of the edge are farther than this from the plane of a face, on one side of it.
+bool beyond_plane(const EdgeContacts::Edge& edge, const sites::SitesData& sites, std::uint32_t face,
+                  double distance) {
+  if (sites.sliver[face] != 0) return false;  // its normal is rounding noise
+  const Vec3 &normal = sites.normals.face[face],
+             &corner = sites.mesh.positions[sites.mesh.triangles[face][0]];
+  const double a = dot(normal, edge.a - corner), b = dot(normal, edge.b - corner);
+  return std::min(a, b) > distance || std::max(a, b) < -distance;
+}
+
 // Calls visit(face) for the faces in leaves within `reach` of the box of the edge.
 template <class Visit>
 void for_faces_near(const EdgeContacts::Edge& edge, const sites::SitesData& sites, double reach,
@@ -70,6 +80,7 @@ void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, do
     const auto& [i, j, k] = sites.mesh.triangles[face];
     const Corners corners{sites.mesh.positions[i], sites.mesh.positions[j], sites.mesh.positions[k]};
     const Corners segment{edge.a, edge.b, edge.b};
+    if (beyond_plane(edge, sites, face, limit + rounding)) return;
     if (squared_box_distance(segment, corners) > limit * limit) return;
     const PointPair closest = closest_or_common(segment, corners);
     const double distance = std::sqrt(closest.squared);
