@@ -86,7 +86,6 @@ void add_write_option(CLI::App& app, MapFiles& files, bool of_one_input) {
     const bool possible = kind.chosen != &MapFiles::html || sdm::can_write_html();
     if (possible && (of_one_input || !kind.of_one_input)) choices.emplace_back(kind.name);
   }
-  choices.emplace_back("none");
   std::string help =
       "The files of a map to write: exr: map.exr; png: the three pictures; glb: model.glb; views: "
       "six shaded views of O1 in one picture; texture: the distance as 16-bit grey; ";
@@ -95,14 +94,25 @@ void add_write_option(CLI::App& app, MapFiles& files, bool of_one_input) {
     help +=
         "ply, csv, npy, vtp: the distance at each vertex of the input, in its order, as vertices.ply and so "
         "on; ";
+  add_write_option(app, choices, by_default, help + "or none",
+                   [&files](const std::vector<std::string>& chosen) {
+                     for (const Kind& kind : kinds())
+                       files.*kind.chosen = std::ranges::count(chosen, kind.name) > 0;
+                   });
+}
+
+void add_write_option(CLI::App& app, std::vector<std::string> choices,
+                      const std::vector<std::string>& by_default, const std::string& help,
+                      const std::function<void(const std::vector<std::string>&)>& set) {
+  choices.emplace_back("none");
   app.add_option_function<std::vector<std::string>>(
          "--write",
-         [&files](const std::vector<std::string>& chosen) {
+         [set](const std::vector<std::string>& chosen) {
            if (chosen.size() > 1 && std::ranges::count(chosen, "none") > 0)
              throw CLI::ValidationError("--write", "none excludes the others");
-           for (const Kind& kind : kinds()) files.*kind.chosen = std::ranges::count(chosen, kind.name) > 0;
+           set(chosen);
          },
-         help + "or none")
+         help)
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::Validator(page_is_possible, ""))

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,12 @@ struct MapFiles {
 /// --write, which sets `files`; `of_one_input`: also to files of the input's vertices, and to report.html if
 /// this build can write it.
 void add_write_option(CLI::App& app, MapFiles& files, bool of_one_input);
+
+/// --write of a command with other files: `set` receives the words chosen, which are among `choices` or only
+/// "none".
+void add_write_option(CLI::App& app, std::vector<std::string> choices,
+                      const std::vector<std::string>& by_default, const std::string& help,
+                      const std::function<void(const std::vector<std::string>&)>& set);
 
 /// --channels, which sets `layers`.
 void add_channels_option(CLI::App& app, sdm::ExrLayers& layers);

@@ -13,6 +13,7 @@
 #include "alignment.h"
 #include "common_options.h"
 #include "format.h"
+#include "map_files.h"
 #include "map_numbers.h"
 #include "option_checks.h"
 #include "output_folder.h"
@@ -32,6 +33,7 @@ struct PointsCommand {
   sdm::MapOptions map;
   sdm::PictureOptions picture;
   std::vector<double> range;
+  bool ply = true, html = sdm::can_write_html();
   unsigned threads = 0;
   bool json = false, quiet = false;
 };
@@ -44,6 +46,18 @@ struct PointsOutcome {
 
   [[nodiscard]] bool within(const PointsCommand& command) const {
     return !command.picture.tolerance || found.beyond_tolerance == 0;
+  }
+  /// Why a verdict on points that are all within the tolerance may be wrong; empty: it is not.
+  [[nodiscard]] std::string doubt(const sdm::Tolerance& tolerance) const {
+    if (found.distance.texels == 0) return "no point has coordinates";
+    if (found.sign.method == sdm::SignMethod::winding && tolerance.needs_sign())
+      return "all points are within it, but their signs are estimates";
+    if (found.min.distance < tolerance.lo + accuracy || found.max.distance > tolerance.hi - accuracy)
+      return "all points are within it, but one is within rounding of a limit";
+    return {};
+  }
+  [[nodiscard]] const char* verdict(const sdm::Tolerance& tolerance) const {
+    return found.beyond_tolerance > 0 ? "FAIL" : doubt(tolerance).empty() ? "PASS" : "NOT DECIDED";
   }
 };
 
@@ -68,6 +82,7 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
   if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned);
   report["engine"] = "cpu";
   report["max_distance"] = command.map.max_distance;  // null: no limit
+  report["colors"] = colors_json(sdm::fixed_colors(command.picture, found.distance), command.picture);
   report["sign"] = {{"method", sign_name(found.sign.method)}, {"reason", found.sign.reason}};
   report["distance"] = to_json(found.distance);
   report["distance"]["kind"] = "bounded";
@@ -79,7 +94,7 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
   report["accuracy"] = outcome.accuracy;
   report["accuracy_kind"] = "bounded";
   if (command.picture.tolerance)
-    report["tolerance"] = {{"verdict", outcome.within(command) ? "PASS" : "FAIL"},
+    report["tolerance"] = {{"verdict", outcome.verdict(*command.picture.tolerance)},
                            {"lower", command.picture.tolerance->lo},
                            {"upper", command.picture.tolerance->hi},
                            {"exceeded_points", found.beyond_tolerance},
@@ -115,8 +130,11 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   if (found.beyond_max_distance > 0)
     text += fmt::format("            {} points are farther than --max-distance\n", found.beyond_max_distance);
   if (command.picture.tolerance) {
-    if (outcome.within(command)) {
+    const std::string verdict = outcome.verdict(*command.picture.tolerance);
+    if (verdict == "PASS") {
       text += "  tolerance PASS: all points are within it\n";
+    } else if (verdict == "NOT DECIDED") {
+      text += fmt::format("  tolerance NOT DECIDED: {}\n", outcome.doubt(*command.picture.tolerance));
     } else {
       const bool below = command.picture.tolerance->lo - found.min.distance >
                          found.max.distance - command.picture.tolerance->hi;
@@ -147,11 +165,15 @@ AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& pl
   return align_points(sample.points, sample.normals, sites, command.align, progress);
 }
 
+std::string files(const PointsCommand& command) {
+  return fmt::format("{}{}", command.ply ? "points.ply " : "", command.html ? "report.html " : "");
+}
+
 /// Returns the exit code.
 int run(PointsCommand command) {
   Stopwatch total, watch;
   limit_threads(command.threads);
-  OutputFolder out(command.out, {"points.ply", "alignment.json", "report.json"});
+  OutputFolder out(command.out, {"points.ply", "report.html", "alignment.json", "report.json"});
   ProgressLine progress(command.quiet);
   command.map.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
@@ -175,12 +197,20 @@ int run(PointsCommand command) {
     outcome.align_ms = watch.lap();
     // The accuracy is relative to the size of both; O2 has it at least.
     options.picture.accuracy = sdm::engine_accuracy(sdm::engines().front(), o2.mesh, o2.mesh);
-    outcome.found = sdm::measure_points(command.cloud, sites, out.staging() / "points.ply", options);
+    const std::filesystem::path ply = out.staging() / "points.ply";
+    outcome.found = sdm::measure_points(command.cloud, sites, ply, options);
     const sdm::Box& box = outcome.found.bounds;
     outcome.accuracy =
         sdm::engine_accuracy(sdm::engines().front(), o2.mesh, {{box.lo, box.hi}, {{0, 1, 1}}, {}});
     outcome.points_ms = watch.lap();
+    command.picture.accuracy = options.picture.accuracy;
     report = report_of(command, o2, outcome);
+    if (command.html) {
+      progress.step("page");
+      sdm::write_points_html(out.staging() / "report.html", ply, outcome.found, to_text(report),
+                             {.other = &o2.mesh, .up = command.picture.up});
+    }
+    if (!command.ply) std::filesystem::remove(ply);
     write_text(out.staging() / "report.json", to_text(report));
   });
 
@@ -188,10 +218,24 @@ int run(PointsCommand command) {
     std::cout << to_text(report);
   else if (!command.quiet)
     std::cout << text_of(command, outcome)
-              << fmt::format("  time      {} s\n  results   {}/: {}points.ply report.json\n",
+              << fmt::format("  time      {} s\n  results   {}/: {}{}report.json\n",
                              number(std::round(total.lap()) / 1000, 6), command.out.string(),
-                             outcome.aligned ? "alignment.json " : "");
+                             outcome.aligned ? "alignment.json " : "", files(command));
   return outcome.within(command) ? 0 : 3;
+}
+
+void add_files_option(CLI::App& app, PointsCommand& command) {
+  std::vector<std::string> choices{"ply"};
+  std::string help = "The files to write: ply: points.ply; ";
+  if (sdm::can_write_html()) {
+    choices.emplace_back("html");
+    help += "html: report.html, a page that shows the cloud; ";
+  }
+  add_write_option(app, choices, choices, help + "or none",
+                   [&command](const std::vector<std::string>& chosen) {
+                     command.ply = std::ranges::count(chosen, "ply") > 0;
+                     command.html = std::ranges::count(chosen, "html") > 0;
+                   });
 }
 
 }  // namespace
@@ -200,8 +244,8 @@ void add_points_command(CLI::App& app) {
   CLI::App* points =
       app.add_subcommand("points", "Compute the distance from every point of a cloud to a mesh");
   points->footer(
-      "Writes points.ply (the points in their order, with distance, closest face and colours) and "
-      "report.json.\n"
+      "Writes points.ply (the points in their order, with distance, closest face and colours), report.html "
+      "(a page that shows the cloud) and report.json.\n"
       "Clouds of any size are read in parts.\n"
       "Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.\n\n"
       "Example:\n"
@@ -226,6 +270,8 @@ void add_points_command(CLI::App& app) {
   add_color_options(*points, c.picture, c.range);
   points->add_option("--units", c.picture.units, "Units of the cloud and the mesh, for printed values")
       ->type_name("NAME");
+  add_files_option(*points, c);
+  add_up_option(*points, c.picture.up, "report.html");
   add_run_options(*points, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   points->callback([command] {
     check_range(command->range);

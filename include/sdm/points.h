@@ -91,4 +91,17 @@ struct PointDistances {
                                                     const std::filesystem::path& ply,
                                                     const PointDistancesOptions& options = {});
 
+/// report.html of a cloud, as write_html() makes it of a map: verdict and numbers of `report`, the JSON text
+/// of the report of `sdm points`, and the points in 3D. `ply` and `found`: what measure_points() wrote and
+/// returned. Distribution and worst places are of all points; the page shows up to 150,000 of them, one of
+/// each of as many runs of the file, at a pseudorandom place of the run, and besides those with the largest
+/// |distance| of each neighbourhood, at most 5832, and both extremes. It states how many. Points without
+/// normals are shaded by the normal of their closest face of options.other; options.largest and .triangles
+/// have no meaning here. Also throws sdm::Error if `ply`
+/// does not have these points, and if can_write_html() is false. Cost: reads the file twice; some megabytes
+/// of memory.
+SDM_API void write_points_html(const std::filesystem::path& file, const std::filesystem::path& ply,
+                               const PointDistances& found, const std::string& report,
+                               const HtmlOptions& options = {});
+
 }  // namespace sdm

@@ -9,6 +9,7 @@ export interface State {
   scale: Scale;
   section: { axis: 0 | 1 | 2 | null; at: number; flipped: boolean }; ///< at: 0 to 1 along the box
   ghost: boolean;
+  width: number; ///< of the points of a cloud, relative to the usual one
 }
 
 const kSteps = 1000;
@@ -83,6 +84,7 @@ export function makeControls(
   area: AreaByValue,
   hasGhost: boolean,
   ghostShown: boolean,
+  isCloud: boolean,
   onChange: (state: State) => void,
   look: (side: string) => void,
 ): State {
@@ -105,6 +107,7 @@ export function makeControls(
     },
     section: { axis: null, at: 0.5, flipped: false },
     ghost: ghostShown,
+    width: 1,
   });
   let state = start();
 
@@ -203,6 +206,11 @@ export function makeControls(
   const [flipRow, flipBox] = check('section-flip', 'Other side', false, (value) => { state.section.flipped = value; changed(); });
   const sectionDetails = make('div', { class: 'slider', hidden: true }, make('label', { for: 'section-at' }, 'Section at'), sectionRange, flipRow);
   const [ghostRow, ghostBox] = check('ghost', 'Show the reference as a ghost', ghostShown, (value) => { state.ghost = value; changed(); });
+  const widthRange = make('input', {
+    type: 'range', id: 'width', min: 0, max: kSteps, value: kSteps / 2,
+    input: () => { state.width = 4 ** (Number(widthRange.value) / (kSteps / 2) - 1); changed(); },
+  });
+  const widthRow = make('div', { class: 'slider' }, make('label', { for: 'width' }, 'Size of points'), widthRange);
   const [viewRow, viewSelect] = select(
     'side', 'View from',
     [['', 'Choose…'], ['corner', 'Corner'], ['front', 'Front'], ['back', 'Back'], ['left', 'Left'], ['right', 'Right'], ['top', 'Top'], ['bottom', 'Bottom']],
@@ -219,6 +227,7 @@ export function makeControls(
       flipBox.checked = false;
       sectionDetails.hidden = true;
       ghostBox.checked = ghostShown;
+      widthRange.value = String(kSteps / 2);
       for (const slider of [sliders.tolerance, sliders.upper]) slider.show(state.scale.upper);
       sliders.lower.show(state.scale.lower);
       showSliders();
@@ -232,7 +241,7 @@ export function makeControls(
     sliders.reach.element, sliders.lo.element, sliders.hi.element,
     ...(oneTolerance ? [sliders.tolerance.element] : [sliders.lower.element, sliders.upper.element]),
     make('p', { id: 'what-if', role: 'status', 'aria-live': 'polite' }),
-    viewRow, sectionRow, sectionDetails, ...(hasGhost ? [ghostRow] : []),
+    viewRow, sectionRow, sectionDetails, ...(isCloud ? [widthRow] : []), ...(hasGhost ? [ghostRow] : []),
     resetButton,
   );
   byId('form').addEventListener('submit', (event) => event.preventDefault());

@@ -1,21 +1,17 @@
 // The page of report.html: the text first, then the part.
 import { Callouts } from './callouts';
+import { Cloud } from './cloud';
 import { makeControls, State } from './controls';
 import { byId, make, table } from './dom';
 import { drawHistogram } from './histogram';
 import { drawLegend } from './legend';
-import { exactText, percent, place, signedText } from './numbers';
+import { count, exactText, percent, place, signedText } from './numbers';
 import { PageData, readData, readReport, Report, Vec, Worst } from './page_data';
-import { Hit, pointOf, toMesh, toModel, Value, valueAt } from './pick';
+import { boxOf, Subject, toFile, toScene } from './subject';
+import { Surface } from './surface';
 import { inputsOf, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
-import { isSigned, judge, limitsText, unitOf, verdictOf } from './verdict';
+import { isCloud, isSigned, judge, limitsText, unitOf, verdictOf, wholeOf } from './verdict';
 import { View } from './view';
-
-const kSites = ['vertex', 'edge', 'face'];
-
-function siteText(site: number): string {
-  return site === 0xffffffff ? '' : `${kSites[site & 3]} ${site >>> 2} of the reference`;
-}
 
 function showVerdict(report: Report): void {
   const { verdict, sentence } = verdictOf(report);
@@ -27,27 +23,16 @@ function showVerdict(report: Report): void {
   byId('title').textContent = titleOf(report);
 }
 
-/// The normal of a hit triangle, towards the viewer's side of the surface.
-function normalOf({ model }: PageData, { triangle }: Hit): Vec {
-  const normal: Vec = [0, 0, 0];
-  for (let corner = 0; corner < 3; ++corner)
-    for (let k = 0; k < 3; ++k) normal[k] += model.normal[3 * model.triangle[3 * triangle + corner] + k];
-  return normal;
-}
-
-/// The normal at the vertex of the model nearest to a point.
-function normalNear({ model }: PageData, at: Vec): Vec {
-  const p = model.position;
-  let best = 0;
-  let least = Infinity;
-  for (let i = 0; i < p.length; i += 3) {
-    const away = (p[i] - at[0]) ** 2 + (p[i + 1] - at[1]) ** 2 + (p[i + 2] - at[2]) ** 2;
-    if (away < least) [best, least] = [i, away];
-  }
-  return [model.normal[best], model.normal[best + 1], model.normal[best + 2]];
+/// Words of page.html that differ for clouds.
+function nameSubject(report: Report): void {
+  if (!isCloud(report)) return;
+  byId('part-title').textContent = 'The cloud in 3D';
+  byId('histogram-title').textContent = 'How the points are distributed';
 }
 
 class Page {
+  private readonly subject: Subject;
+  private readonly cloud: Cloud | null;
   private readonly view: View;
   private readonly callouts: Callouts;
   private readonly signs: boolean;
@@ -60,8 +45,11 @@ class Page {
   ) {
     this.signs = isSigned(report);
     this.unit = unitOf(report);
+    const { page, surface, cloud, ghost } = data;
     const { measured } = inputsOf(report);
-    this.view = new View(byId('view'), data, data.page.colors, measured?.closed ?? false, () => this.callouts?.update());
+    this.cloud = cloud && new Cloud(cloud, page.colors);
+    this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false);
+    this.view = new View(byId('view'), this.subject, ghost, page.up, () => this.callouts?.update());
     this.callouts = new Callouts(this.view, this.unit, this.signs, (at) => this.lookAt(at));
     const ghostShown = this.apart();
     this.state = makeControls(
@@ -69,6 +57,7 @@ class Page {
       data.area,
       data.ghost !== null,
       ghostShown,
+      data.cloud !== null,
       (state) => this.apply(state),
       (side) => this.view.look(side),
     );
@@ -80,18 +69,10 @@ class Page {
 
   /// Whether the reference is beside the part: then it hides nothing and is shown from the start.
   private apart(): boolean {
-    const { ghost, model } = this.data;
+    const { ghost } = this.data;
     if (!ghost) return false;
-    const range = (p: Float32Array, k: number) => {
-      let [least, most] = [Infinity, -Infinity];
-      for (let i = k; i < p.length; i += 3) [least, most] = [Math.min(least, p[i]), Math.max(most, p[i])];
-      return [least, most];
-    };
-    return [0, 1, 2].some((k) => {
-      const [a, b] = range(model.position, k);
-      const [c, d] = range(ghost.position, k);
-      return b < c || d < a;
-    });
+    const { lo, hi } = boxOf(ghost.position);
+    return [0, 1, 2].some((k) => this.subject.hi[k] < lo[k] || hi[k] < this.subject.lo[k]);
   }
 
   private apply(state: State): void {
@@ -100,12 +81,11 @@ class Page {
     const { colors } = this.data.page;
     this.view.setScale(scale, colors);
     this.view.setGhost(ghost);
+    this.cloud?.setWidth(state.width);
     if (section.axis === null) {
       this.view.setCut(null);
     } else {
-      const p = this.data.model.position;
-      let [least, most] = [Infinity, -Infinity];
-      for (let i = section.axis; i < p.length; i += 3) [least, most] = [Math.min(least, p[i]), Math.max(most, p[i])];
+      const [least, most] = [this.subject.lo[section.axis], this.subject.hi[section.axis]];
       const sign = section.flipped ? -1 : 1;
       const normal: Vec = [0, 0, 0];
       normal[section.axis] = sign;
@@ -119,7 +99,7 @@ class Page {
 
   private drawHistogram(): void {
     const { scale } = this.state;
-    drawHistogram(this.data.area, scale, this.data.page.colors, scale, this.report.units ?? '');
+    drawHistogram(this.data.area, wholeOf(this.report), scale, this.data.page.colors, scale, this.report.units ?? '');
   }
 
   private showWhatIf({ scale }: State): void {
@@ -128,7 +108,7 @@ class Page {
     byId('what-if').replaceChildren(
       `With ${limitsText(scale, this.report)}: `,
       make('b', {}, verdict === 'MEASURED' ? sentence : verdict),
-      verdict === 'MEASURED' ? '' : `. About ${percent(outside)} of the area is out of it.`,
+      verdict === 'MEASURED' ? '' : isCloud(this.report) ? `. ${percent(outside)} of the points are out of it.` : `. About ${percent(outside)} of the area is out of it.`,
     );
   }
 
@@ -193,48 +173,32 @@ class Page {
     return [this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2];
   }
 
-  private found(x: number, y: number): { hit: Hit; value: Value } | null {
-    const hit = this.view.hitAt(x, y);
-    return hit ? { hit, value: valueAt(this.data.model, this.data.map, hit) } : null;
-  }
-
   private probe(x: number, y: number): void {
-    const found = this.found(x, y);
+    const found = this.view.find(x, y);
     const values = byId('probe-values');
     if (!found) {
       values.replaceChildren();
       return;
     }
-    const { hit, value } = found;
-    const point = toMesh(this.data.model, pointOf(this.data.model, hit));
-    const row = (label: string, text: string, id: string) => [
-      make('div', {}, make('dt', {}, label), make('dd', { id }, text)),
-    ];
+    const row = (label: string, text: string, id: string) =>
+      make('div', {}, make('dt', {}, label), make('dd', { id }, text));
+    const distance = Number.isNaN(found.distance) ? 'none in range' : `${exactText(found.distance)}${this.unit}`;
     values.replaceChildren(
-      ...row('Distance', Number.isNaN(value.distance) ? 'none in range' : `${exactText(value.distance)}${this.unit}`, 'probe-distance'),
-      ...row('Position', place(point), 'probe-position'),
-      ...(value.site === 0xffffffff ? [] : row('Nearest', siteText(value.site), 'probe-site')),
-      ...(value.texel
-        ? row(this.data.map.step > 1 ? `Texels (${this.data.map.step}² each)` : 'Texel', value.texel.join(', '), 'probe-texel')
-        : row('Of', 'the nearest vertex', 'probe-texel')),
+      row('Distance', distance, 'probe-distance'),
+      row('Position', place(toFile(this.subject, found.at)), 'probe-position'),
+      ...found.rows.map(([label, text, id]) => row(label, text, id)),
     );
   }
 
   private addCallout(x: number, y: number): void {
-    const found = this.found(x, y);
-    if (!found || Number.isNaN(found.value.distance)) return;
-    const at = pointOf(this.data.model, found.hit);
-    this.callouts.add({
-      distance: found.value.distance,
-      point: toMesh(this.data.model, at),
-      at,
-      detail: siteText(found.value.site),
-    });
+    const found = this.view.find(x, y);
+    if (!found || Number.isNaN(found.distance)) return;
+    const { distance, at, detail } = found;
+    this.callouts.add({ distance, point: toFile(this.subject, at), at, detail });
   }
 
-  private lookAt(at: Vec, hit?: Hit): void {
-    const normal = hit ? normalOf(this.data, hit) : normalNear(this.data, at);
-    this.view.look({ point: at, normal });
+  private lookAt(at: Vec): void {
+    this.view.look({ point: at, normal: this.subject.normalNear(at) });
     byId('part').scrollIntoView({ block: 'nearest' });
   }
 
@@ -243,7 +207,7 @@ class Page {
     const rows = worst.map((w: Worst, i: number) => {
       const value = `${signedText(w.distance, this.signs)}${this.unit}`;
       const show = () => {
-        const at = toModel(this.data.model, w.point);
+        const at = toScene(this.subject, w.point);
         this.callouts.add({ distance: w.distance, point: w.point, at, detail: '' });
         this.lookAt(at);
       };
@@ -251,7 +215,7 @@ class Page {
         String(i + 1),
         make('button', { type: 'button', class: 'link', click: show, 'aria-label': `Show place ${i + 1}, ${value}` }, value),
         place(w.point),
-        w.texel ? 'measured point' : 'vertex of the part',
+        w.number !== undefined ? `point ${count(w.number)}` : w.texel ? 'measured point' : 'vertex of the part',
       ];
     });
     byId('worst-table').replaceChildren(
@@ -264,13 +228,14 @@ class Page {
 
   /// For tests: what is under a place of the canvas.
   inspect(x: number, y: number) {
-    const found = this.found(x, y);
-    return found && { ...found.value, point: toMesh(this.data.model, pointOf(this.data.model, found.hit)) };
+    const found = this.view.find(x, y);
+    return found && { ...found.value, point: toFile(this.subject, found.at), place: this.view.place(found.at) };
   }
 }
 
 async function main(): Promise<void> {
   const report = readReport();
+  nameSubject(report);
   showVerdict(report);
   showNumbers(report);
   showInputs(report);

@@ -7,16 +7,20 @@ type Color = Vec;
 export interface Extreme {
   distance: number;
   point: Vec;
-  at: 'texel' | 'vertex';
+  at: 'texel' | 'vertex' | 'point';
 }
+/// A mesh, or a cloud, which has points.
 export interface Input {
   file: string;
   transform: string;
-  vertices: number;
-  triangles: number;
-  closed: boolean;
-  degenerate_faces: number;
-  duplicate_faces: number;
+  vertices?: number;
+  triangles?: number;
+  closed?: boolean;
+  degenerate_faces?: number;
+  duplicate_faces?: number;
+  points?: number;
+  invalid_points?: number;
+  normals?: boolean;
 }
 
 /// report.json, as far as the page knows it. Any key may be missing: reports of `sdm self` have fewer.
@@ -35,20 +39,22 @@ export interface Report {
   distance?: Record<string, number | string | null>;
   extremes?: { min: Extreme | null; max: Extreme | null };
   texels_with_value?: number;
+  points_with_value?: number;
   beyond_max_distance?: number;
   boundary_texels?: number;
   accuracy?: number | null;
   error_bound?: number | null;
   precision?: number | null;
   tolerance?: {
-    value: number | null;
+    value?: number | null;
     lower?: number;
     upper?: number;
     verdict?: string;
     within: boolean;
-    certified: boolean;
+    certified?: boolean;
     deciding_precision?: number | null;
-    exceeded_area_fraction: number;
+    exceeded_area_fraction?: number;
+    exceeded_point_fraction?: number;
   };
   notes?: string[];
   time_ms?: Record<string, number>;
@@ -59,15 +65,22 @@ export interface Worst {
   distance: number;
   point: Vec;
   texel?: [number, number];
+  number?: number; ///< of a point of a cloud
+}
+
+interface Placement {
+  origin: Vec;
+  step: number;
 }
 
 interface PageJson {
   version: string;
   up: 'y' | 'z';
   colors: Record<'viridis' | 'diverging' | 'paper2006' | 'within' | 'above' | 'below' | 'no_value', Color[]>;
-  map: { width: number; height: number; step: number };
-  model: { origin: Vec; step: number; triangles_of_mesh: number };
-  ghost?: { origin: Vec; step: number; box: { lo: Vec; hi: Vec }; triangles_of_mesh: number };
+  map?: { width: number; height: number; step: number };
+  model?: Placement & { triangles_of_mesh: number };
+  cloud?: Placement & { points: number; picked: number; normals: boolean }; ///< in place of map and model
+  ghost?: Placement & { box: { lo: Vec; hi: Vec }; triangles_of_mesh: number };
   worst: Worst[];
   area: { lo: number; hi: number };
   arrays: ArrayIndex;
@@ -104,10 +117,24 @@ export interface Ghost {
   isBox: boolean;
 }
 
+/// The points of the page. Positions are relative to `centre` in units of `size`: those of the box of most of
+/// them, as outliers may be far away.
+export interface CloudData {
+  centre: Vec;
+  size: number;
+  lo: Vec; ///< of that box
+  hi: Vec;
+  position: Float32Array;
+  normal: Int8Array; ///< three a point, times 127; 0 without one
+  distance: Float32Array; ///< NaN without one
+  face: Uint32Array; ///< 0xFFFFFFFF without one
+  number: Float64Array; ///< in the file
+}
+
 export interface PageData {
   page: PageJson;
-  map: TexelMap;
-  model: Model;
+  surface: { map: TexelMap; model: Model } | null;
+  cloud: CloudData | null; ///< in place of a surface
   ghost: Ghost | null;
   area: AreaByValue;
 }
@@ -127,7 +154,7 @@ export function readPage(): PageJson {
 }
 
 function texelMap(page: PageJson, arrays: Arrays): TexelMap {
-  const { width, height, step } = page.map;
+  const { width, height, step } = page.map!;
   const chart = summed(arrays.get('chart')!);
   const ordered = new Uint32Array(width * height).fill(0xffffffff);
   const differences = arrays.get('distance')!;
@@ -153,7 +180,7 @@ function texelMap(page: PageJson, arrays: Arrays): TexelMap {
   return { width, height, step, chart, distance: floatsOfOrdered(ordered), site };
 }
 
-function toCentre(steps: Uint32Array, from: { origin: Vec; step: number }, centre: Vec, size: number): Float32Array {
+function toCentre(steps: Uint32Array, from: Placement, centre: Vec, size: number): Float32Array {
   const result = new Float32Array(steps.length);
   const scale = from.step / size;
   const shift = from.origin.map((x, k) => (x - centre[k]) / size);
@@ -184,26 +211,70 @@ function largestIn(steps: Uint32Array): Vec {
 }
 
 function readModel(page: PageJson, arrays: Arrays): Model {
+  const placement = page.model!;
   const steps = summed(arrays.get('position')!, 3);
-  const extent = largestIn(steps).map((x) => x * page.model.step);
-  const centre = page.model.origin.map((x, k) => x + extent[k] / 2) as Vec;
+  const extent = largestIn(steps).map((x) => x * placement.step);
+  const centre = placement.origin.map((x, k) => x + extent[k] / 2) as Vec;
   const size = Math.hypot(...extent) / 2 || 1;
   const places = arrays.get('place');
   const charts = arrays.get('triangle_chart');
   return {
     centre,
     size,
-    position: toCentre(steps, page.model, centre, size),
+    position: toCentre(steps, placement, centre, size),
     normal: unfoldedNormals(arrays.get('normal')!),
     distance: floatsOfOrdered(summed(arrays.get('vertex_distance')!)),
     triangle: cornersOfCodes(arrays.get('triangle')!),
     place: places ? Float32Array.from(summed(places, 2), (x) => x / 64) : null,
     chart: charts ? summed(charts) : null,
-    trianglesOfMesh: page.model.triangles_of_mesh,
+    trianglesOfMesh: placement.triangles_of_mesh,
   };
 }
 
-function readGhost(page: PageJson, arrays: Arrays, { centre, size }: Model): Ghost | null {
+// The box of all but the outermost 1 % of the points along each axis, and what is near it.
+function usualBox(steps: Uint32Array): { lo: Vec; hi: Vec } {
+  const lo: Vec = [0, 0, 0];
+  const hi: Vec = [0, 0, 0];
+  const points = steps.length / 3;
+  for (let k = 0; k < 3; ++k) {
+    const along = new Uint32Array(points);
+    for (let i = 0; i < points; ++i) along[i] = steps[3 * i + k];
+    along.sort();
+    const least = along[Math.floor(0.005 * (points - 1))];
+    const most = along[Math.ceil(0.995 * (points - 1))];
+    const margin = 0.1 * (most - least);
+    lo[k] = Math.max(along[0], least - margin);
+    hi[k] = Math.min(along[points - 1], most + margin);
+  }
+  return { lo, hi };
+}
+
+function readCloud(page: PageJson, arrays: Arrays): CloudData {
+  const { origin, step } = page.cloud!;
+  const steps = summed(arrays.get('position')!, 3);
+  const usual = steps.length > 0 ? usualBox(steps) : { lo: [0, 0, 0], hi: [1, 1, 1] };
+  const centre = origin.map((x, k) => x + (step * (usual.lo[k] + usual.hi[k])) / 2) as Vec;
+  const size = (step * Math.hypot(...usual.lo.map((x, k) => usual.hi[k] - x))) / 2 || 1;
+  const inScene = (corner: number[]) => corner.map((x, k) => (origin[k] + step * x - centre[k]) / size) as Vec;
+  const low = summed(arrays.get('number')!);
+  const high = arrays.get('number_high');
+  const octahedral = arrays.get('normal')!;
+  const normal = unfoldedNormals(octahedral.map((n) => Math.max(1, n) - 1));
+  octahedral.forEach((n, i) => n === 0 && normal.fill(0, 3 * i, 3 * i + 3));
+  return {
+    centre,
+    size,
+    lo: inScene(usual.lo),
+    hi: inScene(usual.hi),
+    position: toCentre(steps, { origin, step }, centre, size),
+    normal,
+    distance: floatsOfOrdered(arrays.get('distance')!),
+    face: summed(arrays.get('face')!),
+    number: Float64Array.from(low, (x, i) => x + (high ? high[i] * 2 ** 32 : 0)),
+  };
+}
+
+function readGhost(page: PageJson, arrays: Arrays, { centre, size }: { centre: Vec; size: number }): Ghost | null {
   const ghost = page.ghost;
   if (!ghost) return null;
   const steps = arrays.get('ghost_position');
@@ -281,7 +352,8 @@ function floats(numbers: Uint32Array): Float32Array {
 export async function readData(): Promise<PageData> {
   const page = readPage();
   const arrays = await unpacked(page.arrays, textOf('arrays'));
-  const model = readModel(page, arrays);
+  const surface = page.model ? { map: texelMap(page, arrays), model: readModel(page, arrays) } : null;
+  const cloud = page.cloud ? readCloud(page, arrays) : null;
   const area = new AreaByValue(
     page.area.lo,
     page.area.hi,
@@ -289,5 +361,5 @@ export async function readData(): Promise<PageData> {
     floats(arrays.get('area_of_key')!),
     floats(arrays.get('area_of_bin')!),
   );
-  return { page, map: texelMap(page, arrays), model, ghost: readGhost(page, arrays, model), area };
+  return { page, surface, cloud, ghost: readGhost(page, arrays, surface?.model ?? cloud!), area };
 }

@@ -141,7 +141,7 @@ class Player {
         this.perSecond = Number(speed);
         if (this.playing) this.toggle(), this.toggle();
       }),
-      make('button', { type: 'button', id: 'reset', click: () => this.view.look() }, 'Look at all of it'),
+      make('button', { type: 'button', id: 'reset', click: () => this.view.look('corner') }, 'Look at all of it'),
     );
     byId('form').addEventListener('submit', (event) => event.preventDefault());
   }

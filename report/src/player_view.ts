@@ -1,21 +1,11 @@
 // The bodies of a sequence in 3D, one frame at a time.
-import {
-  BufferAttribute,
-  BufferGeometry,
-  DoubleSide,
-  DynamicDrawUsage,
-  Mesh,
-  PerspectiveCamera,
-  Scene,
-  ShaderMaterial,
-  Vector3,
-  WebGLRenderer,
-} from 'three';
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, ShaderMaterial, Vector3 } from 'three';
 import { Colors, kColorShader, Scale } from './color_scale';
+import { colorUniforms, setScale } from './color_uniforms';
 import type { Vec } from './page_data';
 import { distancesOf, placeFrame, PlayerData } from './player_data';
 import { kNoValue } from './value_texture';
+import { Viewer } from './viewer';
 
 const kVertexShader = `
   in float value;
@@ -55,37 +45,20 @@ interface Drawn {
   value: BufferAttribute;
 }
 
-export class PlayerView {
-  readonly canvas: HTMLCanvasElement;
-  private readonly camera = new PerspectiveCamera(30, 1, 0.01, 100);
-  private readonly renderer: WebGLRenderer;
-  private readonly scene = new Scene();
-  private readonly controls: OrbitControls;
+export class PlayerView extends Viewer {
   private readonly bodies: Drawn[];
   private readonly middle: Vec;
   private readonly size: number;
-  private scheduled = false;
 
   constructor(container: HTMLElement, private readonly data: PlayerData) {
-    this.canvas = container.querySelector('canvas')!;
-    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    super(container, data.page.up);
     [this.middle, this.size] = extent(data);
     this.bodies = data.bodies.map((_, which) => this.makeBody(which));
-    this.camera.up.set(0, 1, 0);
-    if (data.page.up === 'z') this.camera.up.set(0, 0, 1);
-    this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.zoomToCursor = true;
-    this.controls.addEventListener('change', () => this.draw());
-    new ResizeObserver(() => this.resize()).observe(container);
-    this.look();
-    this.resize();
   }
 
   private makeBody(which: number): Drawn {
     const { vertices, triangles, distances } = this.data.bodies[which];
     const { colors } = this.data.page;
-    const triple = (list: Vec[]) => list.map((c) => new Vector3(...c).multiplyScalar(1 / 255));
     const material = new ShaderMaterial({
       glslVersion: '300 es',
       vertexShader: kVertexShader,
@@ -95,18 +68,7 @@ export class PlayerView {
         coloured: { value: distances !== null },
         alpha: { value: 1 },
         plain: { value: new Vector3(0.72, 0.74, 0.77) },
-        mode: { value: 0 },
-        lo: { value: 0 },
-        hi: { value: 1 },
-        lower: { value: 0 },
-        upper: { value: 0 },
-        accuracy: { value: 0 },
-        stops: { value: triple(colors.viridis) },
-        stopCount: { value: colors.viridis.length },
-        above: { value: triple(colors.above) },
-        below: { value: triple(colors.below) },
-        within: { value: triple(colors.within)[0] },
-        noValue: { value: triple(colors.no_value)[0] },
+        ...colorUniforms(colors),
       },
     });
     const position = new BufferAttribute(new Float32Array(3 * vertices), 3).setUsage(DynamicDrawUsage);
@@ -136,16 +98,7 @@ export class PlayerView {
   }
 
   setScale(scale: Scale, colors: Colors): void {
-    for (const { mesh } of this.bodies) {
-      const u = (mesh.material as ShaderMaterial).uniforms;
-      u.mode.value = scale.mode === 'tolerance' ? 2 : scale.mode === 'diverging' ? 1 : 0;
-      for (const key of ['lo', 'hi', 'lower', 'upper', 'accuracy'] as const) u[key].value = scale[key];
-      const stops = colors[scale.mode === 'tolerance' ? 'viridis' : scale.mode];
-      u.stopCount.value = stops.length;
-      u.stops.value = Array.from({ length: 11 }, (_, i) =>
-        new Vector3(...stops[Math.min(i, stops.length - 1)]).multiplyScalar(1 / 255),
-      );
-    }
+    for (const { mesh } of this.bodies) setScale((mesh.material as ShaderMaterial).uniforms, scale, colors);
     this.draw();
   }
 
@@ -159,37 +112,6 @@ export class PlayerView {
     material.uniforms.alpha.value = style === 'ghost' ? 0.3 : 1;
     mesh.renderOrder = style === 'ghost' ? 1 : 0;
     this.draw();
-  }
-
-  /// From a corner, with all frames in the picture.
-  look(): void {
-    const direction = this.data.page.up === 'z' ? new Vector3(0.6, -1, 0.55) : new Vector3(0.6, 0.55, 1);
-    const half = Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect);
-    this.controls.target.set(0, 0, 0);
-    this.camera.position.copy(direction.normalize().multiplyScalar(0.56 / Math.sin(Math.atan(half))));
-    this.controls.update();
-    this.draw();
-  }
-
-  private resize(): void {
-    const { clientWidth, clientHeight } = this.canvas.parentElement!;
-    if (clientWidth === 0 || clientHeight === 0) return;
-    this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.aspect = clientWidth / clientHeight;
-    this.draw();
-  }
-
-  draw(): void {
-    if (this.scheduled) return;
-    this.scheduled = true;
-    requestAnimationFrame(() => {
-      this.scheduled = false;
-      const away = this.camera.position.length();
-      this.camera.near = Math.max(away - 4, away / 1000);
-      this.camera.far = away + 8;
-      this.camera.updateProjectionMatrix();
-      this.renderer.render(this.scene, this.camera);
-    });
   }
 }
 
@@ -216,7 +138,7 @@ function bounds(data: PlayerData, bodies: number[], frames: 'all' | 'first'): Bo
 
 const diagonal = ({ lo, hi }: Bounds) => Math.hypot(...lo.map((x, k) => hi[k] - x));
 
-/// The middle and the diagonal of the box of all frames, without a body at rest that is much larger, such as a floor.
+/// The middle and half of the diagonal of the box of all frames, without a body at rest that is much larger, such as a floor.
 function extent(data: PlayerData): [Vec, number] {
   const moving = [0, 1].filter((which) => data.bodies[which].moves);
   let box = bounds(data, [0, 1], 'all');
@@ -224,7 +146,7 @@ function extent(data: PlayerData): [Vec, number] {
     const inner = bounds(data, moving, 'all');
     if (diagonal(box) > 3 * diagonal(inner)) box = inner;
   }
-  return [box.lo.map((x, k) => (x + box.hi[k]) / 2) as Vec, diagonal(box) || 1];
+  return [box.lo.map((x, k) => (x + box.hi[k]) / 2) as Vec, diagonal(box) / 2 || 1];
 }
 
 /// Whether a body has the other one in its box in the first frame, and would hide it.

@@ -2,7 +2,7 @@
 import { byId, make, table } from './dom';
 import { count, percent, place, signedText, text } from './numbers';
 import { Input, PageData, Report, reportText } from './page_data';
-import { isSigned, unitOf } from './verdict';
+import { isCloud, isSigned, unitOf } from './verdict';
 
 function fileName(path: string): string {
   return path.split(/[\\/]/).pop() || path;
@@ -36,6 +36,7 @@ export function showNumbers(report: Report): void {
   };
   const extremes = report.extremes;
   const bound = report.error_bound;
+  const cloud = isCloud(report);
   const sampled =
     typeof bound === 'number' ? `measured; at most ${text(bound, 3)}${unit} more in between` : 'measured';
   // A distance below the accuracy may as well be 0.
@@ -47,18 +48,21 @@ export function showNumbers(report: Report): void {
   if (extremes?.min)
     rows.push([signs ? 'Smallest (most inside)' : 'Smallest', shown(extremes.min.distance), sampled.replace('more', 'less')]);
   else add('Smallest', 'min', 'measured', true);
-  const estimate = 'estimate over the area';
+  const estimate = cloud ? 'of all points' : 'estimate over the area';
+  const share = cloud ? 'points are' : 'area is';
   add('Mean', 'mean', estimate, true);
   if (signs) add('Mean of the absolute distance', 'mean_abs', estimate);
   add('Root mean square', 'rms', estimate);
   add('Standard deviation', 'stddev', estimate);
   add('Median', 'p50', estimate, true);
-  add(signs ? '95 % of the area is closer than' : '95th percentile', 'p95_abs', estimate);
-  add(signs ? '99 % of the area is closer than' : '99th percentile', 'p99_abs', estimate);
-  const samples = report.texels_with_value;
+  add(signs ? `95 % of the ${share} closer than` : '95th percentile', 'p95_abs', estimate);
+  add(signs ? `99 % of the ${share} closer than` : '99th percentile', 'p99_abs', estimate);
+  const samples = report.texels_with_value ?? report.points_with_value;
   if (samples !== undefined) rows.push(['Measured points', count(samples), 'exact']);
   if ((report.beyond_max_distance ?? 0) > 0)
     rows.push(['Points farther than the limit', count(report.beyond_max_distance!), 'exact']);
+  if (cloud && (report.o1?.invalid_points ?? 0) > 0)
+    rows.push(['Points without coordinates', count(report.o1!.invalid_points!), 'exact']);
   byId('numbers-table').replaceChildren(table(['Distance', 'Value', 'Kind'], rows, 'Distances'));
 }
 
@@ -67,10 +71,12 @@ export function showInputs(report: Report): void {
   const inputs = [measured, reference].filter((x): x is Input => x !== undefined);
   const head = ['', ...(reference ? ['Measured part', 'Reference'] : ['Part'])];
   const row = (label: string, of: (input: Input) => string) => [label, ...inputs.map(of)];
+  const number = (x: number | undefined) => (x === undefined ? '–' : count(x));
   const faults = (i: Input) =>
     [
-      i.degenerate_faces > 0 ? `${count(i.degenerate_faces)} triangles without area` : '',
-      i.duplicate_faces > 0 ? `${count(i.duplicate_faces)} repeated triangles` : '',
+      (i.invalid_points ?? 0) > 0 ? `${count(i.invalid_points!)} points without coordinates` : '',
+      (i.degenerate_faces ?? 0) > 0 ? `${count(i.degenerate_faces!)} triangles without area` : '',
+      (i.duplicate_faces ?? 0) > 0 ? `${count(i.duplicate_faces!)} repeated triangles` : '',
     ]
       .filter(Boolean)
       .join(', ') || 'none';
@@ -79,13 +85,14 @@ export function showInputs(report: Report): void {
       head,
       [
         row('File', (i) => i.file),
-        row('Triangles', (i) => count(i.triangles)),
-        row('Vertices', (i) => count(i.vertices)),
-        row('Watertight', (i) => (i.closed ? 'yes' : 'no')),
+        ...(isCloud(report) ? [row('Points', (i) => number(i.points))] : []),
+        row('Triangles', (i) => number(i.triangles)),
+        row('Vertices', (i) => number(i.vertices)),
+        row('Watertight', (i) => (i.closed === undefined ? '–' : i.closed ? 'yes' : 'no')),
         row('Faults', faults),
         row('Moved by', (i) => i.transform || 'nothing'),
       ],
-      'The meshes',
+      'The inputs',
     ),
   );
 }
@@ -103,6 +110,7 @@ export function showMethod(report: Report): void {
     sentence(
       atlas &&
         `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the texels of a texture of ${atlas.resolution} × ${atlas.resolution}.`,
+      isCloud(report) && `The measured part is a cloud of ${count(report.o1!.points!)} points. Nothing is said about places between them.`,
       `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
       typeof accuracy === 'number' && `Each of these distances is exact to ${text(accuracy, 2)}${unit}.`,
     ),
@@ -142,28 +150,46 @@ export function showMethod(report: Report): void {
 }
 
 /// What this page leaves out of large inputs.
-export function showOmissions({ map, model, ghost }: PageData): void {
+export function showOmissions({ page, surface, cloud, ghost }: PageData): void {
   const out: HTMLElement[] = [];
-  if (map.step > 1)
+  if (surface && surface.map.step > 1)
     out.push(
       sentence(
-        `This page contains one of each ${map.step} × ${map.step} measured points; all of them are in map.exr. Verdict and numbers are from all points.`,
+        `This page contains one of each ${surface.map.step} × ${surface.map.step} measured points; all of them are in map.exr. Verdict and numbers are from all points.`,
       ),
     );
-  if (!model.place)
+  if (surface && !surface.model.place)
     out.push(
       sentence(
-        `The part has ${count(model.trianglesOfMesh)} triangles; the 3D view shows a coarser copy of ${count(model.triangle.length / 3)}. Its vertices are vertices of the part with their own exact distances, of each neighbourhood the one with the largest.`,
+        `The part has ${count(surface.model.trianglesOfMesh)} triangles; the 3D view shows a coarser copy of ${count(surface.model.triangle.length / 3)}. Its vertices are vertices of the part with their own exact distances, of each neighbourhood the one with the largest.`,
       ),
     );
+  if (cloud && page.cloud) out.push(...omittedPoints(cloud.distance.length, page.cloud));
   if (ghost?.isBox)
     out.push(sentence(`The reference has ${count(ghost.trianglesOfMesh)} triangles; the 3D view shows only its box.`));
   byId('method-text').append(...out);
 }
 
+function omittedPoints(shown: number, { points, picked, normals }: NonNullable<PageData['page']['cloud']>): HTMLElement[] {
+  const out: HTMLElement[] = [];
+  if (shown < points) {
+    const short = `${count(shown)} of the ${count(points)} points are shown`;
+    byId('shown').textContent = `${short}; numbers, histogram and largest distances are of all of them.`;
+    byId('shown').hidden = false;
+    out.push(
+      sentence(
+        `${short}: ${count(picked)} at random places of the file, spread evenly over it, and ${count(shown - picked)} others, so that each of up to 5832 neighbourhoods has the point with its largest distance, and both extremes are there.`,
+        `All points are in points.ply. Verdict, numbers, histogram and the list of largest distances are from all points.`,
+      ),
+    );
+  }
+  if (!normals) out.push(sentence('The cloud has no normals: its points are shaded by those of their closest faces.'));
+  return out;
+}
+
 const kShown = new Set([
   'version', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'sign',
-  'distance', 'extremes', 'texels_with_value', 'texels_without_value', 'negative_texels', 'beyond_max_distance',
+  'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance',
   'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'tolerance', 'notes', 'time_ms', 'histogram',
 ]);
 

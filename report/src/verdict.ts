@@ -14,6 +14,15 @@ export interface Judgement {
   sentence: string;
 }
 
+export function isCloud(report: Report): boolean {
+  return report.o1?.points !== undefined;
+}
+
+/// What fractions are of.
+export function wholeOf(report: Report): 'area' | 'points' {
+  return isCloud(report) ? 'points' : 'area';
+}
+
 export function isSigned(report: Report): boolean {
   return report.sign !== undefined && report.sign.method !== 'none';
 }
@@ -42,27 +51,33 @@ function margin(report: Report, { lower, upper }: Limits): number | null {
   return Math.min(upper - extremes.max.distance, extremes.min.distance - lower);
 }
 
-/// The verdict for any limits. `outside`: the fraction of the area that is out of them.
+/// The verdict for any limits. `outside`: the fraction of the area, or of the points, that is out of them.
 export function judge(report: Report, limits: Limits, outside: number | null): Judgement {
   const unit = unitOf(report);
   const within = limitsText(limits, report);
-  const { accuracy, error_bound: bound } = report;
+  const { accuracy } = report;
+  const cloud = isCloud(report);
+  const bound = cloud ? 0 : report.error_bound;
   if (accuracy === null || accuracy === undefined || bound === null || bound === undefined)
     return { verdict: 'MEASURED', sentence: 'The accuracy of this map is unknown, so no tolerance can be checked.' };
   if ((report.beyond_max_distance ?? 0) > 0)
     return {
       verdict: 'FAIL',
-      sentence: `Parts of the surface are farther than the largest distance that was measured${
+      sentence: `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
         report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
       }.`,
     };
   const room = margin(report, limits);
-  if (room === null) return { verdict: 'MEASURED', sentence: 'No point of the surface has a distance.' };
+  if (room === null) return { verdict: 'MEASURED', sentence: `No point of the ${cloud ? 'cloud' : 'surface'} has a distance.` };
   if (room < -accuracy) {
     const { min, max } = report.extremes!;
     const most = limits.upper - max!.distance < min!.distance - limits.lower ? max! : min!;
     const share =
-      outside === null ? '' : `, and about ${text(100 * outside, 3)}\u00a0% of the area is out of tolerance`;
+      outside === null
+        ? ''
+        : cloud
+          ? `, and ${text(100 * outside, 3)}\u00a0% of the points are out of tolerance`
+          : `, and about ${text(100 * outside, 3)}\u00a0% of the area is out of tolerance`;
     return {
       verdict: 'FAIL',
       sentence: `A distance of ${text(most.distance)}${unit} was found, which is out of the tolerance of ${within}${share}.`,
@@ -70,7 +85,16 @@ export function judge(report: Report, limits: Limits, outside: number | null): J
   }
   const needsSign = limits.lower < 0 && limits.lower !== -limits.upper;
   if (room >= bound + accuracy && !(needsSign && report.sign?.method === 'winding'))
-    return { verdict: 'PASS', sentence: `Every point of the surface is within the tolerance of ${within}.` };
+    return { verdict: 'PASS', sentence: `Every point of the ${cloud ? 'cloud' : 'surface'} is within the tolerance of ${within}.` };
+  if (cloud)
+    return {
+      verdict: 'NOT DECIDED',
+      sentence:
+        `All points are within the tolerance of ${within}, but ` +
+        (room >= accuracy
+          ? 'whether they are inside or outside of the reference, which has holes, is an estimate.'
+          : 'the largest distance is as close to the limit as numbers can be told apart.'),
+    };
   const decides = report.tolerance && sameLimits(limits, limitsOf(report)!) ? report.tolerance.deciding_precision : undefined;
   const precision = decides ?? room - accuracy;
   return {
@@ -104,7 +128,7 @@ export function verdictOf(report: Report): Judgement {
       verdict: 'MEASURED',
       sentence: 'No tolerance was given (--tolerance), so nothing was judged. The slider below shows what would be.',
     };
-  const judgement = judge(report, limits, t.exceeded_area_fraction);
+  const judgement = judge(report, limits, t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null);
   const verdict = (t.verdict as Verdict | undefined) ?? (!t.within ? 'FAIL' : t.certified ? 'PASS' : 'NOT DECIDED');
   return { ...judgement, verdict };
 }

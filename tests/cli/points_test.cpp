@@ -112,7 +112,9 @@ struct PointsCommand : ::testing::Test {
 TEST_F(PointsCommand, DistancesAreThoseOfAllFacesInTheOrderOfTheInput) {
   const Outcome found = run(xyz(points), {"--json"});
   ASSERT_EQ(found.code, 0) << found.err;
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"points.ply", "report.json"}));
+  std::vector<std::string> names{"points.ply", "report.json"};
+  if (can_write_html()) names.insert(names.begin() + 1, "report.html");
+  EXPECT_EQ(names_in(out), names);
   EXPECT_EQ(found.out, contents(out + "/report.json"));
   const std::vector<Row> rows = read_rows(out + "/points.ply", false);
   ASSERT_EQ(rows.size(), points.size());
@@ -150,6 +152,42 @@ TEST_F(PointsCommand, DistancesAreThoseOfAllFacesInTheOrderOfTheInput) {
   for (float& d : sorted) d = std::abs(d);
   std::ranges::sort(sorted);
   EXPECT_EQ(report["distance"]["p99_abs"], sorted[2969]);
+}
+
+TEST_F(PointsCommand, WritesTheFilesThatAreAsked) {
+  ASSERT_EQ(run(xyz(points), {"--write", "ply"}).code, 0);
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"points.ply", "report.json"}));
+  ASSERT_EQ(run(xyz(points), {"--write", "none"}).code, 0);
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.json"}));
+  EXPECT_EQ(run(xyz(points), {"--write", "none,ply"}).code, 2);
+  EXPECT_EQ(run(xyz(points), {"--write", "exr"}).code, 2);
+  if (!can_write_html()) {
+    EXPECT_THAT(run(xyz(points), {"--write", "html"}).err, HasSubstr("SDM_BUILD_REPORT"));
+    return;
+  }
+  ASSERT_EQ(run(xyz(points), {"--write", "html"}).code, 0);
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.html", "report.json"}));
+}
+
+// A distance at a limit may be on either side of it, and signs may be estimates.
+TEST_F(PointsCommand, StatesWhatIsNotDecided) {
+  const std::string cloud = with("a.xyz", "0 0 2\n0 0 1.5\n");
+  const auto verdict = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome found = run(cloud, arguments);
+    return std::pair(Json::parse(found.out)["tolerance"]["verdict"].get<std::string>(), found.code);
+  };
+  EXPECT_EQ(verdict({"--tolerance", "1.1"}), std::pair(std::string("PASS"), 0));
+  EXPECT_EQ(verdict({"--tolerance", "1"}), std::pair(std::string("NOT DECIDED"), 0));
+  EXPECT_EQ(verdict({"--tolerance", "0.9"}), std::pair(std::string("FAIL"), 3));
+  EXPECT_THAT(run(with("none.xyz", "nan 0 0\n"), {"--tolerance", "1"}).out,
+              HasSubstr("NOT DECIDED: no point has coordinates"));
+  o2 = write_obj(folder / "open.obj", square(8, 0));
+  EXPECT_EQ(verdict({"--tolerance", "-0.1:2.5", "--sign", "winding"}),
+            std::pair(std::string("NOT DECIDED"), 0));
+  EXPECT_THAT(run(cloud, {"--tolerance", "-0.1:2.5", "--sign", "winding"}).out,
+              HasSubstr("signs are estimates"));
 }
 
 // Parts of any size, and all formats, give the same result.

@@ -22,6 +22,26 @@ const numbers = (path) => {
 };
 const plain = (text) => text.replace(/\u2212/g, '-').replace(/[\u00a0\u202f]/g, ' ');
 
+/// The rows of a points.ply without normals.
+function plyRows(path) {
+  const bytes = readFileSync(path);
+  const begin = bytes.indexOf('end_header\n') + 11;
+  const size = 24 + 4 + 4 + 3;
+  const count = (bytes.length - begin) / size;
+  const at = (i) => {
+    const row = begin + i * size;
+    return {
+      point: [0, 8, 16].map((k) => bytes.readDoubleLE(row + k)),
+      distance: bytes.readFloatLE(row + 24),
+      face: bytes.readInt32LE(row + 28),
+    };
+  };
+  const first = at(0).point;
+  let reach = 0;
+  for (let i = 0; i < count; ++i) reach = Math.max(reach, Math.hypot(...at(i).point.map((x, k) => x - first[k])));
+  return { count, at, size: reach };
+}
+
 const checks = {
   // The values at many points of several views are those of the map at the texel there, bit by bit, and the texel is
   // the one at the point: |z − height| changes no faster than the point moves.
@@ -66,6 +86,92 @@ const checks = {
       }
     }
     assert(hits > 500, `only ${hits} points were on the part`);
+  },
+
+  // The values at many points of several views are those of points.ply, bit by bit, and the point is the one in front.
+  async points(page, ply) {
+    const rows = plyRows(ply);
+    let hits = 0;
+    for (const side of ['corner', 'top', 'left']) {
+      await page.selectOption('#side', side);
+      await page.evaluate(() => new Promise(requestAnimationFrame));
+      const found = await page.evaluate(() => {
+        const { clientWidth, clientHeight } = document.getElementById('canvas');
+        const result = [];
+        for (let x = 5; x < clientWidth; x += 17)
+          for (let y = 5; y < clientHeight; y += 17) {
+            const hit = window.sdmPage.inspect(x, y);
+            if (hit) result.push({ ...hit, x, y });
+          }
+        return result;
+      });
+      for (const hit of found) {
+        const row = rows.at(hit.number);
+        assert.strictEqual(hit.distance, row.distance);
+        assert.strictEqual(hit.face, row.face);
+        row.point.forEach((x, k) => assert(Math.abs(x - hit.point[k]) < 1e-5 * rows.size, `${row.point} at ${hit.point}`));
+        const away = Math.hypot(hit.place.x - hit.x, hit.place.y - hit.y);
+        assert(away < 17, `a point ${away} pixels from the cursor`);
+      }
+      hits += found.length;
+      // Of the points that cover a place, the nearest one to the camera.
+      const all = Array.from({ length: rows.count }, (_, i) => rows.at(i).point);
+      const some = found.filter((_, i) => i % 41 === 0);
+      const covering = await page.evaluate(
+        ([points, places]) => {
+          const { view, subject } = window.sdmPage;
+          const scene = points.map((p) => p.map((x, k) => (x - subject.centre[k]) / subject.size));
+          const from = view.camera.position.toArray();
+          const at = scene.map((p) => ({ ...view.place(p), away: Math.hypot(...p.map((x, k) => x - from[k])) }));
+          return places.map(({ x, y }) =>
+            at.map((p, i) => ({ ...p, i })).filter((p) => Math.hypot(p.x - x, p.y - y) < 0.9).map(({ i, away }) => [i, away]),
+          );
+        },
+        [all, some],
+      );
+      some.forEach((hit, i) => {
+        const mine = covering[i].find(([number]) => number === hit.number);
+        for (const [number, away] of covering[i])
+          assert(!mine || mine[1] <= away + 1e-3, `point ${number} is in front of ${hit.number}`);
+      });
+      const canvas = await page.locator('#canvas').boundingBox();
+      for (const hit of found.filter((_, i) => i % 97 === 0)) {
+        await page.mouse.move(canvas.x + hit.x, canvas.y + hit.y);
+        await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+        const there = await page.evaluate(() => window.sdmPage.inspect(...window.pointer));
+        if (!there) continue; // the cursor is on whole pixels
+        const shown = plain(await page.textContent('#probe-distance')).split(' ')[0];
+        assert.strictEqual(Math.fround(Number(shown)), rows.at(there.number).distance);
+        assert.strictEqual(plain(await page.textContent('#probe-point')).replace(/ /g, ''), String(there.number));
+        assert.ok((await page.textContent('#probe-site')).includes(`face ${rows.at(there.number).face} `));
+      }
+    }
+    assert(hits > 500, `only ${hits} points were on the cloud`);
+  },
+
+  // A page of some of the points: they are bounded, each once, with its own values, and the extremes are there.
+  async sample(page, ply, most, ...extremes) {
+    const rows = plyRows(ply);
+    const cloud = await page.evaluate(() => {
+      const { number, distance, face } = window.sdmPage.data.cloud;
+      return { number: Array.from(number), distance: Array.from(distance), face: Array.from(face) };
+    });
+    const shown = cloud.number.length;
+    assert(shown <= Number(most) && shown < rows.count, `${shown} points`);
+    cloud.number.forEach((n, i) => {
+      assert(i === 0 || n > cloud.number[i - 1], 'points follow each other as in the file');
+      assert.strictEqual(cloud.distance[i], rows.at(n).distance);
+      assert.strictEqual(cloud.face[i], rows.at(n).face);
+    });
+    for (const n of extremes) assert(cloud.number.includes(Number(n)), `the extreme ${n} is missing`);
+    // No part of the file is left out.
+    const gap = cloud.number.reduce((most, n, i) => Math.max(most, n - (i ? cloud.number[i - 1] : 0)), 0);
+    assert(gap < (3 * rows.count) / shown + 1, `${gap} points in a row are missing`);
+    let usable = 0;
+    for (let i = 0; i < rows.count; ++i) usable += rows.at(i).point.every(Number.isFinite);
+    const grouped = (n) => n.toLocaleString('en-US').replace(/,/g, ' ');
+    const text = plain(await page.innerText('#shown'));
+    assert(text.includes(`${grouped(shown)} of the ${grouped(usable)} points`), text);
   },
 
   async recolours(page) {

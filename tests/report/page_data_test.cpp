@@ -36,8 +36,8 @@ TEST(WorstPlaces, StartAtTheLargestAndAreApart) {
     EXPECT_NEAR(places[i].distance, kBump(places[i].point), 1e-5);
     EXPECT_LE(std::abs(places[i].distance), std::abs(places[i > 0 ? i - 1 : 0].distance));
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(norm(places[i].point - places[j].point), apart);
-    if (places[i].texel == kNone) continue;
-    EXPECT_EQ(places[i].point, surface.texel_point(places[i].texel));
+    if (places[i].sample == kNone) continue;
+    EXPECT_EQ(places[i].point, surface.texel_point(static_cast<std::uint32_t>(places[i].sample)));
   }
 }
 

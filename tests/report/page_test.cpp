@@ -7,11 +7,14 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/player.h>
+#include <sdm/points.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
 
 #include "cli/samples.h"
 #include "support/made_up_maps.h"
@@ -179,6 +182,90 @@ TEST_F(Page, IsRefusedForAnotherSurface) {
       write_html(folder / "a.html", surface, map_of(other, field), at_vertices(surface.mesh(), field), "{}"),
       Error);
   EXPECT_THROW(write_html(folder / "a.html", surface, map_of(surface, field), {}, "{}"), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.html"));
+}
+
+/// Points on the torus above the plane.
+struct CloudPage : Page {
+  std::string cloud = folder / "cloud.xyz";
+
+  /// Writes a cloud of `count` points, moved apart by up to `noise`.
+  void write_cloud(std::size_t count, double noise) const {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi), apart(-noise, noise);
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double u = turn(random), v = turn(random), r = 1 + 0.4 * std::cos(v) + apart(random);
+      text += fmt::format("{:.7} {:.7} {:.7}\n", r * std::cos(u), r * std::sin(u), 0.4 * std::sin(v));
+    }
+    std::ofstream(cloud) << text;
+  }
+  Json measure(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"points", cloud, o2, "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = run_sdm(arguments);
+    EXPECT_TRUE(run.code == 0 || run.code == 3) << run.err;
+    return Json::parse(contents(out + "/report.json"));
+  }
+};
+
+TEST_F(CloudPage, ShowsTheValuesOfThePoints) {
+  write_cloud(20000, 0.01);
+  measure({"--units", "mm", "--up", "z"});
+  EXPECT_TRUE(passes("points", page(), {out + "/points.ply"}));
+  EXPECT_TRUE(passes("recolours", page()));
+  EXPECT_TRUE(passes("callouts", page()));
+}
+
+TEST_F(CloudPage, IsUsableByAllAndPrints) {
+  write_cloud(3000, 0);
+  measure({"--tolerance", "3"});
+  EXPECT_TRUE(passes("names", page()));
+  EXPECT_TRUE(passes("prints", page()));
+  EXPECT_TRUE(passes("says", page(), {"PASS", "Every point of the cloud is within the tolerance of 3."}));
+  measure({"--tolerance", "2"});
+  EXPECT_TRUE(
+      passes("says", page(), {"FAIL", "of the points are out of tolerance", "All points of the cloud"}));
+}
+
+TEST_F(CloudPage, ShowsSomeOfManyPoints) {
+  write_cloud(400000, 0.01);
+  {
+    std::ofstream more(cloud, std::ios::app);
+    more << "nan nan nan\n0 0 30\n";
+    for (int i = 0; i < 7; ++i) more << "0 0 0\n";
+    more << "3 0 -1.9\n";
+  }
+  const Json report = measure();
+  ASSERT_EQ(report["extremes"]["max"]["index"], 400001);
+  ASSERT_EQ(report["extremes"]["min"]["index"], 400009);
+  EXPECT_TRUE(passes("sample", page(), {out + "/points.ply", "155834", "400001", "400009"}));
+  EXPECT_LT(std::filesystem::file_size(page()), 5e6);
+  EXPECT_TRUE(passes("says", page(), {"each of up to 5832 neighbourhoods"}));
+}
+
+// No point, and one place.
+TEST_F(CloudPage, ShowsUnusualClouds) {
+  for (const char* text : {"nan 0 0\n", "1 2 3\n1 2 3\n"}) {
+    std::ofstream(cloud) << text;
+    measure({"--tolerance", "1"});
+    EXPECT_TRUE(passes("says", page())) << text;
+  }
+  std::ofstream(cloud) << "0 0 50\nnan 0 0\n";
+  measure({"--max-distance", "3", "--tolerance", "1"});
+  EXPECT_TRUE(
+      passes("says", page(), {"FAIL", "Points of the cloud are farther", "Points without coordinates"}));
+}
+
+TEST_F(CloudPage, BelongsToAFileOfPoints) {
+  write_cloud(100, 0);
+  const Sites sites(square(8, kHeight));
+  const PointDistances found = measure_points(cloud, sites, folder / "a.ply");
+  PointDistances other = found;
+  ++other.points;
+  EXPECT_THROW(write_points_html(folder / "a.html", folder / "a.ply", other, "{}"), Error);
+  EXPECT_THROW(write_points_html(folder / "a.html", o1, found, "{}"), Error);
+  EXPECT_THROW(write_points_html(folder / "a.html", folder / "missing.ply", found, "{}"), Error);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.html"));
 }
 

@@ -13,6 +13,7 @@
 
 #include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "io/points/measured_rows.h"
 #include "io/read/byte_scanner.h"
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
@@ -26,15 +27,6 @@ using namespace io;
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// The binary rows of the file written.
-struct Row {
-  std::size_t normal_bytes = 0;
-
-  [[nodiscard]] std::size_t distance_at() const { return 3 * sizeof(double) + normal_bytes; }
-  [[nodiscard]] std::size_t colour_at() const { return distance_at() + sizeof(float) + sizeof(std::int32_t); }
-  [[nodiscard]] std::size_t size() const { return colour_at() + 3; }
-};
 
 /// Points of a cloud, and what is found for them.
 struct Chunk {
@@ -62,7 +54,7 @@ class Measurement {
         result_.sign.method == SignMethod::none)
       throw Error("the tolerance depends on the sign of the distances, which are unsigned: " +
                   result_.sign.reason);
-    row_.normal_bytes = result_.has_normals ? 3 * sizeof(float) : 0;
+    row_.has_normals = result_.has_normals;
     result_.min.distance = result_.max.distance = kNan;
   }
 
@@ -238,7 +230,7 @@ class Measurement {
   std::string cloud_;
   const Sites& sites_;
   const PointDistancesOptions& options_;
-  Row row_;
+  RowLayout row_;
   PointDistances result_;
   std::uint64_t counted_ = 0;
   double sum_ = 0, square_ = 0, magnitude_ = 0;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <string_view>
 
 #include "core/geometry/vec.h"
 #include "io/write/atomic_file.h"
@@ -14,15 +13,15 @@
 #include "io/write/report/embedded_page.h"
 #include "io/write/report/packed_arrays.h"
 #include "io/write/report/page_colors.h"
+#include "io/write/report/page_file.h"
 
 namespace sdm::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kDataPlace = "<!-- data -->";  // in the page
-constexpr double kSteps = 65535;                          // along the longest side of the box of all frames
-constexpr std::uint32_t kNoDistance = 65535;              // others are from 0 to 65534
+constexpr double kSteps = 65535;              // along the longest side of the box of all frames
+constexpr std::uint32_t kNoDistance = 65535;  // others are from 0 to 65534
 
 const char* mode_of(const ColorScale& scale) {
   if (scale.tolerance) return "tolerance";
@@ -118,15 +117,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   page["panels"] = panels_json(content.panels);
   page["colors"] = colors_json();
   page["scale"] = scale_json(color_scale(fixed));
-  arrays.compress();
-  page["arrays"] = arrays.index();
-
-  const std::string_view html = kPlayerHtml.bytes;
-  const std::size_t middle = html.find(kDataPlace);
-  out.stream() << html.substr(0, middle) << R"(<script type="application/json" id="page">)"
-               << as_script(page.dump(-1, ' ', false, Json::error_handler_t::ignore)) << "</script>\n"
-               << R"(<script type="text/plain" id="arrays">)" << arrays.text() << "</script>"
-               << html.substr(middle + kDataPlace.size());
+  put_page(out.stream(), kPlayerHtml.bytes, page, nullptr, arrays);
   out.commit();
 }
 

@@ -33,7 +33,7 @@ std::vector<double> texel_areas(const Surface& surface) {
   return areas;
 }
 
-std::vector<float> fractions(std::span<const double> areas, double total) {
+std::vector<float> fractions_of(std::span<const double> areas, double total) {
   std::vector<float> result;
   for (const double area : areas) result.push_back(static_cast<float>(total > 0 ? area / total : 0));
   return result;
@@ -41,46 +41,55 @@ std::vector<float> fractions(std::span<const double> areas, double total) {
 
 }  // namespace
 
-AreaByValue area_by_value(const Surface& surface, const DistanceMap& map) {
-  AreaByValue result;
-  const auto owners = surface.texel_faces();
-  const auto samples = surface.sample_texels();
-  result.lo = std::numeric_limits<double>::infinity(), result.hi = -result.lo;
-  for (const std::uint32_t texel : samples)
-    if (const double d = map.distance[texel]; std::isfinite(d))
-      result.lo = std::min(result.lo, d), result.hi = std::max(result.hi, d);
-  if (result.lo > result.hi) result.lo = result.hi = 0;
+AreaSums::AreaSums(double lo, double hi)
+    : lo_(lo),
+      hi_(hi),
+      bins_per_unit_(hi > lo ? AreaByValue::kBins / (hi - lo) : 0),
+      by_key_(kKeys),
+      by_bin_(AreaByValue::kBins) {}
 
-  const std::vector<double> areas = texel_areas(surface);
-  const double per_unit = result.hi > result.lo ? AreaByValue::kBins / (result.hi - result.lo) : 0;
-  struct Sums {
-    std::vector<double> by_key = std::vector<double>(kKeys), by_bin = std::vector<double>(AreaByValue::kBins);
-  };
-  std::vector<Sums> parts(kParts);
-  parallel_for(kParts, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = begin; part < end; ++part)
-      for (std::size_t i = part * samples.size() / kParts; i < (part + 1) * samples.size() / kParts; ++i) {
-        const float d = map.distance[samples[i]];
-        if (!std::isfinite(d)) continue;
-        const double area = areas[owners[samples[i]]];
-        const auto bin = static_cast<std::size_t>((d - result.lo) * per_unit);
-        parts[part].by_key[key_of(d)] += area;
-        parts[part].by_bin[std::min(bin, AreaByValue::kBins - 1)] += area;
-      }
-  });
-  Sums& all = parts[0];
-  for (std::size_t part = 1; part < kParts; ++part) {
-    std::ranges::transform(all.by_key, parts[part].by_key, all.by_key.begin(), std::plus());
-    std::ranges::transform(all.by_bin, parts[part].by_bin, all.by_bin.begin(), std::plus());
-  }
+void AreaSums::add(float distance, double area) {
+  const auto bin = static_cast<std::size_t>((distance - lo_) * bins_per_unit_);
+  by_key_[key_of(distance)] += area;
+  by_bin_[std::min(bin, AreaByValue::kBins - 1)] += area;
+}
+
+void AreaSums::add(const AreaSums& other) {
+  std::ranges::transform(by_key_, other.by_key_, by_key_.begin(), std::plus());
+  std::ranges::transform(by_bin_, other.by_bin_, by_bin_.begin(), std::plus());
+}
+
+AreaByValue AreaSums::fractions() const {
+  AreaByValue result;
+  result.lo = lo_, result.hi = hi_;
   double total = 0;
-  for (const double area : all.by_bin) total += area;
-  result.area = fractions(all.by_bin, total);
+  for (const double area : by_bin_) total += area;
+  result.area = fractions_of(by_bin_, total);
   std::vector<double> used;
   for (std::uint32_t key = 0; key < kKeys; ++key)
-    if (all.by_key[key] > 0) result.keys.push_back(key), used.push_back(all.by_key[key]);
-  result.area_of_key = fractions(used, total);
+    if (by_key_[key] > 0) result.keys.push_back(key), used.push_back(by_key_[key]);
+  result.area_of_key = fractions_of(used, total);
   return result;
+}
+
+AreaByValue area_by_value(const Surface& surface, const DistanceMap& map) {
+  const auto owners = surface.texel_faces();
+  const auto samples = surface.sample_texels();
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  for (const std::uint32_t texel : samples)
+    if (const double d = map.distance[texel]; std::isfinite(d)) lo = std::min(lo, d), hi = std::max(hi, d);
+  if (lo > hi) lo = hi = 0;
+
+  const std::vector<double> areas = texel_areas(surface);
+  std::vector<AreaSums> parts(kParts, AreaSums(lo, hi));
+  parallel_for(kParts, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part)
+      for (std::size_t i = part * samples.size() / kParts; i < (part + 1) * samples.size() / kParts; ++i)
+        if (const float d = map.distance[samples[i]]; std::isfinite(d))
+          parts[part].add(d, areas[owners[samples[i]]]);
+  });
+  for (std::size_t part = 1; part < kParts; ++part) parts[0].add(parts[part]);
+  return parts[0].fractions();
 }
 
 }  // namespace sdm::io

@@ -1,4 +1,4 @@
-// How the area of a surface is distributed over the distances.
+// How the area of a surface, or the points of a cloud, are distributed over the distances.
 #pragma once
 
 #include <sdm/map.h>
@@ -21,8 +21,22 @@ struct AreaByValue {
   static constexpr std::size_t kBins = 2048;
 };
 
-/// The key of a float: the upper 16 bits of a number in the order of the floats, which is that of their bits,
-/// inverted if the sign is set, otherwise with the sign set. Cost: linear, all cores.
+/// Adds up areas by distance. The key of a float: the upper 16 bits of a number in the order of the floats,
+/// which is that of their bits, inverted if the sign is set, otherwise with the sign set.
+class AreaSums {
+ public:
+  /// `lo` and `hi`: the least and the largest distance that will be added.
+  AreaSums(double lo, double hi);
+  void add(float distance, double area);
+  void add(const AreaSums& other);
+  [[nodiscard]] AreaByValue fractions() const;
+
+ private:
+  double lo_, hi_, bins_per_unit_;
+  std::vector<double> by_key_, by_bin_;
+};
+
+/// Of the texels of a map. Cost: linear, all cores.
 [[nodiscard]] AreaByValue area_by_value(const Surface& surface, const DistanceMap& map);
 
 }  // namespace sdm::io

@@ -14,6 +14,7 @@
 #include "io/write/model/shading_normals.h"
 #include "io/write/pictures/atlas_picture.h"
 #include "io/write/report/fewer_vertices.h"
+#include "io/write/report/page_numbers.h"
 
 namespace sdm::io {
 namespace {
@@ -21,14 +22,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kStepsPerTexel = 64;  // of `place`
-constexpr int kStepBits = 21;          // of `position`: steps along the longest side of the box
-
-// The bits of a float as a number whose order is that of the floats; one number for all that is not finite.
-std::uint32_t ordered(float value) {
-  if (!std::isfinite(value)) return 0xFFFFFFFFu;
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return bits ^ (bits >> 31 ? 0xFFFFFFFFu : 0x80000000u);
-}
 
 // What is left of each value after a guess from the texels to its left, above it, and between these: the
 // field is nearly linear. Of the others the guess is one neighbour, or the value before.
@@ -50,35 +43,6 @@ std::vector<std::uint32_t> differences_of_map(std::span<const std::uint32_t> cha
     last = values[i];
   }
   return result;
-}
-
-struct Steps {
-  Vec3 origin{};
-  double length = 1;
-
-  explicit Steps(const Box& box) : origin(box.lo) {
-    double longest = 0;
-    for (int k = 0; k < 3; ++k) longest = std::max(longest, box.hi[k] - box.lo[k]);
-    if (longest > 0 && std::isfinite(longest)) length = longest / (1 << kStepBits);
-  }
-  [[nodiscard]] std::uint32_t operator()(const Vec3& p, int k) const {
-    return static_cast<std::uint32_t>(std::max(0.0, (p[k] - origin[k]) / length + 0.5));
-  }
-  [[nodiscard]] Json json() const { return {{"origin", origin}, {"step", length}}; }
-};
-
-std::uint32_t octahedral(const Vec3f& n) {
-  const float sum = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]);
-  float x = n[0] / sum, y = n[1] / sum;
-  if (n[2] < 0) {
-    const float folded = (1 - std::abs(y)) * (x < 0 ? -1.f : 1.f);
-    y = (1 - std::abs(x)) * (y < 0 ? -1.f : 1.f);
-    x = folded;
-  }
-  const auto byte = [](float c) {
-    return static_cast<std::uint32_t>(std::clamp(127.5f * c + 128, 0.f, 255.f));
-  };
-  return byte(x) | byte(y) << 8;
 }
 
 // For each corner, how many vertices its vertex was before the first one that has not occurred yet: 0 for

@@ -12,56 +12,53 @@
 namespace sdm::io {
 namespace {
 
-constexpr double kApart = 0.06;     // of the diagonal
 constexpr std::size_t kMost = 10;   // places
 constexpr std::size_t kParts = 16;  // of the samples
 // Of so many samples, which are close together on the surface, the one of the largest |distance| will do.
 constexpr std::size_t kRun = 64;
 
-/// The place of the largest |distance| in each cell of a grid over the mesh. Cells are as wide as places are
-/// apart.
-class Cells {
- public:
-  explicit Cells(const Box& box)
-      : lo_(box.lo), width_(kApart * diagonal(box)), places_(kSide * kSide * kSide) {}
-
-  void add(const Place& place) {
-    if (!std::isfinite(place.distance)) return;
-    Place& largest = places_[cell(place.point)];
-    // Of equal ones the first, so that the result does not depend on the number of threads.
-    if (largest.distance == 0 || std::abs(place.distance) > std::abs(largest.distance)) largest = place;
-  }
-  void add(const Cells& other) {
-    for (const Place& place : other.places_)
-      if (place.distance != 0) add(place);
-  }
-  [[nodiscard]] std::vector<Place> largest() const {
-    std::vector<Place> result;
-    std::ranges::copy_if(places_, std::back_inserter(result), [](const Place& p) { return p.distance != 0; });
-    std::ranges::stable_sort(result, std::greater(), [](const Place& p) { return std::abs(p.distance); });
-    return result;
-  }
-  [[nodiscard]] double width() const { return width_; }
-
- private:
-  static constexpr std::size_t kSide = 18;  // cells along a side of the box, which is at most the diagonal
-  static_assert(kSide * kApart > 1);
-
-  [[nodiscard]] std::size_t cell(const Vec3& p) const {
-    std::size_t index = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double at = width_ > 0 ? (p[k] - lo_[k]) / width_ : 0;
-      index = index * kSide + static_cast<std::size_t>(std::clamp(at, 0.0, kSide - 1.0));
-    }
-    return index;
-  }
-
-  Vec3 lo_;
-  double width_;
-  std::vector<Place> places_;
-};
-
 }  // namespace
+
+LargestByCell::LargestByCell(const Box& box)
+    : lo_(box.lo), width_(kApart * diagonal(box)), places_(kSide * kSide * kSide) {}
+
+void LargestByCell::add(const Place& place) {
+  if (!std::isfinite(place.distance)) return;
+  Place& largest = places_[cell(place.point)];
+  // Of equal ones the first, so that the result does not depend on the number of threads.
+  if (largest.distance == 0 || std::abs(place.distance) > std::abs(largest.distance)) largest = place;
+}
+
+void LargestByCell::add(const LargestByCell& other) {
+  for (const Place& place : other.places_)
+    if (place.distance != 0) add(place);
+}
+
+std::vector<Place> LargestByCell::largest() const {
+  std::vector<Place> result;
+  std::ranges::copy_if(places_, std::back_inserter(result), [](const Place& p) { return p.distance != 0; });
+  std::ranges::stable_sort(result, std::greater(), [](const Place& p) { return std::abs(p.distance); });
+  return result;
+}
+
+std::size_t LargestByCell::cell(const Vec3& p) const {
+  std::size_t index = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double at = width_ > 0 ? (p[k] - lo_[k]) / width_ : 0;
+    index = index * kSide + static_cast<std::size_t>(std::clamp(at, 0.0, kSide - 1.0));
+  }
+  return index;
+}
+
+std::vector<Place> worst_places(const LargestByCell& cells) {
+  std::vector<Place> result;
+  for (const Place& place : cells.largest()) {
+    if (result.size() == kMost) break;
+    const auto near = [&](const Place& p) { return norm(p.point - place.point) < cells.width(); };
+    if (std::ranges::none_of(result, near)) result.push_back(place);
+  }
+  return result;
+}
 
 std::vector<Place> worst_places(const Surface& surface, const DistanceMap& map,
                                 std::span<const float> vertex_distances) {
@@ -73,7 +70,7 @@ std::vector<Place> worst_places(const Surface& surface, const DistanceMap& map,
     const float d = map.distance[texel];
     return std::isfinite(d) ? std::abs(d) : -1;
   };
-  std::vector<Cells> parts(kParts, Cells(box));
+  std::vector<LargestByCell> parts(kParts, LargestByCell(box));
   parallel_for(kParts, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part)
       for (std::size_t run = part * runs / kParts; run < (part + 1) * runs / kParts; ++run) {
@@ -82,20 +79,14 @@ std::vector<Place> worst_places(const Surface& surface, const DistanceMap& map,
         if (size(texel) > 0) parts[part].add({map.distance[texel], surface.texel_point(texel), texel});
       }
   });
-  Cells all(box);
-  for (const Cells& part : parts) all.add(part);
+  LargestByCell all(box);
+  for (const LargestByCell& part : parts) all.add(part);
   for (const Triangle& triangle : mesh.triangles) {
     if (is_removed(triangle)) continue;
     for (const std::uint32_t v : triangle) all.add({vertex_distances[v], mesh.positions[v], kNone});
   }
 
-  std::vector<Place> result;
-  for (const Place& place : all.largest()) {
-    if (result.size() == kMost) break;
-    const auto near = [&](const Place& p) { return norm(p.point - place.point) < all.width(); };
-    if (std::ranges::none_of(result, near)) result.push_back(place);
-  }
-  return result;
+  return worst_places(all);
 }
 
 }  // namespace sdm::io

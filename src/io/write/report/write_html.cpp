@@ -3,10 +3,8 @@
 #include <sdm/threads.h>
 #include <sdm/version.h>
 
-#include <bit>
 #include <new>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "io/write/report/area_by_value.h"
 #include "io/write/report/embedded_page.h"
 #include "io/write/report/page_colors.h"
+#include "io/write/report/page_file.h"
 #include "io/write/report/page_model.h"
 #include "io/write/report/worst_places.h"
 
@@ -26,22 +25,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kDataPlace = "<!-- data -->";  // in the page
-
-std::vector<std::uint32_t> bits_of(std::span<const float> values) {
-  std::vector<std::uint32_t> bits;
-  for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value));
-  return bits;
-}
-
 Json worst_json(const Surface& surface, std::span<const Place> places) {
   Json json = Json::array();
   for (const Place& place : places) {
     Json& entry = json.emplace_back();
     entry["distance"] = place.distance;
     entry["point"] = place.point;
-    if (place.texel != kNone)
-      entry["texel"] = {place.texel % surface.resolution(), place.texel / surface.resolution()};
+    if (place.sample != kNone)
+      entry["texel"] = {place.sample % surface.resolution(), place.sample / surface.resolution()};
   }
   return json;
 }
@@ -76,9 +67,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
                     [&] { worst = worst_places(surface, map, vertex_distances); },
                     [&] { area = area_by_value(surface, map); }});
   arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
-  arrays.add("area_key", area.keys);
-  arrays.add("area_of_key", bits_of(area.area_of_key));
-  arrays.add("area_of_bin", bits_of(area.area));
+  page["area"] = add_area(arrays, area);
   page["version"] = kVersion;
   page["up"] = options.up == UpAxis::z ? "z" : "y";
   page["colors"] = colors_json();
@@ -86,18 +75,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   page["model"] = model;
   if (options.other) page["ghost"] = ghost;
   page["worst"] = worst_json(surface, worst);
-  page["area"] = {{"lo", area.lo}, {"hi", area.hi}};
-  arrays.compress();
-  page["arrays"] = arrays.index();
-
-  const std::string_view html = kPageHtml.bytes;
-  const std::size_t middle = html.find(kDataPlace);
-  out.stream() << html.substr(0, middle) << R"(<script type="application/json" id="report">)"
-               << as_script(report) << "</script>\n"
-               << R"(<script type="application/json" id="page">)"
-               << as_script(page.dump(-1, ' ', false, Json::error_handler_t::ignore)) << "</script>\n"
-               << R"(<script type="text/plain" id="arrays">)" << arrays.text() << "</script>"
-               << html.substr(middle + kDataPlace.size());
+  put_page(out.stream(), kPageHtml.bytes, page, &report, arrays);
   out.commit();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());

@@ -1,0 +1,161 @@
+// A measured surface: its triangles with the texels of the map.
+import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, Mesh, RedFormat, ShaderMaterial, Vector3 } from 'three';
+import { kColorShader } from './color_scale';
+import { colorUniforms, Uniforms } from './color_uniforms';
+import type { Colors } from './color_scale';
+import type { Model, TexelMap, Vec } from './page_data';
+import { firstHit, Hit, pointOf, valueAt } from './pick';
+import { boxOf, Found, HalfSpace, nearest, Subject } from './subject';
+import { filledValues, kNoValue } from './value_texture';
+import type { Viewer } from './viewer';
+
+const kVertexShader = `
+  in vec2 place;
+  in float value;
+  out vec3 vPoint, vNormal;
+  out vec2 vPlace;
+  out float vValue;
+  void main() {
+    vPoint = position;
+    vNormal = normalMatrix * normal;
+    vPlace = place;
+    vValue = value;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }
+`;
+
+// Values between texels are interpolated for the picture; a texel without a value stays as it is.
+const kPartShader = `
+  precision highp float;
+  precision highp sampler2D;
+  uniform sampler2D values;
+  uniform bool byVertex, showBacks;
+  uniform vec4 cut;
+  uniform vec3 cutColor;
+  in vec3 vPoint, vNormal;
+  in vec2 vPlace;
+  in float vValue;
+  out vec4 outColor;
+  ${kColorShader}
+
+  float valueAt(ivec2 at) { return texelFetch(values, clamp(at, ivec2(0), textureSize(values, 0) - 1), 0).r; }
+  float valueHere() {
+    if (byVertex) return vValue;
+    ivec2 nearest = ivec2(floor(vPlace));
+    float value = valueAt(nearest);
+    if (value > 1e38) return value;
+    vec2 corner = floor(vPlace - 0.5), part = vPlace - 0.5 - corner;
+    float sum = 0.0, weight = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      ivec2 step = ivec2(k & 1, k >> 1);
+      float v = valueAt(ivec2(corner) + step);
+      if (v > 1e38) continue;
+      vec2 w = mix(1.0 - part, part, vec2(step));
+      sum += w.x * w.y * v, weight += w.x * w.y;
+    }
+    return weight > 0.0 ? sum / weight : value;
+  }
+
+  void main() {
+    if (dot(cut.xyz, vPoint) > cut.w) discard;
+    if (!gl_FrontFacing && !showBacks) {  // the inside of a body that is cut open
+      float stripe = step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) / 9.0));
+      outColor = vec4(cutColor * (0.92 + 0.08 * stripe), 1.0);
+      return;
+    }
+    vec3 n = normalize(vNormal);
+    float light = 0.62 + 0.38 * abs(n.z) + 0.08 * n.y;
+    float value = valueHere();
+    outColor = vec4((value > 1e38 ? noValue : colorOf(value)) * min(light, 1.0), 1.0);
+  }
+`;
+
+const kSites = ['vertex', 'edge', 'face'];
+
+function siteText(site: number): string {
+  return site === 0xffffffff ? '' : `${kSites[site & 3]} ${site >>> 2} of the reference`;
+}
+
+export class Surface implements Subject {
+  readonly centre: Vec;
+  readonly size: number;
+  readonly lo: Vec;
+  readonly hi: Vec;
+  readonly uniforms: Uniforms;
+  readonly object: Mesh;
+
+  constructor(
+    private readonly model: Model,
+    private readonly map: TexelMap,
+    colors: Colors,
+    isClosed: boolean,
+  ) {
+    ({ centre: this.centre, size: this.size } = model);
+    ({ lo: this.lo, hi: this.hi } = boxOf(model.position));
+    const texture = new DataTexture(filledValues(map, model), map.width, map.height, RedFormat, FloatType);
+    texture.needsUpdate = true;
+    this.uniforms = {
+      ...colorUniforms(colors),
+      values: { value: texture },
+      byVertex: { value: model.place === null },
+      // The folds of a coarser copy are not the inside of the part.
+      showBacks: { value: !isClosed || model.place === null },
+      cut: { value: [0, 0, 0, 1] },
+      cutColor: { value: new Vector3(0.72, 0.72, 0.74) },
+    };
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(model.position, 3));
+    geometry.setAttribute('normal', new BufferAttribute(model.normal, 3, true));
+    geometry.setAttribute('place', new BufferAttribute(model.place ?? new Float32Array(2 * model.distance.length), 2));
+    const values = Float32Array.from(model.distance, (d) => (Number.isNaN(d) ? kNoValue : d));
+    geometry.setAttribute('value', new BufferAttribute(values, 1));
+    geometry.setIndex(new BufferAttribute(model.triangle, 1));
+    this.object = new Mesh(
+      geometry,
+      new ShaderMaterial({
+        glslVersion: '300 es',
+        vertexShader: kVertexShader,
+        fragmentShader: kPartShader,
+        side: DoubleSide,
+        uniforms: this.uniforms,
+      }),
+    );
+    this.object.frustumCulled = false;
+  }
+
+  prepare(): void {}
+
+  find(viewer: Viewer, x: number, y: number, cut: HalfSpace | null): Found | null {
+    const { model, map } = this;
+    const hit = firstHit(model, viewer.camera.position.toArray() as Vec, viewer.through(x, y), cut);
+    if (!hit) return null;
+    const value = valueAt(model, map, hit);
+    const rows: Found['rows'] = [];
+    const detail = siteText(value.site);
+    if (detail) rows.push(['Nearest', detail, 'probe-site']);
+    if (value.texel) rows.push([map.step > 1 ? `Texels (${map.step}² each)` : 'Texel', value.texel.join(', '), 'probe-texel']);
+    else rows.push(['Of', 'the nearest vertex', 'probe-texel']);
+    return { at: pointOf(model, hit), normal: this.normalOf(hit), distance: value.distance, detail, rows, value };
+  }
+
+  isHidden(viewer: Viewer, point: Vec, cut: HalfSpace | null): boolean {
+    const from = viewer.camera.position;
+    const to = new Vector3(...point).sub(from);
+    const away = to.length();
+    const hit = firstHit(this.model, from.toArray() as Vec, to.normalize().toArray() as Vec, cut);
+    return hit !== null && hit.distance < away - 0.01;
+  }
+
+  normalNear(point: Vec): Vec {
+    const v = nearest(this.model.position, point);
+    return Array.from(this.model.normal.subarray(3 * v, 3 * v + 3)) as Vec;
+  }
+
+  private normalOf({ triangle }: Hit): Vec {
+    const { model } = this;
+    const normal: Vec = [0, 0, 0];
+    for (let corner = 0; corner < 3; ++corner)
+      for (let k = 0; k < 3; ++k) normal[k] += model.normal[3 * model.triangle[3 * triangle + corner] + k];
+    return normal;
+  }
+}

@@ -1,0 +1,126 @@
+// A canvas with a scene, and a camera that turns around it.
+import { PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import type { Vec } from './page_data';
+
+// Right, up and towards the viewer in the front view.
+const kSides: Record<'y' | 'z', Record<string, Vec>> = {
+  z: { front: [0, -1, 0], back: [0, 1, 0], left: [-1, 0, 0], right: [1, 0, 0], top: [0, -1e-4, 1], bottom: [0, -1e-4, -1], corner: [0.6, -1, 0.55] },
+  y: { front: [0, 0, 1], back: [0, 0, -1], left: [-1, 0, 0], right: [1, 0, 0], top: [0, 1, 1e-4], bottom: [0, -1, 1e-4], corner: [0.6, 0.55, 1] },
+};
+
+/// The scene is about the origin, in units of half of its diagonal.
+export class Viewer {
+  readonly canvas: HTMLCanvasElement;
+  readonly camera = new PerspectiveCamera(30, 1, 0.01, 100);
+  readonly scene = new Scene();
+  private readonly renderer: WebGLRenderer;
+  private readonly controls: OrbitControls;
+  private scheduled = false;
+
+  /// `onChange` is called after every picture.
+  constructor(container: HTMLElement, private readonly up: 'y' | 'z', private readonly onChange = () => {}) {
+    this.canvas = container.querySelector('canvas')!;
+    // The picture is kept for printing.
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.camera.up.set(0, up === 'y' ? 1 : 0, up === 'z' ? 1 : 0);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.zoomToCursor = true;
+    this.controls.addEventListener('change', () => this.draw());
+    new ResizeObserver(() => this.resize()).observe(container);
+    this.resize();
+    this.look('corner');
+  }
+
+  /// Fits the picture to its place.
+  resize(): void {
+    const { clientWidth, clientHeight } = this.canvas.parentElement!;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /// Draws a picture soon, one for any number of calls.
+  draw(): void {
+    if (this.scheduled) return;
+    this.scheduled = true;
+    requestAnimationFrame(() => this.drawNow());
+  }
+
+  drawNow(): void {
+    this.scheduled = false;
+    const away = this.camera.position.length();
+    const toTarget = this.camera.position.distanceTo(this.controls.target);
+    this.camera.near = Math.max(1e-4, Math.min(Math.max((away - 4) / 2, away / 1000), toTarget / 10));
+    this.camera.far = Math.max(away, toTarget) + 8;
+    this.camera.updateProjectionMatrix();
+    this.renderer.render(this.scene, this.camera);
+    this.onChange();
+  }
+
+  get pixelRatio(): number {
+    return this.renderer.getPixelRatio();
+  }
+
+  /// Looks at all from a side, or at a point of it from outside.
+  look(from: string | { point: Vec; normal: Vec }): void {
+    let direction: Vector3;
+    let away = this.camera.position.distanceTo(this.controls.target);
+    if (typeof from === 'string') {
+      const sides = kSides[this.up];
+      direction = new Vector3(...(sides[from] ?? sides.corner)).normalize();
+      this.controls.target.set(0, 0, 0);
+      const half = Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect);
+      away = 1.02 / Math.sin(Math.atan(half));
+    } else {
+      direction = new Vector3(...from.normal).normalize();
+      // Not along the vertical axis, where the view could turn to any side.
+      direction.addScaledVector(new Vector3(0.3, 0.25, 0.35), 0.6).normalize();
+      this.controls.target.set(...from.point);
+      away = Math.min(away, 2.6);
+    }
+    this.camera.position.copy(this.controls.target).addScaledVector(direction, away);
+    this.controls.update();
+    this.draw();
+  }
+
+  /// Turns the view by angles in degrees, around the vertical axis and up.
+  turn(right: number, up: number): void {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const side = new Vector3().crossVectors(this.camera.up, offset).normalize();
+    const angle = offset.angleTo(this.camera.up);
+    const lift = Math.min(Math.max(angle - (up * Math.PI) / 180, 0.02), Math.PI - 0.02) - angle;
+    offset.applyAxisAngle(side, lift).applyAxisAngle(this.camera.up, (right * Math.PI) / 180);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.draw();
+  }
+
+  zoom(factor: number): void {
+    const offset = this.camera.position.clone().sub(this.controls.target).multiplyScalar(factor);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.draw();
+  }
+
+  /// Where a point of the scene is in the canvas, in CSS pixels from its upper left corner.
+  place(point: Vec): { x: number; y: number; behind: boolean } {
+    const at = new Vector3(...point).project(this.camera);
+    const { clientWidth, clientHeight } = this.canvas;
+    return { x: ((at.x + 1) / 2) * clientWidth, y: ((1 - at.y) / 2) * clientHeight, behind: at.z > 1 };
+  }
+
+  /// The direction from the camera through a place of the canvas, of length 1.
+  through(x: number, y: number): Vec {
+    const { clientWidth, clientHeight } = this.canvas;
+    this.camera.updateMatrixWorld();
+    return new Vector3((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight, 0.5)
+      .unproject(this.camera)
+      .sub(this.camera.position)
+      .normalize()
+      .toArray() as Vec;
+  }
+}
