@@ -178,7 +178,7 @@ void add_options(CLI::App& app, BodiesCommand& c) {
                  "matrix, row by row")
       ->type_name("FILE");
   add_write_option(app, c.map_files, false);
-  add_resolution_option(app, c.atlas, "all bodies' maps, which -o writes");
+  add_side_option(app, c.atlas, "all bodies' maps, which -o writes");
   add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a table");
 }
 

@@ -2,6 +2,8 @@
 
 #include <sdm/threads.h>
 
+#include <tuple>
+
 #include "option_checks.h"
 
 CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder) {
@@ -23,11 +25,32 @@ void add_transform_option(CLI::App& app, const std::string& name, const std::str
       ->type_name("STEPS");
 }
 
-CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
+CLI::Option* add_side_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
   return app.add_option("--resolution", atlas.resolution, "Texels along each side of " + maps)
       ->check(whole_number(16, 32768))
       ->type_name("N")
       ->capture_default_str();
+}
+
+CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
+  return app
+      .add_option_function<std::string>(
+          "--resolution",
+          [&atlas](const std::string& text) { std::tie(atlas.resolution, atlas.rows) = *parse_size(text); },
+          "Texels along each side of " + maps + "; with --atlas uv also WxH, those of a row and of a column")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return parse_size(text) ? std::string()
+                                    : text + " is neither a number from 16 to 32768 nor two, as in 2048x1024";
+          },
+          ""))
+      ->type_name("N|WxH")
+      ->default_str(std::to_string(atlas.resolution));
+}
+
+void check_layout(const sdm::AtlasOptions& atlas) {
+  if (atlas.rows != 0 && atlas.rows != atlas.resolution && atlas.kind != sdm::AtlasKind::uv)
+    throw CLI::ValidationError("--resolution", "a map that is not square needs --atlas uv");
 }
 
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh) {

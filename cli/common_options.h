@@ -17,11 +17,15 @@
 CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder);
 void add_transform_option(CLI::App& app, const std::string& name, const std::string& mesh,
                           std::string& steps);
-/// Returns --resolution; `maps` describes the maps in the help text.
+/// Returns --resolution of square maps; `maps` describes them in the help text.
+CLI::Option* add_side_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps);
+/// Returns --resolution, N or WxH; check_layout() checks whether the atlas can have that shape.
 CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
                                    const std::string& maps = "the map");
 /// `mesh` describes the parametrised mesh in the help text.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
+/// Throws CLI::ValidationError for a map that is not square unless the atlas is that of the mesh.
+void check_layout(const sdm::AtlasOptions& atlas);
 /// --engine.
 void add_engine_option(CLI::App& app, sdm::EngineInfo& engine);
 /// --sign.

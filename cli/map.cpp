@@ -146,7 +146,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
   outcome.max_distance = command.map.max_distance;
-  outcome.resolution = map.resolution;
+  outcome.resolution = map.resolution, outcome.rows = map.rows();
   outcome.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), on.mesh, to.mesh);
   outcome.extremes = sdm::extremes(*surface, map, at_vertices);
   outcome.raster = sdm::gl_report(*command.map.engine);
@@ -284,7 +284,7 @@ int run(MapCommand command) {
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
   if (command.engine.name == "gl") {
-    (void)sdm::gl_device(command.gl, command.atlas.resolution);  // fails early, before the long computation
+    (void)sdm::gl_device(command.gl, std::max(command.atlas.resolution, command.atlas.rows));  // fails early
     command.map.engine = sdm::make_gl_engine(command.gl);
   } else {
     command.map.engine = sdm::make_engine(command.engine.name);

@@ -82,6 +82,7 @@ void add_options(CLI::App& app, MapCommand& c) {
 
 void check_combination(const CLI::App& app, const MapCommand& c) {
   check_range(c.range);
+  check_layout(c.atlas);
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");
   if (const auto& t = c.picture.tolerance;

@@ -35,6 +35,19 @@ CLI::Validator whole_number(int lowest, int highest) {
       "");
 }
 
+std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text) {
+  const auto parse = [](const std::string& part, std::uint32_t& side) {
+    return !part.empty() && part.find_first_not_of("0123456789") == std::string::npos &&
+           CLI::detail::lexical_cast(part, side) && side >= 16 && side <= 32768;
+  };
+  std::pair<std::uint32_t, std::uint32_t> size{0, 0};
+  const std::size_t by = text.find('x');
+  const bool good = by == std::string::npos
+                        ? parse(text, size.first)
+                        : parse(text.substr(0, by), size.first) && parse(text.substr(by + 1), size.second);
+  return good ? std::optional(size) : std::nullopt;
+}
+
 std::optional<sdm::Tolerance> parse_tolerance(const std::string& text) {
   const auto parse = [](const std::string& part, double& value) {
     return CLI::detail::lexical_cast(part, value) && std::isfinite(value);

@@ -4,6 +4,7 @@
 #include <sdm/tolerance.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +16,9 @@
 /// Requires a finite number for which `accepts` holds.
 [[nodiscard]] CLI::Validator number(const std::string& description, bool (*accepts)(double));
 [[nodiscard]] CLI::Validator whole_number(int lowest, int highest);
+
+/// Reads "N" (as N and 0) or "WxH", numbers from 16 to 32768; nothing if it is neither.
+[[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text);
 
 /// Reads "T" or "LO:HI"; nothing if it is neither, or LO is above HI.
 [[nodiscard]] std::optional<sdm::Tolerance> parse_tolerance(const std::string& text);

@@ -113,6 +113,7 @@ Json to_json(const Input& input) {
 Json to_json(const sdm::Surface& surface) {
   return {{"kind", atlas_name(surface.atlas_kind())},
           {"resolution", surface.resolution()},
+          {"rows", surface.rows()},
           {"charts", surface.chart_count()},
           {"texels", surface.sample_texels().size()},
           {"utilisation", surface.utilisation()},
@@ -156,7 +157,7 @@ Json one_sided_hausdorff(const Outcome& outcome) {
   return json;
 }
 
-Json to_json(const Outcome& outcome) {
+Json measures_json(const Outcome& outcome) {
   const sdm::DistanceStatistics& d = outcome.distance;
   Json json;
   json["sign"] = {{"method", sign_name(outcome.sign.method)}, {"reason", outcome.sign.reason}};
@@ -174,6 +175,11 @@ Json to_json(const Outcome& outcome) {
   json["error_bound_kind"] = known ? "bounded" : "unknown";
   json["hausdorff"] = {{"one_sided", one_sided_hausdorff(outcome)}};
   if (outcome.tolerance) json["tolerance"] = to_json(*outcome.tolerance);
+  return json;
+}
+
+Json to_json(const Outcome& outcome) {
+  Json json = measures_json(outcome);
   json.update(to_json(outcome.numbers));
   json["notes"] = outcome.notes;
   if (outcome.raster) json["raster"] = gl_json(*outcome.raster);
@@ -215,11 +221,15 @@ std::string farthest(const Outcome& outcome, const std::string& unit) {
 std::string deciding_precision(const Outcome& outcome, const std::string& unit) {
   const double bound = outcome.tolerance->deciding_bound;
   if (!(bound > 0)) return "no --precision decides, as a distance is within rounding of a limit";
-  const double texels = outcome.resolution * outcome.error_bound / bound;
-  if (texels > 32768)
+  const double finer = outcome.error_bound / bound;
+  if (std::max(outcome.resolution, outcome.rows) * finer > 32768)
     return fmt::format("an error of {}{} would decide, but needs more than 32768² texels", number(bound, 2),
                        unit);
-  return fmt::format("--precision {} would decide (about {:.0f}² texels)", number(bound, 2), texels);
+  const double columns = outcome.resolution * finer, rows = outcome.rows * finer;
+  if (columns != rows)
+    return fmt::format("an error of {}{} would decide (about --resolution {:.0f}x{:.0f})", number(bound, 2),
+                       unit, columns, rows);
+  return fmt::format("--precision {} would decide (about {:.0f}² texels)", number(bound, 2), columns);
 }
 
 std::string tolerance_line(const Outcome& outcome, const std::string& unit) {

@@ -42,11 +42,11 @@ struct Outcome {
   std::size_t beyond_max_distance = 0;
   std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh
   double error_bound = 0;
-  double accuracy = 0;             ///< of the engine; infinite if unknown
-  double max_distance = 0;         ///< infinite if there is no limit
-  std::uint32_t resolution = 0;    ///< of the map
-  bool embedded = true;            ///< the other mesh does not intersect itself
-  std::vector<std::string> notes;  ///< what the user probably did not intend
+  double accuracy = 0;                     ///< of the engine; infinite if unknown
+  double max_distance = 0;                 ///< infinite if there is no limit
+  std::uint32_t resolution = 0, rows = 0;  ///< of the map
+  bool embedded = true;                    ///< the other mesh does not intersect itself
+  std::vector<std::string> notes;          ///< what the user probably did not intend
   std::optional<sdm::ToleranceVerdict> tolerance;
   MapNumbers numbers;
   std::optional<sdm::GlReport> raster;
@@ -59,6 +59,8 @@ struct Outcome {
 /// The colour scale of the pictures: `fixed` by fixed_colors() from what was `given`.
 [[nodiscard]] nlohmann::ordered_json colors_json(const sdm::PictureOptions& fixed,
                                                  const sdm::PictureOptions& given);
+/// Of an outcome what also several maps together have: without histogram, bands, parts, notes and times.
+[[nodiscard]] nlohmann::ordered_json measures_json(const Outcome& outcome);
 [[nodiscard]] nlohmann::ordered_json to_json(const Outcome& outcome);
 
 /// Bounds on the largest distance of all points of the mesh with the map to the other one, inside or outside,

@@ -170,6 +170,7 @@ void add_self_command(CLI::App& app) {
   add_run_options(*self, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   self->callback([command] {
     check_range(command->range);
+    check_layout(command->atlas);
     run(*command);
   });
 }

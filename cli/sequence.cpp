@@ -65,7 +65,7 @@ Json options_of(const SequenceCommand& command) {
           {"--units", pair.units},
           {"--margin", pair.options.contact_margin},
           {"--precision", pair.options.depth_precision},
-          {"--resolution", command.atlas.resolution},
+          {"--resolution", {command.atlas.resolution, command.atlas.rows}},
           {"--map-precision", command.map_precision},
           {"--maps", command.maps_every},
           {"--rate", command.rate},
@@ -124,7 +124,8 @@ class FrameLoop {
         count_(common_frames(bodies_[0], bodies_[1])),
         lines_(out_.staging() / "frames.jsonl", std::ios::binary) {
     command_.atlas.progress = progress_.callback();
-    if (command_.engine.name == "gl") (void)sdm::gl_device({}, command_.atlas.resolution);  // fails early
+    if (command_.engine.name == "gl")
+      (void)sdm::gl_device({}, std::max(command_.atlas.resolution, command_.atlas.rows));  // fails early
     map_options_.engine = sdm::make_engine(command_.engine.name);
     state_.options = options_of(command);
     const std::array<sdm::Mesh, 2> first{bodies_[0].mesh(), bodies_[1].mesh()};
@@ -541,7 +542,8 @@ void add_sequence_command(CLI::App& app) {
     check_range(command->range);
     if (command->player && command->allow_topology)
       throw CLI::ValidationError("--player", "needs bodies that keep their faces: omit --allow-topology");
-    // Edits add rows to atlases, which the gl engine refuses.
+    check_layout(command->atlas);
+    // The gl engine would lay out its tiles anew after each edit.
     if (command->allow_topology && command->engine.name == "gl")
       throw CLI::ValidationError("--allow-topology", "cannot be used with --engine gl");
     limit_threads(command->pair.threads);

@@ -1,7 +1,7 @@
 #version 450 core
 // A corner of a site's polygon, in texels of the map. Data common to the polygon comes from a table.
 
-uniform float resolution;
+uniform vec2 size;  // of the image, in texels
 uniform uint first_polygon;  // of these corners, in the table
 uniform usamplerBuffer polygons;  // seven texels per polygon (RasterPolygon), as bits: denormal floats could be flushed
 
@@ -36,5 +36,5 @@ void main() {
   winner = c.w;
   domain = g.w;
   interpolated_vector = corner_vector;
-  gl_Position = vec4(2.0 * corner / resolution - 1.0, 0.0, 1.0);
+  gl_Position = vec4(2.0 * corner / size - 1.0, 0.0, 1.0);
 }

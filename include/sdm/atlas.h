@@ -17,7 +17,10 @@ enum class AtlasKind {
 
 struct AtlasOptions {
   AtlasKind kind = AtlasKind::charts;
-  std::uint32_t resolution = 1024;  ///< texels per side, in [16, 32768]
+  std::uint32_t resolution = 1024;  ///< texels per row, in [16, 32768]
+  /// Texels per column, in [16, 32768]; 0: as many as per row, as is necessary unless the kind is uv. Texels
+  /// of such an atlas are as high and as wide on the surface as the texture makes them.
+  std::uint32_t rows = 0;
   double max_stretch = 1.3;  ///< charts: bounds the growth of lengths from atlas to surface; in (1, 100]
   /// charts, triangles: free texels around each chart, not shared. All: values of files extend at least this
   /// far beyond the charts (see write_exr).

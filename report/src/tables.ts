@@ -109,7 +109,7 @@ export function showMethod(report: Report): void {
   out.push(
     sentence(
       atlas &&
-        `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the texels of a texture of ${atlas.resolution} × ${atlas.resolution}.`,
+        `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the texels of a texture of ${atlas.resolution} × ${atlas.rows ?? atlas.resolution}.`,
       isCloud(report) && `The measured part is a cloud of ${count(report.o1!.points!)} points. Nothing is said about places between them.`,
       `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
       typeof accuracy === 'number' && `Each of these distances is exact to ${text(accuracy, 2)}${unit}.`,

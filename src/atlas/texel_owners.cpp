@@ -52,15 +52,15 @@ bool is_well_inside(const std::array<Vec2, 3>& t, std::uint32_t x, std::uint32_t
 }  // namespace
 
 std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind, std::uint32_t resolution,
-                                     std::size_t& overlapping) {
+                                     std::uint32_t rows, std::size_t& overlapping) {
   overlapping = 0;
-  std::vector<std::uint32_t> owner(std::size_t{resolution} * resolution, kNone);
+  std::vector<std::uint32_t> owner(std::size_t{resolution} * rows, kNone);
   const auto rasterise_charts = [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       bool any = false;
       for_each_texel(layout.corners, layout.charts[c],
                      [&](std::uint32_t face, std::uint32_t x, std::uint32_t y) {
-                       if (x >= resolution || y >= resolution) return;  // rounding at the border of the image
+                       if (x >= resolution || y >= rows) return;  // rounding at the border of the image
                        std::uint32_t& texel = owner[std::size_t{y} * resolution + x];
                        any = true;
                        if (texel == kNone)

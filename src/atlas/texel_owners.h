@@ -12,7 +12,8 @@ namespace sdm::atlas {
 /// least one texel, except for AtlasKind::uv, where faces may overlap: `overlapping` is set to the number of
 /// centres that lie in a face that does not own them, by more than rounding.
 [[nodiscard]] std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind,
-                                                   std::uint32_t resolution, std::size_t& overlapping);
+                                                   std::uint32_t resolution, std::uint32_t rows,
+                                                   std::size_t& overlapping);
 
 /// Gives the free texels of further charts, which overlap no others, to their faces; returns these texels.
 /// Every chart owns at least one.

@@ -24,8 +24,7 @@ constexpr double kLeastArea = 1e-12;  // square texels; below it the map to the 
               Remedy::atlas_kind);
 }
 
-void place_corners(const Mesh& mesh, const FaceGeometry& faces, std::uint32_t resolution, Layout& layout) {
-  const double n = resolution;
+void place_corners(const Mesh& mesh, const FaceGeometry& faces, double columns, double rows, Layout& layout) {
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     if (faces.area[f] == 0) continue;
     for (int k = 0; k < 3; ++k) {
@@ -33,7 +32,7 @@ void place_corners(const Mesh& mesh, const FaceGeometry& faces, std::uint32_t re
       if (!(u >= -kOutside && u <= 1 + kOutside && v >= -kOutside && v <= 1 + kOutside))
         fail("those of face " + std::to_string(f) +
              " lie outside [0, 1], where they would have to be wrapped");
-      layout.corners[f][k] = {std::clamp(u, 0.0, 1.0) * n, (1 - std::clamp(v, 0.0, 1.0)) * n};
+      layout.corners[f][k] = {std::clamp(u, 0.0, 1.0) * columns, (1 - std::clamp(v, 0.0, 1.0)) * rows};
     }
     const auto& [a, b, c] = layout.corners[f];
     if (!(std::abs(cross(b - a, c - a)) > kLeastArea))
@@ -41,8 +40,8 @@ void place_corners(const Mesh& mesh, const FaceGeometry& faces, std::uint32_t re
   }
 }
 
-void check_overlaps(const FaceGeometry& faces, std::uint32_t resolution, const Layout& layout) {
-  const double steps_per_texel = static_cast<double>(kGridSteps) / resolution;
+void check_overlaps(const FaceGeometry& faces, std::uint32_t longest, const Layout& layout) {
+  const double steps_per_texel = static_cast<double>(kGridSteps) / longest;
   std::vector<GridTriangle> triangles;
   std::vector<std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < layout.corners.size(); ++f) {
@@ -102,8 +101,9 @@ Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
   Layout layout;
   layout.corners.resize(mesh.triangles.size());
   layout.maps.resize(mesh.triangles.size());
-  place_corners(mesh, faces, options.resolution, layout);
-  if (options.strict_uv) check_overlaps(faces, options.resolution, layout);
+  const std::uint32_t columns = options.resolution, rows = options.rows == 0 ? columns : options.rows;
+  place_corners(mesh, faces, columns, rows, layout);
+  if (options.strict_uv) check_overlaps(faces, std::max(columns, rows), layout);
 
   double surface_area = 0, atlas_area = 0, largest = 0;
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {

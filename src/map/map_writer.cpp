@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "atlas/size_text.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 
@@ -26,7 +27,7 @@ void clear(DistanceMap& map, const Surface& surface) {
   const std::span<const std::uint32_t> faces = surface.texel_faces();
   if (map.distance.capacity() < faces.size())
     require_memory(faces.size() * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
-                   "a map of " + std::to_string(surface.resolution()) + "² texels");
+                   "a map of " + atlas::size_text(surface.resolution(), surface.rows()) + " texels");
   map.resolution = surface.resolution();
   map.distance.resize(faces.size());
   map.vector.resize(faces.size());

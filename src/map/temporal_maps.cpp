@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "atlas/size_text.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 
@@ -27,8 +28,9 @@ void TemporalMaps::add(const DistanceMap& map) try {
     state.least = state.largest = map.distance;
     state.sum.assign(map.distance.begin(), map.distance.end());
   } else if (map.resolution != state.resolution) {
-    throw Error("a map of " + std::to_string(map.resolution) + "² texels cannot be added to maps of " +
-                std::to_string(state.resolution) + "²");
+    throw Error("a map of " + atlas::size_text(map.resolution, map.rows()) +
+                " texels cannot be added to maps of " +
+                atlas::size_text(state.resolution, state.sum.size() / state.resolution));
   } else if (map.distance.size() != state.sum.size()) {
     throw Error("a map of " + std::to_string(map.rows()) + " rows of texels cannot be added to maps of " +
                 std::to_string(state.sum.size() / state.resolution));

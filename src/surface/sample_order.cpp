@@ -53,7 +53,7 @@ class SampleOrder {
   }
 
   [[nodiscard]] std::vector<Item> all_items() const {
-    const std::uint32_t n = surface_.resolution, rows = (n + kSide - 1) / kSide;
+    const std::uint32_t n = surface_.resolution, rows = (surface_.rows + kSide - 1) / kSide;
     std::vector<std::vector<Item>> of_row(rows);
     parallel_for(rows, 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row)
@@ -71,13 +71,14 @@ class SampleOrder {
   // Adds the square with this upper left corner if one chart owns all of it, otherwise its texels.
   void add_square(std::uint32_t left, std::uint32_t top, std::vector<Item>& items) const {
     const std::uint32_t n = surface_.resolution;
-    const std::uint32_t right = std::min(n, left + kSide), bottom = std::min(n, top + kSide);
+    const std::uint32_t right = std::min(n, left + kSide), bottom = std::min(surface_.rows, top + kSide);
     const auto chart_of = [&](std::uint32_t x, std::uint32_t y) {
       const std::uint32_t face = surface_.texel_faces[std::size_t{y} * n + x];
       return face == kNone ? kNone : surface_.face_charts[face];
     };
     const std::uint32_t chart = chart_of(left, top);
-    bool whole = n > kSingleTexels && chart != kNone && right - left == kSide && bottom - top == kSide;
+    bool whole = std::max(n, surface_.rows) > kSingleTexels && chart != kNone && right - left == kSide &&
+                 bottom - top == kSide;
     for (std::uint32_t y = top; y < bottom && whole; ++y)
       for (std::uint32_t x = left; x < right && whole; ++x) whole = chart_of(x, y) == chart;
     const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t texel, bool single) {

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "atlas/packing/fit.h"
+#include "atlas/size_text.h"
 #include "core/geometry/vec.h"
 #include "surface/surface_data.h"
 
@@ -22,12 +23,13 @@ static_assert(std::endian::native == std::endian::little, "the order of the stor
 
 struct Header {
   std::array<char, 8> magic{'s', 'd', 'm', 'a', 't', 'l', 'a', 's'};
-  std::uint32_t version = 3, kind = 0, resolution = 0, gutter = 0;
+  std::uint32_t version = 4, kind = 0, resolution = 0, gutter = 0;
   double stretch_limit = 0, max_stretch = 0, scale = 0;
   std::uint64_t vertices = 0, faces = 0, charts = 0, samples = 0, rows = 0, overlapping = 0;
+  std::uint64_t first_rows = 0;          ///< before edits added any
   std::uint64_t mesh = 0, contents = 0;  ///< checksums: of the mesh, and of all else
 };
-static_assert(sizeof(Header) == 112, "no padding");
+static_assert(sizeof(Header) == 120, "no padding");
 
 template <class Item>
 void add(XXH3_state_t& state, const std::vector<Item>& items) {
@@ -57,6 +59,7 @@ Header header_of(const SurfaceData& s) {
   header.kind = static_cast<std::uint32_t>(s.kind);
   header.resolution = s.resolution;
   header.gutter = s.gutter;
+  header.first_rows = s.first_rows;
   header.stretch_limit = s.stretch_limit;
   header.vertices = s.mesh.positions.size();
   header.faces = s.mesh.triangles.size();
@@ -124,13 +127,17 @@ void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const 
   if (header.vertices != expected.vertices || header.faces != expected.faces || header.mesh != expected.mesh)
     throw Error("the stored atlas belongs to another mesh");
   if (header.kind != expected.kind || header.resolution != expected.resolution ||
-      header.gutter != options.gutter || header.stretch_limit != options.max_stretch)
-    throw Error("the stored atlas has other options: a resolution of " + std::to_string(header.resolution) +
+      header.first_rows != expected.first_rows || header.gutter != options.gutter ||
+      header.stretch_limit != options.max_stretch)
+    throw Error("the stored atlas has other options: a resolution of " +
+                (header.first_rows == header.resolution
+                     ? std::to_string(header.resolution)
+                     : atlas::size_text(header.resolution, header.first_rows)) +
                 ", a gutter of " + std::to_string(header.gutter) + ", a stretch of at most " +
                 std::to_string(header.stretch_limit));
 
-  const bool has_size = header.rows >= s.resolution &&
-                        header.rows <= std::max(s.resolution, atlas::kMaxRows) && header.scale > 0 &&
+  const bool has_size = header.rows >= s.first_rows &&
+                        header.rows <= std::max(s.first_rows, atlas::kMaxRows) && header.scale > 0 &&
                         std::isfinite(header.scale);
   const std::uint64_t texels = s.resolution * (has_size ? header.rows : 0);
   const std::uint64_t of_faces =

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "atlas/packing/too_small.h"
+#include "atlas/size_text.h"
 #include "atlas/texel_owners.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -19,21 +20,30 @@ namespace {
 
 constexpr std::uint32_t kMinResolution = 16, kMaxResolution = 32768;
 
+std::uint32_t rows_of(const AtlasOptions& options) {
+  return options.rows == 0 ? options.resolution : options.rows;
+}
+
 void check(const Mesh& mesh, const AtlasOptions& options) {
   validate(mesh);
-  const std::uint32_t n = options.resolution;
-  if (n < kMinResolution || n > kMaxResolution)
-    throw Error("an atlas resolution of " + std::to_string(n) + " is out of range; use 16 to 32768",
-                Remedy::resolution);
+  const std::uint32_t n = options.resolution, rows = rows_of(options);
+  for (const std::uint32_t side : {n, rows})
+    if (side < kMinResolution || side > kMaxResolution)
+      throw Error("an atlas resolution of " + std::to_string(side) + " is out of range; use 16 to 32768",
+                  Remedy::resolution);
+  if (n != rows && options.kind != AtlasKind::uv)
+    throw Error(
+        "only atlases from texture coordinates may have more columns than rows or fewer; use a square",
+        Remedy::resolution);
   if (!(options.max_stretch > 1))
     throw Error("a maximum stretch of " + std::to_string(options.max_stretch) +
                 " is out of range; use more than 1");
-  if (options.gutter > n / 4)
+  if (options.gutter > std::min(n, rows) / 4)
     throw Error("a gutter of " + std::to_string(options.gutter) + " texels is too wide for an atlas of " +
-                std::to_string(n) + "² texels; use a quarter of that at most");
+                atlas::size_text(n, rows) + " texels; use a quarter of that at most");
   // The texel table, its order and its points, and the chart and layout data of each face.
   constexpr std::size_t kBytesPerTexel = 64, kBytesPerFace = 600;
-  require_memory(kBytesPerTexel * n * n + kBytesPerFace * mesh.triangles.size(), "the atlas");
+  require_memory(kBytesPerTexel * n * rows + kBytesPerFace * mesh.triangles.size(), "the atlas");
 }
 
 }  // namespace
@@ -41,7 +51,7 @@ void check(const Mesh& mesh, const AtlasOptions& options) {
 SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
     : kind(options.kind),
       resolution(options.resolution),
-      rows(options.resolution),
+      rows(rows_of(options)),
       gutter(options.gutter),
       stretch_limit(options.max_stretch) {
   check(laid_out, options);
@@ -50,7 +60,7 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   face_charts.assign(laid_out.triangles.size(), kNone);
   for (std::uint32_t c = 0; c < layout.charts.size(); ++c)
     for (const std::uint32_t f : layout.charts[c]) face_charts[f] = c;
-  texel_faces = atlas::rasterise(layout, kind, resolution, overlapping_texels);
+  texel_faces = atlas::rasterise(layout, kind, resolution, rows, overlapping_texels);
   if (std::ranges::all_of(texel_faces, [](std::uint32_t face) { return face == kNone; }))
     throw atlas::TooSmall(
         "no face of the mesh is large enough in the texture to own a texel; use a larger resolution",
@@ -72,7 +82,7 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options, std::span<c
     : mesh(std::move(laid_out)),
       kind(options.kind),
       resolution(options.resolution),
-      rows(options.resolution),
+      rows(rows_of(options)),
       gutter(options.gutter),
       stretch_limit(options.max_stretch) {
   check(mesh, options);

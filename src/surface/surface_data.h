@@ -43,7 +43,8 @@ class SurfaceData {
   Mesh mesh;
   AtlasKind kind;
   std::uint32_t resolution, rows, gutter;
-  double stretch_limit;  ///< AtlasOptions::max_stretch
+  std::uint32_t first_rows = rows;  ///< before edits added any
+  double stretch_limit;             ///< AtlasOptions::max_stretch
   std::size_t chart_count = 0, overlapping_texels = 0;
   double max_stretch = 1;
   double scale = 0;  ///< of the layout: texels per unit length

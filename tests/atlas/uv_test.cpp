@@ -30,6 +30,77 @@ TEST(Uv, UsesTheMeshesOwnCoordinates) {
   EXPECT_NEAR(uv[1], (1 - p[1]) * 200, 1e-9);
 }
 
+TEST(Uv, TexelsNeedNotBeSquare) {
+  for (const auto& [columns, rows] : {std::pair(200u, 50u), std::pair(33u, 700u)}) {
+    AtlasOptions options = kOptions;
+    options.resolution = columns, options.rows = rows;
+    const Surface surface(test::height_field(30), options);
+    ASSERT_EQ(surface.resolution(), columns);
+    ASSERT_EQ(surface.rows(), rows);
+    ASSERT_EQ(surface.texel_faces().size(), std::size_t{columns} * rows);
+    test::expect_charts(surface);
+    test::expect_owners(surface);
+    test::expect_maps(surface);
+    test::expect_samples(surface);
+    EXPECT_EQ(surface.utilisation(), 1);
+    const Vec3& p = surface.mesh().positions[surface.mesh().triangles[5][1]];
+    const Vec2 uv = surface.to_atlas(5, p);
+    EXPECT_NEAR(uv[0], p[0] * columns, 1e-9);
+    EXPECT_NEAR(uv[1], (1 - p[1]) * rows, 1e-9);
+    const auto [du, dv] = surface.texel_edges(5);
+    EXPECT_NEAR(du[0] * columns, 1, 1e-9);
+    EXPECT_NEAR(-dv[1] * rows, 1, 1e-9);
+    options.strict_uv = true;
+    EXPECT_NO_THROW(Surface(test::height_field(30), options));
+    options.gutter = std::min(columns, rows) / 4 + 1;
+    EXPECT_THROW(Surface(test::height_field(30), options), Error);
+  }
+  // A plane that is four times as wide as high: square texels without stretch.
+  Mesh plane = test::height_field(4);
+  for (Vec3& p : plane.positions) p = {4 * p[0], p[1], 0};
+  EXPECT_NEAR(Surface(plane, {.kind = AtlasKind::uv, .resolution = 400, .rows = 100}).max_stretch(), 1,
+              1e-12);
+  EXPECT_NEAR(Surface(plane, kOptions).max_stretch(), 2, 1e-12);
+}
+
+TEST(Uv, OnlyOwnCoordinatesCanHaveAnotherShape) {
+  for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
+    EXPECT_THAT([&] { Surface(test::cube(), {.kind = kind, .resolution = 64, .rows = 32}); },
+                ThrowsMessage<Error>(HasSubstr("texture coordinates")));
+    EXPECT_EQ(Surface(test::cube(), {.kind = kind, .resolution = 64, .rows = 64}).rows(), 64u);
+  }
+  EXPECT_THROW(Surface(test::height_field(4), {.kind = AtlasKind::uv, .resolution = 64, .rows = 15}), Error);
+  EXPECT_THROW((void)resolution_for(test::height_field(4), {.kind = AtlasKind::uv, .rows = 15}, 0.1), Error);
+}
+
+TEST(Uv, StoredAtlasesHaveTheirShape) {
+  const Mesh mesh = test::height_field(9);
+  AtlasOptions options = kOptions;
+  options.rows = 70;
+  const Surface surface(mesh, options);
+  const Surface restored(mesh, options, surface.stored_atlas());
+  EXPECT_EQ(restored.rows(), 70u);
+  EXPECT_TRUE(std::ranges::equal(surface.texel_faces(), restored.texel_faces()));
+  for (const std::uint32_t rows : {0u, 60u, 80u}) {
+    options.rows = rows;
+    EXPECT_THROW(Surface(mesh, options, surface.stored_atlas()), Error) << rows;
+  }
+}
+
+// An edit of a wide atlas adds rows to it.
+TEST(Uv, EditsKeepTheShape) {
+  AtlasOptions options = kOptions;
+  options.rows = 50;
+  Surface surface(test::height_field(9), options);
+  const std::vector<Triangle> copies(surface.mesh().triangles.begin(), surface.mesh().triangles.begin() + 20);
+  surface.edit({.added_faces = copies});
+  EXPECT_GT(surface.rows(), 50u);
+  test::expect_maps(surface);
+  test::expect_samples(surface);
+  const Surface restored(surface.mesh(), options, surface.stored_atlas());
+  EXPECT_EQ(restored.rows(), surface.rows());
+}
+
 TEST(Uv, StretchIsRelativeToTheScaleOfAll) {
   Mesh mesh = test::height_field(4);
   for (Vec3& p : mesh.positions) p = {2 * p[0], 0.5 * p[1], 0};

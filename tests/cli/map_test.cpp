@@ -148,6 +148,27 @@ TEST_F(MapCommand, UdimTilesHaveAMapEach) {
   EXPECT_EQ(names_in(out), kResults) << "the tiles of the earlier run are removed";
 }
 
+TEST_F(MapCommand, MapsNeedNotBeSquare) {
+  write_obj_with_uvs(o1, 1, 0);
+  const Outcome run = run_sdm(map({"--atlas", "uv", "--resolution", "200x48", "--json"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["atlas"]["resolution"], 200);
+  EXPECT_EQ(report["atlas"]["rows"], 48);
+  EXPECT_EQ(report["atlas"]["texels"], 200 * 48);
+  // Half of the diagonal of a texel, on a surface that is a little longer than its ground plane.
+  EXPECT_GT(report["error_bound"], 0.5 * std::hypot(1 / 200., 1 / 48.));
+  EXPECT_LT(report["error_bound"], 0.75 * std::hypot(1 / 200., 1 / 48.));
+  EXPECT_EQ(run_sdm(map({"--atlas", "uv", "--resolution", "48x48"})).code, 0);
+  EXPECT_EQ(run_sdm(map({"--resolution", "64x64", "--write", "none"})).code, 0);
+  for (const char* bad : {"200x", "x48", "200x8", "200x48x3", "200*48", "-200x48", "40000x48", "1e2"})
+    EXPECT_EQ(run_sdm(map({"--atlas", "uv", "--resolution", bad})).code, 2) << bad;
+  const Outcome charts = run_sdm(map({"--resolution", "200x48"}));
+  EXPECT_EQ(charts.code, 2);
+  EXPECT_THAT(charts.err, HasSubstr("needs --atlas uv"));
+  EXPECT_EQ(run_sdm({"sequence", o1, o2, "-o", out, "--resolution", "200x48"}).code, 2);
+}
+
 TEST_F(MapCommand, TextureCoordinatesAreWrapped) {
   write_obj_with_uvs(o1, 1, 2.3125);  // 296 texels: the same samples
   const Outcome run = run_sdm(map({"--atlas", "uv", "--json"}));

@@ -54,8 +54,8 @@ const Scene kScenes[] = {
     {"corner_tris_with_hole.off", "fit", "cross.off", "fit,scale:0.001", 128},
 };
 
-void expect_agreement(const Mesh& o1, const Mesh& o2, std::uint32_t resolution) {
-  const Surface surface(o1, {.resolution = resolution});
+void expect_agreement(const Mesh& o1, const Mesh& o2, const AtlasOptions& atlas) {
+  const Surface surface(o1, atlas);
   const Sites sites(o2);
   const double tolerance = 1e-6 * test::scene_diagonal(o1, o2);
   ASSERT_GT(surface.sample_texels().size(), 100u);
@@ -85,7 +85,8 @@ class Exactness : public testing::TestWithParam<Scene> {};
 
 TEST_P(Exactness, EveryTexelAgreesWithCgal) {
   const Scene& scene = GetParam();
-  expect_agreement(test::load(scene.o1, scene.steps1), test::load(scene.o2, scene.steps2), scene.resolution);
+  expect_agreement(test::load(scene.o1, scene.steps1), test::load(scene.o2, scene.steps2),
+                   {.resolution = scene.resolution});
 }
 
 std::string scene_name(const testing::TestParamInfo<Scene>& info) {
@@ -117,8 +118,17 @@ TEST(Exactness, MeshWithDefects) {
   ASSERT_GT(info.degenerate_faces, 0u);
   ASSERT_GT(info.duplicate_faces, 0u);
   ASSERT_FALSE(info.oriented);
-  expect_agreement(test::load("head.off", "fit"), mesh, 256);
-  expect_agreement(mesh, test::load("head.off", "fit"), 512);  // flipped faces make many charts
+  expect_agreement(test::load("head.off", "fit"), mesh, {.resolution = 256});
+  expect_agreement(mesh, test::load("head.off", "fit"),
+                   {.resolution = 512});  // flipped faces make many charts
+}
+
+// Texels that are longer one way on the surface.
+TEST(Exactness, MapsThatAreNotSquare) {
+  const Mesh mesh = test::with_own_uvs(test::load("blobby.off", "fit"));
+  const Mesh other = test::load("bear_bis.off", "fit");
+  for (const auto& [columns, rows] : {std::pair(640u, 90u), std::pair(61u, 515u)})
+    expect_agreement(mesh, other, {.kind = AtlasKind::uv, .resolution = columns, .rows = rows});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "support/map_checks.h"
 #include "support/meshes.h"
 #include "support/points.h"
+#include "support/shapes.h"
 
 namespace sdm {
 namespace {
@@ -41,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Clips, Deforming, testing::Values(GlClip::planes, GlCli
 
 TEST_P(Deforming, EveryTexelOfEveryFrameMatchesTheReference) {
   // With coordinates of its own, a surface built from a frame has the texels of one that was refitted to it.
-  Mesh o1 = test::with_uvs(test::load("head.off", "fit"), 128);
+  Mesh o1 = test::with_own_uvs(test::load("head.off", "fit"), 128);
   Mesh o2 = test::load("elephant.off", "fit");
   const std::vector<Vec3> rest1 = o1.positions, rest2 = o2.positions;
   const AtlasOptions atlas{.kind = AtlasKind::uv, .resolution = 128};

@@ -15,7 +15,7 @@ namespace {
 using test::gl_map;
 
 TEST(GlEngine, RigidMotionOfBothPreservesDistances) {
-  const Mesh o1 = test::with_uvs(test::load("head.off", "fit"), 256);
+  const Mesh o1 = test::with_own_uvs(test::load("head.off", "fit"), 256);
   const Mesh o2 = test::load("elephant.off", "fit");
   const AtlasOptions atlas{.kind = AtlasKind::uv, .resolution = 256};
   const Surface here(o1, atlas);

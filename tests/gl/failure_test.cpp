@@ -56,20 +56,6 @@ TEST_F(GlErrors, InvalidMaximumDistance) {
                  Error);
 }
 
-TEST_F(GlErrors, AtlasesWithAddedRows) {
-  Surface tall(test::cube(), {.resolution = 32});
-  const std::vector<Triangle> copies(tall.mesh().triangles.begin(), tall.mesh().triangles.end());
-  tall.edit({.added_faces = copies});
-  ASSERT_GT(tall.rows(), tall.resolution());
-  EXPECT_EQ(error_of([&] { return test::gl_map(tall, sites, GlOptions{}); }),
-            "the gl engine draws square maps only, and edits have added rows to this atlas: choose the cpu "
-            "engine, or lay out the edited mesh anew");
-  // An edit that adds none is no obstacle.
-  Surface edited(test::cube(), {.resolution = 32});
-  edited.edit({.removed_faces = {1}});
-  EXPECT_EQ(error_of([&] { return test::gl_map(edited, sites, GlOptions{}); }), "");
-}
-
 TEST_F(GlErrors, MapLargerThanTheTexturesOfTheDevice) {
   // One small triangle, in coordinates of its own, keeps the work small. The table of texels needs 1 GB; the
   // map would need 5 more, so only the engine is called.

@@ -39,7 +39,7 @@ TEST(GridSlice, ContainsTheClosestFaces) {
         add_polygon(batch, region, oriented_box(region, 4, 1e-5), domain, {1e-5, 0.125});
       });
     ASSERT_GT(batch.size(), 100u);
-    Rasteriser rasteriser(device, kSide, WholeImage{});
+    Rasteriser rasteriser(device, {kSide, kSide}, WholeImage{});
     rasteriser.draw(batch);
     const std::vector<std::uint32_t> faces = rasteriser.read_back().winners;
     GlReport report;

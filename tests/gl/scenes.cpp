@@ -158,9 +158,19 @@ const std::vector<Scene> kScenes{
      {.kind = AtlasKind::triangles, .resolution = 512},
      true},
     {"OwnCoordinates",
-     [] { return with_uvs(load("head.off", "fit"), 256); },
+     [] { return with_own_uvs(load("head.off", "fit"), 256); },
      file("elephant.off"),
      {.kind = AtlasKind::uv, .resolution = 512},
+     true},
+    {"WideTexture",
+     [] { return with_own_uvs(load("head.off", "fit"), 256); },
+     file("elephant.off"),
+     {.kind = AtlasKind::uv, .resolution = 700, .rows = 150},
+     true},
+    {"HighTexture",
+     [] { return with_own_uvs(load("head.off", "fit"), 256); },
+     file("elephant.off"),
+     {.kind = AtlasKind::uv, .resolution = 90, .rows = 800},
      true},
 };
 
@@ -180,18 +190,6 @@ std::string scene_name(const testing::TestParamInfo<Scene>& info) {
 
 void PrintTo(const Scene& scene, std::ostream* out) {
   *out << scene.name;
-}
-
-Mesh with_uvs(Mesh mesh, std::uint32_t resolution) {
-  const Surface charts(mesh, {.resolution = resolution});
-  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-    auto& corners = mesh.corner_uvs.emplace_back();
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 texel = charts.to_atlas(f, mesh.positions[mesh.triangles[f][k]]);
-      corners[k] = {texel[0] / resolution, 1 - texel[1] / resolution};
-    }
-  }
-  return mesh;
 }
 
 }  // namespace sdm::test

@@ -22,8 +22,4 @@ struct Scene {
 [[nodiscard]] std::string scene_name(const testing::TestParamInfo<Scene>& info);
 void PrintTo(const Scene& scene, std::ostream* out);
 
-/// The mesh with texture coordinates of its own, laid out as an atlas of charts: the same texels in the same
-/// places wherever the mesh is moved to.
-[[nodiscard]] Mesh with_uvs(Mesh mesh, std::uint32_t resolution);
-
 }  // namespace sdm::test

@@ -72,5 +72,43 @@ TEST_F(TallAtlas, TheModelsCoordinatesReferToAllRows) {
   EXPECT_EQ(triangles, surface.mesh().triangles.size() - 1);  // but for the removed one
 }
 
+// Texture coordinates of the file are those of the mesh, and all files have the shape.
+TEST(WideAtlas, FilesHaveItsShape) {
+  const TemporaryFolder folder;
+  const Mesh mesh = height_field(6);
+  const Surface surface(mesh, {.kind = AtlasKind::uv, .resolution = 200, .rows = 48});
+  const Field field = [](const Vec3& p) { return p[0]; };
+  const DistanceMap map = map_of(surface, field);
+  write_exr(folder / "map.exr", surface, map);
+  const auto window = Imf::InputFile((folder / "map.exr").c_str()).header().dataWindow();
+  EXPECT_EQ(window.max, Imath::V2i(199, 47));
+  write_voronoi_png(folder / "voronoi.png", surface, map);
+  EXPECT_EQ(read_png(folder / "voronoi.png").width, 200u);
+  EXPECT_EQ(read_png(folder / "voronoi.png").height, 48u);
+  write_voronoi_png(folder / "voronoi.png", surface, map, {.largest = 100});
+  EXPECT_EQ(read_png(folder / "voronoi.png").width, 100u);
+  EXPECT_EQ(read_png(folder / "voronoi.png").height, 24u);
+  write_glb(folder / "model.glb", surface, map, at_vertices(mesh, field));
+  tinygltf::Model model;
+  std::string error, warning;
+  ASSERT_TRUE(
+      tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, (folder / "model.glb").string()));
+  EXPECT_EQ(model.images.at(0).width, 200);
+  EXPECT_EQ(model.images.at(0).height, 48);
+  const auto floats = [&](const char* name) {
+    const auto& accessor = model.accessors[model.meshes[0].primitives[0].attributes.at(name)];
+    const auto& view = model.bufferViews[accessor.bufferView];
+    return reinterpret_cast<const float*>(model.buffers[0].data.data() + view.byteOffset +
+                                          accessor.byteOffset);
+  };
+  const float *place = floats("TEXCOORD_0"), *position = floats("POSITION");
+  const std::size_t count = model.accessors[model.meshes[0].primitives[0].attributes.at("POSITION")].count;
+  ASSERT_GE(count, mesh.positions.size());
+  for (std::size_t i = 0; i < count; ++i) {  // the ground plane of the height field
+    EXPECT_NEAR(place[2 * i], position[3 * i], 1e-6);
+    EXPECT_NEAR(place[2 * i + 1], 1 - position[3 * i + 1], 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace sdm::test

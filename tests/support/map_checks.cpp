@@ -41,7 +41,7 @@ double distance_to_site(const Sites& sites, SiteType type, std::uint32_t site, c
 
 void expect_map(const Surface& surface, const Sites& sites, const DistanceMap& map,
                 const std::vector<double>& expected, double tolerance) {
-  const std::size_t texels = std::size_t{surface.resolution()} * surface.resolution();
+  const std::size_t texels = std::size_t{surface.resolution()} * surface.rows();
   ASSERT_EQ(map.resolution, surface.resolution());
   ASSERT_EQ(map.distance.size(), texels);
   ASSERT_EQ(map.vector.size(), texels);

@@ -225,6 +225,18 @@ std::vector<Shape> with_atlases(std::span<const Mesh> meshes, std::uint32_t reso
   return shapes;
 }
 
+Mesh with_own_uvs(Mesh mesh, std::uint32_t resolution) {
+  const Surface charts(mesh, {.resolution = resolution});
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    auto& corners = mesh.corner_uvs.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 texel = charts.to_atlas(f, mesh.positions[mesh.triangles[f][k]]);
+      corners[k] = {texel[0] / resolution, 1 - texel[1] / resolution};
+    }
+  }
+  return mesh;
+}
+
 Mesh joined(const Mesh& a, const Mesh& b) {
   Mesh mesh = a;
   const auto offset = static_cast<std::uint32_t>(a.positions.size());

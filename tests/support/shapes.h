@@ -55,6 +55,9 @@ namespace sdm::test {
 
 // Meshes from meshes.
 
+/// The mesh with texture coordinates of its own, laid out as an atlas of charts: the same texels in the same
+/// places wherever the mesh is moved to.
+[[nodiscard]] Mesh with_own_uvs(Mesh mesh, std::uint32_t resolution = 256);
 /// The vertices and faces of both, without texture coordinates.
 [[nodiscard]] Mesh joined(const Mesh& a, const Mesh& b);
 [[nodiscard]] Mesh moved(Mesh mesh, const Vec3& by);

@@ -82,6 +82,16 @@ TEST(SamplingBound, LargeFaces) {
   expect_bound(Surface(test::cube(), {.kind = AtlasKind::triangles, .resolution = 64}), 2);
 }
 
+// Texels eight times as long one way as the other, and faces smaller than these.
+TEST(SamplingBound, TexelsThatAreNotSquare) {
+  for (const char* name : {"cow.off", "knot2.off"})
+    for (const auto& [columns, rows] : {std::pair(1024u, 128u), std::pair(128u, 1024u)}) {
+      SCOPED_TRACE(name);
+      const AtlasOptions options{.kind = AtlasKind::uv, .resolution = columns, .rows = rows};
+      expect_bound(Surface(test::with_own_uvs(test::load(name, "fit")), options), 4);
+    }
+}
+
 TEST(SamplingBound, FacesSmallerThanTexels) {
   expect_bound(Surface(test::load("armadillo.off", "fit"), {.resolution = 256}), 4);
   expect_bound(Surface(test::load("knot2.off", "fit"), {.resolution = 64}), 4);

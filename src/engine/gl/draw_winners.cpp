@@ -123,7 +123,7 @@ RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlR
       gl.clip == GlClip::planes
           ? Ownership(OwnerTable{surface.texel_faces()})
           : Ownership(StencilValues{tiles.face_offsets, tiles.texels, gl.stencil_values, corners});
-  Rasteriser rasteriser(device, surface.resolution(), owned, corrections);
+  Rasteriser rasteriser(device, {surface.resolution(), surface.rows()}, owned, corrections);
   PairStream stream(index, tree, reach, rules, rasteriser, report.time_ms);
   report.time_ms.draw = watch.lap();
 

@@ -142,10 +142,6 @@ class GlEngine final : public Engine {
 
 void GlEngine::map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
                    const engine::SampleSink& sink) const {
-  if (surface.rows() != surface.resolution())
-    throw Error(
-        "the gl engine draws square maps only, and edits have added rows to this atlas: choose the cpu "
-        "engine, or lay out the edited mesh anew");
   GlReport report;
   const RasterWinners winners = with_device(options_.device, [&](const RasterDevice& device, double ms) {
     report.device = device.context().device();
@@ -190,7 +186,7 @@ std::shared_ptr<const Engine> make_gl_engine(const GlOptions& options, const Cor
 GlDevice gl_device(const GlOptions& options, std::uint32_t resolution) {
   gl::check(options);
   return gl::with_device(options.device, [&](const gl::RasterDevice& device, double) {
-    gl::Rasteriser::check_size(device.context(), resolution);
+    gl::Rasteriser::check_size(device.context(), {resolution, resolution});
     return device.context().device();
   });
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "atlas/size_text.h"
 #include "core/memory.h"
 #include "engine/gl/device/gl_objects.h"
 #include "engine/gl/device/program.h"
@@ -22,15 +23,15 @@ constexpr std::size_t kPiece = 1 << 16;  // polygons per piece of a batch
 constexpr std::size_t kCounters = 1024;  // fragment counters, one per piece
 
 // An upper bound on a polygon's fragments: the texels of its bounding rectangle, within the image.
-double fragment_bound(std::span<const RasterCorner> corners, std::uint32_t resolution) {
+double fragment_bound(std::span<const RasterCorner> corners, const ImageSize& size) {
   float lo[2] = {corners[0].u, corners[0].v}, hi[2] = {corners[0].u, corners[0].v};
   for (const RasterCorner& c : corners) {
     lo[0] = std::min(lo[0], c.u), hi[0] = std::max(hi[0], c.u);
     lo[1] = std::min(lo[1], c.v), hi[1] = std::max(hi[1], c.v);
   }
-  const auto side = static_cast<float>(resolution);
+  const std::array side{static_cast<float>(size.columns), static_cast<float>(size.rows)};
   const auto extent = [&](int k) {
-    return std::max(std::min(hi[k], side) - std::max(lo[k], 0.0f), 0.0f) + 1.0;
+    return std::max(std::min(hi[k], side[k]) - std::max(lo[k], 0.0f), 0.0f) + 1.0;
   };
   return extent(0) * extent(1);
 }
@@ -51,17 +52,17 @@ const void* offset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
 }
 
-// Reads all texels of a square texture, in bands of rows: OpenGL counts bytes with 31 bits.
+// Reads all texels of a texture, in bands of rows: OpenGL counts bytes with 31 bits.
 template <class T>
-void read(GLuint texture, std::uint32_t resolution, GLenum format, GLenum type, std::vector<T>& out) {
-  out.resize(std::size_t{resolution} * resolution);
-  const auto side = static_cast<GLsizei>(resolution);
-  const GLsizei rows = std::max(1, (1 << 30) / static_cast<GLsizei>(sizeof(T)) / side);
-  for (GLsizei row = 0; row < side; row += rows) {
-    const GLsizei count = std::min(rows, side - row);
-    glGetTextureSubImage(texture, 0, 0, row, 0, side, count, 1, format, type,
-                         count * side * static_cast<GLsizei>(sizeof(T)),
-                         out.data() + static_cast<std::size_t>(row) * resolution);
+void read(GLuint texture, const ImageSize& size, GLenum format, GLenum type, std::vector<T>& out) {
+  out.resize(size.texels());
+  const auto columns = static_cast<GLsizei>(size.columns), rows = static_cast<GLsizei>(size.rows);
+  const GLsizei band = std::max(1, (1 << 30) / static_cast<GLsizei>(sizeof(T)) / columns);
+  for (GLsizei row = 0; row < rows; row += band) {
+    const GLsizei count = std::min(band, rows - row);
+    glGetTextureSubImage(texture, 0, 0, row, 0, columns, count, 1, format, type,
+                         count * columns * static_cast<GLsizei>(sizeof(T)),
+                         out.data() + static_cast<std::size_t>(row) * size.columns);
   }
 }
 
@@ -91,7 +92,7 @@ RasterDevice::~RasterDevice() {
 
 struct Rasteriser::Impl {
   const RasterDevice& device;
-  std::uint32_t resolution;
+  ImageSize size;
   Corrections corrections;
   bool by_owner;
   std::optional<StencilValues> stencil;
@@ -110,7 +111,7 @@ struct Rasteriser::Impl {
   std::vector<std::uint32_t> order;
   Fence last;  // after the previous draw()
 
-  Impl(const RasterDevice& d, std::uint32_t n, const Ownership& owned, const Corrections& c);
+  Impl(const RasterDevice& d, const ImageSize& s, const Ownership& owned, const Corrections& c);
 
   void make_target();
   void make_inputs(const Ownership& owned);
@@ -126,8 +127,9 @@ struct Rasteriser::Impl {
   void collect_counters();
 };
 
-Rasteriser::Impl::Impl(const RasterDevice& d, std::uint32_t n, const Ownership& owned, const Corrections& c)
-    : device(d), resolution(n), corrections(c), by_owner(std::holds_alternative<OwnerTable>(owned)) {
+Rasteriser::Impl::Impl(const RasterDevice& d, const ImageSize& s, const Ownership& owned,
+                       const Corrections& c)
+    : device(d), size(s), corrections(c), by_owner(std::holds_alternative<OwnerTable>(owned)) {
   if (const StencilValues* values = std::get_if<StencilValues>(&owned)) {
     stencil = *values;
     cache.emplace(values->values);
@@ -142,31 +144,32 @@ Rasteriser::Impl::Impl(const RasterDevice& d, std::uint32_t n, const Ownership& 
 }
 
 void Rasteriser::Impl::make_target() {
-  check_size(device.context(), resolution);
-  const auto side = static_cast<GLsizei>(resolution);
-  glTextureStorage2D(winners, 1, GL_R32UI, side, side);
-  glTextureStorage2D(depth, 1, GL_DEPTH32F_STENCIL8, side, side);
+  check_size(device.context(), size);
+  const auto columns = static_cast<GLsizei>(size.columns), rows = static_cast<GLsizei>(size.rows);
+  glTextureStorage2D(winners, 1, GL_R32UI, columns, rows);
+  glTextureStorage2D(depth, 1, GL_DEPTH32F_STENCIL8, columns, rows);
   glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT0, winners, 0);
   if (!corrections.confirmation) {
-    glTextureStorage2D(vectors, 1, GL_RGBA32F, side, side);
+    glTextureStorage2D(vectors, 1, GL_RGBA32F, columns, rows);
     glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT1, vectors, 0);
     const std::array<GLenum, 2> both{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     glNamedFramebufferDrawBuffers(target, 2, both.data());
   }
   glNamedFramebufferTexture(target, GL_DEPTH_STENCIL_ATTACHMENT, depth, 0);
-  device.context().check("allocating a map of " + std::to_string(resolution) + "² texels");
+  device.context().check("allocating a map of " + atlas::size_text(size.columns, size.rows) + " texels");
   if (glCheckNamedFramebufferStatus(target, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     throw Error(device.context().device().name +
                 " cannot draw into a 32-bit depth buffer with stencil; use another device or engine");
 }
 
 void Rasteriser::Impl::make_inputs(const Ownership& owned) {
-  const auto side = static_cast<GLsizei>(resolution);
+  const auto columns = static_cast<GLsizei>(size.columns), rows = static_cast<GLsizei>(size.rows);
   if (const OwnerTable* table = std::get_if<OwnerTable>(&owned)) {
-    glTextureStorage2D(owners, 1, GL_R32UI, side, side);
+    glTextureStorage2D(owners, 1, GL_R32UI, columns, rows);
     for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})  // integers cannot be blended
       glTextureParameteri(owners, filter, GL_NEAREST);
-    glTextureSubImage2D(owners, 0, 0, 0, side, side, GL_RED_INTEGER, GL_UNSIGNED_INT, table->owners.data());
+    glTextureSubImage2D(owners, 0, 0, 0, columns, rows, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                        table->owners.data());
   }
   if (stencil) {
     upload(stencil_texels, stencil->texels);
@@ -207,7 +210,8 @@ void Rasteriser::Impl::make_scissors() {
     GLint lo[2] = {0, 0}, hi[2] = {-1, -1};
     for (std::uint32_t i = stencil->offsets[d]; i < stencil->offsets[d + 1]; ++i) {
       const std::uint32_t texel = stencil->texels[i];
-      const GLint at[2] = {static_cast<GLint>(texel % resolution), static_cast<GLint>(texel / resolution)};
+      const GLint at[2] = {static_cast<GLint>(texel % size.columns),
+                           static_cast<GLint>(texel / size.columns)};
       const bool first = i == stencil->offsets[d];
       for (int k = 0; k < 2; ++k) {
         lo[k] = first ? at[k] : std::min(lo[k], at[k]);
@@ -220,17 +224,17 @@ void Rasteriser::Impl::make_scissors() {
 
 // Sets the state that no draw changes. The context and the programs are shared with other rasterisers.
 void Rasteriser::Impl::begin() {
-  const float width = static_cast<float>(resolution);
+  const auto columns = static_cast<float>(size.columns), rows = static_cast<float>(size.rows);
   const Program& program = device.programs_->polygons;
-  glProgramUniform1f(program.id(), program.uniform("resolution"), width);
+  glProgramUniform2f(program.id(), program.uniform("size"), columns, rows);
   glProgramUniform1i(program.id(), program.uniform("polygons"), 0);
   glProgramUniform1i(program.id(), program.uniform("owner"), 1);
   glProgramUniform1i(program.id(), program.uniform("by_owner"), by_owner);
   glProgramUniform1i(program.id(), program.uniform("interpolate"), !corrections.fragment_vectors);
   for (const Program* stencils : {&device.programs_->points, &device.programs_->triangles})
-    glProgramUniform1f(stencils->id(), stencils->uniform("resolution"), width);
+    glProgramUniform2f(stencils->id(), stencils->uniform("size"), columns, rows);
   glBindFramebuffer(GL_FRAMEBUFFER, target);
-  glViewport(0, 0, static_cast<GLsizei>(resolution), static_cast<GLsizei>(resolution));
+  glViewport(0, 0, static_cast<GLsizei>(size.columns), static_cast<GLsizei>(size.rows));
   glDisable(GL_SCISSOR_TEST);
   stencil ? glEnable(GL_STENCIL_TEST) : glDisable(GL_STENCIL_TEST);
   glDisable(GL_BLEND);
@@ -371,22 +375,21 @@ void Rasteriser::Impl::collect_counters() {
   counters_used = 0;
 }
 
-Rasteriser::Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned,
+Rasteriser::Rasteriser(const RasterDevice& device, const ImageSize& size, const Ownership& owned,
                        const Corrections& corrections) {
   // The copy that is read back; on a software device, also the image and its owners.
-  const std::size_t texels = std::size_t{resolution} * resolution;
   const std::size_t copies = device.context().device().software ? 24 : 8;
-  require_memory((corrections.confirmation ? copies : 3 * copies) * texels,
-                 "a map of " + std::to_string(resolution) + "² texels");
-  impl_ = std::make_unique<Impl>(device, resolution, owned, corrections);
+  require_memory((corrections.confirmation ? copies : 3 * copies) * size.texels(),
+                 "a map of " + atlas::size_text(size.columns, size.rows) + " texels");
+  impl_ = std::make_unique<Impl>(device, size, owned, corrections);
 }
 
 Rasteriser::~Rasteriser() = default;
 
-void Rasteriser::check_size(const Context& context, std::uint32_t resolution) {
+void Rasteriser::check_size(const Context& context, const ImageSize& size) {
   const int largest = context.max_image_size();
-  if (resolution > static_cast<std::uint32_t>(largest))
-    throw Error("a map of " + std::to_string(resolution) + "² texels is too large for " +
+  if (std::max(size.columns, size.rows) > static_cast<std::uint32_t>(largest))
+    throw Error("a map of " + atlas::size_text(size.columns, size.rows) + " texels is too large for " +
                 context.device().name + ", whose images have at most " + std::to_string(largest) +
                 "²; use a lower resolution or another engine");
 }
@@ -400,7 +403,7 @@ void Rasteriser::draw(const RasterBatch& batch) {
     double bound = 0;
     std::size_t end = begin;
     while (end < batch.size() && end - begin < impl_->piece_limit) {
-      bound += fragment_bound(corners_of(batch, end), impl_->resolution);
+      bound += fragment_bound(corners_of(batch, end), impl_->size);
       if (end > begin && bound > kMostFragments) break;
       ++end;
     }
@@ -412,10 +415,9 @@ void Rasteriser::draw(const RasterBatch& batch) {
 
 RasterImage Rasteriser::read_back() {
   RasterImage image;
-  read(impl_->winners, impl_->resolution, GL_RED_INTEGER, GL_UNSIGNED_INT, image.winners);
-  if (!impl_->corrections.confirmation)
-    read(impl_->vectors, impl_->resolution, GL_RGBA, GL_FLOAT, image.vectors);
-  read(impl_->depth, impl_->resolution, GL_DEPTH_COMPONENT, GL_FLOAT, image.depths);
+  read(impl_->winners, impl_->size, GL_RED_INTEGER, GL_UNSIGNED_INT, image.winners);
+  if (!impl_->corrections.confirmation) read(impl_->vectors, impl_->size, GL_RGBA, GL_FLOAT, image.vectors);
+  read(impl_->depth, impl_->size, GL_DEPTH_COMPONENT, GL_FLOAT, image.depths);
   impl_->device.context().check("reading the map back");
   return image;
 }

@@ -15,6 +15,13 @@
 
 namespace sdm::gl {
 
+/// Of an image, in texels.
+struct ImageSize {
+  std::uint32_t columns, rows;
+
+  [[nodiscard]] std::size_t texels() const { return std::size_t{columns} * rows; }
+};
+
 /// Which texels a domain's polygons may cover. Domains that share an image own disjoint texels.
 struct WholeImage {};  ///< a single domain that owns all texels
 struct OwnerTable {
@@ -51,18 +58,18 @@ class RasterDevice {
   std::unique_ptr<Programs> programs_;
 };
 
-/// A square image on a device: depth and stencil, and the closest site's face. The device's context must be
+/// An image on a device: depth and stencil, and the closest site's face. The device's context must be
 /// current for its whole lifetime.
 class Rasteriser {
  public:
   /// Clears all texels to infinite distance. `owned` must outlive it. Throws sdm::Error if the device cannot
   /// allocate the image.
-  Rasteriser(const RasterDevice& device, std::uint32_t resolution, const Ownership& owned,
+  Rasteriser(const RasterDevice& device, const ImageSize& size, const Ownership& owned,
              const Corrections& corrections = {});
   ~Rasteriser();
 
-  /// Throws sdm::Error if the resolution exceeds the device's largest image.
-  static void check_size(const Context& context, std::uint32_t resolution);
+  /// Throws sdm::Error if a side exceeds that of the device's largest image.
+  static void check_size(const Context& context, const ImageSize& size);
 
   /// Draws each domain's polygons in the order of the batch. On return the device may still be drawing this
   /// batch, but has finished the previous one. Throws sdm::Error.

@@ -1,5 +1,6 @@
 #include "engine/gl/tile_tree.h"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -31,7 +32,8 @@ TileTree::TileTree(const Surface& surface, std::uint32_t side)
 
 const TileTree& TileTreeCache::of(const Surface& surface) {
   std::erase_if(trees_, [](const auto& entry) { return entry.first.expired(); });
-  const std::uint32_t side = whole_faces_ ? surface.resolution() : surface::Tiles::kSide;
+  const std::uint32_t side =
+      whole_faces_ ? std::max(surface.resolution(), surface.rows()) : surface::Tiles::kSide;
   return trees_.try_emplace(internals(surface).identity, surface, side).first->second;
 }
 

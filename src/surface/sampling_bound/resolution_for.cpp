@@ -56,6 +56,8 @@ std::uint32_t resolution_for(const Mesh& mesh, const AtlasOptions& options, doub
   if (!(precision > 0 && std::isfinite(precision)))
     throw Error("a precision of " + std::to_string(precision) +
                 " is out of range; use a length above 0 in the units of the mesh");
+  if (options.rows != 0)
+    throw Error("a resolution for a precision is that of a square atlas; omit the number of rows");
   validate(mesh);
   // Typical of most atlases: seven tenths of the texels are owned, and points beside seams are a third
   // farther from a sample than the corners of squares.
