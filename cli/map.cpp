@@ -11,6 +11,7 @@
 #include "progress_line.h"
 #include "report.h"
 #include "stopwatch.h"
+#include "tile_totals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,45 +74,55 @@ sdm::AtlasOptions atlas_options(const MapCommand& command, const sdm::Mesh& mesh
   return options;
 }
 
+/// The map of a mesh, or of a part of it, and what it takes to write it.
+struct Computed {
+  Result result;
+  std::unique_ptr<sdm::Surface> surface;
+  std::vector<float> at_vertices;
+  sdm::DistanceMap map;
+  double ms = 0;
+};
+
 /// One scale of colours and grey values for all tiles, unless it is given: that of their distances together.
-/// Computes the maps, which are not kept, as they may need more memory than there is.
-void share_scale(const MapCommand& command, const std::vector<AtlasPart>& parts, const sdm::Mesh& to,
-                 sdm::PictureOptions& picture) {
-  if (picture.range) return;
-  const sdm::Sites sites(to);
-  float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-  for (const AtlasPart& part : parts) {
-    const sdm::Surface surface(*part.mesh, atlas_options(command, *part.mesh));
-    for (const float d : sdm::compute_map(surface, sites, command.map).distance)
-      if (std::isfinite(d)) lo = std::min(lo, d), hi = std::max(hi, d);
+class SharedScale {
+ public:
+  void add(const sdm::DistanceMap& map) {
+    for (const float d : map.distance)
+      if (std::isfinite(d)) lo_ = std::min(lo_, d), hi_ = std::max(hi_, d);
   }
-  if (!(lo < hi)) return;
-  if (const auto& tolerance = picture.tolerance; tolerance && picture.colormap == sdm::Colormap::automatic) {
-    picture.range = {std::min<double>(lo, tolerance->lo), std::max<double>(hi, tolerance->hi)};
-  } else {
+  void set(sdm::PictureOptions& picture) const {
+    if (!(lo_ < hi_)) return;
+    if (const auto& tolerance = picture.tolerance;
+        tolerance && picture.colormap == sdm::Colormap::automatic) {
+      picture.range = {std::min<double>(lo_, tolerance->lo), std::max<double>(hi_, tolerance->hi)};
+      return;
+    }
     if (picture.colormap == sdm::Colormap::automatic)
-      picture.colormap = lo < 0 && hi > 0 ? sdm::Colormap::diverging : sdm::Colormap::viridis;
-    const double most = std::max(std::abs(lo), std::abs(hi));
+      picture.colormap = lo_ < 0 && hi_ > 0 ? sdm::Colormap::diverging : sdm::Colormap::viridis;
+    const double most = std::max(std::abs(lo_), std::abs(hi_));
     if (picture.colormap == sdm::Colormap::diverging)
       picture.range = {-most, most};
     else
-      picture.range = {double{lo}, double{hi}};
+      picture.range = {double{lo_}, double{hi_}};
   }
-}
 
-/// Computes the map on `on`, or a part of it, of the distances to `to`, and writes all files of it into
-/// `folder`. `sites`: of `to`; built if it is null. `aligned`: how O1 was, if it was.
-Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart& part,
-               std::unique_ptr<sdm::Sites>& sites, const std::optional<AlignOutcome>& aligned,
-               double import_ms, const std::filesystem::path& folder, ProgressLine& progress) {
+ private:
+  float lo_ = std::numeric_limits<float>::infinity(), hi_ = -lo_;
+};
+
+/// Computes the map on `on`, or a part of it, of the distances to `to`. `sites`: of `to`; built if it is
+/// null.
+Computed compute(const MapCommand& command, Input& on, Input& to, const AtlasPart& part,
+                 std::unique_ptr<sdm::Sites>& sites, double import_ms) {
   const sdm::Mesh& mesh = part.mesh ? *part.mesh : on.mesh;
   Stopwatch total;
-  Result result;
-  Outcome& outcome = result.outcome;
+  Computed computed;
+  std::unique_ptr<sdm::Surface>& surface = computed.surface;
+  std::vector<float>& at_vertices = computed.at_vertices;
+  sdm::DistanceMap& map = computed.map;
+  Outcome& outcome = computed.result.outcome;
   outcome.time.import = import_ms;
 
-  std::unique_ptr<sdm::Surface> surface;
-  std::vector<float> at_vertices;
   sdm::run_concurrently({
       [&] {
         Stopwatch watch;
@@ -141,7 +152,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
         to.file, tolerance->lo, tolerance->hi, sdm::choose_sign(*sites, command.map.sign).reason));
 
   Stopwatch map_watch;
-  const sdm::DistanceMap map = sdm::compute_map(*surface, *sites, command.map);
+  map = sdm::compute_map(*surface, *sites, command.map);
   outcome.time.map = map_watch.lap();
   outcome.sign = map.sign;
   outcome.beyond_max_distance = map.beyond_max_distance;
@@ -150,7 +161,19 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   outcome.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), on.mesh, to.mesh);
   outcome.extremes = sdm::extremes(*surface, map, at_vertices);
   outcome.raster = sdm::gl_report(*command.map.engine);
+  computed.ms = total.lap();
+  return computed;
+}
 
+/// Writes all files of a map into `folder`, and adds its numbers and its report. `aligned`: how O1 was, if it
+/// was.
+void write_results(const MapCommand& command, Input& on, Input& to, const AtlasPart& part,
+                   const sdm::Sites* sites, const std::optional<AlignOutcome>& aligned,
+                   const std::filesystem::path& folder, ProgressLine& progress, Computed& computed) {
+  const std::unique_ptr<sdm::Surface>& surface = computed.surface;
+  const std::vector<float>& at_vertices = computed.at_vertices;
+  const sdm::DistanceMap& map = computed.map;
+  Outcome& outcome = computed.result.outcome;
   progress.step("export");
   Stopwatch export_watch;
   std::vector<std::uint8_t> boundary;
@@ -160,7 +183,7 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
   }
   const sdm::ExrOptions exr{.layers = command.layers,
                             .boundary = boundary,
-                            .sites = sites.get(),
+                            .sites = sites,
                             .attributes = exr_attributes(on, to, map.sign, command.picture.units)};
   sdm::PictureOptions picture = command.picture;
   if (std::isfinite(outcome.accuracy)) picture.accuracy = outcome.accuracy;
@@ -193,11 +216,11 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
                     texels));
   if (aligned) std::ranges::copy(notes(*aligned), std::back_inserter(outcome.notes));
   outcome.time.output = export_watch.lap();
-  outcome.time.total = import_ms + total.lap();
+  outcome.time.total = outcome.time.import + computed.ms + outcome.time.output;
 
   const Input& o1 = on.role == "o1" ? on : to;
   const Input& o2 = on.role == "o1" ? to : on;
-  nlohmann::ordered_json& report = result.report;
+  nlohmann::ordered_json& report = computed.result.report;
   report["version"] = sdm::kVersion;
   report["o1"] = to_json(o1);
   report["o2"] = to_json(o2);
@@ -218,7 +241,6 @@ Result measure(const MapCommand& command, Input& on, Input& to, const AtlasPart&
     sdm::write_html(folder / "report.html", *surface, map, at_vertices, text,
                     {.other = &to.mesh, .up = command.picture.up});
   write_text(folder / "report.json", text);
-  return result;
 }
 
 constexpr const char* kAlignmentFile = "alignment.json";
@@ -246,32 +268,80 @@ struct MeshResults {
   std::string role;
   std::vector<AtlasPart> parts;
   std::vector<Result> results;  ///< of each part
+  std::optional<Result> total;  ///< of several tiles
 
-  /// A report, or an object of the reports of the tiles.
+  [[nodiscard]] bool is_tiled() const { return parts.front().udim.has_value(); }
+  /// Of the whole mesh.
+  [[nodiscard]] Result& whole() { return total ? *total : results.front(); }
+  [[nodiscard]] const Result& whole() const { return total ? *total : results.front(); }
+  /// A report, or an object of the reports of the tiles and of all of them, `total`.
   [[nodiscard]] nlohmann::ordered_json report() const {
-    if (!parts.front().udim) return results.front().report;
+    if (!is_tiled()) return results.front().report;
     nlohmann::ordered_json tiles;
     for (std::size_t i = 0; i < parts.size(); ++i) tiles[std::to_string(*parts[i].udim)] = results[i].report;
+    if (total) tiles["total"] = total->report;
     return tiles;
   }
 };
+
+// As many texels as a map of 8192² has are kept while the others are computed.
+constexpr std::size_t kKeptTexels = std::size_t{1} << 26;
 
 /// Computes the maps of a mesh. `sites`: of `to`, or null.
 MeshResults measure_parts(MapCommand command, Input& on, Input& to, std::unique_ptr<sdm::Sites> sites,
                           const std::optional<AlignOutcome>& aligned, double import_ms, OutputFolder& out,
                           ProgressLine& progress) {
-  MeshResults all{on.role, atlas_parts(on.mesh, command.atlas), {}};
-  if (all.parts.size() > 1 && !command.atlas_cache.empty())
+  MeshResults all{on.role, atlas_parts(on.mesh, command.atlas), {}, {}};
+  const bool tiled = all.parts.size() > 1;
+  if (tiled && !command.atlas_cache.empty())
     throw sdm::Error(fmt::format("{}: a mesh with {} UDIM tiles has no single atlas; omit --atlas-cache",
                                  on.file, all.parts.size()));
-  if (all.parts.size() > 1) share_scale(command, all.parts, to.mesh, command.picture);
-  const std::filesystem::path folder = command.both ? on.role : "";
-  for (const AtlasPart& part : all.parts) {
-    const std::string tile = part.udim ? std::to_string(*part.udim) : "";
-    all.results.push_back(
-        measure(command, on, to, part, sites, aligned, import_ms, out.staging(folder / tile), progress));
+  // The scale is that of all tiles. Maps that are not kept until it is known are computed again.
+  std::vector<std::optional<Computed>> kept(all.parts.size());
+  if (tiled && !command.picture.range) {
+    SharedScale scale;
+    std::size_t texels = 0;
+    for (std::size_t i = 0; i < all.parts.size(); ++i) {
+      Computed computed = compute(command, on, to, all.parts[i], sites, import_ms);
+      scale.add(computed.map);
+      texels += computed.map.distance.size();
+      if (texels <= kKeptTexels) kept[i] = std::move(computed);
+    }
+    scale.set(command.picture);
   }
+
+  const std::filesystem::path folder = command.both ? on.role : "";
+  TileTotals totals;
+  for (std::size_t i = 0; i < all.parts.size(); ++i) {
+    const AtlasPart& part = all.parts[i];
+    const std::string tile = part.udim ? std::to_string(*part.udim) : "";
+    Computed computed = kept[i] ? std::move(*kept[i]) : compute(command, on, to, part, sites, import_ms);
+    kept[i].reset();
+    write_results(command, on, to, part, sites.get(), aligned, out.staging(folder / tile), progress,
+                  computed);
+    if (tiled) totals.add(*part.udim, computed.result.outcome, *computed.surface, computed.map);
+    all.results.push_back(std::move(computed.result));
+  }
+  if (!tiled) return all;
+  all.total = Result{totals.finish(), {}};
+  nlohmann::ordered_json& report = all.total->report;
+  for (const char* key : {"version", "o1", "o2", "measured_on", "units", "engine", "max_distance"})
+    report[key] = all.results.front().report[key];
+  report.update(totals.report());
+  write_text(out.staging(folder) / "report.json", to_text(report));
   return all;
+}
+
+/// The lines that are printed of the maps of a mesh.
+std::string lines_of(const MeshResults& mesh, const Input& on, const Input& to, const std::string& units) {
+  std::string text;
+  for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+    if (mesh.parts[i].udim) text += fmt::format("tile {}: ", *mesh.parts[i].udim);
+    text += summary(on, to, mesh.results[i].outcome, units);
+  }
+  if (mesh.total)
+    text += fmt::format("all {} tiles: ", mesh.parts.size()) + summary(on, to, mesh.total->outcome, units);
+  return text;
 }
 
 /// Returns the exit code.
@@ -312,10 +382,11 @@ int run(MapCommand command) {
     meshes.push_back(measure_parts(command, o1, o2, std::move(sites), aligned, import_ms, out, progress));
     if (!command.both) return;
     meshes.push_back(measure_parts(command, o2, o1, nullptr, aligned, import_ms, out, progress));
-    if (meshes[0].parts.size() > 1 || meshes[1].parts.size() > 1) return;
-    add_symmetric_hausdorff(meshes[0].results[0].report, meshes[1].results[0].report);
-    for (const MeshResults& mesh : meshes)
-      write_text(out.staging(mesh.role) / "report.json", to_text(mesh.report()));
+    add_symmetric_hausdorff(meshes[0].whole().report, meshes[1].whole().report);
+    for (const MeshResults& mesh : meshes) {
+      const std::string tile = mesh.is_tiled() && !mesh.total ? std::to_string(*mesh.parts[0].udim) : "";
+      write_text(out.staging(mesh.role + "/" + tile) / "report.json", to_text(mesh.whole().report));
+    }
   });
 
   if (command.json) {
@@ -324,11 +395,8 @@ int run(MapCommand command) {
                              : meshes[0].report());
   } else if (!command.quiet) {
     for (const MeshResults& mesh : meshes)
-      for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
-        if (mesh.parts[i].udim) std::cout << fmt::format("tile {}: ", *mesh.parts[i].udim);
-        std::cout << summary(mesh.role == "o1" ? o1 : o2, mesh.role == "o1" ? o2 : o1,
-                             mesh.results[i].outcome, command.picture.units);
-      }
+      std::cout << lines_of(mesh, mesh.role == "o1" ? o1 : o2, mesh.role == "o1" ? o2 : o1,
+                            command.picture.units);
     if (aligned) std::cout << summary(*aligned, command.picture.units);
     std::string tiles;
     for (const AtlasPart& part : meshes[0].parts)
@@ -338,9 +406,10 @@ int run(MapCommand command) {
         command.out.string(), command.both ? "/{o1,o2}" : "", tiles.empty() ? "" : "/{" + tiles + "}",
         (aligned && !command.both ? kAlignmentFile + std::string(" ") : "") + listed(command.files));
   }
-  const auto within = [](const Result& r) { return !r.outcome.tolerance || r.outcome.tolerance->within; };
-  const bool all_within = std::ranges::all_of(
-      meshes, [&](const MeshResults& mesh) { return std::ranges::all_of(mesh.results, within); });
+  const bool all_within = std::ranges::all_of(meshes, [](const MeshResults& mesh) {
+    const auto& tolerance = mesh.whole().outcome.tolerance;
+    return !tolerance || tolerance->within;
+  });
   return all_within ? 0 : 3;
 }
 

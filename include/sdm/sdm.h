@@ -6,6 +6,7 @@
 #include <sdm/atlas.h>
 #include <sdm/closest_in_parts.h>
 #include <sdm/closest_points.h>
+#include <sdm/combined_statistics.h>
 #include <sdm/engine.h>
 #include <sdm/error.h>
 #include <sdm/gl.h>

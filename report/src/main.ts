@@ -18,7 +18,8 @@ function showVerdict(report: Report): void {
   const signs: Record<string, string> = { PASS: '✓', FAIL: '✗', 'NOT DECIDED': '?', MEASURED: 'i' };
   byId('verdict').className = verdict.toLowerCase().replace(' ', '-');
   byId('verdict').replaceChildren(make('span', { 'aria-hidden': 'true' }, signs[verdict]), ` ${verdict}`);
-  byId('sentence').textContent = sentence;
+  const tile = report.atlas?.udim ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.' : '';
+  byId('sentence').textContent = sentence + tile;
   document.title = `${verdict}: ${titleOf(report)}`;
   byId('title').textContent = titleOf(report);
 }

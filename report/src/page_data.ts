@@ -31,7 +31,7 @@ export interface Report {
   mesh?: Input;
   measured_on?: 'o1' | 'o2';
   units?: string;
-  atlas?: { kind: string; resolution: number; rows?: number; charts: number; texels: number };
+  atlas?: { kind: string; resolution: number; rows?: number; udim?: number | null; charts: number; texels: number };
   engine?: string;
   max_distance?: number | null;
   colors?: { map: string; range: [number, number]; range_from: string };

@@ -19,8 +19,9 @@ export function inputsOf(report: Report): { measured?: Input; reference?: Input 
 export function titleOf(report: Report): string {
   const { measured, reference } = inputsOf(report);
   if (!measured) return 'Distance report';
+  const tile = report.atlas?.udim ? `, tile ${report.atlas.udim}` : '';
   return reference
-    ? `${fileName(measured.file)} compared with ${fileName(reference.file)}`
+    ? `${fileName(measured.file)}${tile} compared with ${fileName(reference.file)}`
     : `${fileName(measured.file)}: distance to itself`;
 }
 

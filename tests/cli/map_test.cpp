@@ -129,9 +129,10 @@ TEST_F(MapCommand, UdimTilesHaveAMapEach) {
   const Outcome run = run_sdm(map({"--atlas", "uv", "--write", "texture,csv", "--json"}));
   ASSERT_EQ(run.code, 0) << run.err;
   const std::vector<std::string> tiles{"1001", "1002", "1011", "1012"};
-  EXPECT_EQ(names_in(out), tiles);
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"1001", "1002", "1011", "1012", "report.json"}));
   const Json reports = Json::parse(run.out);
-  EXPECT_EQ(reports.size(), 4u);
+  EXPECT_EQ(reports.size(), 5u);
+  EXPECT_EQ(reports["total"], Json::parse(contents(out + "/report.json")));
   const Json range = Json::parse(contents(out + "/1001/distance_texture.json"));
   for (const std::string& tile : tiles) {
     EXPECT_EQ(names_in(out + "/" + tile),
@@ -146,6 +147,65 @@ TEST_F(MapCommand, UdimTilesHaveAMapEach) {
   EXPECT_EQ(run_sdm(map({"--atlas", "uv", "--atlas-cache", folder / "cache"})).code, 1);
   ASSERT_EQ(run_sdm(map()).code, 0);
   EXPECT_EQ(names_in(out), kResults) << "the tiles of the earlier run are removed";
+}
+
+// The numbers of all tiles are those of one map of the whole mesh with the same texels.
+TEST_F(MapCommand, TotalsOfUdimTilesAreThoseOfAllTexels) {
+  o2 = write_obj(folder / "cube.obj", moved(cube(0.4), {0.2, 0.3, 0.1}));
+  write_obj_with_uvs(o1, 1, 0);
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--atlas", "uv", "--json"});
+    return run_sdm(map(more));
+  };
+  const Json one = Json::parse(run({"--resolution", "256", "--tolerance", "0.3"}).out);
+  write_obj_with_uvs(o1, 2, 0);
+  const Outcome tiled = run({"--resolution", "128", "--tolerance", "0.3"});
+  EXPECT_EQ(tiled.code, 3);
+  const Json all = Json::parse(tiled.out);
+  const Json& total = all["total"];
+  EXPECT_EQ(total["tiles"], (Json{1001, 1002, 1011, 1012}));
+  EXPECT_EQ(total["texels_with_value"], one["texels_with_value"]);
+  EXPECT_EQ(total["negative_texels"], one["negative_texels"]);
+  for (const auto& [key, value] : one["distance"].items())
+    if (value.is_number()) {
+      EXPECT_NEAR(total["distance"][key], value, 1e-6) << key;
+    }
+  EXPECT_NEAR(total["extremes"]["min"]["distance"], one["extremes"]["min"]["distance"], 1e-6);
+  EXPECT_NEAR(total["extremes"]["max"]["distance"], one["extremes"]["max"]["distance"], 1e-6);
+  EXPECT_NEAR(total["error_bound"], one["error_bound"], 1e-6);
+  EXPECT_EQ(total["tolerance"]["verdict"], "FAIL");
+  EXPECT_NEAR(total["tolerance"]["exceeded_area_fraction"], one["tolerance"]["exceeded_area_fraction"], 1e-6);
+  EXPECT_NEAR(total["tolerance"]["area_fractions"]["above"], one["tolerance"]["area_fractions"]["above"],
+              1e-6);
+  EXPECT_NEAR(total["hausdorff"]["one_sided"]["upper"], one["hausdorff"]["one_sided"]["upper"], 1e-6);
+  ASSERT_EQ(total["worst"].size(), 4u);
+  const Json& ends = one["extremes"];
+  EXPECT_NEAR(std::abs(total["worst"][0]["distance"].get<double>()),
+              std::max(-ends["min"]["distance"].get<double>(), ends["max"]["distance"].get<double>()), 1e-6);
+  // A tile may pass where another one fails; all must pass.
+  std::vector<double> largest;
+  for (const Json& worst : total["worst"]) largest.push_back(std::abs(worst["distance"].get<double>()));
+  ASSERT_GT(largest[0], largest[3] + 0.02);
+  const std::string between = fmt::format("{}", (largest[0] + largest[3]) / 2);
+  const Outcome mixed = run({"--resolution", "128", "--tolerance", between});
+  EXPECT_EQ(mixed.code, 3);
+  std::vector<std::string> verdicts;
+  const Json mixed_reports = Json::parse(mixed.out);
+  for (const auto& [tile, report] : mixed_reports.items()) verdicts.push_back(report["tolerance"]["verdict"]);
+  EXPECT_EQ(verdicts.back(), "FAIL");
+  EXPECT_GT(std::ranges::count(verdicts, "PASS") + std::ranges::count(verdicts, "NOT DECIDED"), 0);
+  const Outcome passed = run({"--resolution", "128", "--tolerance", "5"});
+  EXPECT_EQ(passed.code, 0);
+  EXPECT_EQ(Json::parse(passed.out)["total"]["tolerance"]["verdict"], "PASS");
+  EXPECT_THAT(run_sdm(map({"--atlas", "uv", "--tolerance", "5"})).out, HasSubstr("all 4 tiles: "));
+  // Both directions: one mesh with tiles, one without.
+  o2 = write_obj_with_uvs(folder / "plane.obj", 1, 0);
+  const Outcome both = run({"--both"});
+  ASSERT_EQ(both.code, 0) << both.err;
+  const Json reports = Json::parse(both.out);
+  EXPECT_EQ(reports["o1"]["total"]["hausdorff"]["symmetric"], reports["o2"]["hausdorff"]["symmetric"]);
+  EXPECT_EQ(reports["o1"]["total"], Json::parse(contents(out + "/o1/report.json")));
+  EXPECT_EQ(reports["o2"], Json::parse(contents(out + "/o2/report.json")));
 }
 
 TEST_F(MapCommand, MapsNeedNotBeSquare) {

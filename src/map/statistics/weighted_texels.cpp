@@ -11,11 +11,11 @@ namespace sdm::map {
 namespace {
 
 // The surface area of a texel, |∂p/∂u × ∂p/∂v|, which is the same for all texels of a face; relative to the
-// largest.
-std::vector<float> texel_areas(const Surface& surface) {
+// `largest`.
+std::vector<float> texel_areas(const Surface& surface, double& largest) {
   const auto charts = surface.face_charts();
   std::vector<double> areas(charts.size());
-  double largest = 0;
+  largest = 0;
   for (std::uint32_t face = 0; face < charts.size(); ++face) {
     if (charts[face] == kNone) continue;
     const auto [du, dv] = surface.texel_edges(face);
@@ -34,7 +34,7 @@ WeightedTexels::WeightedTexels(const Surface& surface, const DistanceMap& map)
     : owners_(surface.texel_faces()), distance_(map.distance.data()) {
   if (map.distance.size() != owners_.size())
     throw Error("the map belongs to another surface: its number of texels differs");
-  areas_ = texel_areas(surface);
+  areas_ = texel_areas(surface, largest_area_);
 }
 
 }  // namespace sdm::map

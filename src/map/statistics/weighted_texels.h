@@ -32,6 +32,9 @@ class WeightedTexels {
         visit(distance_[texel], areas_[face], face);
   }
 
+  /// The area that is the weight 1.
+  [[nodiscard]] double largest_area() const { return largest_area_; }
+
   /// Returns add(part) of all parts, added in order. `Sum` needs an operator +=.
   template <class Sum, class Add>
   static Sum sum(const Add& add) {
@@ -44,6 +47,7 @@ class WeightedTexels {
   }
 
  private:
+  double largest_area_ = 0;
   std::vector<float> areas_;  ///< of a texel of each face
   std::span<const std::uint32_t> owners_;
   const float* distance_;
