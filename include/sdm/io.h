@@ -179,11 +179,11 @@ SDM_API void write_direction_png(const std::filesystem::path& file, const Surfac
 
 /// views.png: six shaded views of O1, coloured by distance, at one scale: front, back, left, right, top and
 /// bottom, as seen with `options.up` as the vertical axis, with a colour bar, a scale bar, and a ring around
-/// the smallest and the largest distance of all texels and vertices where O1 does not hide them. `other`: O2,
-/// which is drawn pale behind and beside O1, and as a veil in front of it; null: O1 only. `vertex_distances`:
-/// one per vertex of surface.mesh(), not finite where there is none. Drawn without OpenGL. Also throws
-/// sdm::Error if the map or the distances belong to another surface. Cost: linear in texels and faces, some
-/// 0.2 s for the pixels.
+/// the smallest and the largest distance of all texels and vertices where O1 does not hide them; a dashed
+/// ring, "behind", in one view if it hides one in all of them. `other`: O2, which is drawn pale behind and
+/// beside O1, and as a veil in front of it; null: O1 only. `vertex_distances`: one per vertex of
+/// surface.mesh(), not finite where there is none. Drawn without OpenGL. Also throws sdm::Error if the map or
+/// the distances belong to another surface. Cost: linear in texels and faces, some 0.2 s for the pixels.
 SDM_API void write_views_png(const std::filesystem::path& file, const Surface& surface,
                              const DistanceMap& map, std::span<const float> vertex_distances,
                              const Mesh* other = nullptr, const PictureOptions& options = {});

@@ -166,6 +166,8 @@ TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
   const std::vector<Vec3> places{{0.2, 0.3, 1}, {0.2, 0.3, -1}};
   const View view = render_view(scene, front, places);
   EXPECT_THAT(view.visible, ::testing::ElementsAre(true, false));
+  EXPECT_NEAR(view.in_front[0], 0, 0.1);
+  EXPECT_NEAR(view.in_front[1], 2, 0.1);
   const auto at = [&](std::size_t x) { return view.picture.pixels[50 * 100 + x]; };
   EXPECT_GT(redness(at(50)), 150);             // O1
   EXPECT_NEAR(redness(at(75)), 0, 20);         // O2 beside it
@@ -180,6 +182,22 @@ TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
   EXPECT_GT(redness(veiled.picture.pixels[50 * 100 + 55]), 60);  // O1 behind the veil
   EXPECT_LT(redness(veiled.picture.pixels[50 * 100 + 55]), redness(at(55)));
   EXPECT_THAT(veiled.visible, ::testing::ElementsAre(true, false));
+}
+
+// On a cube inside a cube: the pictures differ by nothing but the mark of the largest distance.
+TEST(Views, MarkExtremesThatNoSideShows) {
+  const TemporaryFolder folder;
+  const Mesh mesh = joined(cube(1), cube(0.5));
+  const Surface surface(mesh, {.resolution = 128});
+  const auto picture = [&](const Vec3& place) {
+    const Field field = [&](const Vec3& p) {
+      return p == place ? 2 : std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) > 0.9 ? p[0] : 0;
+    };
+    write_views_png(folder / "views.png", surface, map_of(surface, field), at_vertices(mesh, field), nullptr,
+                    {.range = {{-1, 1}}});
+    return read_png(folder / "views.png").colors;
+  };
+  EXPECT_NE(picture({0.5, 0.5, 0.5}), picture({-0.5, -0.5, 0.5}));
 }
 
 TEST(Views, AreDrawnOfAnyMesh) {

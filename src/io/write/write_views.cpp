@@ -3,6 +3,7 @@
 #include <sdm/threads.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <new>
@@ -29,7 +30,9 @@ namespace {
 
 constexpr double kFoot = 46;  // below the cells: the scale bar
 constexpr double kTitleSize = 18, kTextSize = 15;
-constexpr double kRing = 9;  // the radius of marks
+constexpr double kRing = 9;         // the radius of marks
+constexpr double kTextWidth = 196;  // the widest text of a mark
+constexpr std::array kDashes{4.0, 3.0};
 
 struct Mark {
   Vec3 point;
@@ -96,9 +99,10 @@ void draw_axes(Canvas& canvas, const PlacedView& view) {
   }
 }
 
-// A ring around a place with its text beside it, inside the cell. `texts`: the corners of those that the cell
-// has.
-void draw_mark(Canvas& canvas, const PlacedView& view, const Mark& mark, std::vector<Vec2>& texts) {
+// A ring around a place with its text beside it, inside the cell; dashed, with a line to the text, if O1
+// hides the place. `texts`: the corners of those that the cell has.
+void draw_mark(Canvas& canvas, const PlacedView& view, const Mark& mark, bool hidden,
+               std::vector<Vec2>& texts) {
   cairo_t* cairo = canvas.cairo();
   const Projection& p = view.projection;
   const Vec3 at = p(mark.point);
@@ -106,28 +110,42 @@ void draw_mark(Canvas& canvas, const PlacedView& view, const Mark& mark, std::ve
   for (const bool halo : {true, false}) {
     canvas.set_color(halo ? Rgb{255, 255, 255} : kInk);
     cairo_set_line_width(cairo, halo ? 5 : 2);
+    if (hidden && !halo) cairo_set_dash(cairo, kDashes.data(), static_cast<int>(kDashes.size()), 0);
     cairo_new_path(cairo);
     cairo_arc(cairo, x, y, kRing, 0, 2 * std::numbers::pi);
     cairo_stroke(cairo);
+    cairo_set_dash(cairo, nullptr, 0, 0);
+    if (hidden) continue;
     for (const double dx : {-1.0, 1.0}) draw_line(canvas, x + dx * kRing, y, x + dx * (kRing + 5), y);
     for (const double dy : {-1.0, 1.0}) draw_line(canvas, x, y + dy * kRing, x, y + dy * (kRing + 5));
   }
 
-  constexpr double kWidth = 132, kHeight = 24, kAway = 18;
-  const double left = view.x + 4, right = view.x + p.width - kWidth - 4.0;
+  constexpr double kHeight = 24, kAway = 18;
+  const double width = hidden ? 196 : 132;
+  const double left = view.x + 4, right = view.x + p.width - width - 4.0;
   const double top = view.y + 4 + kViewTitle, bottom = view.y + p.height - kHeight - 4.0;
   Vec2 text{x + kAway, y - kHeight - 6};
-  if (text[0] > right) text[0] = x - kAway - kWidth;
+  if (text[0] > right) text[0] = x - kAway - width;
   text = {std::clamp(text[0], left, std::max(left, right)), std::clamp(text[1], top, std::max(top, bottom))};
   for (const Vec2& other : texts)
-    if (std::abs(other[0] - text[0]) < kWidth && std::abs(other[1] - text[1]) < kHeight)
+    if (std::abs(other[0] - text[0]) < kTextWidth && std::abs(other[1] - text[1]) < kHeight)
       text[1] = other[1] + kHeight + 2 <= bottom ? other[1] + kHeight + 2 : other[1] - kHeight - 2;
   texts.push_back(text);
+  if (hidden) {  // from the ring to the nearest point of the text
+    const double to_x = std::clamp(x, text[0], text[0] + width);
+    const double to_y = std::clamp(y, text[1], text[1] + kHeight);
+    if (const double away = std::hypot(to_x - x, to_y - y); away > kRing) {
+      cairo_set_line_width(cairo, 1.5);
+      draw_line(canvas, x + kRing * (to_x - x) / away, y + kRing * (to_y - y) / away, to_x, to_y);
+      cairo_new_path(cairo);
+    }
+  }
   cairo_set_source_rgba(cairo, 1, 1, 1, 0.85);
-  cairo_rectangle(cairo, text[0], text[1], kWidth, kHeight);
+  cairo_rectangle(cairo, text[0], text[1], width, kHeight);
   cairo_fill(cairo);
   canvas.set_color(kInk);
-  canvas.text(text[0] + kWidth / 2, text[1] + 17, mark.text, kTextSize, kWidth - 8, false, 0.5);
+  canvas.text(text[0] + width / 2, text[1] + 17, mark.text + (hidden ? ", behind" : ""), kTextSize, width - 8,
+              false, 0.5);
 }
 
 // The longest round length that takes at most a fifth of the row.
@@ -168,6 +186,14 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
       views[i] = render_view(scene, layout.views[i].projection, places);
   });
 
+  // A place that no view shows is marked in the one where the least is in front of it.
+  std::vector<std::size_t> shown_hidden(marks.size(), views.size());
+  for (std::size_t k = 0; k < marks.size(); ++k)
+    if (std::ranges::none_of(views, [&](const View& view) { return view.visible[k]; }))
+      shown_hidden[k] = static_cast<std::size_t>(
+          std::ranges::min_element(views, {}, [&](const View& view) { return view.in_front[k]; }) -
+          views.begin());
+
   LegendText text = legend_text(map, found.min.distance, found.max.distance, scale, options.units);
   if (other != nullptr) text.notes.emplace_back("pale: O2");
   const Picture legend = draw_legend(scale, text, layout.height);
@@ -181,7 +207,8 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
     draw_axes(canvas, view);
     std::vector<Vec2> texts;
     for (std::size_t k = 0; k < marks.size(); ++k)
-      if (views[i].visible[k]) draw_mark(canvas, view, marks[k], texts);
+      if (const bool hidden = !views[i].visible[k]; !hidden || shown_hidden[k] == i)
+        draw_mark(canvas, view, marks[k], hidden, texts);
   }
   draw_scale_bar(canvas, layout, options.units);
   const Picture picture = canvas.picture("the views");

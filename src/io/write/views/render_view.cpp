@@ -101,13 +101,16 @@ class Renderer {
     return picture;
   }
 
-  [[nodiscard]] bool sees(const Vec3& place) const {
+  /// How far O1 is in front of a place; negative if it is not.
+  [[nodiscard]] double in_front_of(const Vec3& place) const {
     const Vec3 at = projection_(place);
-    if (!(at[0] >= 0 && at[0] < projection_.width && at[1] >= 0 && at[1] < projection_.height)) return false;
+    if (!(at[0] >= 0 && at[0] < projection_.width && at[1] >= 0 && at[1] < projection_.height))
+      return std::numeric_limits<double>::infinity();
     const std::size_t sample =
         sample_at(static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]));
-    return at[2] > part_.depth(sample) - kHiddenBelow / projection_.scale;
+    return part_.depth(sample) - at[2];
   }
+  [[nodiscard]] bool hides(double in_front) const { return !(in_front < kHiddenBelow / projection_.scale); }
 
  private:
   static constexpr std::uint32_t kSamples = DepthBuffer::kSamples;
@@ -181,8 +184,11 @@ class Renderer {
 
 View render_view(const ViewScene& scene, const Projection& projection, std::span<const Vec3> places) {
   const Renderer renderer(scene, projection);
-  View view{renderer.picture(), {}};
-  for (const Vec3& place : places) view.visible.push_back(renderer.sees(place));
+  View view{.picture = renderer.picture(), .visible = {}, .in_front = {}};
+  for (const Vec3& place : places) {
+    view.in_front.push_back(renderer.in_front_of(place));
+    view.visible.push_back(!renderer.hides(view.in_front.back()));
+  }
   return view;
 }
 

@@ -30,6 +30,8 @@ struct ViewScene {
 struct View {
   Picture picture;
   std::vector<bool> visible;  ///< of each of `places`: nothing of O1 hides it
+  std::vector<double>
+      in_front;  ///< of each: how far what hides it is in front of it; ∞ outside of the picture
 };
 
 /// Draws O1 shaded, with outlines, and O2 pale: behind O1 and beside it as a body, in front of it as a veil.
