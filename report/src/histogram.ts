@@ -62,7 +62,7 @@ export function drawHistogram(area: AreaByValue, whole: 'area' | 'points', scale
   const below = area.upTo(lo - width * 1e-9);
   const above = 1 - area.upTo(hi);
   const sentence =
-    `${percent(Math.max(0, 1 - below - above))} of the ${whole} ${whole === 'area' ? 'is' : 'are'} between ${text(lo)} and ${text(hi)} ${unit}` +
+    `${percent(Math.max(0, 1 - below - above))} of the ${whole} ${whole === 'area' ? 'is' : 'are'} between ${text(lo)} and ${text(hi)}${unit ? ` ${unit}` : ''}` +
     (below > 0 ? `, ${percent(below)} below` : '') +
     (above > 0 ? `, ${percent(above)} above` : '') +
     (whole === 'area' ? '. Areas are estimates from the samples.' : '. All points of the cloud were counted.');

@@ -3,11 +3,18 @@ import { make, makeSvg } from './dom';
 import { text, ticks, tickText } from './numbers';
 import type { Panel } from './player_data';
 
-const kHeight = 150;
+const kHeight = 128;
 const kLeft = 58;
 const kTop = 10;
 const kBottom = 24;
 const kStyles = ['first', 'second', 'third']; // of curves: colour and dashes
+
+/// A piece of a curve, before its name.
+function swatch(i: number): SVGElement {
+  const svg = makeSvg('svg', { class: 'swatch', viewBox: '0 0 22 8', width: 22, height: 8, 'aria-hidden': 'true' });
+  svg.append(makeSvg('path', { class: `curve ${kStyles[i % kStyles.length]}`, d: 'M1 4H21' }));
+  return svg;
+}
 
 export class Chart {
   readonly element: HTMLElement;
@@ -49,8 +56,12 @@ export class Chart {
     const x = this.x(place);
     this.cursor.setAttribute('x1', String(x));
     this.cursor.setAttribute('x2', String(x));
-    const values = this.panel.curves.map(({ name, values }) => `${this.panel.curves.length > 1 ? `${name} ` : ''}${text(values[place])}`);
-    this.readout.textContent = values.join(', ');
+    const { curves } = this.panel;
+    this.readout.replaceChildren(
+      ...curves.map(({ name, values }, i) =>
+        make('span', {}, ...(curves.length > 1 ? [swatch(i), ` ${name} `] : []), text(values[place])),
+      ),
+    );
   }
 
   private values(): number[] {
@@ -68,6 +79,7 @@ export class Chart {
     let hi = Math.max(...values, -Infinity);
     if (!(lo <= hi)) [lo, hi] = [0, 1];
     if (lo > 0 && lo < 0.5 * hi) lo = 0;
+    if (lo === 0 && hi === 0) hi = 1;
     return hi - lo > 1e-9 * Math.abs(hi) ? [lo, hi] : [lo - 0.5 * (Math.abs(lo) || 1), hi + 0.5 * (Math.abs(hi) || 1)];
   }
 

@@ -316,7 +316,7 @@ const checks = {
     assert.strictEqual(await shown(), Number(last));
     await settle();
     assert(!(await picture()).equals(first), 'another frame is another picture');
-    const chart = await page.locator('.chart svg').first().boundingBox();
+    const chart = await page.locator('.chart > svg').first().boundingBox();
     await page.mouse.click(chart.x + chart.width * 0.5, chart.y + chart.height / 2);
     const middle = await shown();
     assert(middle > 0 && middle < Number(last), 'the chart leads to its frame');
