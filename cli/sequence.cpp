@@ -43,12 +43,14 @@ struct SequenceCommand {
   int maps_every = 0;
   double rate = 0, map_precision = 0;
   bool keep_going = false, no_temporal = false, resume = false, allow_topology = false;
-  bool both = false, player = false;
+  bool both = false, player = false, animation = false;
   sdm::PictureOptions picture;
   std::vector<double> range;
 
+  /// Whether the frames are collected for a file that shows all of them.
+  [[nodiscard]] bool collects() const { return player || animation; }
   /// Whether distances are measured in each frame.
-  [[nodiscard]] bool measures() const { return player || both || picture.tolerance; }
+  [[nodiscard]] bool measures() const { return collects() || both || picture.tolerance; }
 };
 
 Json tolerance_json(const SequenceCommand& command) {
@@ -78,6 +80,7 @@ Json options_of(const SequenceCommand& command) {
           {"--strict-uv", command.atlas.strict_uv},
           {"--both", command.both},
           {"--player", command.player},
+          {"--animation", command.animation},
           {"--up", command.picture.up},
           {"--colormap", command.picture.colormap},
           {"--range", command.range},
@@ -89,8 +92,9 @@ constexpr std::string_view kOfO2 = "_o2";  // ends the names of O2's maps
 /// The files of earlier runs that this run replaces.
 std::vector<fs::path> earlier_files(const fs::path& folder, bool resumed) {
   if (resumed) return {"frames.jsonl"};
-  std::vector<fs::path> files{"frames.jsonl", "frames.csv", "plot.png",    "temporal.exr",      "min.png",
-                              "mean.png",     "max.png",    "player.html", SequenceState::kFile};
+  std::vector<fs::path> files{"frames.jsonl",  "frames.csv",        "plot.png", "temporal.exr",
+                              "min.png",       "mean.png",          "max.png",  "player.html",
+                              "animation.glb", SequenceState::kFile};
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder / "maps", error)) {
     const fs::path& file = entry.path();
@@ -133,8 +137,9 @@ class FrameLoop {
     if (resumed_) check_meshes();
     if (!command_.range.empty()) command_.picture.range = {command_.range[0], command_.range[1]};
     command_.picture.units = command_.pair.units;
-    if (!command_.picture.range && (command_.maps_every > 0 || command_.player)) command_.picture = colors();
-    if (command_.player) player_.emplace(first[0], first[1], command_.both);
+    if (!command_.picture.range && (command_.maps_every > 0 || command_.collects()))
+      command_.picture = colors();
+    if (command_.collects()) player_.emplace(first[0], first[1], command_.both);
     atlases_ = {command_.atlas, command_.atlas};
     if (command_.map_precision > 0) atlases_[0].resolution = first_resolution();
     state_.resolution = atlases_[0].resolution;
@@ -418,24 +423,34 @@ class FrameLoop {
     if (!frames_.empty()) write_plot(folder / "plot.png", frames_, command_.pair.units);
     const sdm::TemporalMaps temporal = temporal_.of(query_->surface(0));
     if (temporal.maps() > 0) write_temporal(folder, temporal);
-    if (player_ && player_->frames() > 0)
-      player_->write(folder / "player.html", player_panels(frames_, command_.pair.units),
-                     {.names = {bodies_[0].input(), bodies_[1].input()},
-                      .units = command_.pair.units,
-                      .up = command_.picture.up,
-                      .colors = command_.picture});
+    if (player_ && player_->frames() > 0) write_collected(folder);
     if (complete()) return;
     state_.temporal = temporal_.maps();
     state_.write(folder / SequenceState::kFile);
   }
 
+  void write_collected(const fs::path& folder) {
+    sdm::PlayerOptions options{.names = {bodies_[0].input(), bodies_[1].input()},
+                               .units = command_.pair.units,
+                               .up = command_.picture.up,
+                               .colors = command_.picture};
+    if (command_.rate > 0) options.frames_per_second = command_.rate;
+    if (command_.player)
+      player_->write(folder / "player.html", player_panels(frames_, command_.pair.units), options);
+    if (command_.animation) animated_frames_ = player_->write_glb(folder / "animation.glb", options);
+  }
+
   void print_summary() const {
     const bool temporal = temporal_.of(query_->surface(0)).maps() > 0;
     std::cout << fmt::format(
-        "{}, {}\n{}  results    {}/: frames.jsonl frames.csv{}{}{}{}\n", bodies_[0].input(),
+        "{}, {}\n{}  results    {}/: frames.jsonl frames.csv{}{}{}{}{}\n", bodies_[0].input(),
         bodies_[1].input(), summary(frames_, bad_, command_.pair.units), command_.out.string(),
         frames_.empty() ? "" : " plot.png", temporal ? " temporal.exr min.png mean.png max.png" : "",
-        player_ && player_->frames() > 0 ? " player.html" : "", command_.maps_every > 0 ? " maps/" : "");
+        command_.player && player_->frames() > 0 ? " player.html" : "",
+        animated_frames_ > 0 ? " animation.glb" : "", command_.maps_every > 0 ? " maps/" : "");
+    if (animated_frames_ > 0 && animated_frames_ < player_->frames())
+      std::cout << fmt::format("  note       animation.glb has {} of {} frames, evenly spaced\n",
+                               animated_frames_, player_->frames());
   }
 
   void write_temporal(const fs::path& folder, const sdm::TemporalMaps& temporal) {
@@ -483,6 +498,7 @@ class FrameLoop {
   sdm::MapOptions map_options_;
   sdm::DistanceMap map_, other_map_;
   std::optional<sdm::SequencePlayer> player_;
+  std::size_t animated_frames_ = 0;  // in animation.glb
 };
 
 }  // namespace
@@ -517,11 +533,13 @@ void add_sequence_command(CLI::App& app) {
   if (sdm::can_write_html())
     sequence->add_flag("--player", command->player,
                        "Write player.html, a page that plays the frames, with their distances at vertices");
+  sequence->add_flag("--animation", command->animation,
+                     "Write animation.glb, a model that any viewer of glTF plays, coloured by distance");
   sequence->add_flag("--both", command->both,
                      "Also measure O2: its distances to O1, maps NNNN_o2 with --maps, colours in the player");
   add_tolerance_option(*sequence, command->picture.tolerance);
   add_color_options(*sequence, command->picture, command->range);
-  add_up_option(*sequence, command->picture.up, "player.html");
+  add_up_option(*sequence, command->picture.up, "player.html and animation.glb");
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
       ->check(whole_number(1, 1000000))
@@ -540,8 +558,9 @@ void add_sequence_command(CLI::App& app) {
                      "Do not compute maps over time; faster, because frames then need no complete map");
   sequence->callback([command] {
     check_range(command->range);
-    if (command->player && command->allow_topology)
-      throw CLI::ValidationError("--player", "needs bodies that keep their faces: omit --allow-topology");
+    if (command->collects() && command->allow_topology)
+      throw CLI::ValidationError(command->player ? "--player" : "--animation",
+                                 "needs bodies that keep their faces: omit --allow-topology");
     check_layout(command->atlas);
     // The gl engine would lay out its tiles anew after each edit.
     if (command->allow_topology && command->engine.name == "gl")

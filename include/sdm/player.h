@@ -24,6 +24,7 @@ struct PlayerOptions {
   /// Colormap, range and tolerance, of all frames. Default: as fixed_colors() chooses from the distances of
   /// all frames.
   PictureOptions colors{};
+  double frames_per_second = 30;  ///< animation.glb: greater than 0
 };
 
 /// Collects the frames of a sequence, and writes them as player.html: one file that opens in a browser, from
@@ -54,6 +55,13 @@ class SDM_API SequencePlayer {
   /// false.
   void write(const std::filesystem::path& file, std::span<const PlotPanel> panels,
              const PlayerOptions& options = {}) const;
+
+  /// Writes animation.glb: both bodies as one glTF model, which any viewer plays. Each frame after the first
+  /// is a morph target of the positions and of the colours of the vertices, between which viewers
+  /// interpolate. The units m, cm, mm, um, in and ft scale it to metres. At most 250 frames and some 50 MB:
+  /// of longer sequences one of several frames. Returns the number of frames written. Throws sdm::Error if
+  /// there is no frame, if the file cannot be written, and if the bodies are too large for single precision.
+  std::size_t write_glb(const std::filesystem::path& file, const PlayerOptions& options = {}) const;
 
  private:
   struct Impl;

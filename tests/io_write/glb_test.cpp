@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
+#include <sdm/player.h>
+#include <sdm/sites.h>
 #include <tiny_gltf.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <set>
 #include <vector>
 
@@ -226,6 +229,61 @@ TEST(Glb, RejectsMismatchedVertexDistances) {
   EXPECT_TRUE(folder.empty());
 }
 
+// Frame i is the first one and morph target i − 1: in the file they are the frames, and the colours those of
+// their distances.
+TEST(Glb, AnimationsHaveTheFramesAsMorphTargets) {
+  const TemporaryFolder folder;
+  const Mesh mesh = sphere(3);
+  const Sites plane(square(8, -3));
+  SequencePlayer player(mesh, plane.mesh(), false);
+  EXPECT_THROW(player.write_glb(folder / "no.glb"), Error);
+  std::vector<Mesh> frames;
+  for (int i = 0; i < 5; ++i) {
+    frames.push_back(moved(mesh, {0, 0.1 * i, 0.5 * i}));
+    player.add(static_cast<std::size_t>(10 + i), Sites(frames.back()), plane);
+  }
+  const PlayerOptions options{.colors = {.colormap = Colormap::viridis, .range = {{1, 7}}},
+                              .frames_per_second = 10};
+  ASSERT_EQ(player.write_glb(folder / "animation.glb", options), 5u);
+  const tinygltf::Model model = read_glb(folder / "animation.glb");
+  const auto floats = [&](int number) {
+    const auto& accessor = model.accessors[number];
+    const auto& view = model.bufferViews[accessor.bufferView];
+    return reinterpret_cast<const float*>(model.buffers[0].data.data() + view.byteOffset +
+                                          accessor.byteOffset);
+  };
+  const auto& primitive = model.meshes.at(0).primitives.at(0);
+  ASSERT_EQ(primitive.targets.size(), 4u);
+  EXPECT_TRUE(model.meshes.at(1).primitives.at(0).targets.empty());  // at rest, without colours
+  const std::size_t vertices = model.accessors[primitive.attributes.at("POSITION")].count;
+  ASSERT_GE(vertices, mesh.positions.size());  // coarse bodies are drawn with more
+  const auto linear = [](double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); };
+  const io::ColorScale scale = io::color_scale(fixed_colors(options.colors, {}));
+  for (std::size_t f = 0; f < frames.size(); ++f)
+    for (std::size_t v = 0; v < vertices; ++v) {
+      const auto value = [&](const char* name, int k) {
+        const double base = floats(primitive.attributes.at(name))[3 * v + k];
+        return f == 0 ? base : base + floats(primitive.targets[f - 1].at(name))[3 * v + k];
+      };
+      const float* first = floats(primitive.attributes.at("POSITION")) + 3 * v;
+      const double moved[] = {0, 0.1 * static_cast<double>(f), 0.5 * static_cast<double>(f)};
+      for (int k = 0; k < 3; ++k) ASSERT_NEAR(value("POSITION", k), first[k] + moved[k], 1e-6);
+      const auto rgb = scale(value("POSITION", 2) + 3);
+      ASSERT_NEAR(value("COLOR_0", 0), linear(rgb.r / 255.0), 0.02);  // one step of a colour
+      ASSERT_NEAR(value("COLOR_0", 1), linear(rgb.g / 255.0), 0.02);
+    }
+  ASSERT_EQ(model.animations.size(), 1u);
+  const auto& sampler = model.animations[0].samplers.at(0);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_FLOAT_EQ(floats(sampler.input)[i], 0.1f * static_cast<float>(i));
+    for (int k = 0; k < 4; ++k) EXPECT_EQ(floats(sampler.output)[4 * i + k], i == k + 1 ? 1 : 0);
+  }
+  SequencePlayer many(mesh, plane.mesh(), true);
+  for (std::size_t i = 0; i < 700; ++i) many.add(i, Sites(mesh), plane);
+  EXPECT_LE(many.write_glb(folder / "many.glb"), 250u);
+  EXPECT_LT(std::filesystem::file_size(folder / "many.glb"), 60e6);
+}
+
 // One case for all models, so that the validator is installed and started once.
 TEST(Glb, PassesTheKhronosValidator) {
   const TemporaryFolder folder;
@@ -254,6 +312,21 @@ TEST(Glb, PassesTheKhronosValidator) {
   add("empty.glb", ring(8), {.resolution = 256}, [](const Vec3&) { return std::nan(""); });
   add("partly.glb", ring(8), {.resolution = 256}, [](const Vec3& p) { return p[2] > 0 ? 1 : std::nan(""); });
   add("single.glb", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}}, {.resolution = 16}, linear);
+
+  const auto animate = [&](const std::string& name, const Mesh& mesh, bool both, std::size_t frames,
+                           const PlayerOptions& options) {
+    const Sites still(ring(6, 1, {0, 0, 2}));
+    SequencePlayer player(mesh, still.mesh(), both);
+    for (std::size_t i = 0; i < frames; ++i)
+      player.add(2 * i, Sites(moved(mesh, {0, 0, 0.01 * static_cast<double>(i)})), still);
+    player.write_glb(folder / name, options);
+    files += " " + (folder / name).string();
+  };
+  animate("animation.glb", ring(16), true, 9, {.units = "mm", .up = UpAxis::z});
+  animate("one_body.glb", ring(16), false, 3, {.colors = {.tolerance = 0.5}});
+  animate("one_frame.glb", ring(16), false, 1, {});
+  animate("far_away.glb", ring(8, 1, {1e6, 1e6, -1e6}), true, 3, {});
+  animate("long.glb", cube(), true, 600, {});
 
   const std::string install =
       "cd '" SDM_VALIDATOR_FOLDER "' && flock package.json npm ci --silent --no-audit --no-fund";

@@ -1,7 +1,7 @@
 // Checks a report.html or player.html in headless Chromium: node check_page.cjs CHECK PAGE [ARGUMENT...]. Packages are found from the
 // current folder. Prints what is wrong and exits with 1.
 const assert = require('assert');
-const { existsSync, readFileSync } = require('fs');
+const { existsSync, readFileSync, writeFileSync } = require('fs');
 const { createRequire } = require('module');
 const { delimiter, join } = require('path');
 const { pathToFileURL } = require('url');
@@ -340,12 +340,69 @@ const checks = {
         assert(node.name?.value, `a ${node.role.value} without a name`);
   },
 
+  // A model of two bodies, of which the second sinks from `height` by `speed` a frame: three.js plays it.
+  async animates(page, height, speed, last) {
+    const pictures = [];
+    for (const frame of [0, 2, 2.5, Number(last)]) {
+      const { sizes, z, colors } = await page.evaluate((f) => window.animation.show(f / 30), frame);
+      assert.deepStrictEqual(sizes.length, 2);
+      z[1].forEach((x) => assert(Math.abs(x - (Number(height) - Number(speed) * frame)) < 1e-4, `${x} in frame ${frame}`));
+      assert(colors[0].every((c) => c >= -1e-3 && c <= 1.001), 'colours are from 0 to 1');
+      pictures.push(await page.locator('#canvas').screenshot());
+    }
+    pictures.forEach((picture, i) => pictures.slice(i + 1).forEach((other) => assert(!picture.equals(other), 'frames differ')));
+  },
+
   // Opens, and says these words; any words if none are given.
   async says(page, ...words) {
     const text = plain(await page.innerText('body'));
     for (const word of words) assert(text.includes(word), `no "${word}" in: ${text}`);
   },
 };
+
+/// A page that plays a model by three.js's own loader.
+function animationPage(model, html) {
+  const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
+  const program = `
+    import * as three from 'three';
+    import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+    const canvas = document.getElementById('canvas');
+    const renderer = new three.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    renderer.setSize(640, 480);
+    const bytes = Uint8Array.from(atob(document.getElementById('model').textContent), (c) => c.charCodeAt(0));
+    new GLTFLoader().parse(bytes.buffer, '', (gltf) => {
+      const scene = new three.Scene();
+      scene.background = new three.Color(0xffffff);
+      scene.add(gltf.scene, new three.HemisphereLight(0xffffff, 0x888888, 3));
+      const camera = new three.PerspectiveCamera(40, 640 / 480, 0.01, 100);
+      camera.position.set(6, -9, 3), camera.up.set(0, 0, 1), camera.lookAt(0, 0, -1.5);
+      const mixer = new three.AnimationMixer(gltf.scene);
+      mixer.clipAction(gltf.animations[0]).play().clampWhenFinished = true;
+      const meshes = [];
+      gltf.scene.traverse((o) => o.isMesh && meshes.push(o));
+      window.animation = {
+        show(time) {
+          mixer.setTime(Math.min(time, gltf.animations[0].duration - 1e-6));
+          renderer.render(scene, camera);
+          const p = new three.Vector3();
+          const z = meshes.map((m) => Array.from({ length: m.geometry.attributes.position.count }, (_, i) => m.getVertexPosition(i, p).z));
+          const colors = meshes.map((m) => {
+            const { color } = m.geometry.attributes;
+            const targets = m.geometry.morphAttributes.color ?? [];
+            return Array.from(color ? color.array : [], (c, i) => targets.reduce((sum, t, k) => sum + m.morphTargetInfluences[k] * t.array[i], c));
+          });
+          return { sizes: z.map((a) => a.length), z, colors };
+        },
+      };
+      document.documentElement.dataset.ready = '';
+    }, (error) => { throw error; });
+  `;
+  const { outputFiles } = buildSync({ stdin: { contents: program, resolveDir: process.cwd() }, bundle: true, write: false, format: 'iife' });
+  const data = readFileSync(model).toString('base64');
+  writeFileSync(html, `<!DOCTYPE html><title>Animation</title><link rel="icon" href="data:,"><canvas id="canvas"></canvas>
+    <script type="text/plain" id="model">${data}</script><script>${outputFiles[0].text.replace(/<\/script/g, '<\\/script')}</script>`);
+  return html;
+}
 
 (async () => {
   const browser = await chromium.launch({
@@ -357,7 +414,7 @@ const checks = {
     const faults = [];
     page.on('console', (message) => faults.push(`console: ${message.text()}`));
     page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
-    const url = pathToFileURL(file).href;
+    const url = pathToFileURL(check === 'animates' ? animationPage(file, rest[3]) : file).href;
     page.on('request', (request) => {
       if (request.url() !== url && !request.url().startsWith('data:')) faults.push(`request: ${request.url()}`);
     });

@@ -293,6 +293,14 @@ TEST_F(PlayerPage, PlaysTheFrames) {
   EXPECT_TRUE(passes("plays", out + "/player.html", {"-2", "0.25", "8"}));
 }
 
+TEST_F(PlayerPage, AnimationsPlayInThreeJs) {
+  const Outcome run =
+      run_sdm({"sequence", o1, sinking, "-o", out, "--resolution", "64", "--animation", "--both"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr(" animation.glb"));
+  EXPECT_TRUE(passes("animates", out + "/animation.glb", {"-2", "0.25", "8", out + "/animation.html"}));
+}
+
 TEST_F(PlayerPage, ShowsHostileNames) {
   std::filesystem::rename(sinking, folder / "<!--<script>alert(1)");
   sinking = folder / "<!--<script>alert(1)";

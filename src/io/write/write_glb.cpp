@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "io/write/atomic_file.h"
 #include "io/write/gutter.h"
+#include "io/write/model/glb_model.h"
 #include "io/write/model/model_vertices.h"
 #include "io/write/model/shading_normals.h"
 #include "io/write/pictures/atlas_picture.h"
@@ -20,9 +21,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <new>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -33,79 +32,6 @@ namespace sdm {
 using namespace io;
 
 namespace {
-
-/// The model under construction: a single buffer that grows at the end.
-struct GlbModel {
-  tinygltf::Model model;
-
-  GlbModel() { model.buffers.emplace_back(); }
-
-  void reserve(std::span<const ModelVertices> vertices, std::size_t image) {
-    std::size_t bytes = image + 64;  // alignment
-    for (const ModelVertices& part : vertices)
-      bytes += part.triangles.size() * sizeof(Triangle) + part.place.size() * 9 * sizeof(float);
-    model.buffers[0].data.reserve(bytes);
-  }
-
-  int add_view(std::size_t size, int target) {
-    auto& data = model.buffers[0].data;
-    const std::size_t begin = (data.size() + 3) / 4 * 4;  // accessors of floats start at multiples of 4
-    if (begin + size > std::numeric_limits<std::uint32_t>::max() - (1u << 20))
-      throw Error("the model exceeds the 4 GB limit of GLB files");
-    data.resize(begin + size);
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = begin;
-    view.byteLength = size;
-    view.target = target;
-    model.bufferViews.push_back(view);
-    return static_cast<int>(model.bufferViews.size()) - 1;
-  }
-  [[nodiscard]] unsigned char* view_bytes(int view) {
-    return model.buffers[0].data.data() + model.bufferViews[static_cast<std::size_t>(view)].byteOffset;
-  }
-
-  /// `Element`: a scalar or an array of N scalars, consistent with `type`. Sets the elements by fill(i,
-  /// element), in parallel.
-  template <class Element, class Fill>
-  int add_accessor(std::size_t count, int type, int component_type, int target, const Fill& fill) {
-    tinygltf::Accessor accessor;
-    accessor.bufferView = add_view(count * sizeof(Element), target);
-    accessor.componentType = component_type;
-    accessor.type = type;
-    accessor.count =
-        count * sizeof(Element) /
-        (4 * static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type))));
-    unsigned char* const bytes = view_bytes(accessor.bufferView);
-    parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Element element;
-        fill(i, element);
-        std::memcpy(bytes + i * sizeof(Element), &element, sizeof(Element));
-      }
-    });
-    model.accessors.push_back(accessor);
-    return static_cast<int>(model.accessors.size()) - 1;
-  }
-};
-
-/// glTF uses single precision: positions far from the origin are stored relative to an origin near the mesh.
-struct Placement {
-  Vec3 origin{};
-  double scale = 1;  ///< metres per unit
-};
-
-Placement placement(const Mesh& mesh, const std::string& units) {
-  static const std::map<std::string, double> metres{{"m", 1},     {"cm", 1e-2},   {"mm", 1e-3},
-                                                    {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
-  Placement result;
-  if (const auto unit = metres.find(units); unit != metres.end()) result.scale = unit->second;
-  const Box box = bounds(mesh);
-  if (norm(centre(box)) > 8 * diagonal(box)) result.origin = centre(box);
-  if (!(diagonal(box) < std::numeric_limits<float>::max() / 8))
-    throw Error("coordinates are too large for glTF's single precision; scale the mesh down");
-  return result;
-}
 
 /// What the primitives have in common.
 struct Model {
@@ -253,22 +179,10 @@ void add_material(GlbModel& glb, const std::string& png, bool unlit) {
 }
 
 void add_scene(GlbModel& glb, const Placement& place, UpAxis up) {
-  tinygltf::Node node;
+  tinygltf::Node node = placed_node(place, up);
   node.name = "O1";
   node.mesh = 0;
-  const auto& [x, y, z] = place.origin;
-  const bool turned = up == UpAxis::z;  // (x, y, z) becomes (x, z, -y)
-  for (const double t : turned ? Vec3{x, z, -y} : place.origin)
-    if (place.origin != Vec3{}) node.translation.push_back(t * place.scale);
-  if (turned) node.rotation = {-std::numbers::sqrt2 / 2, 0, 0, std::numbers::sqrt2 / 2};
-  if (place.scale != 1) node.scale.assign(3, place.scale);
-  glb.model.nodes.push_back(node);
-  tinygltf::Scene scene;
-  scene.nodes.push_back(0);
-  glb.model.scenes.push_back(scene);
-  glb.model.defaultScene = 0;
-  glb.model.asset.version = "2.0";
-  glb.model.asset.generator = std::string("sdm ") + kVersion;
+  glb.add_scene({node});
 }
 
 GlbModel make_model(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
@@ -288,12 +202,15 @@ GlbModel make_model(const Surface& surface, const DistanceMap& map, std::span<co
   const Model model{
       .mesh = mesh,
       .normals = normals,
-      .place = placement(mesh, options.units),
+      .place = placement(bounds(mesh), options.units),
       .extent = {1.0 * picture.width() * picture.step(), 1.0 * picture.height() * picture.step()},
       .vertex_distances = vertex_distances};
   GlbModel glb;
   glb.model.meshes.emplace_back().name = "O1";
-  glb.reserve(vertices, png.size());
+  std::size_t bytes = png.size();
+  for (const ModelVertices& part : vertices)
+    bytes += part.triangles.size() * sizeof(Triangle) + part.place.size() * 9 * sizeof(float);
+  glb.reserve(bytes);
   add_primitive(glb, model, vertices[0], true);
   add_primitive(glb, model, vertices[1], false);
   add_material(glb, png, options.unlit);

@@ -11,6 +11,7 @@
 
 #include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "io/write/player/animated_model.h"
 #include "io/write/player/drawn_body.h"
 #include "io/write/player/player_page.h"
 
@@ -61,6 +62,14 @@ struct SequencePlayer::Impl {
 
   [[nodiscard]] std::size_t numbers_of_frame() const {
     return 3 * (bodies[0].vertices() + bodies[1].vertices());
+  }
+
+  [[nodiscard]] PlayerContent content(std::span<const PlotPanel> panels) const {
+    return {.frames = frames,
+            .added = added,
+            .stride = stride,
+            .triangles = {bodies[0].triangles(), bodies[1].triangles()},
+            .panels = panels};
   }
 
   /// Leaves every second frame.
@@ -114,13 +123,17 @@ void SequencePlayer::write(const std::filesystem::path& file, std::span<const Pl
     for (const Curve& curve : panel.curves)
       if (curve.values.size() != impl_->added.size())
         throw Error("cannot write " + file.string() + ": a curve needs one value for each frame");
-  write_player_page(file,
-                    {.frames = impl_->frames,
-                     .added = impl_->added,
-                     .stride = impl_->stride,
-                     .triangles = {impl_->bodies[0].triangles(), impl_->bodies[1].triangles()},
-                     .panels = panels},
-                    options, colors(options.colors));
+  write_player_page(file, impl_->content(panels), options, colors(options.colors));
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
+}
+
+std::size_t SequencePlayer::write_glb(const std::filesystem::path& file, const PlayerOptions& options) const
+    try {
+  if (impl_->added.empty()) throw Error("cannot write " + file.string() + ": there are no frames");
+  if (!(options.frames_per_second > 0))
+    throw Error("cannot write " + file.string() + ": the number of frames per second must be positive");
+  return write_animated_model(file, impl_->content({}), options, colors(options.colors));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }
