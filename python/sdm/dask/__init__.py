@@ -1,10 +1,10 @@
 """Maps on many machines, with Dask: ``pip install sdm[dask]``.
 
-===================  =========================================================================================
-map_pairs()          many pairs of meshes: a table of statistics, verdicts and files
-split(), map_parts() one pair that is too large for a machine: O2 in parts, O1 in tiles
-cohort_statistics()  deformed copies of a mesh on one atlas: mean, variance and quantiles at each texel
-===================  =========================================================================================
+=====================  ==========================================================================================
+map_pairs()            many pairs of meshes: a table of statistics, verdicts and files
+split(), map_parts()   one pair that is too large for a machine: O2 in parts, O1 in tiles
+cohort_statistics()    deformed copies of a mesh on one atlas: mean, variance and quantiles at each texel
+=====================  ==========================================================================================
 
 Every function describes the work and returns at once. Dask carries it out: on the machine's cores, or on the workers of a
 ``dask.distributed.Client`` if there is one. Folders must be reachable, by the same path, from all of them.
