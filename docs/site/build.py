@@ -12,6 +12,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import sdm as sdm_module
+
 import check_links
 import command_pages
 import cpp_pages
@@ -34,6 +36,9 @@ def staged_files(source: Path) -> dict[str, Path]:
 
 def main() -> None:
     source, build, sdm = (Path(argument).resolve() for argument in sys.argv[1:])
+    listed = (SITE / "python.rst").read_text()
+    if missing := [name for name in sdm_module.__all__ if name != "NONE" and f"sdm.{name}\n" not in listed]:
+        sys.exit(f"python.rst: add {', '.join(missing)}")
     staged, html = build / "source", build / "html"
     shutil.rmtree(build, ignore_errors=True)
 
