@@ -25,7 +25,7 @@ def staged_files(source: Path) -> dict[str, Path]:
     """The files of the site's source folder by their place there."""
     files = {name: source / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE", "CITATION.cff")}
     for folder, pattern in (("docs", "**/*.md"), ("docs/images", "*.png"), ("scenes/meshes", "README.md"),
-                            ("include/sdm", "*.h")):  # fmt: skip
+                            ("include/sdm", "*.h"), ("python/examples", "*.py")):  # fmt: skip
         for path in (source / folder).glob(pattern):
             if SITE not in path.parents:
                 files[str(path.relative_to(source))] = path
