@@ -23,6 +23,7 @@ enum class AlignStart {
   principal_axes,
 };
 
+/// Options of align().
 struct AlignOptions {
   AlignStart start = AlignStart::pose;
   Transform pose{};             ///< rotation and translation; the identity: O1 as it is
@@ -54,6 +55,7 @@ struct AlignResiduals {
   double trimmed_rms = 0;  ///< of the smallest ones, `fraction_used` of all
 };
 
+/// A rigid motion that aligns O1 to O2, and how good it is.
 struct Alignment {
   /// Maps O1, as it was given, to its place on O2: a rotation and a translation.
   Transform transform;

@@ -9,12 +9,14 @@
 
 namespace sdm {
 
+/// How the faces of a mesh are laid out.
 enum class AtlasKind {
   charts,     ///< clusters of faces with similar normals, each projected orthogonally
   triangles,  ///< pairs of adjacent triangles, each unfolded across the common edge: without distortion
   uv,         ///< the mesh's own texture coordinates
 };
 
+/// Options of a Surface.
 struct AtlasOptions {
   AtlasKind kind = AtlasKind::charts;
   std::uint32_t resolution = 1024;  ///< texels per row, in [16, 32768]

@@ -14,6 +14,7 @@ namespace sdm {
 /// An engine with its options: opaque, passed in MapOptions::engine. Several threads may use it concurrently.
 class Engine;
 
+/// What there is to know about an engine before it is made.
 struct EngineInfo {
   std::string_view name;
   std::string_view summary;

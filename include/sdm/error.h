@@ -17,9 +17,11 @@ enum class Remedy { none, atlas_kind, resolution, sign_method };
 /// remedy.
 class SDM_API Error : public std::runtime_error {
  public:
+  /// An error with its message, and the option that remedies it.
   explicit Error(const std::string& message, Remedy remedy = Remedy::none)
       : std::runtime_error(message), remedy_(remedy) {}
 
+  /// The option that remedies the error.
   [[nodiscard]] Remedy remedy() const { return remedy_; }
 
  private:

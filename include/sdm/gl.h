@@ -31,6 +31,7 @@ enum class GlClip {
   stencil,  ///< the paper's method (4.1): a stencil value per face, assigned by a cache
 };
 
+/// Options of make_gl_engine().
 struct GlOptions {
   /// Index into gl_devices(), or a part of a name in it (case-insensitive); empty selects the first device.
   std::string device{};

@@ -14,6 +14,7 @@
 
 namespace sdm {
 
+/// Options of one_sided_hausdorff() and symmetric_hausdorff().
 struct HausdorffOptions {
   /// The bounds are at most this far apart, or 1e-6 of the diagonal of the box of both meshes if it is 0;
   /// ≥ 0, in units of the meshes. At least 1e-12 of the diagonal and of the largest coordinate is used:

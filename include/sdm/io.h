@@ -52,6 +52,7 @@ struct MeshFile {
   std::optional<FileVertices> vertices{};
 };
 
+/// Options of read_mesh_file().
 struct MeshFileOptions {
   bool vertices = false;  ///< keep the vertices of the file: up to six times the memory of the mesh for STL
 };
@@ -84,6 +85,7 @@ enum class Colormap {
 /// The axis of the mesh that points up in model.glb, whose own vertical axis is y.
 enum class UpAxis { y, z };
 
+/// Options of pictures and coloured models.
 struct PictureOptions {
   Colormap colormap = Colormap::automatic;
   /// The distances at the ends of the colour scale; values beyond them have the colours of the ends. Default:
@@ -140,6 +142,7 @@ struct ExrLayers {
   bool closest = false;
 };
 
+/// Options of write_exr().
 struct ExrOptions {
   ExrLayers layers{};
   std::span<const std::uint8_t> boundary{};  ///< of boundary_mask(), or empty: channel boundary.M (0 or 1)
@@ -227,6 +230,7 @@ SDM_API void write_plot_png(const std::filesystem::path& file, const std::string
 SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        std::span<const float> vertex_distances, const PictureOptions& options = {});
 
+/// Options of write_html().
 struct HtmlOptions {
   const Mesh* other = nullptr;  ///< O2, shown as a ghost; none: O1 only
   UpAxis up = UpAxis::y;        ///< the axis of the meshes that points up

@@ -20,6 +20,7 @@
 
 namespace sdm {
 
+/// Options of compute_map().
 struct MapOptions {
   std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
   SignMethod sign = SignMethod::automatic;

@@ -19,10 +19,12 @@ namespace sdm {
 /// as (v, v, v), v its former first corner. Such a face has no sites, no texels and no area, and does not
 /// count for bounds().
 struct MeshEdit {
+  /// A vertex and its new position.
   struct MovedVertex {
     std::uint32_t vertex;
     Vec3 position;
   };
+  /// A face and its new vertices.
   struct ReconnectedFace {
     std::uint32_t face;
     Triangle triangle;  ///< its new corners; may refer to added vertices

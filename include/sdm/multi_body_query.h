@@ -14,6 +14,7 @@
 
 namespace sdm {
 
+/// Options of a MultiBodyQuery.
 struct MultiBodyOptions {
   /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
   double max_distance = std::numeric_limits<double>::infinity();
@@ -61,6 +62,7 @@ class SDM_API MultiBodyQuery {
   MultiBodyQuery(MultiBodyQuery&&) noexcept;
   MultiBodyQuery& operator=(MultiBodyQuery&&) noexcept;
 
+  /// The number of bodies.
   [[nodiscard]] std::size_t size() const;
 
   /// Sets the pose of a body, as ProximityQuery::set_pose does. Throws sdm::Error, and changes nothing, also
@@ -68,6 +70,7 @@ class SDM_API MultiBodyQuery {
   void set_pose(std::size_t body, const Transform& pose);
   /// The same for all bodies: one pose per body.
   void set_poses(std::span<const Transform> poses);
+  /// The pose of a body. Throws sdm::Error for a body that does not exist.
   [[nodiscard]] Transform pose(std::size_t body) const;
 
   /// Moves the vertices of a body, keeping its triangles and its pose. Throws sdm::Error, and changes
@@ -102,6 +105,7 @@ class SDM_API MultiBodyQuery {
   /// The atlas and the sites of a body, in the frame of its mesh, without the pose. Both throw sdm::Error for
   /// a body that does not exist, surface() also for one without an atlas.
   [[nodiscard]] const Surface& surface(std::size_t body) const;
+  /// As surface().
   [[nodiscard]] const Sites& sites(std::size_t body) const;
 
  private:

@@ -23,6 +23,7 @@ namespace sdm {
 /// Cost: linear.
 [[nodiscard]] SDM_API std::vector<std::uint32_t> face_components(const Mesh& mesh);
 
+/// The distances of one part of a surface.
 struct PartStatistics {
   std::size_t faces = 0;
   Box box;                      ///< of the vertices of its faces

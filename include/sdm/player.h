@@ -17,6 +17,7 @@
 
 namespace sdm {
 
+/// Options of a SequencePlayer.
 struct PlayerOptions {
   std::array<std::string, 2> names{"O1", "O2"};
   std::string units{};

@@ -34,6 +34,7 @@ class SDM_API PointReader {
   PointReader(PointReader&&) noexcept;
   PointReader& operator=(PointReader&&) noexcept;
 
+  /// Whether the file has normals.
   [[nodiscard]] bool has_normals() const;
   /// The number of points, where the header has it.
   [[nodiscard]] std::optional<std::uint64_t> count() const;
@@ -53,8 +54,10 @@ class SDM_API PointReader {
 struct PointSample {
   std::vector<Vec3> points, normals;  ///< `normals` is empty if there are none
 };
+/// Draws such a sample. Throws sdm::Error as PointReader does. Cost: reads the file once.
 [[nodiscard]] SDM_API PointSample sample_points(const std::filesystem::path& file, std::size_t most);
 
+/// Options of measure_points().
 struct PointDistancesOptions {
   MapOptions map{};
   Transform placement{};        ///< of the points, before they are measured and written
@@ -69,6 +72,7 @@ struct PointExtreme {
   std::uint64_t index = 0;
 };
 
+/// The distances of the points of a file, in numbers.
 struct PointDistances {
   std::uint64_t points = 0;
   std::uint64_t invalid = 0;              ///< with a coordinate that is NaN or infinite

@@ -56,6 +56,7 @@ struct Contact {
   std::uint64_t id = 0;
 };
 
+/// Options of a ProximityQuery.
 struct ProximityOptions {
   /// The bounds on the penetration depth are at most this far apart, or 1/1000 of the diagonal of the smaller
   /// body's box if it is 0; ≥ 0, in units of the meshes. Errors of computed distances, and bounds on
@@ -96,6 +97,7 @@ class SDM_API ProximityQuery {
   /// scale and a translation. Initially the identity. The nearest such map is used; throws sdm::Error, and
   /// changes nothing, if `pose` differs from it by more than 1e-5 of the scale. Cost: constant.
   void set_pose(int body, const Transform& pose);
+  /// The pose of a body.
   [[nodiscard]] Transform pose(int body) const;
 
   /// Moves the vertices of the bodies, keeping their triangles and poses. An empty span leaves a body
@@ -147,6 +149,7 @@ class SDM_API ProximityQuery {
   /// O1 for 0, O2 for 1; in the frames of their meshes, without the poses. surface() throws sdm::Error if the
   /// shape has no atlas.
   [[nodiscard]] const Surface& surface(int body) const;
+  /// As surface(), for any shape.
   [[nodiscard]] const Sites& sites(int body) const;
 
  private:

@@ -63,6 +63,7 @@ struct RayHit {
 [[nodiscard]] SDM_API std::vector<double> free_distances(const Surface& surface, const DistanceMap& map,
                                                          const Sites& sites);
 
+/// Options of ambient_occlusion().
 struct AmbientOcclusionOptions {
   std::uint32_t rays = 64;  ///< for each sample, 1 to 65536
   /// Greater than 0, in units of the meshes. O2 occludes nothing that is farther away than this.

@@ -47,8 +47,11 @@ class SDM_API Exclusion {
   /// sizes of all neighbourhoods. Cost: linear in that, most of it on all cores.
   explicit Exclusion(const Mesh& rest, const ExclusionRule& rule = {}, const Progress& progress = {});
 
+  /// The number of faces of the mesh.
   [[nodiscard]] std::size_t faces() const { return patch_of_.size(); }
+  /// The number of patches.
   [[nodiscard]] std::size_t patches() const { return face_offsets_.size() - 1; }
+  /// The patch of a face.
   [[nodiscard]] std::uint32_t patch_of(std::uint32_t face) const { return patch_of_[face]; }
   /// The faces of a patch, in increasing order.
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::uint32_t patch) const {
@@ -70,6 +73,7 @@ class SDM_API Exclusion {
   std::vector<std::size_t> offsets_;                       ///< of each patch in excluded_, and an end
 };
 
+/// Options of compute_self_map().
 struct SelfMapOptions {
   double max_distance =
       std::numeric_limits<double>::infinity();  ///< > 0, in units of the mesh: anything farther is ignored
@@ -95,6 +99,7 @@ struct SelfMapOptions {
                                                                     const Exclusion& exclusion,
                                                                     const SelfMapOptions& options = {});
 
+/// Options of a SelfProximityQuery.
 struct SelfProximityOptions {
   ExclusionRule exclusion{};
   double max_distance =
@@ -131,7 +136,9 @@ class SDM_API SelfProximityQuery {
   /// one search per face, all cores, and sorting.
   [[nodiscard]] std::span<const Contact> contacts(double margin);
 
+  /// The sites of the mesh in its present shape.
   [[nodiscard]] const Sites& sites() const;
+  /// What is excluded, of the mesh at rest.
   [[nodiscard]] const Exclusion& exclusion() const;
 
  private:

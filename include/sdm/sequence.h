@@ -15,6 +15,7 @@
 
 namespace sdm {
 
+/// Options of a MeshSequence.
 struct SequenceOptions {
   /// For glTF animations: frames per second, from the first key to the last; 0: one frame per key.
   double rate = 0;
@@ -30,6 +31,7 @@ struct TopologyChange {
   /// Too little stays for an edit: the mesh of the frame is another one, with numbers of its own.
   bool replaced = false;
 
+  /// Whether the triangles are those of the frame before.
   [[nodiscard]] bool none() const {
     return !replaced && edit.removed_faces.empty() && edit.reconnected_faces.empty() &&
            edit.added_vertices.empty() && edit.added_faces.empty();
@@ -61,6 +63,7 @@ class SDM_API MeshSequence {
   /// The first frame, whose triangles are those of all frames. With SequenceOptions::allow_topology: the
   /// frame that was read last, initially the first one.
   [[nodiscard]] const Mesh& mesh() const;
+  /// The number of frames.
   [[nodiscard]] std::size_t frame_count() const;
   /// The name of a frame in [0, frame_count()), for messages: "walk_0007.ply", "frame 7 of motion.npy", ...
   [[nodiscard]] std::string frame_name(std::size_t frame) const;

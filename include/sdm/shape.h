@@ -27,6 +27,7 @@ class SDM_API Shape {
 
   /// Throws sdm::Error if there is no atlas.
   [[nodiscard]] const Surface& surface() const;
+  /// The sites, in the frame of the mesh.
   [[nodiscard]] const Sites& sites() const;
 
  private:

@@ -18,6 +18,7 @@ namespace sites {
 class SitesData;
 }
 
+/// The kinds of sites; none: no site.
 enum class SiteType : std::uint8_t { vertex = 0, edge = 1, face = 2, none = 0xFF };
 
 /// The closest point of O2 to a query, and the site it lies on.
@@ -59,6 +60,7 @@ class SDM_API Sites {
   /// and so is the tree when a quarter of its faces have been added.
   void edit(const MeshEdit& edit);
 
+  /// The mesh in its present shape.
   [[nodiscard]] const Mesh& mesh() const;
   /// The two vertices of each edge, the smaller index first, in lexicographic order.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const;

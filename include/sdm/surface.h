@@ -66,7 +66,9 @@ class SDM_API Surface {
   /// Cost: linear.
   [[nodiscard]] std::vector<std::uint8_t> stored_atlas() const;
 
+  /// The mesh in its present shape.
   [[nodiscard]] const Mesh& mesh() const;
+  /// The kind of the atlas.
   [[nodiscard]] AtlasKind atlas_kind() const;
   /// Texels per row.
   [[nodiscard]] std::uint32_t resolution() const;
@@ -83,6 +85,7 @@ class SDM_API Surface {
   /// The surface point of an owned texel's centre: M⁻¹ of its face.
   [[nodiscard]] Vec3 texel_point(std::uint32_t texel) const;
 
+  /// The number of charts.
   [[nodiscard]] std::size_t chart_count() const;
   /// The chart of each face, or kNone for a face without area.
   [[nodiscard]] std::span<const std::uint32_t> face_charts() const;

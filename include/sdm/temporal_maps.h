@@ -41,12 +41,17 @@ class SDM_API TemporalMaps {
   /// match. Cost: O(n) in texels.
   void follow_edit(std::span<const std::uint32_t> before, const Surface& edited);
 
+  /// The number of maps added.
   [[nodiscard]] std::size_t maps() const { return state_.maps; }
+  /// Texels per row; 0 before the first map.
   [[nodiscard]] std::uint32_t resolution() const { return state_.resolution; }
+  /// The minimum of each texel, in rows.
   [[nodiscard]] std::span<const float> least() const { return state_.least; }
+  /// The maximum of each texel.
   [[nodiscard]] std::span<const float> largest() const { return state_.largest; }
   /// Cost: O(n) in texels.
   [[nodiscard]] std::vector<float> mean() const;
+  /// What a later process needs in order to continue.
   [[nodiscard]] const State& state() const { return state_; }
 
  private:

@@ -14,6 +14,7 @@ namespace sdm {
 /// During its lifetime, every function of the library uses at most `count` threads (0: all cores).
 class SDM_API ThreadLimit {
  public:
+  /// Sets the limit until the object is destroyed.
   explicit ThreadLimit(unsigned count);
   ~ThreadLimit();
   ThreadLimit(const ThreadLimit&) = delete;

@@ -18,6 +18,7 @@ struct Motion {
   [[nodiscard]] SDM_API Transform at(double time, const Shape& shape) const;
 };
 
+/// The first contact of a motion.
 struct TimeOfContact {
   bool contact = false;  ///< the bodies collide at `time`, or are at most the tolerance apart
   /// The bodies do not touch before this; 1 if they come no nearer than the tolerance.

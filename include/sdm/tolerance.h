@@ -20,6 +20,7 @@ struct Tolerance {
   Tolerance() = default;
   /// −t ≤ d ≤ t; also for unsigned distances.
   Tolerance(double t) : lo(-t), hi(t) {}  // NOLINT(google-explicit-constructor): a number is a tolerance
+  /// least ≤ d ≤ most.
   Tolerance(double least, double most) : lo(least), hi(most) {}
 
   /// Whether it tells distances apart that differ by their sign only, which unsigned distances do not have.
@@ -40,6 +41,7 @@ struct ToleranceShares {
 [[nodiscard]] SDM_API ToleranceShares tolerance_shares(const Surface& surface, const DistanceMap& map,
                                                        const Tolerance& tolerance, double accuracy);
 
+/// What a map proves about a tolerance.
 enum class Verdict {
   pass,         ///< every point of the surface is within the tolerance
   fail,         ///< some sample or vertex is not

@@ -26,6 +26,7 @@ struct SDM_API Transform {
   /// is zero or not finite.
   [[nodiscard]] static Transform quaternion(const std::array<double, 4>& wxyz);
 
+  /// Maps a point.
   [[nodiscard]] Vec3 operator()(const Vec3& p) const;
   /// The determinant of the linear part; negative for a reflection.
   [[nodiscard]] double determinant() const;

@@ -19,9 +19,11 @@ struct UvTile {
 
   /// Whether it has a UDIM number: 0 ≤ u ≤ 9 and v ≥ 0.
   [[nodiscard]] bool has_udim() const { return u >= 0 && u <= 9 && v >= 0 && v < 900; }
+  /// The UDIM number, from 1001.
   [[nodiscard]] int udim() const { return 1001 + u + 10 * v; }
 };
 
+/// The tiles of a mesh.
 struct UvTiles {
   std::vector<UvTile> tiles;            ///< with a face each; by v, then u
   std::vector<std::uint32_t> crossing;  ///< faces in more than one tile, which `tiles` does not contain
@@ -39,6 +41,7 @@ struct UvTiles {
 /// The faces of a tile, with texture coordinates relative to it. Vertices keep their numbers.
 [[nodiscard]] SDM_API Mesh uv_tile_mesh(const Mesh& mesh, const UvTile& tile);
 
+/// A mesh whose faces are in the unit square.
 struct WrappedUvs {
   /// The faces of the mesh in their order, then the further pieces of faces that were cut; vertices that were
   /// added by cuts come last.

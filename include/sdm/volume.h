@@ -32,9 +32,11 @@ struct Grid {
 
   /// The number of points; does not overflow.
   [[nodiscard]] std::size_t size() const { return std::size_t{dims[0]} * dims[1] * dims[2]; }
+  /// The index of a point.
   [[nodiscard]] std::size_t index(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
     return i + std::size_t{dims[0]} * (j + std::size_t{dims[1]} * k);
   }
+  /// The place of a point.
   [[nodiscard]] Vec3 point(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
     return {origin[0] + i * spacing[0], origin[1] + j * spacing[1], origin[2] + k * spacing[2]};
   }
@@ -49,6 +51,7 @@ struct Grid {
 /// sdm::Error as above, and for a spacing that is not positive.
 [[nodiscard]] SDM_API Grid make_grid(const Box& bounds, double spacing);
 
+/// How the distances of a field are computed.
 enum class FieldMethod {
   best,         ///< the cpu engine, on blocks of points; near O2 only, if there is a band
   reference,    ///< the reference engine: each point by itself, in double precision; the oracle
@@ -64,6 +67,7 @@ enum class FieldMethod {
   csc,
 };
 
+/// What there is to know about a method.
 struct FieldMethodInfo {
   FieldMethod method;
   std::string_view name;  ///< as on the command line: "best", "linear_factorization", ...
@@ -78,8 +82,10 @@ struct FieldMethodInfo {
 [[nodiscard]] SDM_API std::span<const FieldMethodInfo> field_methods();
 /// Throws sdm::Error for an unknown name.
 [[nodiscard]] SDM_API const FieldMethodInfo& field_method(std::string_view name);
+/// The entry of field_methods() for a method.
 [[nodiscard]] SDM_API const FieldMethodInfo& field_method(FieldMethod method);
 
+/// Options of compute_field().
 struct FieldOptions {
   FieldMethod method = FieldMethod::best;
   SignMethod sign = SignMethod::automatic;
@@ -161,6 +167,7 @@ struct FieldSample {
 /// Σ w |c − p| ≤ √(Σ w |c − p|²) = √(Σ h² t (1 − t)), over the axes with spacing h and place t in the cell.
 [[nodiscard]] SDM_API double interpolation_error(const Grid& grid);
 
+/// Options of field_proximity().
 struct FieldProximityOptions {
   /// O1 is sampled at the corners of the triangles that its faces are divided into, with sides of at most
   /// this length; 0: the smallest spacing of the grid.
