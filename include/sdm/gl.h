@@ -47,9 +47,9 @@ struct GlOptions {
   bool paper_literal = false;
 };
 
-/// Returns the device that `options` selects for maps whose longer side has
-/// `resolution` texels. Throws sdm::Error if there is
-/// none, or if its largest image is smaller; programs can thus fail before they build a surface.
+/// Returns the device that `options` selects for maps whose longer side has `resolution` texels. Throws
+/// sdm::Error if there is none, or if its largest image is smaller; programs can thus fail before they build
+/// a surface.
 [[nodiscard]] SDM_API GlDevice gl_device(const GlOptions& options, std::uint32_t resolution);
 
 /// Counters and times of the gl engine. Counts do not depend on the number of threads. A pair is a site of O2

@@ -101,9 +101,8 @@ struct PointDistances {
 /// each of as many runs of the file, at a pseudorandom place of the run, and besides those with the largest
 /// |distance| of each neighbourhood, at most 5832, and both extremes. It states how many. Points without
 /// normals are shaded by the normal of their closest face of options.other; options.largest and .triangles
-/// have no meaning here. Also throws sdm::Error if `ply`
-/// does not have these points, and if can_write_html() is false. Cost: reads the file twice; some megabytes
-/// of memory.
+/// have no meaning here. Also throws sdm::Error if `ply` does not have these points, and if can_write_html()
+/// is false. Cost: reads the file twice; some megabytes of memory.
 SDM_API void write_points_html(const std::filesystem::path& file, const std::filesystem::path& ply,
                                const PointDistances& found, const std::string& report,
                                const HtmlOptions& options = {});
