@@ -11,7 +11,9 @@ file(GLOB pages ${SOURCE_DIR}/*.md ${SOURCE_DIR}/docs/*.md ${SOURCE_DIR}/docs/*/
 foreach(page ${pages})
   file(READ ${page} text)
   get_filename_component(folder ${page} DIRECTORY)
-  string(REGEX REPLACE "[][]" "|" text "${text}")  # CMake takes brackets in a list for its own
+  # CMake takes brackets in a list for its own.
+  string(REPLACE "[" "<" text "${text}")
+  string(REPLACE "]" "|" text "${text}")
   string(REGEX MATCHALL "\\|\\([^):#]+\\)" links "${text}")
   foreach(link ${links})
     string(REGEX REPLACE "^\\|\\((.*)\\)$" "\\1" target "${link}")
