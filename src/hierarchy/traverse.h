@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -49,32 +48,6 @@ void traverse_nearer_first(const AabbTree& tree, const LowerBound& lower_bound, 
       if (within(bounds[k])) self(self, children[k]);
   };
   if (!tree.nodes.empty() && within(lower_bound(tree.nodes[0].box))) descend(descend, 0);
-}
-
-/// Best first: visits leaves by increasing lower bound, until within(bound) fails for the next node. Enters
-/// the fewest nodes of any order, at the cost of a priority queue.
-template <class LowerBound, class Within, class Visit>
-void traverse_best_first(const AabbTree& tree, const LowerBound& lower_bound, const Within& within,
-                         const Visit& visit) {
-  struct Open {
-    double bound;
-    std::uint32_t node;
-    bool operator<(const Open& other) const { return bound > other.bound; }  // the smallest on top
-  };
-  if (tree.nodes.empty()) return;
-  std::priority_queue<Open> open;
-  open.push({lower_bound(tree.nodes[0].box), 0});
-  while (!open.empty() && within(open.top().bound)) {
-    const std::uint32_t index = open.top().node;
-    const AabbTree::Node& node = tree.nodes[index];
-    open.pop();
-    if (node.leaf()) {
-      visit(index);
-    } else {
-      for (const std::uint32_t child : {index + 1, node.right})
-        open.push({lower_bound(tree.nodes[child].box), child});
-    }
-  }
 }
 
 /// Two nodes of one tree, or twice the same node.

@@ -209,22 +209,6 @@ TEST_P(Traversal, SubtreesHoldTheLeavesThatTheirNumbersName) {
       [](std::uint32_t) {});
 }
 
-TEST_P(Traversal, BestFirstVisitsByTheirDistance) {
-  for (int i = 0; i < 20; ++i) {
-    const Vec3 p = point();
-    const double limit = 0.2 * i;
-    const auto bound = [&](const hierarchy::FloatBox& box) { return squared_distance(box, p); };
-    std::vector<std::uint32_t> visited;
-    traverse_best_first(
-        tree, bound, [&](double least) { return least <= limit; },
-        [&](std::uint32_t leaf) { visited.push_back(leaf); });
-    EXPECT_TRUE(
-        std::ranges::is_sorted(visited, {}, [&](std::uint32_t leaf) { return bound(tree.box(leaf)); }));
-    std::ranges::sort(visited);
-    EXPECT_EQ(visited, accepted_leaves(tree, [&](const auto& box) { return bound(box) <= limit; }));
-  }
-}
-
 // With a limit that shrinks to the nearest box found so far, each order finds the nearest.
 TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
   const hierarchy::WideTree wide = hierarchy::collapse(tree);
@@ -236,8 +220,7 @@ TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
     double expected = std::numeric_limits<double>::infinity();
     for (const std::uint32_t leaf : leaves) expected = std::min(expected, bound(tree.box(leaf)));
 
-    double nearer_first = std::numeric_limits<double>::infinity(), best_first = nearer_first,
-           wide_first = nearer_first;
+    double nearer_first = std::numeric_limits<double>::infinity(), wide_first = nearer_first;
     traverse_nearer_first(
         tree, bound, [&](double least) { return least < nearer_first; },
         [&](std::uint32_t leaf) {
@@ -245,12 +228,6 @@ TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
           nearer_first = bound(tree.box(leaf));
         });
     EXPECT_EQ(nearer_first, expected);
-    int visits = 0;
-    traverse_best_first(
-        tree, bound, [&](double least) { return least < best_first; },
-        [&](std::uint32_t leaf) { best_first = bound(tree.box(leaf)), ++visits; });
-    EXPECT_EQ(best_first, expected);
-    EXPECT_EQ(visits, leaves.empty() ? 0 : 1);
     if (leaves.empty()) continue;
     const auto within = [&](float squared) { return squared < (1 + 1e-6) * wide_first; };
     traverse_nearest_child_first(

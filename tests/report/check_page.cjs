@@ -42,6 +42,22 @@ function plyRows(path) {
   return { count, at, size: reach };
 }
 
+// What is under the places of a grid, that many pixels apart, seen from a side.
+async function hitsFrom(page, side, pixels) {
+  await page.selectOption('#side', side);
+  await page.evaluate(() => new Promise(requestAnimationFrame));
+  return page.evaluate((step) => {
+    const { clientWidth, clientHeight } = document.getElementById('canvas');
+    const result = [];
+    for (let x = 5; x < clientWidth; x += step)
+      for (let y = 5; y < clientHeight; y += step) {
+        const hit = window.sdmPage.inspect(x, y);
+        if (hit) result.push({ ...hit, x, y });
+      }
+    return result;
+  }, pixels);
+}
+
 const checks = {
   // The values at many points of several views are those of the map at the texel there, bit by bit, and the texel is
   // the one at the point: |z − height| changes no faster than the point moves.
@@ -51,18 +67,7 @@ const checks = {
     const type = new Uint32Array(numbers(exrSiteType));
     let hits = 0;
     for (const side of ['corner', 'front', 'top', 'bottom']) {
-      await page.selectOption('#side', side);
-      await page.evaluate(() => new Promise(requestAnimationFrame));
-      const found = await page.evaluate(() => {
-        const { clientWidth, clientHeight } = document.getElementById('canvas');
-        const result = [];
-        for (let x = 5; x < clientWidth; x += 13)
-          for (let y = 5; y < clientHeight; y += 13) {
-            const hit = window.sdmPage.inspect(x, y);
-            if (hit) result.push({ ...hit, x, y });
-          }
-        return result;
-      });
+      const found = await hitsFrom(page, side, 13);
       for (const hit of found) {
         assert(hit.texel, 'a point without a texel');
         const texel = hit.texel[1] * Number(resolution) + hit.texel[0];
@@ -93,18 +98,7 @@ const checks = {
     const rows = plyRows(ply);
     let hits = 0;
     for (const side of ['corner', 'top', 'left']) {
-      await page.selectOption('#side', side);
-      await page.evaluate(() => new Promise(requestAnimationFrame));
-      const found = await page.evaluate(() => {
-        const { clientWidth, clientHeight } = document.getElementById('canvas');
-        const result = [];
-        for (let x = 5; x < clientWidth; x += 17)
-          for (let y = 5; y < clientHeight; y += 17) {
-            const hit = window.sdmPage.inspect(x, y);
-            if (hit) result.push({ ...hit, x, y });
-          }
-        return result;
-      });
+      const found = await hitsFrom(page, side, 17);
       for (const hit of found) {
         const row = rows.at(hit.number);
         assert.strictEqual(hit.distance, row.distance);

@@ -14,7 +14,6 @@
 #include "proximity/depth/face_distances.h"
 #include "proximity/depth/mixed_bound.h"
 #include "proximity/shape/node_ball.h"
-#include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {

@@ -29,9 +29,9 @@ void ExitDirections::add(const Vec3& u) {
       static_cast<float>(direction.most_in_body - dot(direction.in_body, body_->frame.origin));
 }
 
-double ExitDirections::bound(const Corners& triangle, std::size_t first) const {
+double ExitDirections::bound(const Corners& triangle) const {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = first; i < size_; ++i) {
+  for (std::size_t i = 0; i < size_; ++i) {
     const Direction& d = directions_[i];
     least = std::min(
         least, d.most - std::min({dot(d.u, triangle[0]), dot(d.u, triangle[1]), dot(d.u, triangle[2])}));

@@ -28,14 +28,15 @@ class ExitDirections {
   void add(const Vec3& u);
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// The bound on b of a triangle in the frame of the solid, by the directions from `first` on.
-  [[nodiscard]] double bound(const Corners& triangle, std::size_t first = 0) const;
-  /// Appends the bounds at the corners, one entry for each direction: they are linear.
-  void values(const Corners& triangle, std::vector<CornerValues>& values) const;
-  /// The same for a ball.
-  [[nodiscard]] double bound(const Vec3& centre, double radius, std::size_t first) const;
-  /// For a triangle in the frame of the body.
+  /// The bound on b of a triangle in the frame of the solid.
+  [[nodiscard]] double bound(const Corners& triangle) const;
+  /// The same for a triangle in the frame of the body.
   [[nodiscard]] double bound_in_body(const Corners& triangle) const;
+  /// The same for a ball in the frame of the solid, by the directions from `first` on.
+  [[nodiscard]] double bound(const Vec3& centre, double radius, std::size_t first) const;
+  /// Appends the bounds at the corners of a triangle in the frame of the solid, one entry for each direction:
+  /// they are linear.
+  void values(const Corners& triangle, std::vector<CornerValues>& values) const;
   /// For the boxes of a node's children, in the unit frame of the body.
   using OfChildren = std::array<float, hierarchy::WideTree::kWidth>;
   [[nodiscard]] OfChildren bound_children(const hierarchy::WideTree::Node& node) const;
