@@ -128,8 +128,9 @@ class SDM_API ProximityQuery {
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
   /// The contacts of both bodies: none, at the cost of colliding(), if they are farther apart than the
   /// margin. Otherwise one for
-  ///  - each vertex that lies inside the other body or within the margin of its surface; of vertices within
-  ///    1/32 of the size of their mesh from each other, in the same node of the tree, only the deepest one;
+  ///  - each vertex that lies inside the other body or within the margin of its surface. Of vertices within
+  ///    1/16 of the size of their mesh from each other, in the same node of the tree, only the deepest one,
+  ///    and of a node that is inside by more than its own diameter, only the deepest one, too;
   ///  - both ends of each part of an edge that lies along a face of the other body, within the margin above
   ///    it, or below it inside the body;
   ///  - each other part of an edge inside the other body or within the margin that reaches no end in contact,
@@ -138,7 +139,7 @@ class SDM_API ProximityQuery {
   ///    of the smaller body only those without an end in contact.
   /// So a box on a plate has contacts at its corners, and beams that cross where their edges cross. A corner
   /// whose closest point is on a face that cannot push it, as the side of a box that it is flush with, is in
-  /// contact with the nearest face that can, up to 1/4 of the size of the smaller body below that face.
+  /// contact with the nearest face that can, up to 1/8 of the size of the smaller body below that face.
   /// Contacts of a point inside a body that intersects itself are with a point of its boundary, closest to
   /// about 1/1000 of its size, or else with the closest point of its surface. Sorted by patch, the patch with
   /// the deepest contact first, and by decreasing depth within a patch. Contacts belong to the same patch if

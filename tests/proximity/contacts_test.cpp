@@ -122,8 +122,9 @@ bool flat(const Mesh& mesh, std::uint32_t v, std::uint32_t w) {
   return normals.size() == 2 && norm(normals[0] - normals[1]) < 1e-6;
 }
 
-// All vertices in contact are near a contact that is at least as deep, and those of coarse meshes are
-// contacts; all parts of edges in contact between their ends have one.
+// All vertices in contact are near a contact that is at least as deep: in a part, or in a region that is not
+// larger than it is deep. Those of coarse meshes are contacts. All parts of edges in contact between their
+// ends have one.
 TEST(Contacts, CoverAllVerticesAndEdges) {
   const std::vector<Mesh> meshes{cube(0.5), tetrahedron(), placed(sphere(1), "scale:0.6"),
                                  placed(sphere(3), "scale:0.6"), beam({0.8, 0.1, 0.1}, {})};
@@ -150,7 +151,7 @@ TEST(Contacts, CoverAllVerticesAndEdges) {
     for (const int body : {0, 1}) {
       const Mesh &on = body == 0 ? a : b, &other = body == 0 ? b : a;
       const auto point = [&](const Contact& c) { return body == 0 ? c.point1 : c.point2; };
-      const double part = diagonal(bounds(on)) / 64;
+      const double part = diagonal(bounds(on)) / 16;
       std::map<std::uint32_t, double> distance;
       for (std::uint32_t v = 0; v < on.positions.size(); ++v) {
         const Vec3& p = on.positions[v];
@@ -158,8 +159,9 @@ TEST(Contacts, CoverAllVerticesAndEdges) {
         if (!(distance[v] <= margin - 1e-6)) continue;
         ++vertices;
         EXPECT_TRUE(std::ranges::any_of(contacts, [&](const Contact& c) {
+          const double reach = std::max(on.triangles.size() > 100 ? part : 0, c.depth);
           return c.id >> 63 == static_cast<std::uint64_t>(body) && -c.depth <= distance[v] + 1e-6 &&
-                 norm(point(c) - p) <= 1.01 * part;
+                 norm(point(c) - p) <= reach + 1e-6;
         }));
       }
       const Sites sites(on);
@@ -199,6 +201,77 @@ TEST(Contacts, CoverAllVerticesAndEdges) {
   }
   EXPECT_GT(vertices, 500u);
   EXPECT_GT(parts, 100u);
+}
+
+/// Signed distances of points from a solid, by the reference engine; negative inside.
+std::vector<double> signed_distances(const Sites& solid, std::span<const Vec3> points) {
+  const auto closest = closest_points(solid, points, {.engine = make_engine("reference")});
+  const auto inside = inside_flags(solid, points, closest, SignMethod::exact);
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    distances.push_back(inside[i] != 0 ? -closest[i].distance : closest[i].distance);
+  return distances;
+}
+
+// All vertices of fine meshes: shallow, deep, nested, with and without a margin.
+TEST(Contacts, AreTheDeepestVerticesOfFineMeshes) {
+  const std::vector<Mesh> meshes{load("cow.off", "fit"), placed(sphere(4), "scale:0.5"),
+                                 placed(torus(96, 48), "fit")};
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  std::size_t vertices = 0, deep = 0;
+  for (int trial = 0; trial < 36; ++trial) {
+    SCOPED_TRACE(trial);
+    const std::array<Mesh, 2> bodies{meshes[static_cast<std::size_t>(trial) % 3],
+                                     meshes[static_cast<std::size_t>(trial / 3) % 3]};
+    ProximityQuery query(bodies[0], bodies[1], {.contact_margin = trial % 4 == 3 ? 0.01 : 0});
+    const double margin = trial % 4 == 3 ? 0.01 : 0, spread = 0.1 * (trial % 5);
+    const Transform pose =
+        Transform::translation({spread * normal(random), spread * normal(random), spread * normal(random)}) *
+        Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
+    query.set_pose(1, pose);
+    std::array<Mesh, 2> placed = bodies;
+    transform(placed[1].positions, pose);
+    const std::array<Sites, 2> sites{Sites(placed[0]), Sites(placed[1])};
+    for (const int body : {0, 1}) {
+      const std::vector<Vec3>& positions = placed[body].positions;
+      const std::vector<double> distances = signed_distances(sites[1 - body], positions);
+      const double part = diagonal(bounds(bodies[body])) / 16;
+      std::vector<Contact> contacts;  // of vertices
+      for (const Contact& c : query.contacts())
+        if (static_cast<int>(c.id >> 63) == body && (c.id >> 61 & 1) == 0) contacts.push_back(c);
+      const auto point = [&](const Contact& c) { return body == 0 ? c.point1 : c.point2; };
+      for (const Contact& c : contacts) {
+        const auto nearest = std::ranges::min_element(
+            positions, {}, [&](const Vec3& p) { return squared_norm(p - point(c)); });
+        ASSERT_LT(norm(*nearest - point(c)), 1e-9);
+        const double distance = distances[static_cast<std::size_t>(nearest - positions.begin())];
+        EXPECT_LE(distance, margin + 1e-9);
+        // A vertex by itself may be supported by a face that is farther away.
+        if ((c.id >> 60 & 1) == 0) continue;
+        EXPECT_GE(c.depth, -distance - 1e-9);
+        const bool intersects_itself =
+            static_cast<std::size_t>(body == 0 ? trial / 3 : trial) % 3 == 0;  // the cow
+        if (!intersects_itself) {
+          EXPECT_NEAR(c.depth, -distance, 1e-9);
+        }
+        deep += c.depth > part;
+      }
+      for (std::size_t v = 0; v < positions.size(); ++v) {
+        if (!(distances[v] <= margin - 1e-9)) continue;
+        ++vertices;
+        EXPECT_TRUE(std::ranges::any_of(contacts,
+                                        [&](const Contact& c) {
+                                          return c.depth >= -distances[v] - 1e-9 &&
+                                                 norm(point(c) - positions[v]) <=
+                                                     std::max(part, c.depth) + 1e-6;
+                                        }))
+            << body << ' ' << v << ' ' << distances[v];
+      }
+    }
+  }
+  EXPECT_GT(vertices, 20000u);
+  EXPECT_GT(deep, 100u);
 }
 
 // A support replaces the closest point of a corner, not of a vertex of a smooth surface.

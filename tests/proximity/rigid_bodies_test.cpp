@@ -123,16 +123,31 @@ TEST(RigidBodies, AgreeWithMovedVertices) {
         }
         std::map<std::uint64_t, Contact> contacts;
         for (const Contact& c : posed.contacts()) EXPECT_TRUE(contacts.emplace(c.id, c).second);
-        std::size_t same = 0;
+        const double part = std::max(diagonal(bounds(meshes[a])), diagonal(bounds(meshes[b]))) / 16;
+        std::size_t shallow = 0, same = 0;
         for (const Contact& c : moved.contacts()) {
+          if (c.depth > part / 4) continue;
+          ++shallow;
           const auto found = contacts.find(c.id);
           same += found != contacts.end() && std::abs(found->second.depth - c.depth) < 100 * tolerance;
         }
         // A sample at the margin, or one of two that are equally deep, may be chosen in one query only.
-        EXPECT_GE(same + 1, 0.95 * static_cast<double>(moved.contacts().size()));
-        EXPECT_NEAR(static_cast<double>(posed.contacts().size()),
-                    static_cast<double>(moved.contacts().size()),
-                    1 + 0.05 * static_cast<double>(moved.contacts().size()));
+        EXPECT_GE(same + 1, 0.95 * static_cast<double>(shallow));
+        // Deeper ones are of regions that depend on the tree: each is near one that is as deep.
+        const auto is_covered = [&](const Contact& c, std::span<const Contact> by) {
+          return std::ranges::any_of(by, [&](const Contact& other) {
+            const bool on_b = c.id >> 63 != 0;
+            return other.id >> 63 == c.id >> 63 && other.depth >= c.depth - 100 * tolerance &&
+                   norm(on_b ? other.point2 - c.point2 : other.point1 - c.point1) <=
+                       std::max(part, other.depth) + tolerance;
+          });
+        };
+        for (const auto& [some, others] :
+             {std::pair(posed.contacts(), moved.contacts()), std::pair(moved.contacts(), posed.contacts())}) {
+          const auto covered =
+              std::ranges::count_if(some, [&](const Contact& c) { return is_covered(c, others); });
+          EXPECT_GE(covered + 1, 0.98 * static_cast<double>(some.size()));
+        }
         for (const Contact& c : posed.contacts()) {
           EXPECT_NEAR(norm(point_at(vertices[0], meshes[a], c.faces[0], c.barycentric[0]) - c.point1), 0,
                       tolerance);

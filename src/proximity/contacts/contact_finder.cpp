@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <tuple>
 
 #include "core/geometry/barycentric.h"
-#include "core/geometry/sweep.h"
 #include "core/geometry/vec.h"
-#include "core/parallel.h"
-#include "engine/cpu/cpu_engine.h"
-#include "proximity/shape/node_ball.h"
+#include "proximity/shape/contact_parts.h"
 #include "sites/sites_data.h"
 
 namespace sdm::contacts {
@@ -23,7 +18,7 @@ using sites::SitesData;
 // smaller body: of shorter ones, the end is near enough.
 constexpr double kShortEdge = 1.0 / 16;
 // How deep a face may be below the vertices and edges that it supports, relative to the smaller body.
-constexpr double kSupportReach = 1.0 / 4;
+constexpr double kSupportReach = 1.0 / 8;
 // A corner at most this far, relative to the smaller body, from a face that cannot push it is flush with it.
 constexpr double kFlush = 1.0 / 16;
 // The sine of the angle by which all edges at a corner fall off behind its normal; 0.58 in a cube.
@@ -65,104 +60,149 @@ std::span<const Contact> ContactFinder::find(const Bodies& bodies,
                                              const std::array<mesh::Similarity, 2>& to_other, double margin,
                                              double length) {
   bodies_ = bodies, to_other_ = to_other, length_ = length;
-  contacts_.clear(), boxes_.clear();
+  contacts_.clear(), boxes_.clear(), bridges_.clear();
+  const exact::MeshPair meshes{internals(bodies[0]->body().sites()), internals(bodies[1]->body().sites()),
+                               to_other[1].map};
+  exact::find_near_faces(meshes, margin / bodies[0]->pose().scale, near_);
   for (body_ = 0; body_ < 2; ++body_) {
     limit_ = margin / bodies[1 - body_]->pose().scale;
     size_ = std::min(diagonal(other().box()), to_other_[body_].scale * diagonal(on().box()));
-    find_leaves();
+    features_.clear();
+    std::ranges::sort(near_.leaves[body_]);
+    regions_.find(on(), other(), to_other_[body_], limit_, near_, body_);
+    join_vertices();
     find_vertices();
     find_edges();
     add_contacts();
   }
+  boxes_.insert(boxes_.end(), bridges_.begin(), bridges_.end());
   return patches_.sort(contacts_, boxes_);
 }
 
-// The distance is 1-Lipschitz: a node in a ball whose centre is farther than its radius and the margin is not
-// in contact.
-void ContactFinder::find_leaves() {
-  leaves_.clear();
-  parts_.clear(), points_.clear();
-  add_children(0);
-  while (!parts_.empty()) {
-    measure(0);
-    std::swap(parts_, closer_);
-    parts_.clear(), points_.clear();
-    for (std::size_t i = 0; i < closer_.size(); ++i) {
-      if (measured_[i].distance - closer_[i].radius > limit_) continue;
-      if (hierarchy::WideTree::is_leaf(closer_[i].node))
-        leaves_.push_back(hierarchy::WideTree::leaf_number(closer_[i].node));
-      else
-        add_children(closer_[i].node);
+// Across the faces that are not near the other body.
+void ContactFinder::join_vertices() {
+  const sites::Regions& sites = internals(on().sites()).regions;
+  vertices_.start(on(), other(), to_other_[body_], limit_);
+  for (const ContactRegion& region : regions_.regions()) {
+    if (region.kind == ContactRegion::Kind::deep) continue;
+    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
+      const std::uint32_t near = near_.of_leaf[body_][leaf], first = sites.leaves[leaf];
+      for (std::uint32_t i = first; i < sites.leaves[leaf + 1]; ++i)
+        vertices_.add_face(sites.places.corners[i], (near >> (i - first) & 1) != 0);
     }
   }
-  std::ranges::sort(leaves_);
-}
-
-void ContactFinder::add_children(std::uint32_t node) {
-  const SitesData& sites = internals(on().sites());
-  const hierarchy::WideTree::Node& wide = sites.wide.nodes[node];
-  for (std::uint32_t i = 0; i < wide.count; ++i) {
-    const auto [centre, radius] = shape::ball_of_child(sites, node, i, to_other_[body_]);
-    if (box_distance({centre, centre}, other().box()) > radius + limit_) continue;
-    parts_.push_back({wide.child[i], radius});
-    points_.push_back(centre);
-  }
-}
-
-// Sets measured_ for points_ from `first` on.
-void ContactFinder::measure(std::size_t first) {
-  constexpr std::size_t kGrain = 512;
-  const SitesData& sites = internals(other().sites());
-  measured_.resize(points_.size());
-  parallel_for(points_.size() - first, kGrain, [&](std::size_t begin, std::size_t end) {
-    const std::span<const Vec3> points = std::span(points_).subspan(first + begin, end - begin);
-    const auto take = [&](std::size_t offset, const sites::ClosestPacket& closest) {
-      const std::uint32_t inside = other().inside()(points.subspan(offset, closest.count), closest);
-      for (std::size_t i = 0; i < closest.count; ++i) {
-        const bool in = (inside >> i & 1) != 0;
-        const Vec3& p = points[offset + i];
-        measured_[first + begin + offset + i] = {
-            .distance = in ? -closest.distance[i] : closest.distance[i],
-            .vector = {closest.vector[0][i], closest.vector[1][i], closest.vector[2][i]},
-            .face = sites.face_of(closest.type[i], closest.site[i]),
-            .at_boundary = !in || other().inside().at_boundary(p, closest.get(i, p))};
-      }
-    };
-    cpu::cpu_search(sites, points, std::numeric_limits<double>::infinity(), std::ref(take));
-  });
 }
 
 void ContactFinder::find_vertices() {
-  const SitesData& sites = internals(on().sites());
-  points_.clear(), vertices_.clear(), features_.clear();
-  if (point_of_.size() < sites.mesh.positions.size()) point_of_.resize(sites.mesh.positions.size(), kNone);
-  for (const std::uint32_t leaf : leaves_)
-    for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i)
-      for (const std::uint32_t vertex : sites.mesh.triangles[sites.regions.owners[i].face]) {
-        if (point_of_[vertex] != kNone) continue;
-        point_of_[vertex] = static_cast<std::uint32_t>(points_.size());
-        vertices_.push_back(vertex);
-        points_.push_back(to_other_[body_].map(sites.mesh.positions[vertex]));
-      }
-  measure(0);
-  const std::span<const std::uint32_t> parts = on().contact_parts();
-  for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
-    if (!(measured_[i].distance <= limit_)) continue;
-    const std::uint32_t vertex = vertices_[i], part = parts[vertex];
-    features_.push_back({.key = part == kNone ? vertex : kPart | part,
-                         .distance = measured_[i].distance,
-                         .point = i,
-                         .site = vertex});
-    if (part == kNone) support(features_.back());
+  const Regions regions = regions_.regions();
+  for (std::size_t first = 0; first < regions.size();) {
+    if (regions[first].kind == ContactRegion::Kind::coarse) {
+      find_each(regions[first++]);
+      continue;
+    }
+    std::size_t last = first + 1;
+    while (last < regions.size() && regions[last].node == regions[first].node) ++last;
+    find_deepest(regions.subspan(first, last - first));
+    first = last;
   }
 }
 
-// A corner that is flush with a face that cannot push it is carried by another one.
-void ContactFinder::support(Feature& feature) {
+// Of a part, or of a region that is deep inside, the deepest vertex.
+void ContactFinder::find_deepest(Regions part) {
+  const sites::SitesData& sites = internals(on().sites());
+  const bool deep = part[0].kind == ContactRegion::Kind::deep;
+  deepest_.start(on(), other(), to_other_[body_]);
+  for (const ContactRegion& region : part) {
+    if (region.near_face != kNone) deepest_.bound_by(region.near_face);
+    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
+      const auto owned = [&](std::uint32_t i) {
+        return sites.regions.owners[sites.regions.leaves[i]].vertices;
+      };
+      for (std::uint32_t vertex = owned(leaf); vertex < owned(leaf + 1); ++vertex) {
+        if (!deep && vertices_.is_joined(vertex) && !vertices_.in_contact(vertex)) continue;
+        if (const SurfacePoint* point = deep ? nullptr : vertices_.measured(vertex))
+          deepest_.add(vertex, *point);
+        else
+          deepest_.add(vertex);
+      }
+    }
+  }
+  const DeepestVertex::Found found = deepest_.find(limit_);
+  const Box box = box_of(part);
+  if (found.vertex != kNone)
+    features_.push_back({.key = kPart | part[0].node,
+                         .site = sites.regions.vertices[found.vertex].vertex,
+                         .point = found.point,
+                         .faces = box});
+  else if (box.lo[0] <= box.hi[0])
+    bridges_.push_back(image(bodies_[body_]->pose().map, box));
+}
+
+// A box of the faces that may be in contact.
+Box ContactFinder::box_of(Regions part) {
+  const sites::SitesData& sites = internals(on().sites());
+  constexpr float kRounding = 1e-6f;
+  hierarchy::FloatBox unit = sites.tree.box(part[0].node);
+  if (part[0].kind != ContactRegion::Kind::deep) {
+    unit.lo.fill(std::numeric_limits<float>::infinity()),
+        unit.hi.fill(-std::numeric_limits<float>::infinity());
+    for (const ContactRegion& region : part)
+      for (std::uint32_t i = sites.regions.leaves[region.first_leaf];
+           i < sites.regions.leaves[region.last_leaf]; ++i) {
+        const auto free = [&](std::uint32_t vertex) {
+          return vertices_.known_side(vertex) == OneSidedVertices::Side::free;
+        };
+        const Triangle& corners = sites.regions.places.corners[i];
+        if (std::ranges::all_of(corners, free)) continue;
+        for (const std::uint32_t corner : corners)
+          for (int k = 0; k < 3; ++k) {
+            const float x = sites.regions.vertices[corner].point[k];
+            unit.lo[k] = std::min(unit.lo[k], x - kRounding),
+            unit.hi[k] = std::max(unit.hi[k], x + kRounding);
+          }
+      }
+    if (unit.lo[0] > unit.hi[0]) return {};
+  }
+  Box box;
+  for (const auto& corner : {unit.lo, unit.hi})
+    extend(box, sites.frame.origin + (1 / sites.frame.scale) * Vec3{corner[0], corner[1], corner[2]});
+  return box;
+}
+
+// Each vertex in contact.
+void ContactFinder::find_each(const ContactRegion& region) {
+  const sites::SitesData& sites = internals(on().sites());
+  for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
+    const auto owned = [&](std::uint32_t i) {
+      return sites.regions.owners[sites.regions.leaves[i]].vertices;
+    };
+    for (std::uint32_t vertex = owned(leaf); vertex < owned(leaf + 1); ++vertex) {
+      if (!vertices_.in_contact(vertex)) continue;
+      Feature feature{.site = sites.regions.vertices[vertex].vertex};
+      feature.key = feature.site;
+      const SurfacePoint* point = vertices_.measured(vertex);
+      feature.point =
+          point ? *point : measure(other(), vertices_.at(vertex), std::numeric_limits<double>::infinity());
+      if (!(feature.point.distance <= limit_)) continue;  // by rounding
+      find_support(feature);
+      extend_by_star(feature.faces, feature.site);
+      features_.push_back(feature);
+    }
+  }
+}
+
+void ContactFinder::extend_by_star(Box& box, std::uint32_t vertex) const {
   const SitesData& sites = internals(on().sites());
-  const Measured& closest = measured_[feature.point];
+  for (const std::uint32_t face : sites.vertex_faces.of(vertex))
+    for (const std::uint32_t corner : sites.mesh.triangles[face]) extend(box, sites.mesh.positions[corner]);
+}
+
+// A corner that is flush with a face that cannot push it is carried by another one.
+void ContactFinder::find_support(Feature& feature) {
+  const SitesData& sites = internals(on().sites());
+  const SurfacePoint& closest = feature.point;
   const double distance = norm(closest.vector);
-  if (!closest.at_boundary || distance > std::max(limit_, kFlush * size_)) return;
+  if (distance > std::max(limit_, kFlush * size_) || !at_boundary(other(), closest)) return;
   // The direction of a vector within the rounding of points is that of the face.
   const Vec3 outwards = distance > kDirection * size_
                             ? (closest.distance < 0 ? 1 / distance : -1 / distance) * closest.vector
@@ -179,85 +219,95 @@ void ContactFinder::support(Feature& feature) {
   const Vec3 own = normalized(to_other_[body_].map.linear(sites.normals.vertex[feature.site]));
   for (const Vec3& spoke : spokes_)
     if (dot(own, spoke) > -kCorner * norm(spoke)) return;
-  feature.support = support_of_vertex(other(), points_[feature.point], spokes_, limit_,
-                                      std::max(limit_, kSupportReach * size_));
-  if (feature.support.face != kNone) feature.distance = feature.support.height;
+  feature.support =
+      support_of_vertex(other(), closest.at, spokes_, limit_, std::max(limit_, kSupportReach * size_));
 }
 
+// Only faces near the other body have edges that pass through it, and only long edges have contacts if an end
+// has.
 void ContactFinder::find_edges() {
   const SitesData& sites = internals(on().sites());
   const double shortest = kShortEdge * size_;
-  const std::size_t first = points_.size(), first_feature = features_.size();
-  for (const std::uint32_t leaf : leaves_)
-    for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i) {
-      const std::uint32_t face = sites.regions.owners[i].face;
-      for (const std::uint32_t edge : sites.topology.face_edges[face]) {
-        if (edge == kNone || sites.topology.edge_faces(edge)[0] != face) continue;
-        const auto [a, b] = sites.topology.edges[edge];
-        const std::uint32_t at_a = point_of_[a], at_b = point_of_[b];
-        const double from_a = measured_[at_a].distance, from_b = measured_[at_b].distance;
-        const bool a_touches = from_a <= limit_, b_touches = from_b <= limit_;
-        const double length = norm(points_[at_b] - points_[at_a]);
-        if (a_touches || b_touches ? length <= shortest : from_a + from_b - length > 2 * limit_) continue;
-        if (!(length > 0) || !is_sharp(sites, edge)) continue;
-        const Vec3 start = points_[at_a], along = points_[at_b] - start;
-        spokes_.clear();
-        for (const std::uint32_t beside : sites.topology.edge_faces(edge))
-          for (const std::uint32_t corner : sites.mesh.triangles[beside])
-            if (corner != a && corner != b)
-              spokes_.push_back(
-                  to_other_[body_].map.linear(sites.mesh.positions[corner] - sites.mesh.positions[a]));
-        std::uint64_t number = 0;
-        for (const auto& [t, support] :
-             edge_contacts_.find({start, points_[at_b], a_touches, b_touches, spokes_}, other(), limit_,
-                                 kSupportReach * size_)) {
-          features_.push_back({.key = kEdge | number++ << kOnEdgeBit | edge,
-                               .distance = support.height,
-                               .point = static_cast<std::uint32_t>(points_.size()),
-                               .site = edge,
-                               .edge = true,
-                               .support = support});
-          points_.push_back(start + t * along);
+  constexpr double kRounding = 1e-3;  // of the sizes of parts
+  const double part = shape::kContactPart * to_other_[body_].scale * diagonal(on().box());
+  const bool long_in_parts = part > (1 + kRounding) * shortest;
+  for (const ContactRegion& region : regions_.regions()) {
+    if (region.kind == ContactRegion::Kind::deep) continue;
+    const bool may_be_long = region.kind == ContactRegion::Kind::coarse || long_in_parts;
+    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
+      const std::uint32_t near = near_.of_leaf[body_][leaf], first = sites.regions.leaves[leaf];
+      if (near == 0 && !may_be_long) continue;
+      for (std::uint32_t i = first; i < sites.regions.leaves[leaf + 1]; ++i) {
+        const bool is_near = (near >> (i - first) & 1) != 0;
+        if (!is_near && !may_be_long) continue;
+        const std::uint32_t face = sites.regions.owners[i].face;
+        for (const std::uint32_t edge : sites.topology.face_edges[face]) {
+          if (edge == kNone || sites.topology.edge_faces(edge)[0] != face) continue;
+          const auto [a, b] = sites.topology.edges[edge];
+          const double length =
+              to_other_[body_].scale * norm(sites.mesh.positions[b] - sites.mesh.positions[a]);
+          if (!(length > 0) || (length <= shortest && !is_near) || !is_sharp(sites, edge)) continue;
+          const Triangle &corners = sites.mesh.triangles[face], &places = sites.regions.places.corners[i];
+          bool touches[2] = {};
+          for (int k = 0; k < 3; ++k) {
+            if (corners[k] == a) touches[0] = vertices_.in_contact(places[k]);
+            if (corners[k] == b) touches[1] = vertices_.in_contact(places[k]);
+          }
+          if (touches[0] || touches[1] ? length <= shortest : !is_near) continue;
+          find_on_edge(edge, touches[0], touches[1], length > shortest ? kSupportReach * size_ : 0);
         }
       }
     }
-  for (const std::uint32_t vertex : vertices_) point_of_[vertex] = kNone;
-  if (points_.size() == first) return;
-  measure(first);
-  for (Feature& feature : std::span(features_).subspan(first_feature))
-    if (feature.support.face == kNone) feature.distance = measured_[feature.point].distance;
-}
-
-// Of each part, the deepest.
-void ContactFinder::add_contacts() {
-  const SitesData& sites = internals(on().sites());
-  std::ranges::sort(features_, {}, [](const Feature& f) { return std::tuple(f.key, f.distance, f.site); });
-  for (auto deepest = features_.begin(); deepest != features_.end();) {
-    Box faces;
-    auto next = deepest;
-    for (; next != features_.end() && next->key == deepest->key; ++next)
-      for (const std::uint32_t face :
-           next->edge ? sites.topology.edge_faces(next->site) : sites.vertex_faces.of(next->site))
-        for (const std::uint32_t corner : sites.mesh.triangles[face])
-          extend(faces, sites.mesh.positions[corner]);
-    add_contact(*deepest, faces);
-    deepest = next;
   }
 }
 
-// `faces`: the box of the faces around it, in the frame of the body.
-void ContactFinder::add_contact(const Feature& feature, const Box& faces) {
+void ContactFinder::find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach) {
+  const SitesData& sites = internals(on().sites());
+  const auto [a, b] = sites.topology.edges[edge];
+  const Vec3 start = to_other_[body_].map(sites.mesh.positions[a]),
+             end = to_other_[body_].map(sites.mesh.positions[b]);
+  spokes_.clear();
+  Box faces;
+  for (const std::uint32_t beside : sites.topology.edge_faces(edge))
+    for (const std::uint32_t corner : sites.mesh.triangles[beside]) {
+      extend(faces, sites.mesh.positions[corner]);
+      if (corner != a && corner != b)
+        spokes_.push_back(
+            to_other_[body_].map.linear(sites.mesh.positions[corner] - sites.mesh.positions[a]));
+    }
+  std::uint64_t number = 0;
+  for (const auto& [t, support] :
+       edge_contacts_.find({start, end, a_touches, b_touches, spokes_}, other(), limit_, reach)) {
+    Feature feature{.key = kEdge | number++ << kOnEdgeBit | edge,
+                    .site = edge,
+                    .edge = true,
+                    .point = {.at = start + t * (end - start)},
+                    .support = support,
+                    .faces = faces};
+    if (support.face == kNone)
+      feature.point = measure(other(), feature.point.at, std::numeric_limits<double>::infinity());
+    features_.push_back(feature);
+  }
+}
+
+void ContactFinder::add_contacts() {
+  for (const Feature& feature : features_) add_contact(feature);
+}
+
+void ContactFinder::add_contact(const Feature& feature) {
   const SitesData &sites = internals(on().sites()), &sites_of_other = internals(other().sites());
-  const mesh::Similarity& pose = bodies_[1 - body_]->pose();  // in which points are measured
-  const Vec3& p = points_[feature.point];
-  Measured closest = measured_[feature.point];
+  const mesh::Similarity& pose = bodies_[1 - body_]->pose();
+  SurfacePoint closest = feature.point;
+  const Vec3& p = closest.at;
+  bool is_boundary = true;
   if (const Support& support = feature.support; support.face != kNone)
-    closest = {.distance = support.height,
-               .vector = -support.height * sites_of_other.normals.face[support.face],
-               .face = support.face};
+    closest.distance = support.height,
+    closest.vector = -support.height * sites_of_other.normals.face[support.face], closest.face = support.face;
+  else
+    is_boundary = at_boundary(other(), closest);
   const bool inside = closest.distance < 0;
   const Vec3 face_normal = sites_of_other.normals.face[closest.face];
-  if (!closest.at_boundary) {
+  if (!is_boundary) {
     other().require_boundary();
     const auto boundary = other().boundary().closest(p);
     if (boundary.point) closest.vector = *boundary.point - p, closest.face = boundary.face;
@@ -284,7 +334,7 @@ void ContactFinder::add_contact(const Feature& feature, const Box& faces) {
     std::swap(contact.barycentric[0], contact.barycentric[1]);
   }
   contacts_.push_back(contact);
-  boxes_.push_back(image(bodies_[body_]->pose().map, faces));
+  boxes_.push_back(image(bodies_[body_]->pose().map, feature.faces));
   if (!inside) extend(boxes_.back(), point + vector);  // across the gap
 }
 

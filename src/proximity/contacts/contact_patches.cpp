@@ -14,16 +14,18 @@ std::span<const Contact> ContactPatches::sort(std::span<Contact> contacts, std::
   sweep_.for_each_candidate(boxes, 0, [&](std::uint32_t a, std::uint32_t b) {
     if (overlap(boxes[a], boxes[b])) patches_.unite(a, b);
   });
-  order_.resize(boxes.size());
+  order_.resize(contacts.size());
   std::iota(order_.begin(), order_.end(), 0u);
   // Distinct keys make the order unique; a stable sort would allocate memory.
   std::ranges::sort(order_, {}, [&](std::uint32_t c) { return std::pair(-contacts[c].depth, c); });
   constexpr std::uint32_t kUnnumbered = kNone;
   std::uint32_t patches = 0;
-  for (Contact& c : contacts) c.patch = kUnnumbered;
-  for (const std::uint32_t c : order_)
-    if (std::uint32_t& patch = contacts[patches_.find(c)].patch; patch == kUnnumbered) patch = patches++;
-  for (const std::uint32_t c : order_) contacts[c].patch = contacts[patches_.find(c)].patch;
+  patch_of_.assign(boxes.size(), kUnnumbered);
+  for (const std::uint32_t c : order_) {
+    std::uint32_t& patch = patch_of_[patches_.find(c)];
+    if (patch == kUnnumbered) patch = patches++;
+    contacts[c].patch = patch;
+  }
   std::ranges::sort(order_, {},
                     [&](std::uint32_t c) { return std::tuple(contacts[c].patch, -contacts[c].depth, c); });
   sorted_.clear();

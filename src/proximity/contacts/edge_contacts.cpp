@@ -1,6 +1,7 @@
 #include "proximity/contacts/edge_contacts.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -9,7 +10,6 @@
 #include "core/geometry/triangle_pair.h"
 #include "core/geometry/vec.h"
 #include "engine/cpu/cpu_engine.h"
-#include "hierarchy/traverse.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kRounding = 1e-9;   // of distances, relative to the size of the other body
 constexpr double kSamePoint = 1e-6;  // of the length of the edge
+// The sine of the largest angle, and more, between an edge and a face that supports it.
+constexpr float kParallel = 0.051f;
 
 bool is_inside(const shape::Body& body, const Vec3& point) {
   if (!body.solid()) return false;
@@ -29,14 +31,22 @@ bool is_inside(const shape::Body& body, const Vec3& point) {
   return inside;
 }
 
-// Where a convex function that is at most `limit` at `in` first exceeds it on the way to `out`; `out` if it
-// does not.
+// Where a convex function that is at most `limit` at `in` first exceeds it on the way to `out`, to 1e-8;
+// `out` if it does not. Mostly, that is close to `in`.
 template <class Function>
 double last_within(const Function& f, double limit, double in, double out) {
-  if (f(out) <= limit) return out;
-  for (int i = 0; i < 48; ++i) {
-    const double middle = 0.5 * (in + out);
-    (f(middle) <= limit ? in : out) = middle;
+  constexpr double kStep = 1e-8;
+  constexpr int kHalvings = 20;
+  double beyond = in;
+  for (double step = out < in ? -kStep : kStep; f(beyond) <= limit; step *= 64) {
+    if (beyond == out) return out;
+    in = beyond;
+    beyond = std::abs(step) < std::abs(out - in) ? in + step : out;
+  }
+  if (std::abs(beyond - in) <= kStep) return beyond;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (in + beyond);
+    (f(middle) <= limit ? in : beyond) = middle;
   }
   return in;
 }
@@ -51,22 +61,96 @@ bool beyond_plane(const EdgeContacts::Edge& edge, const sites::SitesData& sites,
   return std::min(a, b) > distance || std::max(a, b) < -distance;
 }
 
-// Calls visit(face) for the faces in leaves within `reach` of the box of the edge.
-template <class Visit>
-void for_faces_near(const EdgeContacts::Edge& edge, const sites::SitesData& sites, double reach,
-                    const Visit& visit) {
-  Box box;
-  for (const Vec3& end : {edge.a, edge.b}) {
-    extend(box, sites.frame.to_unit(end - Vec3{reach, reach, reach}));
-    extend(box, sites.frame.to_unit(end + Vec3{reach, reach, reach}));
+// Part of the edge in the unit frame of the other body, in single precision.
+struct UnitEdge {
+  float start[3], along[3], inverse[3];
+
+  UnitEdge(const EdgeContacts::Edge& edge, double from, double to, const UnitFrame& frame) {
+    const Vec3 a = frame.to_unit(edge.a + from * (edge.b - edge.a)),
+               b = frame.to_unit(edge.a + to * (edge.b - edge.a));
+    for (int k = 0; k < 3; ++k) {
+      constexpr float kLeast = 1e-12f;  // parallel to the sides of boxes
+      start[k] = static_cast<float>(a[k]), along[k] = static_cast<float>(b[k] - a[k]);
+      inverse[k] = 1 / (std::abs(along[k]) < kLeast ? kLeast : along[k]);
+    }
   }
-  const hierarchy::FloatBox around = hierarchy::FloatBox::around(box);
-  const auto near = [&](hierarchy::Subtree subtree) {
-    return squared_norm(gap(sites.tree.box(subtree.root), around)) == 0;
-  };
-  hierarchy::traverse(sites.tree, hierarchy::whole(sites.tree), near, [&](std::uint32_t leaf) {
-    for (const std::uint32_t face : sites.tree.items_of(leaf)) visit(face);
-  });
+
+  // The children whose boxes, enlarged by `reach`, it passes.
+  [[nodiscard]] std::uint32_t passes(const hierarchy::WideTree::Node& node, float reach) const {
+    constexpr int kWidth = hierarchy::WideTree::kWidth;
+    float from[kWidth] = {}, to[kWidth];
+    std::ranges::fill(to, 1.0f);
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < kWidth; ++i) {
+        const float lo = (node.lo[k][i] - reach - start[k]) * inverse[k],
+                    hi = (node.hi[k][i] + reach - start[k]) * inverse[k];
+        from[i] = std::max(from[i], std::min(lo, hi));
+        to[i] = std::min(to[i], std::max(lo, hi));
+      }
+    std::uint32_t children = 0;
+    for (int i = 0; i < kWidth; ++i) children |= std::uint32_t{from[i] <= to[i]} << i;
+    return children & ((1u << node.count) - 1);
+  }
+};
+
+// Calls visit(leaf) for the numbers of the leaves whose boxes the edge passes, enlarged by `reach`.
+template <class Visit>
+void for_leaves_near(const UnitEdge& edge, const sites::SitesData& sites, double reach, const Visit& visit) {
+  constexpr double kUnitRounding = 1e-6;
+  const auto distance = static_cast<float>(sites.frame.scale * reach + kUnitRounding);
+  thread_local std::vector<std::uint32_t> stack;
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const hierarchy::WideTree::Node& node = sites.wide.nodes[stack.back()];
+    stack.pop_back();
+    for (std::uint32_t open = edge.passes(node, distance); open != 0; open &= open - 1) {
+      const std::uint32_t child = node.child[std::countr_zero(open)];
+      if (hierarchy::WideTree::is_leaf(child))
+        visit(hierarchy::WideTree::leaf_number(child));
+      else
+        stack.push_back(child);
+    }
+  }
+}
+
+// Faces that may support an edge: nearly parallel to it, and above or below it.
+class ParallelFaces {
+ public:
+  explicit ParallelFaces(const UnitEdge& edge) {
+    const Vec3 direction = normalized({edge.along[0], edge.along[1], edge.along[2]});
+    for (int k = 0; k < 3; ++k) start_[k] = edge.start[k], along_[k] = static_cast<float>(direction[k]);
+  }
+
+  // A bit for each face of a leaf.
+  [[nodiscard]] std::uint32_t of_leaf(const sites::FaceBounds& bounds) const {
+    std::uint8_t open[sites::FaceBounds::kWidth];
+    for (int i = 0; i < sites::FaceBounds::kWidth; ++i) {
+      const float n[3] = {bounds.normal[0][i], bounds.normal[1][i], bounds.normal[2][i]};
+      const float sine = along_[0] * n[0] + along_[1] * n[1] + along_[2] * n[2];
+      // The direction across the edge and in the plane of the face, and how far the face is from the edge
+      // there.
+      const float across[3] = {along_[1] * n[2] - along_[2] * n[1], along_[2] * n[0] - along_[0] * n[2],
+                               along_[0] * n[1] - along_[1] * n[0]};
+      float beside = 0;
+      for (int k = 0; k < 3; ++k) beside += across[k] * (bounds.centre[k][i] - start_[k]);
+      open[i] = static_cast<std::uint8_t>((std::abs(sine) < kParallel) &
+                                          (std::abs(beside) < bounds.radius[i] + kSlack));
+    }
+    std::uint32_t faces = 0;
+    for (int i = 0; i < sites::FaceBounds::kWidth; ++i) faces |= std::uint32_t{open[i]} << i;
+    return faces;
+  }
+
+ private:
+  static constexpr float kSlack = 1e-6f;  // rounding
+  float start_[3], along_[3];
+};
+
+// Calls visit(face) for the faces of a leaf.
+template <class Visit>
+void for_faces(const sites::SitesData& sites, std::uint32_t leaf, const Visit& visit) {
+  for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i)
+    visit(sites.regions.owners[i].face);
 }
 
 }  // namespace
@@ -76,7 +160,7 @@ void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, do
   const Vec3 along = edge.b - edge.a;
   const double rounding = kRounding / sites.frame.scale, limit = margin + rounding;
   intervals_.clear();
-  for_faces_near(edge, sites, limit, [&](std::uint32_t face) {
+  const auto add = [&](std::uint32_t face) {
     const auto& [i, j, k] = sites.mesh.triangles[face];
     const Corners corners{sites.mesh.positions[i], sites.mesh.positions[j], sites.mesh.positions[k]};
     const Corners segment{edge.a, edge.b, edge.b};
@@ -92,17 +176,30 @@ void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, do
     intervals_.push_back({.from = last_within(distance_at, limit, t, 0),
                           .to = last_within(distance_at, limit, t, 1),
                           .distance = distance,
-                          .first_closest = last_within(distance_at, distance + rounding, t, 0),
-                          .last_closest = last_within(distance_at, distance + rounding, t, 1)});
-  });
+                          .closest = t,
+                          .face = face});
+  };
+  for_leaves_near(UnitEdge(edge, 0, 1, sites.frame), sites, limit,
+                  [&](std::uint32_t leaf) { for_faces(sites, leaf, add); });
   std::ranges::sort(intervals_, {}, &Interval::from);
 }
 
 void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, double margin, double reach) {
   supported_.clear(), parts_.clear();
   if (intervals_.empty() || reach == 0) return;
-  for_faces_near(edge, internals(other.sites()), std::max(margin, reach),
-                 [&](std::uint32_t face) { add_support(edge, other, face, margin, reach); });
+  const sites::SitesData& sites = internals(other.sites());
+  // Only the parts in contact, which are between these, may be supported.
+  double from = 1, to = 0;
+  for (const Interval& i : intervals_) from = std::min(from, i.from), to = std::max(to, i.to);
+  const UnitEdge in_contact(edge, from, to, sites.frame);
+  const ParallelFaces parallel(UnitEdge(edge, 0, 1, sites.frame));
+  for_leaves_near(in_contact, sites, std::max(margin, reach), [&](std::uint32_t leaf) {
+    const std::uint32_t first = sites.regions.leaves[leaf];
+    std::uint32_t faces = parallel.of_leaf(sites.regions.bounds[leaf]);
+    faces &= (1u << (sites.regions.leaves[leaf + 1] - first)) - 1;
+    for (; faces != 0; faces &= faces - 1)
+      add_support(edge, other, sites.regions.owners[first + std::countr_zero(faces)].face, margin, reach);
+  });
   std::ranges::sort(supported_, {}, [](const SupportedPart& p) { return std::tuple(p.from, p.to, p.face); });
   // Faces that continue each other support one part.
   for (const SupportedPart& part : supported_)
@@ -166,9 +263,14 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
                              return a.distance < b.distance;
                            })->distance;
       double from = 1, to = 0;
-      for (auto i = first; i != next; ++i)
-        if (i->distance <= least + rounding)
-          from = std::min(from, i->first_closest), to = std::max(to, i->last_closest);
+      for (auto i = first; i != next; ++i) {
+        if (!(i->distance <= least + rounding)) continue;
+        const auto distance_at = [&](double t) {
+          return sites::closest_on_face(sites, i->face, edge.a + t * along).distance;
+        };
+        from = std::min(from, last_within(distance_at, i->distance + rounding, i->closest, 0));
+        to = std::max(to, last_within(distance_at, i->distance + rounding, i->closest, 1));
+      }
       found_.push_back({.t = 0.5 * (from + to)});
     }
     first = next;

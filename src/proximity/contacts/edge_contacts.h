@@ -40,8 +40,9 @@ class EdgeContacts {
   /// What is within the margin of a face.
   struct Interval {
     double from, to;
-    double distance;                     ///< the smallest
-    double first_closest, last_closest;  ///< parameters between which it has this distance
+    double distance;  ///< the smallest
+    double closest;   ///< where it is
+    std::uint32_t face;
   };
   /// A part of the edge, and the face that supports it.
   struct SupportedPart {

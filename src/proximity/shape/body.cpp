@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/geometry/vec.h"
-#include "proximity/shape/contact_parts.h"
 
 namespace sdm::shape {
 namespace {
@@ -41,7 +40,7 @@ Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
 Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
   if (atlas) surface_.emplace(mesh, *atlas);
   follow_positions();
-  contact_parts_ = shape::contact_parts(internals(sites_));
+  contact_parts_ = shape::contact_parts(internals(sites_).tree);
 }
 
 void Body::refit(std::span<const Vec3> positions) {
@@ -55,7 +54,7 @@ void Body::edit(const MeshEdit& edit) {
   sites_.edit(edit);
   inside_.reset();
   follow_positions();
-  contact_parts_ = shape::contact_parts(internals(sites_));
+  contact_parts_ = shape::contact_parts(internals(sites_).tree);
 }
 
 const Surface& Body::surface() const {

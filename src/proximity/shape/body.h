@@ -12,6 +12,7 @@
 
 #include "inside/inside.h"
 #include "inside/solid_boundary.h"
+#include "proximity/shape/contact_parts.h"
 #include "proximity/shape/node_ball.h"
 
 namespace sdm::shape {
@@ -44,7 +45,7 @@ class Body {
   [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
 
   /// See contact_parts(), of the first shape or that after the last edit.
-  [[nodiscard]] std::span<const std::uint32_t> contact_parts() const { return contact_parts_; }
+  [[nodiscard]] std::span<const ContactPart> contact_parts() const { return contact_parts_; }
 
  private:
   void follow_positions();
@@ -54,7 +55,7 @@ class Body {
   Box box_;
   Ball ball_;
   std::optional<inside::InsideTest> inside_;
-  std::vector<std::uint32_t> contact_parts_;
+  std::vector<ContactPart> contact_parts_;
 
   /// A value that queries build when they need it.
   template <class Value>

@@ -5,26 +5,24 @@
 
 namespace sdm::shape {
 
-std::vector<std::uint32_t> contact_parts(const sites::SitesData& sites) {
-  std::vector<std::uint32_t> parts(sites.mesh.positions.size(), kNone);
-  if (sites.tree.nodes.empty()) return parts;
+std::vector<ContactPart> contact_parts(const hierarchy::AabbTree& tree) {
   const auto size = [&](std::uint32_t node) {
-    const hierarchy::FloatBox& box = sites.tree.box(node);
+    const hierarchy::FloatBox& box = tree.box(node);
     return norm(
         {double{box.hi[0]} - box.lo[0], double{box.hi[1]} - box.lo[1], double{box.hi[2]} - box.lo[2]});
   };
+  std::vector<ContactPart> parts(tree.nodes.size());
+  if (parts.empty()) return parts;
+  const hierarchy::LeafOrder leaves(tree);
   const double largest = kContactPart * size(0);
   hierarchy::Subtree part;
   const auto enter = [&](hierarchy::Subtree subtree) {
     if (subtree.root >= part.end && size(subtree.root) <= largest) part = subtree;
+    parts[subtree.root] = {subtree.root < part.end ? part.root : kNone, leaves.before[subtree.root],
+                           leaves.before[subtree.end]};
     return true;
   };
-  hierarchy::traverse(sites.tree, hierarchy::whole(sites.tree), enter, [&](std::uint32_t leaf) {
-    if (leaf >= part.end) return;
-    for (const std::uint32_t face : sites.tree.items_of(leaf))
-      for (const std::uint32_t vertex : sites.mesh.triangles[face])
-        if (parts[vertex] == kNone) parts[vertex] = part.root;
-  });
+  hierarchy::traverse(tree, hierarchy::whole(tree), enter, [](std::uint32_t) {});
   return parts;
 }
 

@@ -9,11 +9,18 @@
 namespace sdm::shape {
 
 /// The size of a part relative to that of the mesh: finer details have no contacts of their own.
-inline constexpr double kContactPart = 1.0 / 32;
+inline constexpr double kContactPart = 1.0 / 16;
 
-/// For each vertex, the number of its part: a node of the tree, the highest one whose box has at most this
-/// diagonal and that has a face of the vertex; kNone for a vertex whose faces are larger, a part by itself.
-/// Parts follow the surface as it deforms, so that they identify contacts. Cost: linear.
-[[nodiscard]] std::vector<std::uint32_t> contact_parts(const sites::SitesData& sites);
+/// A node of the tree.
+struct ContactPart {
+  /// The highest node, among this one and those above it, whose box has at most the size of a part as its
+  /// diagonal; kNone if there is none. Parts follow the surface as it deforms, so that they identify
+  /// contacts.
+  std::uint32_t part = kNone;
+  std::uint32_t first_leaf = 0, last_leaf = 0;  ///< its leaves have the numbers first_leaf ... last_leaf − 1
+};
+
+/// One for each node. Cost: linear.
+[[nodiscard]] std::vector<ContactPart> contact_parts(const hierarchy::AabbTree& tree);
 
 }  // namespace sdm::shape

@@ -1,0 +1,60 @@
+// The regions of a surface that may be in contact with another body.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "proximity/contacts/surface_point.h"
+#include "proximity/exact/near_faces.h"
+#include "proximity/shape/posed_body.h"
+
+namespace sdm::contacts {
+
+/// A node of the tree of a body.
+struct ContactRegion {
+  enum class Kind : std::uint8_t {
+    part,    ///< in one of shape::contact_parts()
+    coarse,  ///< a leaf of large faces, whose vertices are contacts by themselves
+    deep     ///< farther inside the other body than its own size
+  };
+  Kind kind = Kind::part;
+  std::uint32_t node = 0;                       ///< of the binary tree: the part, or the deep node
+  std::uint32_t first_leaf = 0, last_leaf = 0;  ///< it has leaves first_leaf ... last_leaf − 1
+  std::uint32_t near_face = kNone;  ///< of the other body: the one closest to its centre, if known
+};
+
+/// Finds them; reuses its memory.
+class ContactRegions {
+ public:
+  /// Finds nodes that cover all of `on` that is inside `other` or within `margin` of it. `to_other`: from the
+  /// frame of `on` to that of `other`, in which the margin is. `near`: the faces within the margin, with
+  /// sorted leaves; `on` is its surface `side`. Nodes of one part follow each other. Cost: of a closest point
+  /// for each region.
+  void find(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other, double margin,
+            const exact::NearFaces& near, int side);
+
+  [[nodiscard]] std::span<const ContactRegion> regions() const { return regions_; }
+
+ private:
+  /// A node of the wide tree, or a leaf; a ball that contains it, in the frame of the other body.
+  struct Node {
+    std::uint32_t child = 0, source = 0;
+    shape::Ball ball{};
+    std::uint32_t face = kNone;  ///< of the other body, close to this node or to the one above it
+  };
+  void open(const Node& parent);
+  [[nodiscard]] double reach(const Node& node) const;
+  [[nodiscard]] std::uint32_t find_near_face(const shape::ContactPart& node) const;
+
+  const shape::Body *on_ = nullptr, *other_ = nullptr;
+  const mesh::Similarity* to_other_ = nullptr;
+  double margin_ = 0;
+  const exact::NearFaces* near_ = nullptr;
+  int side_ = 0;
+  std::vector<Node> stack_;
+  std::vector<ContactRegion> regions_;
+};
+
+}  // namespace sdm::contacts

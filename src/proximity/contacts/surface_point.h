@@ -1,0 +1,26 @@
+// A point, and the closest point of the other body.
+#pragma once
+
+#include <limits>
+
+#include "proximity/shape/body.h"
+
+namespace sdm::contacts {
+
+struct SurfacePoint {
+  Vec3 at{};
+  double distance = std::numeric_limits<double>::infinity();  ///< to the surface; negative inside
+  Vec3 vector{};                                              ///< to the closest point
+  ClosestPoint closest{};
+  std::uint32_t face = kNone;  ///< a face of the closest site
+};
+
+/// Finds the closest point of the body. `reach`: the surface is probably no farther away, which makes the
+/// search shorter.
+[[nodiscard]] SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach);
+
+/// Whether the closest point is on the boundary of the body, as it always is unless a solid intersects
+/// itself.
+[[nodiscard]] bool at_boundary(const shape::Body& body, const SurfacePoint& point);
+
+}  // namespace sdm::contacts

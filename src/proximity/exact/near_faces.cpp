@@ -1,0 +1,156 @@
+#include "proximity/exact/near_faces.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "proximity/exact/near_faces.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each set of instructions.
+#include <hwy/highway.h>
+
+#include <bit>
+
+#include "proximity/exact/face_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::exact::HWY_NAMESPACE {
+
+using Entry = PairWorkspace::Entry;
+using Place = PairWorkspace::Place;
+
+class NearFacesSearch {
+ public:
+  NearFacesSearch(const MeshPair& pair, double reach, NearFaces& near)
+      : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), near_(near), exact_(reach == 0) {
+    limit_ = maps_.round_up(reach + maps_.rounding());
+  }
+
+  void run() {
+    for (int side = 0; side < 2; ++side) {
+      std::vector<uint8_t>& marks = near_.of_leaf[side];
+      for (const uint32_t leaf : near_.leaves[side]) marks[leaf] = 0;
+      near_.leaves[side].clear();
+      marks.resize(sites_[side]->regions.leaves.size() - 1, 0);
+      near_.opposite[side].resize(marks.size());
+    }
+    near_.stack.assign(1, {});
+    while (!near_.stack.empty()) {
+      const Entry entry = near_.stack.back();
+      near_.stack.pop_back();
+      if (entry.leaves())
+        compare_leaves(entry.place[0].leaf_number(), entry.place[1].leaf_number());
+      else
+        open(entry);
+    }
+  }
+
+ private:
+  // Pairs the children of the larger node with the other node.
+  void open(const Entry& entry) {
+    const CentredBox box[2] = {CentredBox(sites_[0]->tree.box(entry.place[0].source)),
+                               CentredBox(sites_[1]->tree.box(entry.place[1].source))};
+    const int larger = box[0].size() * maps_.unit[0] < box[1].size() * maps_.unit[1];
+    const int side = entry.place[larger].leaf() ? 1 - larger : larger;
+    if (side != larger && faces_beyond(larger, entry.place[larger].leaf_number(), box[side])) return;
+    const hierarchy::WideTree::Node& node = sites_[side]->wide.nodes[entry.place[side].child];
+    const BoxDistances distances(maps_, none_, side, box[1 - side]);
+    alignas(64) float least[kWidth];
+    const Lanes d;
+    for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) hn::Store(distances(node, i), d, least + i);
+    for (uint32_t i = 0; i < node.count; ++i) {
+      if (least[i] > limit_) continue;
+      Entry child = entry;
+      child.place[side] = {node.child[i], node.source[i]};
+      near_.stack.push_back(child);
+    }
+  }
+
+  // Whether all faces of a leaf are too far from a box that is smaller than that of the leaf.
+  bool faces_beyond(int side, uint32_t leaf, const CentredBox& small) {
+    load_faces(side, leaf);
+    const PlacedBox box = side == 1 ? PlacedBox(small) : PlacedBox(small, maps_.to[0]);
+    return maps_.unit[0] * (least_distance(faces_[side], box) - maps_.to[0].error) > limit_;
+  }
+
+  void load_faces(int side, uint32_t leaf) {
+    if (loaded_[side] == leaf) return;
+    loaded_[side] = leaf;
+    faces_[side].load(*sites_[side], leaf);
+    if (side == 1) faces_[side].move(maps_.to[0]);
+    faces_[side].find_normals();
+  }
+
+  void compare_leaves(uint32_t leaf1, uint32_t leaf2) {
+    const uint32_t count1 = count_of(0, leaf1), count2 = count_of(1, leaf2);
+    uint32_t known1 = near_.of_leaf[0][leaf1], known2 = near_.of_leaf[1][leaf2];
+    const uint32_t all1 = (1u << count1) - 1, all2 = (1u << count2) - 1;
+    if (known1 == all1 && known2 == all2) return;
+    load_faces(0, leaf1), load_faces(1, leaf2);
+    const Lanes d;
+    for (uint32_t j = 0; j < count2; ++j) {
+      // The faces of leaf1 whose pairs with this one may change something.
+      const uint32_t open = (known2 >> j & 1) != 0 ? all1 & ~known1 : all1;
+      if (open == 0) continue;
+      alignas(64) float least[kWidth];
+      for (size_t i = 0; i < kWidth; i += hn::Lanes(d))
+        hn::Store(face_distances(faces_[0], i, faces_[1], j, none_), d, least + i);
+      for (uint32_t i = 0; i < count1; ++i) {
+        if ((open >> i & 1) == 0 || maps_.unit[0] * (least[i] - maps_.to[0].error) > limit_) continue;
+        if ((known1 >> i & 1) != 0 && (known2 >> j & 1) != 0) continue;
+        if (exact_ && !intersect(faces_[0].first() + i, faces_[1].first() + j)) continue;
+        known1 |= 1u << i, known2 |= 1u << j;
+      }
+    }
+    const uint32_t a = near_.of_leaf[0][leaf1], b = near_.of_leaf[1][leaf2];
+    if (known1 == a && known2 == b) return;
+    mark(0, leaf1, known1, faces_[1].first() + std::countr_zero(known2 & ~b ? known2 & ~b : known2));
+    mark(1, leaf2, known2, faces_[0].first() + std::countr_zero(known1 & ~a ? known1 & ~a : known1));
+  }
+
+  uint32_t count_of(int side, uint32_t leaf) const {
+    const std::vector<uint32_t>& leaves = sites_[side]->regions.leaves;
+    return leaves[leaf + 1] - leaves[leaf];
+  }
+
+  bool intersect(uint32_t owner1, uint32_t owner2) const {
+    const Corners a = pair_.face1(sites_[0]->tree.items[owner1]),
+                  b = pair_.face2(sites_[1]->tree.items[owner2]);
+    return squared_box_distance(a, b) == 0 && triangles_intersect(a, b);
+  }
+
+  void mark(int side, uint32_t leaf, uint32_t faces, uint32_t opposite) {
+    uint8_t& marks = near_.of_leaf[side][leaf];
+    if (marks == 0) {
+      near_.leaves[side].push_back(leaf);
+      near_.opposite[side][leaf] = sites_[1 - side]->tree.items[opposite];
+    }
+    marks = static_cast<uint8_t>(faces);
+  }
+
+  const MeshPair& pair_;
+  const sites::SitesData* sites_[2];
+  const UnitMaps maps_;
+  NearFaces& near_;
+  const bool exact_;
+  float limit_;
+  const Direction none_;
+  LeafFaces faces_[2];
+  uint32_t loaded_[2] = {kNone, kNone};  // the leaves they were loaded from
+};
+
+void FindNearFaces(const MeshPair& pair, double reach, NearFaces& near) {
+  NearFacesSearch(pair, reach, near).run();
+}
+
+}  // namespace sdm::exact::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sdm::exact {
+
+HWY_EXPORT(FindNearFaces);
+
+void find_near_faces(const MeshPair& pair, double reach, NearFaces& near) {
+  HWY_DYNAMIC_DISPATCH(FindNearFaces)(pair, reach, near);
+}
+
+}  // namespace sdm::exact
+#endif

@@ -1,0 +1,71 @@
+// The faces of each surface that are near the other one, against all pairs.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <random>
+#include <vector>
+
+#include "core/geometry/triangle_pair.h"
+#include "core/geometry/vec.h"
+#include "mesh/similarity.h"
+#include "proximity/exact/near_faces.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+std::vector<bool> found(const exact::NearFaces& near, const sites::SitesData& sites, int side) {
+  std::vector<bool> faces(sites.mesh.triangles.size());
+  std::size_t marked = 0;
+  for (std::uint32_t leaf = 0; leaf + 1 < sites.regions.leaves.size(); ++leaf) {
+    const std::uint32_t first = sites.regions.leaves[leaf];
+    marked += near.of_leaf[side][leaf] != 0;
+    for (std::uint32_t i = first; i < sites.regions.leaves[leaf + 1]; ++i)
+      faces[sites.regions.owners[i].face] = (near.of_leaf[side][leaf] >> (i - first) & 1) != 0;
+  }
+  EXPECT_EQ(near.leaves[side].size(), marked);
+  return faces;
+}
+
+TEST(NearFaces, AreThoseOfAllPairs) {
+  const std::vector<Mesh> meshes{cube(0.5), placed(sphere(2), "scale:0.5"), placed(torus(16, 8), "fit"),
+                                 joined(cube(0.3), moved(cube(0.25), {0.2, 0.1, 0.05}))};
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal;
+  exact::NearFaces near;  // its memory is reused
+  std::size_t intersecting = 0;
+  for (int trial = 0; trial < 48; ++trial) {
+    SCOPED_TRACE(trial);
+    const Mesh &a = meshes[static_cast<std::size_t>(trial) % 4],
+               &b = meshes[static_cast<std::size_t>(trial / 4) % 4];
+    const Sites o1(a), o2(b);
+    const Transform pose =
+        Transform::translation({0.4 * normal(random), 0.4 * normal(random), 0.4 * normal(random)}) *
+        Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
+    const exact::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
+    for (const double reach : {0.0, 0.05, 0.5}) {
+      exact::find_near_faces(pair, reach, near);
+      const std::array marks{found(near, internals(o1), 0), found(near, internals(o2), 1)};
+      std::array expected{std::vector<bool>(a.triangles.size()), std::vector<bool>(b.triangles.size())};
+      for (std::uint32_t i = 0; i < a.triangles.size(); ++i)
+        for (std::uint32_t j = 0; j < b.triangles.size(); ++j) {
+          const bool meet = triangles_intersect(pair.face1(i), pair.face2(j));
+          if (meet || closest_points(pair.face1(i), pair.face2(j)).squared <= reach * reach)
+            expected[0][i] = expected[1][j] = true;
+        }
+      for (const int side : {0, 1})
+        for (std::size_t i = 0; i < expected[side].size(); ++i) {
+          if (reach == 0)
+            EXPECT_EQ(marks[side][i], expected[side][i]);
+          else
+            EXPECT_TRUE(marks[side][i] || !expected[side][i]);
+          intersecting += reach == 0 && expected[side][i];
+        }
+    }
+  }
+  EXPECT_GT(intersecting, 500u);
+}
+
+}  // namespace
+}  // namespace sdm::test
