@@ -71,6 +71,12 @@ class LeafFaces {
     }
   }
 
+  // Gathers faces of several leaves: copies one to a lane.
+  void set(size_t lane, const LeafFaces& from, size_t face) {
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < 3; ++k) corner_[c][k][lane] = from.corner_[c][k][face];
+  }
+
   [[nodiscard]] uint32_t first() const { return first_; }
   [[nodiscard]] uint32_t count() const { return count_; }
 

@@ -42,6 +42,23 @@ struct Cap {
   }
 };
 
+// The faces of a cap that are nearest to the other surface, in O1's frame.
+struct CapFaces {
+  static constexpr size_t kMost = 64;
+
+  std::array<LeafFaces, kMost / kWidth> block;
+  alignas(64) std::array<float, kMost> along;  // where each begins, towards the other surface
+  std::array<std::uint32_t, kMost> owner;
+  size_t count = 0;
+
+  // Fills the last block with its last face.
+  void finish() {
+    for (size_t lane = count; lane % kWidth != 0; ++lane)
+      block[lane / kWidth].set(lane % kWidth, block[lane / kWidth], (count - 1) % kWidth);
+    for (size_t b = 0; kWidth * b < count; ++b) block[b].find_normals();
+  }
+};
+
 // `separate`: searches for the closest faces, otherwise for any that intersect.
 template <bool separate>
 class PairSearch {
@@ -122,7 +139,10 @@ class PairSearch {
     if (extent(along[0], along[1]) > limit_) return true;
     for (int side = 0; side < 2; ++side)
       if (!collect_cap(side, along[1 - side])) return false;
-    pair_leaves_of_caps();
+    if (collect_faces(0, along[1]) && collect_faces(1, along[0]))
+      pair_faces_of_caps();
+    else
+      pair_leaves_of_caps();
     return true;
   }
 
@@ -201,6 +221,66 @@ class PairSearch {
       }
     }
     return true;
+  }
+
+  // The faces of a cap that are not too far, given that the other surface begins at `along`. Returns false if
+  // there are too many.
+  bool collect_faces(int side, float along) {
+    const Lanes d;
+    const Cap& cap = caps_[side];
+    CapFaces& faces = cap_faces_[side];
+    faces.count = 0;
+    // O2's faces are moved to O1's frame, in which the direction of either surface is that of O1 or opposite.
+    const float sign = side == 0 ? 1.0f : -1.0f, offset = direction_.offset;
+    Vec axis[3];
+    for (int k = 0; k < 3; ++k) axis[k] = hn::Set(d, sign * direction_.along[0][k]);
+    const float rest = side == 0 ? along + offset : along;
+    const float most = limit_ / maps_.unit[0] - rest + 2 * maps_.to[0].error;
+    LeafFaces& leaf = faces_[side];
+    loaded_[side] = kNone;  // no normals are needed
+    for (size_t n = 0; n < cap.count; ++n) {
+      leaf.load(*sites_[side], cap.place[n].leaf_number());
+      if (side == 1) leaf.move(maps_.to[0]);
+      alignas(64) float least[kWidth];
+      for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+        Vec corner[3][3];
+        leaf.corners(i, corner);
+        hn::Store(Extent::of(corner, axis).lo, d, least + i);
+      }
+      for (uint32_t i = 0; i < leaf.count(); ++i) {
+        if (!(least[i] <= most)) continue;
+        if (faces.count == CapFaces::kMost) return false;
+        faces.block[faces.count / kWidth].set(faces.count % kWidth, leaf, i);
+        faces.along[faces.count] = least[i];
+        faces.owner[faces.count++] = leaf.first() + i;
+      }
+    }
+    if (faces.count > 0) faces.finish();
+    return true;
+  }
+
+  // As no faces intersect, any of them may be closest.
+  void pair_faces_of_caps() {
+    const Lanes d;
+    const CapFaces &a = cap_faces_[0], &b = cap_faces_[1];
+    for (size_t j = 0; j < b.count; ++j) {
+      const float most = limit_ / maps_.unit[0] - b.along[j] + 2 * maps_.to[0].error;
+      for (size_t n = 0; kWidth * n < a.count; ++n) {
+        alignas(64) float least[kWidth];
+        for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+          const Vec along = hn::Load(d, a.along.data() + kWidth * n + i);
+          if (hn::AllTrue(d, hn::Gt(along, hn::Set(d, most))))
+            hn::Store(hn::Inf(d), d, least + i);
+          else
+            hn::Store(in_units(face_distances(a.block[n], i, b.block[j / kWidth],
+                                              static_cast<uint32_t>(j % kWidth), direction_)),
+                      d, least + i);
+        }
+        for (size_t i = 0; i < kWidth && kWidth * n + i < a.count; ++i)
+          if (least[i] <= limit_)
+            w_.candidates.push_back({std::max(least[i], 0.0f), a.owner[kWidth * n + i], b.owner[j]});
+      }
+    }
   }
 
   void pair_leaves_of_caps() {
@@ -407,6 +487,7 @@ class PairSearch {
   float limit_;          // pairs farther than this are excluded
   Direction direction_;  // from the closest point of O1 found so far to that of O2
   Cap caps_[2];
+  CapFaces cap_faces_[2];
   LeafFaces faces_[2];
   uint32_t loaded_[2] = {kNone, kNone};  // the leaves they were loaded from
   TrianglePairs pairs_;
