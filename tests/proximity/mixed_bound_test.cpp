@@ -24,7 +24,7 @@ double largest(const CornerValues& values) {
   return *std::ranges::max_element(values);
 }
 
-// Linear functions, at many points of the triangle. With two of them, the bound is the largest value itself.
+// Linear functions, at many points of the triangle. The bound is the largest value itself, at the weights.
 TEST(MixedBound, IsAboveTheSmallestFunctionEverywhere) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform;
@@ -42,19 +42,25 @@ TEST(MixedBound, IsAboveTheSmallestFunctionEverywhere) {
           least = std::min(least, (i * a + j * b + (kSteps - i - j) * c) / kSteps);
         most = std::max(most, least);
       }
-    const double bound = mixed_bound(functions, kNever);
+    const auto [bound, weights] = mixed_bound(functions, kNever);
     EXPECT_GE(bound, most - 1e-12);
     double best = 1e9;
     for (const CornerValues& values : functions) best = std::min(best, largest(values));
     EXPECT_LE(bound, best);
+    double there = 1e9;  // at the weights
+    for (const auto& [a, b, c] : functions)
+      there = std::min(there, weights[0] * a + weights[1] * b + weights[2] * c);
+    EXPECT_NEAR(bound, there, 1e-9);
+    EXPECT_NEAR(weights[0] + weights[1] + weights[2], 1, 1e-12);
+    EXPECT_GE(*std::ranges::min_element(weights), 0);
     smaller += bound < best;
     if (functions.size() == 2) {
       EXPECT_NEAR(bound, most, 2.0 / kSteps);
     }
-    EXPECT_EQ(mixed_bound(functions, best), best);  // is enough
+    EXPECT_EQ(mixed_bound(functions, best).value, best);  // is enough
   }
   EXPECT_GT(smaller, 500);
-  EXPECT_EQ(mixed_bound({}, 0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(mixed_bound({}, 0).value, std::numeric_limits<double>::infinity());
 }
 
 // Also of slivers, segments and points, in all regions around them.

@@ -7,6 +7,8 @@
 #include "engine/cpu/cpu_engine.h"
 #include "engine/cpu/descent.h"
 #include "engine/cpu/finish.h"
+#include "engine/cpu/single_point.h"
+#include "engine/reference/reference_engine.h"
 
 namespace sdm::cpu {
 namespace {
@@ -42,6 +44,12 @@ void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, dou
     finish(sites, {descent->winners, queries.size()}, queries, max_distance,
            [&](std::size_t first, const sites::ClosestPacket& closest) { sink(begin + first, closest); });
   }
+}
+
+ClosestPoint cpu_closest(const sites::SitesData& sites, const Vec3& point, double max_distance) {
+  thread_local SinglePointMemory memory;
+  return is_near(sites, point) ? closest_to_point(sites, point, max_distance, memory)
+                               : reference::reference_closest(sites, point, max_distance);
 }
 
 }  // namespace sdm::cpu

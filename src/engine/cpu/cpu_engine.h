@@ -14,6 +14,9 @@ using engine::ClosestSink;
 void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
                 const ClosestSink& sink);
 
+/// The same for one point. Without a site within max_distance, the result has the type none.
+[[nodiscard]] ClosestPoint cpu_closest(const sites::SitesData& sites, const Vec3& point, double max_distance);
+
 class CpuEngine final : public Engine {
  public:
   static constexpr EngineInfo kInfo{.name = "cpu", .summary = "fast", .relative_error = 1e-6};

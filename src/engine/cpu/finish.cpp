@@ -11,9 +11,8 @@
 #include "core/geometry/vec.h"
 #include "core/geometry/vec_lanes-inl.h"
 #include "engine/cpu/ablation.h"
-#include "engine/cpu/single_point.h"
+#include "engine/cpu/cpu_engine.h"
 #include "engine/engine.h"
-#include "engine/reference/reference_engine.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -175,12 +174,6 @@ HWY_INLINE void name_sites(const uint32_t* winners, sites::ClosestPacket& found)
   }
 }
 
-ClosestPoint settle(const sites::SitesData& sites, const Vec3& query, double max_distance) {
-  thread_local SinglePointMemory memory;
-  return is_near(sites, query) ? closest_to_point(sites, query, max_distance, memory)
-                               : reference::reference_closest(sites, query, max_distance);
-}
-
 // `winners` and `queries` have room for whole packets.
 void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const Vec3* queries, size_t count,
                    double max_distance, sites::ClosestPacket& found) {
@@ -199,7 +192,7 @@ void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const
       const auto i = static_cast<size_t>(std::countr_zero(open));
       found.set(i, queries[i],
                 site.packed == SiteId::kUnsettled
-                    ? settle(sites, queries[i], max_distance)
+                    ? cpu_closest(sites, queries[i], max_distance)
                     : sites::closest_around_face(sites, sites.face_of(site.type(), site.site()), queries[i]));
     }
   }

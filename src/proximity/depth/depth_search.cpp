@@ -32,6 +32,8 @@ constexpr double kSameDirection = 0.9999;
 constexpr int kFirstDirections = 3;
 // Of so many parts of the boundary that were found last, those that bound a triangle are chosen.
 constexpr std::size_t kRecent = 64;
+// So many parts of the boundary are found for a triangle before it is divided.
+constexpr std::uint32_t kMostCuts = 4;
 constexpr double kRounding = 1e-9;  // of distances, relative to the size of a body
 
 Vec3 middle(const Box& box) {
@@ -45,7 +47,7 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
   bodies_ = bodies, to_other_ = to_other, precision_ = precision;
   coarse_ = kCoarse * std::min(diagonal(bodies[0]->box()), diagonal(bodies[1]->box()));
   depth_ = {}, settled_ = 0, sure_ = precision;
-  open_.clear(), all_.clear(), known_[0].clear(), known_[1].clear();
+  open_.clear(), all_.clear(), known_[0].clear(), known_[1].clear(), nears_.clear();
   for (int body = 0; body < 2; ++body)
     if (bodies[1 - body]->body().solid()) find_exits(body);
   for (int body = 0; body < 2; ++body)
@@ -57,17 +59,24 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
     constexpr std::size_t kGrain = 256;
     parallel_for(parts_.size(), kGrain, [&](std::size_t begin, std::size_t end) { evaluate(begin, end); });
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      learn(parts_[i]);
+      learn(parts_[i], values_[i]);
       if (parts_[i].node == kNone && improve(parts_[i], values_[i]))
-        exits_[parts_[i].body].add(normalized(*values_[i].boundary - parts_[i].centre));
+        exits_[parts_[i].body].add(normalized(*values_[i].boundary - parts_[i].centre), values_[i].boundary);
     }
-    for (Part& part : parts_) {
-      if (part.node == kNone && part.upper > sure_) tighten(part);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      Part& part = parts_[i];
+      const bool by_cut = part.upper > sure_ && cut(part, values_[i]);
+      if (part.node == kNone && part.upper > sure_) {
+        for (std::size_t n = 0; n < values_[i].nears; ++n) add_near(part, values_[i].near[n]);
+        tighten(part);
+      }
       // The distance to the boundary of a solid that intersects itself has bounds that no division tightens.
       const bool finest =
           part.node == kNone && unit(part.body) * part.radius <= std::max(0.125 * precision, part.gap);
       if (part.upper <= sure_ || finest)
         settle(part.upper);
+      else if (by_cut)
+        add(part);
       else
         divide(part);
     }
@@ -84,22 +93,33 @@ void DepthSearch::find_exits(int body) {
   exits.start(internals(leaving.sites()), internals(other.sites()), to_other_[body]);
   Vec3 direction = normalized(to_other_[body].map(middle(leaving.box())) - middle(other.box()));
   if (direction == Vec3{}) direction = {1, 0, 0};
+  std::optional<Vec3> far;
   for (int i = 0; i < kFirstDirections; ++i) {
-    exits.add(direction);
+    exits.add(direction, far);
     const Vec3 p = exits.farthest_from_exit();
-    parts_.assign(1, {.body = body, .at = {p, p, p}, .centre = p});
+    parts_.assign(1, {.body = body, .at = {p, p, p}, .centre = p, .weights = {1, 0, 0}});
     values_.assign(1, {});
     evaluate(0, 1);
-    learn(parts_[0]);
+    learn(parts_[0], values_[0]);
     if (!improve(parts_[0], values_[0])) return;
     const Vec3 next = normalized(*values_[0].boundary - p);
     if (dot(next, direction) > kSameDirection) return;
-    direction = next;
+    direction = next, far = values_[0].boundary;
   }
 }
 
-void DepthSearch::learn(const Part& part) {
-  if (part.near) known_[part.body].push_back({part.centre, *part.near});
+void DepthSearch::learn(const Part& part, const Value& value) {
+  for (std::size_t n = 0; n < value.nears; ++n)
+    if (value.near[n].boundary.clear == 0) known_[part.body].push_back({part.centre, value.near[n].boundary});
+}
+
+// Whether the part of the boundary that was found excludes the point for which it was found, even though its
+// distance is taken to be linear in the triangle. If not, the triangle is too large for that.
+bool DepthSearch::cut(const Part& part, const Value& value) const {
+  if (part.node != kNone || value.nears == 0 || part.measured > kMostCuts) return false;
+  const CornerValues& d = value.near[0].distance;
+  const CornerValues& w = part.weights;
+  return unit(part.body) * (w[0] * d[0] + w[1] * d[1] + w[2] * d[2]) <= sure_;
 }
 
 // Whether the value at the centre of a part is the largest found so far, with a known point of the boundary.
@@ -142,7 +162,7 @@ void DepthSearch::take_deepest() {
 
 bool DepthSearch::up_to_date(const Part& part) const {
   return part.exits == exits_[part.body].size() &&
-         (part.node != kNone || part.known == known_[part.body].size());
+         (part.node != kNone || (!part.stale && part.known == known_[part.body].size()));
 }
 
 // By what has become known since the last time.
@@ -154,31 +174,42 @@ void DepthSearch::tighten(Part& part) {
     part.exits = exits.size();
     return;
   }
-  functions_.clear();
-  exits.values(part.at, functions_);
-  if (part.exits < exits.size())
-    part.upper = std::min(part.upper, scale * mixed_bound(functions_, sure_ / scale));
-  part.exits = exits.size();
-  if (part.upper <= sure_) return;
-  const auto known = static_cast<std::uint32_t>(known_[part.body].size());
-  if (find_near(part)) {
-    add_distances(part);
-    part.upper = std::min(part.upper, scale * mixed_bound(functions_, sure_ / scale));
+  const bool by_known = find_near(part);
+  if (by_known || part.exits < exits.size() || part.stale) {
+    functions_.clear();
+    exits.values(part.at, functions_);
+    for (const Near& n : near(part)) functions_.push_back(n.distance);
+    if (by_known) add_distances(part);
+    const MixedBound mixed = mixed_bound(functions_, sure_ / scale);
+    part.upper = std::min(part.upper, scale * mixed.value);
+    part.reach = mixed.value;
+    if (part.upper > sure_) place(part, mixed.weights);
   }
-  part.known = known;
+  part.exits = exits.size(), part.stale = false;
+  part.known = static_cast<std::uint32_t>(known_[part.body].size());
 }
 
-// Sets near_ to the two parts of the boundary that are known near the centre: its own, or that of the
-// triangle that was divided, if it has one, and those of the nearest points among the last ones. Returns
-// false if none of them is new.
+// Sets where a triangle is measured.
+void DepthSearch::place(Part& part, const CornerValues& weights) const {
+  part.weights = weights;
+  part.centre = weights[0] * part.at[0] + weights[1] * part.at[1] + weights[2] * part.at[2];
+  part.radius = 0;
+  for (const Vec3& corner : part.at) part.radius = std::max(part.radius, norm(corner - part.centre));
+}
+
+// Sets near_ to the parts of the boundary that are known for the two points nearest to the centre, of the
+// last ones. Returns false if none of them is new.
 bool DepthSearch::find_near(const Part& part) {
   const std::vector<Known>& known = known_[part.body];
   std::array<std::size_t, 2> nearest{known.size(), known.size()};
+  const auto has_near = [&](std::uint32_t face) {
+    return std::ranges::any_of(near(part), [&](const Near& n) { return n.boundary.face == face; });
+  };
   std::array<double, 2> squared;
   squared.fill(std::numeric_limits<double>::infinity());
   for (std::size_t i = known.size() - std::min(known.size(), kRecent); i < known.size(); ++i) {
     const double s = squared_norm(known[i].from - part.centre);
-    if (!(s < squared[1])) continue;
+    if (!(s < squared[1]) || (known[i].near.face != kNone && has_near(known[i].near.face))) continue;
     squared[1] = s, nearest[1] = i;
     if (s < squared[0]) std::swap(squared[0], squared[1]), std::swap(nearest[0], nearest[1]);
   }
@@ -186,24 +217,48 @@ bool DepthSearch::find_near(const Part& part) {
   if (!is_new(nearest[0]) && !is_new(nearest[1])) return false;
   if (nearest[1] == known.size()) nearest[1] = nearest[0];
   for (int n = 0; n < 2; ++n) near_[n] = known[nearest[n]].near;
-  if (part.near && part.near->face != near_[0].face) near_ = {*part.near, near_[0]};
   return true;
 }
 
+// The distances of up to four points to a part of the boundary.
+std::array<double, 4> DepthSearch::distances(const std::array<Vec3, 4>& points, int body,
+                                             const BoundaryPart& boundary) const {
+  if (boundary.face != kNone)
+    return face_distances(internals(bodies_[1 - body]->body().sites()), points,
+                          {boundary.face, boundary.face})[0];
+  std::array<double, 4> result;
+  for (int k = 0; k < 4; ++k) result[k] = norm(points[k] - boundary.point) - boundary.clear;
+  return result;
+}
+
 // Adds the distances to near_ to functions_.
-void DepthSearch::add_distances(Part& part) {
-  const std::array<Vec3, 4> points{part.at[0], part.at[1], part.at[2], part.centre};
-  std::array<std::array<double, 4>, 2> distances;
+void DepthSearch::add_distances(const Part& part) {
+  const std::array<Vec3, 4> points{part.at[0], part.at[1], part.at[2], part.at[0]};
+  std::array<std::array<double, 4>, 2> found;
   if (near_[0].face != kNone && near_[1].face != kNone)
-    distances = face_distances(internals(bodies_[1 - part.body]->body().sites()), points,
-                               {near_[0].face, near_[1].face});
+    found = face_distances(internals(bodies_[1 - part.body]->body().sites()), points,
+                           {near_[0].face, near_[1].face});
   else
-    for (int n = 0; n < 2; ++n)
-      for (int k = 0; k < 4; ++k) distances[n][k] = norm(points[k] - near_[n].point);
-  for (const auto& [a, b, c, centre] : distances) {
-    functions_.push_back({a, b, c});
-    part.reach = std::min(part.reach, centre);
+    for (int n = 0; n < 2; ++n) found[n] = distances(points, part.body, near_[n]);
+  for (const auto& [a, b, c, unused] : found) functions_.push_back({a, b, c});
+}
+
+DepthSearch::Near DepthSearch::near_at(const Part& part, const BoundaryPart& boundary) const {
+  const auto& [a, b, c] = part.at;
+  const std::array<double, 4> d = distances({a, b, c, a}, part.body, boundary);
+  return {boundary, {d[0], d[1], d[2]}};
+}
+
+// At the end of nears_. The last ones are kept.
+void DepthSearch::add_near(Part& part, const Near& near) {
+  if (part.near + part.nears != nears_.size()) {
+    const auto first = static_cast<std::uint32_t>(nears_.size());
+    for (std::uint32_t n = 0; n < part.nears; ++n) nears_.push_back(Near(nears_[part.near + n]));
+    part.near = first;
   }
+  nears_.push_back(near);
+  part.nears < kMostNear ? ++part.nears : ++part.near;
+  part.stale = true;
 }
 
 void DepthSearch::add(const Part& part) {
@@ -219,24 +274,30 @@ void DepthSearch::divide(const Part& part) {
   for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (part.at[k] + part.at[(k + 1) % 3]);
   // The quarters of a triangle follow it, up to the precision of the number.
   const std::uint64_t step = part.step / 4;
-  for (int k = 0; k < 3; ++k)
-    add_triangle({part.at[k], middle[k], middle[(k + 2) % 3]}, part, part.place + k * step, step);
-  add_triangle(middle, part, part.place + 3 * step, step);
+  const auto quarter = [&](int n, const Corners& at) {
+    return Part{.body = part.body, .at = at, .place = part.place + n * step, .step = step};
+  };
+  std::array<Part, 4> quarters;
+  for (int k = 0; k < 3; ++k) quarters[k] = quarter(k, {part.at[k], middle[k], middle[(k + 2) % 3]});
+  quarters[3] = quarter(3, middle);
+  std::array<std::array<Near, kMostNear>, 4> quarter_near;
+  for (std::uint32_t i = 0; i < part.nears; ++i) {
+    const Near n = nears_[part.near + i];
+    const std::array<double, 4> m =
+        distances({middle[0], middle[1], middle[2], middle[0]}, part.body, n.boundary);
+    quarter_near[3][i] = {n.boundary, {m[0], m[1], m[2]}};
+    for (int k = 0; k < 3; ++k) quarter_near[k][i] = {n.boundary, {n.distance[k], m[k], m[(k + 2) % 3]}};
+  }
+  for (int k = 0; k < 4; ++k)
+    for (std::uint32_t i = 0; i < part.nears; ++i) add_near(quarters[k], quarter_near[k][i]);
+  for (Part& q : quarters) add_triangle(q, part);
 }
 
-void DepthSearch::add_triangle(const Corners& at, const Part& parent, std::uint64_t place,
-                               std::uint64_t step) {
+void DepthSearch::add_triangle(Part part, const Part& parent) {
   const ExitDirections& exits = exits_[parent.body];
-  Part part{.body = parent.body,
-            .at = at,
-            .place = place,
-            .step = step,
-            .near = parent.near,
-            .exits = exits.size()};
-  part.upper = std::min(parent.upper, unit(part.body) * exits.bound(at));
+  part.upper = std::min(parent.upper, unit(part.body) * exits.bound(part.at));
   if (part.upper <= sure_) return settle(part.upper);
-  part.centre = (1.0 / 3) * (at[0] + at[1] + at[2]);
-  for (const Vec3& corner : at) part.radius = std::max(part.radius, norm(corner - part.centre));
+  place(part, {1.0 / 3, 1.0 / 3, 1.0 / 3});
   add(part);
 }
 
@@ -273,12 +334,18 @@ void DepthSearch::add_faces(const Part& parent) {
     if (upper <= sure_)
       settle(upper);
     else
-      add_triangle({map(at[a]), map(at[b]), map(at[c])}, parent, i * kFaceStep, kFaceStep);
+      add_triangle({.body = parent.body,
+                    .at = {map(at[a]), map(at[b]), map(at[c])},
+                    .place = i * kFaceStep,
+                    .step = kFaceStep},
+                   parent);
   }
 }
 
 // Parts of one body follow those of the other.
 void DepthSearch::evaluate(std::size_t begin, std::size_t end) {
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  if (end == begin + 1) return evaluate(parts_[begin], values_[begin]);
   thread_local std::vector<Vec3> centres;
   while (begin < end) {
     const int body = parts_[begin].body;
@@ -286,10 +353,7 @@ void DepthSearch::evaluate(std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && parts_[i].body == body; ++i) centres.push_back(parts_[i].centre);
     const shape::Body& other = bodies_[1 - body]->body();
     const std::span<const Vec3> points = centres;
-    bool found = true;
     const auto take = [&](std::size_t first, const sites::ClosestPacket& closest) {
-      if (points.size() == 1) found = closest.type[0] != SiteType::none;
-      if (!found) return;
       const std::uint32_t inside = other.inside()(points.subspan(first, closest.count), closest);
       for (std::size_t k = 0; k < closest.count; ++k) {
         const std::size_t i = begin + first + k;
@@ -297,14 +361,19 @@ void DepthSearch::evaluate(std::size_t begin, std::size_t end) {
                  closest.get(k, points[first + k]));
       }
     };
-    // A face that is known to be near bounds the search, but for rounding far from the origin.
-    constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-    const double reach =
-        points.size() == 1 ? parts_[begin].reach + kRounding * diagonal(other.box()) : kAnywhere;
-    cpu::cpu_search(internals(other.sites()), points, reach, std::ref(take));
-    if (!found) cpu::cpu_search(internals(other.sites()), points, kAnywhere, std::ref(take));
+    cpu::cpu_search(internals(other.sites()), points, kAnywhere, std::ref(take));
     begin += centres.size();
   }
+}
+
+void DepthSearch::evaluate(Part& part, Value& value) const {
+  const shape::Body& other = bodies_[1 - part.body]->body();
+  const sites::SitesData& sites = internals(other.sites());
+  // If the centre is inside, its bound is one on the search, but for rounding far from the origin.
+  ClosestPoint closest = cpu::cpu_closest(sites, part.centre, part.reach + kRounding * diagonal(other.box()));
+  if (closest.type == SiteType::none)
+    closest = cpu::cpu_closest(sites, part.centre, std::numeric_limits<double>::infinity());
+  evaluate(part, value, closest.distance, other.inside()(part.centre, closest), closest);
 }
 
 void DepthSearch::evaluate(Part& part, Value& value, double distance, bool inside,
@@ -312,29 +381,40 @@ void DepthSearch::evaluate(Part& part, Value& value, double distance, bool insid
   const shape::Body& other = bodies_[1 - part.body]->body();
   const sites::SitesData& sites = internals(other.sites());
   const Vec3& c = part.centre;
+  ++part.measured;
+  const Sides sides = other.inside().sides().of_site(closest.type, closest.site);
+  const bool whole = sides == Sides::boundary || sides == Sides::reversed;
+  std::optional<BoundaryPart> found;
+  if (whole) found = {.face = sites.face_of(closest.type, closest.site), .point = closest.point};
   if (!inside) {
-    part.upper = std::min(part.upper, unit(part.body) * bound_outside(part, distance));
+    part.upper = std::min(part.upper, unit(part.body) * (part.radius - distance));
+    if (part.node != kNone || part.upper <= sure_) return;
+    if (found) value.near[value.nears++] = near_at(part, *found);
+    value.near[value.nears++] = near_at(part, {.point = c, .clear = distance});
+    std::array<CornerValues, kMostNear + 2> functions;
+    const auto end = std::ranges::transform(near(part), functions.begin(), &Near::distance).out;
+    for (std::size_t n = 0; n < value.nears; ++n)
+      end[static_cast<std::ptrdiff_t>(n)] = value.near[n].distance;
+    const double enough = sure_ / unit(part.body);
+    double bound = mixed_bound(std::span(functions).first(part.nears + value.nears), enough).value;
+    if (bound > enough) bound = std::min(bound, bound_outside(part, distance));
+    part.upper = std::min(part.upper, unit(part.body) * bound);
     return;
   }
-  std::optional<BoundaryPart> nearest;
-  const Sides sides = other.inside().sides().of_site(closest.type, closest.site);
-  if (sides == Sides::boundary || sides == Sides::reversed)
-    nearest = {sites.face_of(closest.type, closest.site), closest.point};
-  else if (other.inside().at_boundary(c, closest))
-    nearest = {kNone, closest.point};
-  value = {distance, distance, closest.point};
+  value.lower = value.value = distance, value.boundary = closest.point;
   double most = distance;
-  if (!nearest) {
+  if (!whole && other.inside().at_boundary(c, closest)) {
+    found = {.point = closest.point};
+  } else if (!whole) {
     other.require_boundary();
-    const inside::SolidBoundary::Closest found = other.boundary().closest(c);
-    value = {found.lower, found.point ? found.upper : found.lower, found.point};
-    most = found.upper;
-    part.gap = unit(part.body) * (found.upper - found.lower);
-    if (found.point) nearest = {kNone, *found.point};
+    const inside::SolidBoundary::Closest b = other.boundary().closest(c);
+    value.lower = b.lower, value.value = b.point ? b.upper : b.lower, value.boundary = b.point;
+    most = b.upper;
+    part.gap = unit(part.body) * (b.upper - b.lower);
+    if (b.point) found = {.point = *b.point};
   }
-  most += part.radius;
-  if (nearest) part.near = nearest;
-  part.upper = std::min(part.upper, unit(part.body) * most);
+  part.upper = std::min(part.upper, unit(part.body) * (most + part.radius));
+  if (found) value.near[value.nears++] = near_at(part, *found);
 }
 
 // Of a part whose centre is outside, by this distance. The way in the triangle from c to a point p that is

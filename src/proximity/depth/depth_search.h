@@ -46,10 +46,19 @@ class DepthSearch {
                            double precision);
 
  private:
-  /// A face that is boundary on one side everywhere, or a point of the boundary.
+  static constexpr std::size_t kMostNear = 4;
+
+  /// A face that is boundary on one side everywhere, or a point of the boundary. If `clear` > 0, the centre
+  /// of a ball of that radius outside the solid: ways from it to points inside leave the ball first.
   struct BoundaryPart {
     std::uint32_t face = kNone;
     Vec3 point{};
+    double clear = 0;
+  };
+  /// A part of the boundary, and the bounds that it gives at the corners of a triangle.
+  struct Near {
+    BoundaryPart boundary;
+    CornerValues distance{};
   };
   /// Part of a surface, in the frame of the other body.
   struct Part {
@@ -57,14 +66,17 @@ class DepthSearch {
     std::uint32_t node = kNone;  ///< of the wide tree, or a leaf; kNone: a triangle
     Corners at{};
     std::uint64_t place = 0, step = 0;  ///< in the order of the tree; its quarters are a quarter step apart
-    Vec3 centre{};
-    double radius = 0;  ///< of a ball about the centre that contains the part
+    Vec3 centre{};                      ///< where it is measured: of a triangle, where its bound is attained
+    CornerValues weights{};             ///< of the corners of a triangle there
+    double radius = 0;                  ///< of a ball about the centre that contains the part
     double upper = std::numeric_limits<double>::infinity();  ///< bound on b in the part, in space
-    std::optional<BoundaryPart> near{};  ///< part of the boundary near the centre or the parent's
-    double gap = 0;                      ///< between the bounds on b(c)
+    std::uint32_t near = 0, nears = 0;  ///< of nears_: found for the triangle, or those that it is part of
+    double gap = 0;                     ///< between the bounds on b(c)
     double reach = std::numeric_limits<double>::infinity();  ///< the surface is no farther from the centre
-    std::uint32_t known = 0;  ///< the number of parts of the boundary that it may be bounded by
-    std::size_t exits = 0;    ///< the number of exit directions that it is bounded by
+    std::uint32_t known = 0;     ///< the number of parts of the boundary that it may be bounded by
+    std::size_t exits = 0;       ///< the number of exit directions that it is bounded by
+    std::uint32_t measured = 0;  ///< how often
+    bool stale = true;           ///< whether it is still to be bounded by all of `near`
   };
   /// A point, and a part of the boundary near it.
   struct Known {
@@ -79,24 +91,36 @@ class DepthSearch {
   struct Value {
     double lower = 0, value = 0;
     std::optional<Vec3> boundary{};
+    std::array<Near, 2> near{};
+    std::size_t nears = 0;
   };
 
   void find_exits(int body);
   void take_deepest();
   void add_children(const Part& parent);
   void add_faces(const Part& parent);
-  void add_triangle(const Corners& at, const Part& parent, std::uint64_t place, std::uint64_t step);
+  void add_triangle(Part part, const Part& parent);
   void add(const Part& part);
   void settle(double upper) { settled_ = std::max(settled_, upper); }
   void divide(const Part& part);
   void evaluate(std::size_t begin, std::size_t end);
+  void evaluate(Part& part, Value& value) const;
   void evaluate(Part& part, Value& value, double distance, bool inside, const ClosestPoint& closest) const;
   [[nodiscard]] bool improve(const Part& part, const Value& value);
   [[nodiscard]] bool up_to_date(const Part& part) const;
   void tighten(Part& part);
   [[nodiscard]] bool find_near(const Part& part);
-  void add_distances(Part& part);
-  void learn(const Part& part);
+  void add_distances(const Part& part);
+  void learn(const Part& part, const Value& value);
+  [[nodiscard]] std::array<double, 4> distances(const std::array<Vec3, 4>& points, int body,
+                                                const BoundaryPart& boundary) const;
+  [[nodiscard]] Near near_at(const Part& part, const BoundaryPart& boundary) const;
+  void add_near(Part& part, const Near& near);
+  [[nodiscard]] std::span<const Near> near(const Part& part) const {
+    return std::span(nears_).subspan(part.near, part.nears);
+  }
+  void place(Part& part, const CornerValues& weights) const;
+  [[nodiscard]] bool cut(const Part& part, const Value& value) const;
   [[nodiscard]] double bound_outside(const Part& part, double distance) const;
   [[nodiscard]] double unit(int body) const { return bodies_[1 - body]->pose().scale; }
 
@@ -104,6 +128,7 @@ class DepthSearch {
   std::array<mesh::Similarity, 2> to_other_;
   std::array<ExitDirections, 2> exits_;  // by the body that leaves the other
   std::array<std::vector<Known>, 2> known_;
+  std::vector<Near> nears_;
   std::array<BoundaryPart, 2> near_;     // to the part that is bounded
   std::vector<CornerValues> functions_;  // that bound b in it
   double precision_ = 0, coarse_ = 0;

@@ -14,11 +14,12 @@ void ExitDirections::start(const sites::SitesData& body, const sites::SitesData&
   size_ = 0;
 }
 
-void ExitDirections::add(const Vec3& u) {
+void ExitDirections::add(const Vec3& u, const std::optional<Vec3>& far) {
   if (size_ == kMost) return;
   Direction& direction = directions_[size_++];
   direction.u = u;
-  direction.most = shape::extreme_vertex(*solid_, u).along;
+  direction.most = far ? shape::extreme_vertex(*solid_, u, {dot(u, *far), *far}).along
+                       : shape::extreme_vertex(*solid_, u).along;
   // u·(A x + a) = (Aᵀu)·x + u·a, and x = o + y / s for y in the unit frame.
   const Affine& map = to_solid_.map;
   direction.in_body = u[0] * map.rows[0] + u[1] * map.rows[1] + u[2] * map.rows[2];

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/geometry/triangle_pair.h"
@@ -23,9 +24,9 @@ class ExitDirections {
 
   /// Forgets all directions. `to_solid`: from the frame of the body to that of the solid.
   void start(const sites::SitesData& body, const sites::SitesData& solid, const mesh::Similarity& to_solid);
-  /// Adds a direction in the frame of the solid, of length 1; ignored if there are kMost already. Cost:
-  /// logarithmic, as of extreme_vertex().
-  void add(const Vec3& u);
+  /// Adds a direction in the frame of the solid, of length 1, and if known a point of the solid that is far
+  /// in it; ignored if there are kMost already. Cost: logarithmic, as of extreme_vertex().
+  void add(const Vec3& u, const std::optional<Vec3>& far = {});
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// The bound on b of a triangle in the frame of the solid.

@@ -9,11 +9,16 @@ namespace sdm::depth {
 /// The values of a function at the corners of a triangle.
 using CornerValues = std::array<double, 3>;
 
+struct MixedBound {
+  double value;          ///< infinite if there are no functions
+  CornerValues weights;  ///< barycentric coordinates of a point where the functions may be as large
+};
+
 /// Returns an upper bound on the largest value in a triangle of the smallest of several functions, each of
 /// which is convex there or linear. A weighted mean of the functions is at least as large as the smallest
-/// one, and being convex is largest at a corner; the weights are chosen so that the bound is small. Where one
-/// function is largest in one corner and another one in another corner, it is much smaller than the bound by
-/// either of them. Stops at a bound of at most `enough`. Infinite if there are no functions.
-[[nodiscard]] double mixed_bound(std::span<const CornerValues> functions, double enough);
+/// one, and being convex is largest at a corner. The weights are those of the smallest such bound, by linear
+/// programming, whose dual solution is the point at which functions with these values at the corners that
+/// are linear are as large as the bound. Stops at a bound of at most `enough`.
+[[nodiscard]] MixedBound mixed_bound(std::span<const CornerValues> functions, double enough);
 
 }  // namespace sdm::depth

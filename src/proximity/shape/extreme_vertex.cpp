@@ -1,7 +1,5 @@
 #include "proximity/shape/extreme_vertex.h"
 
-#include <limits>
-
 #include "core/geometry/vec.h"
 
 namespace sdm::shape {
@@ -11,8 +9,10 @@ constexpr int kWidth = hierarchy::WideTree::kWidth;
 
 class Search {
  public:
-  Search(const sites::SitesData& sites, const Vec3& u) : sites_(sites), u_(u) {
+  Search(const sites::SitesData& sites, const Vec3& u, const ExtremeVertex& known)
+      : sites_(sites), u_(u), best_(known) {
     for (int k = 0; k < 3; ++k) unit_u_[k] = static_cast<float>(u[k]);
+    limit();
   }
 
   ExtremeVertex find() {
@@ -43,12 +43,16 @@ class Search {
   }
 
   void compare(std::uint32_t leaf) {
-    constexpr float kRounding = 4e-6F;  // of the bounds, in the unit frame
     for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
       for (const std::uint32_t vertex : sites_.mesh.triangles[sites_.regions.owners[i].face]) {
         const Vec3& x = sites_.mesh.positions[vertex];
         if (const double along = dot(u_, x); along > best_.along) best_ = {along, x};
       }
+    limit();
+  }
+
+  void limit() {
+    constexpr float kRounding = 4e-6F;  // of the bounds, in the unit frame
     limit_ =
         static_cast<float>(sites_.frame.scale * (best_.along - dot(u_, sites_.frame.origin))) - kRounding;
   }
@@ -56,14 +60,14 @@ class Search {
   const sites::SitesData& sites_;
   const Vec3 u_;
   float unit_u_[3];
-  float limit_ = -std::numeric_limits<float>::infinity();  // nodes below this are no farther than the best
-  ExtremeVertex best_{.along = -std::numeric_limits<double>::infinity()};
+  float limit_ = 0;  // nodes below this are no farther than the best
+  ExtremeVertex best_;
 };
 
 }  // namespace
 
-ExtremeVertex extreme_vertex(const sites::SitesData& sites, const Vec3& u) {
-  return Search(sites, u).find();
+ExtremeVertex extreme_vertex(const sites::SitesData& sites, const Vec3& u, const ExtremeVertex& known) {
+  return Search(sites, u, known).find();
 }
 
 }  // namespace sdm::shape
