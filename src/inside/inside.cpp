@@ -44,6 +44,7 @@ class Balls {
   std::size_t next_ = 0;
   std::array<Ball, 8> balls_{};
 };
+thread_local Balls balls;
 
 }  // namespace
 
@@ -76,10 +77,22 @@ bool InsideTest::inside_solid(const Vec3& query, const ClosestPoint& closest) co
   }
 }
 
+// As inside_solid(), but most queries are in a ball that is known.
+bool InsideTest::inside_ball(const Vec3& query, const ClosestPoint& closest) const {
+  const double radius = closest.distance - std::max(clearance_, error_);
+  if (!(radius > 0)) return inside_solid(query, closest);
+  std::optional<bool> inside = balls.find(shape_, query, radius);
+  if (!inside) {
+    inside = inside_solid(query, closest);
+    balls.add(shape_, query, radius, *inside);
+  }
+  return *inside;
+}
+
 bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) const {
   switch (method_) {
     case SignMethod::exact:
-      return closest.type != SiteType::none && sdm::contains(box_, query) && inside_solid(query, closest);
+      return closest.type != SiteType::none && sdm::contains(box_, query) && inside_ball(query, closest);
     case SignMethod::winding:
       return winding_->above_half(query);
     default:
@@ -111,7 +124,6 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
       inside |= static_cast<std::uint32_t>((*this)(queries[i], closest.get(i, queries[i]))) << i;
     return inside;
   }
-  thread_local Balls balls;
   for (std::size_t i = 0; i < closest.count; ++i) {
     const Vec3& query = queries[i];
     if (!sdm::contains(box_, query)) continue;

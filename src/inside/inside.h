@@ -47,6 +47,7 @@ class InsideTest {
 
  private:
   [[nodiscard]] bool inside_solid(const Vec3& query, const ClosestPoint& closest) const;
+  [[nodiscard]] bool inside_ball(const Vec3& query, const ClosestPoint& closest) const;
 
   const sites::SitesData& sites_;
   SignMethod method_;

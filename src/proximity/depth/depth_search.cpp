@@ -31,7 +31,7 @@ constexpr double kCoarse = 1.0 / 16;
 constexpr double kSameDirection = 0.9999;
 constexpr int kFirstDirections = 3;
 // Of so many parts of the boundary that were found last, those that bound a triangle are chosen.
-constexpr std::size_t kRecent = 64;
+constexpr std::size_t kRecent = 32;
 // So many parts of the boundary are found for a triangle before it is divided.
 constexpr std::uint32_t kMostCuts = 4;
 constexpr double kRounding = 1e-9;  // of distances, relative to the size of a body
@@ -382,30 +382,28 @@ void DepthSearch::evaluate(Part& part, Value& value, double distance, bool insid
   const sites::SitesData& sites = internals(other.sites());
   const Vec3& c = part.centre;
   ++part.measured;
-  const Sides sides = other.inside().sides().of_site(closest.type, closest.site);
-  const bool whole = sides == Sides::boundary || sides == Sides::reversed;
-  std::optional<BoundaryPart> found;
-  if (whole) found = {.face = sites.face_of(closest.type, closest.site), .point = closest.point};
+  const auto found_face = [&]() -> std::optional<BoundaryPart> {
+    const Sides sides = other.inside().sides().of_site(closest.type, closest.site);
+    if (sides != Sides::boundary && sides != Sides::reversed) return {};
+    return BoundaryPart{.face = sites.face_of(closest.type, closest.site), .point = closest.point};
+  };
+  const auto keep = [&](const BoundaryPart& boundary) {
+    value.near[value.nears++] = part.node == kNone ? near_at(part, boundary) : Near{boundary, {}};
+  };
   if (!inside) {
     part.upper = std::min(part.upper, unit(part.body) * (part.radius - distance));
     if (part.node != kNone || part.upper <= sure_) return;
-    if (found) value.near[value.nears++] = near_at(part, *found);
-    value.near[value.nears++] = near_at(part, {.point = c, .clear = distance});
-    std::array<CornerValues, kMostNear + 2> functions;
-    const auto end = std::ranges::transform(near(part), functions.begin(), &Near::distance).out;
-    for (std::size_t n = 0; n < value.nears; ++n)
-      end[static_cast<std::ptrdiff_t>(n)] = value.near[n].distance;
-    const double enough = sure_ / unit(part.body);
-    double bound = mixed_bound(std::span(functions).first(part.nears + value.nears), enough).value;
-    if (bound > enough) bound = std::min(bound, bound_outside(part, distance));
-    part.upper = std::min(part.upper, unit(part.body) * bound);
+    if (const std::optional<BoundaryPart> face = found_face()) keep(*face);
+    keep({.point = c, .clear = distance});
+    part.upper = std::min(part.upper, unit(part.body) * bound_outside(part, value, distance));
     return;
   }
   value.lower = value.value = distance, value.boundary = closest.point;
   double most = distance;
-  if (!whole && other.inside().at_boundary(c, closest)) {
+  std::optional<BoundaryPart> found = found_face();
+  if (!found && other.inside().at_boundary(c, closest)) {
     found = {.point = closest.point};
-  } else if (!whole) {
+  } else if (!found) {
     other.require_boundary();
     const inside::SolidBoundary::Closest b = other.boundary().closest(c);
     value.lower = b.lower, value.value = b.point ? b.upper : b.lower, value.boundary = b.point;
@@ -414,17 +412,24 @@ void DepthSearch::evaluate(Part& part, Value& value, double distance, bool insid
     if (b.point) found = {.point = *b.point};
   }
   part.upper = std::min(part.upper, unit(part.body) * (most + part.radius));
-  if (found) value.near[value.nears++] = near_at(part, *found);
+  if (found) keep(*found);
 }
 
-// Of a part whose centre is outside, by this distance. The way in the triangle from c to a point p that is
-// inside passes through some face, at x, so b(p) ≤ |p − x|. As c and p are on different sides of its plane,
-// |p − x| is the part of |p − c| that is beyond the plane. A triangle that no face intersects has no point
-// inside.
-double DepthSearch::bound_outside(const Part& part, double distance) const {
-  const double most =
-      part.radius - distance;  // the way is at least as long before x as the surface is far from c
-  if (part.node != kNone || unit(part.body) * most <= sure_) return most;
+// Of a triangle whose centre is outside, by this distance, and not bounded by that alone. The way in the
+// triangle from c to a point p that is inside passes through some face, at x, so b(p) ≤ |p − x|. As c and p
+// are on different sides of its plane, |p − x| is the part of |p − c| that is beyond the plane. A triangle
+// that no face intersects has no point inside.
+double DepthSearch::bound_outside(const Part& part, const Value& value, double distance) const {
+  std::array<CornerValues, kMostNear + 2> functions;
+  std::size_t count = 0;
+  for (const Near& n : near(part)) functions[count++] = n.distance;
+  for (std::size_t n = 0; n < value.nears; ++n) functions[count++] = value.near[n].distance;
+  const double enough = sure_ / unit(part.body);
+  const double mixed = mixed_bound(std::span(functions).first(count), enough).value;
+  if (mixed <= enough) return mixed;
+
+  // The way is at least as long before x as the surface is far from c.
+  const double most = std::min(mixed, part.radius - distance);
   const sites::SitesData& sites = internals(bodies_[1 - part.body]->body().sites());
   Box box;
   for (const Vec3& p : part.at) extend(box, sites.frame.to_unit(p));

@@ -121,7 +121,7 @@ class DepthSearch {
   }
   void place(Part& part, const CornerValues& weights) const;
   [[nodiscard]] bool cut(const Part& part, const Value& value) const;
-  [[nodiscard]] double bound_outside(const Part& part, double distance) const;
+  [[nodiscard]] double bound_outside(const Part& part, const Value& value, double distance) const;
   [[nodiscard]] double unit(int body) const { return bodies_[1 - body]->pose().scale; }
 
   Bodies bodies_{};

@@ -81,9 +81,8 @@ class PairSearch {
 
   // Faces that bound the search from the start.
   void begin_with(const FacePair& faces) {
-    const PointPair closest = closest_points(pair_.face1(faces[0]), pair_.face2(faces[1]));
-    restrict(std::sqrt(closest.squared));
-    direction_ = maps_.direction(closest.point2 - closest.point1);
+    restrict(std::sqrt(points_of(faces).squared));
+    direction_ = maps_.direction(points_.point2 - points_.point1);
   }
 
   Separation run() {
@@ -429,31 +428,43 @@ class PairSearch {
   // Compares as many candidates as there are lanes, from `next` on. Returns the first one after them.
   size_t compare_some(size_t next) {
     const double most = limit();
+    // Most pairs are excluded by their boxes in double precision if the meshes have details too fine for
+    // single precision, else none.
+    constexpr float kFine = 1e-3f;
+    const bool fine = maps_.unit[0] * maps_.to[0].error > kFine * limit_;
     FacePair faces[TrianglePairs::kLanes];
     size_t count = 0;
     for (; next < w_.candidates.size() && count < TrianglePairs::kLanes; ++next) {
       const FacePair pair = faces_of(w_.candidates[next]);
       const Corners a = pair_.face1(pair[0]), b = pair_.face2(pair[1]);
-      // Most pairs end here if the meshes have details too fine for single precision.
-      if (squared_box_distance(a, b) > most * most) continue;
+      if (fine && squared_box_distance(a, b) > most * most) continue;
       pairs_.set(count, a, b);
       faces[count++] = pair;
     }
     double squared[TrianglePairs::kLanes];
     pairs_.squared_distances(count, squared);
-    for (size_t i = 0; i < count; ++i) {
-      const double distance = std::sqrt(squared[i]);
-      if (distance > limit()) continue;
-      w_.ties.push_back({distance, faces[i]});
-      if (!(distance < least_)) continue;
+    if (count == 0) return next;
+    const size_t least = static_cast<size_t>(std::min_element(squared, squared + count) - squared);
+    if (const double distance = std::sqrt(squared[least]); distance < least_) {
       const bool closer = distance < least_ - maps_.rounding();
       restrict(distance);
-      if (!closer) continue;
-      std::erase_if(w_.ties, [&](const Tie& tie) { return tie.distance > limit(); });
-      const PointPair closest = closest_points(pair_.face1(faces[i][0]), pair_.face2(faces[i][1]));
-      direction_ = maps_.direction(closest.point2 - closest.point1);
+      if (closer) {
+        std::erase_if(w_.ties, [&](const Tie& tie) { return tie.distance > limit(); });
+        points_of(faces[least]);
+        direction_ = maps_.direction(points_.point2 - points_.point1);
+      }
     }
+    for (size_t i = 0; i < count; ++i)
+      if (const double distance = std::sqrt(squared[i]); distance <= limit())
+        w_.ties.push_back({distance, faces[i]});
     return next;
+  }
+
+  // The closest points of two faces; those of the last ones are kept.
+  const PointPair& points_of(const FacePair& faces) {
+    if (faces != faces_of_points_) points_ = closest_points(pair_.face1(faces[0]), pair_.face2(faces[1]));
+    faces_of_points_ = faces;
+    return points_;
   }
 
   // Faces at larger distances than this are not closest.
@@ -464,14 +475,14 @@ class PairSearch {
   }
 
   // The result depends on which pairs are tied, not on the order in which they were found.
-  Separation closest() const {
+  Separation closest() {
     FacePair first = kNoFaces;
     double least = kNoDistance;
     for (const Tie& tie : w_.ties) least = std::min(least, tie.distance);
     for (const Tie& tie : w_.ties)
       if (tie.distance <= least + maps_.rounding()) first = std::min(first, tie.faces);
     if (first == kNoFaces) return {};
-    const PointPair points = closest_points(pair_.face1(first[0]), pair_.face2(first[1]));
+    const PointPair& points = points_of(first);
     const double distance = std::sqrt(points.squared);
     if (distance > bound_) return {};
     return {distance, false, points.point1, points.point2, first[0], first[1]};
@@ -483,6 +494,8 @@ class PairSearch {
   PairWorkspace& w_;
   const double bound_;
   double least_ = kNoDistance;  // the smallest distance of two faces that is known
+  FacePair faces_of_points_ = kNoFaces;
+  PointPair points_{};
   Separation intersection_;
   float limit_;          // pairs farther than this are excluded
   Direction direction_;  // from the closest point of O1 found so far to that of O2
