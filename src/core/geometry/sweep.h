@@ -32,6 +32,7 @@ class Sweep {
   static constexpr double kRoundedDown = 1 - 1e-15;
 
   std::vector<std::uint32_t> order_, open_;
+  std::vector<Box> sorted_;
   std::vector<Pair> pairs_;
 
   friend double box_distance(const Box& a, const Box& b);
