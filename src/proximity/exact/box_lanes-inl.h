@@ -97,7 +97,10 @@ class BoxDistances {
     float rest = direction_.offset - maps_.to[0].error;
     for (int k = 0; k < 3; ++k) rest += v[k] * other_.centre[k] - std::abs(v[k]) * other_.half[k];
     const Vec along = hn::Add(hn::Sub(dot(d, centre, u), dot_absolute(half, u)), hn::Set(d, rest));
-    return hn::Max(least, hn::Mul(hn::Set(d, maps_.unit[0]), along));
+    // How deep boxes overlap does not depend on the direction, so that the order of the search does not
+    // either.
+    return hn::IfThenElse(hn::Gt(along, hn::Zero(d)),
+                          hn::Max(least, hn::Mul(hn::Set(d, maps_.unit[0]), along)), least);
   }
 
  private:

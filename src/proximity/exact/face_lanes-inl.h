@@ -176,7 +176,8 @@ inline float least_distance(const LeafFaces& faces, const PlacedBox& box) {
 inline float least_along(const sites::Regions& regions, uint32_t leaf, const float (&u)[3]) {
   const sites::FaceBounds& bounds = regions.bounds[leaf];
   const uint32_t count = regions.leaves[leaf + 1] - regions.leaves[leaf];
-  const float squared = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+  // Enlarged by more than the rounding of what is subtracted from it.
+  const float squared = (1 + 1e-6f) * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
   const Lanes d;
   Vec least = hn::Inf(d);
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {

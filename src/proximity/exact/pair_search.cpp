@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "proximity/exact/pair_search.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "proximity/exact/cylinder_lanes-inl.h"
 #include "proximity/exact/face_lanes-inl.h"
 #include "proximity/exact/triangle_lanes-inl.h"
 
@@ -64,7 +66,12 @@ template <bool separate>
 class PairSearch {
  public:
   PairSearch(const MeshPair& pair, double bound, PairWorkspace& workspace)
-      : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), w_(workspace), bound_(bound) {
+      : pair_(pair),
+        sites_{&pair.o1, &pair.o2},
+        maps_(pair),
+        cylinders_known_(!pair.o1.cylinders.nodes.empty() && !pair.o2.cylinders.nodes.empty()),
+        w_(workspace),
+        bound_(bound) {
     limit_ = maps_.round_up(bound + maps_.rounding());
   }
 
@@ -187,7 +194,7 @@ class PairSearch {
           const float mine = least_along(sites_[side]->regions, place.leaf_number(), direction_.along[side]);
           if (far(mine)) return true;
           if (cap.count == Cap::kMost) return false;
-          cap.add(place, mine, sites_[side]->tree.box(place.source));
+          cap.add(place, mine, box_of(place, side));
           return true;
         });
   }
@@ -216,7 +223,7 @@ class PairSearch {
         if (!(along[i] <= most())) continue;
         auto at = stack.end();
         while (at != stack.begin() + base && (at - 1)->along < along[i]) --at;
-        stack.insert(at, {{node.child[i], node.source[i]}, along[i]});
+        stack.insert(at, {Place::of(node, next.place.child, i), along[i]});
       }
     }
     return true;
@@ -286,7 +293,7 @@ class PairSearch {
     const Lanes d;
     const Cap &cap1 = caps_[0], &cap2 = caps_[1];
     for (size_t j = 0; j < cap2.count; ++j) {
-      const CentredBox box(sites_[1]->tree.box(cap2.place[j].source));
+      const CentredBox box(box_of(cap2.place[j], 1));
       const BoxDistances distances(maps_, direction_, 0, box);
       for (size_t group = 0; kWidth * group < cap1.count; ++group) {
         alignas(64) float least[kWidth];
@@ -301,51 +308,118 @@ class PairSearch {
     }
   }
 
-  CentredBox box_of(const Entry& entry, int side) const {
-    return CentredBox(sites_[side]->tree.box(entry.place[side].source));
+  // From the wide tree, whose node was just compared.
+  hierarchy::FloatBox box_of(const Place& place, int side) const {
+    if (place.slot == kNone) return sites_[side]->tree.box(0);
+    const hierarchy::WideTree::Node& node = sites_[side]->wide.nodes[place.slot / kWidth];
+    hierarchy::FloatBox box;
+    for (int k = 0; k < 3; ++k)
+      box.lo[k] = node.lo[k][place.slot % kWidth], box.hi[k] = node.hi[k][place.slot % kWidth];
+    return box;
+  }
+
+  Cylinder cylinder_of(const Place& place, int side) const {
+    return {sites_[side]->cylinders.nodes[place.slot / kWidth], place.slot % kWidth};
+  }
+
+  // What comparing this place will read.
+  void prefetch(const Place& place, int side) const {
+    if (place.leaf()) {
+      prefetch(sites_[side]->regions.bounds[place.leaf_number()]);
+    } else {
+      prefetch(sites_[side]->wide.nodes[place.child]);
+      if (cylinders_known_) prefetch(sites_[side]->cylinders.nodes[place.child]);
+    }
+  }
+  template <class T>
+  static void prefetch(const T& object) {
+    constexpr size_t kLine = 64;
+    const auto* bytes = reinterpret_cast<const std::byte*>(&object);
+    for (size_t at = 0; at < sizeof(T); at += kLine) hwy::Prefetch(bytes + at);
   }
 
   // Pairs the children of the larger node with the other node.
   void open(const Entry& entry) {
-    const CentredBox box[2] = {box_of(entry, 0), box_of(entry, 1)};
+    const CentredBox box[2] = {CentredBox(box_of(entry.place[0], 0)), CentredBox(box_of(entry.place[1], 1))};
     const int larger = box[0].size() * maps_.unit[0] < box[1].size() * maps_.unit[1];
     const int side = entry.place[larger].leaf() ? 1 - larger : larger;
-    if (side != larger && put_off(entry, box[side])) return;
-    const hierarchy::WideTree::Node& node = sites_[side]->wide.nodes[entry.place[side].child];
-    const BoxDistances distances(maps_, direction_, side, box[1 - side]);
+    if (side != larger && put_off(entry, larger, box)) return;
+    const uint32_t index = entry.place[side].child;
+    const hierarchy::WideTree::Node& node = sites_[side]->wide.nodes[index];
     alignas(64) float least[kWidth];
-    const Lanes d;
-    for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) hn::Store(distances(node, i), d, least + i);
+    bound_children(entry, side, box[1 - side], least);
 
     const auto base = static_cast<std::ptrdiff_t>(w_.overlapping.size());
     for (uint32_t i = 0; i < node.count; ++i) {
       if (least[i] > limit_) continue;
       Entry child = entry;
-      child.place[side] = {node.child[i], node.source[i]};
+      child.place[side] = Place::of(node, index, i);
       child.least = least[i];
       if (child.leaves() && discs_apart(child)) continue;
       if (least[i] > 0) {
         w_.apart.push(child);
         continue;
       }
+      prefetch(child.place[side], side);
       auto at = w_.overlapping.end();  // deepest overlap on top
       while (at != w_.overlapping.begin() + base && (at - 1)->least < child.least) --at;
       w_.overlapping.insert(at, child);
     }
   }
 
+  // Lower bounds on the distances of the children of one node to the other, from their boxes and then from
+  // their cylinders.
+  void bound_children(const Entry& entry, int side, const CentredBox& other, float (&least)[kWidth]) const {
+    const Lanes d;
+    const uint32_t index = entry.place[side].child;
+    const BoxDistances boxes(maps_, direction_, side, other);
+    for (size_t i = 0; i < kWidth; i += hn::Lanes(d))
+      hn::Store(boxes(sites_[side]->wide.nodes[index], i), d, least + i);
+    if (!cylinders_known_ || entry.place[1 - side].slot == kNone) return;
+    const CylinderDistances cylinders(maps_, direction_, side, cylinder_of(entry.place[1 - side], 1 - side));
+    for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+      const Vec before = hn::Load(d, least + i), apart = cylinders(sites_[side]->cylinders.nodes[index], i);
+      // Where the cylinders overlap, the boxes say how deep.
+      hn::Store(hn::IfThenElse(hn::Gt(apart, hn::Zero(d)), hn::Max(before, apart), before), d, least + i);
+    }
+  }
+
   // The box of a leaf with large faces is a loose bound: against a smaller box, its faces are bounded one by
   // one. Returns whether this pair is finished; otherwise it is opened later.
-  bool put_off(Entry entry, const CentredBox& small) {
-    const int large = entry.place[0].leaf() ? 0 : 1;
-    load_faces(large, entry.place[large].leaf_number());
-    const PlacedBox box = large == 1 ? PlacedBox(small) : PlacedBox(small, maps_.to[0]);
-    const float least = maps_.unit[0] * (least_distance(faces_[large], box) - maps_.to[0].error);
+  bool put_off(Entry entry, int large, const CentredBox (&box)[2]) {
+    // By the discs around the faces, which take less time, unless they are much larger.
+    constexpr float kMuch = separate ? 4 : 0;
+    const bool by_discs =
+        cylinders_known_ && entry.place[1 - large].slot != kNone &&
+        box[large].size() * maps_.unit[large] <= kMuch * box[1 - large].size() * maps_.unit[1 - large];
+    const float least =
+        by_discs ? distance_of_discs(entry, large) : distance_of_faces(entry, large, box[1 - large]);
     if (least > limit_) return true;
     if (!(least > std::max(entry.least, 0.0f))) return false;
     entry.least = least;
     w_.apart.push(entry);
     return true;
+  }
+  float distance_of_faces(const Entry& entry, int side, const CentredBox& other) {
+    load_faces(side, entry.place[side].leaf_number());
+    const PlacedBox box = side == 1 ? PlacedBox(other) : PlacedBox(other, maps_.to[0]);
+    return maps_.unit[0] * (least_distance(faces_[side], box) - maps_.to[0].error);
+  }
+  float distance_of_discs(const Entry& entry, int side) const {
+    alignas(64) float apart[kWidth];
+    return *std::min_element(apart, apart + bound_discs(entry, side, apart));
+  }
+
+  // Lower bounds on the distances of the faces of one leaf, from the discs around them, to the cylinder
+  // around the other node. Returns the number of faces.
+  uint32_t bound_discs(const Entry& entry, int side, float (&apart)[kWidth]) const {
+    const sites::Regions& regions = sites_[side]->regions;
+    const uint32_t leaf = entry.place[side].leaf_number();
+    const CylinderDistances distances(maps_, direction_, side, cylinder_of(entry.place[1 - side], 1 - side));
+    const Lanes d;
+    for (size_t i = 0; i < kWidth; i += hn::Lanes(d))
+      hn::Store(distances(regions.bounds[leaf], regions.thin[leaf] != 0, i), d, apart + i);
+    return regions.leaves[leaf + 1] - regions.leaves[leaf];
   }
 
   // Whether all faces of the leaves are too far apart in the direction between the closest points found so
@@ -358,6 +432,16 @@ class PairSearch {
     return maps_.unit[0] * apart > limit_;
   }
 
+  // The faces of one leaf that are not too far from the cylinder around the other leaf, a bit for each.
+  uint32_t faces_near(const Entry& entry, int side) const {
+    alignas(64) float apart[kWidth];
+    const uint32_t count = cylinders_known_ ? bound_discs(entry, side, apart) : 0;
+    if (count == 0) return ~0u;
+    uint32_t near = 0;
+    for (uint32_t i = 0; i < count; ++i) near |= (apart[i] > limit_ ? 0u : 1u) << i;
+    return near;
+  }
+
   void load_faces(int side, uint32_t leaf) {
     if (loaded_[side] == leaf) return;
     loaded_[side] = leaf;
@@ -368,17 +452,21 @@ class PairSearch {
 
   void compare_leaves(const Entry& entry) {
     if (discs_apart(entry)) return;  // the direction may have improved since the leaves were paired
+    const uint32_t near1 = faces_near(entry, 0);
+    const uint32_t near2 = near1 == 0 ? 0 : faces_near(entry, 1);
+    if (near2 == 0) return;
     for (int side = 0; side < 2; ++side) load_faces(side, entry.place[side].leaf_number());
     const LeafFaces &a = faces_[0], &b = faces_[1];
     const Lanes d;
     Candidate touching[kWidth * kWidth];
     size_t count = 0;
     for (uint32_t j = 0; j < b.count(); ++j) {
+      if ((near2 >> j & 1) == 0) continue;
       alignas(64) float least[kWidth];
       for (size_t i = 0; i < kWidth; i += hn::Lanes(d))
         hn::Store(in_units(face_distances(a, i, b, j, direction_)), d, least + i);
       for (uint32_t i = 0; i < a.count(); ++i) {
-        if (least[i] > limit_) continue;
+        if (least[i] > limit_ || (near1 >> i & 1) == 0) continue;
         const Candidate candidate{least[i], a.first() + i, b.first() + j};
         if (least[i] > 0)
           w_.candidates.push_back(candidate);
@@ -491,6 +579,7 @@ class PairSearch {
   const MeshPair& pair_;
   const sites::SitesData* sites_[2];
   const UnitMaps maps_;
+  const bool cylinders_known_;  // of both
   PairWorkspace& w_;
   const double bound_;
   double least_ = kNoDistance;  // the smallest distance of two faces that is known
@@ -527,11 +616,43 @@ namespace sdm::exact {
 HWY_EXPORT(FindClosest);
 HWY_EXPORT(FindIntersection);
 
+namespace {
+
+// Whether the bounding box of O1 and that of O2's box, posed, are apart: far cheaper than a search.
+bool boxes_apart(const MeshPair& pair) {
+  constexpr double kRounding = 1e-12;  // more than that of a posed point
+  const auto middle = [](const hierarchy::FloatBox& box, int k) {
+    return 0.5 * (double{box.lo[k]} + box.hi[k]);
+  };
+  const auto half = [](const hierarchy::FloatBox& box, int k) {
+    return 0.5 * (double{box.hi[k]} - box.lo[k]);
+  };
+  const hierarchy::FloatBox &box1 = pair.o1.tree.box(0), &box2 = pair.o2.tree.box(0);
+  const UnitFrame &frame1 = pair.o1.frame, &frame2 = pair.o2.frame;
+  const double unit1 = 1 / frame1.scale, unit2 = 1 / frame2.scale;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& row = pair.pose.rows[k];
+    double at = pair.pose.offset[k], size = std::abs(at), reach = unit1 * half(box1, k);
+    for (int j = 0; j < 3; ++j) {
+      const double centre = frame2.origin[j] + unit2 * middle(box2, j);
+      at += row[j] * centre;
+      size += std::abs(row[j]) * (std::abs(frame2.origin[j]) + unit2);
+      reach += std::abs(row[j]) * unit2 * half(box2, j);
+    }
+    size += std::abs(frame1.origin[k]) + unit1;
+    if (std::abs(at - frame1.origin[k] - unit1 * middle(box1, k)) > reach + kRounding * size) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace, const FacePair& hint) {
   return HWY_DYNAMIC_DISPATCH(FindClosest)(pair, bound, workspace, hint);
 }
 
 Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace) {
+  if (boxes_apart(pair)) return {};
   return HWY_DYNAMIC_DISPATCH(FindIntersection)(pair, workspace);
 }
 

@@ -12,9 +12,15 @@ namespace sdm::exact {
 
 /// Per-thread memory, reused between searches; results do not depend on it.
 struct PairWorkspace {
-  /// A node or leaf of the wide tree, and the binary node that stores its box.
+  /// A node or leaf of the wide tree, the binary node that it stands for, and which child of which wide node
+  /// it is, where its box and its cylinder are; kNone for the root.
   struct Place {
-    std::uint32_t child = 0, source = 0;
+    std::uint32_t child = 0, source = 0, slot = kNone;
+
+    /// Child `i` of the node with this index.
+    static Place of(const hierarchy::WideTree::Node& node, std::uint32_t index, std::uint32_t i) {
+      return {node.child[i], node.source[i], hierarchy::WideTree::kWidth * index + i};
+    }
 
     [[nodiscard]] bool leaf() const { return hierarchy::WideTree::is_leaf(child); }
     [[nodiscard]] std::uint32_t leaf_number() const { return hierarchy::WideTree::leaf_number(child); }

@@ -17,7 +17,7 @@ double largest_stretch(const Affine& map) {
   return std::sqrt(most);
 }
 
-FrameMap in_floats(const Affine& map) {
+FrameMap in_floats(const Affine& map, double stretch) {
   // Coordinates are at most 1 before the map; a dozen roundings of half a unit in the last place add up.
   constexpr double kError = 16 * std::numeric_limits<float>::epsilon();
   constexpr double kLargest = 1e15;  // the square still fits a float
@@ -30,11 +30,12 @@ FrameMap in_floats(const Affine& map) {
     usable = usable && reach < kLargest;  // nor NaN
     largest = std::max(largest, reach);
   }
-  if (!usable) return {{}, {}, std::numeric_limits<float>::infinity()};
+  if (!usable) return {{}, {}, 0, std::numeric_limits<float>::infinity()};
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) result.row[i][j] = static_cast<float>(map.rows[i][j]);
     result.offset[i] = static_cast<float>(map.offset[i]);
   }
+  result.stretch = static_cast<float>((1 + kError) * stretch);
   result.error = static_cast<float>(kError * largest);
   return result;
 }
@@ -55,15 +56,16 @@ UnitMaps::UnitMaps(const MeshPair& pair) {
   for (int i = 0; i < 3; ++i) to_frame1.rows[i] = (frame1.scale / frame2.scale) * pair.pose.rows[i];
   to_frame1.offset = frame1.to_unit(pair.pose(frame2.origin));
   const Affine to_frame2 = inverse(to_frame1);
-  to[0] = in_floats(to_frame1);
-  to[1] = in_floats(to_frame2);
+  const double stretch1 = largest_stretch(to_frame1), stretch2 = largest_stretch(to_frame2);
+  to[0] = in_floats(to_frame1, stretch1);
+  to[1] = in_floats(to_frame2, stretch2);
   aligned = diagonal(to_frame1) && std::isfinite(to[0].error) && std::isfinite(to[1].error);
 
-  const double scale_of_frame1 = std::min(1.0, 1 / largest_stretch(to_frame1));
+  const double scale_of_frame1 = std::min(1.0, 1 / stretch1);
   scale_ = scale_of_frame1 * frame1.scale;
   unit[0] = static_cast<float>(kBelow * scale_of_frame1);
   unit[1] = std::isfinite(to[1].error)
-                ? static_cast<float>(kBelow * scale_of_frame1 / largest_stretch(to_frame2))
+                ? static_cast<float>(kBelow * scale_of_frame1 / stretch2)
                 : 1;
 }
 

@@ -8,8 +8,9 @@ namespace sdm::exact {
 /// A map into one unit frame from the other.
 struct FrameMap {
   float row[3][3], offset[3];
-  float error;  ///< bound on the error of mapped coordinates, and of their differences and extents; if
-                ///< infinite, the map gives no bound
+  float stretch;  ///< an upper bound on the length of a mapped unit vector
+  float error;    ///< bound on the error of mapped coordinates, and of their differences and extents; if
+                  ///< infinite, the map gives no bound
 };
 
 /// A direction in space, given in both frames: along[0]·x1 + along[1]·x2 + offset is the extent in this
