@@ -149,6 +149,36 @@ TEST(PairSearch, HintsChangeNoBit) {
   }
 }
 
+// Sites have no cylinders after a refit: boxes alone must give the same results, for bodies that are far
+// apart, close and intersecting.
+TEST(PairSearch, CylindersChangeNoBit) {
+  std::mt19937 random(13);
+  std::normal_distribution<double> normal;
+  const std::vector<Mesh> meshes{test::sphere(4), test::height_field(40), test::torus(60, 30),
+                                 test::with_defects(test::sphere(4))};
+  for (std::size_t i = 0; i < 80; ++i) {
+    SCOPED_TRACE(i);
+    const Mesh &m1 = meshes[i % meshes.size()], &m2 = meshes[i / meshes.size() % meshes.size()];
+    const Sites o1(m1), o2(m2);
+    ASSERT_FALSE(internals(o1).cylinders.nodes.empty());
+    Sites plain1(m1), plain2(m2);
+    plain1.refit(m1.positions), plain2.refit(m2.positions);
+    ASSERT_TRUE(internals(plain1).cylinders.nodes.empty());
+    Affine pose = bench::random_rotation(random);
+    for (double& x : pose.offset) x = 0.3 * static_cast<double>(i % 5) * normal(random);
+    PairWorkspace workspace;
+    const MeshPair pair{internals(o1), internals(o2), pose},
+        plain{internals(plain1), internals(plain2), pose};
+    const Separation found = find_closest(pair, kAny, workspace),
+                     expected = find_closest(plain, kAny, workspace);
+    EXPECT_EQ(found.distance, expected.distance);
+    EXPECT_EQ(found.point1, expected.point1);
+    EXPECT_EQ(found.face1, expected.face1);
+    EXPECT_EQ(found.face2, expected.face2);
+    EXPECT_EQ(find_intersection(pair, workspace).face1, find_intersection(plain, workspace).face1);
+  }
+}
+
 // Bodies that a plane separates, closed, open, folded and with defects, close to each other and far apart:
 // only leaves near the plane are compared.
 TEST(PairSearch, FindsTheClosestFacesAcrossAPlane) {
