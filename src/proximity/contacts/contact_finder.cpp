@@ -6,7 +6,6 @@
 
 #include "core/geometry/barycentric.h"
 #include "core/geometry/vec.h"
-#include "proximity/shape/contact_parts.h"
 #include "sites/sites_data.h"
 
 namespace sdm::contacts {
@@ -228,14 +227,15 @@ void ContactFinder::find_support(Feature& feature) {
 void ContactFinder::find_edges() {
   const SitesData& sites = internals(on().sites());
   const double shortest = kShortEdge * size_;
-  constexpr double kRounding = 1e-3;  // of the sizes of parts
-  const double part = shape::kContactPart * to_other_[body_].scale * diagonal(on().box());
-  const bool long_in_parts = part > (1 + kRounding) * shortest;
+  // In the unit frame of the body, half as long: a disc that contains the face has at least this radius.
+  constexpr double kRounding = 1e-3;
+  const auto least_radius =
+      static_cast<float>((0.5 - kRounding) * shortest * sites.frame.scale / to_other_[body_].scale);
   for (const ContactRegion& region : regions_.regions()) {
     if (region.kind == ContactRegion::Kind::deep) continue;
-    const bool may_be_long = region.kind == ContactRegion::Kind::coarse || long_in_parts;
     for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
       const std::uint32_t near = near_.of_leaf[body_][leaf], first = sites.regions.leaves[leaf];
+      const bool may_be_long = *std::ranges::max_element(sites.regions.bounds[leaf].radius) >= least_radius;
       if (near == 0 && !may_be_long) continue;
       for (std::uint32_t i = first; i < sites.regions.leaves[leaf + 1]; ++i) {
         const bool is_near = (near >> (i - first) & 1) != 0;
