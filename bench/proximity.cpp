@@ -90,6 +90,8 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
   const FclPair fcl(m1, m2);
   const double size = diagonal(bounds(m1)) + diagonal(bounds(m2));
   std::mt19937 random(1);
+  const sites::CylinderTree cylinders1(internals(o1).wide, internals(o1).regions),
+      cylinders2(internals(o2).wide, internals(o2).regions);
   exact::PairWorkspace workspace;
   Times separation, collision;
   ProximityQuery query(m1, m2);
@@ -98,7 +100,7 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
   std::vector<double> same_side;
   std::size_t wrong = 0;
   for (const Affine& pose : random_poses(o1, o2, static_cast<std::size_t>(trial.repetitions), random)) {
-    const exact::MeshPair posed{internals(o1), internals(o2), pose};
+    const exact::MeshPair posed{internals(o1), internals(o2), pose, {&cylinders1, &cylinders2}};
     const auto separate = [&] { return exact::find_closest(posed, 10 * size, workspace); };
     const auto collide = [&] { return exact::find_intersection(posed, workspace).intersecting; };
     // FCL returns -1 for surfaces that intersect, and rounds transformed vertices differently: for surfaces

@@ -64,7 +64,6 @@ void SitesData::edit(const MeshEdit& edit) {
   find_leaf_boxes(regions, frame, last_refit_.placed, last_refit_.boxes);
   hierarchy::refit_leaves(tree, last_refit_.boxes);
   wide = hierarchy::collapse(tree);
-  cylinders = {};
   compute_regions(last_refit_);
 }
 

@@ -43,7 +43,6 @@ SitesData::SitesData(Mesh given) {
   Refit refit;  // discarded: a mesh that is never refitted does not need it
   assign_sites(refit);
   compute_regions(refit);
-  cylinders = CylinderTree(wide, regions);
 }
 
 void SitesData::find_orientation() {
@@ -74,7 +73,6 @@ void SitesData::refit(std::span<const Vec3> positions) {
   hierarchy::refit_leaves(tree, refit.boxes);
   hierarchy::refit(wide, tree);
   compute_regions(refit);
-  cylinders = {};
 }
 
 // The boxes of faces are those of their vertices, each rounded outwards.

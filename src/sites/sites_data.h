@@ -9,7 +9,6 @@
 #include "hierarchy/wide_tree.h"
 #include "inside/crossings/ray_parity.h"
 #include "mesh/topology.h"
-#include "sites/bounding_cylinders.h"
 #include "sites/orient_outward.h"
 #include "sites/pseudonormals.h"
 #include "sites/regions.h"
@@ -54,8 +53,6 @@ class SitesData {
   hierarchy::AabbTree tree;  ///< over those faces, in the unit frame
   hierarchy::WideTree wide;  ///< the same, collapsed
   Regions regions;           ///< by the leaves of both
-  CylinderTree cylinders;  ///< around the nodes of the latter; none after a refit or an edit, for which they
-                           ///< would take longer than a few searches save
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a reliable normal
 

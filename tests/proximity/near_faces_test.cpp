@@ -28,43 +28,55 @@ std::vector<bool> found(const exact::NearFaces& near, const sites::SitesData& si
   return faces;
 }
 
+// Compares the near faces with those of all pairs. Returns the number of faces that intersect the other
+// surface.
+std::size_t compare(const Mesh& a, const Mesh& b, const Transform& pose, double reach,
+                    exact::NearFaces& near) {
+  const Sites o1(a), o2(b);
+  const exact::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
+  exact::find_near_faces(pair, reach, near);
+  const std::array marks{found(near, internals(o1), 0), found(near, internals(o2), 1)};
+  std::array expected{std::vector<bool>(a.triangles.size()), std::vector<bool>(b.triangles.size())};
+  for (std::uint32_t i = 0; i < a.triangles.size(); ++i)
+    for (std::uint32_t j = 0; j < b.triangles.size(); ++j) {
+      const Corners face1 = pair.face1(i), face2 = pair.face2(j);
+      if (squared_box_distance(face1, face2) > reach * reach) continue;
+      if (triangles_intersect(face1, face2) || closest_points(face1, face2).squared <= reach * reach)
+        expected[0][i] = expected[1][j] = true;
+    }
+  std::size_t intersecting = 0;
+  for (const int side : {0, 1})
+    for (std::size_t i = 0; i < expected[side].size(); ++i) {
+      if (reach == 0)
+        EXPECT_EQ(marks[side][i], expected[side][i]);
+      else
+        EXPECT_TRUE(marks[side][i] || !expected[side][i]);
+      intersecting += reach == 0 && expected[side][i];
+    }
+  return intersecting;
+}
+
 TEST(NearFaces, AreThoseOfAllPairs) {
   const std::vector<Mesh> meshes{cube(0.5), placed(sphere(2), "scale:0.5"), placed(torus(16, 8), "fit"),
                                  joined(cube(0.3), moved(cube(0.25), {0.2, 0.1, 0.05}))};
+  const Mesh ball = placed(sphere(4), "scale:0.5"), ring = placed(torus(64, 32), "fit");
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
+  const auto pose = [&] {
+    return Transform::translation({0.4 * normal(random), 0.4 * normal(random), 0.4 * normal(random)}) *
+           Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
+  };
   exact::NearFaces near;  // its memory is reused
   std::size_t intersecting = 0;
-  for (int trial = 0; trial < 48; ++trial) {
+  for (std::size_t trial = 0; trial < 48; ++trial) {
     SCOPED_TRACE(trial);
-    const Mesh &a = meshes[static_cast<std::size_t>(trial) % 4],
-               &b = meshes[static_cast<std::size_t>(trial / 4) % 4];
-    const Sites o1(a), o2(b);
-    const Transform pose =
-        Transform::translation({0.4 * normal(random), 0.4 * normal(random), 0.4 * normal(random)}) *
-        Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
-    const exact::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
-    for (const double reach : {0.0, 0.05, 0.5}) {
-      exact::find_near_faces(pair, reach, near);
-      const std::array marks{found(near, internals(o1), 0), found(near, internals(o2), 1)};
-      std::array expected{std::vector<bool>(a.triangles.size()), std::vector<bool>(b.triangles.size())};
-      for (std::uint32_t i = 0; i < a.triangles.size(); ++i)
-        for (std::uint32_t j = 0; j < b.triangles.size(); ++j) {
-          const bool meet = triangles_intersect(pair.face1(i), pair.face2(j));
-          if (meet || closest_points(pair.face1(i), pair.face2(j)).squared <= reach * reach)
-            expected[0][i] = expected[1][j] = true;
-        }
-      for (const int side : {0, 1})
-        for (std::size_t i = 0; i < expected[side].size(); ++i) {
-          if (reach == 0)
-            EXPECT_EQ(marks[side][i], expected[side][i]);
-          else
-            EXPECT_TRUE(marks[side][i] || !expected[side][i]);
-          intersecting += reach == 0 && expected[side][i];
-        }
-    }
+    const Transform placement = pose();
+    for (const double reach : {0.0, 0.05, 0.5})
+      intersecting += compare(meshes[trial % 4], meshes[trial / 4 % 4], placement, reach, near);
+    if (trial % 16 == 0)
+      for (const double reach : {0.0, 0.01}) intersecting += compare(ball, ring, placement, reach, near);
   }
-  EXPECT_GT(intersecting, 500u);
+  EXPECT_GT(intersecting, 700u);
 }
 
 }  // namespace

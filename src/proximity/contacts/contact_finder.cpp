@@ -55,13 +55,11 @@ Vec3 weights_in(const Mesh& mesh, std::uint32_t face, const Vec3& p) {
 
 }  // namespace
 
-std::span<const Contact> ContactFinder::find(const Bodies& bodies,
+std::span<const Contact> ContactFinder::find(const Bodies& bodies, const exact::MeshPair& meshes,
                                              const std::array<mesh::Similarity, 2>& to_other, double margin,
                                              double length) {
   bodies_ = bodies, to_other_ = to_other, length_ = length;
   contacts_.clear(), boxes_.clear(), bridges_.clear();
-  const exact::MeshPair meshes{internals(bodies[0]->body().sites()), internals(bodies[1]->body().sites()),
-                               to_other[1].map};
   exact::find_near_faces(meshes, margin / bodies[0]->pose().scale, near_);
   for (body_ = 0; body_ < 2; ++body_) {
     limit_ = margin / bodies[1 - body_]->pose().scale;

@@ -24,10 +24,10 @@ class ContactFinder {
  public:
   using Bodies = std::array<const shape::PosedBody*, 2>;
 
-  /// See ProximityQuery::contacts. `to_other`: from the frame of each body to that of the other. `length`:
-  /// below this length, the vector to the other body does not determine the normal. Cost: of the pairs of
-  /// faces within the margin, and of a few closest points for each contact.
-  [[nodiscard]] std::span<const Contact> find(const Bodies& bodies,
+  /// See ProximityQuery::contacts. `meshes`: of both, in the frame of O1. `to_other`: from the frame of each
+  /// body to that of the other. `length`: below this length, the vector to the other body does not determine
+  /// the normal. Cost: of the pairs of faces within the margin, and of a few closest points for each contact.
+  [[nodiscard]] std::span<const Contact> find(const Bodies& bodies, const exact::MeshPair& meshes,
                                               const std::array<mesh::Similarity, 2>& to_other, double margin,
                                               double length);
 

@@ -8,6 +8,7 @@
 
 #include "core/geometry/affine.h"
 #include "core/geometry/triangle_pair.h"
+#include "sites/bounding_cylinders.h"
 #include "sites/sites_data.h"
 
 namespace sdm::exact {
@@ -20,6 +21,14 @@ inline constexpr FacePair kNoFaces{kNone, kNone};
 struct MeshPair {
   const sites::SitesData &o1, &o2;
   Affine pose{};
+  /// Of the nodes of O1 and O2: bounds that make searches shorter, and change no result. Null: none.
+  std::array<const sites::CylinderTree*, 2> cylinders{};
+  [[nodiscard]] bool has_cylinders() const {
+    const auto known = [](const sites::CylinderTree* tree) {
+      return tree != nullptr && !tree->nodes.empty();
+    };
+    return known(cylinders[0]) && known(cylinders[1]);
+  }
 
   /// The corners of a face. Compiled only once: vector code must get the same rounding as all other code.
   [[nodiscard]] Corners face1(std::uint32_t face) const;

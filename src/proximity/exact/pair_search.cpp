@@ -69,7 +69,7 @@ class PairSearch {
       : pair_(pair),
         sites_{&pair.o1, &pair.o2},
         maps_(pair),
-        cylinders_known_(!pair.o1.cylinders.nodes.empty() && !pair.o2.cylinders.nodes.empty()),
+        cylinders_known_(pair.has_cylinders()),
         w_(workspace),
         bound_(bound) {
     limit_ = maps_.round_up(bound + maps_.rounding());
@@ -319,7 +319,7 @@ class PairSearch {
   }
 
   Cylinder cylinder_of(const Place& place, int side) const {
-    return {sites_[side]->cylinders.nodes[place.slot / kWidth], place.slot % kWidth};
+    return {pair_.cylinders[side]->nodes[place.slot / kWidth], place.slot % kWidth};
   }
 
   // What comparing this place will read.
@@ -328,7 +328,7 @@ class PairSearch {
       prefetch(sites_[side]->regions.bounds[place.leaf_number()]);
     } else {
       prefetch(sites_[side]->wide.nodes[place.child]);
-      if (cylinders_known_) prefetch(sites_[side]->cylinders.nodes[place.child]);
+      if (cylinders_known_) prefetch(pair_.cylinders[side]->nodes[place.child]);
     }
   }
   template <class T>
@@ -378,7 +378,7 @@ class PairSearch {
     if (!cylinders_known_ || entry.place[1 - side].slot == kNone) return;
     const CylinderDistances cylinders(maps_, direction_, side, cylinder_of(entry.place[1 - side], 1 - side));
     for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
-      const Vec before = hn::Load(d, least + i), apart = cylinders(sites_[side]->cylinders.nodes[index], i);
+      const Vec before = hn::Load(d, least + i), apart = cylinders(pair_.cylinders[side]->nodes[index], i);
       // Where the cylinders overlap, the boxes say how deep.
       hn::Store(hn::IfThenElse(hn::Gt(apart, hn::Zero(d)), hn::Max(before, apart), before), d, least + i);
     }

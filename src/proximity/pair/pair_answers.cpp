@@ -62,7 +62,7 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 
 std::span<const Contact> PairAnswers::contacts() {
   if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
-  if (!contacts_) contacts_ = contact_finder_.find(bodies_, to_other_, contact_margin_, precision_);
+  if (!contacts_) contacts_ = contact_finder_.find(bodies_, meshes(), to_other_, contact_margin_, precision_);
   return *contacts_;
 }
 
@@ -75,7 +75,8 @@ bool PairAnswers::within(double distance) {
 }
 
 exact::MeshPair PairAnswers::meshes() const {
-  return {internals(bodies_[0]->body().sites()), internals(bodies_[1]->body().sites()), to_other_[1].map};
+  const shape::Body &o1 = bodies_[0]->body(), &o2 = bodies_[1]->body();
+  return {internals(o1.sites()), internals(o2.sites()), to_other_[1].map, {&o1.cylinders(), &o2.cylinders()}};
 }
 
 // Computes separation_ if it is at most `bound`, and returns whether it is.

@@ -40,6 +40,7 @@ Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
 Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
   if (atlas) surface_.emplace(mesh, *atlas);
   follow_positions();
+  cylinders_ = {internals(sites_).wide, internals(sites_).regions};
   contact_parts_ = shape::contact_parts(internals(sites_).tree);
 }
 
@@ -69,6 +70,7 @@ void Body::require_boundary() const {
 }
 
 void Body::follow_positions() {
+  cylinders_ = {};
   box_ = bounds(sites_.mesh());
   ball_ = ball_about(0.5 * (box_.lo + box_.hi), internals(sites_));
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();

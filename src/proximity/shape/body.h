@@ -14,6 +14,7 @@
 #include "inside/solid_boundary.h"
 #include "proximity/shape/contact_parts.h"
 #include "proximity/shape/node_ball.h"
+#include "sites/bounding_cylinders.h"
 
 namespace sdm::shape {
 
@@ -44,6 +45,9 @@ class Body {
   /// The boundary of the solid. Requires a call of require_boundary().
   [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
 
+  /// Around the nodes of the tree; none after a refit or an edit, for which they would take longer than a few
+  /// searches save.
+  [[nodiscard]] const sites::CylinderTree& cylinders() const { return cylinders_; }
   /// See contact_parts(), of the first shape or that after the last edit.
   [[nodiscard]] std::span<const ContactPart> contact_parts() const { return contact_parts_; }
 
@@ -55,6 +59,7 @@ class Body {
   Box box_;
   Ball ball_;
   std::optional<inside::InsideTest> inside_;
+  sites::CylinderTree cylinders_;
   std::vector<ContactPart> contact_parts_;
 
   /// A value that queries build when they need it.
