@@ -21,6 +21,7 @@ class NearFacesSearch {
   NearFacesSearch(const MeshPair& pair, double reach, NearFaces& near)
       : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), near_(near), exact_(reach == 0) {
     limit_ = maps_.round_up(reach + maps_.rounding());
+    reach_ = static_cast<float>(reach * pair.o1.frame.scale);
   }
 
   void run() {
@@ -30,11 +31,13 @@ class NearFacesSearch {
       near_.leaves[side].clear();
       marks.resize(sites_[side]->regions.leaves.size() - 1, 0);
       near_.opposite[side].resize(marks.size());
+      near_.whole[side].assign(sites_[side]->wide.nodes.size(), 0);
     }
     near_.stack.assign(1, {});
     while (!near_.stack.empty()) {
       const Entry entry = near_.stack.back();
       near_.stack.pop_back();
+      if (is_whole(0, entry.place[0]) && is_whole(1, entry.place[1])) continue;
       if (entry.leaves())
         compare_leaves(entry.place[0].leaf_number(), entry.place[1].leaf_number());
       else
@@ -47,6 +50,11 @@ class NearFacesSearch {
   void open(const Entry& entry) {
     const CentredBox box[2] = {CentredBox(sites_[0]->tree.box(entry.place[0].source)),
                                CentredBox(sites_[1]->tree.box(entry.place[1].source))};
+    if (all_near(box[0], box[1])) {
+      const uint32_t faces[2] = {first_face(0, entry.place[0]), first_face(1, entry.place[1])};
+      for (int side = 0; side < 2; ++side) mark_all(side, entry.place[side].child, faces[1 - side]);
+      return;
+    }
     const int larger = box[0].size() * maps_.unit[0] < box[1].size() * maps_.unit[1];
     const int side = entry.place[larger].leaf() ? 1 - larger : larger;
     if (side != larger && faces_beyond(larger, entry.place[larger].leaf_number(), box[side])) return;
@@ -61,6 +69,40 @@ class NearFacesSearch {
       child.place[side] = {node.child[i], node.source[i]};
       near_.stack.push_back(child);
     }
+  }
+
+  // Whether no two points of the boxes are farther apart than the reach, in the frame of O1.
+  bool all_near(const CentredBox& box1, const CentredBox& box2) const {
+    const FrameMap& map = maps_.to[0];
+    float squared = 0, half1 = 0, half2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      float between = map.offset[k] - box1.centre[k];
+      for (int j = 0; j < 3; ++j) between += map.row[k][j] * box2.centre[j];
+      squared += between * between;
+      half1 += box1.half[k] * box1.half[k], half2 += box2.half[k] * box2.half[k];
+    }
+    return std::sqrt(squared) + std::sqrt(half1) + map.stretch * std::sqrt(half2) + map.error < reach_;
+  }
+
+  // Whether all faces are known to be near.
+  bool is_whole(int side, const Place& place) const {
+    if (!place.leaf()) return near_.whole[side][place.child] != 0;
+    const uint32_t leaf = place.leaf_number();
+    return near_.of_leaf[side][leaf] == (1u << count_of(side, leaf)) - 1;
+  }
+  uint32_t first_face(int side, Place place) const {
+    while (!place.leaf()) place.child = sites_[side]->wide.nodes[place.child].child[0];
+    return sites_[side]->regions.leaves[place.leaf_number()];
+  }
+  void mark_all(int side, uint32_t child, uint32_t opposite) {
+    if (hierarchy::WideTree::is_leaf(child)) {
+      const uint32_t leaf = hierarchy::WideTree::leaf_number(child);
+      return mark(side, leaf, (1u << count_of(side, leaf)) - 1, opposite);
+    }
+    if (near_.whole[side][child] != 0) return;
+    near_.whole[side][child] = 1;
+    const hierarchy::WideTree::Node& node = sites_[side]->wide.nodes[child];
+    for (uint32_t i = 0; i < node.count; ++i) mark_all(side, node.child[i], opposite);
   }
 
   // Whether all faces of a leaf are too far from a box that is smaller than that of the leaf.
@@ -130,7 +172,8 @@ class NearFacesSearch {
   const UnitMaps maps_;
   NearFaces& near_;
   const bool exact_;
-  float limit_;
+  float limit_;  // pairs farther than this are not near
+  float reach_;  // in the unit frame of O1
   const Direction none_;
   LeafFaces faces_[2];
   uint32_t loaded_[2] = {kNone, kNone};  // the leaves they were loaded from
