@@ -59,7 +59,6 @@ std::size_t compare(const Mesh& a, const Mesh& b, const Transform& pose, double 
 TEST(NearFaces, AreThoseOfAllPairs) {
   const std::vector<Mesh> meshes{cube(0.5), placed(sphere(2), "scale:0.5"), placed(torus(16, 8), "fit"),
                                  joined(cube(0.3), moved(cube(0.25), {0.2, 0.1, 0.05}))};
-  const Mesh ball = placed(sphere(4), "scale:0.5"), ring = placed(torus(64, 32), "fit");
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   const auto pose = [&] {
@@ -73,10 +72,8 @@ TEST(NearFaces, AreThoseOfAllPairs) {
     const Transform placement = pose();
     for (const double reach : {0.0, 0.05, 0.5})
       intersecting += compare(meshes[trial % 4], meshes[trial / 4 % 4], placement, reach, near);
-    if (trial % 16 == 0)
-      for (const double reach : {0.0, 0.01}) intersecting += compare(ball, ring, placement, reach, near);
   }
-  EXPECT_GT(intersecting, 700u);
+  EXPECT_GT(intersecting, 500u);
 }
 
 }  // namespace

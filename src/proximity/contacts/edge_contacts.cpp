@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <tuple>
 
@@ -22,13 +21,8 @@ constexpr float kParallel = 0.051f;
 
 bool is_inside(const shape::Body& body, const Vec3& point) {
   if (!body.solid()) return false;
-  bool inside = false;
-  const auto take = [&](std::size_t, const sites::ClosestPacket& closest) {
-    inside = body.inside()({&point, 1}, closest) != 0;
-  };
-  cpu::cpu_search(internals(body.sites()), {&point, 1}, std::numeric_limits<double>::infinity(),
-                  std::ref(take));
-  return inside;
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  return body.inside()(point, cpu::cpu_closest(internals(body.sites()), point, kAnywhere));
 }
 
 // Where a convex function that is at most `limit` at `in` first exceeds it on the way to `out`, to 1e-8;
