@@ -64,9 +64,7 @@ UnitMaps::UnitMaps(const MeshPair& pair) {
   const double scale_of_frame1 = std::min(1.0, 1 / stretch1);
   scale_ = scale_of_frame1 * frame1.scale;
   unit[0] = static_cast<float>(kBelow * scale_of_frame1);
-  unit[1] = std::isfinite(to[1].error)
-                ? static_cast<float>(kBelow * scale_of_frame1 / stretch2)
-                : 1;
+  unit[1] = std::isfinite(to[1].error) ? static_cast<float>(kBelow * scale_of_frame1 / stretch2) : 1;
 }
 
 float UnitMaps::round_up(double length) const {

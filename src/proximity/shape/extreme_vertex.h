@@ -14,8 +14,8 @@ struct ExtremeVertex {
 
 /// The corner x of a face with the largest u·x, |u| = 1, in the frame of the mesh; or `known` if none is
 /// farther. Cost: logarithmic where few vertices are nearly as far.
-[[nodiscard]] ExtremeVertex extreme_vertex(
-    const sites::SitesData& sites, const Vec3& u,
-    const ExtremeVertex& known = {.along = -std::numeric_limits<double>::infinity()});
+[[nodiscard]] ExtremeVertex extreme_vertex(const sites::SitesData& sites, const Vec3& u,
+                                           const ExtremeVertex& known = {
+                                               .along = -std::numeric_limits<double>::infinity()});
 
 }  // namespace sdm::shape
