@@ -1,7 +1,6 @@
 // The regions of a surface that may be in contact with another body.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -33,6 +33,7 @@ class LeafFaces {
  public:
   void load(const sites::SitesData& sites, std::uint32_t leaf) {
     const sites::Regions& regions = sites.regions;
+    placed_ = kNone;
     first_ = regions.leaves[leaf];
     count_ = regions.leaves[leaf + 1] - first_;
     for (uint32_t lane = 0; lane < kWidth; ++lane) {
@@ -40,6 +41,16 @@ class LeafFaces {
       for (int c = 0; c < 3; ++c)
         for (int k = 0; k < 3; ++k) corner_[c][k][lane] = regions.vertices[corners[c]].point[k];
     }
+  }
+
+  // Loads the faces and their normals, unless it did so for the same leaf last. `to_o1`: from the frame of
+  // O2, for its leaves; null for those of O1.
+  void place(const sites::SitesData& sites, std::uint32_t leaf, const FrameMap* to_o1) {
+    if (placed_ == leaf) return;
+    load(sites, leaf);
+    if (to_o1 != nullptr) move(*to_o1);
+    find_normals();
+    placed_ = leaf;
   }
 
   // Transforms the faces from O2's frame.
@@ -99,6 +110,7 @@ class LeafFaces {
   alignas(64) float corner_[3][3][kWidth];  // by corner and axis
   alignas(64) float normal_[3][kWidth];
   uint32_t first_ = 0, count_ = 0;
+  uint32_t placed_ = kNone;  // the leaf whose faces and normals these are, in O1's frame
 };
 
 // Lower bounds on the distances of the faces of `a`, from lane i on, to a face of `b`: from their boxes,

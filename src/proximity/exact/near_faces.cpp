@@ -113,11 +113,7 @@ class NearFacesSearch {
   }
 
   void load_faces(int side, uint32_t leaf) {
-    if (loaded_[side] == leaf) return;
-    loaded_[side] = leaf;
-    faces_[side].load(*sites_[side], leaf);
-    if (side == 1) faces_[side].move(maps_.to[0]);
-    faces_[side].find_normals();
+    faces_[side].place(*sites_[side], leaf, side == 1 ? &maps_.to[0] : nullptr);
   }
 
   void compare_leaves(uint32_t leaf1, uint32_t leaf2) {
@@ -176,7 +172,6 @@ class NearFacesSearch {
   float reach_;  // in the unit frame of O1
   const Direction none_;
   LeafFaces faces_[2];
-  uint32_t loaded_[2] = {kNone, kNone};  // the leaves they were loaded from
 };
 
 void FindNearFaces(const MeshPair& pair, double reach, NearFaces& near) {

@@ -243,7 +243,6 @@ class PairSearch {
     const float rest = side == 0 ? along + offset : along;
     const float most = limit_ / maps_.unit[0] - rest + 2 * maps_.to[0].error;
     LeafFaces& leaf = faces_[side];
-    loaded_[side] = kNone;  // no normals are needed
     for (size_t n = 0; n < cap.count; ++n) {
       leaf.load(*sites_[side], cap.place[n].leaf_number());
       if (side == 1) leaf.move(maps_.to[0]);
@@ -443,11 +442,7 @@ class PairSearch {
   }
 
   void load_faces(int side, uint32_t leaf) {
-    if (loaded_[side] == leaf) return;
-    loaded_[side] = leaf;
-    faces_[side].load(*sites_[side], leaf);
-    if (side == 1) faces_[side].move(maps_.to[0]);
-    faces_[side].find_normals();
+    faces_[side].place(*sites_[side], leaf, side == 1 ? &maps_.to[0] : nullptr);
   }
 
   void compare_leaves(const Entry& entry) {
@@ -591,7 +586,6 @@ class PairSearch {
   Cap caps_[2];
   CapFaces cap_faces_[2];
   LeafFaces faces_[2];
-  uint32_t loaded_[2] = {kNone, kNone};  // the leaves they were loaded from
   TrianglePairs pairs_;
 };
 
