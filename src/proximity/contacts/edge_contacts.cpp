@@ -1,7 +1,6 @@
 #include "proximity/contacts/edge_contacts.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -16,8 +15,6 @@ namespace {
 
 constexpr double kRounding = 1e-9;   // of distances, relative to the size of the other body
 constexpr double kSamePoint = 1e-6;  // of the length of the edge
-// The sine of the largest angle, and more, between an edge and a face that supports it.
-constexpr float kParallel = 0.051f;
 
 bool is_inside(const shape::Body& body, const Vec3& point) {
   if (!body.solid()) return false;
@@ -45,136 +42,90 @@ double last_within(const Function& f, double limit, double in, double out) {
   return in;
 }
 
-// Whether both ends of the edge are farther than this from the plane of a face, on one side of it.
-bool beyond_plane(const EdgeContacts::Edge& edge, const sites::SitesData& sites, std::uint32_t face,
-                  double distance) {
-  if (sites.sliver[face] != 0) return false;  // its normal is rounding noise
-  const Vec3 &normal = sites.normals.face[face],
-             &corner = sites.mesh.positions[sites.mesh.triangles[face][0]];
-  const double a = dot(normal, edge.a - corner), b = dot(normal, edge.b - corner);
-  return std::min(a, b) > distance || std::max(a, b) < -distance;
+Corners corners_of(const sites::SitesData& sites, std::uint32_t face) {
+  const auto& [i, j, k] = sites.mesh.triangles[face];
+  return {sites.mesh.positions[i], sites.mesh.positions[j], sites.mesh.positions[k]};
 }
 
-// Part of the edge in the unit frame of the other body, in single precision.
-struct UnitEdge {
-  float start[3], along[3], inverse[3];
+// The points of an edge whose distances from the plane of a face are at most `limit`.
+struct Slab {
+  double height = 0, rise = 0;  // above the plane, at the start and along the edge
+  double from = 0, to = 1;
 
-  UnitEdge(const EdgeContacts::Edge& edge, double from, double to, const UnitFrame& frame) {
-    const Vec3 a = frame.to_unit(edge.a + from * (edge.b - edge.a)),
-               b = frame.to_unit(edge.a + to * (edge.b - edge.a));
-    for (int k = 0; k < 3; ++k) {
-      constexpr float kLeast = 1e-12f;  // parallel to the sides of boxes
-      start[k] = static_cast<float>(a[k]), along[k] = static_cast<float>(b[k] - a[k]);
-      inverse[k] = 1 / (std::abs(along[k]) < kLeast ? kLeast : along[k]);
+  Slab(const EdgeContacts::Edge& edge, const Corners& face, const Vec3& normal, double limit)
+      : height(dot(normal, edge.a - face[0])), rise(dot(normal, edge.b - edge.a)) {
+    if (rise != 0) {
+      const double up = (limit - height) / rise, down = (-limit - height) / rise;
+      from = std::max(0.0, std::min(up, down)), to = std::min(1.0, std::max(up, down));
+    } else if (std::abs(height) > limit) {
+      to = -1;
     }
   }
-
-  // The children whose boxes, enlarged by `reach`, it passes.
-  [[nodiscard]] std::uint32_t passes(const hierarchy::WideTree::Node& node, float reach) const {
-    constexpr int kWidth = hierarchy::WideTree::kWidth;
-    float from[kWidth] = {}, to[kWidth];
-    std::ranges::fill(to, 1.0f);
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < kWidth; ++i) {
-        const float lo = (node.lo[k][i] - reach - start[k]) * inverse[k],
-                    hi = (node.hi[k][i] + reach - start[k]) * inverse[k];
-        from[i] = std::max(from[i], std::min(lo, hi));
-        to[i] = std::min(to[i], std::max(lo, hi));
-      }
-    std::uint32_t children = 0;
-    for (int i = 0; i < kWidth; ++i) children |= std::uint32_t{from[i] <= to[i]} << i;
-    return children & ((1u << node.count) - 1);
-  }
+  [[nodiscard]] bool empty() const { return to < from; }
+  // Where it is closest to the plane.
+  [[nodiscard]] double closest() const { return rise == 0 ? from : std::clamp(-height / rise, from, to); }
+  [[nodiscard]] double distance() const { return std::abs(height + closest() * rise); }
 };
 
-// Calls visit(leaf) for the numbers of the leaves whose boxes the edge passes, enlarged by `reach`.
-template <class Visit>
-void for_leaves_near(const UnitEdge& edge, const sites::SitesData& sites, double reach, const Visit& visit) {
-  constexpr double kUnitRounding = 1e-6;
-  const auto distance = static_cast<float>(sites.frame.scale * reach + kUnitRounding);
-  thread_local std::vector<std::uint32_t> stack;
-  stack.assign(1, 0);
-  while (!stack.empty()) {
-    const hierarchy::WideTree::Node& node = sites.wide.nodes[stack.back()];
-    stack.pop_back();
-    for (std::uint32_t open = edge.passes(node, distance); open != 0; open &= open - 1) {
-      const std::uint32_t child = node.child[std::countr_zero(open)];
-      if (hierarchy::WideTree::is_leaf(child))
-        visit(hierarchy::WideTree::leaf_number(child));
-      else
-        stack.push_back(child);
-    }
+// Whether all points of the slab are straight above or below the face, so that their distances from its plane
+// are those from the face.
+bool is_above(const EdgeContacts::Edge& edge, const Corners& face, const Vec3& normal, const Slab& slab) {
+  const Vec3 along = edge.b - edge.a;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &start = face[k], &third = face[(k + 2) % 3];
+    Vec3 wall = cross(normal, face[(k + 1) % 3] - start);
+    if (dot(wall, third - start) < 0) wall = -wall;  // the face may be oriented inwards
+    const double at_a = dot(wall, edge.a - start), rise = dot(wall, along);
+    if (!(at_a + slab.from * rise > 0 && at_a + slab.to * rise > 0)) return false;
   }
-}
-
-// Faces that may support an edge: nearly parallel to it, and above or below it.
-class ParallelFaces {
- public:
-  explicit ParallelFaces(const UnitEdge& edge) {
-    const Vec3 direction = normalized({edge.along[0], edge.along[1], edge.along[2]});
-    for (int k = 0; k < 3; ++k) start_[k] = edge.start[k], along_[k] = static_cast<float>(direction[k]);
-  }
-
-  // A bit for each face of a leaf.
-  [[nodiscard]] std::uint32_t of_leaf(const sites::FaceBounds& bounds) const {
-    std::uint8_t open[sites::FaceBounds::kWidth];
-    for (int i = 0; i < sites::FaceBounds::kWidth; ++i) {
-      const float n[3] = {bounds.normal[0][i], bounds.normal[1][i], bounds.normal[2][i]};
-      const float sine = along_[0] * n[0] + along_[1] * n[1] + along_[2] * n[2];
-      // The direction across the edge and in the plane of the face, and how far the face is from the edge
-      // there.
-      const float across[3] = {along_[1] * n[2] - along_[2] * n[1], along_[2] * n[0] - along_[0] * n[2],
-                               along_[0] * n[1] - along_[1] * n[0]};
-      float beside = 0;
-      for (int k = 0; k < 3; ++k) beside += across[k] * (bounds.centre[k][i] - start_[k]);
-      open[i] = static_cast<std::uint8_t>((std::abs(sine) < kParallel) &
-                                          (std::abs(beside) < bounds.radius[i] + kSlack));
-    }
-    std::uint32_t faces = 0;
-    for (int i = 0; i < sites::FaceBounds::kWidth; ++i) faces |= std::uint32_t{open[i]} << i;
-    return faces;
-  }
-
- private:
-  static constexpr float kSlack = 1e-6f;  // rounding
-  float start_[3], along_[3];
-};
-
-// Calls visit(face) for the faces of a leaf.
-template <class Visit>
-void for_faces(const sites::SitesData& sites, std::uint32_t leaf, const Visit& visit) {
-  for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i)
-    visit(sites.regions.owners[i].face);
+  return true;
 }
 
 }  // namespace
 
+// What is within `limit` of a face, around the point closest to it.
+EdgeContacts::Part EdgeContacts::within(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
+                                        double limit, double closest) {
+  if (sites.sliver[face] == 0) {
+    const Corners corners = corners_of(sites, face);
+    const Vec3& normal = sites.normals.face[face];
+    const Slab slab(edge, corners, normal, limit);
+    if (!slab.empty() && is_above(edge, corners, normal, slab)) return {slab.from, slab.to};
+  }
+  const auto distance_at = [&](double t) {
+    return sites::closest_on_face(sites, face, edge.a + t * (edge.b - edge.a)).distance;
+  };
+  return {last_within(distance_at, limit, closest, 0), last_within(distance_at, limit, closest, 1)};
+}
+
+void EdgeContacts::add_interval(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
+                                double limit) {
+  const Corners corners = corners_of(sites, face), segment{edge.a, edge.b, edge.b};
+  if (sites.sliver[face] == 0) {  // otherwise, its normal is rounding noise
+    const Vec3& normal = sites.normals.face[face];
+    const Slab slab(edge, corners, normal, limit);
+    if (slab.empty()) return;
+    if (is_above(edge, corners, normal, slab)) {
+      intervals_.push_back({slab.from, slab.to, slab.distance(), slab.closest(), face});
+      return;
+    }
+  }
+  if (squared_box_distance(segment, corners) > limit * limit) return;
+  const PointPair closest = closest_or_common(segment, corners);
+  const double distance = std::sqrt(closest.squared);
+  if (distance > limit) return;
+  const Vec3 along = edge.b - edge.a;
+  const double t = std::clamp(dot(closest.point1 - edge.a, along) / squared_norm(along), 0.0, 1.0);
+  const Part part = within(edge, sites, face, limit, t);
+  intervals_.push_back({part.from, part.to, distance, t, face});
+}
+
 void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, double margin) {
   const sites::SitesData& sites = internals(other.sites());
-  const Vec3 along = edge.b - edge.a;
-  const double rounding = kRounding / sites.frame.scale, limit = margin + rounding;
+  const double limit = margin + kRounding / sites.frame.scale;
   intervals_.clear();
-  const auto add = [&](std::uint32_t face) {
-    const auto& [i, j, k] = sites.mesh.triangles[face];
-    const Corners corners{sites.mesh.positions[i], sites.mesh.positions[j], sites.mesh.positions[k]};
-    const Corners segment{edge.a, edge.b, edge.b};
-    if (beyond_plane(edge, sites, face, limit + rounding)) return;
-    if (squared_box_distance(segment, corners) > limit * limit) return;
-    const PointPair closest = closest_or_common(segment, corners);
-    const double distance = std::sqrt(closest.squared);
-    if (distance > limit) return;
-    const auto distance_at = [&](double t) {
-      return sites::closest_on_face(sites, face, edge.a + t * along).distance;
-    };
-    const double t = std::clamp(dot(closest.point1 - edge.a, along) / squared_norm(along), 0.0, 1.0);
-    intervals_.push_back({.from = last_within(distance_at, limit, t, 0),
-                          .to = last_within(distance_at, limit, t, 1),
-                          .distance = distance,
-                          .closest = t,
-                          .face = face});
-  };
-  for_leaves_near(UnitEdge(edge, 0, 1, sites.frame), sites, limit,
-                  [&](std::uint32_t leaf) { for_faces(sites, leaf, add); });
+  for (const std::uint32_t face : faces_.find(sites, {edge.a, edge.b}, limit))
+    add_interval(edge, sites, face, limit);
   std::ranges::sort(intervals_, {}, &Interval::from);
 }
 
@@ -185,15 +136,10 @@ void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, dou
   // Only the parts in contact, which are between these, may be supported.
   double from = 1, to = 0;
   for (const Interval& i : intervals_) from = std::min(from, i.from), to = std::max(to, i.to);
-  const UnitEdge in_contact(edge, from, to, sites.frame);
-  const ParallelFaces parallel(UnitEdge(edge, 0, 1, sites.frame));
-  for_leaves_near(in_contact, sites, std::max(margin, reach), [&](std::uint32_t leaf) {
-    const std::uint32_t first = sites.regions.leaves[leaf];
-    std::uint32_t faces = parallel.of_leaf(sites.regions.bounds[leaf]);
-    faces &= (1u << (sites.regions.leaves[leaf + 1] - first)) - 1;
-    for (; faces != 0; faces &= faces - 1)
-      add_support(edge, other, sites.regions.owners[first + std::countr_zero(faces)].face, margin, reach);
-  });
+  const Vec3 along = edge.b - edge.a;
+  const FacesNearEdge::Segment in_contact{edge.a + from * along, edge.a + to * along};
+  for (const std::uint32_t face : faces_.find_supporting(sites, in_contact, edge.sides, margin, reach))
+    add_support(edge, other, face, margin, reach);
   std::ranges::sort(supported_, {}, [](const SupportedPart& p) { return std::tuple(p.from, p.to, p.face); });
   // Faces that continue each other support one part.
   for (const SupportedPart& part : supported_)
@@ -259,11 +205,10 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
       double from = 1, to = 0;
       for (auto i = first; i != next; ++i) {
         if (!(i->distance <= least + rounding)) continue;
-        const auto distance_at = [&](double t) {
-          return sites::closest_on_face(sites, i->face, edge.a + t * along).distance;
-        };
-        from = std::min(from, last_within(distance_at, i->distance + rounding, i->closest, 0));
-        to = std::max(to, last_within(distance_at, i->distance + rounding, i->closest, 1));
+        const double limit = i->distance + rounding;
+        const Part part = limit >= margin + rounding ? Part{i->from, i->to}
+                                                     : within(edge, sites, i->face, limit, i->closest);
+        from = std::min(from, part.from), to = std::max(to, part.to);
       }
       found_.push_back({.t = 0.5 * (from + to)});
     }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "proximity/contacts/faces_near_edge.h"
 #include "proximity/contacts/support.h"
 #include "proximity/shape/body.h"
 
@@ -52,12 +53,16 @@ class EdgeContacts {
   struct Part {
     double from, to;
   };
+  [[nodiscard]] static Part within(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
+                                   double limit, double closest);
+  void add_interval(const Edge& edge, const sites::SitesData& sites, std::uint32_t face, double limit);
   void find_intervals(const Edge& edge, const shape::Body& other, double margin);
   void find_supports(const Edge& edge, const shape::Body& other, double margin, double reach);
   void add_support(const Edge& edge, const shape::Body& other, std::uint32_t face, double margin,
                    double reach);
   void add_end(const Edge& edge, const sites::SitesData& sites, double t);
 
+  FacesNearEdge faces_;
   std::vector<Interval> intervals_;
   std::vector<SupportedPart> supported_;
   std::vector<Part> parts_;  ///< of supported_, joined where faces continue each other

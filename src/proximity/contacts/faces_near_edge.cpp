@@ -1,0 +1,240 @@
+#include "proximity/contacts/faces_near_edge.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "proximity/contacts/faces_near_edge.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each set of instructions.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::contacts::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr size_t kWidth = hierarchy::WideTree::kWidth;
+static_assert(kWidth == sites::FaceBounds::kWidth);
+using Lanes = hn::CappedTag<float, kWidth>;
+using Vec = hn::Vec<Lanes>;
+using UnitSegment = FacesNearEdge::UnitSegment;
+using Supporting = FacesNearEdge::Supporting;
+
+constexpr float kSlack = 2e-6f;  // of coordinates in the unit frame, and of cosines: rounding
+
+HWY_INLINE void load(const float (&rows)[3][kWidth], size_t i, Vec (&v)[3]) {
+  for (int k = 0; k < 3; ++k) v[k] = hn::Load(Lanes(), rows[k] + i);
+}
+HWY_INLINE Vec dot(const Vec (&a)[3], const Vec (&b)[3]) {
+  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
+}
+HWY_INLINE void splat(const std::array<float, 3>& a, Vec (&v)[3]) {
+  for (int k = 0; k < 3; ++k) v[k] = hn::Set(Lanes(), a[k]);
+}
+HWY_INLINE uint32_t bits(hn::Mask<Lanes> mask, size_t i) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Lanes(), mask, bytes);
+  return uint32_t{bytes[0]} << i;
+}
+
+// Boxes that a segment passes, enlarged by `reach`.
+class Boxes {
+ public:
+  Boxes(const UnitSegment& segment, float reach) {
+    const Lanes d;
+    reach_ = hn::Set(d, reach + kSlack);
+    for (int k = 0; k < 3; ++k) {
+      constexpr float kLeast = 1e-12f;  // parallel to the sides of boxes
+      const float along = segment.end[k] - segment.start[k];
+      start_[k] = hn::Set(d, segment.start[k]);
+      inverse_[k] = hn::Set(d, 1 / (std::abs(along) < kLeast ? kLeast : along));
+    }
+  }
+  HWY_INLINE uint32_t passed(const hierarchy::WideTree::Node& node) const {
+    const Lanes d;
+    uint32_t children = 0;
+    for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+      Vec from = hn::Zero(d), to = hn::Set(d, 1.0f);
+      for (int k = 0; k < 3; ++k) {
+        const Vec lo = hn::Mul(
+            hn::Sub(hn::Sub(hn::Load(d, node.lo[k] + i), reach_), start_[k]), inverse_[k]);
+        const Vec hi = hn::Mul(
+            hn::Sub(hn::Add(hn::Load(d, node.hi[k] + i), reach_), start_[k]), inverse_[k]);
+        from = hn::Max(from, hn::Min(lo, hi)), to = hn::Min(to, hn::Max(lo, hi));
+      }
+      children |= bits(hn::Le(from, to), i);
+    }
+    return children & ((1u << node.count) - 1);
+  }
+
+ private:
+  Vec reach_, start_[3], inverse_[3];
+};
+
+// The start of a segment above the planes of discs, the sines of the angles between them, and the middles of
+// the discs as seen from the start.
+struct Discs {
+  Vec normal[3], to_centre[3], radius, height, sine, along;
+
+  HWY_INLINE Discs(const sites::FaceBounds& bounds, size_t i, const UnitSegment& segment) {
+    const Lanes d;
+    Vec start[3], direction[3];
+    load(bounds.normal, i, normal), load(bounds.centre, i, to_centre);
+    splat(segment.start, start), splat(segment.direction, direction);
+    for (int k = 0; k < 3; ++k) to_centre[k] = hn::Sub(to_centre[k], start[k]);
+    radius = hn::Add(hn::Load(d, bounds.radius + i), hn::Set(d, kSlack));
+    height = hn::Neg(dot(normal, to_centre));
+    sine = dot(normal, direction);
+    along = dot(to_centre, direction);
+  }
+};
+
+// Faces whose discs are within `reach` of a segment.
+class NearFaces {
+ public:
+  NearFaces(const UnitSegment& segment, float reach) : segment_(segment), reach_(reach + kSlack) {}
+  // Both the plane and the ball of the disc are.
+  HWY_INLINE uint32_t operator()(const sites::FaceBounds& bounds, size_t i) const {
+    const Lanes d;
+    const Discs discs(bounds, i, segment_);
+    const Vec length = hn::Set(d, segment_.length), reach = hn::Set(d, reach_);
+    const Vec end = hn::MulAdd(length, discs.sine, discs.height);
+    const auto by_plane = hn::And(hn::Le(hn::Min(discs.height, end), reach),
+                                  hn::Ge(hn::Max(discs.height, end), hn::Neg(reach)));
+    const Vec aside = hn::NegMulAdd(discs.along, discs.along, dot(discs.to_centre, discs.to_centre));
+    const Vec beyond = hn::Sub(hn::Min(hn::Max(discs.along, hn::Zero(d)), length), discs.along);
+    const Vec radius = hn::Add(discs.radius, reach);
+    return bits(hn::And(by_plane, hn::Le(hn::MulAdd(beyond, beyond, aside), hn::Mul(radius, radius))), i);
+  }
+
+ private:
+  const UnitSegment& segment_;
+  float reach_;
+};
+
+// Faces that may support a segment.
+class SupportingFaces {
+ public:
+  SupportingFaces(const UnitSegment& segment, const Supporting& supporting)
+      : segment_(segment), supporting_(supporting) {}
+  HWY_INLINE uint32_t operator()(const sites::FaceBounds& bounds, size_t i) const {
+    const Lanes d;
+    const Vec parallel = hn::Set(d, kSupportSine);
+    const Discs discs(bounds, i, segment_);
+    auto open = hn::Lt(hn::Abs(discs.sine), parallel);
+    for (const std::array<float, 3>& direction : supporting_.sides) {
+      Vec side[3];
+      splat(direction, side);
+      open = hn::And(open, hn::Gt(dot(discs.normal, side), hn::Neg(parallel)));
+    }
+    // Most faces are excluded by their normals.
+    if (hn::AllFalse(d, open)) return 0;
+
+    const Vec length = hn::Set(d, segment_.length);
+    open = hn::And(open, hn::And(hn::Gt(discs.along, hn::Neg(discs.radius)),
+                                 hn::Lt(discs.along, hn::Add(length, discs.radius))));
+    // The height of the point of the segment that is closest to the middle of the disc, and how much it varies
+    // within the radius of there.
+    const Vec height = hn::MulAdd(discs.along, discs.sine, discs.height);
+    const Vec rise = hn::MulAdd(parallel, discs.radius, hn::Set(d, kSlack));
+    open = hn::And(open, hn::And(hn::Lt(height, hn::Add(rise, hn::Set(d, supporting_.margin))),
+                                 hn::Gt(hn::Add(height, rise), hn::Set(d, -supporting_.reach))));
+    // How far the line is from the middle of the disc, across it in the plane of the disc.
+    Vec direction[3], across[3];
+    splat(segment_.direction, direction);
+    for (int k = 0; k < 3; ++k) {
+      const int m = (k + 1) % 3, n = (k + 2) % 3;
+      across[k] = hn::MulSub(direction[m], discs.normal[n], hn::Mul(direction[n], discs.normal[m]));
+    }
+    return bits(hn::And(open, hn::Lt(hn::Abs(dot(across, discs.to_centre)), discs.radius)), i);
+  }
+
+ private:
+  const UnitSegment& segment_;
+  const Supporting& supporting_;
+};
+
+template <class Faces>
+void Collect(const sites::SitesData& sites, const Boxes& boxes, const Faces& faces,
+             std::vector<uint32_t>& stack, std::vector<uint32_t>& found) {
+  const sites::Regions& regions = sites.regions;
+  found.clear();
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const hierarchy::WideTree::Node& node = sites.wide.nodes[stack.back()];
+    stack.pop_back();
+    for (uint32_t open = boxes.passed(node); open != 0; open &= open - 1) {
+      const uint32_t child = node.child[std::countr_zero(open)];
+      if (!hierarchy::WideTree::is_leaf(child)) {
+        stack.push_back(child);
+        continue;
+      }
+      const uint32_t leaf = hierarchy::WideTree::leaf_number(child), first = regions.leaves[leaf];
+      uint32_t near = regions.thin[leaf];  // their normals are unreliable
+      for (size_t i = 0; i < kWidth; i += hn::Lanes(Lanes())) near |= faces(regions.bounds[leaf], i);
+      near &= (1u << (regions.leaves[leaf + 1] - first)) - 1;
+      for (; near != 0; near &= near - 1) found.push_back(regions.owners[first + std::countr_zero(near)].face);
+    }
+  }
+}
+
+void CollectNear(const sites::SitesData& sites, const UnitSegment& segment, float reach,
+                 std::vector<uint32_t>& stack, std::vector<uint32_t>& found) {
+  Collect(sites, Boxes(segment, reach), NearFaces(segment, reach), stack, found);
+}
+
+void CollectSupporting(const sites::SitesData& sites, const UnitSegment& segment,
+                       const Supporting& supporting, std::vector<uint32_t>& stack,
+                       std::vector<uint32_t>& found) {
+  Collect(sites, Boxes(segment, std::max(supporting.margin, supporting.reach)),
+          SupportingFaces(segment, supporting), stack, found);
+}
+
+}  // namespace sdm::contacts::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sdm::contacts {
+namespace {
+
+HWY_EXPORT(CollectNear);
+HWY_EXPORT(CollectSupporting);
+
+std::array<float, 3> to_float(const Vec3& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+FacesNearEdge::UnitSegment to_unit(const FacesNearEdge::Segment& segment, const UnitFrame& frame) {
+  const Vec3 along = segment.b - segment.a;
+  return {.start = to_float(frame.to_unit(segment.a)),
+          .end = to_float(frame.to_unit(segment.b)),
+          .direction = to_float(normalized(along)),
+          .length = static_cast<float>(frame.scale * norm(along))};
+}
+
+}  // namespace
+
+std::span<const std::uint32_t> FacesNearEdge::find(const sites::SitesData& sites, const Segment& segment,
+                                                   double reach) {
+  HWY_DYNAMIC_DISPATCH(CollectNear)
+  (sites, to_unit(segment, sites.frame), static_cast<float>(sites.frame.scale * reach), stack_, faces_);
+  return faces_;
+}
+
+std::span<const std::uint32_t> FacesNearEdge::find_supporting(const sites::SitesData& sites,
+                                                              const Segment& segment,
+                                                              std::span<const Vec3> sides, double margin,
+                                                              double reach) {
+  Supporting supporting{.margin = static_cast<float>(sites.frame.scale * margin),
+                        .reach = static_cast<float>(sites.frame.scale * reach)};
+  // An edge of more faces has further sides, which could only exclude more.
+  const std::size_t count = std::min(sides.size(), supporting.sides.size());
+  for (std::size_t i = 0; i < count; ++i) supporting.sides[i] = to_float(normalized(sides[i]));
+  HWY_DYNAMIC_DISPATCH(CollectSupporting)
+  (sites, to_unit(segment, sites.frame), supporting, stack_, faces_);
+  return faces_;
+}
+
+}  // namespace sdm::contacts
+#endif

@@ -1,0 +1,54 @@
+// The faces of a mesh that are near an edge of another one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/vec.h"
+#include "sites/sites_data.h"
+
+namespace sdm::contacts {
+
+/// The sine of the largest angle, and a little more, between an edge and a face that supports it, and between a
+/// support's plane and what is beside the edge.
+inline constexpr float kSupportSine = 0.051f;
+
+/// Finds them in single precision, so that some of those returned are farther away. Reuses its memory; what is
+/// returned is valid until the next call.
+class FacesNearEdge {
+ public:
+  /// Part of an edge, in the frame of the sites.
+  struct Segment {
+    Vec3 a{}, b{};
+  };
+  /// The faces within `reach` of the segment. Cost: of the leaves whose boxes are.
+  [[nodiscard]] std::span<const std::uint32_t> find(const sites::SitesData& sites, const Segment& segment,
+                                                    double reach);
+
+  /// The faces that have part of the segment above them within `margin` or below them within `reach`, are nearly
+  /// parallel to it and do not face `sides`, directions from the edge along the faces beside it. Cost: of the
+  /// leaves within both.
+  [[nodiscard]] std::span<const std::uint32_t> find_supporting(const sites::SitesData& sites,
+                                                               const Segment& segment,
+                                                               std::span<const Vec3> sides, double margin,
+                                                               double reach);
+
+  /// The part of the segment in the unit frame, in single precision.
+  struct UnitSegment {
+    std::array<float, 3> start{}, end{};
+    std::array<float, 3> direction{};
+    float length = 0;
+  };
+  /// What find_supporting() requires, in the unit frame.
+  struct Supporting {
+    std::array<std::array<float, 3>, 2> sides{};  ///< of length 1, or 0
+    float margin = 0, reach = 0;
+  };
+
+ private:
+  std::vector<std::uint32_t> stack_, faces_;
+};
+
+}  // namespace sdm::contacts
