@@ -20,13 +20,13 @@
 int main(int argc, char** argv) try {
   using namespace sdm;
   CLI::App app(
-      "Computes separation, collision and contacts of O1 and O2 in random poses of O2, with one thread. "
-      "Writes "
-      "arrays without headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), "
-      "poses "
-      "(3 × 4, row by row), separation (float64), colliding (uint8), contacts (their number, uint32), and "
-      "the "
-      "microseconds of each: separation_us, colliding_us and contacts_us.");
+      "Computes separation, collision and contacts of O1 and O2 in random poses of O2. Writes arrays without "
+      "headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), poses (3 × 4, row "
+      "by "
+      "row), separation (float64), colliding (uint8), contacts (their number, uint32), and the microseconds "
+      "of "
+      "each on one core, separation_us, colliding_us and contacts_us, and of contacts on all cores, "
+      "contacts_all_us.");
   std::string o1, o2;
   std::filesystem::path out;
   std::uint32_t parts = 1, count = 200;
@@ -37,7 +37,6 @@ int main(int argc, char** argv) try {
   app.add_option("OUT", out)->required();
   CLI11_PARSE(app, argc, argv);
 
-  const ThreadLimit alone(1);
   const Mesh m1 = bench::refine_mesh(bench::load(o1, "fit"), parts, 0),
              m2 = bench::refine_mesh(bench::load(o2, "fit"), parts, 0);
   std::mt19937 random(1);
@@ -45,7 +44,7 @@ int main(int argc, char** argv) try {
   ProximityQuery query(m1, m2);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<double> poses, separation(count), separation_us(count, kInfinity),
-      colliding_us(count, kInfinity), contacts_us(count, kInfinity);
+      colliding_us(count, kInfinity), contacts_us(count, kInfinity), contacts_all_us(count, kInfinity);
   std::vector<std::uint8_t> colliding(count);
   std::vector<std::uint32_t> contacts(count);
   for (const Affine& pose : placements)
@@ -63,11 +62,15 @@ int main(int argc, char** argv) try {
       best[i] = std::min(best[i], 1000 * watch.lap());
     }
   };
+  const auto find_contacts = [&](std::size_t i) {
+    contacts[i] = static_cast<std::uint32_t>(query.contacts().size());
+  };
   for (int turn = 0; turn < kTurns; ++turn) {
+    time(contacts_all_us, find_contacts);
+    const ThreadLimit alone(1);
     time(separation_us, [&](std::size_t i) { separation[i] = query.separation().value; });
     time(colliding_us, [&](std::size_t i) { colliding[i] = query.colliding().value; });
-    time(contacts_us,
-         [&](std::size_t i) { contacts[i] = static_cast<std::uint32_t>(query.contacts().size()); });
+    time(contacts_us, find_contacts);
   }
   bench::write_array<Vec3>(out / "vertices1", m1.positions);
   bench::write_array<Vec3>(out / "vertices2", m2.positions);
@@ -80,6 +83,7 @@ int main(int argc, char** argv) try {
   bench::write_array<double>(out / "colliding_us", colliding_us);
   bench::write_array<std::uint32_t>(out / "contacts", contacts);
   bench::write_array<double>(out / "contacts_us", contacts_us);
+  bench::write_array<double>(out / "contacts_all_us", contacts_all_us);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "pose_samples: %s\n", error.what());
   return 1;

@@ -31,10 +31,10 @@ std::vector<bool> found(const exact::NearFaces& near, const sites::SitesData& si
 // Compares the near faces with those of all pairs. Returns the number of faces that intersect the other
 // surface.
 std::size_t compare(const Mesh& a, const Mesh& b, const Transform& pose, double reach,
-                    exact::NearFaces& near) {
+                    exact::NearFacesWorkspace& workspace, exact::NearFaces& near) {
   const Sites o1(a), o2(b);
   const exact::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
-  exact::find_near_faces(pair, reach, near);
+  exact::find_near_faces(pair, reach, workspace, near);
   const std::array marks{found(near, internals(o1), 0), found(near, internals(o2), 1)};
   std::array expected{std::vector<bool>(a.triangles.size()), std::vector<bool>(b.triangles.size())};
   for (std::uint32_t i = 0; i < a.triangles.size(); ++i)
@@ -65,13 +65,14 @@ TEST(NearFaces, AreThoseOfAllPairs) {
     return Transform::translation({0.4 * normal(random), 0.4 * normal(random), 0.4 * normal(random)}) *
            Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
   };
-  exact::NearFaces near;  // its memory is reused
+  exact::NearFacesWorkspace workspace;  // its memory is reused
+  exact::NearFaces near;
   std::size_t intersecting = 0;
   for (std::size_t trial = 0; trial < 48; ++trial) {
     SCOPED_TRACE(trial);
     const Transform placement = pose();
     for (const double reach : {0.0, 0.05, 0.5})
-      intersecting += compare(meshes[trial % 4], meshes[trial / 4 % 4], placement, reach, near);
+      intersecting += compare(meshes[trial % 4], meshes[trial / 4 % 4], placement, reach, workspace, near);
   }
   EXPECT_GT(intersecting, 500u);
 }

@@ -1,339 +1,36 @@
 #include "proximity/contacts/contact_finder.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "core/geometry/barycentric.h"
-#include "core/geometry/vec.h"
-#include "sites/sites_data.h"
+#include "core/parallel.h"
 
 namespace sdm::contacts {
 namespace {
 
-using sites::SitesData;
-
-// Edges with an end in contact have contacts between their ends only if they are longer than this part of the
-// smaller body: of shorter ones, the end is near enough.
-constexpr double kShortEdge = 1.0 / 16;
-// How deep a face may be below the vertices and edges that it supports, relative to the smaller body.
-constexpr double kSupportReach = 1.0 / 8;
-// A corner at most this far, relative to the smaller body, from a face that cannot push it is flush with it.
-constexpr double kFlush = 1.0 / 16;
-// The sine of the angle by which all edges at a corner fall off behind its normal; 0.58 in a cube.
-constexpr double kCorner = 0.25;
-constexpr double kDirection = 1e-9;  // relative to the smaller body: the shortest vector with a direction
-// The sine of the angle between faces below which their edge is flat: its points are in contact no sooner
-// than those of the faces.
-constexpr double kFlat = 1e-4;
-
-// What a contact is of, in the upper bits of its number.
-constexpr std::uint64_t kPart = std::uint64_t{1} << 60, kEdge = std::uint64_t{2} << 60;
-constexpr int kBodyBit = 63, kOnEdgeBit = 32;  // of the number of a contact on an edge
-
-// Whether the edge may be closer to another body than both faces beside it: if it is an edge of the boundary,
-// or convex.
-bool is_sharp(const SitesData& sites, std::uint32_t edge) {
-  const std::span<const std::uint32_t> faces = sites.topology.edge_faces(edge);
-  if (faces.size() != 2) return true;
-  const auto [a, b] = sites.topology.edges[edge];
-  const Vec3& start = sites.mesh.positions[a];
-  const Vec3& normal = sites.normals.face[faces[0]];
-  for (const std::uint32_t corner : sites.mesh.triangles[faces[1]]) {
-    if (corner == a || corner == b) continue;
-    const Vec3 side = sites.mesh.positions[corner] - start;
-    const double height = dot(normal, side), flat = kFlat * norm(side);
-    return sites.is_solid() ? height < -flat : std::abs(height) > flat;
-  }
-  return true;
-}
-
-Vec3 weights_in(const Mesh& mesh, std::uint32_t face, const Vec3& p) {
-  const auto& [a, b, c] = mesh.triangles[face];
-  return barycentric(mesh.positions[a], mesh.positions[b], mesh.positions[c], p);
-}
+// With fewer leaves with near faces, of both bodies, handing half of the work to another core takes as long
+// as it saves.
+constexpr std::size_t kFewLeaves = 64;
 
 }  // namespace
 
 std::span<const Contact> ContactFinder::find(const Bodies& bodies, const exact::MeshPair& meshes,
                                              const std::array<mesh::Similarity, 2>& to_other, double margin,
                                              double length) {
-  bodies_ = bodies, to_other_ = to_other, length_ = length;
-  contacts_.clear(), boxes_.clear(), bridges_.clear();
-  exact::find_near_faces(meshes, margin / bodies[0]->pose().scale, near_);
-  for (body_ = 0; body_ < 2; ++body_) {
-    limit_ = margin / bodies[1 - body_]->pose().scale;
-    size_ = std::min(diagonal(other().box()), to_other_[body_].scale * diagonal(on().box()));
-    features_.clear();
-    std::ranges::sort(near_.leaves[body_]);
-    regions_.find(on(), other(), to_other_[body_], limit_, near_, body_);
-    join_vertices();
-    find_vertices();
-    find_edges();
-    add_contacts();
-  }
-  boxes_.insert(boxes_.end(), bridges_.begin(), bridges_.end());
-  return patches_.sort(contacts_, boxes_);
-}
-
-// Across the faces that are not near the other body.
-void ContactFinder::join_vertices() {
-  const sites::Regions& sites = internals(on().sites()).regions;
-  vertices_.start(on(), other(), to_other_[body_], limit_);
-  for (const ContactRegion& region : regions_.regions()) {
-    if (region.kind == ContactRegion::Kind::deep) continue;
-    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
-      const std::uint32_t near = near_.of_leaf[body_][leaf], first = sites.leaves[leaf];
-      for (std::uint32_t i = first; i < sites.leaves[leaf + 1]; ++i)
-        vertices_.add_face(sites.places.corners[i], (near >> (i - first) & 1) != 0);
-    }
-  }
-}
-
-void ContactFinder::find_vertices() {
-  const Regions regions = regions_.regions();
-  for (std::size_t first = 0; first < regions.size();) {
-    if (regions[first].kind == ContactRegion::Kind::coarse) {
-      find_each(regions[first++]);
-      continue;
-    }
-    std::size_t last = first + 1;
-    while (last < regions.size() && regions[last].node == regions[first].node) ++last;
-    find_deepest(regions.subspan(first, last - first));
-    first = last;
-  }
-}
-
-// Of a part, or of a region that is deep inside, the deepest vertex.
-void ContactFinder::find_deepest(Regions part) {
-  const sites::SitesData& sites = internals(on().sites());
-  const bool deep = part[0].kind == ContactRegion::Kind::deep;
-  deepest_.start(on(), other(), to_other_[body_]);
-  for (const ContactRegion& region : part) {
-    if (region.near_face != kNone) deepest_.bound_by(region.near_face);
-    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
-      const auto owned = [&](std::uint32_t i) {
-        return sites.regions.owners[sites.regions.leaves[i]].vertices;
-      };
-      for (std::uint32_t vertex = owned(leaf); vertex < owned(leaf + 1); ++vertex) {
-        if (!deep && vertices_.is_joined(vertex) && !vertices_.in_contact(vertex)) continue;
-        if (const SurfacePoint* point = deep ? nullptr : vertices_.measured(vertex))
-          deepest_.add(vertex, *point);
-        else
-          deepest_.add(vertex);
-      }
-    }
-  }
-  const DeepestVertex::Found found = deepest_.find(limit_);
-  const Box box = box_of(part);
-  if (found.vertex != kNone)
-    features_.push_back({.key = kPart | part[0].node,
-                         .site = sites.regions.vertices[found.vertex].vertex,
-                         .point = found.point,
-                         .faces = box});
-  else if (box.lo[0] <= box.hi[0])
-    bridges_.push_back(image(bodies_[body_]->pose().map, box));
-}
-
-// A box of the faces that may be in contact.
-Box ContactFinder::box_of(Regions part) {
-  const sites::SitesData& sites = internals(on().sites());
-  constexpr float kRounding = 1e-6f;
-  hierarchy::FloatBox unit = sites.tree.box(part[0].node);
-  if (part[0].kind != ContactRegion::Kind::deep) {
-    unit.lo.fill(std::numeric_limits<float>::infinity()),
-        unit.hi.fill(-std::numeric_limits<float>::infinity());
-    for (const ContactRegion& region : part)
-      for (std::uint32_t i = sites.regions.leaves[region.first_leaf];
-           i < sites.regions.leaves[region.last_leaf]; ++i) {
-        const auto free = [&](std::uint32_t vertex) {
-          return vertices_.known_side(vertex) == OneSidedVertices::Side::free;
-        };
-        const Triangle& corners = sites.regions.places.corners[i];
-        if (std::ranges::all_of(corners, free)) continue;
-        for (const std::uint32_t corner : corners)
-          for (int k = 0; k < 3; ++k) {
-            const float x = sites.regions.vertices[corner].point[k];
-            unit.lo[k] = std::min(unit.lo[k], x - kRounding),
-            unit.hi[k] = std::max(unit.hi[k], x + kRounding);
-          }
-      }
-    if (unit.lo[0] > unit.hi[0]) return {};
-  }
-  Box box;
-  for (const auto& corner : {unit.lo, unit.hi})
-    extend(box, sites.frame.origin + (1 / sites.frame.scale) * Vec3{corner[0], corner[1], corner[2]});
-  return box;
-}
-
-// Each vertex in contact.
-void ContactFinder::find_each(const ContactRegion& region) {
-  const sites::SitesData& sites = internals(on().sites());
-  for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
-    const auto owned = [&](std::uint32_t i) {
-      return sites.regions.owners[sites.regions.leaves[i]].vertices;
-    };
-    for (std::uint32_t vertex = owned(leaf); vertex < owned(leaf + 1); ++vertex) {
-      if (!vertices_.in_contact(vertex)) continue;
-      Feature feature{.site = sites.regions.vertices[vertex].vertex};
-      feature.key = feature.site;
-      const SurfacePoint* point = vertices_.measured(vertex);
-      feature.point =
-          point ? *point : measure(other(), vertices_.at(vertex), std::numeric_limits<double>::infinity());
-      if (!(feature.point.distance <= limit_)) continue;  // by rounding
-      find_support(feature);
-      extend_by_star(feature.faces, feature.site);
-      features_.push_back(feature);
-    }
-  }
-}
-
-void ContactFinder::extend_by_star(Box& box, std::uint32_t vertex) const {
-  const SitesData& sites = internals(on().sites());
-  for (const std::uint32_t face : sites.vertex_faces.of(vertex))
-    for (const std::uint32_t corner : sites.mesh.triangles[face]) extend(box, sites.mesh.positions[corner]);
-}
-
-// A corner that is flush with a face that cannot push it is carried by another one.
-void ContactFinder::find_support(Feature& feature) {
-  const SitesData& sites = internals(on().sites());
-  const SurfacePoint& closest = feature.point;
-  const double distance = norm(closest.vector);
-  if (distance > std::max(limit_, kFlush * size_) || !at_boundary(other(), closest)) return;
-  // The direction of a vector within the rounding of points is that of the face.
-  const Vec3 outwards = distance > kDirection * size_
-                            ? (closest.distance < 0 ? 1 / distance : -1 / distance) * closest.vector
-                            : internals(other().sites()).normals.face[closest.face];
-  spokes_.clear();
-  for (const std::uint32_t face : sites.vertex_faces.of(feature.site))
-    for (const std::uint32_t corner : sites.mesh.triangles[face])
-      if (corner != feature.site)
-        spokes_.push_back(
-            to_other_[body_].map.linear(sites.mesh.positions[corner] - sites.mesh.positions[feature.site]));
-  if (can_push(outwards, spokes_)) return;
-  // A vertex in a smooth surface has no other direction in which nothing else of the body is in contact
-  // sooner.
-  const Vec3 own = normalized(to_other_[body_].map.linear(sites.normals.vertex[feature.site]));
-  for (const Vec3& spoke : spokes_)
-    if (dot(own, spoke) > -kCorner * norm(spoke)) return;
-  feature.support =
-      support_of_vertex(other(), closest.at, spokes_, limit_, std::max(limit_, kSupportReach * size_));
-}
-
-// Only faces near the other body have edges that pass through it, and only long edges have contacts if an end
-// has.
-void ContactFinder::find_edges() {
-  const SitesData& sites = internals(on().sites());
-  const double shortest = kShortEdge * size_;
-  // In the unit frame of the body, half as long: a disc that contains the face has at least this radius.
-  constexpr double kRounding = 1e-3;
-  const auto least_radius =
-      static_cast<float>((0.5 - kRounding) * shortest * sites.frame.scale / to_other_[body_].scale);
-  for (const ContactRegion& region : regions_.regions()) {
-    if (region.kind == ContactRegion::Kind::deep) continue;
-    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
-      const std::uint32_t near = near_.of_leaf[body_][leaf], first = sites.regions.leaves[leaf];
-      const bool may_be_long = *std::ranges::max_element(sites.regions.bounds[leaf].radius) >= least_radius;
-      if (near == 0 && !may_be_long) continue;
-      for (std::uint32_t i = first; i < sites.regions.leaves[leaf + 1]; ++i) {
-        const bool is_near = (near >> (i - first) & 1) != 0;
-        if (!is_near && !may_be_long) continue;
-        const std::uint32_t face = sites.regions.owners[i].face;
-        for (const std::uint32_t edge : sites.topology.face_edges[face]) {
-          if (edge == kNone || sites.topology.edge_faces(edge)[0] != face) continue;
-          const auto [a, b] = sites.topology.edges[edge];
-          const double length =
-              to_other_[body_].scale * norm(sites.mesh.positions[b] - sites.mesh.positions[a]);
-          if (!(length > 0) || (length <= shortest && !is_near) || !is_sharp(sites, edge)) continue;
-          const Triangle &corners = sites.mesh.triangles[face], &places = sites.regions.places.corners[i];
-          bool touches[2] = {};
-          for (int k = 0; k < 3; ++k) {
-            if (corners[k] == a) touches[0] = vertices_.in_contact(places[k]);
-            if (corners[k] == b) touches[1] = vertices_.in_contact(places[k]);
-          }
-          if (touches[0] || touches[1] ? length <= shortest : !is_near) continue;
-          find_on_edge(edge, touches[0], touches[1], length > shortest ? kSupportReach * size_ : 0);
-        }
-      }
-    }
-  }
-}
-
-void ContactFinder::find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach) {
-  const SitesData& sites = internals(on().sites());
-  const auto [a, b] = sites.topology.edges[edge];
-  const Vec3 start = to_other_[body_].map(sites.mesh.positions[a]),
-             end = to_other_[body_].map(sites.mesh.positions[b]);
-  spokes_.clear();
-  Box faces;
-  for (const std::uint32_t beside : sites.topology.edge_faces(edge))
-    for (const std::uint32_t corner : sites.mesh.triangles[beside]) {
-      extend(faces, sites.mesh.positions[corner]);
-      if (corner != a && corner != b)
-        spokes_.push_back(
-            to_other_[body_].map.linear(sites.mesh.positions[corner] - sites.mesh.positions[a]));
-    }
-  std::uint64_t number = 0;
-  for (const auto& [t, support] :
-       edge_contacts_.find({start, end, a_touches, b_touches, spokes_}, other(), limit_, reach)) {
-    Feature feature{.key = kEdge | number++ << kOnEdgeBit | edge,
-                    .site = edge,
-                    .edge = true,
-                    .point = {.at = start + t * (end - start)},
-                    .support = support,
-                    .faces = faces};
-    if (support.face == kNone)
-      feature.point = measure(other(), feature.point.at, std::numeric_limits<double>::infinity());
-    features_.push_back(feature);
-  }
-}
-
-void ContactFinder::add_contacts() {
-  for (const Feature& feature : features_) add_contact(feature);
-}
-
-void ContactFinder::add_contact(const Feature& feature) {
-  const SitesData &sites = internals(on().sites()), &sites_of_other = internals(other().sites());
-  const mesh::Similarity& pose = bodies_[1 - body_]->pose();
-  SurfacePoint closest = feature.point;
-  const Vec3& p = closest.at;
-  bool is_boundary = true;
-  if (const Support& support = feature.support; support.face != kNone)
-    closest.distance = support.height,
-    closest.vector = -support.height * sites_of_other.normals.face[support.face], closest.face = support.face;
+  exact::find_near_faces(meshes, margin / bodies[0]->pose().scale, near_workspace_, near_);
+  for (std::vector<std::uint32_t>& leaves : near_.leaves) std::ranges::sort(leaves);
+  const auto find_on = [&](int side) { of_[side].find(bodies, to_other, side, margin, length, near_); };
+  if (near_.leaves[0].size() + near_.leaves[1].size() <= kFewLeaves)
+    find_on(0), find_on(1);
   else
-    is_boundary = at_boundary(other(), closest);
-  const bool inside = closest.distance < 0;
-  const Vec3 face_normal = sites_of_other.normals.face[closest.face];
-  if (!is_boundary) {
-    other().require_boundary();
-    const auto boundary = other().boundary().closest(p);
-    if (boundary.point) closest.vector = *boundary.point - p, closest.face = boundary.face;
+    parallel_invoke([&] { find_on(0); }, [&] { find_on(1); });
+
+  contacts_.clear(), boxes_.clear();
+  for (const FeatureContacts& of : of_) {
+    contacts_.insert(contacts_.end(), of.contacts().begin(), of.contacts().end());
+    boxes_.insert(boxes_.end(), of.boxes().begin(), of.boxes().end());
   }
-  const double depth = pose.scale * (inside ? norm(closest.vector) : -closest.distance);
-  const Vec3 vector = pose.map.linear(closest.vector), point = pose.map(p);
-  const Vec3 outwards =
-      std::abs(depth) > length_ ? (1 / depth) * vector : (1 / pose.scale) * pose.map.linear(face_normal);
-  const std::uint32_t face =
-      feature.edge ? sites.topology.edge_faces(feature.site)[0] : sites.vertex_faces.of(feature.site)[0];
-  Contact contact{
-      .point1 = point,
-      .point2 = point + vector,
-      .normal = body_ == 0 ? outwards : -outwards,
-      .depth = depth,
-      .faces = {face, closest.face},
-      .barycentric = {weights_in(sites.mesh, face, to_other_[1 - body_].map(p)),
-                      weights_in(sites_of_other.mesh, closest.face, p + closest.vector)},
-      .id = std::uint64_t(body_) << kBodyBit | feature.key,
-  };
-  if (body_ == 1) {
-    std::swap(contact.point1, contact.point2);
-    std::swap(contact.faces[0], contact.faces[1]);
-    std::swap(contact.barycentric[0], contact.barycentric[1]);
-  }
-  contacts_.push_back(contact);
-  boxes_.push_back(image(bodies_[body_]->pose().map, feature.faces));
-  if (!inside) extend(boxes_.back(), point + vector);  // across the gap
+  for (const FeatureContacts& of : of_) boxes_.insert(boxes_.end(), of.bridges().begin(), of.bridges().end());
+  return patches_.sort(contacts_, boxes_);
 }
 
 }  // namespace sdm::contacts

@@ -67,18 +67,28 @@ struct Slab {
   [[nodiscard]] double distance() const { return std::abs(height + closest() * rise); }
 };
 
-// Whether all points of the slab are straight above or below the face, so that their distances from its plane
-// are those from the face.
-bool is_above(const EdgeContacts::Edge& edge, const Corners& face, const Vec3& normal, const Slab& slab) {
+// Where the slab is, beside the prism above and below the face.
+enum class BesidePrism : std::uint8_t {
+  inside,  // as a whole: distances from the plane are those from the face
+  across,
+  beyond  // as a whole, and farther away than `limit`
+};
+
+BesidePrism beside_prism(const EdgeContacts::Edge& edge, const Corners& face, const Vec3& normal,
+                         const Slab& slab, double limit) {
   const Vec3 along = edge.b - edge.a;
+  BesidePrism result = BesidePrism::inside;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 &start = face[k], &third = face[(k + 2) % 3];
     Vec3 wall = cross(normal, face[(k + 1) % 3] - start);
     if (dot(wall, third - start) < 0) wall = -wall;  // the face may be oriented inwards
     const double at_a = dot(wall, edge.a - start), rise = dot(wall, along);
-    if (!(at_a + slab.from * rise > 0 && at_a + slab.to * rise > 0)) return false;
+    const double from = at_a + slab.from * rise, to = at_a + slab.to * rise;
+    if (from > 0 && to > 0) continue;
+    if (std::max(from, to) < -limit * norm(wall)) return BesidePrism::beyond;
+    result = BesidePrism::across;
   }
-  return true;
+  return result;
 }
 
 }  // namespace
@@ -90,7 +100,8 @@ EdgeContacts::Part EdgeContacts::within(const Edge& edge, const sites::SitesData
     const Corners corners = corners_of(sites, face);
     const Vec3& normal = sites.normals.face[face];
     const Slab slab(edge, corners, normal, limit);
-    if (!slab.empty() && is_above(edge, corners, normal, slab)) return {slab.from, slab.to};
+    if (!slab.empty() && beside_prism(edge, corners, normal, slab, limit) == BesidePrism::inside)
+      return {slab.from, slab.to};
   }
   const auto distance_at = [&](double t) {
     return sites::closest_on_face(sites, face, edge.a + t * (edge.b - edge.a)).distance;
@@ -105,7 +116,9 @@ void EdgeContacts::add_interval(const Edge& edge, const sites::SitesData& sites,
     const Vec3& normal = sites.normals.face[face];
     const Slab slab(edge, corners, normal, limit);
     if (slab.empty()) return;
-    if (is_above(edge, corners, normal, slab)) {
+    const BesidePrism at = beside_prism(edge, corners, normal, slab, limit);
+    if (at == BesidePrism::beyond) return;
+    if (at == BesidePrism::inside) {
       intervals_.push_back({slab.from, slab.to, slab.distance(), slab.closest(), face});
       return;
     }

@@ -38,10 +38,10 @@ HWY_INLINE uint32_t bits(hn::Mask<Lanes> mask, size_t i) {
   return uint32_t{bytes[0]} << i;
 }
 
-// Boxes that a segment passes, enlarged by `reach`.
+// Boxes that a segment passes, enlarged by `reach`, and that are partly in all half-spaces added.
 class Boxes {
  public:
-  Boxes(const UnitSegment& segment, float reach) {
+  Boxes(const UnitSegment& segment, float reach) : segment_(segment) {
     const Lanes d;
     reach_ = hn::Set(d, reach + kSlack);
     for (int k = 0; k < 3; ++k) {
@@ -51,25 +51,56 @@ class Boxes {
       inverse_[k] = hn::Set(d, 1 / (std::abs(along) < kLeast ? kLeast : along));
     }
   }
+  // A point of a face is above or below a point p of the segment, at p + h n, −margin ≤ h ≤ reach, and the
+  // normal n of the face has a cosine of at least −s with `side`, and −s to s with the direction a of the
+  // segment, s = kSupportSine. So it is in the half-space (x − p)·w ≥ −max(reach (1 + |side·a|) s, margin),
+  // for w = side − (side·a) a, which is the same for all p.
+  void add_half_space(const std::array<float, 3>& side, const Supporting& supporting) {
+    const Lanes d;
+    float cosine = 0, rest = 0, w[3];
+    for (int k = 0; k < 3; ++k) cosine += side[k] * segment_.direction[k];
+    for (int k = 0; k < 3; ++k)
+      w[k] = side[k] - cosine * segment_.direction[k], rest -= w[k] * segment_.start[k];
+    const float behind =
+        std::max(supporting.reach * (1 + std::abs(cosine)) * kSupportSine, supporting.margin) + 2 * kSlack;
+    HalfSpace& added = half_spaces_[count_++];
+    for (int k = 0; k < 3; ++k) added.w[k] = hn::Set(d, w[k]);
+    added.rest = hn::Set(d, rest + behind);
+  }
+
   HWY_INLINE uint32_t passed(const hierarchy::WideTree::Node& node) const {
     const Lanes d;
     uint32_t children = 0;
     for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
       Vec from = hn::Zero(d), to = hn::Set(d, 1.0f);
       for (int k = 0; k < 3; ++k) {
-        const Vec lo = hn::Mul(
-            hn::Sub(hn::Sub(hn::Load(d, node.lo[k] + i), reach_), start_[k]), inverse_[k]);
-        const Vec hi = hn::Mul(
-            hn::Sub(hn::Add(hn::Load(d, node.hi[k] + i), reach_), start_[k]), inverse_[k]);
+        const Vec lo = hn::Mul(hn::Sub(hn::Sub(hn::Load(d, node.lo[k] + i), reach_), start_[k]), inverse_[k]);
+        const Vec hi = hn::Mul(hn::Sub(hn::Add(hn::Load(d, node.hi[k] + i), reach_), start_[k]), inverse_[k]);
         from = hn::Max(from, hn::Min(lo, hi)), to = hn::Min(to, hn::Max(lo, hi));
       }
-      children |= bits(hn::Le(from, to), i);
+      auto open = hn::Le(from, to);
+      for (int h = 0; h < count_; ++h) {
+        Vec most = half_spaces_[h].rest;
+        for (int k = 0; k < 3; ++k)
+          most = hn::Add(most, hn::Max(hn::Mul(half_spaces_[h].w[k], hn::Load(d, node.lo[k] + i)),
+                                       hn::Mul(half_spaces_[h].w[k], hn::Load(d, node.hi[k] + i))));
+        open = hn::And(open, hn::Ge(most, hn::Zero(d)));
+      }
+      children |= bits(open, i);
     }
     return children & ((1u << node.count) - 1);
   }
 
  private:
+  // x·w + rest ≥ 0
+  struct HalfSpace {
+    Vec w[3], rest;
+  };
+
+  const UnitSegment& segment_;
   Vec reach_, start_[3], inverse_[3];
+  HalfSpace half_spaces_[2];
+  int count_ = 0;
 };
 
 // The start of a segment above the planes of discs, the sines of the angles between them, and the middles of
@@ -134,8 +165,8 @@ class SupportingFaces {
     const Vec length = hn::Set(d, segment_.length);
     open = hn::And(open, hn::And(hn::Gt(discs.along, hn::Neg(discs.radius)),
                                  hn::Lt(discs.along, hn::Add(length, discs.radius))));
-    // The height of the point of the segment that is closest to the middle of the disc, and how much it varies
-    // within the radius of there.
+    // The height of the point of the segment that is closest to the middle of the disc, and how much it
+    // varies within the radius of there.
     const Vec height = hn::MulAdd(discs.along, discs.sine, discs.height);
     const Vec rise = hn::MulAdd(parallel, discs.radius, hn::Set(d, kSlack));
     open = hn::And(open, hn::And(hn::Lt(height, hn::Add(rise, hn::Set(d, supporting_.margin))),
@@ -174,7 +205,8 @@ void Collect(const sites::SitesData& sites, const Boxes& boxes, const Faces& fac
       uint32_t near = regions.thin[leaf];  // their normals are unreliable
       for (size_t i = 0; i < kWidth; i += hn::Lanes(Lanes())) near |= faces(regions.bounds[leaf], i);
       near &= (1u << (regions.leaves[leaf + 1] - first)) - 1;
-      for (; near != 0; near &= near - 1) found.push_back(regions.owners[first + std::countr_zero(near)].face);
+      for (; near != 0; near &= near - 1)
+        found.push_back(regions.owners[first + std::countr_zero(near)].face);
     }
   }
 }
@@ -187,8 +219,9 @@ void CollectNear(const sites::SitesData& sites, const UnitSegment& segment, floa
 void CollectSupporting(const sites::SitesData& sites, const UnitSegment& segment,
                        const Supporting& supporting, std::vector<uint32_t>& stack,
                        std::vector<uint32_t>& found) {
-  Collect(sites, Boxes(segment, std::max(supporting.margin, supporting.reach)),
-          SupportingFaces(segment, supporting), stack, found);
+  Boxes boxes(segment, std::max(supporting.margin, supporting.reach));
+  for (const std::array<float, 3>& side : supporting.sides) boxes.add_half_space(side, supporting);
+  Collect(sites, boxes, SupportingFaces(segment, supporting), stack, found);
 }
 
 }  // namespace sdm::contacts::HWY_NAMESPACE

@@ -11,12 +11,12 @@
 
 namespace sdm::contacts {
 
-/// The sine of the largest angle, and a little more, between an edge and a face that supports it, and between a
-/// support's plane and what is beside the edge.
+/// The sine of the largest angle, and a little more, between an edge and a face that supports it, and between
+/// a support's plane and what is beside the edge.
 inline constexpr float kSupportSine = 0.051f;
 
-/// Finds them in single precision, so that some of those returned are farther away. Reuses its memory; what is
-/// returned is valid until the next call.
+/// Finds them in single precision, so that some of those returned are farther away. Reuses its memory; what
+/// is returned is valid until the next call.
 class FacesNearEdge {
  public:
   /// Part of an edge, in the frame of the sites.
@@ -27,9 +27,9 @@ class FacesNearEdge {
   [[nodiscard]] std::span<const std::uint32_t> find(const sites::SitesData& sites, const Segment& segment,
                                                     double reach);
 
-  /// The faces that have part of the segment above them within `margin` or below them within `reach`, are nearly
-  /// parallel to it and do not face `sides`, directions from the edge along the faces beside it. Cost: of the
-  /// leaves within both.
+  /// The faces that have part of the segment above them within `margin` or below them within `reach`, are
+  /// nearly parallel to it and do not face `sides`, directions from the edge along the faces beside it. Cost:
+  /// of the leaves within both.
   [[nodiscard]] std::span<const std::uint32_t> find_supporting(const sites::SitesData& sites,
                                                                const Segment& segment,
                                                                std::span<const Vec3> sides, double margin,

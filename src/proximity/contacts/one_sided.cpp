@@ -26,6 +26,8 @@ void OneSidedVertices::add_face(const Triangle& corners, bool near) {
     v.alone = v.alone && near;
   }
   if (near) return;
+  const auto parent = [&](int k) { return vertices_[corners[k]].parent; };
+  if (parent(0) == parent(1) && parent(1) == parent(2)) return;  // most are joined already
   std::uint32_t root = find(corners[0]);
   for (const int k : {1, 2}) {
     const std::uint32_t other = find(corners[k]);

@@ -6,8 +6,11 @@
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
+#include <utility>
 
+#include "core/parallel.h"
 #include "proximity/exact/face_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,36 +19,46 @@ namespace sdm::exact::HWY_NAMESPACE {
 using Entry = PairWorkspace::Entry;
 using Place = PairWorkspace::Place;
 
+// Finds what pairs of nodes contain.
 class NearFacesSearch {
  public:
-  NearFacesSearch(const MeshPair& pair, double reach, NearFaces& near)
-      : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), near_(near), exact_(reach == 0) {
+  using Half = NearFacesWorkspace::Half;
+
+  NearFacesSearch(const MeshPair& pair, double reach, Half& half, NearFaces& near)
+      : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), half_(half), near_(near), exact_(reach == 0) {
     limit_ = maps_.round_up(reach + maps_.rounding());
     reach_ = static_cast<float>(reach * pair.o1.frame.scale);
-  }
-
-  void run() {
     for (int side = 0; side < 2; ++side) {
       std::vector<uint8_t>& marks = near_.of_leaf[side];
       for (const uint32_t leaf : near_.leaves[side]) marks[leaf] = 0;
       near_.leaves[side].clear();
       marks.resize(sites_[side]->regions.leaves.size() - 1, 0);
       near_.opposite[side].resize(marks.size());
-      near_.whole[side].assign(sites_[side]->wide.nodes.size(), 0);
+      half_.whole[side].assign(sites_[side]->wide.nodes.size(), 0);
     }
-    near_.stack.assign(1, {});
-    while (!near_.stack.empty()) {
-      const Entry entry = near_.stack.back();
-      near_.stack.pop_back();
-      if (is_whole(0, entry.place[0]) && is_whole(1, entry.place[1])) continue;
-      if (entry.leaves())
-        compare_leaves(entry.place[0].leaf_number(), entry.place[1].leaf_number());
-      else
-        open(entry);
+  }
+
+  // Replaces the first `count` of the open pairs by those below them.
+  void open_first(size_t count) {
+    for (size_t i = 0; i < count; ++i) visit(Entry(half_.open[i]));
+    half_.open.erase(half_.open.begin(), half_.open.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  void open_all() {
+    while (!half_.open.empty()) {
+      const Entry entry = half_.open.back();
+      half_.open.pop_back();
+      visit(entry);
     }
   }
 
  private:
+  HWY_INLINE void visit(const Entry& entry) {
+    if (is_whole(0, entry.place[0]) && is_whole(1, entry.place[1])) return;
+    if (entry.leaves())
+      compare_leaves(entry.place[0].leaf_number(), entry.place[1].leaf_number());
+    else
+      open(entry);
+  }
   // Pairs the children of the larger node with the other node.
   void open(const Entry& entry) {
     const CentredBox box[2] = {CentredBox(sites_[0]->tree.box(entry.place[0].source)),
@@ -67,7 +80,7 @@ class NearFacesSearch {
       if (least[i] > limit_) continue;
       Entry child = entry;
       child.place[side] = {node.child[i], node.source[i]};
-      near_.stack.push_back(child);
+      half_.open.push_back(child);
     }
   }
 
@@ -86,7 +99,7 @@ class NearFacesSearch {
 
   // Whether all faces are known to be near.
   bool is_whole(int side, const Place& place) const {
-    if (!place.leaf()) return near_.whole[side][place.child] != 0;
+    if (!place.leaf()) return half_.whole[side][place.child] != 0;
     const uint32_t leaf = place.leaf_number();
     return near_.of_leaf[side][leaf] == (1u << count_of(side, leaf)) - 1;
   }
@@ -99,8 +112,8 @@ class NearFacesSearch {
       const uint32_t leaf = hierarchy::WideTree::leaf_number(child);
       return mark(side, leaf, (1u << count_of(side, leaf)) - 1, opposite);
     }
-    if (near_.whole[side][child] != 0) return;
-    near_.whole[side][child] = 1;
+    if (half_.whole[side][child] != 0) return;
+    half_.whole[side][child] = 1;
     const hierarchy::WideTree::Node& node = sites_[side]->wide.nodes[child];
     for (uint32_t i = 0; i < node.count; ++i) mark_all(side, node.child[i], opposite);
   }
@@ -122,6 +135,8 @@ class NearFacesSearch {
     const uint32_t all1 = (1u << count1) - 1, all2 = (1u << count2) - 1;
     if (known1 == all1 && known2 == all2) return;
     load_faces(0, leaf1), load_faces(1, leaf2);
+    // The first pair that is near: of a leaf without known faces, it is the same whatever is known of others.
+    uint32_t first1 = kNone, first2 = kNone;
     const Lanes d;
     for (uint32_t j = 0; j < count2; ++j) {
       // The faces of leaf1 whose pairs with this one may change something.
@@ -134,13 +149,13 @@ class NearFacesSearch {
         if ((open >> i & 1) == 0 || maps_.unit[0] * (least[i] - maps_.to[0].error) > limit_) continue;
         if ((known1 >> i & 1) != 0 && (known2 >> j & 1) != 0) continue;
         if (exact_ && !intersect(faces_[0].first() + i, faces_[1].first() + j)) continue;
+        if (first1 == kNone) first1 = faces_[0].first() + i, first2 = faces_[1].first() + j;
         known1 |= 1u << i, known2 |= 1u << j;
       }
     }
-    const uint32_t a = near_.of_leaf[0][leaf1], b = near_.of_leaf[1][leaf2];
-    if (known1 == a && known2 == b) return;
-    mark(0, leaf1, known1, faces_[1].first() + std::countr_zero(known2 & ~b ? known2 & ~b : known2));
-    mark(1, leaf2, known2, faces_[0].first() + std::countr_zero(known1 & ~a ? known1 & ~a : known1));
+    if (first1 == kNone) return;
+    mark(0, leaf1, known1, first2);
+    mark(1, leaf2, known2, first1);
   }
 
   uint32_t count_of(int side, uint32_t leaf) const {
@@ -166,6 +181,7 @@ class NearFacesSearch {
   const MeshPair& pair_;
   const sites::SitesData* sites_[2];
   const UnitMaps maps_;
+  Half& half_;
   NearFaces& near_;
   const bool exact_;
   float limit_;  // pairs farther than this are not near
@@ -174,8 +190,39 @@ class NearFacesSearch {
   LeafFaces faces_[2];
 };
 
-void FindNearFaces(const MeshPair& pair, double reach, NearFaces& near) {
-  NearFacesSearch(pair, reach, near).run();
+// Adds the faces that the second half has found.
+void Merge(const NearFaces& second, NearFaces& near) {
+  for (int side = 0; side < 2; ++side)
+    for (const uint32_t leaf : second.leaves[side]) {
+      if (near.of_leaf[side][leaf] == 0) {
+        near.leaves[side].push_back(leaf);
+        near.opposite[side][leaf] = second.opposite[side][leaf];
+      }
+      near.of_leaf[side][leaf] |= second.of_leaf[side][leaf];
+    }
+}
+
+void FindNearFaces(const MeshPair& pair, double reach, NearFacesWorkspace& workspace, NearFaces& near) {
+  constexpr size_t kEnough = 64;  // pairs that make halves about equal
+  std::vector<Entry>& all = workspace.halves[0].open;
+  NearFacesSearch first(pair, reach, workspace.halves[0], near);
+  all.assign(1, {});
+  // One core goes through the pairs in the same order as two, so that opposite faces are the same.
+  while (!all.empty() && all.size() < kEnough) first.open_first(1);
+  if (all.empty()) return;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  workspace.halves[1].open.assign(middle, all.end());
+  all.erase(middle, all.end());
+  if (thread_count() == 1) {
+    // What the first half has found shortens the second.
+    first.open_all();
+    all.swap(workspace.halves[1].open);
+    first.open_all();
+    return;
+  }
+  NearFacesSearch second(pair, reach, workspace.halves[1], workspace.second);
+  parallel_invoke([&] { first.open_all(); }, [&] { second.open_all(); });
+  Merge(workspace.second, near);
 }
 
 }  // namespace sdm::exact::HWY_NAMESPACE
@@ -186,8 +233,8 @@ namespace sdm::exact {
 
 HWY_EXPORT(FindNearFaces);
 
-void find_near_faces(const MeshPair& pair, double reach, NearFaces& near) {
-  HWY_DYNAMIC_DISPATCH(FindNearFaces)(pair, reach, near);
+void find_near_faces(const MeshPair& pair, double reach, NearFacesWorkspace& workspace, NearFaces& near) {
+  HWY_DYNAMIC_DISPATCH(FindNearFaces)(pair, reach, workspace, near);
 }
 
 }  // namespace sdm::exact
