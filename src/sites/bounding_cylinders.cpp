@@ -35,7 +35,7 @@ struct Faces {
     for (size_t lane = 0; lane < kLanes; ++lane) {
       const Triangle& corners = regions.places.corners[std::min(first + lane, last)];
       for (int c = 0; c < 3; ++c)
-        for (int k = 0; k < 3; ++k) corner[c][k][lane] = regions.vertices[corners[c]].point[k];
+        for (int k = 0; k < 3; ++k) corner[c][k][lane] = regions.points[corners[c]].point[k];
     }
   }
 };

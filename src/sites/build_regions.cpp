@@ -126,11 +126,12 @@ Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
           for (std::uint32_t f = 0; f < faces; ++f)
             for (std::uint32_t k = 0; k < 3; ++k) put(places.corners[f][k], 4 * f + k);
         });
-        regions.vertices.resize(vertices);
+        regions.vertices.resize(vertices), regions.points.resize(vertices);
         regions.bounds.resize(regions.leaves.size() - 1);
         regions.thin.resize(regions.bounds.size());
         places.neighbours.resize(vertices);
-        for (std::size_t v = 0; v < vertices; ++v) regions.vertices[v].vertex = sites.vertices()[v];
+        for (std::size_t v = 0; v < vertices; ++v)
+          regions.vertices[v].vertex = regions.points[v].vertex = sites.vertices()[v];
       });
   std::vector<Vec3> placed;
   place(regions, s.positions, placed);

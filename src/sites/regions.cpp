@@ -56,9 +56,9 @@ void look_around(Regions& regions, std::size_t leaf, std::span<const FaceShape> 
 }  // namespace
 
 void place(const Regions& regions, std::span<const Vec3> positions, std::vector<Vec3>& placed) {
-  placed.resize(regions.vertices.size());
+  placed.resize(regions.points.size());
   parallel_for(placed.size(), kVertices, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) placed[v] = positions[regions.vertices[v].vertex];
+    for (std::size_t v = begin; v < end; ++v) placed[v] = positions[regions.points[v].vertex];
   });
 }
 

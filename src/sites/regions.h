@@ -43,6 +43,12 @@ struct alignas(64) VertexRegion {
   std::uint32_t vertex;
 };
 
+/// A vertex without its region: the corners of a face are loaded together, and four share a cache line.
+struct alignas(16) UnitVertex {
+  float point[3];
+  std::uint32_t vertex;
+};
+
 /// Bounds for up to eight faces, tested together: x lies in the region of a face, or of an edge or vertex
 /// that the face owns, only if with r = x − centre and h = normal·r
 ///   |r − h normal| ≤ radius + slope |h|.
@@ -88,6 +94,7 @@ struct Regions {
   std::vector<FaceRegion> faces;      ///< of each owner
   std::vector<EdgeRegion> edges;
   std::vector<VertexRegion> vertices;
+  std::vector<UnitVertex> points;  ///< of vertices
 
   std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it form a closed sheet
   SitePlaces places;

@@ -137,7 +137,7 @@ class SinglePoint {
     for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) {
       const Triangle& corners = regions.places.corners[first + std::min(lane, count - 1)];
       for (int c = 0; c < 3; ++c)
-        for (int k = 0; k < 3; ++k) corner_[c][k][lane] = regions.vertices[corners[c]].point[k];
+        for (int k = 0; k < 3; ++k) corner_[c][k][lane] = regions.points[corners[c]].point[k];
     }
   }
 

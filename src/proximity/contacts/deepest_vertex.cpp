@@ -82,7 +82,7 @@ void DeepestVertex::start(const shape::Body& on, const shape::Body& other, const
 
 // From the coordinates in single precision, which follow each other in memory.
 void DeepestVertex::add(std::uint32_t vertex) {
-  const auto& [x, y, z] = internals(on_->sites()).regions.vertices[vertex].point;
+  const auto& [x, y, z] = internals(on_->sites()).regions.points[vertex].point;
   const Vec3 at = from_unit_(Vec3{x, y, z});
   vertices_.push_back(vertex);
   x_.push_back(at[0]), y_.push_back(at[1]), z_.push_back(at[2]);
@@ -135,7 +135,7 @@ DeepestVertex::Found DeepestVertex::find(double margin) {
     if (count == 0) break;
     const std::uint32_t vertex = vertices_[deepest];
     const sites::SitesData& own = internals(on_->sites());
-    const Vec3 at = to_other_->map(own.mesh.positions[own.regions.vertices[vertex].vertex]);
+    const Vec3 at = to_other_->map(own.mesh.positions[own.regions.points[vertex].vertex]);
     if (const double bound = exact_bound(at); bound > enough) {
       const SurfacePoint point = measure(*other_, at, bound);
       consider(vertex, point);

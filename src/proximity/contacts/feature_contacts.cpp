@@ -120,7 +120,7 @@ void FeatureContacts::find_deepest(Regions part) {
   const Box box = box_of(part);
   if (found.vertex != kNone)
     features_.push_back({.key = kPart | part[0].node,
-                         .site = sites.regions.vertices[found.vertex].vertex,
+                         .site = sites.regions.points[found.vertex].vertex,
                          .point = found.point,
                          .faces = box});
   else if (box.lo[0] <= box.hi[0])
@@ -145,7 +145,7 @@ Box FeatureContacts::box_of(Regions part) {
         if (std::ranges::all_of(corners, free)) continue;
         for (const std::uint32_t corner : corners)
           for (int k = 0; k < 3; ++k) {
-            const float x = sites.regions.vertices[corner].point[k];
+            const float x = sites.regions.points[corner].point[k];
             unit.lo[k] = std::min(unit.lo[k], x - kRounding),
             unit.hi[k] = std::max(unit.hi[k], x + kRounding);
           }
@@ -167,7 +167,7 @@ void FeatureContacts::find_each(const ContactRegion& region) {
     };
     for (std::uint32_t vertex = owned(leaf); vertex < owned(leaf + 1); ++vertex) {
       if (!vertices_.in_contact(vertex)) continue;
-      Feature feature{.site = sites.regions.vertices[vertex].vertex};
+      Feature feature{.site = sites.regions.points[vertex].vertex};
       feature.key = feature.site;
       const SurfacePoint* point = vertices_.measured(vertex);
       feature.point =

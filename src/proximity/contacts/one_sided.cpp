@@ -15,7 +15,7 @@ void OneSidedVertices::start(const shape::Body& on, const shape::Body& other,
   rounding_ = kRounding / internals(other.sites()).frame.scale;
   for (const std::uint32_t vertex : added_) vertices_[vertex] = {};
   added_.clear(), points_.clear();
-  const std::size_t count = internals(on.sites()).regions.vertices.size();
+  const std::size_t count = internals(on.sites()).regions.points.size();
   if (vertices_.size() < count) vertices_.resize(count);
 }
 
@@ -44,7 +44,7 @@ std::uint32_t OneSidedVertices::find(std::uint32_t vertex) {
 
 Vec3 OneSidedVertices::at(std::uint32_t vertex) const {
   const sites::SitesData& sites = internals(on_->sites());
-  return to_other_->map(sites.mesh.positions[sites.regions.vertices[vertex].vertex]);
+  return to_other_->map(sites.mesh.positions[sites.regions.points[vertex].vertex]);
 }
 
 const SurfacePoint* OneSidedVertices::measured(std::uint32_t vertex) const {

@@ -39,7 +39,7 @@ class LeafFaces {
     for (uint32_t lane = 0; lane < kWidth; ++lane) {
       const Triangle& corners = regions.places.corners[first_ + std::min(lane, count_ - 1)];
       for (int c = 0; c < 3; ++c)
-        for (int k = 0; k < 3; ++k) corner_[c][k][lane] = regions.vertices[corners[c]].point[k];
+        for (int k = 0; k < 3; ++k) corner_[c][k][lane] = regions.points[corners[c]].point[k];
     }
   }
 
