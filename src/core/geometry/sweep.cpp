@@ -32,29 +32,16 @@ int Sweep::sort(std::span<const Box> boxes) {
   order_.resize(boxes.size());
   std::iota(order_.begin(), order_.end(), 0u);
   std::ranges::sort(order_, {}, [&](std::uint32_t b) { return std::pair(boxes[b].lo[axis], b); });
+  sorted_.clear();
+  for (const std::uint32_t b : order_) sorted_.push_back(boxes[b]);
   return axis;
 }
 
 std::span<const Sweep::Pair> Sweep::near_pairs(std::span<const Box> boxes, double reach) {
   pairs_.clear();
-  if (boxes.empty()) return pairs_;
-  const int axis = sort(boxes);
-  // In this order, and compared in turn: most are too far apart along one of the other axes.
-  sorted_.clear();
-  for (const std::uint32_t b : order_) sorted_.push_back(boxes[b]);
-  const double surely_far = reach / (kRoundedDown * kRoundedDown);
-  for (std::size_t i = 0; i < sorted_.size(); ++i) {
-    const Box box = sorted_[i];
-    for (std::size_t j = i + 1; j < sorted_.size(); ++j) {
-      const Box& other = sorted_[j];
-      if (kRoundedDown * (other.lo[axis] - box.hi[axis]) > reach) break;
-      bool far = false;
-      for (int k = 0; k < 3; ++k)
-        far |= (other.lo[k] - box.hi[k] > surely_far) | (box.lo[k] - other.hi[k] > surely_far);
-      if (!far && box_distance(box, other) <= reach)
-        pairs_.push_back({std::min(order_[i], order_[j]), std::max(order_[i], order_[j])});
-    }
-  }
+  for_each_near(boxes, reach, [&](std::uint32_t a, std::uint32_t b) {
+    pairs_.push_back({std::min(a, b), std::max(a, b)});
+  });
   std::ranges::sort(pairs_);
   return pairs_;
 }

@@ -15,23 +15,24 @@ class Sweep {
  public:
   using Pair = std::array<std::uint32_t, 2>;
 
-  /// Calls visit(a, b) once for each pair whose boxes are at most `reach` apart along one axis, the one along
-  /// which the boxes are spread most. Cost: O(n log n), plus linear in those pairs.
+  /// Calls visit(a, b) once for each pair of boxes whose distance is at most `reach`. Cost: O(n log n), plus
+  /// linear in the pairs that are at most `reach` apart along one axis, the one along which the boxes are
+  /// spread most.
   template <class Visit>
-  void for_each_candidate(std::span<const Box> boxes, double reach, const Visit& visit);
+  void for_each_near(std::span<const Box> boxes, double reach, const Visit& visit);
 
   /// All pairs {a, b}, a < b, of boxes whose distance is at most `reach`, in lexicographic order; valid until
   /// the next call. Cost: as above.
   std::span<const Pair> near_pairs(std::span<const Box> boxes, double reach);
 
  private:
-  /// Sorts the boxes by their lower ends along that axis, and returns it.
+  /// Sorts the boxes by their lower ends along that axis, into order_ and sorted_, and returns it.
   int sort(std::span<const Box> boxes);
 
   /// Covers the rounding of differences, squares, their sum and its root.
   static constexpr double kRoundedDown = 1 - 1e-15;
 
-  std::vector<std::uint32_t> order_, open_;
+  std::vector<std::uint32_t> order_;
   std::vector<Box> sorted_;
   std::vector<Pair> pairs_;
 
@@ -42,18 +43,21 @@ class Sweep {
 [[nodiscard]] double box_distance(const Box& a, const Box& b);
 
 template <class Visit>
-void Sweep::for_each_candidate(std::span<const Box> boxes, double reach, const Visit& visit) {
+void Sweep::for_each_near(std::span<const Box> boxes, double reach, const Visit& visit) {
   if (boxes.empty()) return;
   const int axis = sort(boxes);
-  open_.clear();
-  for (const std::uint32_t b : order_) {
-    // Later boxes start no earlier along the axis: a box that ends too early for this one ends too early for
-    // them.
-    std::erase_if(open_, [&](std::uint32_t o) {
-      return kRoundedDown * (boxes[b].lo[axis] - boxes[o].hi[axis]) > reach;
-    });
-    for (const std::uint32_t o : open_) visit(o, b);
-    open_.push_back(b);
+  const double surely_far = reach / (kRoundedDown * kRoundedDown);
+  for (std::size_t i = 0; i < sorted_.size(); ++i) {
+    const Box box = sorted_[i];
+    for (std::size_t j = i + 1; j < sorted_.size(); ++j) {
+      const Box& other = sorted_[j];
+      if (kRoundedDown * (other.lo[axis] - box.hi[axis]) > reach) break;
+      // Most are too far apart along one of the other axes. Without branches:
+      bool far = false;
+      for (int k = 0; k < 3; ++k)
+        far |= (other.lo[k] - box.hi[k] > surely_far) | (box.lo[k] - other.hi[k] > surely_far);
+      if (!far && box_distance(box, other) <= reach) visit(order_[i], order_[j]);
+    }
   }
 }
 

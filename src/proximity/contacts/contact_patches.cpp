@@ -11,9 +11,7 @@ namespace sdm::contacts {
 
 std::span<const Contact> ContactPatches::sort(std::span<Contact> contacts, std::span<const Box> boxes) {
   patches_.reset(boxes.size());
-  sweep_.for_each_candidate(boxes, 0, [&](std::uint32_t a, std::uint32_t b) {
-    if (overlap(boxes[a], boxes[b])) patches_.unite(a, b);
-  });
+  sweep_.for_each_near(boxes, 0, [&](std::uint32_t a, std::uint32_t b) { patches_.unite(a, b); });
   order_.resize(contacts.size());
   std::iota(order_.begin(), order_.end(), 0u);
   // Distinct keys make the order unique; a stable sort would allocate memory.
