@@ -275,6 +275,43 @@ TEST(Contacts, AreTheDeepestVerticesOfFineMeshes) {
 }
 
 // A support replaces the closest point of a corner, not of a vertex of a smooth surface.
+// The contacts of either body's features are found on a core of their own.
+TEST(Contacts, DoNotDependOnTheNumberOfThreads) {
+  const std::vector<Mesh> meshes{load("cow.off", "fit"), placed(sphere(4), "scale:0.5"), cube(0.4)};
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::size_t contacts = 0;
+  for (std::size_t trial = 0; trial < 27; ++trial) {
+    SCOPED_TRACE(trial);
+    const Transform pose =
+        Transform::translation({0.1 * normal(random), 0.1 * normal(random), 0.1 * normal(random)}) *
+        Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
+    std::array<std::vector<Contact>, 2> found;
+    for (const std::size_t i : {0, 1}) {
+      const ThreadLimit limit(i == 0 ? 1 : 2);
+      ProximityQuery query(meshes[trial % 3], meshes[trial / 3 % 3],
+                           {.contact_margin = trial % 2 == 0 ? 0 : 0.02});
+      query.set_pose(1, pose);
+      const std::span<const Contact> all = query.contacts();
+      found[i].assign(all.begin(), all.end());
+    }
+    ASSERT_EQ(found[0].size(), found[1].size());
+    for (std::size_t c = 0; c < found[0].size(); ++c) {
+      const Contact &one = found[0][c], &two = found[1][c];
+      EXPECT_EQ(one.id, two.id);
+      EXPECT_EQ(one.patch, two.patch);
+      EXPECT_EQ(one.depth, two.depth);
+      EXPECT_EQ(one.point1, two.point1);
+      EXPECT_EQ(one.point2, two.point2);
+      EXPECT_EQ(one.normal, two.normal);
+      EXPECT_EQ(one.faces, two.faces);
+      EXPECT_EQ(one.barycentric, two.barycentric);
+    }
+    contacts += found[0].size();
+  }
+  EXPECT_GT(contacts, 2000u);
+}
+
 TEST(Contacts, OfSmoothBodiesAreNoDeeperThanTheBodies) {
   ProximityQuery query(load("bunny.obj", "fit"), load("armadillo.off", "fit,translate:0.1:0:0"));
   ASSERT_GT(query.contacts().size(), 100u);

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
 #include <vector>
 
@@ -75,6 +77,36 @@ TEST(NearFaces, AreThoseOfAllPairs) {
       intersecting += compare(meshes[trial % 4], meshes[trial / 4 % 4], placement, reach, workspace, near);
   }
   EXPECT_GT(intersecting, 500u);
+}
+
+// Two cores find two halves, one core the same in turn.
+TEST(NearFaces, DoNotDependOnTheNumberOfThreads) {
+  const Sites o1(placed(torus(96, 48), "fit")), o2(placed(sphere(5), "fit"));
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal;
+  std::array<exact::NearFacesWorkspace, 2> workspaces;
+  std::array<exact::NearFaces, 2> near;
+  std::size_t leaves = 0;
+  for (int trial = 0; trial < 24; ++trial) {
+    SCOPED_TRACE(trial);
+    const Transform pose =
+        Transform::translation({0.2 * normal(random), 0.2 * normal(random), 0.2 * normal(random)}) *
+        Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
+    const exact::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
+    for (const std::size_t i : {0, 1}) {
+      const ThreadLimit limit(i == 0 ? 1 : 2);
+      exact::find_near_faces(pair, trial % 3 == 2 ? 0.05 : 0, workspaces[i], near[i]);
+      for (std::vector<std::uint32_t>& sorted : near[i].leaves) std::ranges::sort(sorted);
+    }
+    for (const std::size_t side : {0, 1}) {
+      EXPECT_EQ(near[0].of_leaf[side], near[1].of_leaf[side]);
+      ASSERT_EQ(near[0].leaves[side], near[1].leaves[side]);
+      for (const std::uint32_t leaf : near[0].leaves[side])
+        EXPECT_EQ(near[0].opposite[side][leaf], near[1].opposite[side][leaf]);
+      leaves += near[0].leaves[side].size();
+    }
+  }
+  EXPECT_GT(leaves, 5000u);
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 #include "proximity/contacts/contact_regions.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "core/geometry/sweep.h"
 #include "core/geometry/vec.h"
-#include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
 namespace {
@@ -34,7 +32,7 @@ void ContactRegions::find(const shape::Body& on, const shape::Body& other, const
     if (near_face != kNone) node.face = near_face;
     if (place.part == kNone) {
       if (near_face == kNone && !WideTree::is_leaf(node.child)) {
-        const SurfacePoint centre = measure(other, node.ball.centre, reach(node));
+        const SurfacePoint centre = measure_near(other, node.ball.centre, node.face);
         if (centre.distance > node.ball.radius + margin) continue;
         node.face = centre.face;
         if (centre.distance < -kDeep * node.ball.radius)
@@ -52,11 +50,6 @@ void ContactRegions::find(const shape::Body& on, const shape::Body& other, const
     regions_.push_back(region);
   }
   std::ranges::sort(regions_, {}, [](const ContactRegion& r) { return std::pair(r.node, r.first_leaf); });
-}
-
-double ContactRegions::reach(const Node& node) const {
-  if (node.face == kNone) return std::numeric_limits<double>::infinity();
-  return sites::closest_on_face(internals(other_->sites()), node.face, node.ball.centre).distance;
 }
 
 // A face of the other body that is near to a face of the node, if any.

@@ -44,7 +44,6 @@ class ContactRegions {
     std::uint32_t face = kNone;  ///< of the other body, close to this node or to the one above it
   };
   void open(const Node& parent);
-  [[nodiscard]] double reach(const Node& node) const;
   [[nodiscard]] std::uint32_t find_near_face(const shape::ContactPart& node) const;
 
   const shape::Body *on_ = nullptr, *other_ = nullptr;

@@ -183,7 +183,7 @@ void EdgeContacts::add_end(const Edge& edge, const sites::SitesData& sites, doub
     const double height = dot(sites.normals.face[part.face], edge.a + t * (edge.b - edge.a) - corner);
     if (nearest.face == kNone || std::abs(height) < std::abs(nearest.height)) nearest = {part.face, height};
   }
-  found_.push_back({t, nearest});
+  found_.push_back({.t = t, .support = nearest});
 }
 
 std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const shape::Body& other,
@@ -212,9 +212,9 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
         if (to > from + kSamePoint) add_end(edge, sites, to);
       }
     if (!from_a && !to_b && !supported) {
-      const double least = std::min_element(first, next, [](const Interval& a, const Interval& b) {
-                             return a.distance < b.distance;
-                           })->distance;
+      const auto nearest = std::min_element(
+          first, next, [](const Interval& a, const Interval& b) { return a.distance < b.distance; });
+      const double least = nearest->distance;
       double from = 1, to = 0;
       for (auto i = first; i != next; ++i) {
         if (!(i->distance <= least + rounding)) continue;
@@ -223,7 +223,7 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
                                                      : within(edge, sites, i->face, limit, i->closest);
         from = std::min(from, part.from), to = std::max(to, part.to);
       }
-      found_.push_back({.t = 0.5 * (from + to)});
+      found_.push_back({.t = 0.5 * (from + to), .near_face = nearest->face});
     }
     first = next;
   }

@@ -27,8 +27,9 @@ class EdgeContacts {
     std::span<const Vec3> sides{};  ///< from the edge along the faces beside it
   };
   struct Found {
-    double t = 0;       ///< 0 at a, 1 at b
-    Support support{};  ///< if a face supports the edge here
+    double t = 0;                     ///< 0 at a, 1 at b
+    Support support{};                ///< if a face supports the edge here
+    std::uint32_t near_face = kNone;  ///< otherwise: a face close to it
   };
   /// The ends of the supported parts, but for ends of the edge in contact. For each part of the edge in
   /// contact that is not supported and reaches no end in contact, the middle between the first and the last

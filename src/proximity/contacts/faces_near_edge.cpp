@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::contacts::HWY_NAMESPACE {
@@ -21,7 +22,7 @@ using Vec = hn::Vec<Lanes>;
 using UnitSegment = FacesNearEdge::UnitSegment;
 using Supporting = FacesNearEdge::Supporting;
 
-constexpr float kSlack = 2e-6f;  // of coordinates in the unit frame, and of cosines: rounding
+constexpr float kRounding = FacesNearEdge::kRounding;
 
 HWY_INLINE void load(const float (&rows)[3][kWidth], size_t i, Vec (&v)[3]) {
   for (int k = 0; k < 3; ++k) v[k] = hn::Load(Lanes(), rows[k] + i);
@@ -43,7 +44,7 @@ class Boxes {
  public:
   Boxes(const UnitSegment& segment, float reach) : segment_(segment) {
     const Lanes d;
-    reach_ = hn::Set(d, reach + kSlack);
+    reach_ = hn::Set(d, reach + segment.rounding);
     for (int k = 0; k < 3; ++k) {
       constexpr float kLeast = 1e-12f;  // parallel to the sides of boxes
       const float along = segment.end[k] - segment.start[k];
@@ -62,7 +63,8 @@ class Boxes {
     for (int k = 0; k < 3; ++k)
       w[k] = side[k] - cosine * segment_.direction[k], rest -= w[k] * segment_.start[k];
     const float behind =
-        std::max(supporting.reach * (1 + std::abs(cosine)) * kSupportSine, supporting.margin) + 2 * kSlack;
+        std::max(supporting.reach * (1 + std::abs(cosine)) * kSupportSine, supporting.margin) +
+        2 * segment_.rounding;
     HalfSpace& added = half_spaces_[count_++];
     for (int k = 0; k < 3; ++k) added.w[k] = hn::Set(d, w[k]);
     added.rest = hn::Set(d, rest + behind);
@@ -114,7 +116,7 @@ struct Discs {
     load(bounds.normal, i, normal), load(bounds.centre, i, to_centre);
     splat(segment.start, start), splat(segment.direction, direction);
     for (int k = 0; k < 3; ++k) to_centre[k] = hn::Sub(to_centre[k], start[k]);
-    radius = hn::Add(hn::Load(d, bounds.radius + i), hn::Set(d, kSlack));
+    radius = hn::Add(hn::Load(d, bounds.radius + i), hn::Set(d, segment.rounding));
     height = hn::Neg(dot(normal, to_centre));
     sine = dot(normal, direction);
     along = dot(to_centre, direction);
@@ -124,7 +126,7 @@ struct Discs {
 // Faces whose discs are within `reach` of a segment.
 class NearFaces {
  public:
-  NearFaces(const UnitSegment& segment, float reach) : segment_(segment), reach_(reach + kSlack) {}
+  NearFaces(const UnitSegment& segment, float reach) : segment_(segment), reach_(reach + segment.rounding) {}
   // Both the plane and the ball of the disc are.
   HWY_INLINE uint32_t operator()(const sites::FaceBounds& bounds, size_t i) const {
     const Lanes d;
@@ -133,7 +135,8 @@ class NearFaces {
     const Vec end = hn::MulAdd(length, discs.sine, discs.height);
     const auto by_plane = hn::And(hn::Le(hn::Min(discs.height, end), reach),
                                   hn::Ge(hn::Max(discs.height, end), hn::Neg(reach)));
-    const Vec aside = hn::NegMulAdd(discs.along, discs.along, dot(discs.to_centre, discs.to_centre));
+    const Vec squared = dot(discs.to_centre, discs.to_centre);
+    const Vec aside = hn::NegMulAdd(discs.along, discs.along, hn::Mul(squared, hn::Set(d, 1 - kRounding)));
     const Vec beyond = hn::Sub(hn::Min(hn::Max(discs.along, hn::Zero(d)), length), discs.along);
     const Vec radius = hn::Add(discs.radius, reach);
     return bits(hn::And(by_plane, hn::Le(hn::MulAdd(beyond, beyond, aside), hn::Mul(radius, radius))), i);
@@ -168,7 +171,7 @@ class SupportingFaces {
     // The height of the point of the segment that is closest to the middle of the disc, and how much it
     // varies within the radius of there.
     const Vec height = hn::MulAdd(discs.along, discs.sine, discs.height);
-    const Vec rise = hn::MulAdd(parallel, discs.radius, hn::Set(d, kSlack));
+    const Vec rise = hn::MulAdd(parallel, discs.radius, hn::Set(d, segment_.rounding));
     open = hn::And(open, hn::And(hn::Lt(height, hn::Add(rise, hn::Set(d, supporting_.margin))),
                                  hn::Gt(hn::Add(height, rise), hn::Set(d, -supporting_.reach))));
     // How far the line is from the middle of the disc, across it in the plane of the disc.
@@ -190,7 +193,6 @@ template <class Faces>
 void Collect(const sites::SitesData& sites, const Boxes& boxes, const Faces& faces,
              std::vector<uint32_t>& stack, std::vector<uint32_t>& found) {
   const sites::Regions& regions = sites.regions;
-  found.clear();
   stack.assign(1, 0);
   while (!stack.empty()) {
     const hierarchy::WideTree::Node& node = sites.wide.nodes[stack.back()];
@@ -238,20 +240,43 @@ std::array<float, 3> to_float(const Vec3& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-FacesNearEdge::UnitSegment to_unit(const FacesNearEdge::Segment& segment, const UnitFrame& frame) {
-  const Vec3 along = segment.b - segment.a;
-  return {.start = to_float(frame.to_unit(segment.a)),
-          .end = to_float(frame.to_unit(segment.b)),
-          .direction = to_float(normalized(along)),
-          .length = static_cast<float>(frame.scale * norm(along))};
+// The part of a segment within `reach` of the box of the mesh, along its axes; nothing if there is none. Of a
+// segment that is much longer than the mesh, single precision would say nothing about this part.
+std::optional<FacesNearEdge::UnitSegment> to_unit(const sites::SitesData& sites,
+                                                  const FacesNearEdge::Segment& segment, double reach) {
+  const UnitFrame& frame = sites.frame;
+  const Vec3 a = frame.to_unit(segment.a), along = frame.to_unit(segment.b) - a;
+  const hierarchy::FloatBox& box = sites.tree.box(0);
+  constexpr double kRounding = FacesNearEdge::kRounding;
+  const double around = (1 + kRounding) * frame.scale * reach + kRounding;
+  double from = 0, to = 1, most = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double lo = box.lo[k] - around - a[k], hi = box.hi[k] + around - a[k];
+    if (along[k] != 0) {
+      from = std::max(from, std::min(lo / along[k], hi / along[k]));
+      to = std::min(to, std::max(lo / along[k], hi / along[k]));
+    } else if (lo > 0 || hi < 0) {
+      return {};
+    }
+    most = std::max({most, std::abs(box.lo[k] - around), std::abs(box.hi[k] + around)});
+  }
+  if (!(from <= to)) return {};
+  const Vec3 part = (to - from) * along;
+  return FacesNearEdge::UnitSegment{.start = to_float(a + from * along),
+                                    .end = to_float(a + to * along),
+                                    .direction = to_float(normalized(along)),
+                                    .length = static_cast<float>(norm(part)),
+                                    .rounding = static_cast<float>(kRounding * std::max(1.0, most))};
 }
 
 }  // namespace
 
 std::span<const std::uint32_t> FacesNearEdge::find(const sites::SitesData& sites, const Segment& segment,
                                                    double reach) {
-  HWY_DYNAMIC_DISPATCH(CollectNear)
-  (sites, to_unit(segment, sites.frame), static_cast<float>(sites.frame.scale * reach), stack_, faces_);
+  faces_.clear();
+  if (const std::optional<UnitSegment> unit = to_unit(sites, segment, reach))
+    HWY_DYNAMIC_DISPATCH(CollectNear)
+  (sites, *unit, static_cast<float>(sites.frame.scale * reach), stack_, faces_);
   return faces_;
 }
 
@@ -259,13 +284,15 @@ std::span<const std::uint32_t> FacesNearEdge::find_supporting(const sites::Sites
                                                               const Segment& segment,
                                                               std::span<const Vec3> sides, double margin,
                                                               double reach) {
+  faces_.clear();
+  const std::optional<UnitSegment> unit = to_unit(sites, segment, std::max(margin, reach));
+  if (!unit) return faces_;
   Supporting supporting{.margin = static_cast<float>(sites.frame.scale * margin),
                         .reach = static_cast<float>(sites.frame.scale * reach)};
   // An edge of more faces has further sides, which could only exclude more.
   const std::size_t count = std::min(sides.size(), supporting.sides.size());
   for (std::size_t i = 0; i < count; ++i) supporting.sides[i] = to_float(normalized(sides[i]));
-  HWY_DYNAMIC_DISPATCH(CollectSupporting)
-  (sites, to_unit(segment, sites.frame), supporting, stack_, faces_);
+  HWY_DYNAMIC_DISPATCH(CollectSupporting)(sites, *unit, supporting, stack_, faces_);
   return faces_;
 }
 

@@ -35,11 +35,15 @@ class FacesNearEdge {
                                                                std::span<const Vec3> sides, double margin,
                                                                double reach);
 
-  /// The part of the segment in the unit frame, in single precision.
+  /// In single precision: of distances, relative to coordinates, and of squares, relative to their sum.
+  static constexpr float kRounding = 2e-6f;
+
+  /// The part of the segment near the mesh, in the unit frame and in single precision.
   struct UnitSegment {
     std::array<float, 3> start{}, end{};
     std::array<float, 3> direction{};
     float length = 0;
+    float rounding = 0;  ///< of distances from it
   };
   /// What find_supporting() requires, in the unit frame.
   struct Supporting {

@@ -170,8 +170,7 @@ void FeatureContacts::find_each(const ContactRegion& region) {
       Feature feature{.site = sites.regions.points[vertex].vertex};
       feature.key = feature.site;
       const SurfacePoint* point = vertices_.measured(vertex);
-      feature.point =
-          point ? *point : measure(other(), vertices_.at(vertex), std::numeric_limits<double>::infinity());
+      feature.point = point ? *point : vertices_.measure(vertex);
       if (!(feature.point.distance <= limit_)) continue;  // by rounding
       find_support(feature);
       extend_by_star(feature.faces, feature.site);
@@ -266,7 +265,7 @@ void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_to
             to_other_[side_].map.linear(sites.mesh.positions[corner] - sites.mesh.positions[a]));
     }
   std::uint64_t number = 0;
-  for (const auto& [t, support] :
+  for (const auto& [t, support, near_face] :
        edge_contacts_.find({start, end, a_touches, b_touches, spokes_}, other(), limit_, reach)) {
     Feature feature{.key = kEdge | number++ << kOnEdgeBit | edge,
                     .site = edge,
@@ -274,8 +273,7 @@ void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_to
                     .point = {.at = start + t * (end - start)},
                     .support = support,
                     .faces = faces};
-    if (support.face == kNone)
-      feature.point = measure(other(), feature.point.at, std::numeric_limits<double>::infinity());
+    if (support.face == kNone) feature.point = measure_near(other(), feature.point.at, near_face);
     features_.push_back(feature);
   }
 }

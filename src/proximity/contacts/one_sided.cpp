@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/geometry/vec.h"
 
@@ -14,7 +13,7 @@ void OneSidedVertices::start(const shape::Body& on, const shape::Body& other,
   on_ = &on, other_ = &other, to_other_ = &to_other, margin_ = margin;
   rounding_ = kRounding / internals(other.sites()).frame.scale;
   for (const std::uint32_t vertex : added_) vertices_[vertex] = {};
-  added_.clear(), points_.clear();
+  added_.clear(), points_.clear(), face_ = kNone;
   const std::size_t count = internals(on.sites()).regions.points.size();
   if (vertices_.size() < count) vertices_.resize(count);
 }
@@ -52,6 +51,13 @@ const SurfacePoint* OneSidedVertices::measured(std::uint32_t vertex) const {
   return point == kNone ? nullptr : &points_[point];
 }
 
+SurfacePoint OneSidedVertices::measure(std::uint32_t vertex) {
+  // The face closest to the vertex before, which is probably a neighbour, is near.
+  const SurfacePoint point = measure_near(*other_, at(vertex), face_);
+  face_ = point.face;
+  return point;
+}
+
 OneSidedVertices::Side OneSidedVertices::known_side(std::uint32_t vertex) {
   if (const SurfacePoint* point = measured(vertex))
     return point->distance <= margin_ ? Side::contact : Side::free;
@@ -62,7 +68,7 @@ bool OneSidedVertices::in_contact(std::uint32_t vertex) {
   const Side known = known_side(vertex);
   if (known != Side::unknown) return known == Side::contact;
   vertices_[vertex].measured = static_cast<std::uint32_t>(points_.size());
-  points_.push_back(measure(*other_, at(vertex), std::numeric_limits<double>::infinity()));
+  points_.push_back(measure(vertex));
   const bool contact = points_.back().distance <= margin_;
   // So near to the surface, rounding may decide.
   if (!vertices_[vertex].alone && std::abs(points_.back().distance) > rounding_)

@@ -31,8 +31,8 @@ class OneSidedVertices {
   [[nodiscard]] Side known_side(std::uint32_t vertex);
   /// The closest point, if a search has found it for this vertex.
   [[nodiscard]] const SurfacePoint* measured(std::uint32_t vertex) const;
-  /// The position of a vertex in the frame of the other body.
-  [[nodiscard]] Vec3 at(std::uint32_t vertex) const;
+  /// Finds the closest point of a vertex.
+  [[nodiscard]] SurfacePoint measure(std::uint32_t vertex);
 
  private:
   struct Vertex {
@@ -42,6 +42,7 @@ class OneSidedVertices {
     Side side = Side::unknown;  ///< of the set, where it is the root
   };
   [[nodiscard]] std::uint32_t find(std::uint32_t vertex);
+  [[nodiscard]] Vec3 at(std::uint32_t vertex) const;  ///< in the frame of the other body
 
   const shape::Body *on_ = nullptr, *other_ = nullptr;
   const mesh::Similarity* to_other_ = nullptr;
@@ -49,6 +50,7 @@ class OneSidedVertices {
   std::vector<Vertex> vertices_;
   std::vector<std::uint32_t> added_;
   std::vector<SurfacePoint> points_;
+  std::uint32_t face_ = kNone;  ///< closest to the vertex that was measured last
 };
 
 }  // namespace sdm::contacts

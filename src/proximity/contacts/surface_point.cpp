@@ -2,6 +2,7 @@
 
 #include "core/geometry/vec.h"
 #include "engine/cpu/cpu_engine.h"
+#include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
 
@@ -17,6 +18,12 @@ SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach) {
           .vector = closest.point - at,
           .closest = closest,
           .face = sites.face_of(closest.type, closest.site)};
+}
+
+SurfacePoint measure_near(const shape::Body& body, const Vec3& at, std::uint32_t face) {
+  return measure(body, at,
+                 face == kNone ? std::numeric_limits<double>::infinity()
+                               : sites::closest_on_face(internals(body.sites()), face, at).distance);
 }
 
 bool at_boundary(const shape::Body& body, const SurfacePoint& point) {

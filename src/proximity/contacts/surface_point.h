@@ -19,6 +19,9 @@ struct SurfacePoint {
 /// search shorter.
 [[nodiscard]] SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach);
 
+/// The same, near a face of the body that is probably close, or kNone.
+[[nodiscard]] SurfacePoint measure_near(const shape::Body& body, const Vec3& at, std::uint32_t face);
+
 /// Whether the closest point is on the boundary of the body, as it always is unless a solid intersects
 /// itself.
 [[nodiscard]] bool at_boundary(const shape::Body& body, const SurfacePoint& point);
