@@ -1,5 +1,6 @@
 """sdm.dask on processes of their own: workers that are killed, run out of memory or are slow change no result."""
 
+import asyncio
 import contextlib
 import os
 import signal
@@ -32,6 +33,15 @@ def client():
         silence_logs=50,
     ) as cluster, distributed.Client(cluster) as client:  # fmt: skip
         yield client
+
+
+def wait_for_two_workers(client):
+    """A nanny whose worker is killed while it starts may give up; another worker then takes its place."""
+    try:
+        client.wait_for_workers(2, timeout=30)
+    except asyncio.TimeoutError:
+        client.cluster.scale(len(client.cluster.worker_spec) + 1)
+        client.wait_for_workers(2, timeout=60)
 
 
 class Killer(threading.Thread):
@@ -96,7 +106,7 @@ def test_workers_that_are_killed(client, expected, tmp_path):
         found = sdm.dask.map_pairs(pairs, tmp_path, resolution=256).compute()
     assert killer.killed == 3
     assert_same(found, table)
-    client.wait_for_workers(2)
+    wait_for_two_workers(client)
 
 
 def take_memory():
@@ -116,7 +126,7 @@ def take_memory():
 
 def test_a_worker_out_of_memory(client, expected, tmp_path):
     pairs, table = expected
-    client.wait_for_workers(2)
+    wait_for_two_workers(client)
     address = list(client.scheduler_info()["workers"])[0]
     pid = client.run(take_memory, workers=[address])[address]
     found = sdm.dask.map_pairs(pairs, tmp_path, resolution=256).compute()
@@ -125,7 +135,7 @@ def test_a_worker_out_of_memory(client, expected, tmp_path):
         time.sleep(0.05)
     assert not os.path.exists(f"/proc/{pid}")  # the nanny has killed it
     assert_same(found, table)
-    client.wait_for_workers(2)
+    wait_for_two_workers(client)
 
 
 def slow_down():
@@ -137,7 +147,7 @@ def slow_down():
 
 def test_a_slow_worker(client, expected, tmp_path):
     pairs, table = expected
-    client.wait_for_workers(2)
+    wait_for_two_workers(client)
     client.run(slow_down, workers=[list(client.scheduler_info()["workers"])[0]])
     found = sdm.dask.map_pairs(pairs, tmp_path, resolution=256).compute()
     assert_same(found, table)
@@ -153,7 +163,7 @@ def test_parts_and_killed_workers(client, tmp_path):
     whole = sdm.map(meshes.sphere(), mesh, resolution=256, sign="none", engine="reference")
     for name in ("distance", "vector", "site", "site_type", "face"):
         np.testing.assert_array_equal(getattr(result, name), getattr(whole, name), err_msg=name)
-    client.wait_for_workers(2)
+    wait_for_two_workers(client)
 
 
 def test_cohorts_and_killed_workers(client, tmp_path):
