@@ -21,12 +21,9 @@ int main(int argc, char** argv) try {
   using namespace sdm;
   CLI::App app(
       "Computes separation, collision and contacts of O1 and O2 in random poses of O2. Writes arrays without "
-      "headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), poses (3 × 4, row "
-      "by "
-      "row), separation (float64), colliding (uint8), contacts (their number, uint32), and the microseconds "
-      "of "
-      "each on one core, separation_us, colliding_us and contacts_us, and of contacts on all cores, "
-      "contacts_all_us.");
+      "headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), poses (3 × 4, by "
+      "rows), separation (float64), colliding (uint8), contacts (their number, uint32); the microseconds on "
+      "one core, separation_us, colliding_us and contacts_us; and on all cores, contacts_all_us.");
   std::string o1, o2;
   std::filesystem::path out;
   std::uint32_t parts = 1, count = 200;

@@ -274,7 +274,6 @@ TEST(Contacts, AreTheDeepestVerticesOfFineMeshes) {
   EXPECT_GT(deep, 100u);
 }
 
-// A support replaces the closest point of a corner, not of a vertex of a smooth surface.
 // The contacts of either body's features are found on a core of their own.
 TEST(Contacts, DoNotDependOnTheNumberOfThreads) {
   const std::vector<Mesh> meshes{load("cow.off", "fit"), placed(sphere(4), "scale:0.5"), cube(0.4)};
@@ -312,6 +311,7 @@ TEST(Contacts, DoNotDependOnTheNumberOfThreads) {
   EXPECT_GT(contacts, 2000u);
 }
 
+// A support replaces the closest point of a corner, not of a vertex of a smooth surface.
 TEST(Contacts, OfSmoothBodiesAreNoDeeperThanTheBodies) {
   ProximityQuery query(load("bunny.obj", "fit"), load("armadillo.off", "fit,translate:0.1:0:0"));
   ASSERT_GT(query.contacts().size(), 100u);

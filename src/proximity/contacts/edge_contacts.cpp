@@ -91,9 +91,18 @@ BesidePrism beside_prism(const EdgeContacts::Edge& edge, const Corners& face, co
   return result;
 }
 
+// What is within `limit` of a face, around the point closest to it.
+EdgeContacts::Part bisected(const EdgeContacts::Edge& edge, const sites::SitesData& sites, std::uint32_t face,
+                            double limit, double closest) {
+  const auto distance_at = [&](double t) {
+    return sites::closest_on_face(sites, face, edge.a + t * (edge.b - edge.a)).distance;
+  };
+  return {last_within(distance_at, limit, closest, 0), last_within(distance_at, limit, closest, 1)};
+}
+
 }  // namespace
 
-// What is within `limit` of a face, around the point closest to it.
+// The same, in closed form where there is one.
 EdgeContacts::Part EdgeContacts::within(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
                                         double limit, double closest) {
   if (sites.sliver[face] == 0) {
@@ -103,10 +112,7 @@ EdgeContacts::Part EdgeContacts::within(const Edge& edge, const sites::SitesData
     if (!slab.empty() && beside_prism(edge, corners, normal, slab, limit) == BesidePrism::inside)
       return {slab.from, slab.to};
   }
-  const auto distance_at = [&](double t) {
-    return sites::closest_on_face(sites, face, edge.a + t * (edge.b - edge.a)).distance;
-  };
-  return {last_within(distance_at, limit, closest, 0), last_within(distance_at, limit, closest, 1)};
+  return bisected(edge, sites, face, limit, closest);
 }
 
 void EdgeContacts::add_interval(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
@@ -129,7 +135,7 @@ void EdgeContacts::add_interval(const Edge& edge, const sites::SitesData& sites,
   if (distance > limit) return;
   const Vec3 along = edge.b - edge.a;
   const double t = std::clamp(dot(closest.point1 - edge.a, along) / squared_norm(along), 0.0, 1.0);
-  const Part part = within(edge, sites, face, limit, t);
+  const Part part = bisected(edge, sites, face, limit, t);
   intervals_.push_back({part.from, part.to, distance, t, face});
 }
 

@@ -38,6 +38,11 @@ class EdgeContacts {
   [[nodiscard]] std::span<const Found> find(const Edge& edge, const shape::Body& other, double margin,
                                             double reach);
 
+  /// Of the edge, as t.
+  struct Part {
+    double from, to;
+  };
+
  private:
   /// What is within the margin of a face.
   struct Interval {
@@ -50,9 +55,6 @@ class EdgeContacts {
   struct SupportedPart {
     double from, to;
     std::uint32_t face;
-  };
-  struct Part {
-    double from, to;
   };
   [[nodiscard]] static Part within(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
                                    double limit, double closest);

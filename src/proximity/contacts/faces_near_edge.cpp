@@ -11,6 +11,8 @@
 #include <cmath>
 #include <optional>
 
+#include "proximity/contacts/support.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sdm::contacts::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -23,6 +25,9 @@ using UnitSegment = FacesNearEdge::UnitSegment;
 using Supporting = FacesNearEdge::Supporting;
 
 constexpr float kRounding = FacesNearEdge::kRounding;
+// A little more than the sine of the angles that can_push() allows for, between the plane of a face and the
+// edge that it supports, and between the plane and what is beside the edge.
+constexpr float kSupportSine = static_cast<float>(kPushSine) + 1e-3f;
 
 HWY_INLINE void load(const float (&rows)[3][kWidth], size_t i, Vec (&v)[3]) {
   for (int k = 0; k < 3; ++k) v[k] = hn::Load(Lanes(), rows[k] + i);

@@ -11,10 +11,6 @@
 
 namespace sdm::contacts {
 
-/// The sine of the largest angle, and a little more, between an edge and a face that supports it, and between
-/// a support's plane and what is beside the edge.
-inline constexpr float kSupportSine = 0.051f;
-
 /// Finds them in single precision, so that some of those returned are farther away. Reuses its memory; what
 /// is returned is valid until the next call.
 class FacesNearEdge {

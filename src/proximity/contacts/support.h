@@ -14,14 +14,16 @@ struct Support {
   double height = 0;
 };
 
+/// The sine of the small angle below.
+inline constexpr double kPushSine = 0.05;
+
 /// Whether a push along `normal` moves a vertex or an edge away without moving anything around it in the
 /// opposite direction first: all `spokes`, from it to what is around it, are on this side of a plane with
 /// this normal, but for a small angle. Otherwise something else of the body is in contact sooner. A corner
 /// that is flush with the side of another box can be pushed up, but not sideways.
 [[nodiscard]] inline bool can_push(const Vec3& normal, std::span<const Vec3> spokes) {
-  constexpr double kSine = 0.05;
   for (const Vec3& spoke : spokes)
-    if (dot(normal, spoke) < -kSine * norm(spoke)) return false;
+    if (dot(normal, spoke) < -kPushSine * norm(spoke)) return false;
   return true;
 }
 

@@ -38,10 +38,10 @@ class NearFacesSearch {
     }
   }
 
-  // Replaces the first `count` of the open pairs by those below them.
-  void open_first(size_t count) {
-    for (size_t i = 0; i < count; ++i) visit(Entry(half_.open[i]));
-    half_.open.erase(half_.open.begin(), half_.open.begin() + static_cast<std::ptrdiff_t>(count));
+  // Replaces the first of the open pairs by those below it.
+  void open_first() {
+    visit(Entry(half_.open.front()));
+    half_.open.erase(half_.open.begin());
   }
   void open_all() {
     while (!half_.open.empty()) {
@@ -59,6 +59,7 @@ class NearFacesSearch {
     else
       open(entry);
   }
+
   // Pairs the children of the larger node with the other node.
   void open(const Entry& entry) {
     const CentredBox box[2] = {CentredBox(sites_[0]->tree.box(entry.place[0].source)),
@@ -208,7 +209,7 @@ void FindNearFaces(const MeshPair& pair, double reach, NearFacesWorkspace& works
   NearFacesSearch first(pair, reach, workspace.halves[0], near);
   all.assign(1, {});
   // One core goes through the pairs in the same order as two, so that opposite faces are the same.
-  while (!all.empty() && all.size() < kEnough) first.open_first(1);
+  while (!all.empty() && all.size() < kEnough) first.open_first();
   if (all.empty()) return;
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
   workspace.halves[1].open.assign(middle, all.end());
