@@ -11,7 +11,7 @@ namespace sdm::scenes {
 namespace {
 
 constexpr std::uint32_t kSide = 50;  // particles
-constexpr double kHeight = 0.7, kRadius = 0.15;
+constexpr double kHeight = 0.7, kBallRadius = 0.15;
 constexpr double kLimit = 1.3;  // of the length of edges, relative to rest
 
 /// The ball falls freely, but while it touches the cloth, at this speed: it is much heavier than the cloth,
@@ -21,7 +21,7 @@ constexpr double kPushingSpeed = 0.5, kGravity = 9.81;
 class TearingCloth : public Simulation {
  public:
   explicit TearingCloth(std::vector<Scene::Body>& bodies)
-      : cloth_(kSide, 1), ball_(ball({0, 0, 0}, kRadius, 3)) {
+      : cloth_(kSide, 1), ball_(ball({0, 0, 0}, kBallRadius, 3)) {
     for (std::uint32_t y = 0; y < kSide; ++y)
       for (const std::uint32_t x : {0u, kSide - 1}) cloth_.pin(y * kSide + x);
     for (Vec3& p : cloth_.positions()) p[2] += kHeight;
@@ -37,11 +37,11 @@ class TearingCloth : public Simulation {
   void advance(std::vector<Scene::Body>& bodies) override {
     constexpr int kSteps = 20;
     constexpr double kStep = kTimeStep / kSteps;
-    const bool touches = distance_to_cloth() < kRadius + 2 * cloth_.thickness();
+    const bool touches = distance_to_cloth() < kBallRadius + 2 * cloth_.thickness();
     for (int i = 0; i < kSteps; ++i) {
       speed_ = touches ? kPushingSpeed : speed_ + kStep * kGravity;
       centre_[2] -= kStep * speed_;
-      if (centre_[2] < kRadius) centre_[2] = kRadius, speed_ = 0;
+      if (centre_[2] < kBallRadius) centre_[2] = kBallRadius, speed_ = 0;
       solids_[0].refit(ball_at(centre_).positions);
       cloth_.step(kStep, solids_);
     }
@@ -65,7 +65,7 @@ class TearingCloth : public Simulation {
 
   Cloth cloth_;
   const Mesh ball_;  ///< around the origin
-  Vec3 centre_{0.03, 0.02, kHeight + kRadius + 0.08};
+  Vec3 centre_{0.03, 0.02, kHeight + kBallRadius + 0.08};
   double speed_ = 0;
   std::unique_ptr<Sites> cloth_sites_;
   std::vector<Sites> solids_;  ///< the ball and the floor

@@ -10,7 +10,7 @@
 namespace sdm::paper {
 namespace {
 
-constexpr double kLeft = 14, kTop = 36, kMost = 640;
+constexpr double kSide = 14, kTitleHeight = 36, kMost = 640;
 
 std::string draw(std::string_view title, const std::vector<std::array<Vec2, 3>>& faces,
                  const std::vector<Vec2>& samples, double per_unit) {
@@ -21,11 +21,11 @@ std::string draw(std::string_view title, const std::vector<std::array<Vec2, 3>>&
   const double size = std::min(per_unit, kMost / (hi[0] - lo[0]));
   const double title_width = 8.0 * static_cast<double>(title.size());
   const auto place = [&](const Vec2& p) {
-    return Vec2{kLeft + size * (p[0] - lo[0]), kTop + size * (hi[1] - p[1])};
+    return Vec2{kSide + size * (p[0] - lo[0]), kTitleHeight + size * (hi[1] - p[1])};
   };
-  Svg svg(2 * kLeft + std::max(title_width, size * (hi[0] - lo[0])), kTop + size * (hi[1] - lo[1]) + 14,
-          title);
-  svg.text({kLeft, 22}, title, 14, "start", true);
+  Svg svg(2 * kSide + std::max(title_width, size * (hi[0] - lo[0])),
+          kTitleHeight + size * (hi[1] - lo[1]) + 14, title);
+  svg.text({kSide, 22}, title, 14, "start", true);
   for (const auto& [a, b, c] : faces) {
     const Vec2 corners[] = {place(a), place(b), place(c)};
     svg.polygon(corners, {150, 190, 230}, 0.5, {kAxisColor, 1});

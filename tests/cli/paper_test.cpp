@@ -15,13 +15,13 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kAccuracy = 2e-6;  // of the engines, relative to the diagonal
 
 /// Calls visit(path, value) for each value that is not an object or an array.
-void for_each_value(const Json& json, const std::string& path,
-                    const std::function<void(const std::string&, const Json&)>& visit) {
+void for_each_value(const OrderedJson& json, const std::string& path,
+                    const std::function<void(const std::string&, const OrderedJson&)>& visit) {
   if (json.is_object())
     for (const auto& [key, value] : json.items()) for_each_value(value, path + "/" + key, visit);
   else if (json.is_array())
@@ -31,14 +31,14 @@ void for_each_value(const Json& json, const std::string& path,
     visit(path, json);
 }
 
-Json without_times(const Json& json) {
+OrderedJson without_times(const OrderedJson& json) {
   if (json.is_array()) {
-    Json result = Json::array();
-    for (const Json& value : json) result.push_back(without_times(value));
+    OrderedJson result = OrderedJson::array();
+    for (const OrderedJson& value : json) result.push_back(without_times(value));
     return result;
   }
   if (!json.is_object()) return json;
-  Json result = Json::object();
+  OrderedJson result = OrderedJson::object();
   for (const auto& [key, value] : json.items())
     if (!key.ends_with("_ms")) result[key] = without_times(value);
   return result;
@@ -48,7 +48,7 @@ Json without_times(const Json& json) {
 /// should be.
 struct PaperReport : ::testing::Test {
   TemporaryFolder folder;
-  Json report;
+  OrderedJson report;
 
   void run(const std::vector<std::string>& keys) {
     const std::string out = folder / "out";
@@ -57,7 +57,7 @@ struct PaperReport : ::testing::Test {
     const Outcome outcome = run_sdm({"paper", "-o", out, "--quick", "--only", only});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     ASSERT_THAT(names_in(out), ElementsAre("report.html", "report.json"));
-    report = Json::parse(contents(out + "/report.json"));
+    report = OrderedJson::parse(contents(out + "/report.json"));
     check_json(keys);
     check_page(contents(out + "/report.html"), keys);
   }
@@ -73,7 +73,7 @@ struct PaperReport : ::testing::Test {
     // NaN and infinite numbers are null in JSON; null are only the results of the gl engine without a device,
     // and errors at a cost that no row of a method has.
     const bool gl = !report["machine"]["opengl"].is_null();
-    for_each_value(report, "", [&](const std::string& path, const Json& value) {
+    for_each_value(report, "", [&](const std::string& path, const OrderedJson& value) {
       EXPECT_TRUE(!gl || !value.is_null() || path.find("/equal_") != std::string::npos) << path;
     });
   }
@@ -84,12 +84,14 @@ struct PaperReport : ::testing::Test {
     for (const char* no_number : {">nan", " nan", ">inf", " inf "})
       EXPECT_EQ(page.find(no_number), std::string::npos) << no_number;
     EXPECT_THAT(page, HasSubstr(report["machine"]["processor"].get<std::string>()));
-    const Json& opengl = report["machine"]["opengl"];
+    const OrderedJson& opengl = report["machine"]["opengl"];
     if (opengl.is_null() || !opengl["software"].get<bool>()) return;
     EXPECT_THAT(page, HasSubstr("not a GPU"));
   }
 
-  [[nodiscard]] const Json& measured(const std::string& key) const { return report.at(key).at("measured"); }
+  [[nodiscard]] const OrderedJson& measured(const std::string& key) const {
+    return report.at(key).at("measured");
+  }
 };
 
 // Sanitizers make most figures take minutes.
@@ -104,7 +106,7 @@ TEST_F(PaperReport, MapsAreExactAtTheirSamples) {
   ASSERT_NO_FATAL_FAILURE(run({"figure1", "figure3", "figure7", "polygon_count"}));
   for (const std::string key : {"figure1", "figure3", "figure7", "polygon_count"}) {
     EXPECT_LE(measured(key)["error_at_samples"], kAccuracy) << key;
-    const Json gl = measured(key).value("gl_error_at_samples", Json());
+    const OrderedJson gl = measured(key).value("gl_error_at_samples", OrderedJson());
     EXPECT_LE(gl.is_null() ? 0 : gl.get<double>(), kAccuracy) << key;
   }
 }
@@ -123,7 +125,7 @@ TEST_F(PaperReport, BoundsOnTheSpacingOfSamplesHoldAndThePapersDoesNot) {
   std::vector<std::string> keys{"figure5"};
   if (!kSlow) keys.emplace_back("figure6");
   ASSERT_NO_FATAL_FAILURE(run(keys));
-  const Json& m = measured("figure5");
+  const OrderedJson& m = measured("figure5");
   EXPECT_EQ(m["bounds_hold"], true);
   for (const char* kind : {"scale", "shear"})
     for (std::size_t i = 0; i < m[kind]["measured"].size(); ++i) {
@@ -136,7 +138,7 @@ TEST_F(PaperReport, BoundsOnTheSpacingOfSamplesHoldAndThePapersDoesNot) {
   EXPECT_GT(violated, 0);
   EXPECT_LT(violated, report["figure5"]["paper"]["shear_threshold"]);
   // The corrected threshold is the same shear in every unit, the printed one is not.
-  const Json& conditions = m["conditions"];
+  const OrderedJson& conditions = m["conditions"];
   for (const char* unit : {"cm", "mm"}) {
     EXPECT_DOUBLE_EQ(conditions[unit]["corrected_shear"], conditions["m"]["corrected_shear"]);
     EXPECT_NE(conditions[unit]["printed_shear"], conditions["m"]["printed_shear"]);
@@ -176,7 +178,7 @@ TEST_F(PaperReport, CullingChangesNoMapAndCountsAddUp) {
   for (const auto& [key, entry] : measured("culling").items()) {
     if (!entry.is_object()) continue;
     for (const char* bounds : {"with_bounds", "without_bounds"}) {
-      const Json& c = entry[bounds];
+      const OrderedJson& c = entry[bounds];
       EXPECT_EQ(c["pairs"].get<std::uint64_t>(),
                 c["culled_by_bound"].get<std::uint64_t>() + c["culled_by_obb"].get<std::uint64_t>() +
                     c["clipped_away"].get<std::uint64_t>() + c["polygons"].get<std::uint64_t>())
@@ -186,8 +188,8 @@ TEST_F(PaperReport, CullingChangesNoMapAndCountsAddUp) {
   }
   for (const char* body : {"letter", "box"})
     for (const char* pairs : {"all_pairs", "winning_pairs"}) {
-      const Json& m = measured("stencil")[body];
-      const Json& hits = m[pairs]["hit_percent"];
+      const OrderedJson& m = measured("stencil")[body];
+      const OrderedJson& hits = m[pairs]["hit_percent"];
       for (std::size_t i = 1; i < hits.size(); ++i) EXPECT_GE(hits[i], hits[i - 1]) << body << pairs;
       EXPECT_LE(hits.back().get<double>(), m[std::string("most_hits_of_") + pairs].get<double>() + 1e-9)
           << body << pairs;
@@ -208,12 +210,12 @@ TEST_F(PaperReport, TheCorrectedAlgorithmIsExactAndThePrintedOneIsNot) {
 
 TEST(PaperCommand, IsDeterministicApartFromTimes) {
   const TemporaryFolder folder;
-  std::array<Json, 2> reports;
+  std::array<OrderedJson, 2> reports;
   for (int i = 0; i < 2; ++i) {
     const std::string out = folder / std::to_string(i);
     const Outcome run = run_sdm({"paper", "-o", out, "--quick", "--only", "figure2,figure4,figure5"});
     ASSERT_EQ(run.code, 0) << run.err;
-    reports[i] = without_times(Json::parse(contents(out + "/report.json")));
+    reports[i] = without_times(OrderedJson::parse(contents(out + "/report.json")));
   }
   EXPECT_EQ(reports[0], reports[1]);
 }
@@ -224,7 +226,7 @@ TEST(PaperCommand, RunsWithoutAnOpenGLDevice) {
   const Outcome run = run_sdm({"paper", "-o", out, "--quick", "--only", "figure1,culling"},
                               {.environment = {"__EGL_VENDOR_LIBRARY_DIRS=/nowhere"}});
   ASSERT_EQ(run.code, 0) << run.err;
-  const Json report = Json::parse(contents(out + "/report.json"));
+  const OrderedJson report = OrderedJson::parse(contents(out + "/report.json"));
   EXPECT_TRUE(report["machine"]["opengl"].is_null());
   EXPECT_TRUE(report["culling"]["measured"].is_null());
   EXPECT_TRUE(report["figure1"]["measured"]["gl_maps_ms"].is_null());
