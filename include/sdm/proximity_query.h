@@ -59,8 +59,8 @@ struct Contact {
 /// Options of a ProximityQuery.
 struct ProximityOptions {
   /// The bounds on the penetration depth are at most this far apart, or 1/1000 of the diagonal of the smaller
-  /// body's box if it is 0; ≥ 0, in units of the meshes. Errors of computed distances, and bounds on
-  /// distances to the boundary of a solid that intersects itself, are added.
+  /// body's box if it is 0; ≥ 0, in units of the meshes. Errors of computed distances are added, and where
+  /// faces of a solid that intersects itself nearly coincide, bounds on distances to its boundary.
   double depth_precision = 0;
   static constexpr double kDepthPrecision = 1e-3;
   /// Contacts are reported for points inside the other body or within this distance of it; ≥ 0, in units of
@@ -140,8 +140,8 @@ class SDM_API ProximityQuery {
   /// So a box on a plate has contacts at its corners, and beams that cross where their edges cross. A corner
   /// whose closest point is on a face that cannot push it, as the side of a box that it is flush with, is in
   /// contact with the nearest face that can, up to 1/8 of the size of the smaller body below that face.
-  /// Contacts of a point inside a body that intersects itself are with a point of its boundary, closest to
-  /// about 1/1000 of its size, or else with the closest point of its surface. Sorted by patch, the patch with
+  /// Contacts of a point inside a body that intersects itself are with the closest point of its boundary, or,
+  /// if many faces meet there, with that of its surface. Sorted by patch, the patch with
   /// the deepest contact first, and by decreasing depth within a patch. Contacts belong to the same patch if
   /// the boxes of the faces at their vertices and edges intersect: a connected contact region is never
   /// divided. Uses up to two cores; the result does not depend on how many.

@@ -50,8 +50,7 @@ Sides FaceSides::find(std::uint32_t face) const {
   const auto& [a, b, c] = solid_->mesh.triangles[face];
   const std::vector<Vec3>& p = solid_->mesh.positions;
   const Vec3 beside = (1.0 / 3) * (p[a] + p[b] + p[c]) + offset_ * solid_->normals.face[face];
-  const int outer = winding(*solid_, {}, beside), inner = outer + 1;
-  return outer == 0 ? Sides::boundary : inner == 0 ? Sides::reversed : Sides::buried;
+  return sides_by_winding(winding(*solid_, {}, beside));
 }
 
 // No face comes between those of an edge if one of them is met by none.

@@ -19,6 +19,11 @@ enum class Sides : std::uint8_t {
   mixed      ///< not the same everywhere, because other faces intersect the piece or are too near
 };
 
+/// Those of a face, by the winding number on its outer side: that of the inner side is larger by 1.
+[[nodiscard]] inline Sides sides_by_winding(int outer) {
+  return outer == 0 ? Sides::boundary : outer == -1 ? Sides::reversed : Sides::buried;
+}
+
 /// The sides of the faces of a solid, each found on first use. The winding number is constant on one side of
 /// a face that no other face meets, and passes to neighbours across their common edge. Thread-safe; results
 /// do not depend on the order of calls.
@@ -31,6 +36,10 @@ class FaceSides {
 
   /// Cost: O(log n) for the first call, constant for others.
   [[nodiscard]] Sides of_face(std::uint32_t face) const;
+  /// How far beside a face that no other one meets its sides are determined: more than rounding, less than
+  /// the distance of other faces. 0 if no such length exists, in a mesh that is far from the origin: then all
+  /// sides are `mixed`.
+  [[nodiscard]] double offset() const { return offset_; }
   /// The sides of the faces around a site, if they are all the same: then the pseudonormal of the site
   /// separates these sides. Otherwise `mixed`, also for a vertex where several fans of faces touch.
   [[nodiscard]] Sides of_site(SiteType type, std::uint32_t site) const;
@@ -41,8 +50,6 @@ class FaceSides {
 
   const sites::SitesData* solid_;
   std::size_t count_;
-  /// How far beside a face its sides are determined: more than rounding, less than the distance of other
-  /// faces. 0 if no such length exists, in a mesh that is far from the origin: then all sides are `mixed`.
   double offset_ = 0;
   std::unique_ptr<std::atomic<Sides>[]> sides_;
 };

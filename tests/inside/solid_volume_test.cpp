@@ -50,10 +50,10 @@ TEST(SolidVolume, CountsOverlapsOnce) {
   const Mesh cube = test::placed(test::cube(1), "scale:0.5");
   Mesh bar = cube;
   for (Vec3& p : bar.positions) p = {p[0] + 0.5, 0.5 * p[1], 0.5 * p[2]};
-  expect_between(test::joined(cube, bar), 1.125, 0.02);
-  expect_between(test::joined(cube, test::placed(cube, "translate:0.5:0.5:0.5")), 2 - 0.125, 0.02);
+  expect_between(test::joined(cube, bar), 1.125, 1e-12);
+  expect_between(test::joined(cube, test::placed(cube, "translate:0.5:0.5:0.5")), 2 - 0.125, 1e-12);
   // Their squares have a regular octagon in common; two sides of each lie in the same planes.
-  expect_between(test::joined(cube, test::placed(cube, "rotate:45:0:0")), 4 - 2 * std::numbers::sqrt2, 0.05);
+  expect_between(test::joined(cube, test::placed(cube, "rotate:45:0:0")), 4 - 2 * std::numbers::sqrt2, 1e-6);
 }
 
 // A part that is turned inside out is inside all the same: the bounds hold the integral of |z + 0.4| over a
@@ -66,7 +66,7 @@ TEST(SolidVolume, OfAMeshThatPassesThroughItself) {
   const VolumeBounds bounds = solid_volume(Sites(mesh));
   EXPECT_GT(bounds.upper, 0.99 * volume);  // the sphere is a polyhedron
   EXPECT_LT(bounds.lower, volume);
-  EXPECT_LT(bounds.upper - bounds.lower, 0.02 * volume);
+  EXPECT_LT(bounds.upper - bounds.lower, 1e-6 * volume);
 }
 
 TEST(SolidVolume, OpenMeshesHaveNone) {
