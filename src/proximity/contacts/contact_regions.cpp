@@ -5,14 +5,20 @@
 
 #include "core/geometry/sweep.h"
 #include "core/geometry/vec.h"
+#include "engine/cpu/cpu_engine.h"
+#include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
 namespace {
 
 // A node is deep if its centre is inside by more than so many radii.
 constexpr double kDeep = 2;
+constexpr double kRounding = 1e-9;  // of distances, relative to themselves
+// Nodes of a part with at most so many leaves are not divided.
+constexpr std::uint32_t kFewLeaves = 16;
 
 using hierarchy::WideTree;
+using Kind = ContactRegion::Kind;
 
 }  // namespace
 
@@ -27,29 +33,54 @@ void ContactRegions::find(const shape::Body& on, const shape::Body& other, const
     Node node = stack_.back();
     stack_.pop_back();
     const shape::ContactPart& place = on.contact_parts()[node.source];
-    ContactRegion region{.node = place.part, .first_leaf = place.first_leaf, .last_leaf = place.last_leaf};
+    const bool in_part = place.part != kNone, leaf = WideTree::is_leaf(node.child);
     const std::uint32_t near_face = find_near_face(place);
     if (near_face != kNone) node.face = near_face;
-    if (place.part == kNone) {
-      if (near_face == kNone && !WideTree::is_leaf(node.child)) {
-        const SurfacePoint centre = measure_near(other, node.ball.centre, node.face);
-        if (centre.distance > node.ball.radius + margin) continue;
-        node.face = centre.face;
-        if (centre.distance < -kDeep * node.ball.radius)
-          region.kind = ContactRegion::Kind::deep, region.node = node.source;
-      }
-      if (region.kind != ContactRegion::Kind::deep) {
-        if (!WideTree::is_leaf(node.child)) {
-          open(node);
-          continue;
-        }
-        region.kind = ContactRegion::Kind::coarse;
-      }
+    Kind kind = in_part ? Kind::part : Kind::coarse;
+    bool whole = leaf || (in_part && place.last_leaf - place.first_leaf <= kFewLeaves);
+    if (!whole && near_face == kNone) {
+      const Position position = find_position(node, in_part ? 1 : kDeep);
+      if (position == Position::free) continue;
+      whole = position == Position::inside;
+      if (whole) kind = in_part ? Kind::inside : Kind::deep;
     }
-    region.near_face = node.face;
-    regions_.push_back(region);
+    if (whole)
+      regions_.push_back({.kind = kind,
+                          .node = in_part ? place.part : node.source,
+                          .source = node.source,
+                          .first_leaf = place.first_leaf,
+                          .last_leaf = place.last_leaf,
+                          .near_face = node.face});
+    else
+      open(node);
   }
   std::ranges::sort(regions_, {}, [](const ContactRegion& r) { return std::pair(r.node, r.first_leaf); });
+}
+
+// Whether all of the node is out of contact, or its centre is inside by more than `depth` radii.
+ContactRegions::Position ContactRegions::find_position(Node& node, double depth) const {
+  const sites::SitesData& sites = internals(other_->sites());
+  const Vec3& centre = node.ball.centre;
+  const double free = node.ball.radius + margin_, inside = depth * node.ball.radius;
+  const double known = node.face == kNone ? std::numeric_limits<double>::infinity()
+                                          : sites::closest_on_face(sites, node.face, centre).distance;
+  if (known <= std::min(free, inside)) return Position::undecided;
+  // Sets node.known, or returns false if the surface is farther away.
+  const auto is_within = [&](double reach) {
+    const ClosestPoint closest = cpu::cpu_closest(sites, centre, reach);
+    if (closest.type == SiteType::none) return false;
+    node.face = sites.face_of(closest.type, closest.site);
+    node.known = {centre, closest.distance, other_->inside()(centre, closest)};
+    return true;
+  };
+  if (!is_within(free)) {
+    // The surface does not meet this ball, which is on the side of any other such ball that it overlaps.
+    if (!(norm(centre - node.known.centre) < (1 - kRounding) * (free + node.known.radius)))
+      (void)is_within(std::numeric_limits<double>::infinity());
+    if (!node.known.inside) return Position::free;
+    if (inside <= free || !is_within(inside)) return Position::inside;
+  }
+  return node.known.inside && node.known.radius > inside ? Position::inside : Position::undecided;
 }
 
 // A face of the other body that is near to a face of the node, if any.
@@ -66,7 +97,7 @@ void ContactRegions::open(const Node& parent) {
   for (std::uint32_t i = 0; i < wide.count; ++i) {
     const shape::Ball ball = shape::ball_of_child(sites, parent.child, i, *to_other_);
     if (box_distance({ball.centre, ball.centre}, other_->box()) > ball.radius + margin_) continue;
-    stack_.push_back({wide.child[i], wide.source[i], ball, parent.face});
+    stack_.push_back({wide.child[i], wide.source[i], ball, parent.face, parent.known});
   }
 }
 

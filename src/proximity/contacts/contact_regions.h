@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,12 +17,16 @@ struct ContactRegion {
   enum class Kind : std::uint8_t {
     part,    ///< in one of shape::contact_parts()
     coarse,  ///< a leaf of large faces, whose vertices are contacts by themselves
+    inside,  ///< in a part, inside the other body as a whole
     deep     ///< farther inside the other body than its own size
   };
   Kind kind = Kind::part;
   std::uint32_t node = 0;                       ///< of the binary tree: the part, or the deep node
+  std::uint32_t source = 0;                     ///< of the binary tree: the region itself
   std::uint32_t first_leaf = 0, last_leaf = 0;  ///< it has leaves first_leaf ... last_leaf − 1
   std::uint32_t near_face = kNone;  ///< of the other body: the one closest to its centre, if known
+
+  [[nodiscard]] bool is_inside() const { return kind == Kind::inside || kind == Kind::deep; }
 };
 
 /// Finds them; reuses its memory.
@@ -37,12 +42,21 @@ class ContactRegions {
   [[nodiscard]] std::span<const ContactRegion> regions() const { return regions_; }
 
  private:
+  /// A ball that the surface of the other body does not meet.
+  struct OneSided {
+    Vec3 centre{};
+    double radius = -std::numeric_limits<double>::infinity();  ///< unknown
+    bool inside = false;
+  };
   /// A node of the wide tree, or a leaf; a ball that contains it, in the frame of the other body.
   struct Node {
     std::uint32_t child = 0, source = 0;
     shape::Ball ball{};
-    std::uint32_t face = kNone;  ///< of the other body, close to this node or to the one above it
+    std::uint32_t face = kNone;  ///< of the other body, close to this node or to one above it
+    OneSided known{};            ///< about the centre of this node or of one above it
   };
+  enum class Position : std::uint8_t { free, inside, undecided };
+  [[nodiscard]] Position find_position(Node& node, double depth) const;
   void open(const Node& parent);
   [[nodiscard]] std::uint32_t find_near_face(const shape::ContactPart& node) const;
 

@@ -9,45 +9,51 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/geometry/triangle_pair.h"
 #include "core/geometry/vec.h"
-#include "core/geometry/vec_lanes-inl.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::contacts::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace core::HWY_NAMESPACE;
 
-// Lowers bounds to the distances of points from a triangle, or from its sides if it has no reliable normal.
-void BoundByTriangle(const Corners& at, bool flat, const double* x, const double* y, const double* z,
-                     size_t count, double* bound) {
-  const Doubles d;
-  Vec3 side[3];
-  double inverse[3];
-  for (int k = 0; k < 3; ++k) {
-    side[k] = at[(k + 1) % 3] - at[k];
-    const double squared = squared_norm(side[k]);
-    inverse[k] = squared > 0 ? 1 / squared : 0;
-  }
-  const Vec3 normal = normalized(sdm::cross(side[0], side[1]));
-  Vec3 wall[3];
-  for (int k = 0; k < 3; ++k) wall[k] = sdm::cross(normal, side[k]);
-  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const Vec3v point{hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i)};
-    Vec squared = hn::Inf(d), least = hn::Set(d, flat ? 1.0 : -1.0);
+using Lanes = hn::CappedTag<float, DeepestVertex::kLanes>;
+using Vec = hn::Vec<Lanes>;
+
+HWY_INLINE Vec dot(const Vec (&a)[3], const float* b) {
+  const Lanes d;
+  return hn::MulAdd(a[2], hn::Set(d, b[2]),
+                    hn::MulAdd(a[1], hn::Set(d, b[1]), hn::Mul(a[0], hn::Set(d, b[0]))));
+}
+
+// Lowers the bounds of vertices to their distances from a triangle, or from its sides if it has no reliable
+// normal.
+void BoundByTriangle(const DeepestVertex::UnitTriangle& t, DeepestVertex::Rows rows, size_t first,
+                     size_t last) {
+  const Lanes d;
+  for (size_t i = first; i < last; i += hn::Lanes(d)) {
+    Vec squared = hn::Inf(d), least = hn::Set(d, t.flat ? 1.0f : -1.0f), height = hn::Inf(d);
     for (int k = 0; k < 3; ++k) {
-      const Vec3v from = sub(point, splat(at[k])), along = splat(side[k]);
-      const Vec t =
-          hn::Min(hn::Max(hn::Mul(dot(from, along), hn::Set(d, inverse[k])), hn::Zero(d)), hn::Set(d, 1.0));
-      const Vec3v rest = sub_mul(from, t, along);
-      squared = hn::Min(squared, dot(rest, rest));
-      least = hn::Min(least, dot(from, splat(wall[k])));
+      Vec rest[3];
+      for (int j = 0; j < 3; ++j) rest[j] = hn::Sub(hn::LoadU(d, rows.at[j] + i), hn::Set(d, t.corner[k][j]));
+      if (k == 0) height = hn::Abs(dot(rest, t.normal));
+      least = hn::Min(least, dot(rest, t.wall[k]));
+      const Vec along = hn::Min(hn::Max(hn::Mul(dot(rest, t.side[k]), hn::Set(d, t.inverse[k])), hn::Zero(d)),
+                                hn::Set(d, 1.0f));
+      for (int j = 0; j < 3; ++j) rest[j] = hn::NegMulAdd(along, hn::Set(d, t.side[k][j]), rest[j]);
+      squared = hn::Min(
+          squared, hn::MulAdd(rest[2], rest[2], hn::MulAdd(rest[1], rest[1], hn::Mul(rest[0], rest[0]))));
     }
-    const Vec height = hn::Abs(dot(sub(point, splat(at[0])), splat(normal)));
     const Vec distance = hn::IfThenElse(hn::Gt(least, hn::Zero(d)), height, hn::Sqrt(squared));
-    hn::StoreU(hn::Min(hn::LoadU(d, bound + i), distance), d, bound + i);
+    hn::StoreU(hn::Min(hn::LoadU(d, rows.bound + i), distance), d, rows.bound + i);
   }
+}
+
+// The largest of the bounds, whose number is a multiple of the lanes.
+float LargestBound(const float* bound, size_t count) {
+  const Lanes d;
+  Vec largest = hn::Set(d, -std::numeric_limits<float>::infinity());
+  for (size_t i = 0; i < count; i += hn::Lanes(d)) largest = hn::Max(largest, hn::LoadU(d, bound + i));
+  return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
 }  // namespace sdm::contacts::HWY_NAMESPACE
@@ -58,93 +64,123 @@ namespace sdm::contacts {
 namespace {
 
 HWY_EXPORT(BoundByTriangle);
+HWY_EXPORT(LargestBound);
 
-constexpr double kRounding = 1e-12;  // of distances, relative to themselves
-
-std::size_t in_whole_lanes(std::size_t count) {
-  constexpr std::size_t kLanes = 8;
-  return (count + kLanes - 1) / kLanes * kLanes;
-}
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// Of distances in single precision, relative to the coordinates; of those of single faces, relative to
+// themselves.
+constexpr float kUnitRounding = 4e-6f;
+constexpr double kRounding = 1e-12;
+constexpr double kShortest = 1e-30;  // squared side that has an inverse in single precision
 
 }  // namespace
 
-void DeepestVertex::start(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other) {
-  constexpr double kUnitRounding = 1e-6;
+void DeepestVertex::start(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other,
+                          const mesh::Similarity& from_other) {
   on_ = &on, other_ = &other, to_other_ = &to_other;
   const UnitFrame& frame = internals(on.sites()).frame;
-  const double unit = 1 / frame.scale;
-  from_unit_ = to_other.map * Affine{{{{unit, 0, 0}, {0, unit, 0}, {0, 0, unit}}}, frame.origin};
-  rounding_ = kUnitRounding * unit * to_other.scale;
+  scale_ = frame.scale * from_other.scale;
+  to_unit_ = from_other.map;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (double& x : to_unit_.rows[k]) x *= frame.scale;
+    to_unit_.offset[k] = (to_unit_.offset[k] - frame.origin[k]) * frame.scale;
+  }
   best_ = {};
-  vertices_.clear(), faces_.clear();
-  x_.clear(), y_.clear(), z_.clear();
+  vertices_.clear(), groups_.clear(), faces_.clear();
+  for (std::vector<float>& row : at_) row.clear();
 }
 
-// From the coordinates in single precision, which follow each other in memory.
-void DeepestVertex::add(std::uint32_t vertex) {
-  const auto& [x, y, z] = internals(on_->sites()).regions.points[vertex].point;
-  const Vec3 at = from_unit_(Vec3{x, y, z});
-  vertices_.push_back(vertex);
-  x_.push_back(at[0]), y_.push_back(at[1]), z_.push_back(at[2]);
+void DeepestVertex::start_group(std::uint32_t face) {
+  groups_.push_back({static_cast<std::uint32_t>(vertices_.size()), face});
+}
+
+void DeepestVertex::add(std::uint32_t first, std::uint32_t last) {
+  const sites::Regions& regions = internals(on_->sites()).regions;
+  const std::size_t before = vertices_.size(), after = before + (last - first);
+  vertices_.resize(after);
+  for (std::vector<float>& row : at_) row.resize(after);
+  for (std::uint32_t vertex = first; vertex < last; ++vertex) {
+    const std::size_t i = before + (vertex - first);
+    vertices_[i] = vertex;
+    for (std::size_t k = 0; k < 3; ++k) at_[k][i] = regions.points[vertex].point[k];
+  }
 }
 
 void DeepestVertex::add(std::uint32_t vertex, const SurfacePoint& point) {
   consider(vertex, point);
-  bound_by(point.face);
-}
-
-void DeepestVertex::bound_by(std::uint32_t face) {
-  if (std::ranges::find(faces_, face) == faces_.end()) faces_.push_back(face);
 }
 
 void DeepestVertex::consider(std::uint32_t vertex, const SurfacePoint& point) {
   if (point.distance < best_.point.distance) best_ = {vertex, point};
+  if (std::ranges::find(faces_, point.face) == faces_.end()) faces_.push_back(point.face);
 }
 
-double DeepestVertex::exact_bound(const Vec3& at) const {
-  double bound = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t face : faces_)
-    bound = std::min(bound, sites::closest_on_face(internals(other_->sites()), face, at).distance);
+DeepestVertex::UnitTriangle DeepestVertex::unit_triangle(std::uint32_t face) {
+  const sites::SitesData& sites = internals(other_->sites());
+  UnitTriangle t{.flat = sites.sliver[face] == 0};
+  std::array<Vec3, 3> corner, side;
+  for (std::size_t k = 0; k < 3; ++k)
+    corner[k] = to_unit_(sites.mesh.positions[sites.mesh.triangles[face][k]]);
+  for (std::size_t k = 0; k < 3; ++k) side[k] = corner[(k + 1) % 3] - corner[k];
+  const Vec3 normal = normalized(cross(side[0], side[1]));
+  double largest = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double squared = squared_norm(side[k]);
+    // Of length 1, so that the products below are distances.
+    const Vec3 wall = normalized(cross(normal, side[k]));
+    t.inverse[k] = static_cast<float>(squared > kShortest ? 1 / squared : 0);  // 0: by the corner
+    t.normal[k] = static_cast<float>(normal[k]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      t.corner[k][j] = static_cast<float>(corner[k][j]);
+      t.side[k][j] = static_cast<float>(side[k][j]);
+      t.wall[k][j] = static_cast<float>(wall[j]);
+      largest = std::max(largest, std::abs(corner[k][j]));
+    }
+  }
+  rounding_ = std::max(rounding_, kUnitRounding * static_cast<float>(largest));
+  return t;
+}
+
+void DeepestVertex::bound(std::uint32_t face, std::size_t first, std::size_t last) {
+  HWY_DYNAMIC_DISPATCH(BoundByTriangle)
+  (unit_triangle(face), {{at_[0].data(), at_[1].data(), at_[2].data()}, bound_.data()}, first, last);
+}
+
+// By the faces found and that of its group, of which one is probably the closest.
+double DeepestVertex::exact_bound(const Vec3& at, std::size_t i) const {
+  const auto distance = [&](std::uint32_t face) {
+    return sites::closest_on_face(internals(other_->sites()), face, at).distance;
+  };
+  const std::uint32_t group = std::prev(std::ranges::upper_bound(groups_, i, {}, &Group::first))->face;
+  double bound = group == kNone ? std::numeric_limits<double>::infinity() : distance(group);
+  for (const std::uint32_t face : faces_) bound = std::min(bound, distance(face));
   return bound;
 }
 
 DeepestVertex::Found DeepestVertex::find(double margin) {
-  const sites::SitesData& sites = internals(other_->sites());
-  std::size_t count = vertices_.size();
-  for (std::vector<double>* row : {&x_, &y_, &z_}) row->resize(in_whole_lanes(count));
-  bound_.assign(in_whole_lanes(count), std::numeric_limits<double>::infinity());
+  const std::size_t count = vertices_.size();
+  const std::size_t padded = (count + kLanes - 1) / kLanes * kLanes;
+  // A group ends in the middle of a register.
+  for (std::vector<float>& row : at_) row.resize(padded + kLanes);
+  bound_.assign(padded + kLanes, -kInfinity);
+  std::fill_n(bound_.begin(), count, kInfinity);
+  rounding_ = 0;
+  for (std::size_t i = 0; i < groups_.size(); ++i)
+    if (groups_[i].face != kNone)
+      bound(groups_[i].face, groups_[i].first, i + 1 < groups_.size() ? groups_[i + 1].first : count);
+  const sites::SitesData& own = internals(on_->sites());
   std::size_t used = 0;
-  while (count > 0) {
-    for (; used < faces_.size(); ++used) {
-      const auto& [a, b, c] = sites.mesh.triangles[faces_[used]];
-      HWY_DYNAMIC_DISPATCH(BoundByTriangle)
-      ({sites.mesh.positions[a], sites.mesh.positions[b], sites.mesh.positions[c]},
-       sites.sliver[faces_[used]] == 0, x_.data(), y_.data(), z_.data(), count, bound_.data());
-    }
-    // Removes those that are not deeper, and takes the one that may be deepest.
+  while (true) {
+    for (; used < faces_.size(); ++used) bound(faces_[used], 0, count);
+    const float largest = HWY_DYNAMIC_DISPATCH(LargestBound)(bound_.data(), padded);
     const double enough = -best_.point.distance * (1 + kRounding);
-    std::size_t kept = 0, deepest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (bound_[i] + rounding_ <= enough) continue;
-      vertices_[kept] = vertices_[i];
-      x_[kept] = x_[i], y_[kept] = y_[i], z_[kept] = z_[i], bound_[kept] = bound_[i];
-      if (bound_[kept] > bound_[deepest]) deepest = kept;
-      ++kept;
-    }
-    count = kept;
-    if (count == 0) break;
+    if (largest == -kInfinity || largest + rounding_ <= enough * scale_) break;
+    const std::size_t deepest = std::ranges::find(bound_, largest) - bound_.begin();
+    bound_[deepest] = -kInfinity;
     const std::uint32_t vertex = vertices_[deepest];
-    const sites::SitesData& own = internals(on_->sites());
     const Vec3 at = to_other_->map(own.mesh.positions[own.regions.points[vertex].vertex]);
-    if (const double bound = exact_bound(at); bound > enough) {
-      const SurfacePoint point = measure(*other_, at, bound);
-      consider(vertex, point);
-      bound_by(point.face);
-    }
-    --count;
-    vertices_[deepest] = vertices_[count];
-    x_[deepest] = x_[count], y_[deepest] = y_[count], z_[deepest] = z_[count];
-    bound_[deepest] = bound_[count];
+    if (const double bound = exact_bound(at, deepest); bound > enough)
+      consider(vertex, measure(*other_, at, bound));
   }
   if (!(best_.point.distance <= margin)) return {};
   return best_;

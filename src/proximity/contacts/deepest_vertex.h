@@ -1,6 +1,7 @@
 // The deepest of some vertices inside a body.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,14 +17,16 @@ namespace sdm::contacts {
 /// Reuses its memory.
 class DeepestVertex {
  public:
-  /// Of vertices of `on`, numbered as in the regions of its sites, in `other`. `to_other`: from the frame of
-  /// one to that of the other. All must outlive the search.
-  void start(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other);
-  void add(std::uint32_t vertex);
+  /// Of vertices of `on`, numbered as in the regions of its sites, in `other`. `to_other`, `from_other`: from
+  /// the frame of one to that of the other, and back. Bodies and `to_other` must outlive the search.
+  void start(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other,
+             const mesh::Similarity& from_other);
+  /// A face, or kNone, that is probably close to the vertices added from here on.
+  void start_group(std::uint32_t face);
+  /// Adds the vertices first ... last − 1.
+  void add(std::uint32_t first, std::uint32_t last);
   /// Adds a vertex whose closest point is known.
   void add(std::uint32_t vertex, const SurfacePoint& point);
-  /// A face that is probably close to the vertices.
-  void bound_by(std::uint32_t face);
 
   struct Found {
     std::uint32_t vertex = kNone;
@@ -33,19 +36,38 @@ class DeepestVertex {
   /// the same one, to rounding, any. Cost: linear for each search, of which there are a few.
   [[nodiscard]] Found find(double margin);
 
+  /// For the vector code, in single precision: a face, in the unit frame of `on`.
+  struct UnitTriangle {
+    float corner[3][3] = {}, side[3][3] = {}, wall[3][3] = {};  ///< `wall`: inwards, across a side
+    float normal[3] = {}, inverse[3] = {};  ///< `inverse`: of the squared lengths of sides
+    bool flat = true;                       ///< whether its normal is reliable
+  };
+  struct Rows {
+    std::array<const float*, 3> at;
+    float* bound;
+  };
+  static constexpr std::size_t kLanes = 8;
+
  private:
+  struct Group {
+    std::uint32_t first, face;
+  };
   void consider(std::uint32_t vertex, const SurfacePoint& point);
-  [[nodiscard]] double exact_bound(const Vec3& at) const;
+  [[nodiscard]] UnitTriangle unit_triangle(std::uint32_t face);
+  void bound(std::uint32_t face, std::size_t first, std::size_t last);
+  [[nodiscard]] double exact_bound(const Vec3& at, std::size_t i) const;
 
   const shape::Body *on_ = nullptr, *other_ = nullptr;
   const mesh::Similarity* to_other_ = nullptr;
-  Affine from_unit_;     ///< from the unit frame of `on` to the frame of the other body
-  double rounding_ = 0;  ///< of positions there
+  Affine to_unit_;      ///< from the frame of the other body to the unit frame of `on`
+  double scale_ = 1;    ///< of lengths, by to_unit_
+  float rounding_ = 0;  ///< of bounds
   Found best_;
   std::vector<std::uint32_t> vertices_;
-  std::vector<double> x_, y_, z_;     ///< from single precision; in whole lanes, as are those below
-  std::vector<double> bound_;         ///< of each vertex: no farther from the surface than this
-  std::vector<std::uint32_t> faces_;  ///< that bound them
+  std::array<std::vector<float>, 3> at_;  ///< coordinates, in the unit frame
+  std::vector<float> bound_;              ///< of each vertex: no farther from the surface than this
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> faces_;  ///< found
 };
 
 }  // namespace sdm::contacts

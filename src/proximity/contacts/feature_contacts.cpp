@@ -1,6 +1,7 @@
 #include "proximity/contacts/feature_contacts.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -73,7 +74,7 @@ void FeatureContacts::join_vertices() {
   const sites::Regions& sites = internals(on().sites()).regions;
   vertices_.start(on(), other(), to_other_[side_], limit_);
   for (const ContactRegion& region : regions_.regions()) {
-    if (region.kind == ContactRegion::Kind::deep) continue;
+    if (region.is_inside()) continue;
     for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
       const std::uint32_t near = near_->of_leaf[side_][leaf], first = sites.leaves[leaf];
       for (std::uint32_t i = first; i < sites.leaves[leaf + 1]; ++i)
@@ -99,21 +100,23 @@ void FeatureContacts::find_vertices() {
 // Of a part, or of a region that is deep inside, the deepest vertex.
 void FeatureContacts::find_deepest(Regions part) {
   const sites::SitesData& sites = internals(on().sites());
-  const bool deep = part[0].kind == ContactRegion::Kind::deep;
-  deepest_.start(on(), other(), to_other_[side_]);
+  deepest_.start(on(), other(), to_other_[side_], to_other_[1 - side_]);
+  const auto owned = [&](std::uint32_t leaf) {
+    return sites.regions.owners[sites.regions.leaves[leaf]].vertices;
+  };
   for (const ContactRegion& region : part) {
-    if (region.near_face != kNone) deepest_.bound_by(region.near_face);
-    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
-      const auto owned = [&](std::uint32_t i) {
-        return sites.regions.owners[sites.regions.leaves[i]].vertices;
-      };
-      for (std::uint32_t vertex = owned(leaf); vertex < owned(leaf + 1); ++vertex) {
-        if (!deep && vertices_.is_joined(vertex) && !vertices_.in_contact(vertex)) continue;
-        if (const SurfacePoint* point = deep ? nullptr : vertices_.measured(vertex))
-          deepest_.add(vertex, *point);
-        else
-          deepest_.add(vertex);
-      }
+    deepest_.start_group(region.near_face);
+    const std::uint32_t first = owned(region.first_leaf), last = owned(region.last_leaf);
+    if (region.is_inside()) {
+      deepest_.add(first, last);
+      continue;
+    }
+    for (std::uint32_t vertex = first; vertex < last; ++vertex) {
+      if (vertices_.is_joined(vertex) && !vertices_.in_contact(vertex)) continue;
+      if (const SurfacePoint* point = vertices_.measured(vertex))
+        deepest_.add(vertex, *point);
+      else
+        deepest_.add(vertex, vertex + 1);
     }
   }
   const DeepestVertex::Found found = deepest_.find(limit_);
@@ -131,27 +134,36 @@ void FeatureContacts::find_deepest(Regions part) {
 Box FeatureContacts::box_of(Regions part) {
   const sites::SitesData& sites = internals(on().sites());
   constexpr float kRounding = 1e-6f;
-  hierarchy::FloatBox unit = sites.tree.box(part[0].node);
-  if (part[0].kind != ContactRegion::Kind::deep) {
-    unit.lo.fill(std::numeric_limits<float>::infinity()),
-        unit.hi.fill(-std::numeric_limits<float>::infinity());
-    for (const ContactRegion& region : part)
-      for (std::uint32_t i = sites.regions.leaves[region.first_leaf];
-           i < sites.regions.leaves[region.last_leaf]; ++i) {
-        const auto free = [&](std::uint32_t vertex) {
-          return vertices_.known_side(vertex) == OneSidedVertices::Side::free;
-        };
+  hierarchy::FloatBox unit;
+  unit.lo.fill(std::numeric_limits<float>::infinity());
+  unit.hi.fill(-std::numeric_limits<float>::infinity());
+  const auto extend_by = [&](std::span<const float, 3> lo, std::span<const float, 3> hi) {
+    for (int k = 0; k < 3; ++k)
+      unit.lo[k] = std::min(unit.lo[k], lo[k] - kRounding),
+      unit.hi[k] = std::max(unit.hi[k], hi[k] + kRounding);
+  };
+  for (const ContactRegion& region : part) {
+    if (region.is_inside()) {
+      const hierarchy::FloatBox& whole = sites.tree.box(region.source);
+      extend_by(whole.lo, whole.hi);
+      continue;
+    }
+    const auto free = [&](std::uint32_t vertex) {
+      return vertices_.known_side(vertex) == OneSidedVertices::Side::free;
+    };
+    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
+      const std::uint32_t near = near_->of_leaf[side_][leaf], first = sites.regions.leaves[leaf];
+      for (std::uint32_t i = first; i < sites.regions.leaves[leaf + 1]; ++i) {
         const Triangle& corners = sites.regions.places.corners[i];
-        if (std::ranges::all_of(corners, free)) continue;
+        // The corners of a face that is not near are on the same side.
+        const bool is_near = (near >> (i - first) & 1) != 0;
+        if (free(corners[0]) && (!is_near || (free(corners[1]) && free(corners[2])))) continue;
         for (const std::uint32_t corner : corners)
-          for (int k = 0; k < 3; ++k) {
-            const float x = sites.regions.points[corner].point[k];
-            unit.lo[k] = std::min(unit.lo[k], x - kRounding),
-            unit.hi[k] = std::max(unit.hi[k], x + kRounding);
-          }
+          extend_by(sites.regions.points[corner].point, sites.regions.points[corner].point);
       }
-    if (unit.lo[0] > unit.hi[0]) return {};
+    }
   }
+  if (unit.lo[0] > unit.hi[0]) return {};
   Box box;
   for (const auto& corner : {unit.lo, unit.hi})
     extend(box, sites.frame.origin + (1 / sites.frame.scale) * Vec3{corner[0], corner[1], corner[2]});
@@ -211,40 +223,31 @@ void FeatureContacts::find_support(Feature& feature) {
       support_of_vertex(other(), closest.at, spokes_, limit_, std::max(limit_, kSupportReach * size_));
 }
 
-// Only faces near the other body have edges that pass through it, and only long edges have contacts if an end
-// has.
+// Only edges of near faces pass through the surface or are within the margin of it, and those that have an
+// end in contact have others only if they are long.
 void FeatureContacts::find_edges() {
   const SitesData& sites = internals(on().sites());
   const double shortest = kShortEdge * size_;
-  // In the unit frame of the body, half as long: a disc that contains the face has at least this radius.
-  constexpr double kRounding = 1e-3;
-  const auto least_radius =
-      static_cast<float>((0.5 - kRounding) * shortest * sites.frame.scale / to_other_[side_].scale);
-  for (const ContactRegion& region : regions_.regions()) {
-    if (region.kind == ContactRegion::Kind::deep) continue;
-    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
-      const std::uint32_t near = near_->of_leaf[side_][leaf], first = sites.regions.leaves[leaf];
-      const bool may_be_long = *std::ranges::max_element(sites.regions.bounds[leaf].radius) >= least_radius;
-      if (near == 0 && !may_be_long) continue;
-      for (std::uint32_t i = first; i < sites.regions.leaves[leaf + 1]; ++i) {
-        const bool is_near = (near >> (i - first) & 1) != 0;
-        if (!is_near && !may_be_long) continue;
-        const std::uint32_t face = sites.regions.owners[i].face;
-        for (const std::uint32_t edge : sites.topology.face_edges[face]) {
-          if (edge == kNone || sites.topology.edge_faces(edge)[0] != face) continue;
-          const auto [a, b] = sites.topology.edges[edge];
-          const double length =
-              to_other_[side_].scale * norm(sites.mesh.positions[b] - sites.mesh.positions[a]);
-          if (!(length > 0) || (length <= shortest && !is_near) || !is_sharp(sites, edge)) continue;
-          const Triangle &corners = sites.mesh.triangles[face], &places = sites.regions.places.corners[i];
-          bool touches[2] = {};
-          for (int k = 0; k < 3; ++k) {
-            if (corners[k] == a) touches[0] = vertices_.in_contact(places[k]);
-            if (corners[k] == b) touches[1] = vertices_.in_contact(places[k]);
-          }
-          if (touches[0] || touches[1] ? length <= shortest : !is_near) continue;
-          find_on_edge(edge, touches[0], touches[1], length > shortest ? kSupportReach * size_ : 0);
+  for (const std::uint32_t leaf : near_->leaves[side_]) {
+    const std::uint32_t first = sites.regions.leaves[leaf];
+    for (std::uint32_t near = near_->of_leaf[side_][leaf]; near != 0; near &= near - 1) {
+      const std::uint32_t place = first + static_cast<std::uint32_t>(std::countr_zero(near));
+      const std::uint32_t face = sites.regions.owners[place].face;
+      for (const std::uint32_t edge : sites.topology.face_edges[face]) {
+        if (edge == kNone || sites.topology.edge_faces(edge)[0] != face) continue;
+        const auto [a, b] = sites.topology.edges[edge];
+        const double length =
+            to_other_[side_].scale * norm(sites.mesh.positions[b] - sites.mesh.positions[a]);
+        if (!(length > 0) || !is_sharp(sites, edge)) continue;
+        const Triangle &corners = sites.mesh.triangles[face], &places = sites.regions.places.corners[place];
+        bool touches[2] = {};
+        for (int k = 0; k < 3; ++k) {
+          if (corners[k] == a) touches[0] = vertices_.in_contact(places[k]);
+          if (corners[k] == b) touches[1] = vertices_.in_contact(places[k]);
         }
+        const bool is_long = length > shortest;
+        if ((touches[0] || touches[1]) && !is_long) continue;
+        find_on_edge(edge, touches[0], touches[1], is_long ? kSupportReach * size_ : 0);
       }
     }
   }

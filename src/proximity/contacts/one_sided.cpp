@@ -19,20 +19,22 @@ void OneSidedVertices::start(const shape::Body& on, const shape::Body& other,
 }
 
 void OneSidedVertices::add_face(const Triangle& corners, bool near) {
+  const auto parent = [&](int k) { return vertices_[corners[k]].parent; };
+  // Most are joined already.
+  if (!near && parent(0) != kNone && parent(0) == parent(1) && parent(1) == parent(2)) return;
   for (const std::uint32_t vertex : corners) {
     Vertex& v = vertices_[vertex];
     if (v.parent == kNone) v.parent = vertex, added_.push_back(vertex);
     v.alone = v.alone && near;
   }
   if (near) return;
-  const auto parent = [&](int k) { return vertices_[corners[k]].parent; };
-  if (parent(0) == parent(1) && parent(1) == parent(2)) return;  // most are joined already
   std::uint32_t root = find(corners[0]);
   for (const int k : {1, 2}) {
     const std::uint32_t other = find(corners[k]);
     vertices_[std::max(root, other)].parent = std::min(root, other);
     root = std::min(root, other);
   }
+  for (const std::uint32_t vertex : corners) vertices_[vertex].parent = root;
 }
 
 std::uint32_t OneSidedVertices::find(std::uint32_t vertex) {
