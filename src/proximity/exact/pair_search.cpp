@@ -349,6 +349,7 @@ class PairSearch {
     bound_children(entry, side, box[1 - side], least);
 
     const auto base = static_cast<std::ptrdiff_t>(w_.overlapping.size());
+    if (side != larger) prefer_crossing(side, node, least);
     for (uint32_t i = 0; i < node.count; ++i) {
       if (least[i] > limit_) continue;
       Entry child = entry;
@@ -363,6 +364,18 @@ class PairSearch {
       auto at = w_.overlapping.end();  // deepest overlap on top
       while (at != w_.overlapping.begin() + base && (at - 1)->least < child.least) --at;
       w_.overlapping.insert(at, child);
+    }
+  }
+
+  // The faces of a leaf larger than the other node are more likely to cross boxes that are half inside its
+  // box than those deep inside, as of a body in a large box: changes the order of overlapping children.
+  void prefer_crossing(int side, const hierarchy::WideTree::Node& node, float (&least)[kWidth]) const {
+    for (uint32_t i = 0; i < node.count; ++i) {
+      if (least[i] > 0) continue;
+      float size = 0;
+      for (int k = 0; k < 3; ++k) size += node.hi[k][i] - node.lo[k][i];
+      const float half = maps_.unit[side] * size / 6;
+      least[i] = std::min(0.0f, std::abs(least[i] + half) - half);
     }
   }
 
@@ -612,32 +625,90 @@ HWY_EXPORT(FindIntersection);
 
 namespace {
 
-// Whether the bounding box of O1 and that of O2's box, posed, are apart: far cheaper than a search.
-bool boxes_apart(const MeshPair& pair) {
-  constexpr double kRounding = 1e-12;  // more than that of a posed point
-  const auto middle = [](const hierarchy::FloatBox& box, int k) {
-    return 0.5 * (double{box.lo[k]} + box.hi[k]);
-  };
-  const auto half = [](const hierarchy::FloatBox& box, int k) {
-    return 0.5 * (double{box.hi[k]} - box.lo[k]);
-  };
-  const hierarchy::FloatBox &box1 = pair.o1.tree.box(0), &box2 = pair.o2.tree.box(0);
-  const UnitFrame &frame1 = pair.o1.frame, &frame2 = pair.o2.frame;
-  const double unit1 = 1 / frame1.scale, unit2 = 1 / frame2.scale;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3& row = pair.pose.rows[k];
-    double at = pair.pose.offset[k], size = std::abs(at), reach = unit1 * half(box1, k);
-    for (int j = 0; j < 3; ++j) {
-      const double centre = frame2.origin[j] + unit2 * middle(box2, j);
-      at += row[j] * centre;
-      size += std::abs(row[j]) * (std::abs(frame2.origin[j]) + unit2);
-      reach += std::abs(row[j]) * unit2 * half(box2, j);
+// Tests for an axis that separates the surfaces, by the boxes around them: far cheaper than a search.
+class SeparatingAxis {
+ public:
+  explicit SeparatingAxis(const MeshPair& pair) : pair_(pair) {
+    constexpr double kRounding = 1e-12;  // more than that of a posed point
+    const hierarchy::FloatBox &box1 = pair.o1.tree.box(0), &box2 = pair.o2.tree.box(0);
+    const UnitFrame &frame1 = pair.o1.frame, &frame2 = pair.o2.frame;
+    const double unit1 = 1 / frame1.scale, unit2 = 1 / frame2.scale;
+    const auto middle = [](const hierarchy::FloatBox& box, int k) {
+      return 0.5 * (double{box.lo[k]} + box.hi[k]);
+    };
+    const auto half = [](const hierarchy::FloatBox& box, int k) {
+      return 0.5 * (double{box.hi[k]} - box.lo[k]);
+    };
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& row = pair.pose.rows[k];
+      double at = pair.pose.offset[k], size = std::abs(at) + std::abs(frame1.origin[k]) + unit1;
+      half1_[k] = unit1 * half(box1, k);
+      for (int j = 0; j < 3; ++j) {
+        at += row[j] * (frame2.origin[j] + unit2 * middle(box2, j));
+        size += std::abs(row[j]) * (std::abs(frame2.origin[j]) + unit2);
+        edge_[j][k] = row[j] * unit2 * half(box2, j);
+      }
+      between_[k] = at - frame1.origin[k] - unit1 * middle(box1, k);
+      rounding_[k] = kRounding * size;
     }
-    size += std::abs(frame1.origin[k]) + unit1;
-    if (std::abs(at - frame1.origin[k] - unit1 * middle(box1, k)) > reach + kRounding * size) return true;
   }
-  return false;
-}
+
+  // By the axes of the separating axis theorem, the normals of faces and the products of two edges, of the
+  // whole boxes. The one that overlaps least may separate those of the children.
+  bool exists() {
+    for (int k = 0; k < 3; ++k) {
+      Vec3 axis{};
+      axis[k] = 1;
+      if (separates(axis)) return true;
+    }
+    for (int j = 0; j < 3; ++j)
+      if (separates(cross(edge_[j], edge_[(j + 1) % 3]))) return true;
+    for (const auto& [x, y, z] : edge_)
+      if (separates({0, -z, y}) || separates({z, 0, -x}) || separates({-y, x, 0})) return true;
+    return separates_children(best_) || separates_children(between_);
+  }
+
+ private:
+  // Whether this axis does, by the boxes around the surfaces.
+  bool separates(const Vec3& axis) {
+    double reach = 0;
+    for (int k = 0; k < 3; ++k) reach += std::abs(axis[k]) * (half1_[k] + rounding_[k]);
+    for (int j = 0; j < 3; ++j) reach += std::abs(dot(axis, edge_[j]));
+    const double overlap = reach - std::abs(dot(axis, between_));
+    if (overlap < 0) return true;
+    if (const double size = norm(axis); overlap < least_ * size) least_ = overlap / size, best_ = axis;
+    return false;
+  }
+
+  // By those around the children of the roots.
+  bool separates_children(const Vec3& axis) const {
+    const Vec3 u = dot(axis, between_) < 0 ? -axis : axis;
+    Vec3 u2;
+    for (int j = 0; j < 3; ++j)
+      u2[j] = -(pair_.pose.rows[0][j] * u[0] + pair_.pose.rows[1][j] * u[1] + pair_.pose.rows[2][j] * u[2]);
+    double error = 0;
+    for (int k = 0; k < 3; ++k) error += 2 * std::abs(u[k]) * rounding_[k];
+    return extent(pair_.o1, u) + extent(pair_.o2, u2) < dot(u, pair_.pose.offset) - error;
+  }
+  // The largest x·u over the surface, at most.
+  static double extent(const sites::SitesData& sites, const Vec3& u) {
+    const hierarchy::WideTree::Node& root = sites.wide.nodes[0];
+    double most = -std::numeric_limits<double>::infinity();
+    for (uint32_t i = 0; i < root.count; ++i) {
+      double along = 0;
+      for (int k = 0; k < 3; ++k) along += u[k] * double{(u[k] > 0 ? root.hi : root.lo)[k][i]};
+      most = std::max(most, along);
+    }
+    return dot(u, sites.frame.origin) + most / sites.frame.scale;
+  }
+
+  const MeshPair& pair_;
+  Vec3 between_{}, half1_{};    // from one middle to the other; of O1's box
+  std::array<Vec3, 3> edge_{};  // of O2's box, half as long
+  Vec3 rounding_{};             // bounds on the errors of coordinates
+  double least_ = std::numeric_limits<double>::infinity();
+  Vec3 best_{};  // overlaps by least_
+};
 
 }  // namespace
 
@@ -646,7 +717,7 @@ Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& works
 }
 
 Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace) {
-  if (boxes_apart(pair)) return {};
+  if (SeparatingAxis(pair).exists()) return {};
   return HWY_DYNAMIC_DISPATCH(FindIntersection)(pair, workspace);
 }
 
