@@ -663,9 +663,10 @@ class SeparatingAxis {
     }
     for (int j = 0; j < 3; ++j)
       if (separates(cross(edge_[j], edge_[(j + 1) % 3]))) return true;
+    if (separates_children(between_)) return true;
     for (const auto& [x, y, z] : edge_)
       if (separates({0, -z, y}) || separates({z, 0, -x}) || separates({-y, x, 0})) return true;
-    return separates_children(best_) || separates_children(between_);
+    return separates_children(best_);
   }
 
  private:
@@ -676,7 +677,9 @@ class SeparatingAxis {
     for (int j = 0; j < 3; ++j) reach += std::abs(dot(axis, edge_[j]));
     const double overlap = reach - std::abs(dot(axis, between_));
     if (overlap < 0) return true;
-    if (const double size = norm(axis); overlap < least_ * size) least_ = overlap / size, best_ = axis;
+    // Compared without roots: overlap / |axis|.
+    const double squared = overlap * overlap, size = squared_norm(axis);
+    if (squared * least_size_ < least_ * size) least_ = squared, least_size_ = size, best_ = axis;
     return false;
   }
 
@@ -706,8 +709,9 @@ class SeparatingAxis {
   Vec3 between_{}, half1_{};    // from one middle to the other; of O1's box
   std::array<Vec3, 3> edge_{};  // of O2's box, half as long
   Vec3 rounding_{};             // bounds on the errors of coordinates
-  double least_ = std::numeric_limits<double>::infinity();
-  Vec3 best_{};  // overlaps by least_
+  Vec3 best_{};                 // the axis along which they overlap least
+  double least_ = 1;            // the square of that overlap, times that of the axis' length
+  double least_size_ = 0;       // the latter; at first, the overlap is infinite
 };
 
 }  // namespace
