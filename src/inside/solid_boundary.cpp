@@ -185,8 +185,7 @@ void SolidBoundary::divide(const Piece& piece, std::span<const std::uint32_t> ne
     const double thickness = width(cell);
     if (thickness < kThinnest) continue;
     Sides sides = Sides::mixed;
-    if (!too_many && !(covered && thickness < kThin))
-      sides = sides_beside(mean(cell), piece.face, covered);
+    if (!too_many && !(covered && thickness < kThin)) sides = sides_beside(mean(cell), piece.face, covered);
     if (sides == Sides::buried) continue;
     for (std::size_t i = 2; i < cell.size(); ++i)
       division.pieces.push_back({piece.face, {cell[0], cell[i - 1], cell[i]}, sides});
