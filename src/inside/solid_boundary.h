@@ -28,8 +28,8 @@ class SolidBoundary {
     std::uint32_t face = kNone;  ///< which contains the point
   };
   /// The closest point of the boundary to a point inside the solid. Faces that others intersect are divided
-  /// along the intersections, at the first call that comes near them. Thread-safe; results do not depend on
-  /// the order of calls. Cost: O(log n), and at most that of some thousand pieces.
+  /// along the planes of the others, at the first call that comes near them. Thread-safe; results do not
+  /// depend on the order of calls. Cost: O(log n), and at most that of some thousand pieces.
   [[nodiscard]] Closest closest(const Vec3& p) const;
 
   /// Bounds on the volume of the solid, equal unless many faces meet in a point or nearly coincide, by the

@@ -21,7 +21,8 @@ class DeepestVertex {
   /// the frame of one to that of the other, and back. Bodies and `to_other` must outlive the search.
   void start(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other,
              const mesh::Similarity& from_other);
-  /// A face, or kNone, that is probably close to the vertices added from here on.
+  /// A face, or kNone, that is probably close to the vertices added from here on. Required before the first
+  /// one.
   void start_group(std::uint32_t face);
   /// Adds the vertices first ... last − 1.
   void add(std::uint32_t first, std::uint32_t last);
