@@ -27,6 +27,7 @@ def client():
         "distributed.worker.memory.target": False, "distributed.worker.memory.pause": False,
         "distributed.scheduler.allowed-failures": 20, "distributed.admin.tick.limit": "60s",
         "distributed.deploy.lost-worker-timeout": "1h",  # by default, the cluster drops a worker that restarts in more than 15 s
+        "distributed.scheduler.worker-saturation": float("inf"),  # queued tasks deadlock before 2024.6.1: dask/distributed#8702
     }  # fmt: skip
     with dask.config.set(settings), distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None, memory_limit=MEMORY,
