@@ -274,7 +274,7 @@ TEST(Contacts, AreTheDeepestVerticesOfFineMeshes) {
   EXPECT_GT(deep, 100u);
 }
 
-// The contacts of either body's features are found on a core of their own.
+// Halves of the near faces, and parts of the features of both bodies, are on any core.
 TEST(Contacts, DoNotDependOnTheNumberOfThreads) {
   const std::vector<Mesh> meshes{load("cow.off", "fit"), placed(sphere(4), "scale:0.5"), cube(0.4)};
   std::mt19937 random(5);

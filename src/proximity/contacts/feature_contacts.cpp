@@ -56,35 +56,13 @@ Vec3 weights_in(const Mesh& mesh, std::uint32_t face, const Vec3& p) {
 
 }  // namespace
 
-void FeatureContacts::find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other, int side,
-                           double margin, double length, const exact::NearFaces& near) {
-  bodies_ = bodies, to_other_ = to_other, side_ = side, near_ = &near, length_ = length;
-  limit_ = margin / bodies[1 - side]->pose().scale;
-  size_ = std::min(diagonal(other().box()), to_other_[side].scale * diagonal(on().box()));
+void FeatureContacts::start(ContactCandidates& candidates) {
+  candidates_ = &candidates, face_ = kNone;
   features_.clear(), contacts_.clear(), boxes_.clear(), bridges_.clear();
-  regions_.find(on(), other(), to_other_[side], limit_, near, side);
-  join_vertices();
-  find_vertices();
-  find_edges();
-  add_contacts();
 }
 
-// Across the faces that are not near the other body.
-void FeatureContacts::join_vertices() {
-  const sites::Regions& sites = internals(on().sites()).regions;
-  vertices_.start(on(), other(), to_other_[side_], limit_);
-  for (const ContactRegion& region : regions_.regions()) {
-    if (region.is_inside()) continue;
-    for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
-      const std::uint32_t near = near_->of_leaf[side_][leaf], first = sites.leaves[leaf];
-      for (std::uint32_t i = first; i < sites.leaves[leaf + 1]; ++i)
-        vertices_.add_face(sites.places.corners[i], (near >> (i - first) & 1) != 0);
-    }
-  }
-}
-
-void FeatureContacts::find_vertices() {
-  const Regions regions = regions_.regions();
+void FeatureContacts::find_at_vertices(ContactCandidates& candidates, Regions regions) {
+  start(candidates);
   for (std::size_t first = 0; first < regions.size();) {
     if (regions[first].kind == ContactRegion::Kind::coarse) {
       find_each(regions[first++]);
@@ -95,12 +73,14 @@ void FeatureContacts::find_vertices() {
     find_deepest(regions.subspan(first, last - first));
     first = last;
   }
+  add_contacts();
 }
 
 // Of a part, or of a region that is deep inside, the deepest vertex.
 void FeatureContacts::find_deepest(Regions part) {
   const sites::SitesData& sites = internals(on().sites());
-  deepest_.start(on(), other(), to_other_[side_], to_other_[1 - side_]);
+  const OneSidedVertices& vertices = candidates_->vertices();
+  deepest_.start(on(), other(), to_other(), from_other());
   const auto owned = [&](std::uint32_t leaf) {
     return sites.regions.owners[sites.regions.leaves[leaf]].vertices;
   };
@@ -112,14 +92,14 @@ void FeatureContacts::find_deepest(Regions part) {
       continue;
     }
     for (std::uint32_t vertex = first; vertex < last; ++vertex) {
-      if (vertices_.is_joined(vertex) && !vertices_.in_contact(vertex)) continue;
-      if (const SurfacePoint* point = vertices_.measured(vertex))
+      if (vertices.is_free(vertex)) continue;
+      if (const SurfacePoint* point = vertices.measured(vertex))
         deepest_.add(vertex, *point);
       else
         deepest_.add(vertex, vertex + 1);
     }
   }
-  const DeepestVertex::Found found = deepest_.find(limit_);
+  const DeepestVertex::Found found = deepest_.find(query().limit);
   const Box box = box_of(part);
   if (found.vertex != kNone)
     features_.push_back({.key = kPart | part[0].node,
@@ -127,11 +107,12 @@ void FeatureContacts::find_deepest(Regions part) {
                          .point = found.point,
                          .faces = box});
   else if (box.lo[0] <= box.hi[0])
-    bridges_.push_back(image(bodies_[side_]->pose().map, box));
+    bridges_.push_back(image(query().bodies[query().side]->pose().map, box));
 }
 
 // A box of the faces that may be in contact.
 Box FeatureContacts::box_of(Regions part) {
+  const OneSidedVertices& vertices = candidates_->vertices();
   const sites::SitesData& sites = internals(on().sites());
   constexpr float kRounding = 1e-6f;
   hierarchy::FloatBox unit;
@@ -148,16 +129,15 @@ Box FeatureContacts::box_of(Regions part) {
       extend_by(whole.lo, whole.hi);
       continue;
     }
-    const auto free = [&](std::uint32_t vertex) {
-      return vertices_.known_side(vertex) == OneSidedVertices::Side::free;
-    };
     for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
-      const std::uint32_t near = near_->of_leaf[side_][leaf], first = sites.regions.leaves[leaf];
+      const std::uint32_t near = candidates_->near_faces(leaf), first = sites.regions.leaves[leaf];
       for (std::uint32_t i = first; i < sites.regions.leaves[leaf + 1]; ++i) {
         const Triangle& corners = sites.regions.places.corners[i];
         // The corners of a face that is not near are on the same side.
         const bool is_near = (near >> (i - first) & 1) != 0;
-        if (free(corners[0]) && (!is_near || (free(corners[1]) && free(corners[2])))) continue;
+        if (vertices.is_free(corners[0]) &&
+            (!is_near || (vertices.is_free(corners[1]) && vertices.is_free(corners[2]))))
+          continue;
         for (const std::uint32_t corner : corners)
           extend_by(sites.regions.points[corner].point, sites.regions.points[corner].point);
       }
@@ -173,17 +153,18 @@ Box FeatureContacts::box_of(Regions part) {
 // Each vertex in contact.
 void FeatureContacts::find_each(const ContactRegion& region) {
   const sites::SitesData& sites = internals(on().sites());
+  OneSidedVertices& vertices = candidates_->vertices();
   for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
     const auto owned = [&](std::uint32_t i) {
       return sites.regions.owners[sites.regions.leaves[i]].vertices;
     };
     for (std::uint32_t vertex = owned(leaf); vertex < owned(leaf + 1); ++vertex) {
-      if (!vertices_.in_contact(vertex)) continue;
+      if (vertices.is_free(vertex)) continue;
       Feature feature{.site = sites.regions.points[vertex].vertex};
       feature.key = feature.site;
-      const SurfacePoint* point = vertices_.measured(vertex);
-      feature.point = point ? *point : vertices_.measure(vertex);
-      if (!(feature.point.distance <= limit_)) continue;  // by rounding
+      const SurfacePoint* point = vertices.measured(vertex);
+      feature.point = point ? *point : vertices.measure(vertex, face_);
+      if (!(feature.point.distance <= query().limit)) continue;  // by rounding
       find_support(feature);
       extend_by_star(feature.faces, feature.site);
       features_.push_back(feature);
@@ -202,9 +183,9 @@ void FeatureContacts::find_support(Feature& feature) {
   const SitesData& sites = internals(on().sites());
   const SurfacePoint& closest = feature.point;
   const double distance = norm(closest.vector);
-  if (distance > std::max(limit_, kFlush * size_) || !at_boundary(other(), closest)) return;
+  if (distance > std::max(query().limit, kFlush * query().size) || !at_boundary(other(), closest)) return;
   // The direction of a vector within the rounding of points is that of the face.
-  const Vec3 outwards = distance > kDirection * size_
+  const Vec3 outwards = distance > kDirection * query().size
                             ? (closest.distance < 0 ? 1 / distance : -1 / distance) * closest.vector
                             : internals(other().sites()).normals.face[closest.face];
   spokes_.clear();
@@ -212,64 +193,64 @@ void FeatureContacts::find_support(Feature& feature) {
     for (const std::uint32_t corner : sites.mesh.triangles[face])
       if (corner != feature.site)
         spokes_.push_back(
-            to_other_[side_].map.linear(sites.mesh.positions[corner] - sites.mesh.positions[feature.site]));
+            to_other().map.linear(sites.mesh.positions[corner] - sites.mesh.positions[feature.site]));
   if (can_push(outwards, spokes_)) return;
   // A vertex in a smooth surface has no other direction in which nothing else of the body is in contact
   // sooner.
-  const Vec3 own = normalized(to_other_[side_].map.linear(sites.normals.vertex[feature.site]));
+  const Vec3 own = normalized(to_other().map.linear(sites.normals.vertex[feature.site]));
   for (const Vec3& spoke : spokes_)
     if (dot(own, spoke) > -kCorner * norm(spoke)) return;
-  feature.support =
-      support_of_vertex(other(), closest.at, spokes_, limit_, std::max(limit_, kSupportReach * size_));
+  feature.support = support_of_vertex(other(), closest.at, spokes_, query().limit,
+                                      std::max(query().limit, kSupportReach * query().size));
 }
 
 // Only edges of near faces pass through the surface or are within the margin of it, and those that have an
 // end in contact have others only if they are long.
-void FeatureContacts::find_edges() {
+void FeatureContacts::find_at_edges(ContactCandidates& candidates, std::span<const std::uint32_t> leaves) {
+  start(candidates);
   const SitesData& sites = internals(on().sites());
-  const double shortest = kShortEdge * size_;
-  for (const std::uint32_t leaf : near_->leaves[side_]) {
+  OneSidedVertices& vertices = candidates_->vertices();
+  const double shortest = kShortEdge * query().size;
+  for (const std::uint32_t leaf : leaves) {
     const std::uint32_t first = sites.regions.leaves[leaf];
-    for (std::uint32_t near = near_->of_leaf[side_][leaf]; near != 0; near &= near - 1) {
+    for (std::uint32_t near = candidates_->near_faces(leaf); near != 0; near &= near - 1) {
       const std::uint32_t place = first + static_cast<std::uint32_t>(std::countr_zero(near));
       const std::uint32_t face = sites.regions.owners[place].face;
       for (const std::uint32_t edge : sites.topology.face_edges[face]) {
         if (edge == kNone || sites.topology.edge_faces(edge)[0] != face) continue;
         const auto [a, b] = sites.topology.edges[edge];
-        const double length =
-            to_other_[side_].scale * norm(sites.mesh.positions[b] - sites.mesh.positions[a]);
+        const double length = to_other().scale * norm(sites.mesh.positions[b] - sites.mesh.positions[a]);
         if (!(length > 0) || !is_sharp(sites, edge)) continue;
         const Triangle &corners = sites.mesh.triangles[face], &places = sites.regions.places.corners[place];
         bool touches[2] = {};
         for (int k = 0; k < 3; ++k) {
-          if (corners[k] == a) touches[0] = vertices_.in_contact(places[k]);
-          if (corners[k] == b) touches[1] = vertices_.in_contact(places[k]);
+          if (corners[k] == a) touches[0] = vertices.in_contact(places[k], face_);
+          if (corners[k] == b) touches[1] = vertices.in_contact(places[k], face_);
         }
         const bool is_long = length > shortest;
         if ((touches[0] || touches[1]) && !is_long) continue;
-        find_on_edge(edge, touches[0], touches[1], is_long ? kSupportReach * size_ : 0);
+        find_on_edge(edge, touches[0], touches[1], is_long ? kSupportReach * query().size : 0);
       }
     }
   }
+  add_contacts();
 }
 
 void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach) {
   const SitesData& sites = internals(on().sites());
   const auto [a, b] = sites.topology.edges[edge];
-  const Vec3 start = to_other_[side_].map(sites.mesh.positions[a]),
-             end = to_other_[side_].map(sites.mesh.positions[b]);
+  const Vec3 start = to_other().map(sites.mesh.positions[a]), end = to_other().map(sites.mesh.positions[b]);
   spokes_.clear();
   Box faces;
   for (const std::uint32_t beside : sites.topology.edge_faces(edge))
     for (const std::uint32_t corner : sites.mesh.triangles[beside]) {
       extend(faces, sites.mesh.positions[corner]);
       if (corner != a && corner != b)
-        spokes_.push_back(
-            to_other_[side_].map.linear(sites.mesh.positions[corner] - sites.mesh.positions[a]));
+        spokes_.push_back(to_other().map.linear(sites.mesh.positions[corner] - sites.mesh.positions[a]));
     }
   std::uint64_t number = 0;
   for (const auto& [t, support, near_face] :
-       edge_contacts_.find({start, end, a_touches, b_touches, spokes_}, other(), limit_, reach)) {
+       edge_contacts_.find({start, end, a_touches, b_touches, spokes_}, other(), query().limit, reach)) {
     Feature feature{.key = kEdge | number++ << kOnEdgeBit | edge,
                     .site = edge,
                     .edge = true,
@@ -287,7 +268,7 @@ void FeatureContacts::add_contacts() {
 
 void FeatureContacts::add_contact(const Feature& feature) {
   const SitesData &sites = internals(on().sites()), &sites_of_other = internals(other().sites());
-  const mesh::Similarity& pose = bodies_[1 - side_]->pose();
+  const mesh::Similarity& pose = query().bodies[1 - query().side]->pose();
   SurfacePoint closest = feature.point;
   const Vec3& p = closest.at;
   bool is_boundary = true;
@@ -305,27 +286,27 @@ void FeatureContacts::add_contact(const Feature& feature) {
   }
   const double depth = pose.scale * (inside ? norm(closest.vector) : -closest.distance);
   const Vec3 vector = pose.map.linear(closest.vector), point = pose.map(p);
-  const Vec3 outwards =
-      std::abs(depth) > length_ ? (1 / depth) * vector : (1 / pose.scale) * pose.map.linear(face_normal);
+  const Vec3 outwards = std::abs(depth) > query().length ? (1 / depth) * vector
+                                                         : (1 / pose.scale) * pose.map.linear(face_normal);
   const std::uint32_t face =
       feature.edge ? sites.topology.edge_faces(feature.site)[0] : sites.vertex_faces.of(feature.site)[0];
   Contact contact{
       .point1 = point,
       .point2 = point + vector,
-      .normal = side_ == 0 ? outwards : -outwards,
+      .normal = query().side == 0 ? outwards : -outwards,
       .depth = depth,
       .faces = {face, closest.face},
-      .barycentric = {weights_in(sites.mesh, face, to_other_[1 - side_].map(p)),
+      .barycentric = {weights_in(sites.mesh, face, from_other().map(p)),
                       weights_in(sites_of_other.mesh, closest.face, p + closest.vector)},
-      .id = std::uint64_t(side_) << kBodyBit | feature.key,
+      .id = std::uint64_t(query().side) << kBodyBit | feature.key,
   };
-  if (side_ == 1) {
+  if (query().side == 1) {
     std::swap(contact.point1, contact.point2);
     std::swap(contact.faces[0], contact.faces[1]);
     std::swap(contact.barycentric[0], contact.barycentric[1]);
   }
   contacts_.push_back(contact);
-  boxes_.push_back(image(bodies_[side_]->pose().map, feature.faces));
+  boxes_.push_back(image(query().bodies[query().side]->pose().map, feature.faces));
   if (!inside) extend(boxes_.back(), point + vector);  // across the gap
 }
 

@@ -3,30 +3,25 @@
 
 #include <sdm/proximity_query.h>
 
-#include <array>
 #include <span>
 #include <vector>
 
-#include "mesh/similarity.h"
-#include "proximity/contacts/contact_regions.h"
+#include "proximity/contacts/contact_candidates.h"
 #include "proximity/contacts/deepest_vertex.h"
 #include "proximity/contacts/edge_contacts.h"
-#include "proximity/contacts/one_sided.h"
 #include "proximity/contacts/surface_point.h"
-#include "proximity/exact/near_faces.h"
-#include "proximity/shape/posed_body.h"
 
 namespace sdm::contacts {
 
-using Bodies = std::array<const shape::PosedBody*, 2>;
-
-/// Finds them; reuses its memory between calls.
+/// Finds them; reuses its memory between calls. What several finders find for parts of the candidates does
+/// not depend on their order, so that they may run at once.
 class FeatureContacts {
  public:
-  /// Of the features of bodies[side] with the other one; the parameters are those of ContactFinder::find(),
-  /// and `near` has sorted leaves. Cost: of a few closest points for each contact.
-  void find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other, int side, double margin,
-            double length, const exact::NearFaces& near);
+  /// Of the vertices of some regions, which include all or none of those of a part. Cost: of a few closest
+  /// points for each contact.
+  void find_at_vertices(ContactCandidates& candidates, std::span<const ContactRegion> regions);
+  /// Of the edges of some leaves with near faces.
+  void find_at_edges(ContactCandidates& candidates, std::span<const std::uint32_t> leaves);
 
   [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
   /// Of each contact: the box of the faces around it that are in contact, in space.
@@ -46,11 +41,9 @@ class FeatureContacts {
   };
   using Regions = std::span<const ContactRegion>;
 
-  void join_vertices();
-  void find_vertices();
+  void start(ContactCandidates& candidates);
   void find_deepest(Regions part);
   void find_each(const ContactRegion& region);
-  void find_edges();
   void find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach);
   void find_support(Feature& feature);
   void add_contacts();
@@ -58,19 +51,14 @@ class FeatureContacts {
   void extend_by_star(Box& box, std::uint32_t vertex) const;
   [[nodiscard]] Box box_of(Regions part);
 
-  [[nodiscard]] const shape::Body& on() const { return bodies_[side_]->body(); }
-  [[nodiscard]] const shape::Body& other() const { return bodies_[1 - side_]->body(); }
+  [[nodiscard]] const ContactQuery& query() const { return candidates_->query(); }
+  [[nodiscard]] const shape::Body& on() const { return query().on(); }
+  [[nodiscard]] const shape::Body& other() const { return query().other(); }
+  [[nodiscard]] const mesh::Similarity& to_other() const { return query().to_other[query().side]; }
+  [[nodiscard]] const mesh::Similarity& from_other() const { return query().to_other[1 - query().side]; }
 
-  Bodies bodies_{};
-  std::array<mesh::Similarity, 2> to_other_;
-  const exact::NearFaces* near_ = nullptr;
-  int side_ = 0;
-  double limit_ = 0;  ///< the margin, in the frame of the other body
-  double length_ = 0;
-  double size_ = 0;  ///< of the smaller body, in the frame of the other one
-
-  ContactRegions regions_;
-  OneSidedVertices vertices_;
+  ContactCandidates* candidates_ = nullptr;
+  std::uint32_t face_ = kNone;  ///< of the other body: closest to the vertex that was measured last
   DeepestVertex deepest_;
   EdgeContacts edge_contacts_;
   std::vector<Feature> features_;

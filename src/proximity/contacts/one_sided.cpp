@@ -1,6 +1,7 @@
 #include "proximity/contacts/one_sided.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/geometry/vec.h"
@@ -13,7 +14,7 @@ void OneSidedVertices::start(const shape::Body& on, const shape::Body& other,
   on_ = &on, other_ = &other, to_other_ = &to_other, margin_ = margin;
   rounding_ = kRounding / internals(other.sites()).frame.scale;
   for (const std::uint32_t vertex : added_) vertices_[vertex] = {};
-  added_.clear(), points_.clear(), face_ = kNone;
+  added_.clear(), points_.clear();
   const std::size_t count = internals(on.sites()).regions.points.size();
   if (vertices_.size() < count) vertices_.resize(count);
 }
@@ -53,29 +54,51 @@ const SurfacePoint* OneSidedVertices::measured(std::uint32_t vertex) const {
   return point == kNone ? nullptr : &points_[point];
 }
 
-SurfacePoint OneSidedVertices::measure(std::uint32_t vertex) {
+SurfacePoint OneSidedVertices::closest_point(std::uint32_t vertex, std::uint32_t& face) const {
   // The face closest to the vertex before, which is probably a neighbour, is near.
-  const SurfacePoint point = measure_near(*other_, at(vertex), face_);
-  face_ = point.face;
+  const SurfacePoint point = measure_near(*other_, at(vertex), face);
+  face = point.face;
   return point;
 }
 
-OneSidedVertices::Side OneSidedVertices::known_side(std::uint32_t vertex) {
-  if (const SurfacePoint* point = measured(vertex))
-    return point->distance <= margin_ ? Side::contact : Side::free;
-  return vertices_[vertex].alone ? Side::unknown : vertices_[find(vertex)].side;
+OneSidedVertices::Side OneSidedVertices::side_of(const SurfacePoint& point) const {
+  return point.distance <= margin_ ? Side::contact : Side::free;
 }
 
-bool OneSidedVertices::in_contact(std::uint32_t vertex) {
-  const Side known = known_side(vertex);
-  if (known != Side::unknown) return known == Side::contact;
-  vertices_[vertex].measured = static_cast<std::uint32_t>(points_.size());
-  points_.push_back(measure(vertex));
-  const bool contact = points_.back().distance <= margin_;
-  // So near to the surface, rounding may decide.
-  if (!vertices_[vertex].alone && std::abs(points_.back().distance) > rounding_)
-    vertices_[find(vertex)].side = contact ? Side::contact : Side::free;
-  return contact;
+// Of a set, one vertex is measured; where it is so near to the surface that rounding may decide, the next one
+// as well.
+void OneSidedVertices::find_sides() {
+  std::uint32_t face = kNone;
+  for (const std::uint32_t vertex : added_) {
+    if (vertices_[vertex].alone) continue;
+    const std::uint32_t root = find(vertex);
+    vertices_[vertex].parent = root;
+    if (vertices_[root].side != Side::unknown) continue;
+    vertices_[vertex].measured = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(closest_point(vertex, face));
+    const SurfacePoint& point = points_.back();
+    if (std::abs(point.distance) > rounding_) vertices_[root].side = side_of(point);
+  }
+}
+
+bool OneSidedVertices::is_free(std::uint32_t vertex) const {
+  if (const SurfacePoint* point = measured(vertex)) return side_of(*point) == Side::free;
+  return !vertices_[vertex].alone && vertices_[vertices_[vertex].parent].side == Side::free;
+}
+
+// The side of a vertex alone is kept. Threads that find it at the same time find the same.
+SurfacePoint OneSidedVertices::measure(std::uint32_t vertex, std::uint32_t& face) {
+  const SurfacePoint point = closest_point(vertex, face);
+  Vertex& v = vertices_[vertex];
+  if (v.alone) std::atomic_ref(v.side).store(side_of(point), std::memory_order_relaxed);
+  return point;
+}
+
+bool OneSidedVertices::in_contact(std::uint32_t vertex, std::uint32_t& face) {
+  Vertex& v = vertices_[vertex];
+  if (!v.alone) return !is_free(vertex);
+  const Side known = std::atomic_ref(v.side).load(std::memory_order_relaxed);
+  return (known == Side::unknown ? side_of(measure(vertex, face)) : known) == Side::contact;
 }
 
 }  // namespace sdm::contacts

@@ -211,13 +211,21 @@ void FindNearFaces(const MeshPair& pair, double reach, NearFacesWorkspace& works
   // One core goes through the pairs in the same order as two, so that opposite faces are the same.
   while (!all.empty() && all.size() < kEnough) first.open_first();
   if (all.empty()) return;
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  workspace.halves[1].open.assign(middle, all.end());
-  all.erase(middle, all.end());
+  // Neighbours in turn, as most near faces are below a few of the pairs.
+  std::vector<Entry>& others = workspace.halves[1].open;
+  others.clear();
+  size_t kept = 0;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (i % 2 == 0)
+      all[kept++] = all[i];
+    else
+      others.push_back(all[i]);
+  }
+  all.resize(kept);
   if (thread_count() == 1) {
     // What the first half has found shortens the second.
     first.open_all();
-    all.swap(workspace.halves[1].open);
+    all.swap(others);
     first.open_all();
     return;
   }
