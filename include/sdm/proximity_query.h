@@ -144,7 +144,7 @@ class SDM_API ProximityQuery {
   /// if many faces meet there, with that of its surface. Sorted by patch, the patch with
   /// the deepest contact first, and by decreasing depth within a patch. Contacts belong to the same patch if
   /// the boxes of the faces at their vertices and edges intersect: a connected contact region is never
-  /// divided. Uses up to two cores; the result does not depend on how many.
+  /// divided. Uses all cores; the result does not depend on how many.
   [[nodiscard]] std::span<const Contact> contacts();
 
   /// O1 for 0, O2 for 1; in the frames of their meshes, without the poses. surface() throws sdm::Error if the
