@@ -37,7 +37,7 @@ def client():
 
 
 def processes(client):
-    """Those of workers that are up. A nanny starts another when one of these ends, but gives up when it ends while it starts."""
+    """Numbers of the processes of workers that are up: a nanny gives up when its worker ends while it starts."""
     nannies = [nanny for nanny in client.cluster.workers.values() if nanny.process]
     pids = [nanny.pid for nanny in nannies if nanny.process.status == distributed.core.Status.running]
     return [pid for pid in pids if pid]
