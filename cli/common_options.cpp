@@ -27,7 +27,7 @@ void add_transform_option(CLI::App& app, const std::string& name, const std::str
 
 CLI::Option* add_side_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
   return app.add_option("--resolution", atlas.resolution, "Texels along each side of " + maps)
-      ->check(whole_number(16, 32768))
+      ->transform(whole_number(16, 32768))
       ->type_name("N")
       ->capture_default_str();
 }
@@ -62,7 +62,7 @@ void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::stri
        {"uv", sdm::AtlasKind::uv}});
   app.add_option("--gutter", atlas.gutter,
                  "Free texels around each chart, and how far values extend beyond charts, if more than 4")
-      ->check(whole_number(0, 8192))
+      ->transform(whole_number(0, 8192))
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--strict-uv", atlas.strict_uv,
@@ -115,7 +115,7 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vecto
          "--picture-size", picture.largest,
          "The most pixels a side of the pictures and of the model's texture; of a larger map, they show "
          "some texels")
-      ->check(whole_number(16, 32768))
+      ->transform(whole_number(16, 32768))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--units", picture.units,
@@ -162,7 +162,7 @@ void add_proximity_options(CLI::App& app, std::string& units, double& contact_ma
 void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
                      const std::string& json_prints) {
   app.add_option("--threads", threads, "Threads to use, 0 for all cores")
-      ->check(whole_number(0, 1024))
+      ->transform(whole_number(0, 1024))
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--json", json, "Print " + json_prints);

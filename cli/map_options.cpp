@@ -55,7 +55,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       "gl: how polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil cache",
       {{"planes", sdm::GlClip::planes}, {"stencil", sdm::GlClip::stencil}});
   app.add_option("--stencil-values", c.gl.stencil_values, "gl, --clip stencil: the number of stencil values")
-      ->check(whole_number(1, 255))
+      ->transform(whole_number(1, 255))
       ->type_name("K")
       ->capture_default_str();
   app.add_flag_callback(

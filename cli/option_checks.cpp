@@ -2,10 +2,34 @@
 
 #include <sdm/error.h>
 
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "format.h"
 #include "scenes/placement.h"
+
+namespace {
+
+// All of the text as a number in base 10, with or without a sign.
+template <class Number>
+std::optional<Number> parse(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::int64_t> parse_whole_number(std::string_view text) {
+  return parse<std::int64_t>(text);
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  const std::optional<double> value = parse<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+}  // namespace
 
 std::string check_transform(const std::string& text) try {
   (void)sdm::scenes::parse_placement(text);
@@ -17,28 +41,30 @@ std::string check_transform(const std::string& text) try {
 CLI::Validator number(const std::string& description, bool (*accepts)(double)) {
   return CLI::Validator(
       [=](const std::string& text) {
-        double value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && accepts(value);
-        return good ? std::string() : text + " is not " + description;
+        const std::optional<double> value = parse_number(text);
+        return value && accepts(*value) ? std::string() : text + " is not " + description;
       },
       "");
 }
 
-CLI::Validator whole_number(int lowest, int highest) {
+CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest) {
   return CLI::Validator(
-      [=](const std::string& text) {
-        int value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && lowest <= value && value <= highest;
-        return good ? std::string()
-                    : fmt::format("{} is not a whole number from {} to {}", text, lowest, highest);
+      [=](std::string& text) {
+        const std::optional<std::int64_t> value = parse_whole_number(text);
+        if (!value || *value < lowest || highest < *value)
+          return fmt::format("{} is not a whole number from {} to {}", text, lowest, highest);
+        text = std::to_string(*value);
+        return std::string();
       },
       "");
 }
 
 std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text) {
   const auto parse = [](const std::string& part, std::uint32_t& side) {
-    return !part.empty() && part.find_first_not_of("0123456789") == std::string::npos &&
-           CLI::detail::lexical_cast(part, side) && side >= 16 && side <= 32768;
+    const std::optional<std::int64_t> value = parse_whole_number(part);
+    if (!value || *value < 16 || *value > 32768) return false;
+    side = static_cast<std::uint32_t>(*value);
+    return true;
   };
   std::pair<std::uint32_t, std::uint32_t> size{0, 0};
   const std::size_t by = text.find('x');
@@ -49,13 +75,10 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::str
 }
 
 std::optional<sdm::Tolerance> parse_tolerance(const std::string& text) {
-  const auto parse = [](const std::string& part, double& value) {
-    return CLI::detail::lexical_cast(part, value) && std::isfinite(value);
-  };
-  double lo = 0, hi = 0;
   const std::size_t colon = text.find(':');
+  const std::optional<double> first = parse_number(text.substr(0, colon));
   if (colon == std::string::npos)
-    return parse(text, hi) && hi >= 0 ? std::optional<sdm::Tolerance>(hi) : std::nullopt;
-  if (!parse(text.substr(0, colon), lo) || !parse(text.substr(colon + 1), hi) || lo > hi) return std::nullopt;
-  return sdm::Tolerance(lo, hi);
+    return first && *first >= 0 ? std::optional<sdm::Tolerance>(*first) : std::nullopt;
+  const std::optional<double> second = parse_number(text.substr(colon + 1));
+  return first && second && *first <= *second ? std::optional(sdm::Tolerance(*first, *second)) : std::nullopt;
 }

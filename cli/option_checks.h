@@ -13,9 +13,11 @@
 /// Checks steps for sdm::scenes::parse_placement; returns an error message, or an empty string.
 [[nodiscard]] std::string check_transform(const std::string& text);
 
-/// Requires a finite number for which `accepts` holds.
+/// Requires a finite number in base 10 for which `accepts` holds.
 [[nodiscard]] CLI::Validator number(const std::string& description, bool (*accepts)(double));
-[[nodiscard]] CLI::Validator whole_number(int lowest, int highest);
+/// Requires a whole number in base 10, and removes its leading zeros: CLI11 would read 010 in base 8. To be
+/// passed to CLI::Option::transform().
+[[nodiscard]] CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest);
 
 /// Reads "N" (as N and 0) or "WxH", numbers from 16 to 32768; nothing if it is neither.
 [[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text);

@@ -1,6 +1,7 @@
 #include "paper.h"
 
 #include "common_options.h"
+#include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
 
@@ -59,7 +60,7 @@ void add_paper_command(CLI::App& app) {
                    "The mesh that stands for the bunny, instead of the one of Debian's glmark2-data")
       ->type_name("FILE");
   paper->add_option("--threads", command->threads, "Threads to use, 0 for all cores")
-      ->check(CLI::Range(0, 1024).description(""))
+      ->transform(whole_number(0, 1024))
       ->type_name("N")
       ->capture_default_str();
   paper->add_flag("--quiet", command->quiet, "Print only errors");

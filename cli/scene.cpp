@@ -2,6 +2,7 @@
 
 #include "common_options.h"
 #include "format.h"
+#include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "scene_scan.h"
@@ -144,7 +145,7 @@ void add_scene_command(CLI::App& app) {
       ->type_name(fmt::format("{}", fmt::join(names, "|")));
   add_output_option(*scene, command->out);
   scene->add_option("--frames", command->frames, "Number of frames, at 60 per second")
-      ->check(CLI::Range(1, 100000).description(""))
+      ->transform(whole_number(1, 100000))
       ->type_name("N")
       ->capture_default_str();
   scene
@@ -160,11 +161,11 @@ void add_scene_command(CLI::App& app) {
                    "part, a closed mesh with a flat place")
       ->type_name("FILE");
   scene->add_option("--triangles", command->triangles, "scan: about how many, before 30 % are cut away")
-      ->check(CLI::Range(100, 100000000).description(""))
+      ->transform(whole_number(100, 100000000))
       ->type_name("N")
       ->capture_default_str();
   scene->add_option("--threads", command->threads, "Threads to use, 0 for all cores")
-      ->check(CLI::Range(0, 1024).description(""))
+      ->transform(whole_number(0, 1024))
       ->type_name("N")
       ->capture_default_str();
   scene->add_flag("--quiet", command->quiet, "Print only errors");

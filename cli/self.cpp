@@ -152,7 +152,7 @@ void add_self_command(CLI::App& app) {
   CLI::Option* rings =
       self->add_option("--rings", c.self.exclusion.rings,
                        "Each face excludes itself and K rings of neighbours, which share vertices")
-          ->check(whole_number(1, 1 << 20))
+          ->transform(whole_number(1, 1 << 20))
           ->type_name("K")
           ->capture_default_str();
   self->add_option("--geodesic", c.self.exclusion.geodesic,

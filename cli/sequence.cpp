@@ -542,7 +542,7 @@ void add_sequence_command(CLI::App& app) {
   add_up_option(*sequence, command->picture.up, "player.html and animation.glb");
   sequence
       ->add_option("--maps", command->maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
-      ->check(whole_number(1, 1000000))
+      ->transform(whole_number(1, 1000000))
       ->type_name("K");
   sequence->add_option("--rate", command->rate, "glTF animations: frames per second; 0: one frame per key")
       ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))

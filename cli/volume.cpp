@@ -258,7 +258,7 @@ void add_volume_command(CLI::App& app) {
   volume->add_option("-o,--output", c.out, "The file: " + sdm::field_format_names())->type_name("FILE");
   volume->add_option("--grid", c.points, "Points along x, y and z")
       ->expected(3)
-      ->check(whole_number(1, static_cast<int>(sdm::Grid::kMostPoints)))
+      ->transform(whole_number(1, sdm::Grid::kMostPoints))
       ->type_name("NX NY NZ");
   volume
       ->add_option("--spacing", c.spacing,

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -92,6 +94,63 @@ TEST(Usage, CompletionsAndTheManualNameAllOptions) {
   }
   EXPECT_TRUE(manual.starts_with(".TH SDM 1 "));
   EXPECT_EQ(run_sdm({"completion", "tcsh"}).code, 2);
+}
+
+// The options of a command that are whole numbers, and how many of them each takes.
+std::map<std::string, std::size_t> whole_number_options(const std::string& command) {
+  const std::string help = run_sdm({command, "--help"}, {.environment = {"COLUMNS=200"}}).out;
+  std::map<std::string, std::size_t> options;
+  const std::regex pattern("(--[a-z0-9-]+) (N|NX NY NZ)(?![A-Za-z])");
+  for (std::sregex_iterator i(help.begin(), help.end(), pattern), end; i != end; ++i)
+    options[(*i)[1]] = (*i)[2] == "N" ? 1 : 3;
+  return options;
+}
+
+std::vector<std::string> command_names() {
+  const std::string help = run_sdm({"--help"}, {.environment = {"COLUMNS=200"}}).out;
+  std::vector<std::string> names;
+  const std::regex pattern("\n  ([a-z]+)  +[A-Z]");
+  for (std::sregex_iterator i(help.begin(), help.end(), pattern), end; i != end; ++i)
+    names.push_back((*i)[1]);
+  return names;
+}
+
+// 9 is no digit of base 8, and 0x is no prefix.
+TEST(Usage, AllWholeNumbersAreReadInBaseTen) {
+  std::size_t count = 0;
+  for (const std::string& command : command_names())
+    for (const auto& [option, values] : whole_number_options(command)) {
+      ++count;
+      const auto is_refused = [&](const std::string& value) {
+        std::vector<std::string> arguments{command, option};
+        arguments.insert(arguments.end(), values, value);
+        const Outcome run = run_sdm(arguments);
+        EXPECT_EQ(run.code, 2) << command << ' ' << option;  // at least what is required is missing
+        return run.err.find(value + " is ") != std::string::npos;
+      };
+      // 9 or 99 may be below the least value, 999 above the greatest.
+      EXPECT_FALSE(is_refused("09") && is_refused("099") && is_refused("0999")) << command << ' ' << option;
+      for (const char* value : {"0x40", "1e2", "6_4"})
+        EXPECT_TRUE(is_refused(value)) << command << ' ' << option << ' ' << value;
+    }
+  EXPECT_GT(count, 20u);
+}
+
+TEST(Usage, LeadingZerosDoNotChangeANumber) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder / "a.off";
+  std::ofstream(mesh) << "OFF 4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+  for (const char* resolution : {"0100", "100", "+100"}) {
+    const Outcome run = run_sdm({"map", mesh, mesh, "-o", folder / "out", "--json", "--write", "none",
+                                 "--resolution", resolution, "--gutter", "010", "--max-distance", "010"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("\"resolution\": 100,")) << resolution;
+    EXPECT_THAT(run.out, HasSubstr("\"gutter\": 10,")) << resolution;
+    EXPECT_THAT(run.out, HasSubstr("\"max_distance\": 10.0")) << resolution;
+  }
+  EXPECT_EQ(run_sdm({"map", mesh, mesh, "-o", folder / "out", "--atlas", "uv", "--resolution", "0x40"}).code,
+            2);
+  EXPECT_EQ(run_sdm({"map", mesh, mesh, "-o", folder / "out", "--max-distance", "0x10"}).code, 2);
 }
 
 // Each is refused before any file is looked at, with a message that names the part at fault.
