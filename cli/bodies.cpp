@@ -34,10 +34,13 @@ struct BodiesCommand {
   bool json = false, quiet = false;
 };
 
-std::vector<std::filesystem::path> earlier_files(const BodiesCommand& command) {
+/// Of any number of bodies.
+std::vector<std::filesystem::path> earlier_files(const std::filesystem::path& out) {
   std::vector<std::filesystem::path> files{"report.json"};
-  for (std::size_t body = 0; body < command.files.size(); ++body) {
-    const std::filesystem::path folder = fmt::to_string(body);
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(out, ignored)) {
+    const std::filesystem::path folder = entry.path().filename();
+    if (folder.string().find_first_not_of("0123456789") != std::string::npos) continue;
     for (const std::string& file : all_names()) files.push_back(folder / file);
     files.push_back(folder / "body.npy");
   }
@@ -129,7 +132,7 @@ void set_poses(sdm::MultiBodyQuery& bodies, const std::vector<sdm::Transform>& p
 void run(BodiesCommand command) {
   limit_threads(command.threads);
   std::optional<OutputFolder> out;
-  if (!command.out.empty()) out.emplace(command.out, earlier_files(command));
+  if (!command.out.empty()) out.emplace(command.out, [&] { return earlier_files(command.out); });
   ProgressLine progress(command.quiet);
   command.atlas.progress = progress.callback();
 

@@ -348,7 +348,7 @@ std::string lines_of(const MeshResults& mesh, const Input& on, const Input& to, 
 int run(MapCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.out, stale_files(command.out));
+  OutputFolder out(command.out, [&] { return stale_files(command.out); });
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.map.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};

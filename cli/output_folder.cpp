@@ -4,23 +4,30 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <functional>
 #include <memory>
 #include <new>
+#include <optional>
+#include <random>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include "progress_line.h"
 
 namespace fs = std::filesystem;
 
@@ -37,9 +44,25 @@ void create_folder(const fs::path& path) {
   if (error) fail(path, error.message());
 }
 
+// A staging folder: its name begins with kPrefix, it contains the empty file kMarker, created first, and the
+// files of the run below kFiles. Without the marker, a folder of that name is sdm's only while it is empty,
+// and has the mode with which it is created: a process can be killed between the two.
 constexpr const char* kPrefix = ".sdm-part-";
+constexpr const char* kMarker = ".sdm-staging";
+constexpr const char* kFiles = "files";
+constexpr mode_t kMode = S_ISVTX | S_IRWXU;
 
-// A lock on a staging folder, which the system releases when its process ends, however it ends. Processes on
+bool is_staging(const fs::path& folder) {
+  struct stat info {};
+  if (!folder.filename().string().starts_with(kPrefix) || lstat(folder.c_str(), &info) != 0 ||
+      !S_ISDIR(info.st_mode))
+    return false;
+  constexpr mode_t kAllModes = 07777;
+  const bool created = (info.st_mode & kAllModes) == kMode;
+  return lstat((folder / kMarker).c_str(), &info) == 0 ? S_ISREG(info.st_mode) : created;
+}
+
+// A lock on a folder, which the system releases when its process ends, however it ends. Processes on
 // other machines and in other containers see it too, which is not true of the number of the process.
 class FolderLock {
  public:
@@ -53,39 +76,80 @@ class FolderLock {
   FolderLock& operator=(const FolderLock&) = delete;
 
   [[nodiscard]] bool held() const { return error_ == 0; }
-  /// Another process holds it, or has removed the folder.
-  [[nodiscard]] bool lost() const { return error_ == EWOULDBLOCK || error_ == ENOENT; }
+  /// Another process holds it.
+  [[nodiscard]] bool busy() const { return error_ == EWOULDBLOCK || error_ == EINTR; }
 
  private:
   int file_, error_;
 };
+
+// Files are moved by one run at a time: each takes a lock on the output folder first, which leaves no file
+// behind and ends with its process. Where the file system has no locks (some network file systems), or the
+// folder cannot be read, runs do not wait for each other.
+std::unique_ptr<const FolderLock> turn_to_move(const fs::path& folder) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kStep = std::chrono::milliseconds(5), kAfterInterrupt = std::chrono::milliseconds(300);
+  constexpr auto kMost = std::chrono::seconds(60);  // moving takes milliseconds: the other one is suspended
+  const auto start = Clock::now();
+  for (std::optional<Clock::time_point> interrupted;; std::this_thread::sleep_for(kStep)) {
+    auto lock = std::make_unique<const FolderLock>(folder);
+    if (!lock->busy()) return lock;
+    if (!interrupted && ProgressLine::interrupted()) interrupted = Clock::now();
+    if (interrupted && Clock::now() - *interrupted > kAfterInterrupt) throw sdm::Cancelled();
+    if (Clock::now() - start > kMost)
+      fail(folder, fmt::format("another run has been moving files there for {} s", kMost.count()));
+  }
+}
+
+// Only what sdm has put there. The marker goes last, as what has none remains.
+void remove_staging(const fs::path& staging) {
+  std::error_code ignored;
+  if (fs::remove_all(staging / kFiles, ignored); fs::exists(staging / kFiles, ignored)) return;
+  fs::remove(staging / kMarker, ignored);
+  fs::remove(staging, ignored);
+}
 
 // Removes the staging folders of processes that were killed. Where the file system has no locks they remain.
 void remove_abandoned(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().filename().string().starts_with(kPrefix)) found.push_back(entry.path());
+    if (is_staging(entry.path())) found.push_back(entry.path());
   for (const fs::path& staging : found)
-    if (const FolderLock lock(staging); lock.held()) fs::remove_all(staging, error);
+    if (const FolderLock lock(staging); lock.held()) remove_staging(staging);
 }
 
 /// Creates a staging folder with a name of its own, and locks it. The lock is held until it is destroyed.
 std::pair<fs::path, std::shared_ptr<const void>> make_staging(const fs::path& folder) {
-  for (;;) {
-    std::string name = (folder / fmt::format("{}XXXXXX", kPrefix)).string();
-    if (mkdtemp(name.data()) == nullptr) fail(folder, std::generic_category().message(errno));
+  // Where others do the same: a run that failed removes the folder that it made, if nothing is in it yet; and
+  // a staging folder may be taken for abandoned until it is locked.
+  constexpr int kAttempts = 100;
+  std::random_device random;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    create_folder(folder);
+    fs::path path = folder / fmt::format("{}{:08x}", kPrefix, random());
+    std::string marker = (path / kMarker).string();
+    if (mkdir(path.c_str(), kMode) != 0) {
+      if (errno == ENOENT || errno == EEXIST) continue;
+      fail(folder, std::generic_category().message(errno));
+    }
     try {
-      fs::path path = name;
       auto lock = std::make_shared<const FolderLock>(path);
-      // A process that starts now may have taken it for abandoned before it was locked.
-      std::error_code ignored;
-      if (!lock->lost() && fs::exists(path, ignored)) return {std::move(path), std::move(lock)};
-    } catch (...) {  // for lack of memory
-      rmdir(name.c_str());
+      const int file =
+          lock->busy() ? -1 : open(marker.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+      const int error = errno;
+      if (file >= 0) {
+        close(file);
+        return {std::move(path), std::move(lock)};
+      }
+      if (!lock->busy() && error != ENOENT) fail(folder, std::generic_category().message(error));
+    } catch (...) {  // for lack of memory or space
+      unlink(marker.c_str());
+      rmdir(path.c_str());
       throw;
     }
   }
+  fail(folder, "other processes keep removing files there");
 }
 
 /// Files that show that results are complete, or that they can be completed.
@@ -102,7 +166,7 @@ fs::path without_trailing_slash(fs::path path) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier)
+OutputFolder::OutputFolder(const fs::path& folder, Earlier earlier)
     : folder_(without_trailing_slash(folder)), earlier_(std::move(earlier)) {
   if (folder == "-")
     throw sdm::Error("results are files and cannot go to standard output; give a folder with -o");
@@ -113,7 +177,6 @@ OutputFolder::OutputFolder(const fs::path& folder, std::vector<fs::path> earlier
   if (!fs::is_directory(existing_, ignored)) fail(existing_, "it is not a folder");
   if (existing_ == folder_) remove_abandoned(folder_);
   try {
-    create_folder(folder_);
     std::tie(staging_, lock_) = make_staging(folder_);
     outer_ = current_.exchange(this);
   } catch (...) {
@@ -134,15 +197,17 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::remove_traces() {
   reserve_.reset();
   std::error_code ignored;
-  fs::remove_all(staging_, ignored);
+  if (!staging_.empty()) remove_staging(staging_);
   // Folders that contain results are not empty, so they remain.
   for (fs::path made = folder_; made != existing_; made = made.parent_path()) fs::remove(made, ignored);
 }
 
-void OutputFolder::fill(const std::function<void()>& work) {
+void OutputFolder::fill(const std::function<void()>& work, const std::function<void()>& finish) {
   try {
     work();
+    const auto turn = turn_to_move(folder_);
     commit();
+    if (finish) finish();
   } catch (const sdm::Cancelled&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -155,22 +220,25 @@ void OutputFolder::fill(const std::function<void()>& work) {
 }
 
 fs::path OutputFolder::staging(const fs::path& subfolder) {
-  fs::path path = staging_ / subfolder;
+  fs::path path = staging_ / kFiles / subfolder;
   create_folder(path);
   return path;
 }
 
 std::string OutputFolder::with_final_path(std::string message) const {
-  const std::string hidden = fs::path::preferred_separator + staging_.filename().string();
+  const std::string hidden =
+      fmt::format("{}{}/{}", fs::path::preferred_separator, staging_.filename().string(), kFiles);
   for (std::size_t at; (at = message.find(hidden)) != std::string::npos;) message.erase(at, hidden.size());
   return message;
 }
 
 void OutputFolder::commit() {
+  const std::vector<fs::path> earlier = earlier_ ? earlier_() : std::vector<fs::path>();
+  const fs::path files = staging();
   std::vector<std::pair<fs::path, fs::path>> moves;
-  for (const auto& entry : fs::recursive_directory_iterator(staging_)) {
+  for (const auto& entry : fs::recursive_directory_iterator(files)) {
     if (!entry.is_regular_file()) continue;
-    moves.emplace_back(entry.path(), folder_ / fs::relative(entry.path(), staging_));
+    moves.emplace_back(entry.path(), folder_ / fs::relative(entry.path(), files));
     if (fs::is_directory(moves.back().second))
       fail(moves.back().second, "a folder with the name of an output file exists");
   }
@@ -180,14 +248,14 @@ void OutputFolder::commit() {
   std::stable_partition(moves.begin(), moves.end(), std::not_fn(is_last));
   for (const auto& [from, to] : moves) create_folder(to.parent_path());
   std::error_code ignored;
-  for (const fs::path& file : earlier_)
+  for (const fs::path& file : earlier)
     if (concludes(file)) fs::remove(folder_ / file, ignored);
   for (const auto& [from, to] : moves) {
     std::error_code error;
     fs::rename(from, to, error);
     if (error) fail(to, error.message());
   }
-  for (const fs::path& file : earlier_) {
+  for (const fs::path& file : earlier) {
     const fs::path stale = folder_ / file;
     if (std::ranges::find(moves, stale, &std::pair<fs::path, fs::path>::second) != moves.end()) continue;
     fs::remove(stale, ignored);

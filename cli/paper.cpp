@@ -26,7 +26,9 @@ struct PaperCommand {
 
 void run(PaperCommand command) {
   limit_threads(command.threads);
-  OutputFolder out(command.out, {"report.json", "report.html"});
+  OutputFolder out(command.out, [] {
+    return std::vector<std::filesystem::path>{"report.json", "report.html"};
+  });
   ProgressLine progress(command.quiet);
   command.options.step = [&](std::string_view name) { progress.step(name); };
   sdm::paper::Reproduction result;

@@ -173,7 +173,9 @@ std::string files(const PointsCommand& command) {
 int run(PointsCommand command) {
   Stopwatch total, watch;
   limit_threads(command.threads);
-  OutputFolder out(command.out, {"points.ply", "report.html", "alignment.json", "report.json"});
+  OutputFolder out(command.out, [] {
+    return std::vector<std::filesystem::path>{"points.ply", "report.html", "alignment.json", "report.json"};
+  });
   ProgressLine progress(command.quiet);
   command.map.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};

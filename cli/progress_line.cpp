@@ -32,6 +32,10 @@ ProgressLine::~ProgressLine() {
     if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
+bool ProgressLine::interrupted() {
+  return interrupted_by != 0;
+}
+
 void ProgressLine::end_by_interrupt() {
   if (interrupted_by != 0) std::raise(interrupted_by);
 }

@@ -32,6 +32,8 @@ class ProgressLine {
   [[nodiscard]] sdm::Progress callback();
   /// Throws sdm::Cancelled after an interrupt.
   void step(std::string_view name);
+  /// An interrupt has arrived.
+  [[nodiscard]] static bool interrupted();
   /// Terminates the program with the signal that interrupted it, so that a loop in a shell script ends too.
   /// To be called after the cleanup.
   static void end_by_interrupt();

@@ -13,6 +13,7 @@
 #include <sdm/threads.h>
 
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -98,11 +99,35 @@ nlohmann::ordered_json describe(const SceneCommand& command, const Scene& scene,
           {"bodies", bodies}};
 }
 
+/// The files that an earlier run has written, by its description.
+std::vector<fs::path> earlier_files(const fs::path& folder) {
+  std::vector<fs::path> files{"scene.json"};
+  std::ifstream in(folder / "scene.json");
+  const auto description = nlohmann::json::parse(in, nullptr, false);
+  const auto bodies =
+      description.is_object() ? description.value("bodies", nlohmann::json()) : nlohmann::json();
+  for (const auto& body : bodies) {
+    const auto name_value = body.is_object() ? body.value("name", nlohmann::json()) : nlohmann::json();
+    if (!name_value.is_string()) continue;
+    const fs::path name = name_value.get<std::string>();
+    if (name != name.filename() || name.empty() || name.string().starts_with('.')) continue;
+    files.push_back(name.string() + ".ply");
+    files.push_back(name.string() + ".npy");
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder / name, error))
+      if (const fs::path& frame = entry.path();
+          frame.extension() == ".ply" &&
+          frame.stem().string().find_first_not_of("0123456789") == std::string::npos)
+        files.push_back(name / frame.filename());
+  }
+  return files;
+}
+
 void run(const SceneCommand& command) {
   limit_threads(command.threads);
   if (command.kind == kScan)
     return write_made_scan(command.mesh, command.triangles, command.out, command.quiet);
-  OutputFolder out(command.out, {"scene.json"});
+  OutputFolder out(command.out, [&] { return earlier_files(command.out); });
   ProgressLine progress(command.quiet);
   const sdm::Progress report = progress.callback();
   nlohmann::ordered_json description;

@@ -108,9 +108,11 @@ std::string self_summary(const SelfCommand& command, const Json& report) {
 void run(SelfCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  std::vector<std::filesystem::path> earlier{"report.json"};
-  for (const std::string& file : all_names()) earlier.emplace_back(file);
-  OutputFolder out(command.out, earlier);
+  OutputFolder out(command.out, [] {
+    std::vector<std::filesystem::path> earlier{"report.json"};
+    for (const std::string& file : all_names()) earlier.emplace_back(file);
+    return earlier;
+  });
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.self.progress = progress.callback();
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};

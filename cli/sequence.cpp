@@ -121,8 +121,9 @@ class FrameLoop {
  public:
   explicit FrameLoop(const SequenceCommand& command)
       : command_(command),
+        state_written_(written(command.out / SequenceState::kFile)),
         resumed_(command.resume ? incomplete_run(command.out, options_of(command)) : std::nullopt),
-        out_(command.out, earlier_files(command.out, resumed_.has_value())),
+        out_(command.out, [this] { return earlier(); }),
         progress_(command.pair.quiet),
         bodies_{open_o1(), Body(command.pair.o2, command.pair.transform_o2, sequence_options(command))},
         count_(common_frames(bodies_[0], bodies_[1])),
@@ -152,26 +153,29 @@ class FrameLoop {
   /// reported as Interrupted or sdm::Error.
   /// Returns whether all frames are within the tolerance, if there is one.
   bool process() {
-    out_.fill([&] {
-      if (resumed_) follow();
-      const std::size_t kept = state_.frames.size();
-      try {
-        Stopwatch watch;
-        double seconds = 0;
-        for (std::size_t i = kept; i < count_ && !stopped_; ++i) {
-          progress_.step(status(i, i - kept, seconds));
-          use(i);
-          seconds += watch.lap() / 1000;
-        }
-        progress_.step("export");
-      } catch (const sdm::Cancelled&) {
-        if (state_.frames.size() == kept) throw;  // nothing new
-        interrupted_ = true;
-      }
-      write_results();
-    });
-    std::error_code ignored;
-    if (complete()) fs::remove(command_.out / SequenceState::kFile, ignored);
+    out_.fill(
+        [&] {
+          if (resumed_) follow();
+          const std::size_t kept = state_.frames.size();
+          try {
+            Stopwatch watch;
+            double seconds = 0;
+            for (std::size_t i = kept; i < count_ && !stopped_; ++i) {
+              progress_.step(status(i, i - kept, seconds));
+              use(i);
+              seconds += watch.lap() / 1000;
+            }
+            progress_.step("export");
+          } catch (const sdm::Cancelled&) {
+            if (state_.frames.size() == kept) throw;  // nothing new
+            interrupted_ = true;
+          }
+          write_results();
+        },
+        [&] {
+          std::error_code ignored;
+          if (complete()) fs::remove(command_.out / SequenceState::kFile, ignored);
+        });
     if (!command_.pair.json && !command_.pair.quiet) print_summary();
     const std::string folder = command_.out.string();
     if (interrupted_)
@@ -189,6 +193,16 @@ class FrameLoop {
   }
 
  private:
+  [[nodiscard]] static fs::file_time_type written(const fs::path& file) {
+    std::error_code missing;
+    return fs::last_write_time(file, missing);
+  }
+  // What is in the folder is continued only if it is still that of the run that was interrupted.
+  [[nodiscard]] std::vector<fs::path> earlier() const {
+    if (resumed_ && written(command_.out / SequenceState::kFile) != state_written_)
+      refuse_to_resume(command_.out, "another run has changed it meanwhile");
+    return earlier_files(command_.out, resumed_.has_value());
+  }
   [[nodiscard]] std::string status(std::size_t frame, std::size_t done, double seconds) const {
     std::string text = fmt::format("frame {} of {}", frame + 1, count_);
     if (done == 0) return text;
@@ -479,6 +493,7 @@ class FrameLoop {
   }
 
   SequenceCommand command_;
+  fs::file_time_type state_written_;      // before it was read
   std::optional<SequenceState> resumed_;  // its parts move to state_
   OutputFolder out_;
   ProgressLine progress_;

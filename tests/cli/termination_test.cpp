@@ -192,7 +192,10 @@ TEST_P(Termination, LittleMemoryIsAnErrorWithoutFiles) {
 
 struct Staging : ::testing::Test, TwoTori {
   std::string staging = out + "/" + kStaging + "abcdef";
-  Staging() { fs::create_directories(staging + "/o1"); }
+  Staging() {
+    fs::create_directories(staging + "/files/o1");
+    std::ofstream(staging + "/.sdm-staging");
+  }
 };
 
 TEST_F(Staging, OfADeadProcessIsRemoved) {
@@ -204,7 +207,7 @@ TEST_F(Staging, OfARunningProcessRemains) {
   const int file = open(staging.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   ASSERT_EQ(flock(file, LOCK_EX | LOCK_NB), 0);
   ASSERT_EQ(run_sdm(map()).code, 0);
-  EXPECT_TRUE(fs::exists(staging + "/o1"));
+  EXPECT_TRUE(fs::exists(staging + "/files/o1"));
   close(file);
   ASSERT_EQ(run_sdm(map()).code, 0);
   EXPECT_FALSE(fs::exists(staging));

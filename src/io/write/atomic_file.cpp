@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <random>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -22,11 +23,13 @@ std::string reason(int error) {
   return error != 0 ? std::generic_category().message(error) : "write error";
 }
 
-// Unique among the files that all processes of this machine write concurrently.
+// By chance unique among the files that all processes write concurrently: processes of several containers or
+// machines that share a folder can have the same number.
 std::filesystem::path temporary_beside(const std::filesystem::path& file) {
   static std::atomic<unsigned> count{0};
+  static const unsigned chance = std::random_device()();
   return file.parent_path() /
-         fmt::format(".{}.{}.{}.part", file.filename().string(), process_number(), count++);
+         fmt::format(".{}.{}-{:08x}.{}.part", file.filename().string(), process_number(), chance, count++);
 }
 
 }  // namespace
