@@ -25,7 +25,8 @@ namespace sdm {
 /// Reads OBJ, PLY, STL, OFF, glTF/GLB or 3DS. The format is detected from the content, then from the
 /// extension. Polygons are triangulated, node transforms are applied, and all meshes of the file are merged
 /// into one. Vertices used by faces keep their order; bit-identical positions are welded. The result is valid
-/// in the sense of validate().
+/// in the sense of validate(). It has texture coordinates if every corner of the file has; what else was left
+/// out is in MeshFile::notes.
 [[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
 
 /// Names that a file gives to faces: those of objects (OBJ o, glTF meshes, solids of STL text, 3DS), of
@@ -49,6 +50,9 @@ struct FileVertices {
 struct MeshFile {
   Mesh mesh;                     ///< as of read_mesh()
   std::vector<FaceNames> names;  ///< one entry for each kind that the file has
+  /// What was left out or may be wrong, a sentence each: texture coordinates that some corners lack, a count
+  /// that is not that of the file, text without its end.
+  std::vector<std::string> notes{};
   std::optional<FileVertices> vertices{};
 };
 

@@ -41,7 +41,10 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
   return io::with_error_prefix(file.string(), [&] {
     io::PolygonMesh polygons = io::read_polygons(io::read_bytes(file).view(), file);
     std::vector<std::uint32_t> renumbered, triangle_ends;
-    MeshFile result{.mesh = io::to_mesh(polygons, renumbered, triangle_ends), .names = {}};
+    MeshFile result{.mesh = io::to_mesh(polygons, renumbered, triangle_ends),
+                    .names = {},
+                    .notes = std::move(polygons.notes)};
+    if (std::string fault = io::uv_fault(polygons); !fault.empty()) result.notes.push_back(std::move(fault));
     validate(result.mesh);
     add_names("object", polygons.objects, triangle_ends, result.names);
     add_names("group", polygons.groups, triangle_ends, result.names);

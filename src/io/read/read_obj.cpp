@@ -1,4 +1,8 @@
 #include <fmt/format.h>
+#include <sdm/error.h>
+
+#include <optional>
+#include <utility>
 
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
@@ -11,19 +15,17 @@ namespace {
 struct HighestIndex {
   std::uint32_t index = 0;
   const char* at = nullptr;
+
+  void add(std::uint32_t other, const char* place) {
+    if (!at || other > index) index = other, at = place;
+  }
 };
 
-// Reads an index: positive ones count from 1, negative ones backwards from the last of the `count` items so
-// far. The result counts from 0.
-std::uint32_t parse_index(TextScanner& in, std::size_t count, HighestIndex& highest) {
-  const char* at = in.position();
-  const std::int64_t i = in.integer();
+// The index that a file means: positive ones count from 1, negative ones backwards from the last of the
+// `count` items so far. The result counts from 0; kNone if it cannot exist.
+std::uint32_t index_of(std::int64_t i, std::size_t count) {
   const std::int64_t index = i > 0 ? i - 1 : static_cast<std::int64_t>(count) + i;
-  if (i == 0 || index < 0 || index >= kNone)
-    in.fail_at(at, fmt::format("index out of range: a face refers to item {}", i));
-  const auto result = static_cast<std::uint32_t>(index);
-  if (!highest.at || result > highest.index) highest = {result, at};
-  return result;
+  return i == 0 || index < 0 || index >= kNone ? kNone : static_cast<std::uint32_t>(index);
 }
 
 class ObjReader {
@@ -45,9 +47,19 @@ class ObjReader {
         read_name(mesh_.groups);
       else if (in_.accept("o"))
         read_name(mesh_.objects);
+      else if (in_.accept("l"))
+        ++lines_;
+      else if (in_.accept("curv") || in_.accept("curv2"))
+        ++curves_;
+      else if (in_.accept("surf"))
+        ++surfaces_;
     }
-    check(highest_vertex_, mesh_.positions.size(), "vertex");
-    check(highest_uv_, mesh_.uvs.size(), "texture coordinate");
+    if (highest_vertex_.at && highest_vertex_.index >= mesh_.positions.size())
+      in_.fail_at(highest_vertex_.at,
+                  fmt::format("index out of range: a face refers to vertex {} of {}",
+                              std::size_t{highest_vertex_.index} + 1, mesh_.positions.size()));
+    check_uvs();
+    check_other_statements();
     return std::move(mesh_);
   }
 
@@ -63,11 +75,11 @@ class ObjReader {
   // Corners are v, v/vt, v//vn or v/vt/vn.
   void read_face() {
     while (in_.more_on_line()) {
-      mesh_.corners.push_back(parse_index(in_, mesh_.positions.size(), highest_vertex_));
+      mesh_.corners.push_back(read_vertex_index());
       std::uint32_t uv = kNone;
       if (in_.accept('/')) {
         if (in_.in_word() && !in_.accept('/')) {
-          uv = parse_index(in_, mesh_.uvs.size(), highest_uv_);
+          uv = read_uv_index();
           in_.accept('/');
         }
         if (in_.in_word()) in_.integer();
@@ -76,21 +88,61 @@ class ObjReader {
     }
     mesh_.end_polygon();
   }
+  std::uint32_t read_vertex_index() {
+    const char* at = in_.position();
+    const std::int64_t i = in_.integer();
+    const std::uint32_t index = index_of(i, mesh_.positions.size());
+    if (index == kNone)
+      in_.fail_at(
+          at, fmt::format("index out of range: a face refers to vertex {} of {}", i, mesh_.positions.size()));
+    highest_vertex_.add(index, at);
+    return index;
+  }
+  std::uint32_t read_uv_index() {
+    const char* at = in_.position();
+    const std::int64_t i = in_.integer();
+    const std::uint32_t index = index_of(i, mesh_.uvs.size());
+    if (index != kNone)
+      highest_uv_.add(index, at);
+    else if (!impossible_uv_)
+      impossible_uv_ = {i, at};
+    return index;
+  }
+  // Faces without valid texture coordinates are still faces: programs write vt that they then leave out.
+  void check_uvs() {
+    if (!impossible_uv_ && highest_uv_.at && highest_uv_.index >= mesh_.uvs.size())
+      impossible_uv_ = {std::int64_t{highest_uv_.index} + 1, highest_uv_.at};
+    if (!impossible_uv_) return;
+    mesh_.notes.push_back(
+        fmt::format("the texture coordinates are left out: in line {}, a face refers to number {} of {}",
+                    in_.line_of(impossible_uv_->second), impossible_uv_->first, mesh_.uvs.size()));
+    mesh_.uvs.clear(), mesh_.corner_uvs.clear();
+  }
+  void check_other_statements() {
+    if (mesh_.ends.empty()) {
+      if (curves_ + surfaces_ > 0)
+        throw Error(
+            "there are no triangles, only free-form curves and surfaces (statements curv and surf); export "
+            "the faces of a mesh instead");
+      if (lines_ > 0)
+        throw Error("there are no triangles, only lines (statement l); export the faces of a mesh instead");
+    } else if (surfaces_ > 0) {
+      mesh_.notes.push_back(fmt::format(
+          "{} free-form surfaces (statement surf) are left out; only the faces are read", surfaces_));
+    }
+  }
   // The rest of the line: names may contain blanks, and a face may be in several groups.
   void read_name(PolygonNames& names) {
     std::string name;
     while (in_.more_on_line()) name.append(name.empty() ? "" : " ").append(in_.word());
     names.begin(mesh_.ends.size(), name);
   }
-  void check(const HighestIndex& highest, std::size_t count, std::string_view item) const {
-    if (highest.at && highest.index >= count)
-      in_.fail_at(highest.at, fmt::format("index out of range: a face refers to {} {} of {}", item,
-                                          std::size_t{highest.index} + 1, count));
-  }
 
   TextScanner in_;
   PolygonMesh mesh_;
   HighestIndex highest_vertex_, highest_uv_;
+  std::optional<std::pair<std::int64_t, const char*>> impossible_uv_;  // the first one and its position
+  std::size_t lines_ = 0, curves_ = 0, surfaces_ = 0;                  // statements
 };
 
 }  // namespace

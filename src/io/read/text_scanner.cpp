@@ -7,8 +7,12 @@
 
 namespace sdm::io {
 
+std::int64_t TextScanner::line_of(const char* position) const {
+  return 1 + std::count(begin_, position, newline_);
+}
+
 void TextScanner::fail_at(const char* position, std::string_view fault) const {
-  throw Error(fmt::format("line {}: {}", 1 + std::count(begin_, position, newline_), fault));
+  throw Error(fmt::format("line {}: {}", line_of(position), fault));
 }
 
 void TextScanner::fail_at_word(std::string_view fault) {

@@ -13,8 +13,9 @@ namespace sdm::io {
 /// with the next; '#' starts a comment. Faults throw sdm::Error with the line number.
 class TextScanner {
  public:
-  explicit TextScanner(std::string_view text)
-      : begin_(text.data()), at_(begin_), end_(begin_ + text.size()), newline_(line_end(text)) {}
+  /// Reads `text` from the byte `start` on; lines are counted from its beginning.
+  explicit TextScanner(std::string_view text, std::size_t start = 0)
+      : begin_(text.data()), at_(begin_ + start), end_(begin_ + text.size()), newline_(line_end(text)) {}
 
   [[nodiscard]] bool at_end() const { return at_ == end_; }
   /// Returns the number of bytes left.
@@ -91,6 +92,8 @@ class TextScanner {
     return value;
   }
 
+  /// Returns the number of the line of `position`, from 1. Cost: linear.
+  [[nodiscard]] std::int64_t line_of(const char* position) const;
   [[noreturn]] void fail(std::string_view fault) const { fail_at(at_, fault); }
   /// Throws with the line number of `position`.
   [[noreturn]] void fail_at(const char* position, std::string_view fault) const;

@@ -14,6 +14,10 @@
 namespace sdm::io {
 namespace {
 
+std::ptrdiff_t face_of_corner(const PolygonMesh& polygons, std::size_t corner) {
+  return std::ranges::upper_bound(polygons.ends, corner) - polygons.ends.begin();
+}
+
 void check_indices(const PolygonMesh& polygons) {
   if (polygons.ends.empty()) {
     if (polygons.positions.empty()) throw Error("there are no triangles");
@@ -23,9 +27,8 @@ void check_indices(const PolygonMesh& polygons) {
   }
   for (std::size_t c = 0; c < polygons.corners.size(); ++c) {
     if (polygons.corners[c] < polygons.positions.size()) continue;
-    const auto face = std::upper_bound(polygons.ends.begin(), polygons.ends.end(), c) - polygons.ends.begin();
-    throw Error(fmt::format("index out of range: face {} refers to vertex {} of {}", face,
-                            polygons.corners[c], polygons.positions.size()));
+    throw Error(fmt::format("index out of range: face {} refers to vertex {} of {}",
+                            face_of_corner(polygons, c), polygons.corners[c], polygons.positions.size()));
   }
 }
 
@@ -87,11 +90,14 @@ std::vector<std::uint32_t> weld(const PolygonMesh& polygons, Mesh& mesh) {
   return renumbered;
 }
 
+bool has_uv(const PolygonMesh& polygons, std::uint32_t index) {
+  return index < polygons.uvs.size() && std::isfinite(polygons.uvs[index][0]) &&
+         std::isfinite(polygons.uvs[index][1]);
+}
+
 bool all_corners_have_uvs(const PolygonMesh& polygons) {
-  if (polygons.corner_uvs.empty()) return false;
-  return std::all_of(polygons.corner_uvs.begin(), polygons.corner_uvs.end(), [&](std::uint32_t i) {
-    return i < polygons.uvs.size() && std::isfinite(polygons.uvs[i][0]) && std::isfinite(polygons.uvs[i][1]);
-  });
+  return !polygons.corner_uvs.empty() &&
+         std::ranges::all_of(polygons.corner_uvs, [&](std::uint32_t i) { return has_uv(polygons, i); });
 }
 
 // Collects the corners of one polygon, as indices into PolygonMesh::corners. Of consecutive corners on the
@@ -132,6 +138,17 @@ void PolygonMesh::end_polygon() {
     corners.resize(begin);
     if (corner_uvs.size() > begin) corner_uvs.resize(begin);
   }
+}
+
+std::string uv_fault(const PolygonMesh& polygons) {
+  const auto& indices = polygons.corner_uvs;
+  const auto fault = std::ranges::find_if_not(indices, [&](std::uint32_t i) { return has_uv(polygons, i); });
+  if (fault == indices.end() || std::ranges::count(indices, kNone) == std::ssize(indices)) return {};
+  const std::string face =
+      fmt::format("the texture coordinates are left out: face {}",
+                  face_of_corner(polygons, static_cast<std::size_t>(fault - indices.begin())));
+  return face +
+         (*fault < polygons.uvs.size() ? " has some that are infinite or NaN" : " has none at a corner");
 }
 
 Mesh to_mesh(const PolygonMesh& polygons) {

@@ -36,6 +36,7 @@ struct PolygonMesh {
   std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; may be empty
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
   PolygonNames objects, groups, materials;
+  std::vector<std::string> notes;  ///< what was left out, or may be wrong; see MeshFile::notes
 
   /// Ends a polygon of the corners added since the last one. Polygons of fewer than three corners are
   /// dropped.
@@ -43,9 +44,13 @@ struct PolygonMesh {
 };
 
 /// Welds vertices whose positions are bit-identical (−0 equals 0), drops vertices without a face, and
-/// triangulates. Texture coordinates are kept if every corner has finite ones. Throws sdm::Error if an index
-/// is out of range, a coordinate is not finite, or there are no faces.
+/// triangulates. Texture coordinates are kept if every corner has finite ones; see uv_fault(). Throws
+/// sdm::Error if an index is out of range, a coordinate is not finite, or there are no faces.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons);
+
+/// Returns why the mesh has no texture coordinates although the file has some, naming the first face at
+/// fault; empty if it has them, or the file has none. Cost: linear.
+[[nodiscard]] std::string uv_fault(const PolygonMesh& polygons);
 
 /// As above. Also returns the index in the mesh of each vertex, or kNone if it was dropped. The mesh's
 /// vertices are in the order of their first occurrence in the file.
