@@ -56,6 +56,7 @@ std::string bytes_of(const Transform& t, bool by_columns, bool swapped = false) 
 TEST_F(MatrixFile, AsText) {
   for (const char* text :
        {"1 2 3 4\n0 5 6 7.5\n0 0 -8 1e-3\n0 0 0 1\n", "1,2,3,4,0,5,6,7.5,0,0,-8,+0.001,0,0,0,1",
+        "\xEF\xBB\xBF\x31 2 3 4 0 5 6 7.5 0 0 -8 1e-3 0 0 0 1",
         "# a pose\r\n[[1;2;3;4]\r\n [0;5;6;7.5] # second\r\n [0;0;-8;1E-3]\r\n [0;0;-0;1]]"})
     EXPECT_EQ(read_matrix(with(text)).rows, kExpected.rows) << text;
 }
@@ -97,6 +98,7 @@ TEST_F(MatrixFile, FaultsAreOneSentenceThatNamesTheFile) {
   refused(npy("<f8", "False", "(4, 4)", "short"), "truncated");
   refused(npy("<i8", "False", "(4, 4)", std::string(128, 'x')), "'<i8'");
   refused("{", "invalid JSON");
+  refused(std::string("1\0 \0\x32\0 \0\x33\0 \0", 12), "this is UTF-16 text; save it as UTF-8");
   refused("{\"rows\": []}", "\"matrix\"");
   refused("{\"matrix\": \"none\"}", "does not consist of numbers");
   refused("{\"matrix\": [[1, null]]}", "does not consist of numbers");

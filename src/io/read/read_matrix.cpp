@@ -13,6 +13,7 @@
 #include "io/read/file_bytes.h"
 #include "io/read/npy_header.h"
 #include "io/read/read_polygons.h"
+#include "io/read/utf16.h"
 
 namespace sdm {
 
@@ -85,6 +86,8 @@ std::vector<double> numbers_in_json(std::string_view text) {
 
 std::vector<double> numbers_in(std::string_view bytes) {
   if (bytes.starts_with("\x93NUMPY")) return numbers_in_npy(bytes);
+  if (is_utf16(bytes)) throw Error(std::string(kUtf16Fault));
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // the UTF-8 byte order mark
   if (bytes.find_first_not_of(" \t\r\n") != std::string_view::npos &&
       bytes[bytes.find_first_not_of(" \t\r\n")] == '{')
     return numbers_in_json(bytes);

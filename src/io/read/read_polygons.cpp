@@ -8,8 +8,10 @@
 #include <array>
 #include <vector>
 
+#include "io/read/ascii.h"
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
+#include "io/read/utf16.h"
 
 namespace sdm::io {
 namespace {
@@ -32,7 +34,8 @@ struct Content {
 };
 
 bool is_obj(const Content& content) {
-  constexpr std::string_view statements[] = {"v", "vt", "vn", "f", "o", "g", "s", "mtllib", "usemtl"};
+  constexpr std::string_view statements[] = {"v", "vt", "vn", "vp", "f",      "l",
+                                             "p", "o",  "g",  "s",  "mtllib", "usemtl"};
   return std::ranges::find(statements, content.first_word) != std::end(statements);
 }
 
@@ -58,9 +61,7 @@ constexpr Format kFormats[] = {
     {"STL",
      {".stl"},
      false,
-     [](const Content& c) {
-       return is_stl_binary(c.bytes) || c.first_word == "solid" || c.first_word == "SOLID";
-     },
+     [](const Content& c) { return is_stl_binary(c.bytes) || same_word(c.first_word, "solid"); },
      [](std::string_view bytes, const auto&) { return read_stl(bytes); }},
     {"PLY",
      {".ply"},
@@ -93,6 +94,7 @@ const Format* format_of_extension(std::string_view extension) {
 const Format* find_format(const Content& content, const std::filesystem::path& file) {
   for (const Format& format : kFormats)
     if (format.matches(content)) return &format;
+  if (is_utf16(content.bytes)) throw Error(std::string(kUtf16Fault));
   return format_of_extension(file.extension().string());
 }
 
