@@ -71,7 +71,11 @@ TEST(Errors, NoTriangles) {
                "0 0 0\n1 1 1\n",
                "only a cloud of 2 points");
   expect_fault("a.gltf", R"({"asset":{"version":"2.0"}})", "no triangles");
-  expect_fault("a.obj", std::string(kVertices) + "f 1 2\nl 1 2 3\n", "only a cloud");
+  expect_fault("a.obj", std::string(kVertices) + "p 1 2 3\n", "only a cloud of 3 points");
+  expect_fault("a.obj", std::string(kVertices) + "f 1 2\nl 1 2 3\n", "only lines (statement l)");
+  for (const char* free_form : {"cstype bezier\ndeg 2\ncurv 0 1 1 2 3\nparm u 0 1\nend\n",
+                                "cstype bspline\ndeg 1 1\nsurf 0 1 0 1 1 2 3 1\nend\n"})
+    expect_fault("a.obj", std::string(kVertices) + free_form, "only free-form curves and surfaces");
 }
 
 TEST(Errors, AllTrianglesDegenerate) {
@@ -102,7 +106,6 @@ TEST(Errors, IndicesOutOfRange) {
   expect_fault("a.obj", std::string(kVertices) + "f 1 2 99999999999\n", "line 4: index out of range");
   expect_fault("a.obj", std::string(kVertices) + "f 1 2 99999999999999999999999\n",
                "line 4: expected a whole number");
-  expect_fault("a.obj", std::string(kVertices) + "f 1/1 2/1 3/1\n", "texture coordinate 1 of 0");
   expect_fault("a.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
                "line 5: index out of range: a face refers to vertex 3 of 3");
   expect_fault("a.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", "vertex -1 of 3");
@@ -178,14 +181,70 @@ TEST(Errors, PlyHeaders) {
 }
 
 TEST(Errors, UnsupportedOffVariants) {
-  expect_fault("a.off", "4OFF\n1 1 0\n", "three dimensions");
-  expect_fault("a.off", "nOFF\n4\n1 1 0\n", "three dimensions");
+  expect_fault("a.off", "nOFF\n4\n1 1 0\n", "nOFF of 4 dimensions; OFF is supported in three");
+  expect_fault("a.off", "4nOFF 2\n1 1 0\n", "nOFF of 2 dimensions");
+  expect_fault("a.off", "4OFF\n3 1 0\n0 0 0 1\n1 0 0 0\n0 1 0 1\n3 0 1 2\n",
+               "vertex 1 has a NaN or infinite");
   expect_fault("a.off", std::string("OFF BINARY\n\0\0\0\1", 15), "binary data");
   expect_fault("a.off", "OFF BINARY\n", "binary OFF is not supported");
 }
 
-TEST(Errors, StlOutOfOrder) {
-  expect_fault("a.stl", "solid\nvertex 0 0 0\n", "line 2: a vertex outside a loop");
+// No number of one row is taken for one of the next.
+TEST(Errors, RowsOfAnotherLength) {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::pair<const char*, const char*> ply_rows[] = {
+      {"0 0 0\n1 0 0 9\n0 1 0\n3 0 1 2\n",
+       "line 11: row 1 of element vertex has more numbers than the header"},
+      {"0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "line 11: row 1 of element vertex has fewer numbers than the header"},
+      {"0 0 0 # comment\n1 0 0\n0 1\n3 0 1 2\n", "line 12: row 2 of element vertex has fewer"},
+      {"0 0 0\n1 0 0\n0 1 0\n3 0 1 2 2\n", "line 13: row 0 of element face has more"},
+      {"0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n", "truncated"},
+      {"0 0 0 1 0 0 0 1 0 3 0 1 2\n",
+       "row 0 of element vertex has more numbers than the header declares, or "
+       "is not on a line of its own"},
+      {"0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", "row 0 of element face has a list of -3 items"},
+      {"0 0 0\n1 0 0\n0 1 0\n2.5 0 1 2\n", "row 0 of element face has a list of 2.5 items"},
+      {"0 0 0\n1 0 0\n0 1 0\n0 1 2\n", "line 13: row 0 of element face has more"}};
+  for (const auto& [rows, fault] : ply_rows) expect_fault("a.ply", ply + rows, fault);
+
+  const std::pair<const char*, const char*> off_files[] = {
+      {"OFF\n3 1 0\n0 0 0\n1 0 0 255 0 0\n0 1 0\n3 0 1 2\n",
+       "line 4: vertex 1 has more numbers than the header"},
+      {"OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n",
+       "line 4: vertex 1 has fewer numbers than the header declares"},
+      {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1 1 1 1 1\n", "line 6: face 0 has more numbers"},
+      {"OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n3 0 1 2\n", "index out of range"},
+      {"OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n2 0 1\n", "line 6: face 0 has fewer numbers"},
+      {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", "line 6: face 0 has a negative number of corners"},
+      {"NOFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "line 5: vertex 1 has fewer"},
+      {"COFF\n3 1 0\n0 0 0 1 1 1 1 1\n1 0 0\n0 1 0\n3 0 1 2\n", "line 3: vertex 0 has more"},
+      {"STOFF\n3 1 0\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2\n", "line 3: vertex 0 has fewer"},
+      {"OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2", "line 1: more than the counts of vertices, faces and edges"},
+      {"OFF\n3 1 0\n0 0 0 1 0 0 0 1 0\n3 0 1 2\n",
+       "vertex 0 has more numbers than the header declares, or is "
+       "not on a line of its own"},
+      {"OFF\n3\n1\n0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "line 4: vertex 0 has fewer"}};
+  for (const auto& [contents, fault] : off_files) expect_fault("a.off", contents, fault);
+}
+
+// Text in UTF-16 of either byte order, with or without its mark, of all text formats.
+TEST(Errors, Utf16Text) {
+  const Mesh mesh = torus(4, 4);
+  const std::pair<const char*, std::string> files[] = {{"a.obj", obj(mesh)},
+                                                       {"a.off", off(mesh)},
+                                                       {"a.stl", stl_text(mesh)},
+                                                       {"a.ply", ply_text(mesh)},
+                                                       {"a.gltf", gltf_json(mesh, R"([{"mesh":0}])", "")},
+                                                       {"a", obj(mesh)}};
+  for (const auto& [name, text] : files)
+    for (const bool big_endian : {false, true})
+      for (const bool mark : {false, true}) {
+        std::string wide(mark ? big_endian ? "\xFE\xFF" : "\xFF\xFE" : "");
+        for (const char c : text) wide += big_endian ? std::string{'\0', c} : std::string{c, '\0'};
+        expect_fault(name, wide, "this is UTF-16 text; save it as UTF-8");
+      }
 }
 
 // A glTF file with one triangle, some of whose text is replaced.

@@ -117,19 +117,24 @@ TEST(Off, KeepsDoublesAndOrder) {
 }
 
 TEST(Off, AllVariants) {
-  for (const char* contents : {"OFF\n4 1 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3\n",
-                               "OFF 4 1 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3",
-                               "# a comment\nOFF # another\n\n4 1\n# more\n0 0 0 # here too\n\n2 0 0\n2 1 "
-                               "0\n0 1 0\n\n4 0 1 2 3 0.5 0.5 0.5\n",
-                               "COFF\n4 1 0\n0 0 0 255 0 0 255\n2 0 0 1 1 1 1\n2 1 0 0 0 0 1\n0 1 0 0.5 0.5 "
-                               "0.5 1\n4 0 1 2 3 255 0 0\n",
-                               "NOFF\n4 1 0\n0 0 0 0 0 1\n2 0 0 0 0 1\n2 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\n",
-                               "CNOFF\r\n4 1 0\r\n0 0 0 0 0 1 9 9 9\r\n2 0 0 0 0 1 9 9 9\r\n2 1 0 0 0 1 9 9 "
-                               "9\r\n0 1 0 0 0 1 9 9 9\r\n4 0 1 2 3\r\n",
-                               "STOFF\n4 1 0\n0 0 0 0 0\n2 0 0 1 0\n2 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n",
-                               "STCNOFF\n4 1 0\n0 0 0 0 0 1 9 9 9 9 0 0\n2 0 0 0 0 1 9 9 9 1 1 0\n2 1 0 0 0 "
-                               "1 9 9 1 1\n0 1 0 0 0 1 0 1\n4 0 1 2 3\n",
-                               "4 1 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3\n"}) {
+  for (const char* contents :
+       {"OFF\n4 1 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3\n",
+        "OFF 4 1 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3",
+        "# a comment\nOFF # another\n\n4 1\n# more\n0 0 0 # here too\n\n2 0 0\n2 1 "
+        "0\n0 1 0\n\n4 0 1 2 3 0.5 0.5 0.5\n",
+        "COFF\n4 1 0\n0 0 0 255 0 0 255\n2 0 0 1 1 1 1\n2 1 0 0 0 0 1\n0 1 0 0.5 0.5 "
+        "0.5 1\n4 0 1 2 3 255 0 0\n",
+        "NOFF\n4 1 0\n0 0 0 0 0 1\n2 0 0 0 0 1\n2 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\n",
+        "CNOFF\r\n4 1 0\r\n0 0 0 0 0 1 9 9 9\r\n2 0 0 0 0 1 9 9 9\r\n2 1 0 0 0 1 9 9 "
+        "9\r\n0 1 0 0 0 1 9 9 9\r\n4 0 1 2 3\r\n",
+        "STOFF\n4 1 0\n0 0 0 0 0\n2 0 0 1 0\n2 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n",
+        "STCNOFF\n4 1 0\n0 0 0 0 0 1 9 9 9 9 0 0\n2 0 0 0 0 1 9 9 9 1 1 0\n2 1 0 0 0 "
+        "1 9 9 1 1\n0 1 0 0 0 1 0 1\n4 0 1 2 3\n",
+        "4 1 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3\n", "OFF4 1 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3\n",
+        "4OFF\n4 1 0\n0 0 0 1\n4 0 0 2\n2 1 0 1\n0 0.5 0 0.5\n4 0 1 2 3\n",
+        "nOFF 3\n4 1 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3\n",
+        "4nOFF\n3\n4 1 0\n0 0 0 1\n4 0 0 2\n2 1 0 1\n0 0.5 0 0.5\n4 0 1 2 3\n",
+        "OFF\n4\n1 0\n0\n0\n0\n2 0\n0\n2 1 0\n0 1 0\n4 0 1\n2 3\n"}) {
     const Mesh read = read_as("a.off", contents);
     EXPECT_EQ(read.positions, kQuad) << contents;
     ASSERT_EQ(read.triangles.size(), 2u) << contents;
@@ -244,6 +249,36 @@ TEST(Ply, TextureCoordinatesOfVertices) {
   }
 }
 
+TEST(Ply, PropertiesMayBeInUpperCase) {
+  const std::string contents =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float X\nproperty float Y\nproperty float Z\n"
+      "property float S\nproperty float T\nelement face 1\nproperty list uchar int Vertex_Indices\n"
+      "end_header\n0 0 0 0.25 0.5\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+  const Mesh read = read_as("a.ply", contents);
+  EXPECT_EQ(read.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(read.corner_uvs[0], (std::array<Vec2, 3>{{{0.25, 0.5}, {1, 0}, {0, 1}}}));
+}
+
+// A property x in lower case is meant even if another one, such as an index, is named X.
+TEST(Ply, LowerCaseTakesPrecedence) {
+  const Mesh read =
+      read_as("a.ply",
+              "ply\nformat ascii 1.0\nelement vertex 3\nproperty int X\nproperty float x\nproperty float y\n"
+              "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+              "7 0 0 0\n8 1 0 0\n9 0 1 0\n3 0 1 2\n");
+  EXPECT_EQ(read.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+}
+
+TEST(Ply, RowsMayContinueOnTheNextLine) {
+  const Mesh read = read_as(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0\n0\n\n2 0 0\n2 1 0\n0 1 0\n4 0 1\n2 3\n");
+  EXPECT_EQ(read.positions, kQuad);
+  EXPECT_EQ(read.triangles.size(), 2u);
+}
+
 TEST(Ply, FacesMayPrecedeVerticesAndLackTextureCoordinates) {
   const Mesh read = read_as(
       "a.ply",
@@ -348,6 +383,14 @@ TEST(Format, IsDetectedByContentFirst) {
                                       ply_binary(mesh, std::endian::little), glb(mesh), tds(mesh)})
     for (const char* name : {"a.obj", "a.off", "a.stl", "a.PLY", "a.glb", "a.3ds", "a.dat", "a"})
       expect_same_shape(read_as(name, contents), mesh);
+}
+
+TEST(Format, AByteOrderMarkOfUtf8IsSkipped) {
+  const Mesh mesh = torus(6, 5);
+  for (const std::string& contents :
+       {obj(mesh), off(mesh), stl_text(mesh), ply_text(mesh), ply_binary(mesh, std::endian::little)})
+    for (const char* name : {"a.obj", "a.off", "a"})
+      expect_same_shape(read_as(name, "\xEF\xBB\xBF" + contents), mesh);
 }
 
 TEST(Format, IsDetectedByExtensionIfContentIsAmbiguous) {

@@ -11,6 +11,8 @@ namespace sdm::test {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 MeshFile file_of(const std::string& name, std::string_view contents) {
   return read_mesh_file(write_file(name, contents), {.vertices = true});
@@ -75,6 +77,56 @@ TEST(FaceNames, OfGltfMeshesAndMaterials) {
     EXPECT_EQ(file_of("a.gltf", replace(named, R"("material":1)", std::string(R"("material":)") + strange))
                   .mesh.triangles.size(),
               4u);
+}
+
+// A mesh keeps its texture coordinates if every corner has some that are valid; otherwise a note says why
+// not.
+TEST(FileNotes, SayWhyTextureCoordinatesAreLeftOut) {
+  const std::string start = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+  const std::pair<const char*, const char*> faulty[] = {
+      {"f 1/9 2/9 3/9\n", "in line 5, a face refers to number 9 of 0"},
+      {"vt 0 0\nvt 1 0\nf 1/1 2/2 3/3\n", "in line 7, a face refers to number 3 of 2"},
+      {"vt 0 0\nf 1/1 2/1 3/1\nf 2/1 4/0 3/1\n", "in line 7, a face refers to number 0 of 1"},
+      {"vt 0 0\nf 1/-2 2/1 3/1\n", "in line 6, a face refers to number -2 of 1"},
+      {"vt 0 0\nf 1/1 2/1 3/99999999999\n", "in line 6, a face refers to number 99999999999 of 1"},
+      {"vt 0 0\nf 1/1 2/1 3/1\nf 2 4 3\n", "face 1 has none at a corner"},
+      {"vt 0 0\nf 1/1 2/1 3\n", "face 0 has none at a corner"},
+      {"vt 0 0\nvt nan 0\nf 1/1 2/1 3/1\nf 2/1 4/2 3/1\n", "face 1 has some that are infinite or NaN"}};
+  for (const auto& [text, note] : faulty) {
+    const MeshFile file = file_of("a.obj", start + text);
+    EXPECT_EQ(file.mesh.triangles[0], (Triangle{0, 1, 2})) << text;
+    EXPECT_THAT(file.mesh.corner_uvs, IsEmpty()) << text;
+    EXPECT_THAT(file.notes, ElementsAre(HasSubstr(note))) << text;
+    EXPECT_THAT(file.notes, ElementsAre(HasSubstr("the texture coordinates are left out"))) << text;
+  }
+  for (const char* good : {"vt 0 0\nf 1/1 2/1 3/1\n", "vt 0 0\nf 1 2 3\n", "f 1//9 2//9 3//9\n",
+                           "f 1/1 2/1 3/1\nvt 0 0\n", "f 1 2 3\n"})
+    EXPECT_THAT(file_of("a.obj", start + good).notes, IsEmpty()) << good;
+}
+
+TEST(FileNotes, OfPlyFacesWithoutTextureCoordinates) {
+  const std::string contents =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+      "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0 1\n3 0 2 1 0\n";
+  EXPECT_THAT(file_of("a.ply", contents).notes, ElementsAre(HasSubstr("some faces have none")));
+}
+
+TEST(FileNotes, NameWhatFollowsTheDeclaredRows) {
+  const Mesh mesh = tetrahedron();
+  EXPECT_THAT(file_of("a.off", off(mesh) + "3 0 1 2\n").notes,
+              ElementsAre("what follows the 4 declared faces, from line 11 on, is left out"));
+  for (const std::string& ply : {ply_text(mesh), ply_binary(mesh, std::endian::big)}) {
+    EXPECT_THAT(file_of("a.ply", ply + "3 0 1 2\n").notes,
+                ElementsAre("what follows the declared rows is left out"));
+    EXPECT_THAT(file_of("a.ply", ply + "\n").notes, IsEmpty());
+  }
+  EXPECT_THAT(file_of("a.off", off(mesh) + "\n# the end\n").notes, IsEmpty());
+}
+
+TEST(FileNotes, NameFreeFormSurfaces) {
+  const MeshFile file = file_of("a.obj", std::string(kNamed) + "surf 0 1 0 1 1 2 3 4\nend\n");
+  EXPECT_THAT(file.notes, ElementsAre(HasSubstr("1 free-form surfaces (statement surf) are left out")));
 }
 
 TEST(FileVertices, AreThoseOfTheFileInItsOrder) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "io/read/ascii.h"
 #include "io/read/text_scanner.h"
 
 namespace sdm::io {
@@ -61,9 +62,10 @@ PlyHeader::Property parse_property(TextScanner& in) {
 }  // namespace
 
 std::optional<std::size_t> PlyHeader::Element::find(std::initializer_list<std::string_view> names) const {
-  for (const std::string_view wanted : names)
-    for (std::size_t p = 0; p < properties.size(); ++p)
-      if (properties[p].name == wanted) return p;
+  for (const bool exact : {true, false})
+    for (const std::string_view wanted : names)
+      for (std::size_t p = 0; p < properties.size(); ++p)
+        if (exact ? properties[p].name == wanted : same_word(properties[p].name, wanted)) return p;
   return std::nullopt;
 }
 

@@ -22,7 +22,7 @@ struct PlyHeader {
     std::size_t count;
     std::vector<Property> properties;
 
-    /// Returns the index of the first of these properties that exists.
+    /// Returns the index of the first of these properties that exists, in lower case or else in any other.
     [[nodiscard]] std::optional<std::size_t> find(std::initializer_list<std::string_view> names) const;
   };
 

@@ -6,7 +6,7 @@
 #include "io/read/byte_scanner.h"
 #include "io/read/formats.h"
 #include "io/read/ply_header.h"
-#include "io/read/text_scanner.h"
+#include "io/read/text_rows.h"
 
 namespace sdm::io {
 namespace {
@@ -18,15 +18,20 @@ using Property = PlyHeader::Property;
 // The two sources of numbers, text and binary. A double represents all PLY types without loss.
 class TextSource {
  public:
-  explicit TextSource(std::string_view text) : in_(text) {}
-  double number(Type) { return in_.number_across_lines(); }
+  explicit TextSource(const TextScanner& text) : rows_(text) {}
+  double number(Type) { return rows_.number(); }
+  void begin_row() { rows_.begin(); }
+  void end_row(const Element& element, std::size_t row) {
+    rows_.end([&] { return fmt::format("row {} of element {}", row, element.name); });
+  }
   [[nodiscard]] std::size_t remaining() const {
-    return in_.remaining() + 1;
+    return rows_.scanner().remaining() + 1;
   }                                                                 // the last newline may be missing
   [[nodiscard]] static std::size_t least_bytes(Type) { return 2; }  // a digit and a blank
+  [[nodiscard]] bool has_more() { return rows_.scanner().next_word(); }
 
  private:
-  TextScanner in_;
+  TextRows rows_;
 };
 
 class BinarySource {
@@ -53,8 +58,15 @@ class BinarySource {
     }
     return 0;
   }
+  void begin_row() {}
+  void end_row(const Element&, std::size_t) {}
   [[nodiscard]] std::size_t remaining() const { return in_.remaining(); }
   [[nodiscard]] static std::size_t least_bytes(Type type) { return size_of(type); }
+  [[nodiscard]] bool has_more() const {  // than blanks
+    ByteScanner rest = in_;
+    const std::string_view bytes = rest.take(rest.remaining());
+    return bytes.find_first_not_of(std::string_view("\0 \n\r", 4)) != std::string_view::npos;
+  }
 
  private:
   ByteScanner in_;
@@ -76,10 +88,13 @@ class PlyReader {
       else if (element.name == "tristrips")
         read_strips(element);
       else
-        for (std::size_t row = 0; row < element.count; ++row) read_row(element);
+        for (std::size_t row = 0; row < element.count; ++row) read_row(element, row);
     }
+    if (in_.has_more()) mesh_.notes.emplace_back("what follows the declared rows is left out");
     if (mesh_.corner_uvs.size() != mesh_.corners.size()) {
       // Unless all faces have texture coordinates of their own, those of the vertices are used, if any.
+      if (!mesh_.corner_uvs.empty() && vertex_uvs_.empty())
+        mesh_.notes.emplace_back("the texture coordinates are left out: some faces have none");
       mesh_.uvs = std::move(vertex_uvs_);
       mesh_.corner_uvs = mesh_.uvs.empty() ? std::vector<std::uint32_t>{} : mesh_.corners;
     }
@@ -100,7 +115,8 @@ class PlyReader {
   }
 
   // Reads a row into scalars_ and lists_, both indexed by property.
-  void read_row(const Element& element) {
+  void read_row(const Element& element, std::size_t row) {
+    in_.begin_row();
     scalars_.resize(element.properties.size());
     lists_.resize(element.properties.size());
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -111,9 +127,12 @@ class PlyReader {
       }
       lists_[p].clear();
       const double count = in_.number(*property.count_type);
+      if (!(count >= 0) || std::trunc(count) != count)
+        throw Error(fmt::format("row {} of element {} has a list of {} items", row, element.name, count));
       for (std::size_t k = 0; static_cast<double>(k) < count; ++k)
         lists_[p].push_back(in_.number(property.type));
     }
+    in_.end_row(element, row);
   }
 
   void read_vertices(const Element& element) {
@@ -127,11 +146,12 @@ class PlyReader {
     }
     const auto u = element.find({"s", "u", "texture_u", "texture_s"});
     const auto v = element.find({"t", "v", "texture_v", "texture_t"});
+    const bool has_uvs = u && v && !element.properties[*u].count_type && !element.properties[*v].count_type;
     mesh_.positions.reserve(element.count);
     for (std::size_t row = 0; row < element.count; ++row) {
-      read_row(element);
+      read_row(element, row);
       mesh_.positions.push_back({scalars_[place[0]], scalars_[place[1]], scalars_[place[2]]});
-      if (u && v) vertex_uvs_.push_back({scalars_[*u], scalars_[*v]});
+      if (has_uvs) vertex_uvs_.push_back({scalars_[*u], scalars_[*v]});
     }
   }
 
@@ -145,13 +165,14 @@ class PlyReader {
   void read_faces(const Element& element) {
     const std::size_t indices = list_place(element, {"vertex_indices", "vertex_index"});
     const auto texcoord = element.find({"texcoord"});
+    const bool has_texcoords = texcoord && element.properties[*texcoord].count_type;
     mesh_.ends.reserve(element.count);
     mesh_.corners.reserve(3 * element.count);
     for (std::size_t row = 0; row < element.count; ++row) {
-      read_row(element);
+      read_row(element, row);
       const std::vector<double>& face = lists_[indices];
       for (const double value : face) mesh_.corners.push_back(index(value, element, row));
-      if (texcoord && lists_[*texcoord].size() == 2 * face.size()) {
+      if (has_texcoords && lists_[*texcoord].size() == 2 * face.size()) {
         const std::vector<double>& uv = lists_[*texcoord];
         for (std::size_t k = 0; k < face.size(); ++k) {
           mesh_.corner_uvs.push_back(static_cast<std::uint32_t>(mesh_.uvs.size()));
@@ -166,7 +187,7 @@ class PlyReader {
   void read_strips(const Element& element) {
     const std::size_t indices = list_place(element, {"vertex_indices", "vertex_index"});
     for (std::size_t row = 0; row < element.count; ++row) {
-      read_row(element);
+      read_row(element, row);
       std::vector<std::uint32_t> strip;
       for (const double value : lists_[indices]) {
         if (value == -1) {
@@ -206,7 +227,7 @@ PolygonMesh read_ply(std::string_view bytes) {
   const std::string_view data = bytes.substr(header.size);
   switch (header.encoding) {
     case PlyHeader::Encoding::text:
-      return PlyReader(header, TextSource(data)).read();
+      return PlyReader(header, TextSource(TextScanner(bytes, header.size))).read();
     case PlyHeader::Encoding::little_endian:
       return PlyReader(header, BinarySource(data, std::endian::little)).read();
     case PlyHeader::Encoding::big_endian:
