@@ -4,8 +4,12 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/proximity_query.h>
 #include <sdm/shape.h>
 #include <sdm/transform.h>
+
+#include <array>
+#include <cstdint>
 
 namespace sdm {
 
@@ -20,20 +24,38 @@ struct Motion {
 
 /// The first contact of a motion.
 struct TimeOfContact {
-  bool contact = false;  ///< the bodies collide at `time`, or are at most the tolerance apart
-  /// The bodies do not touch before this; 1 if they come no nearer than the tolerance.
+  /// The bodies collide at `time`, or are at most the tolerance apart; or, with `bounded`, they may be about
+  /// to: a motion that must be free of contact ends at `time` in either case.
+  bool contact = false;
+  /// The bodies do not touch before this: they are more than half of the tolerance apart. 1 without contact.
   double time = 1;
-  double separation = 0;  ///< at `time`; exact
+  /// Between the surfaces at `time`; exact.
+  double separation = 0;
+  /// bounded: free of contact until `time` for certain, but not decided beyond it. The bodies are
+  /// `separation` apart then, more than the tolerance, and the next step that is safe is less than rounding
+  /// resolves: the time itself, whose unit is 1e-16, or coordinates in space. Also where two faces took a
+  /// million steps.
+  Certainty certainty = Certainty::exact;
+  /// A point of O1 and a point of O2 that are `separation` apart at `time`, in space, and a face that
+  /// contains each.
+  std::array<Vec3, 2> witness{};
+  std::array<std::uint32_t, 2> faces{kNone, kNone};
+  /// Unit vector along which moving O1 separates it from O2: (witness[0] − witness[1]) / separation, or the
+  /// opposite where one body contains part of the other at time 0. 0 if the surfaces intersect then.
+  Vec3 normal{};
 };
 
-/// Finds the first contact by conservative advancement (Mirtich & Canny 1995): no point of a body is faster
-/// than its centre plus its angular speed times its radius, so the surfaces need at least their distance
-/// divided by the sum of these speeds to meet. No contact is missed, however thin the bodies and long the
-/// motions. Bodies that collide at first have contact at time 0.
+/// Finds the first contact by controlled conservative advancement (Tang, Kim & Manocha 2009): two parts of
+/// the bodies, nodes of their trees or faces, that a direction separates need at least the distance along it,
+/// divided by the speed along it, to meet. Each pair of parts advances by itself, so bodies that slide along
+/// each other take no more steps than those that are far apart. No contact is missed, however thin the bodies
+/// and long the motions. Bodies that collide at first have contact at time 0.
 ///
-/// `tolerance` > 0, in units of space. Throws sdm::Error for any other, and as Motion::at does. Cost: some
-/// ten searches for the closest faces, at most one for each half tolerance of the motion, where the bodies
-/// pass each other closely.
+/// `tolerance` > 0, in units of space; bodies that come closer than it, but not closer than its half, may
+/// have contact or not. Where it is less than the rounding of coordinates, results are `bounded`.
+///
+/// Throws sdm::Error for any other tolerance, and as Motion::at does. Cost: two searches for the closest
+/// faces, and that of the pairs of nodes that come near each other before the contact. Single-threaded.
 [[nodiscard]] SDM_API TimeOfContact time_of_contact(const Shape& o1, const Motion& motion1, const Shape& o2,
                                                     const Motion& motion2, double tolerance);
 

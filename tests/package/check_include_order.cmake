@@ -33,6 +33,7 @@ set(order
   proximity/depth
   proximity/contacts
   proximity/pair
+  proximity/motion
   proximity/bodies
   proximity/self
   proximity

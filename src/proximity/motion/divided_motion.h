@@ -1,0 +1,50 @@
+// A motion of a body, divided into that of its centre and a rotation about it.
+#pragma once
+
+#include <sdm/time_of_contact.h>
+
+#include "mesh/similarity.h"
+
+namespace sdm::motion {
+
+/// At the time t, a point p of the mesh is at
+///   start + t shift + R(t) q,   q = L (p − middle),
+/// with L the linear part of the first pose and R(t) the rotation by t angle about the axis.
+class DividedMotion {
+ public:
+  /// Throws sdm::Error as Motion::at does.
+  DividedMotion(const Motion& motion, const Shape& shape);
+
+  [[nodiscard]] bool rests() const { return angle_ == 0 && shift_ == Vec3{}; }
+  [[nodiscard]] bool turns() const { return angle_ > 0; }
+
+  /// The middle of the mesh's box, in the frame of the mesh, and where it is at time 0.
+  [[nodiscard]] const Vec3& middle() const { return middle_; }
+  [[nodiscard]] const Vec3& start() const { return start_; }
+  [[nodiscard]] const Vec3& shift() const { return shift_; }
+  [[nodiscard]] double scale() const { return from_.scale; }
+
+  /// Of length 1, in space and in the frame of the mesh; 0 if it does not turn.
+  [[nodiscard]] const Vec3& axis() const { return axis_; }
+  [[nodiscard]] const Vec3& mesh_axis() const { return mesh_axis_; }
+  /// In [0, π].
+  [[nodiscard]] double angle() const { return angle_; }
+
+  /// The rows of R(t) L.
+  [[nodiscard]] std::array<Vec3, 3> linear_at(double time) const;
+  [[nodiscard]] Transform at(double time) const;
+
+  /// A bound on the errors, by rounding, of the coordinates of all points at all times: of those that at()
+  /// gives, and of those that are computed relative to the centre of another body.
+  [[nodiscard]] const Vec3& rounding() const { return rounding_; }
+
+ private:
+  void find_rotation(const mesh::Similarity& to);
+  void find_rounding(double radius);
+
+  mesh::Similarity from_;
+  Vec3 middle_{}, start_{}, shift_{}, axis_{}, mesh_axis_{}, rounding_{};
+  double angle_ = 0;
+};
+
+}  // namespace sdm::motion

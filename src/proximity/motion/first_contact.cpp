@@ -1,0 +1,232 @@
+#include "proximity/motion/first_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/geometry/triangle_pair.h"
+#include "proximity/motion/safe_time.h"
+
+namespace sdm::motion {
+namespace {
+
+// The parts of a surface, as SafeTime takes them.
+class Parts {
+ public:
+  explicit Parts(const MovingSurface& surface)
+      : sites_(surface.sites),
+        motion_(surface.motion),
+        unit_(1 / sites_.frame.scale),
+        origin_(sites_.frame.origin - motion_.middle()) {}
+
+  [[nodiscard]] const hierarchy::AabbTree& tree() const { return sites_.tree; }
+
+  [[nodiscard]] Part node(std::uint32_t index) const {
+    const hierarchy::FloatBox& box = tree().box(index);
+    Part part;
+    for (int k = 0; k < 3; ++k) {
+      part.point[0][k] = origin_[k] + unit_ * (0.5 * (double{box.lo[k]} + box.hi[k]));
+      part.half[k] = unit_ * (0.5 * (double{box.hi[k]} - box.lo[k]));
+    }
+    part.radius[0] = from_axis(part.point[0]) + motion_.scale() * norm(part.half);
+    return part;
+  }
+  [[nodiscard]] Part face(std::uint32_t index) const {
+    Part part{.points = 3};
+    for (int i = 0; i < 3; ++i) {
+      part.point[i] = sites_.mesh.positions[sites_.mesh.triangles[index][i]] - motion_.middle();
+      part.radius[i] = from_axis(part.point[i]);
+    }
+    return part;
+  }
+  // In space.
+  [[nodiscard]] double size(std::uint32_t node) const {
+    const hierarchy::FloatBox& box = tree().box(node);
+    return motion_.scale() * unit_ *
+           ((box.hi[0] - box.lo[0]) + (box.hi[1] - box.lo[1]) + (box.hi[2] - box.lo[2]));
+  }
+
+ private:
+  [[nodiscard]] double from_axis(const Vec3& p) const {
+    return motion_.scale() * norm(cross(p, motion_.mesh_axis()));
+  }
+
+  const sites::SitesData& sites_;
+  const DividedMotion& motion_;
+  const double unit_;
+  const Vec3 origin_;
+};
+
+// `vector` without its part along `along`, of length 1. Along such a direction, bodies do not approach with
+// their velocity: where they pass beside each other, it separates them for all time.
+Vec3 beside(const Vec3& vector, const Vec3& along) {
+  const Vec3 ahead = normalized(along);
+  const Vec3 rest = vector - dot(vector, ahead) * ahead;
+  return normalized(rest - dot(rest, ahead) * ahead);
+}
+
+class Search {
+ public:
+  Search(const MovingSurface& o1, const MovingSurface& o2, double tolerance,
+         const std::function<bool(double)>& in_contact)
+      : parts_{Parts(o1), Parts(o2)},
+        safe_(o1.motion, o2.motion, 0.5 * tolerance),
+        tolerance_(tolerance),
+        in_contact_(in_contact) {}
+
+  FreeMotion run() {
+    if (parts_[0].tree().nodes.empty() || parts_[1].tree().nodes.empty()) return {};
+    now_.push_back({});
+    while (!now_.empty() || !later_.empty()) {
+      if (now_.empty()) {
+        std::ranges::pop_heap(later_, std::greater{}, &Pair::time);
+        now_.push_back(later_.back());
+        later_.pop_back();
+        safe_.set_now(now_.back().time);
+      }
+      const Pair pair = now_.back();
+      now_.pop_back();
+      if (!pair.faces)
+        advance_nodes(pair);
+      else if (const FreeMotion free = advance_faces(pair); free.time < 1 || !free.decided)
+        return free;
+    }
+    return {};
+  }
+
+ private:
+  // Faces that graze each other along curved paths take some 1/√tolerance steps.
+  static constexpr std::uint32_t kMostSteps = 1'000'000;
+  // Nodes whose next step is shorter, in units of the motion, are divided.
+  static constexpr double kLeastStep = 1.0 / 16;
+
+  // Two nodes, or two faces, that are safe until a time.
+  struct Pair {
+    double time = 0;
+    std::array<std::uint32_t, 2> index{};
+    bool faces = false;
+    std::uint32_t steps = 0;
+    Vec3 direction{};  // along which this was found, for themselves or for the nodes that contain them
+  };
+
+  // The longest time along some directions.
+  struct Longest {
+    double time;
+    Vec3 direction;
+    [[nodiscard]] bool done() const { return time >= 1; }
+  };
+  void offer(Longest& longest, const std::array<Part, 2>& parts, const Vec3& direction) const {
+    if (longest.done()) return;
+    if (const double time = safe_.until(parts[0], parts[1], direction); time > longest.time)
+      longest = {time, direction};
+  }
+
+  void advance_nodes(Pair pair) {
+    const std::array parts{parts_[0].node(pair.index[0]), parts_[1].node(pair.index[1])};
+    Longest longest{safe_.now(), pair.direction};
+    offer(longest, parts, pair.direction);
+    const Vec3 from = safe_.place(0, parts[0].point[0]), to = safe_.place(1, parts[1].point[0]);
+    offer(longest, parts, beside(to - from, safe_.velocity(from, to)));
+    offer(longest, parts, normalized(to - from));
+    for (int body = 0; body < 2; ++body)
+      for (int k = 0; k < 3; ++k) offer(longest, parts, facing(safe_.axis_of(body, k), to - from));
+    if (longest.done()) return;
+    const bool first = pair.steps++ == 0;
+    pair.direction = longest.direction;
+    if (longest.time - safe_.now() > (first ? 0 : kLeastStep))
+      put_off(pair, longest.time);
+    else
+      divide(pair);
+  }
+
+  FreeMotion advance_faces(Pair pair) {
+    const std::array parts{parts_[0].face(pair.index[0]), parts_[1].face(pair.index[1])};
+    Longest longest{safe_.now(), pair.direction};
+    offer(longest, parts, pair.direction);
+    if (longest.done()) return {};
+    std::array<Corners, 2> at;
+    for (int body = 0; body < 2; ++body)
+      for (int i = 0; i < 3; ++i) at[body][i] = safe_.place(body, parts[body].point[i]);
+    const auto [squared, point1, point2] = closest_points(at[0], at[1]);
+    const double distance = std::sqrt(squared);
+    if (distance <= tolerance_ && in_contact_(safe_.now())) return {.time = safe_.now()};
+    const Vec3 between = point2 - point1;
+    offer(longest, parts, normalized(between));
+    offer(longest, parts, beside(between, safe_.velocity(point1, point2)));
+    for (const Corners& t : at) offer(longest, parts, facing(cross(t[1] - t[0], t[2] - t[0]), between));
+    if (distance * distance < 8 * safe_.rounding() * std::max(size_of(at[0]), size_of(at[1])))
+      offer_features(longest, parts, at, between);
+    if (longest.done()) return {};
+    if (!(longest.time > safe_.now()) || ++pair.steps > kMostSteps)
+      return {.time = safe_.now(), .decided = false};
+    pair.direction = longest.direction;
+    put_off(pair, longest.time);
+    return {};
+  }
+
+  // Rounding turns the vector between points that are very close, by its own size over their distance, and
+  // lets large faces overlap along it. The directions that their features have in exact arithmetic are
+  // perpendicular to an edge, or to one of each face.
+  void offer_features(Longest& longest, const std::array<Part, 2>& parts, const std::array<Corners, 2>& at,
+                      const Vec3& between) const {
+    std::array<Corners, 2> edges;
+    for (int body = 0; body < 2; ++body)
+      for (int i = 0; i < 3; ++i) {
+        edges[body][i] = normalized(at[body][(i + 1) % 3] - at[body][i]);
+        offer(longest, parts, beside(between, edges[body][i]));
+      }
+    for (const Vec3& edge1 : edges[0])
+      for (const Vec3& edge2 : edges[1]) offer(longest, parts, facing(cross(edge1, edge2), between));
+  }
+  static double size_of(const Corners& t) {
+    return std::max({norm(t[1] - t[0]), norm(t[2] - t[1]), norm(t[0] - t[2])});
+  }
+
+  // The axis, of length 1, in the direction of `ahead`.
+  static Vec3 facing(const Vec3& axis, const Vec3& ahead) {
+    return normalized(dot(axis, ahead) < 0 ? -axis : axis);
+  }
+
+  void put_off(Pair& pair, double time) {
+    pair.time = time;
+    later_.push_back(pair);
+    std::ranges::push_heap(later_, std::greater{}, &Pair::time);
+  }
+
+  // Into the pairs of the children of the larger node, or of the faces of two leaves.
+  void divide(const Pair& pair) {
+    const auto [a, b] = pair.index;
+    const hierarchy::AabbTree &tree1 = parts_[0].tree(), &tree2 = parts_[1].tree();
+    Pair part{.time = pair.time, .direction = pair.direction};
+    const auto add = [&](std::uint32_t index1, std::uint32_t index2) {
+      part.index = {index1, index2};
+      now_.push_back(part);
+    };
+    const bool leaf1 = tree1.nodes[a].leaf(), leaf2 = tree2.nodes[b].leaf();
+    if (leaf1 && leaf2) {
+      part.faces = true;
+      for (const std::uint32_t face1 : tree1.items_of(a))
+        for (const std::uint32_t face2 : tree2.items_of(b)) add(face1, face2);
+    } else if (leaf2 || (!leaf1 && parts_[0].size(a) >= parts_[1].size(b))) {
+      for (const std::uint32_t child : {a + 1, tree1.nodes[a].right}) add(child, b);
+    } else {
+      for (const std::uint32_t child : {b + 1, tree2.nodes[b].right}) add(a, child);
+    }
+  }
+
+  std::array<Parts, 2> parts_;
+  SafeTime safe_;
+  const double tolerance_;
+  const std::function<bool(double)>& in_contact_;
+  std::vector<Pair> now_;    // a stack: those that are safe until now, or not examined
+  std::vector<Pair> later_;  // a heap: those that are safe until later, the earliest on top
+};
+
+}  // namespace
+
+FreeMotion find_first_contact(const MovingSurface& o1, const MovingSurface& o2, double tolerance,
+                              const std::function<bool(double)>& in_contact) {
+  return Search(o1, o2, tolerance, in_contact).run();
+}
+
+}  // namespace sdm::motion

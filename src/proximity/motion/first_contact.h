@@ -1,0 +1,33 @@
+// The first time at which two moving surfaces are within a tolerance of each other.
+#pragma once
+
+#include <functional>
+
+#include "proximity/motion/divided_motion.h"
+#include "sites/sites_data.h"
+
+namespace sdm::motion {
+
+/// A surface and its motion.
+struct MovingSurface {
+  const sites::SitesData& sites;
+  const DividedMotion& motion;
+};
+
+/// Until when the motions are free.
+struct FreeMotion {
+  double time = 1;
+  bool decided = true;  ///< false: they could not be continued, by rounding, though there is no contact
+};
+
+/// Finds until when two surfaces move freely, provided that they are more than the tolerance apart at time 0:
+/// until then, they are more than half of the tolerance apart. Ends before time 1 where faces are within the
+/// tolerance and in_contact(time) agrees, or where neither can be decided.
+///
+/// Controlled conservative advancement (Tang, Kim & Manocha 2009), of each pair of nodes and faces by itself:
+/// each has a time until which it is safe, those with the least are advanced or divided next. Cost: that of
+/// the pairs of nodes that come near each other before that time; memory for those that are open at once.
+[[nodiscard]] FreeMotion find_first_contact(const MovingSurface& o1, const MovingSurface& o2,
+                                            double tolerance, const std::function<bool(double)>& in_contact);
+
+}  // namespace sdm::motion
