@@ -23,13 +23,39 @@ void bind_time_of_contact(nb::module_& module) {
   nb::class_<T>(module, "TimeOfContact", "When two moving bodies first come into contact, if they do.")
       .def_prop_ro(
           "contact", [](const T& self) { return self.found.contact; },
-          "Whether the bodies collide at ``time``, or are at most the tolerance apart.")
+          R"(Whether the bodies collide at ``time``, or are at most the tolerance apart; or, where ``certainty``
+is 'bounded', may be about to: a motion that must be free of contact ends at ``time`` in either case.)")
       .def_prop_ro(
           "time", [](const T& self) { return self.found.time; },
-          "The bodies do not touch before this, in [0, 1]; 1 if they come no nearer than the tolerance.")
+          R"(In [0, 1]. The bodies do not touch before this: they are more than half of the tolerance apart.
+1 without contact.)")
       .def_prop_ro(
           "separation", [](const T& self) { return self.found.separation; },
           "The smallest distance between the surfaces at ``time``, in units of space; exact.")
+      .def_prop_ro(
+          "certainty", [](const T& self) { return name_of(self.found.certainty); },
+          R"('exact'; or 'bounded': free of contact until ``time`` for certain, but not decided beyond it,
+as the next step that is safe is less than what rounding resolves: of the time, whose unit is 1e-16, or of
+coordinates in space. The bodies are ``separation`` apart then, more than the tolerance.)")
+      .def_prop_ro(
+          "witness",
+          [](const T& self) {
+            std::vector<std::array<Vec3, 2>> rows{self.found.witness};
+            return array_of<double>(std::move(rows), {2, 3});
+          },
+          nb::sig("def witness(self) -> numpy.ndarray"),
+          R"(A point of O1 and a point of O2 that are ``separation`` apart at ``time``, in space, (2, 3)
+float64.)")
+      .def_prop_ro(
+          "faces", [](const T& self) { return nb::make_tuple(self.found.faces[0], self.found.faces[1]); },
+          nb::sig("def faces(self) -> tuple[int, int]"),
+          "A face of O1 and one of O2 that contain these points.")
+      .def_prop_ro(
+          "normal", [](const T& self) { return vector_of(self.found.normal); },
+          nb::sig("def normal(self) -> numpy.ndarray"),
+          R"(Unit vector along which moving O1 separates it from O2, (3,) float64:
+(witness[0] - witness[1]) / separation, or the opposite where one body contains part of the other at time 0;
+0 if the surfaces intersect then.)")
       .def_prop_ro(
           "pose1", [](const T& self) { return matrix(self.poses[0]); },
           nb::sig("def pose1(self) -> numpy.ndarray"),
@@ -63,17 +89,21 @@ o1, o2: each any form of a mesh (see Mesh), or a Shape.
 motion1, motion2: the poses at time 0 and at time 1: two 4 × 4 matrices, as of ProximityQuery.set_pose(), with
 the same scale; or one, or None (the identity), for a body at rest. The centre of the mesh's box moves along a
 straight line, and the body turns about it with constant speed, by at most 180°.
-tolerance: > 0, in units of space: bodies that come closer than this are in contact.
+tolerance: > 0, in units of space: bodies that come closer than its half are in contact, and those farther apart
+are not. Where it is less than the rounding of coordinates, the result is 'bounded'.
 
-By conservative advancement: no contact is missed, however thin the bodies and long the motions. Bodies that
-collide at first have contact at time 0. Raises Error for unusable meshes, poses or tolerances. Cost: some ten
-searches for the closest faces; more where the bodies pass each other closely.
+By controlled conservative advancement of pairs of parts: no contact is missed, however thin the bodies and long
+the motions. Bodies that collide at first have contact at time 0. Raises Error for unusable meshes, poses or
+tolerances. Cost: two searches for the closest faces, and that of the parts that come near each other before the
+contact.
 
 >>> far, beyond = np.eye(4), np.eye(4)
 >>> far[0, 3], beyond[0, 3] = 5, -5
 >>> found = sdm.time_of_contact(box, (far, beyond), box, None, tolerance=1e-6)
 >>> found.contact, round(found.time, 6), round(float(found.pose1[0, 3]), 5)
-(True, 0.4, 1.0))");
+(True, 0.4, 1.0)
+>>> found.certainty, round(float(found.normal[0]), 6)
+('exact', 1.0))");
 }
 
 }  // namespace sdm::python

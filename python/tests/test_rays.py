@@ -106,6 +106,16 @@ def test_time_of_contact():
     assert found.contact and found.time == pytest.approx(0.5, abs=1e-7) and found.separation <= 1e-7
     np.testing.assert_allclose(found.pose1, shifted(1), atol=1e-5)
     np.testing.assert_array_equal(found.pose2, np.eye(4))
+    assert found.certainty == "exact"
+    np.testing.assert_allclose(found.normal, [1, 0, 0], atol=1e-9)
+    assert found.witness.shape == (2, 3) and found.witness.dtype == np.float64
+    np.testing.assert_allclose(found.witness[0] - found.witness[1], found.separation * found.normal, atol=1e-12)
+    for body, face in enumerate(found.faces):  # both contain their point, in a plane across x
+        corners = np.array(box[0])[np.array(box[1])[face]] + (found.pose1, found.pose2)[body][:3, 3]
+        np.testing.assert_allclose(corners[:, 0], found.witness[body][0], atol=1e-12)
+    # Less than the unit of the time.
+    bounded = sdm.time_of_contact(box, None, box, (shifted(1001.3, 0.1), shifted(-1370, 0.13)), tolerance=1e-14)
+    assert bounded.contact and bounded.certainty == "bounded" and 1e-14 < bounded.separation < 1e-10
     # No contact is missed, however thin and fast; and none is found where they pass each other.
     thin = (np.array(box[0]) * [1e-6, 1, 1], box[1])
     assert sdm.time_of_contact(thin, (shifted(1000), shifted(-1000)), box, None, tolerance=1e-9).contact
