@@ -89,7 +89,7 @@ TEST_F(MatrixFile, FaultsAreOneSentenceThatNamesTheFile) {
   refused("1 2 3\n0 5 6\n0 0 8\n", "has 9 numbers, not 16");
   refused("1 2 3 4\n" + rest + "1", "has 17 numbers, not 16");
   refused("1 2 3 x\n" + rest, "'x' is not a number");
-  refused("1 2 3 \x01\x02\n" + rest, "'?\?' is not a number");
+  refused("1 2 3 \x01\x02\n" + rest, "'\\u0001\\u0002' is not a number");
   refused("1 2 3 nan\n" + rest, "infinite or NaN");
   refused("1 2 inf 4\n" + rest, "infinite or NaN");
   refused("1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n", "the translation is the last column");

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <string>
 
+#include "core/excerpt.h"
 #include "io/read/byte_scanner.h"
 
 namespace sdm::io {
@@ -79,7 +80,7 @@ void set_type(NpyHeader& header, std::string_view type) {
   } else {
     throw Error(fmt::format(
         "holds numbers of type '{}', not float32 or float64; convert them with astype(numpy.float32)",
-        type.substr(0, 16)));
+        excerpt(type)));
   }
   header.order = type[0] == '<' ? std::endian::little : std::endian::big;
 }

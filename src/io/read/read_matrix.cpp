@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/excerpt.h"
 #include "io/read/byte_scanner.h"
 #include "io/read/file_bytes.h"
 #include "io/read/npy_header.h"
@@ -38,10 +39,7 @@ std::vector<double> numbers_in_text(std::string_view text) {
       double number = 0;
       const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
       if (fault != std::errc() || end != word.data() + word.size()) {
-        std::string shown(word.substr(0, 32));
-        for (char& c : shown)
-          if (c < ' ' || c > '~') c = '?';
-        throw Error(fmt::format("'{}' is not a number; {}", shown, kNeeded));
+        throw Error(fmt::format("'{}' is not a number; {}", excerpt(word), kNeeded));
       }
       numbers.push_back(number);
     }

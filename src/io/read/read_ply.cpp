@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/excerpt.h"
 #include "io/read/byte_scanner.h"
 #include "io/read/formats.h"
 #include "io/read/ply_header.h"
@@ -158,8 +159,8 @@ class PlyReader {
   // Converts an index, which may have any type in the file.
   [[nodiscard]] std::uint32_t index(double value, const Element& element, std::size_t row) const {
     if (value >= 0 && value < kNone && std::trunc(value) == value) return static_cast<std::uint32_t>(value);
-    throw Error(fmt::format("index out of range: row {} of element {} refers to vertex {}", row, element.name,
-                            value));
+    throw Error(fmt::format("index out of range: row {} of element {} refers to vertex {}", row,
+                            excerpt(element.name), value));
   }
 
   void read_faces(const Element& element) {
@@ -208,7 +209,8 @@ class PlyReader {
   static std::size_t list_place(const Element& element, std::initializer_list<std::string_view> names) {
     const auto place = element.find(names);
     if (!place || !element.properties[*place].count_type)
-      throw Error(fmt::format("element {} of the PLY file has no list vertex_indices", element.name));
+      throw Error(
+          fmt::format("element {} of the PLY file has no list vertex_indices", excerpt(element.name)));
     return *place;
   }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/error.h>
+#include <sdm/printable.h>
 
 #include <filesystem>
 #include <new>
@@ -22,16 +23,16 @@ namespace sdm::io {
 [[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file);
 
 /// Calls `read`. If it throws sdm::Error or runs out of memory, throws an sdm::Error whose message begins
-/// with `name`, unless that is empty.
+/// with `name`, unless that is empty. It is printable(), whatever the file contains.
 template <typename Read>
 auto with_error_prefix(const std::string& name, const Read& read) {
   const std::string prefix = name.empty() ? "" : name + ": ";
   try {
     return read();
   } catch (const Error& fault) {
-    throw Error(prefix + fault.what());
+    throw Error(printable(prefix + fault.what()));
   } catch (const std::bad_alloc&) {
-    throw Error(prefix + "there is not enough memory to read it");
+    throw Error(printable(prefix) + "there is not enough memory to read it");
   }
 }
 

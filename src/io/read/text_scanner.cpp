@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/excerpt.h"
+
 namespace sdm::io {
 
 std::int64_t TextScanner::line_of(const char* position) const {
@@ -17,9 +19,7 @@ void TextScanner::fail_at(const char* position, std::string_view fault) const {
 
 void TextScanner::fail_at_word(std::string_view fault) {
   const char* start = at_;
-  std::string found(in_word() ? word().substr(0, 32) : std::string_view());
-  for (char& c : found)
-    if (c < ' ' || c > '~') c = '?';
+  const std::string found = excerpt(in_word() ? word() : std::string_view());
   fail_at(start, fmt::format("{}{}{}", fault, found.empty() ? "" : fmt::format(", not '{}'", found),
                              at_end() ? "; the text ends here, so the file may be truncated" : ""));
 }
