@@ -23,10 +23,10 @@
 namespace sdm {
 
 /// Reads OBJ, PLY, STL, OFF, glTF/GLB or 3DS. The format is detected from the content, then from the
-/// extension. Polygons are triangulated, node transforms are applied, and all meshes of the file are merged
-/// into one. Vertices used by faces keep their order; bit-identical positions are welded. The result is valid
-/// in the sense of validate(). It has texture coordinates if every corner of the file has; what else was left
-/// out is in MeshFile::notes.
+/// extension. Polygons are triangulated, all meshes of the file are merged into one, and glTF's nodes,
+/// instances, default morph weights and skins are applied. Vertices used by faces keep their order;
+/// bit-identical positions are welded. The result is valid in the sense of validate(). It has texture
+/// coordinates if every corner of the file has; what else was left out is in MeshFile::notes.
 [[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
 
 /// Names that a file gives to faces: those of objects (OBJ o, glTF meshes, solids of STL text, 3DS), of

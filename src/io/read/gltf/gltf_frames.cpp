@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 #include <utility>
 
-#include "core/memory.h"
 #include "io/read/frames/frame_source.h"
+#include "io/read/gltf/gltf_morph.h"
+#include "io/read/gltf/gltf_rows.h"
 #include "io/read/gltf/gltf_scene.h"
+#include "io/read/gltf/gltf_skin.h"
 #include "io/read/gltf/gltf_weights.h"
 
 namespace sdm::io {
@@ -17,19 +21,17 @@ namespace {
 
 using nlohmann::json;
 
-// The vertices of a primitive of an animated node: position = rest + Σ weight · displacement. The linear part
-// of the node's transform is already applied to the displacements.
-struct MorphedPart {
-  std::size_t first_vertex, track;
-  std::vector<std::vector<Vec3>> displacements;  // for each target; empty if it has no positions
+// A vertex that a morph target displaces, in the coordinates of the scene.
+struct Displaced {
+  std::uint32_t vertex;
+  Vec3 displacement;
 };
 
-std::size_t target_count(const GltfDocument& document, std::size_t mesh) {
-  std::size_t count = 0;
-  for (const json& primitive : document.item("meshes", mesh).at("primitives"))
-    count = std::max(count, primitive.value("targets", json::array()).size());
-  return count;
-}
+// The vertices of a primitive of an animated node: position = rest + Σ weight · displacement.
+struct MorphedPart {
+  std::size_t first_vertex, track;
+  std::vector<std::vector<Displaced>> targets;
+};
 
 // The samplers of the first animation that changes only weights, by node.
 std::map<std::size_t, const json*> weight_samplers(const json& animations) {
@@ -55,23 +57,18 @@ std::map<std::size_t, const json*> weight_samplers(const json& animations) {
   return samplers;
 }
 
-std::vector<std::vector<Vec3>> displacements_of(const GltfDocument& document, const json& primitive,
-                                                const GltfTransform& to_scene) {
-  const std::size_t vertices = document.count(whole_number(primitive.at("attributes"), "POSITION"));
-  std::vector<std::vector<Vec3>> result;
-  for (const json& target : primitive.value("targets", json::array())) {
-    std::vector<Vec3>& displacements = result.emplace_back();
-    if (!target.contains("POSITION")) continue;
-    const std::size_t accessor = whole_number(target, "POSITION");
-    if (document.count(accessor) != vertices)
-      throw Error("a morph target and its mesh differ in their number of vertices");
-    require_memory(2 * vertices * sizeof(Vec3), "the morph targets");
-    const GltfNumbers numbers = document.numbers(accessor);
-    if (numbers.columns != 3) throw Error("the positions of a morph target are not of type VEC3");
-    displacements.reserve(vertices);
-    for (std::size_t v = 0; v < vertices; ++v) {
-      const double* d = numbers.row(v);
-      displacements.push_back(to_scene.turn({d[0], d[1], d[2]}));
+// A skin moves each vertex by a fixed transform, which applies to the displacements, too.
+std::vector<std::vector<Displaced>> targets_of(const GltfDocument& document, const json& primitive,
+                                               const GltfPlacement& placement) {
+  std::vector<std::vector<Displaced>> result;
+  for (const std::optional<GltfRows>& rows : gltf_displacements(document, primitive)) {
+    std::vector<Displaced>& displaced = result.emplace_back();
+    if (!rows) continue;
+    document.charge(rows->stored_rows() * sizeof(Displaced), "the morph targets");
+    displaced.reserve(rows->stored_rows());
+    for (std::size_t i = 0; i < rows->stored_rows(); ++i) {
+      const std::size_t v = rows->stored_row(i);
+      displaced.push_back({static_cast<std::uint32_t>(v), placement[v].turn(rows->vec3(v))});
     }
   }
   return result;
@@ -80,18 +77,26 @@ std::vector<std::vector<Vec3>> displacements_of(const GltfDocument& document, co
 class GltfFrames : public FrameSource {
  public:
   GltfFrames(const GltfDocument& document, std::string file_name, double rate)
-      : file_name_(std::move(file_name)), polygons_(read_gltf_scene(document)), rest_(polygons_.positions) {
-    const auto samplers = weight_samplers(document.root().at("animations"));
+      : file_name_(std::move(file_name)) {
+    const auto samplers = weight_samplers(list_of(document.root(), "animations"));
+    const std::vector<GltfInstance> instances = gltf_instances(document);
+    std::set<std::size_t> animated;
+    for (const auto& [node, sampler] : samplers) animated.insert(node);
+    polygons_ = read_gltf_scene(document, instances, animated);
+    rest_ = polygons_.positions;
+    GltfSkins skins(document);
+    std::map<std::size_t, std::size_t> track_of_node;
     std::size_t first_vertex = 0;
-    for (const GltfInstance& instance : gltf_instances(document)) {
+    for (const GltfInstance& instance : instances) {
       const auto sampler = samplers.find(instance.node);
-      if (sampler != samplers.end())
-        tracks_.emplace_back(document, *sampler->second, target_count(document, instance.mesh));
-      for (const json& primitive : document.item("meshes", instance.mesh).at("primitives")) {
-        if (!has_triangles(primitive)) continue;
-        if (sampler != samplers.end())
-          parts_.push_back(
-              {first_vertex, tracks_.size() - 1, displacements_of(document, primitive, instance.to_scene)});
+      const bool moves = sampler != samplers.end();
+      if (moves && track_of_node.try_emplace(instance.node, tracks_.size()).second)
+        tracks_.emplace_back(document, *sampler->second, gltf_target_count(document, instance.mesh));
+      for (const json& primitive : list_of(document.item("meshes", instance.mesh), "primitives")) {
+        if (!has_triangles(document, primitive)) continue;
+        if (moves)
+          parts_.push_back({first_vertex, track_of_node[instance.node],
+                            targets_of(document, primitive, skins.placement(instance, primitive))});
         first_vertex += document.count(whole_number(primitive["attributes"], "POSITION"));
       }
     }
@@ -115,9 +120,9 @@ class GltfFrames : public FrameSource {
     for (const MorphedPart& part : parts_) {
       weights_.assign(tracks_[part.track].targets(), 0.0);
       tracks_[part.track].sample(time(frame), weights_);
-      for (std::size_t t = 0; t < part.displacements.size(); ++t)
-        for (std::size_t v = 0; v < part.displacements[t].size(); ++v)
-          positions[part.first_vertex + v] += weights_[t] * part.displacements[t][v];
+      for (std::size_t t = 0; t < part.targets.size(); ++t)
+        for (const auto& [v, displacement] : part.targets[t])
+          positions[part.first_vertex + v] += weights_[t] * displacement;
     }
   }
 
@@ -157,7 +162,7 @@ std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes, const std::file
                                          double rate) {
   try {
     const GltfDocument document(bytes, file.parent_path());
-    if (document.root().value("animations", json::array()).empty()) return nullptr;
+    if (list_of(document.root(), "animations").empty()) return nullptr;
     return std::make_unique<GltfFrames>(document, file.filename().string(), rate);
   } catch (const json::exception& fault) {
     throw_gltf_fault(fault);

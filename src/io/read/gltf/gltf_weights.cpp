@@ -17,8 +17,8 @@ WeightTrack::WeightTrack(const GltfDocument& document, const nlohmann::json& sam
   interpolation_ = name == "STEP"     ? Interpolation::step
                    : name == "LINEAR" ? Interpolation::linear
                                       : Interpolation::cubic;
-  times_ = document.numbers(whole_number(sampler, "input")).values;
-  values_ = document.numbers(whole_number(sampler, "output")).values;
+  times_ = document.numbers(whole_number(sampler, "input"));
+  values_ = document.numbers(whole_number(sampler, "output"));
   if (times_.empty()) throw Error("the animation has no keys");
   for (std::size_t k = 0; k < times_.size(); ++k)
     if (!std::isfinite(times_[k]) || (k > 0 && times_[k] <= times_[k - 1]))
