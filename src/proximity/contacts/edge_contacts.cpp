@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kRounding = 1e-9;   // of distances, relative to the size of the other body
 constexpr double kSamePoint = 1e-6;  // of the length of the edge
+// Faces continue each other where their heights differ by at most this part of them: the planes of faces of a
+// curved surface are not the same, but the side and the top of a table are something else.
+constexpr double kSameHeight = 0.1;
 
 bool is_inside(const shape::Body& body, const Vec3& point) {
   if (!body.solid()) return false;
@@ -148,7 +151,8 @@ void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, do
   std::ranges::sort(intervals_, {}, &Interval::from);
 }
 
-void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, double margin, double reach) {
+void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, double margin, double reach,
+                                 double tolerance) {
   supported_.clear(), parts_.clear();
   if (intervals_.empty() || reach == 0) return;
   const sites::SitesData& sites = internals(other.sites());
@@ -157,15 +161,23 @@ void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, dou
   for (const Interval& i : intervals_) from = std::min(from, i.from), to = std::max(to, i.to);
   const Vec3 along = edge.b - edge.a;
   const FacesNearEdge::Segment in_contact{edge.a + from * along, edge.a + to * along};
-  for (const std::uint32_t face : faces_.find_supporting(sites, in_contact, edge.sides, margin, reach))
-    add_support(edge, other, face, margin, reach);
+  const double below = other.solid() ? reach : 0;  // a surface has no inside
+  for (const std::uint32_t face : faces_.find_supporting(sites, in_contact, edge.sides, margin, below))
+    add_support(edge, other, face, margin, below);
   std::ranges::sort(supported_, {}, [](const SupportedPart& p) { return std::tuple(p.from, p.to, p.face); });
   // Faces that continue each other support one part.
-  for (const SupportedPart& part : supported_)
-    if (!parts_.empty() && part.from <= parts_.back().to + kSamePoint)
-      parts_.back().to = std::max(parts_.back().to, part.to);
-    else
-      parts_.push_back({part.from, part.to});
+  for (std::size_t i = 0; i < supported_.size(); ++i) {
+    const SupportedPart& part = supported_[i];
+    const auto continued = std::ranges::find_if(parts_, [&](const JoinedPart& joined) {
+      const double height = part.height_at(part.from), before = supported_[joined.last].height_at(part.from);
+      return part.from <= joined.to + kSamePoint &&
+             std::abs(height - before) <= kSameHeight * (std::abs(height) + std::abs(before)) + tolerance;
+    });
+    if (continued == parts_.end())
+      parts_.push_back({part.from, part.to, i});
+    else if (part.to > continued->to)
+      continued->to = part.to, continued->last = i;
+  }
 }
 
 void EdgeContacts::add_support(const Edge& edge, const shape::Body& other, std::uint32_t face, double margin,
@@ -176,46 +188,58 @@ void EdgeContacts::add_support(const Edge& edge, const shape::Body& other, std::
   const Vec3& normal = sites.normals.face[face];
   if (!can_push(normal, both) || !can_push(normal, edge.sides) || !is_support(other, face)) return;
   const Clip clip = clip_to_prism(sites, face, edge.a, along, margin, reach);
-  if (clip.from < clip.to) supported_.push_back({clip.from, clip.to, face});
+  const Vec3& corner = sites.mesh.positions[sites.mesh.triangles[face][0]];
+  if (clip.from < clip.to)
+    supported_.push_back({clip.from, clip.to, face, dot(normal, edge.a - corner), dot(normal, along)});
 }
 
-// An end of a supported part, by the nearest of the faces that support it there.
-void EdgeContacts::add_end(const Edge& edge, const sites::SitesData& sites, double t) {
-  if ((edge.a_touches && t < kSamePoint) || (edge.b_touches && t > 1 - kSamePoint)) return;
+// An end of a supported part, by the nearest of the faces that support it there. Returns false if this is not
+// the way out of the surface beside it.
+bool EdgeContacts::add_end(const Edge& edge, const shape::Body& other, double t, double tolerance) {
+  if ((edge.a_touches && t < kSamePoint) || (edge.b_touches && t > 1 - kSamePoint)) return true;
+  for (const Found& end : found_)
+    if (end.support.face != kNone && std::abs(end.t - t) < kSamePoint) return true;
   Support nearest;
   for (const SupportedPart& part : supported_) {
     if (!(part.from - kSamePoint <= t && t <= part.to + kSamePoint)) continue;
-    const Vec3& corner = sites.mesh.positions[sites.mesh.triangles[part.face][0]];
-    const double height = dot(sites.normals.face[part.face], edge.a + t * (edge.b - edge.a) - corner);
+    const double height = part.height_at(t);
     if (nearest.face == kNone || std::abs(height) < std::abs(nearest.height)) nearest = {part.face, height};
   }
-  found_.push_back({.t = t, .support = nearest});
+  WayOut way_out{.place = WayOut::Place::here};
+  if (nearest.height < -tolerance) {
+    const SurfacePoint point = measure_near(other, edge.a + t * (edge.b - edge.a), nearest.face);
+    way_out = way_out_.find(edge.around, other, nearest, point, tolerance);
+    if (way_out.place == WayOut::Place::none) return false;
+  }
+  found_.push_back({.t = t, .support = nearest, .way_out = way_out});
+  return true;
 }
 
 std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const shape::Body& other,
-                                                        double margin, double reach) {
+                                                        double margin, double reach, double tolerance) {
   const sites::SitesData& sites = internals(other.sites());
   const Vec3 along = edge.b - edge.a;
   found_.clear();
   find_intervals(edge, other, margin);
-  find_supports(edge, other, margin, reach);
+  find_supports(edge, other, margin, reach, tolerance);
   const double rounding = kRounding / sites.frame.scale;
   for (auto first = intervals_.begin(); first != intervals_.end();) {
     auto next = first;
     double end = first->to;
     while (++next != intervals_.end()) {
-      if (next->from > end && !is_inside(other, edge.a + 0.5 * (end + next->from) * along)) break;
+      // Ends of intervals are not accurate enough for a point between closer ones.
+      if (next->from > end + kSamePoint && !is_inside(other, edge.a + 0.5 * (end + next->from) * along))
+        break;
       end = std::max(end, next->to);
     }
     const bool from_a = edge.a_touches && first == intervals_.begin();
     const bool to_b = edge.b_touches && next == intervals_.end();
     bool supported = false;
-    for (const Part& part : parts_)
+    for (const JoinedPart& part : parts_)
       if (part.from <= end && first->from <= part.to) {
-        supported = true;
         const double from = std::max(part.from, first->from), to = std::min(part.to, end);
-        add_end(edge, sites, from);
-        if (to > from + kSamePoint) add_end(edge, sites, to);
+        supported |= add_end(edge, other, from, tolerance);
+        if (to > from + kSamePoint) supported |= add_end(edge, other, to, tolerance);
       }
     if (!from_a && !to_b && !supported) {
       const auto nearest = std::min_element(

@@ -7,6 +7,7 @@
 
 #include "proximity/contacts/faces_near_edge.h"
 #include "proximity/contacts/support.h"
+#include "proximity/contacts/way_out.h"
 #include "proximity/shape/body.h"
 
 namespace sdm::contacts {
@@ -14,10 +15,11 @@ namespace sdm::contacts {
 /// Finds them for one edge after another; reuses its memory.
 ///
 /// A face supports the part of an edge above it or, up to the reach, below it that is parallel to it, but for
-/// a small angle, as a box lies on another one: the ends of these parts carry the body. Elsewhere, the parts
-/// of the edge that are within the margin of the surface, or inside it, are found exactly, to rounding: the
-/// distance to a face is convex along the edge, so what is within the margin of a face is an interval, and
-/// between two of them the edge is inside or outside as a whole.
+/// a small angle, as a box lies on another one: the ends of these parts carry the body. Below it, only if it
+/// is the nearest way out for the surface beside the edge (WayOutFinder). Elsewhere, the parts of the edge
+/// that are within the margin of the surface, or inside it, are found exactly, to rounding: the distance to a
+/// face is convex along the edge, so what is within the margin of a face is an interval, and between two of
+/// them the edge is inside or outside as a whole.
 class EdgeContacts {
  public:
   /// An edge in the frame of the other body, and whether its ends are in contact themselves.
@@ -25,18 +27,20 @@ class EdgeContacts {
     Vec3 a{}, b{};
     bool a_touches = false, b_touches = false;
     std::span<const Vec3> sides{};  ///< from the edge along the faces beside it
+    SurfaceAround around{};
   };
   struct Found {
     double t = 0;                     ///< 0 at a, 1 at b
     Support support{};                ///< if a face supports the edge here
-    std::uint32_t near_face = kNone;  ///< otherwise: a face close to it
+    WayOut way_out{};                 ///< where that is
+    std::uint32_t near_face = kNone;  ///< without a support: a face close to it
   };
   /// The ends of the supported parts, but for ends of the edge in contact. For each part of the edge in
   /// contact that is not supported and reaches no end in contact, the middle between the first and the last
   /// point that are closest to the surface. `reach`: how deep a support may be; 0: none is
-  /// looked for. Valid until the next call.
+  /// looked for. `tolerance`: of depths. Valid until the next call.
   [[nodiscard]] std::span<const Found> find(const Edge& edge, const shape::Body& other, double margin,
-                                            double reach);
+                                            double reach, double tolerance);
 
   /// Of the edge, as t.
   struct Part {
@@ -55,20 +59,29 @@ class EdgeContacts {
   struct SupportedPart {
     double from, to;
     std::uint32_t face;
+    double height, rise;  ///< above the plane of the face, at a and along the edge
+    [[nodiscard]] double height_at(double t) const { return height + t * rise; }
+  };
+  /// Of faces that continue each other.
+  struct JoinedPart {
+    double from, to;
+    std::size_t last;  ///< the supported part that ends there
   };
   [[nodiscard]] static Part within(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
                                    double limit, double closest);
   void add_interval(const Edge& edge, const sites::SitesData& sites, std::uint32_t face, double limit);
   void find_intervals(const Edge& edge, const shape::Body& other, double margin);
-  void find_supports(const Edge& edge, const shape::Body& other, double margin, double reach);
+  void find_supports(const Edge& edge, const shape::Body& other, double margin, double reach,
+                     double tolerance);
   void add_support(const Edge& edge, const shape::Body& other, std::uint32_t face, double margin,
                    double reach);
-  void add_end(const Edge& edge, const sites::SitesData& sites, double t);
+  [[nodiscard]] bool add_end(const Edge& edge, const shape::Body& other, double t, double tolerance);
 
   FacesNearEdge faces_;
+  WayOutFinder way_out_;
   std::vector<Interval> intervals_;
   std::vector<SupportedPart> supported_;
-  std::vector<Part> parts_;  ///< of supported_, joined where faces continue each other
+  std::vector<JoinedPart> parts_;
   std::vector<Found> found_;
 };
 

@@ -150,6 +150,11 @@ Box FeatureContacts::box_of(Regions part) {
   return box;
 }
 
+// Of depths, in the frame of the other body: well below what bounds on the depth allow for.
+double FeatureContacts::tolerance() const {
+  return 0.5 * query().length / query().bodies[1 - query().side]->pose().scale;
+}
+
 // Each vertex in contact.
 void FeatureContacts::find_each(const ContactRegion& region) {
   const sites::SitesData& sites = internals(on().sites());
@@ -200,8 +205,22 @@ void FeatureContacts::find_support(Feature& feature) {
   const Vec3 own = normalized(to_other().map.linear(sites.normals.vertex[feature.site]));
   for (const Vec3& spoke : spokes_)
     if (dot(own, spoke) > -kCorner * norm(spoke)) return;
-  feature.support = support_of_vertex(other(), closest.at, spokes_, query().limit,
-                                      std::max(query().limit, kSupportReach * query().size));
+  const Support support =
+      support_of_vertex(other(), closest.at, spokes_, query().limit,
+                        other().solid() ? std::max(query().limit, kSupportReach * query().size) : 0);
+  if (support.face == kNone) return;
+  WayOut way_out{.place = WayOut::Place::here};
+  if (support.height < -tolerance()) {
+    const SurfaceAround around{&sites,
+                               &to_other(),
+                               &from_other(),
+                               sites.vertex_faces.of(feature.site),
+                               {feature.site, feature.site}};
+    way_out = way_out_.find(around, other(), support, closest, tolerance());
+  }
+  if (way_out.place == WayOut::Place::here) feature.support = support;
+  if (way_out.place == WayOut::Place::beside)
+    feature.point = way_out.point, feature.own_face = way_out.own_face;
 }
 
 // Only edges of near faces pass through the surface or are within the margin of it, and those that have an
@@ -248,16 +267,21 @@ void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_to
       if (corner != a && corner != b)
         spokes_.push_back(to_other().map.linear(sites.mesh.positions[corner] - sites.mesh.positions[a]));
     }
+  const SurfaceAround around{&sites, &to_other(), &from_other(), sites.topology.edge_faces(edge), {a, b}};
   std::uint64_t number = 0;
-  for (const auto& [t, support, near_face] :
-       edge_contacts_.find({start, end, a_touches, b_touches, spokes_}, other(), query().limit, reach)) {
+  for (const EdgeContacts::Found& found : edge_contacts_.find(
+           {start, end, a_touches, b_touches, spokes_, around}, other(), query().limit, reach, tolerance())) {
     Feature feature{.key = kEdge | number++ << kOnEdgeBit | edge,
                     .site = edge,
                     .edge = true,
-                    .point = {.at = start + t * (end - start)},
-                    .support = support,
+                    .point = {.at = start + found.t * (end - start)},
                     .faces = faces};
-    if (support.face == kNone) feature.point = measure_near(other(), feature.point.at, near_face);
+    if (found.support.face == kNone)
+      feature.point = measure_near(other(), feature.point.at, found.near_face);
+    else if (found.way_out.place == WayOut::Place::beside)
+      feature.point = found.way_out.point, feature.own_face = found.way_out.own_face;
+    else
+      feature.support = found.support;
     features_.push_back(feature);
   }
 }
@@ -277,7 +301,7 @@ void FeatureContacts::add_contact(const Feature& feature) {
     closest.vector = -support.height * sites_of_other.normals.face[support.face], closest.face = support.face;
   else
     is_boundary = at_boundary(other(), closest);
-  const bool inside = closest.distance < 0;
+  const bool inside = other().solid() && closest.distance < 0;
   const Vec3 face_normal = sites_of_other.normals.face[closest.face];
   if (!is_boundary) {
     other().require_boundary();
@@ -288,8 +312,9 @@ void FeatureContacts::add_contact(const Feature& feature) {
   const Vec3 vector = pose.map.linear(closest.vector), point = pose.map(p);
   const Vec3 outwards = std::abs(depth) > query().length ? (1 / depth) * vector
                                                          : (1 / pose.scale) * pose.map.linear(face_normal);
-  const std::uint32_t face =
-      feature.edge ? sites.topology.edge_faces(feature.site)[0] : sites.vertex_faces.of(feature.site)[0];
+  const std::uint32_t face = feature.own_face != kNone ? feature.own_face
+                             : feature.edge            ? sites.topology.edge_faces(feature.site)[0]
+                                                       : sites.vertex_faces.of(feature.site)[0];
   Contact contact{
       .point1 = point,
       .point2 = point + vector,

@@ -36,8 +36,9 @@ class FeatureContacts {
     std::uint32_t site = 0;  ///< the vertex or edge
     bool edge = false;
     SurfacePoint point{};
-    Support support{};  ///< instead of the closest point, if any
-    Box faces{};        ///< a box of the faces around it that are in contact, in the frame of the body
+    Support support{};               ///< instead of the closest point, if any
+    std::uint32_t own_face = kNone;  ///< which contains the point, if it is not on the vertex or edge
+    Box faces{};  ///< a box of the faces around it that are in contact, in the frame of the body
   };
   using Regions = std::span<const ContactRegion>;
 
@@ -50,6 +51,7 @@ class FeatureContacts {
   void add_contact(const Feature& feature);
   void extend_by_star(Box& box, std::uint32_t vertex) const;
   [[nodiscard]] Box box_of(Regions part);
+  [[nodiscard]] double tolerance() const;
 
   [[nodiscard]] const ContactQuery& query() const { return candidates_->query(); }
   [[nodiscard]] const shape::Body& on() const { return query().on(); }
@@ -61,6 +63,7 @@ class FeatureContacts {
   std::uint32_t face_ = kNone;  ///< of the other body: closest to the vertex that was measured last
   DeepestVertex deepest_;
   EdgeContacts edge_contacts_;
+  WayOutFinder way_out_;
   std::vector<Feature> features_;
   std::vector<Vec3> spokes_;
 

@@ -31,7 +31,7 @@ Clip clip_to_prism(const sites::SitesData& sites, std::uint32_t face, const Vec3
   const double height = dot(normal, a - corner(0)), rise = dot(normal, along);
   Clip clip;
   restrict_to(clip, margin + rounding - height, -rise);
-  restrict_to(clip, reach + height, rise);
+  restrict_to(clip, reach + rounding + height, rise);
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 &start = corner(k), &third = corner((k + 2) % 3);
     Vec3 wall = normalized(cross(normal, corner((k + 1) % 3) - start));
@@ -51,7 +51,8 @@ Support support_of_vertex(const shape::Body& body, const Vec3& vertex, std::span
                           double margin, double reach) {
   const sites::SitesData& sites = internals(body.sites());
   Box box;
-  const Vec3 around{reach, reach, reach};
+  const double most = std::max(margin, reach);
+  const Vec3 around{most, most, most};
   extend(box, sites.frame.to_unit(vertex - around));
   extend(box, sites.frame.to_unit(vertex + around));
   const hierarchy::FloatBox near = hierarchy::FloatBox::around(box);

@@ -31,7 +31,7 @@ inline constexpr double kPushSine = 0.05;
 [[nodiscard]] bool is_support(const shape::Body& body, std::uint32_t face);
 
 /// The face closest along its normal to a vertex above or below it, at most `reach` below and `margin` above,
-/// that can push it. Cost: of the faces within `reach`.
+/// that can push it. Cost: of the faces within both.
 [[nodiscard]] Support support_of_vertex(const shape::Body& body, const Vec3& vertex,
                                         std::span<const Vec3> spokes, double margin, double reach);
 
