@@ -20,20 +20,63 @@
 
 namespace sdm {
 
+/// What separates the columns of a text.
+enum class TextSeparator {
+  automatic,
+  blank,      ///< spaces and tabs, any number of them
+  tab,        ///< each tab: columns may be empty or contain spaces
+  comma,      ///< each comma
+  semicolon,  ///< each semicolon
+};
+
+enum class DecimalMark { automatic, point, comma };
+
+/// How the rows of a text without a format of its own ("XYZ", CSV, PTS) are read. Fields that are automatic
+/// or empty follow from the file: from its header, if it has one, and from its first rows, of which 1000 in
+/// 256 KiB are examined. All rows are then read in the same way.
+struct TextDialect {
+  TextSeparator separator = TextSeparator::automatic;
+  DecimalMark decimal = DecimalMark::automatic;
+  /// What each column holds: each of x, y and z once, all or none of nx, ny and nz, and for a column that is
+  /// ignored any other name, such as "_". As in a header, case does not matter, and easting, northing and
+  /// elevation (or height) stand for x, y and z. Columns after the last are ignored.
+  std::vector<std::string> columns{};
+  /// Of a file that was opened: the line of the header, from 1; 0 if it has none.
+  std::uint64_t header_line = 0;
+};
+
+/// "blank", "tab", "comma", "semicolon"; "point", "comma"; or "automatic".
+[[nodiscard]] SDM_API std::string name_of(TextSeparator separator);
+[[nodiscard]] SDM_API std::string name_of(DecimalMark mark);
+
+/// Throws sdm::Error if no file can be read in this way, as its columns are not as TextDialect requires.
+SDM_API void validate(const TextDialect& dialect);
+
 /// Reads a point cloud from front to back: PLY (the element vertex; faces are ignored), PCD 0.7, LAS
-/// 1.0 to 1.4 (not LAZ), or text with three or more numbers a line, separated by spaces, commas or semicolons
-/// ("XYZ"). The format is detected from the content. Normals are the properties nx, ny, nz or normal_x,
-/// normal_y, normal_z; in XYZ, columns 4 to 6 if they have length 1 in all of the first lines.
-/// Binary_compressed PCD is one block, which is in memory as a whole.
+/// 1.0 to 1.4 (not LAZ), or text. The format is detected from the content; meshes of other formats are
+/// refused. Normals are the properties nx, ny, nz or normal_x, normal_y, normal_z. Binary_compressed PCD is
+/// one block, which is in memory as a whole.
+///
+/// Text has a point a row, and a TextDialect. Before the rows there may be a header, which names the columns,
+/// and the number of rows; after these rows, another number and its rows (PTS). A header may follow "#" or
+/// "//"; all else that follows these at the start of a line, or after a blank, is a comment. Without a header
+/// the first three columns are x, y, z, and the next three a normal if they have length 1 in all rows that
+/// are examined. A row with another number of columns, or with something else than a number for a coordinate,
+/// is an error, as is a file that can be read in several ways, or a line longer than 64 KiB.
 class SDM_API PointReader {
  public:
-  /// Opens the file and reads its header. Throws sdm::Error, as read() does, with the name of the file and
-  /// the fault.
-  explicit PointReader(const std::filesystem::path& file);
+  /// Opens the file and reads its header. `text` decides how text is read, and is an error for other formats;
+  /// its columns also make text of what begins like a mesh. Throws sdm::Error, as read() does, with the name
+  /// of the file, the fault and, in text, the line.
+  explicit PointReader(const std::filesystem::path& file, const TextDialect& text = {});
   ~PointReader();
   PointReader(PointReader&&) noexcept;
   PointReader& operator=(PointReader&&) noexcept;
 
+  /// "PLY", "PCD", "LAS" or "text".
+  [[nodiscard]] std::string format() const;
+  /// Of text: how it is read, without automatic fields and with a name for each column, "_" if it is ignored.
+  [[nodiscard]] std::optional<TextDialect> dialect() const;
   /// Whether the file has normals.
   [[nodiscard]] bool has_normals() const;
   /// The number of points, where the header has it.
@@ -55,7 +98,8 @@ struct PointSample {
   std::vector<Vec3> points, normals;  ///< `normals` is empty if there are none
 };
 /// Draws such a sample. Throws sdm::Error as PointReader does. Cost: reads the file once.
-[[nodiscard]] SDM_API PointSample sample_points(const std::filesystem::path& file, std::size_t most);
+[[nodiscard]] SDM_API PointSample sample_points(const std::filesystem::path& file, std::size_t most,
+                                                const TextDialect& text = {});
 
 /// Options of measure_points().
 struct PointDistancesOptions {
@@ -63,6 +107,7 @@ struct PointDistancesOptions {
   Transform placement{};        ///< of the points, before they are measured and written
   PictureOptions picture{};     ///< colours; `units`, `accuracy` and `largest` have no meaning here
   std::size_t chunk = 1 << 18;  ///< points in memory at a time, greater than 0
+  TextDialect text{};           ///< of a cloud in text, as of PointReader
 };
 
 /// The distance of a point and the place of that point in the file, from 0.
@@ -78,6 +123,8 @@ struct PointDistances {
   std::uint64_t invalid = 0;              ///< with a coordinate that is NaN or infinite
   std::uint64_t beyond_max_distance = 0;  ///< without a value, besides the invalid ones
   bool has_normals = false;
+  std::string format;               ///< as PointReader has it
+  std::optional<TextDialect> text;  ///< its dialect
   SignUsed sign;
   DistanceStatistics
       distance;  ///< of the points with a value, each with the same weight; `texels`: their number

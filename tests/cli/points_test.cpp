@@ -349,6 +349,31 @@ TEST_F(PointsCommand, AlignsTheCloud) {
   EXPECT_FALSE(std::filesystem::exists(out + "/alignment.json"));
 }
 
+// To the box [0, 10]^3, which all of these points are above.
+TEST_F(PointsCommand, DistancesOfTextCloudsAreThoseOfTheirPoints) {
+  Mesh box = cube(5);
+  for (Vec3& p : box.positions)
+    for (double& x : p) x += 5;
+  o2 = write_obj(folder / "box.obj", box);
+  const auto distances = [&](const std::string& contents) {
+    const Outcome found = run(with("a.txt", contents), {"--write", "ply"});
+    EXPECT_EQ(found.code, 0) << found.err;
+    std::vector<float> result;
+    for (const Row& row : read_rows(out + "/points.ply", false)) result.push_back(row.distance);
+    return result;
+  };
+  using Distances = std::vector<float>;
+  EXPECT_EQ(distances("id,x,y,z\n1,5.0,5.0,12.0\n2,5.0,5.0,13.0\n3,5,5,14\n"), (Distances{2, 3, 4}));
+  EXPECT_EQ(distances("1,5;2,5;12,25\n1,5;3,5;12,75\n"), (Distances{2.25, 2.75}));
+  EXPECT_EQ(distances("\xEF\xBB\xBF"
+                      "5 5 12\n5 5 13\n"),
+            (Distances{2, 3}));
+  EXPECT_EQ(distances("5 5 12\r5 5 13\r5 5 14\r"), (Distances{2, 3, 4}));
+  const Outcome refused = run(with("a.off", "OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"));
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("a.off: this is a mesh (OFF)"), HasSubstr("sdm map")));
+}
+
 TEST_F(PointsCommand, BadFilesAreOneSentence) {
   const auto refused = [&](const std::string& name, const std::string& contents, const char* fault) {
     const std::string file = with(name, contents);
@@ -362,8 +387,8 @@ TEST_F(PointsCommand, BadFilesAreOneSentence) {
   const std::string xyz_fields = "property float x\nproperty float y\nproperty float z\nend_header\n";
   refused("a.xyz", "", "is empty");
   refused("a.xyz", "Dear Sir or Madam", "unknown format");
-  refused("a.xyz", "1 2 3\n4 5\n", "line 2: 2 numbers where 3 are needed");
-  refused("a.xyz", "1 2 3\n4 5 x\n", "line 2: expected numbers only");
+  refused("a.xyz", "1 2 3\n4 5\n", "line 2: 2 columns where 3 are needed");
+  refused("a.xyz", "1 2 3\n4 5 x\n", "line 2: expected a number, not 'x'");
   const std::string good_las = las(points, 2), good_pcd = compressed_pcd(points);
   refused("a.las", good_las.substr(0, 200), "the header of the LAS file is cut off");
   refused("a.las", good_las.substr(0, 5000), "more than the file can hold");
@@ -381,7 +406,7 @@ TEST_F(PointsCommand, BadFilesAreOneSentence) {
   refused("a.pcd", long_pcd, "cut off or damaged");
   refused("a.ply", ply + "property float x\nend_header\n", "no fields x, y and z");
   refused("a.ply", ply + xyz_fields + "1 2 3\n", "ends after 1 of 2 points");
-  refused("a.ply", ply + xyz_fields + "1 2 3\n1 2 3 4\n", "4 numbers where 3");
+  refused("a.ply", ply + xyz_fields + "1 2 3\n1 2 3 4\n", "4 columns where 3");
   refused("a.ply", ply + "property list uchar int x\nend_header\n", "have a list");
   refused("a.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty int x\nend_header\n1\n", "no vertices");
   refused("a.ply", "ply\nformat ascii 1.0\nelement camera 1\nproperty int c\nelement vertex 1\n" + xyz_fields,
@@ -396,8 +421,8 @@ TEST_F(PointsCommand, BadFilesAreOneSentence) {
   refused("a.pcd", pcd, "no line DATA");
   refused("a.pcd", "FIELDS x y z\nSIZE 4\nTYPE F\nDATA ascii\n", "different numbers of values");
   refused("a.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nDATA ascii\n1 2 3\n", "no number of points");
-  refused("a.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE I F F\nPOINTS 1\nDATA ascii\n1 2 3\n",
-          "not one number of type F");
+  refused("a.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE I F F\nCOUNT 2 1 1\nPOINTS 1\nDATA ascii\n1 1 2 3\n",
+          "no fields x, y and z of one number each");
   refused("a.pcd", "FIELDS x y z\nSIZE 4 4 -4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n",
           "not a whole number");
   refused("a.pcd", "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n",
@@ -410,7 +435,7 @@ TEST_F(PointsCommand, BadFilesAreOneSentence) {
 
 TEST(PointReader, ReadsInParts) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "a.xyz") << "# comment\n5\n1 2 3\n\n4 5 6 // last column\n7 8 9";
+  std::ofstream(folder / "a.xyz") << "# comment\n3\n1 2 3\n\n4 5 6 // last column\n7 8 9";
   PointReader reader(folder / "a.xyz");
   EXPECT_FALSE(reader.count());
   EXPECT_FALSE(reader.has_normals());

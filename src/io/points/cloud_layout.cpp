@@ -8,13 +8,15 @@
 #include <cmath>
 #include <vector>
 
-#include "io/points/text_numbers.h"
+#include "io/points/column_names.h"
+#include "io/points/text_lines.h"
 #include "io/read/byte_scanner.h"
+#include "io/read/ply_header.h"
 
 namespace sdm::io {
 namespace {
 
-using Type = PlyHeader::Type;
+using Type = NumberType;
 
 /// The fields of a row, in order.
 struct Field {
@@ -23,22 +25,43 @@ struct Field {
   std::size_t count = 1;
 };
 
-CloudLayout layout_of(const std::vector<Field>& fields, bool text, const char* format) {
-  CloudLayout layout;
-  layout.text = text;
-  constexpr std::string_view names[6][2] = {{"x", "X"},         {"y", "Y"},         {"z", "Z"},
-                                            {"nx", "normal_x"}, {"ny", "normal_y"}, {"nz", "normal_z"}};
-  std::array<bool, 6> found{};
+CloudLayout layout_of(const std::vector<Field>& fields, bool text, std::string_view format) {
+  CloudLayout layout{.format = format, .text = text};
+  std::vector<std::string_view> names;
+  std::vector<CloudColumn> columns;
   for (const Field& field : fields) {
-    for (std::size_t k = 0; k < 6; ++k)
-      if (!found[k] && field.count == 1 && std::ranges::count(names[k], field.name) > 0)
-        found[k] = true, layout.columns[k] = {layout.stride, field.type};
+    names.push_back(field.count == 1 ? field.name : std::string_view());
+    columns.push_back({layout.stride, field.type});
     layout.stride += field.count * (text ? 1 : size_of(field.type));
   }
-  if (!found[0] || !found[1] || !found[2])
-    throw Error(fmt::format("the {} has no fields x, y and z", format));
-  layout.has_normals = found[3] && found[4] && found[5];
+  const auto named = named_columns(names);
+  if (!named) throw Error(fmt::format("the {} file has no fields x, y and z of one number each", format));
+  layout.has_normals = named->has_normals;
+  for (std::size_t k = 0; k < (layout.has_normals ? kRoles : 3); ++k)
+    layout.columns[k] = columns[named->columns[k]];
   return layout;
+}
+
+Type type_of(PlyHeader::Type type) {
+  switch (type) {
+    case PlyHeader::Type::int8:
+      return Type::int8;
+    case PlyHeader::Type::uint8:
+      return Type::uint8;
+    case PlyHeader::Type::int16:
+      return Type::int16;
+    case PlyHeader::Type::uint16:
+      return Type::uint16;
+    case PlyHeader::Type::int32:
+      return Type::int32;
+    case PlyHeader::Type::uint32:
+      return Type::uint32;
+    case PlyHeader::Type::float32:
+      return Type::float32;
+    case PlyHeader::Type::float64:
+      break;
+  }
+  return Type::float64;
 }
 
 CloudLayout ply_layout(std::string_view bytes) {
@@ -53,9 +76,9 @@ CloudLayout ply_layout(std::string_view bytes) {
   std::vector<Field> fields;
   for (const PlyHeader::Property& property : element->properties) {
     if (property.count_type) throw Error("the vertices of the PLY file have a list; save them without it");
-    fields.push_back({property.name, property.type});
+    fields.push_back({property.name, type_of(property.type)});
   }
-  CloudLayout layout = layout_of(fields, header.encoding == PlyHeader::Encoding::text, "PLY file");
+  CloudLayout layout = layout_of(fields, header.encoding == PlyHeader::Encoding::text, "PLY");
   if (header.encoding == PlyHeader::Encoding::big_endian) layout.order = std::endian::big;
   layout.data_begin = header.size;
   layout.count = element->count;
@@ -86,7 +109,7 @@ Type pcd_type(char kind, std::uint64_t size) {
     if (size == 1) return has_sign ? Type::int8 : Type::uint8;
     if (size == 2) return has_sign ? Type::int16 : Type::uint16;
     if (size == 4) return has_sign ? Type::int32 : Type::uint32;
-    if (size == 8) return Type::float64;  // only its size counts: coordinates are checked
+    if (size == 8) return has_sign ? Type::int64 : Type::uint64;
   }
   throw Error("the PCD header has a field of a type that does not exist");
 }
@@ -96,12 +119,11 @@ CloudLayout pcd_layout(std::string_view bytes) {
   std::vector<std::uint64_t> sizes, counts;
   std::optional<std::uint64_t> points, width, height;
   std::string_view data;
-  std::size_t at = 0;
+  const std::size_t size = bytes.size();
+  const char line_end = line_end_of(bytes);
   while (data.empty()) {
-    const std::size_t end = bytes.find('\n', at);
-    if (end == std::string_view::npos) throw Error("the PCD header has no line DATA");
-    std::string_view line = bytes.substr(at, end - at);
-    at = end + 1;
+    if (bytes.find(line_end) == std::string_view::npos) throw Error("the PCD header has no line DATA");
+    std::string_view line = take_line(bytes, line_end);
     const std::string_view key = next_word(line);
     const auto values = [&](auto& list, const auto& convert) {
       for (std::string_view word; !(word = next_word(line)).empty();) list.push_back(convert(word));
@@ -126,16 +148,13 @@ CloudLayout pcd_layout(std::string_view bytes) {
   std::vector<Field> fields;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (counts[i] > kMaxCloudHeader) throw Error("the PCD header has a field of too many values");
-    const bool coordinate = names[i] == "x" || names[i] == "y" || names[i] == "z";
-    if (coordinate && (kinds[i] != "F" || counts[i] != 1))
-      throw Error(fmt::format("the field {} of the PCD file is not one number of type F", names[i]));
     fields.push_back({names[i], pcd_type(kinds[i].empty() ? ' ' : kinds[i][0], sizes[i]), counts[i]});
   }
-  CloudLayout layout = layout_of(fields, data == "ascii", "PCD file");
-  layout.data_begin = at;
+  CloudLayout layout = layout_of(fields, data == "ascii", "PCD");
+  layout.data_begin = size - bytes.size();
   layout.compressed = data == "binary_compressed";
   if (points)
-    layout.count = points;
+    layout.count = *points;
   else if (width && height && (*height == 0 || *width <= UINT64_MAX / *height))
     layout.count = *width * *height;
   else
@@ -156,7 +175,7 @@ CloudLayout las_layout(std::string_view bytes) {
     throw Error("LAZ, compressed LAS, is not supported; convert the cloud to LAS, for example with laszip");
   if (bytes[24] != 1 || minor > 4 || format > 10)
     throw Error("the LAS file is of a version or a point format that does not exist up to LAS 1.4");
-  CloudLayout layout;
+  CloudLayout layout{.format = "LAS"};
   layout.has_scale = true;
   layout.data_begin = at(96, std::uint32_t{});
   layout.stride = at(105, std::uint16_t{});
@@ -173,48 +192,66 @@ CloudLayout las_layout(std::string_view bytes) {
   return layout;
 }
 
-/// The first lines show how many columns there are, and whether three of them are normals.
-CloudLayout xyz_layout(std::string_view bytes) {
-  constexpr std::size_t kLines = 1000;
-  constexpr double kLength = 0.01;
-  CloudLayout layout;
-  layout.text = true;
-  layout.fixed_columns = false;
-  layout.stride = 3;
-  std::size_t rows = 0, unit = 0;
-  std::vector<double> numbers;
-  const bool whole = bytes.size() < kMaxCloudHeader;
-  while (rows < kLines && !bytes.empty()) {
-    const std::size_t end = bytes.find('\n');
-    if (end == std::string_view::npos && !whole) break;  // the line may be cut
-    const std::string_view line = bytes.substr(0, end);
-    bytes.remove_prefix(end == std::string_view::npos ? bytes.size() : end + 1);
-    if (!numbers_of(line, numbers) || numbers.size() < 3) continue;
-    ++rows;
-    unit += numbers.size() >= 6 && std::abs(std::hypot(numbers[3], numbers[4], numbers[5]) - 1) < kLength;
-  }
-  if (rows == 0)
-    throw Error(
-        "unknown format; PLY, PCD, LAS and text with three or more numbers a line (XYZ) are supported");
-  layout.has_normals = unit == rows;
-  if (layout.has_normals) layout.stride = 6;
-  for (std::size_t k = 0; k < layout.stride; ++k) layout.columns[k].place = k;
-  return layout;
-}
-
 bool is_pcd(std::string_view bytes) {
-  while (bytes.starts_with('#')) bytes.remove_prefix(std::min(bytes.find('\n'), bytes.size() - 1) + 1);
+  const char line_end = line_end_of(bytes);
+  while (bytes.starts_with('#')) (void)take_line(bytes, line_end);
   return bytes.starts_with("VERSION") || bytes.starts_with("FIELDS");
 }
 
 }  // namespace
 
-CloudLayout cloud_layout(std::string_view bytes) {
-  if (bytes.empty()) throw Error("the file is empty");
+std::size_t size_of(NumberType type) {
+  switch (type) {
+    case Type::int8:
+    case Type::uint8:
+      return 1;
+    case Type::int16:
+    case Type::uint16:
+      return 2;
+    case Type::int32:
+    case Type::uint32:
+    case Type::float32:
+      return 4;
+    case Type::int64:
+    case Type::uint64:
+    case Type::float64:
+      break;
+  }
+  return 8;
+}
+
+double load_number(const char* bytes, NumberType type, std::endian order) {
+  switch (type) {
+    case Type::int8:
+      return load<std::int8_t>(bytes, order);
+    case Type::uint8:
+      return load<std::uint8_t>(bytes, order);
+    case Type::int16:
+      return load<std::int16_t>(bytes, order);
+    case Type::uint16:
+      return load<std::uint16_t>(bytes, order);
+    case Type::int32:
+      return load<std::int32_t>(bytes, order);
+    case Type::uint32:
+      return load<std::uint32_t>(bytes, order);
+    case Type::int64:
+      return static_cast<double>(load<std::int64_t>(bytes, order));
+    case Type::uint64:
+      return static_cast<double>(load<std::uint64_t>(bytes, order));
+    case Type::float32:
+      return load<float>(bytes, order);
+    case Type::float64:
+      break;
+  }
+  return load<double>(bytes, order);
+}
+
+std::optional<CloudLayout> cloud_layout(std::string_view bytes) {
   if (bytes.starts_with("LASF")) return las_layout(bytes);
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return ply_layout(bytes);
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || bytes.starts_with("ply "))
+    return ply_layout(bytes);
   if (is_pcd(bytes)) return pcd_layout(bytes);
-  return xyz_layout(bytes);
+  return std::nullopt;
 }
 
 }  // namespace sdm::io

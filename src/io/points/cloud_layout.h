@@ -9,22 +9,27 @@
 #include <optional>
 #include <string_view>
 
-#include "io/read/ply_header.h"
-
 namespace sdm::io {
+
+enum class NumberType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+/// Returns the size of a number in bytes.
+[[nodiscard]] std::size_t size_of(NumberType type);
+/// Returns the number stored at `bytes`.
+[[nodiscard]] double load_number(const char* bytes, NumberType type, std::endian order);
 
 /// Of x, y, z and the three components of the normal.
 struct CloudColumn {
   std::size_t place = 0;  ///< of text: the index of the number; else the offset in bytes
-  PlyHeader::Type type = PlyHeader::Type::float64;
+  NumberType type = NumberType::float64;
 };
 
 struct CloudLayout {
+  std::string_view format;
   bool text = false;
-  bool fixed_columns = true;  ///< of text: further numbers on a line are a fault
   std::endian order = std::endian::little;
   std::uint64_t data_begin = 0;
-  std::optional<std::uint64_t> count;
+  std::uint64_t count = 0;
   std::size_t stride = 0;  ///< numbers, or bytes, of a row
   std::array<CloudColumn, 6> columns{};
   bool has_normals = false;
@@ -38,8 +43,8 @@ struct CloudLayout {
 /// At most as much of a file is read for its header.
 inline constexpr std::size_t kMaxCloudHeader = std::size_t{1} << 18;
 
-/// The layout of a file that begins with `bytes`, of which kMaxCloudHeader suffice. Throws sdm::Error, which
-/// does not name the file.
-[[nodiscard]] CloudLayout cloud_layout(std::string_view bytes);
+/// The layout of a PLY, PCD or LAS file that begins with `bytes`, of which kMaxCloudHeader suffice; nothing
+/// if the file has none of these formats. Throws sdm::Error, which does not name the file.
+[[nodiscard]] std::optional<CloudLayout> cloud_layout(std::string_view bytes);
 
 }  // namespace sdm::io

@@ -46,9 +46,11 @@ Vec3 moved_normal(const Transform& map, const Vec3& n) {
 class Measurement {
  public:
   Measurement(const std::filesystem::path& cloud, const Sites& sites, const PointDistancesOptions& options)
-      : reader_(cloud), cloud_(cloud.string()), sites_(sites), options_(options) {
+      : reader_(cloud, options.text), cloud_(cloud.string()), sites_(sites), options_(options) {
     if (options.chunk == 0) throw Error("the number of points in memory must be greater than 0");
     result_.has_normals = reader_.has_normals();
+    result_.format = reader_.format();
+    result_.text = reader_.dialect();
     result_.sign = choose_sign(sites, options.map.sign);
     if (options.picture.tolerance && options.picture.tolerance->needs_sign() &&
         result_.sign.method == SignMethod::none)
@@ -76,7 +78,7 @@ class Measurement {
  private:
   // Text without a header has to be read for its number of points, which the header of the result needs.
   void count_points() {
-    PointReader again(cloud_);
+    PointReader again(cloud_, options_.text);
     Chunk chunk;
     while (again.read(options_.chunk, chunk.points, chunk.normals)) counted_ += chunk.points.size();
   }

@@ -113,6 +113,12 @@ bool is_gltf(std::string_view bytes, const std::filesystem::path& file) {
   return find_format(Content(without_byte_order_mark(bytes)), file) == &kFormats[0];
 }
 
+std::string_view mesh_format_of(std::string_view begin) {
+  const Content content(without_byte_order_mark(begin));
+  const Format* format = std::ranges::find_if(kFormats, [&](const Format& f) { return f.matches(content); });
+  return format == std::end(kFormats) ? std::string_view() : format->names;
+}
+
 PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file) {
   const Content content(without_byte_order_mark(bytes));
   const Format* format = find_format(content, file);

@@ -19,6 +19,10 @@ namespace sdm::io {
 /// Returns whether a mesh file is glTF, from the contents, or else from the file name's extension.
 [[nodiscard]] bool is_gltf(std::string_view bytes, const std::filesystem::path& file);
 
+/// Returns the names of the format of a mesh file that begins with these bytes; empty if the content shows
+/// none. Binary STL is recognised by all of its bytes only.
+[[nodiscard]] std::string_view mesh_format_of(std::string_view begin);
+
 /// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.
 [[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file);
 

@@ -1,0 +1,124 @@
+#include "io/points/cloud_file.h"
+
+#include <fmt/format.h>
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+#include "io/points/binary_rows.h"
+#include "io/points/cloud_layout.h"
+#include "io/points/text_dialect.h"
+#include "io/points/text_rows.h"
+#include "io/read/read_polygons.h"
+#include "io/read/text_encoding.h"
+
+namespace sdm::io {
+namespace {
+
+std::uint64_t open(std::ifstream& stream, const std::filesystem::path& file) {
+  std::error_code error;
+  const auto type = std::filesystem::status(file, error).type();
+  if (type == std::filesystem::file_type::not_found) throw Error("there is no such file");
+  if (type == std::filesystem::file_type::directory) throw Error("this is a folder, not a point cloud");
+  if (error) throw Error(fmt::format("cannot be read: {}", error.message()));
+  if (type != std::filesystem::file_type::regular) throw Error("this is not a regular file");
+  errno = 0;
+  stream.open(file, std::ios::binary);
+  if (!stream) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
+  const std::uint64_t size = std::filesystem::file_size(file);
+  if (size == 0) throw Error("the file is empty");
+  return size;
+}
+
+void require_no_dialect(const TextDialect& given, std::string_view format) {
+  if (is_given(given))
+    throw Error(fmt::format(
+        "--columns, --separator and --decimal do not apply to {}, which has columns of its own", format));
+}
+
+bool has_control_characters(std::string_view bytes) {
+  return std::ranges::any_of(
+      bytes, [](char c) { return (c >= '\0' && c < ' ' && !(c >= '\t' && c <= '\r')) || c == '\x7f'; });
+}
+
+RowPlan plan_of(const CloudLayout& layout) {
+  RowPlan plan{.columns = layout.stride};
+  const auto& c = layout.columns;
+  if (layout.has_normals)
+    plan.want({c[0].place, c[1].place, c[2].place, c[3].place, c[4].place, c[5].place});
+  else
+    plan.want({c[0].place, c[1].place, c[2].place});
+  return plan;
+}
+
+}  // namespace
+
+void seek(std::ifstream& stream, std::uint64_t place) {
+  stream.clear();
+  stream.seekg(static_cast<std::streamoff>(place));
+}
+
+void take(std::ifstream& stream, char* to, std::size_t count) {
+  if (!stream.read(to, static_cast<std::streamsize>(count)))
+    throw Error("cannot be read: it became shorter while it was being read");
+}
+
+CloudFile::CloudFile(const std::filesystem::path& file, const TextDialect& given) {
+  validate(given);
+  const std::uint64_t size = open(stream, file);
+  std::string bytes(std::min<std::uint64_t>(size, kMaxCloudHeader), '\0');
+  take(stream, bytes.data(), bytes.size());
+  if (is_utf16(bytes)) throw Error("this is UTF-16 text; save it as UTF-8");
+  const std::string_view begin = without_utf8_mark(bytes);
+  const std::uint64_t skipped = bytes.size() - begin.size();
+
+  if (std::optional<CloudLayout> layout = cloud_layout(begin)) {
+    require_no_dialect(given, layout->format);
+    layout->data_begin += skipped;
+    open_declared(bytes, size, *layout);
+  } else {
+    open_text(begin, skipped, size, given);
+  }
+}
+
+// PLY, PCD and LAS.
+void CloudFile::open_declared(std::string_view begin, std::uint64_t size, const CloudLayout& layout) {
+  format = layout.format;
+  count = layout.count;
+  has_normals = layout.has_normals;
+  if (layout.data_begin > size) throw Error("the data begin after the end of the file; it is truncated");
+  if (layout.compressed) {
+    source = std::make_unique<CompressedColumns>(stream, size, layout);
+  } else if (!layout.text) {
+    source = std::make_unique<BinaryRows>(stream, size, layout);
+  } else {
+    const char line_end = line_end_of(begin);
+    const auto lines = std::ranges::count(begin.substr(0, layout.data_begin), line_end);
+    seek(stream, layout.data_begin);
+    source = std::make_unique<DeclaredRows>(
+        TextLines(stream, line_end, 1 + static_cast<std::uint64_t>(lines)), plan_of(layout), layout.count);
+  }
+}
+
+// Text without a format of its own.
+void CloudFile::open_text(std::string_view begin, std::uint64_t skipped, std::uint64_t size,
+                          const TextDialect& given) {
+  // Given columns make text of a file whose first word is one of OBJ or OFF.
+  if (const std::string_view mesh = mesh_format_of(begin); !mesh.empty() && given.columns.empty())
+    throw Error(fmt::format("this is a mesh ({}), not a point cloud; sdm map measures meshes", mesh));
+  if (has_control_characters(begin))
+    throw Error(fmt::format("unknown format, not text; {} are supported", point_format_names()));
+  seek(stream, skipped);
+  TextLines lines(stream, line_end_of(begin), 1);
+  const TextTable table = find_dialect(begin, skipped + begin.size() == size, given);
+  format = "text";
+  dialect = table.dialect;
+  has_normals = table.plan.has_normals();
+  source = std::make_unique<TextRows>(std::move(lines), table);
+}
+
+}  // namespace sdm::io
