@@ -53,9 +53,12 @@ struct TextDialect {
 SDM_API void validate(const TextDialect& dialect);
 
 /// Reads a point cloud from front to back: PLY (the element vertex; faces are ignored), PCD 0.7, LAS
-/// 1.0 to 1.4 (not LAZ), or text. The format is detected from the content; meshes of other formats are
+/// 1.0 to 1.4 (not LAZ), PTX, or text. The format is detected from the content; meshes of other formats are
 /// refused. Normals are the properties nx, ny, nz or normal_x, normal_y, normal_z. Binary_compressed PCD is
 /// one block, which is in memory as a whole.
+///
+/// The points of a scan in a PTX file are moved by its matrix; (0, 0, 0), a direction without a measurement,
+/// becomes NaN.
 ///
 /// Text has a point a row, and a TextDialect. Before the rows there may be a header, which names the columns,
 /// and the number of rows; after these rows, another number and its rows (PTS). A header may follow "#" or
@@ -73,7 +76,7 @@ class SDM_API PointReader {
   PointReader(PointReader&&) noexcept;
   PointReader& operator=(PointReader&&) noexcept;
 
-  /// "PLY", "PCD", "LAS" or "text".
+  /// "PLY", "PCD", "LAS", "PTX" or "text".
   [[nodiscard]] std::string format() const;
   /// Of text: how it is read, without automatic fields and with a name for each column, "_" if it is ignored.
   [[nodiscard]] std::optional<TextDialect> dialect() const;

@@ -369,6 +369,9 @@ TEST_F(PointsCommand, DistancesOfTextCloudsAreThoseOfTheirPoints) {
                       "5 5 12\n5 5 13\n"),
             (Distances{2, 3}));
   EXPECT_EQ(distances("5 5 12\r5 5 13\r5 5 14\r"), (Distances{2, 3, 4}));
+  EXPECT_EQ(distances("2\n1\n100 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n100 0 0 1\n"
+                      "-95 5 12 0.5\n-95 5 13 0.5\n"),
+            (Distances{2, 3}));
   const Outcome refused = run(with("a.off", "OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"));
   EXPECT_EQ(refused.code, 1);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("a.off: this is a mesh (OFF)"), HasSubstr("sdm map")));

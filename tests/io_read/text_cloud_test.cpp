@@ -234,6 +234,36 @@ TEST(TextCloud, NormalsOfLengthOneAreFoundByTheirPlace) {
   EXPECT_EQ(read("x y z r g b\n5 6 7 0 0 1\n").normals, Points()) << "names decide";
 }
 
+std::string ptx_scan(const std::string& size, const std::string& matrix, const std::string& rows) {
+  return size + "0 0 0\n1 0 0\n0 1 0\n0 0 1\n" + matrix + rows;
+}
+
+TEST(TextCloud, PosesOfPtxScansAreApplied) {
+  const std::string moved = "1 0 0 0\n0 1 0 0\n0 0 1 0\n100 0 0 1\n";
+  // Rows of points times the matrix: x becomes y, y becomes -x, and then a translation.
+  const std::string turned = "0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n";
+  const std::string one = ptx_scan("2\n1\n", moved, "-95 5 12 0.5\n-95 5 13 0.5\n");
+  EXPECT_EQ(points_of(one), (Points{{5, 5, 12}, {5, 5, 13}}));
+  const Cloud both = read(one + ptx_scan("1\n2\n", turned, "1 2 3 0.5 255 255 255\n0 0 0 0.5 0 0 0\n"));
+  EXPECT_EQ(both.format, "PTX");
+  EXPECT_FALSE(both.dialect);
+  ASSERT_EQ(both.points.size(), 4u);
+  EXPECT_EQ(both.points[2], (Vec3{8, 21, 33}));
+  EXPECT_TRUE(std::isnan(both.points[3][0])) << "a direction without a measurement";
+
+  EXPECT_THAT(fault(one + "1\n"), HasSubstr("ends within the header of scan 2"));
+  EXPECT_THAT(fault(one.substr(0, one.rfind('-'))), HasSubstr("scan 1 lacks 1 of its points"));
+  EXPECT_THAT(fault(one + "1 2 3 4\n"), StartsWith("line 13: expected the number of columns"));
+  EXPECT_THAT(fault(ptx_scan("1\n1\n", "1 0 0 0\n0 1 0 0\n0 0 1 0\n1 0 0 2\n", "1 2 3 4\n")),
+              HasSubstr("last column"));
+  EXPECT_THAT(fault(ptx_scan("1\n1\n", "1 0 0\n", "1 2 3 4\n")), StartsWith("line 7: expected 4 numbers"));
+  EXPECT_THAT(fault(ptx_scan("4294967296\n4294967296\n", moved, "1 2 3 4\n")),
+              HasSubstr("more than the file can hold"));
+  EXPECT_THAT(fault(ptx_scan("2\n1\n", moved, "1 2 3 4\n1 2 x 4\n")),
+              StartsWith("line 12: expected a number, not 'x'"));
+  EXPECT_THAT(fault(one, {.columns = {"x", "y", "z"}}), HasSubstr("do not apply to PTX"));
+}
+
 TEST(TextCloud, PtsHasSeveralScans) {
   const std::string scans = "2\n1 2 3 -7 255 0 0\n4 5 6 8 0 0 255\n0\n1\n7 8 9 10 1 2 3\n";
   EXPECT_EQ(points_of(scans), (Points{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}));

@@ -11,6 +11,7 @@
 
 #include "io/points/binary_rows.h"
 #include "io/points/cloud_layout.h"
+#include "io/points/ptx_scans.h"
 #include "io/points/text_dialect.h"
 #include "io/points/text_rows.h"
 #include "io/read/read_polygons.h"
@@ -104,7 +105,7 @@ void CloudFile::open_declared(std::string_view begin, std::uint64_t size, const 
   }
 }
 
-// Text without a format of its own.
+// PTX and text without a format of its own.
 void CloudFile::open_text(std::string_view begin, std::uint64_t skipped, std::uint64_t size,
                           const TextDialect& given) {
   // Given columns make text of a file whose first word is one of OBJ or OFF.
@@ -114,11 +115,17 @@ void CloudFile::open_text(std::string_view begin, std::uint64_t skipped, std::ui
     throw Error(fmt::format("unknown format, not text; {} are supported", point_format_names()));
   seek(stream, skipped);
   TextLines lines(stream, line_end_of(begin), 1);
-  const TextTable table = find_dialect(begin, skipped + begin.size() == size, given);
-  format = "text";
-  dialect = table.dialect;
-  has_normals = table.plan.has_normals();
-  source = std::make_unique<TextRows>(std::move(lines), table);
+  if (is_ptx(begin)) {
+    format = "PTX";
+    require_no_dialect(given, format);
+    source = std::make_unique<PtxScans>(std::move(lines), size);
+  } else {
+    const TextTable table = find_dialect(begin, skipped + begin.size() == size, given);
+    format = "text";
+    dialect = table.dialect;
+    has_normals = table.plan.has_normals();
+    source = std::make_unique<TextRows>(std::move(lines), table);
+  }
 }
 
 }  // namespace sdm::io

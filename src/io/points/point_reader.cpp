@@ -49,7 +49,7 @@ bool PointReader::read(std::size_t most, std::vector<Vec3>& points, std::vector<
 }
 
 std::string point_format_names() {
-  return "PLY, PCD, LAS, PTS, text in columns (XYZ, CSV)";
+  return "PLY, PCD, LAS, PTX, PTS, text in columns (XYZ, CSV)";
 }
 
 PointSample sample_points(const std::filesystem::path& file, std::size_t most, const TextDialect& text) {
