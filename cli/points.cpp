@@ -32,6 +32,7 @@ struct PointsCommand {
   AlignCommand align;
   sdm::MapOptions map;
   sdm::PictureOptions picture;
+  sdm::TextDialect text;
   std::vector<double> range;
   bool ply = true, html = sdm::can_write_html();
   unsigned threads = 0;
@@ -67,6 +68,28 @@ Json extreme_json(const sdm::PointExtreme& extreme) {
       {"distance", extreme.distance}, {"point", extreme.point}, {"at", "point"}, {"index", extreme.index}};
 }
 
+// Of a cloud that is not text: null.
+Json text_json(const std::optional<sdm::TextDialect>& text) {
+  if (!text) return nullptr;
+  return {{"separator", sdm::name_of(text->separator)},
+          {"decimal", sdm::name_of(text->decimal)},
+          {"columns", text->columns},
+          {"header_line", text->header_line > 0 ? Json(text->header_line) : Json()}};
+}
+
+// How text was read, unless that is the plain way: x, y and z first, between blanks.
+std::string text_summary(const sdm::TextDialect& text) {
+  const bool blank = text.separator == sdm::TextSeparator::blank || text.separator == sdm::TextSeparator::tab;
+  const auto& c = text.columns;
+  const bool plain = blank && text.decimal == sdm::DecimalMark::point && c[0] == "x" && c[1] == "y" &&
+                     c[2] == "z" &&
+                     std::ranges::all_of(c.begin() + 3, c.end(), [](auto& name) { return name == "_"; });
+  if (plain) return {};
+  return fmt::format("  text      separator {}, decimal {}, columns {}{}\n", sdm::name_of(text.separator),
+                     sdm::name_of(text.decimal), fmt::join(c, ","),
+                     text.header_line > 0 ? fmt::format(", header in line {}", text.header_line) : "");
+}
+
 Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcome& outcome) {
   const sdm::PointDistances& found = outcome.found;
   Json report;
@@ -76,6 +99,8 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
                   {"points", found.points},
                   {"invalid_points", found.invalid},
                   {"normals", found.has_normals}};
+  report["o1"]["format"] = found.format;
+  report["o1"]["text"] = text_json(found.text);
   report["o2"] = to_json(o2);
   report["measured_on"] = "o1";
   report["units"] = command.picture.units;
@@ -113,6 +138,7 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   const std::string unit = unit_suffix(command.picture.units);
   std::string text = fmt::format("{} -> {}\n", command.cloud, command.o2);
   if (outcome.aligned) text += summary(*outcome.aligned, command.picture.units);
+  if (found.text) text += text_summary(*found.text);
   text += fmt::format("  points    {}\n", found.points);
   if (found.invalid > 0) text += fmt::format("            {} have no coordinates\n", found.invalid);
   if (d.texels == 0) {
@@ -155,7 +181,7 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
 AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& placement,
                           const sdm::Sites& sites, const sdm::Progress& progress) {
   constexpr std::size_t kSample = 1 << 18;
-  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample);
+  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, command.text);
   if (sample.points.empty()) throw sdm::Error(command.cloud + ": there are no points with coordinates");
   sdm::transform(sample.points, placement);
   sdm::Transform turn = placement;
@@ -181,7 +207,7 @@ int run(PointsCommand command) {
   if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
   progress.step("import");
-  sdm::PointDistancesOptions options{.map = command.map, .picture = command.picture};
+  sdm::PointDistancesOptions options{.map = command.map, .picture = command.picture, .text = command.text};
   options.placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1));
   Input o2 = load_input("o2", command.o2, command.transform_o2);
   PointsOutcome outcome;
@@ -240,6 +266,26 @@ void add_files_option(CLI::App& app, PointsCommand& command) {
                    });
 }
 
+// --columns, --separator and --decimal.
+void add_text_options(CLI::App& app, sdm::TextDialect& text) {
+  app.add_option_function<std::string>(
+         "--columns", [&text](const std::string& names) { text.columns = CLI::detail::split(names, ','); },
+         "What the columns of a cloud in text are: x, y and z, perhaps nx, ny and nz, and any other name, "
+         "such as _, where a column is ignored; by default as the file names them, or the first three are x, "
+         "y, z")
+      ->type_name("NAME,...");
+  add_choice<sdm::TextSeparator>(app, "--separator", text.separator, "What separates these columns",
+                                 {{"auto", sdm::TextSeparator::automatic},
+                                  {"blank", sdm::TextSeparator::blank},
+                                  {"tab", sdm::TextSeparator::tab},
+                                  {"comma", sdm::TextSeparator::comma},
+                                  {"semicolon", sdm::TextSeparator::semicolon}});
+  add_choice<sdm::DecimalMark>(app, "--decimal", text.decimal, "The decimal mark of their numbers",
+                               {{"auto", sdm::DecimalMark::automatic},
+                                {"point", sdm::DecimalMark::point},
+                                {"comma", sdm::DecimalMark::comma}});
+}
+
 }  // namespace
 
 void add_points_command(CLI::App& app) {
@@ -256,6 +302,7 @@ void add_points_command(CLI::App& app) {
   PointsCommand& c = *command;
   points->add_option("CLOUD", c.cloud, fmt::format("The point cloud ({})", sdm::point_format_names()))
       ->required();
+  add_text_options(*points, c.text);
   points
       ->add_option("O2", c.o2,
                    fmt::format("The mesh that distances are measured to ({})", sdm::mesh_format_names()))
@@ -277,6 +324,11 @@ void add_points_command(CLI::App& app) {
   add_run_options(*points, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   points->callback([command] {
     check_range(command->range);
+    try {
+      sdm::validate(command->text);
+    } catch (const sdm::Error& fault) {
+      throw CLI::ValidationError("--columns", fault.what());
+    }
     if (const auto& t = command->picture.tolerance;
         t && std::max(std::abs(t->lo), std::abs(t->hi)) > command->map.max_distance)
       throw CLI::ValidationError(

@@ -377,6 +377,53 @@ TEST_F(PointsCommand, DistancesOfTextCloudsAreThoseOfTheirPoints) {
   EXPECT_THAT(refused.err, AllOf(HasSubstr("a.off: this is a mesh (OFF)"), HasSubstr("sdm map")));
 }
 
+// The dialect of a text is decided once, stated, and the same wherever the cloud is read.
+TEST_F(PointsCommand, TextIsReadInOneDialectThroughout) {
+  std::mt19937 random(4);
+  const std::vector<Vec3> scan = random_surface_points(mesh, 3000, random);
+  std::string plain, csv = "\xEF\xBB\xBF\"id\";Z;X;Y\r\n";
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const auto& [x, y, z] = scan[i];
+    plain += fmt::format("{} {} {}\n", x, y, z);
+    std::string row = fmt::format("{};{};{};{}\r\n", i, z, x, y);
+    std::ranges::replace(row, '.', ',');
+    csv += row;
+  }
+  ASSERT_EQ(run(with("plain.xyz", plain), {"--align"}).code, 0);
+  const auto matrix = [&] { return Json::parse(contents(out + "/alignment.json"))["matrix"].dump(); };
+  const std::string ply = contents(out + "/points.ply"), alignment = matrix();
+  EXPECT_EQ(Json::parse(contents(out + "/report.json"))["o1"]["text"],
+            Json::parse(R"({"separator": "blank", "decimal": "point", "columns": ["x", "y", "z"],
+                            "header_line": null})"));
+  const std::string file = with("scan.csv", csv);
+  const Outcome found = run(file, {"--align"});
+  ASSERT_EQ(found.code, 0) << found.err;
+  EXPECT_THAT(found.out,
+              HasSubstr("text      separator semicolon, decimal comma, columns _,z,x,y, header in line 1\n"));
+  EXPECT_EQ(contents(out + "/points.ply"), ply);
+  EXPECT_EQ(matrix(), alignment);
+  const Json o1 = Json::parse(contents(out + "/report.json"))["o1"];
+  EXPECT_EQ(o1["format"], "text");
+  EXPECT_EQ(o1["text"], Json::parse(R"({"separator": "semicolon", "decimal": "comma",
+                                        "columns": ["_", "z", "x", "y"], "header_line": 1})"));
+  // The same by options, where the file does not say it.
+  const std::string bare = with("bare.csv", csv.substr(csv.find('\n') + 1));
+  EXPECT_THAT(run(bare, {"--align"}).err, HasSubstr("--columns, --separator and --decimal"));
+  ASSERT_EQ(
+      run(bare, {"--align", "--columns", "_,z,x,y", "--separator", "semicolon", "--decimal", "comma"}).code,
+      0);
+  EXPECT_EQ(contents(out + "/points.ply"), ply);
+  EXPECT_EQ(matrix(), alignment);
+
+  EXPECT_EQ(run(file, {"--columns", "x,y"}).code, 2);
+  EXPECT_EQ(run(file, {"--columns", "x,y,z,x"}).code, 2);
+  EXPECT_EQ(run(file, {"--separator", "dot"}).code, 2);
+  EXPECT_EQ(run(file, {"--decimal", ";"}).code, 2);
+  ASSERT_EQ(run(with("a.las", las(points, 2))).code, 0);
+  EXPECT_EQ(Json::parse(contents(out + "/report.json"))["o1"]["format"], "LAS");
+  EXPECT_EQ(Json::parse(contents(out + "/report.json"))["o1"]["text"], nullptr);
+}
+
 TEST_F(PointsCommand, BadFilesAreOneSentence) {
   const auto refused = [&](const std::string& name, const std::string& contents, const char* fault) {
     const std::string file = with(name, contents);
