@@ -2,6 +2,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 #include <sdm/error.h>
 #include <sdm/points.h>
 
@@ -11,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arrays.h"
 #include "map.h"
@@ -24,11 +26,44 @@ std::filesystem::path path_of(nb::handle file) {
   return {path.c_str()};
 }
 
-nb::object read_points(nb::handle file) {
+TextSeparator separator_of(const std::string& name) {
+  for (const TextSeparator s : {TextSeparator::automatic, TextSeparator::blank, TextSeparator::tab,
+                                TextSeparator::comma, TextSeparator::semicolon})
+    if (name == sdm::name_of(s)) return s;
+  throw Error("separator must be 'automatic', 'blank', 'tab', 'comma' or 'semicolon', not '" + name + "'");
+}
+
+DecimalMark decimal_of(const std::string& name) {
+  for (const DecimalMark d : {DecimalMark::automatic, DecimalMark::point, DecimalMark::comma})
+    if (name == sdm::name_of(d)) return d;
+  throw Error("decimal must be 'automatic', 'point' or 'comma', not '" + name + "'");
+}
+
+TextDialect dialect_of(const std::optional<std::vector<std::string>>& columns, const std::string& separator,
+                       const std::string& decimal) {
+  TextDialect dialect{.separator = separator_of(separator), .decimal = decimal_of(decimal)};
+  if (columns) dialect.columns = *columns;
+  validate(dialect);
+  return dialect;
+}
+
+nb::object dict_of(const std::optional<TextDialect>& text) {
+  if (!text) return nb::none();
+  nb::dict result;
+  result["separator"] = sdm::name_of(text->separator);
+  result["decimal"] = sdm::name_of(text->decimal);
+  result["columns"] = text->columns;
+  result["header_line"] = text->header_line > 0 ? nb::cast(text->header_line) : nb::none();
+  return std::move(result);
+}
+
+nb::object read_points(nb::handle file, const std::optional<std::vector<std::string>>& columns,
+                       const std::string& separator, const std::string& decimal) {
   const std::filesystem::path path = path_of(file);
+  const TextDialect text = dialect_of(columns, separator, decimal);
   std::vector<Vec3> points, normals;
   run(nb::none(), [&](const Progress&) {
-    PointReader reader(path);
+    PointReader reader(path, text);
     constexpr std::size_t kChunk = 1 << 18;
     std::vector<Vec3> next, next_normals;
     while (reader.read(kChunk, next, next_normals)) {
@@ -62,6 +97,13 @@ void bind_distances(nb::module_& module) {
       .def_ro("beyond_tolerance", &D::beyond_tolerance,
               "The number of points that are out of the tolerance, or without a value.")
       .def_ro("has_normals", &D::has_normals, "Whether the file has normals.")
+      .def_ro("format", &D::format, "The format of the file: 'PLY', 'PCD', 'LAS', 'PTX' or 'text'.")
+      .def_prop_ro(
+          "text", [](const D& self) { return dict_of(self.text); },
+          nb::sig("def text(self) -> dict[str, object] | None"),
+          "How text was read: ``separator``, ``decimal``, ``columns`` ('_': ignored) and ``header_line`` "
+          "(from 1; "
+          "None without a header). None for other formats.")
       .def_prop_ro(
           "sign", [](const D& self) { return name_of(self.sign.method); },
           "How inside and outside are distinguished: 'none', 'exact' or 'winding'.")
@@ -84,13 +126,21 @@ void bind_distances(nb::module_& module) {
 void bind_points(nb::module_& module) {
   bind_distances(module);
   module.def(
-      "read_points", &read_points, nb::arg("file").none(),
-      nb::sig("def read_points(file: str | os.PathLike[str]) -> tuple[numpy.ndarray, numpy.ndarray | None]"),
-      R"(Reads a point cloud: PLY, PCD 0.7, LAS 1.0 to 1.4 (not LAZ), or text with three or more numbers a
-line. The format is detected from the content.
+      "read_points", &read_points, nb::arg("file").none(), nb::kw_only(), nb::arg("columns") = nb::none(),
+      nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
+      nb::sig(
+          "def read_points(file: str | os.PathLike[str], *, columns: collections.abc.Sequence[str] | None = "
+          "None, separator: str = 'automatic', decimal: str = 'automatic') -> tuple[numpy.ndarray, "
+          "numpy.ndarray | None]"),
+      R"(Reads a point cloud: PLY, PCD 0.7, LAS 1.0 to 1.4 (not LAZ), PTX, PTS, or text with a point a row. The
+format is detected from the content.
+
+columns, separator, decimal: of text, where the file leaves them open. ``columns`` has the name of each column:
+'x', 'y' and 'z', perhaps 'nx', 'ny' and 'nz', and any other where a column is ignored; ``separator`` is 'blank',
+'tab', 'comma' or 'semicolon', ``decimal`` is 'point' or 'comma'.
 
 Returns (points, normals): (n, 3) float64 each; normals are None if the file has none. NaN marks points without
-a measurement. Raises Error, naming the file and the fault.
+a measurement. Raises Error, naming the file, the fault and, in text, the line.
 
 >>> sdm.read_points('no such file.ply')
 Traceback (most recent call last):
@@ -102,11 +152,14 @@ sdm.Error: ...
       "measure_points",
       [](nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion, const char* engine,
          const char* sign, double max_distance, nb::handle tolerance, const std::string& colormap,
-         std::optional<std::pair<double, double>> range, nb::handle progress) {
+         std::optional<std::pair<double, double>> range, nb::handle progress,
+         const std::optional<std::vector<std::string>>& columns, const std::string& separator,
+         const std::string& decimal) {
         const std::filesystem::path from = path_of(cloud), ply = path_of(output);
         SitesInUse to(o2);
         PointDistancesOptions options{
             .map = {.engine = engine_of(engine), .sign = sign_of(sign), .max_distance = max_distance}};
+        options.text = dialect_of(columns, separator, decimal);
         if (!motion.is_none()) options.placement = transform(motion, "transform");
         options.picture.colormap = colormap_of(colormap);
         options.picture.range = range_of(range);
@@ -124,16 +177,20 @@ sdm.Error: ...
       nb::arg("transform") = nb::none(), nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
       nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("tolerance") = nb::none(),
       nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(),
+      nb::arg("columns") = nb::none(), nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
       nb::sig(
           "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
           "transform: object = None, engine: str = 'cpu', sign: str = 'automatic', max_distance: float = "
           "..., tolerance: float | tuple[float, float] | None = None, colormap: str = 'automatic', range: "
           "tuple[float, float] | None = None, progress: collections.abc.Callable[[str, float], bool | "
-          "None] | None = None) -> PointDistances"),
+          "None] | None = None, columns: collections.abc.Sequence[str] | None = None, separator: str = "
+          "'automatic', "
+          "decimal: str = 'automatic') -> PointDistances"),
       R"(Computes the distance of each point of a file to a mesh, in parts: the cloud may be larger than the
 memory. For points in memory, use Sites.closest_points().
 
-cloud: a file of read_points(). o2: any form of a mesh (see Mesh); Sites are used as they are.
+cloud: a file of read_points(), with its columns, separator and decimal.
+o2: any form of a mesh (see Mesh); Sites are used as they are.
 output: a PLY file to write, with the points in their order: x, y, z, the normals if there are any, distance,
 face and colours.
 transform: a 4 × 4 affine matrix that moves the points first, such as Alignment.transform.

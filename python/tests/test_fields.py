@@ -101,6 +101,25 @@ def test_clouds(tmp_path):
     assert near.max.distance < 1e-7
     with pytest.raises(sdm.Error, match="differs by the sign"):
         sdm.measure_points(tmp_path / "cloud.xyz", sites, tmp_path / "bad.ply", sign="none", tolerance=(-0.1, 0.2))
+    assert found.format == "text" and found.text == {
+        "separator": "blank",
+        "decimal": "point",
+        "columns": ["x", "y", "z"],
+        "header_line": None,
+    }
+    # A text that leaves open what its columns are.
+    rows = "".join(f"{i};{x};{z};{y}\n" for i, (x, y, z) in enumerate(points)).replace(".", ",")
+    (tmp_path / "cloud.csv").write_text(rows)
+    with pytest.raises(sdm.Error, match="--columns"):
+        sdm.read_points(tmp_path / "cloud.csv")
+    dialect = dict(columns=["id", "x", "z", "y"], separator="semicolon", decimal="comma")
+    read, _ = sdm.read_points(tmp_path / "cloud.csv", **dialect)
+    np.testing.assert_array_equal(read, points)
+    same = sdm.measure_points(tmp_path / "cloud.csv", sites, tmp_path / "out.ply", **dialect)
+    assert same.max.distance == found.max.distance and same.text["columns"] == ["_", "x", "z", "y"]
+    for wrong in (dict(columns=["x", "y"]), dict(separator=","), dict(decimal=".")):
+        with pytest.raises(sdm.Error):
+            sdm.read_points(tmp_path / "cloud.csv", **wrong)
     (tmp_path / "text.xyz").write_text("no points")
     for name in ("text.xyz", "missing.ply"):
         with pytest.raises(sdm.Error, match=name):
