@@ -156,10 +156,11 @@ TEST_P(Fuzz, MutatedFile) {
   EXPECT_LT(refused, rounds);       // but not always
 }
 
-// The least length of a cut that cannot be detected: OBJ and XYZ have no end, that of STL text may be
-// missing, and text may be cut within its last number or after its last face.
+// The least length of a cut that cannot be detected: OBJ and text clouds have no end, PTS and PTX end after
+// any scan, that of STL text may be missing, and text may be cut within its last number or after its last face.
 std::size_t shortest_whole(const Seed& seed) {
-  if (seed.name == "a.obj" || seed.name.ends_with(".xyz")) return 0;
+  for (const char* extension : {".obj", ".xyz", ".csv", ".pts", ".ptx"})
+    if (seed.name.ends_with(extension)) return 0;
   if (seed.name == "a.stl") return seed.contents.find("endloop") + 7;
   if (seed.name.ends_with(".off") || seed.name == "a.ply" || seed.name == "a.pcd" || seed.name == "a.matrix")
     return seed.contents.rfind(' ');

@@ -66,7 +66,8 @@ void read_transform(const std::filesystem::path& file) {
 
 bool try_read(const std::filesystem::path& file) {
   const std::string extension = file.extension();
-  const bool is_cloud = std::ranges::count(std::array{".xyz", ".pcd", ".las", ".cloud"}, extension) > 0;
+  const bool is_cloud =
+      std::ranges::count(std::array{".xyz", ".csv", ".pts", ".ptx", ".pcd", ".las", ".cloud"}, extension) > 0;
   try {
     if (is_cloud)
       read_points(file);
