@@ -14,6 +14,7 @@
 #include "scene.h"
 #include "self.h"
 #include "sequence.h"
+#include "terminal_text.h"
 #include "usage_error.h"
 #include "volume.h"
 
@@ -97,7 +98,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;  // 0: --help and --version
   } catch (const UnknownCommand& error) {
-    std::cerr << "sdm: error: " << error.what() << "\nRun sdm --help for the list of commands.\n";
+    std::cerr << "sdm: error: " << printable_lines(error.what())
+              << "\nRun sdm --help for the list of commands.\n";
     return 2;
   }
 }
@@ -107,6 +109,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   std::set_terminate(end_by_uncaught_exception);
   try {
+    const PrintableOutput output;
     return run(argc, argv);
   } catch (const sdm::Cancelled& error) {
     std::cerr << "sdm: error: " << error.what() << '\n';
@@ -114,9 +117,9 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::cerr << "sdm: error: not enough memory; choose a lower --resolution or smaller meshes\n";
   } catch (const sdm::Error& error) {
-    std::cerr << "sdm: error: " << error.what() << advice(error.remedy()) << '\n';
+    std::cerr << "sdm: error: " << printable_lines(error.what()) << advice(error.remedy()) << '\n';
   } catch (const std::exception& error) {
-    std::cerr << "sdm: error: " << error.what() << '\n';
+    std::cerr << "sdm: error: " << printable_lines(error.what()) << '\n';
   }
   return 1;
 }

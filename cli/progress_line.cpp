@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
+#include <sdm/printable.h>
 #include <unistd.h>
 
 #include <array>
@@ -51,6 +52,7 @@ void ProgressLine::step(std::string_view name) {
 }
 
 bool ProgressLine::show(std::string line) {
+  line = sdm::printable(line);
   if (visible_ && line != shown_) std::cerr << "\r\033[K" << (shown_ = std::move(line)) << std::flush;
   return interrupted_by == 0;
 }

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "terminal_text.h"
+
 namespace {
 
 // The number of characters to insert, delete or replace to make one text the other.
@@ -54,7 +56,7 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error) {
   } else {
     text += error.what();
   }
-  return text + "\nRun " + (command == app ? "sdm" : "sdm " + command->get_name()) +
+  return printable_lines(text) + "\nRun " + (command == app ? "sdm" : "sdm " + command->get_name()) +
          " --help for more information.\n";
 }
 

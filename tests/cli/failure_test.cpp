@@ -55,6 +55,44 @@ TEST_F(Failure, BadInputIsNamed) {
   expect_failure(run_sdm({"map", o1, folder.path(), "-o", out}), folder.path());
 }
 
+// Models of a few hundred bytes that declare, or name a hundred times, more than the memory that there is.
+TEST_F(Failure, ModelsThatDeclareMoreThanTheyHoldTakeLittleMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a limit on memory leaves AddressSanitizer no room for its shadow";
+#endif
+  constexpr std::uint64_t kMemory = std::uint64_t{512} << 20;
+  const std::string triangle =
+      R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":3},{"componentType":5126,"type":"VEC3","count":90000000,)"
+      R"("sparse":{"count":1,"indices":{"componentType":5121,"bufferView":0},"values":{"bufferView":0}}}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[)";
+  const std::string buffer =
+      R"({"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+  const auto model = [&](const std::string& node, const std::string& primitive) {
+    return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0)" + node + R"(}],"meshes":[{"primitives":[{)" +
+           primitive + R"(}]}],"accessors":[)" + triangle;
+  };
+  const std::string file = folder / "hostile.gltf";
+  for (const std::string& text :
+       {model("", R"("attributes":{"POSITION":1})"),
+        model(R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}})",
+              R"("attributes":{"POSITION":0})"),
+        model(R"(,"weights":[1])", R"("attributes":{"POSITION":1},"targets":[{"POSITION":1}])")}) {
+    std::ofstream(file) << text << buffer;
+    before = names_in(folder.path());
+    expect_failure(run_sdm({"map", file, o2, "-o", out}, {.memory = kMemory}), "hostile.gltf: ");
+    EXPECT_THAT(run_sdm({"info", file}, {.memory = kMemory}).err, HasSubstr("would take"));
+  }
+  // The first buffer is the triangle; the others are one file of 20 MB.
+  std::ofstream(folder / "large.bin") << "large";
+  std::filesystem::resize_file(folder / "large.bin", std::size_t{20} << 20);
+  std::string names = buffer.substr(0, buffer.size() - 2);
+  for (int i = 0; i < 100; ++i) names += R"(,{"byteLength":5,"uri":"large.bin"})";
+  std::ofstream(file) << model("", R"("attributes":{"POSITION":0})") << names << "]}";
+  const Outcome run = run_sdm({"info", file}, {.memory = kMemory});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("triangles           1\n"));
+}
+
 TEST_F(Failure, AFullDiskLeavesNoTrace) {
   for (const std::uint64_t bytes : {0, 500, 4000, 30000})
     expect_failure(run_sdm(map({"--both"}), {.file_size = bytes}), "cannot write");

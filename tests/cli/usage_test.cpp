@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <vector>
@@ -218,6 +219,34 @@ TEST(Usage, WrongUsageEndsWithTwo) {
     EXPECT_NE(run.err, "");
   }
   EXPECT_TRUE(folder.empty());
+}
+
+// Names of files come from archives and downloads, too.
+TEST(Usage, NoControlCharacterReachesTheTerminal) {
+  const TemporaryFolder folder;
+  const std::string name = "a\x1b[31m\u202e\u009b\xff.off", shown = "a\\u001b[31m\\u202e\\u009b\\xff.off";
+  std::ofstream(folder / name) << "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const auto all_printable = [](const std::string& text) {
+    return text.find_first_of("\x1b\x7f\xff\a\r") == std::string::npos &&
+           text.find("\u202e") == std::string::npos && text.find("\u009b") == std::string::npos;
+  };
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"info", folder / name},
+                                                    {"info", folder / ("missing " + name)},
+                                                    {"info", "--" + name},
+                                                    {"info", "a.off", name},
+                                                    {name},
+                                                    {"map", "a.off", "b.off", "-o", "out", "--sign", name}}) {
+    const Outcome run = run_sdm(arguments);
+    EXPECT_TRUE(all_printable(run.out)) << run.out;
+    EXPECT_TRUE(all_printable(run.err)) << run.err;
+    EXPECT_THAT(run.out + run.err, HasSubstr(shown));
+  }
+  // JSON has the name itself.
+  const std::string other = (folder / "a\u202eb\x1b.off").string();
+  std::filesystem::copy_file(folder / name, other);
+  const Outcome json = run_sdm({"info", other, "--json"});
+  EXPECT_TRUE(all_printable(json.out)) << json.out;
+  EXPECT_EQ(nlohmann::json::parse(json.out)["file"].get<std::string>(), other);
 }
 
 }  // namespace

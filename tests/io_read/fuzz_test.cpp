@@ -157,7 +157,8 @@ TEST_P(Fuzz, MutatedFile) {
 }
 
 // The least length of a cut that cannot be detected: OBJ and text clouds have no end, PTS and PTX end after
-// any scan, that of STL text may be missing, and text may be cut within its last number or after its last face.
+// any scan, that of STL text may be missing, and text may be cut within its last number or after its last
+// face.
 std::size_t shortest_whole(const Seed& seed) {
   for (const char* extension : {".obj", ".xyz", ".csv", ".pts", ".ptx"})
     if (seed.name.ends_with(extension)) return 0;
