@@ -10,6 +10,7 @@
 #include "edit/random_edits.h"
 #include "support/made_up_maps.h"
 #include "support/map_checks.h"
+#include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
 
@@ -74,6 +75,48 @@ TEST(QueryEdit, AnswersAreThoseOfTheMeshAlone) {
       EXPECT_TRUE(disagreements.none());
     }
   }
+}
+
+void expect_equal_contacts(std::span<const Contact> found, std::span<const Contact> expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Contact &a = found[i], &b = expected[i];
+    ASSERT_EQ(a.id, b.id);
+    ASSERT_EQ(a.patch, b.patch);
+    ASSERT_EQ(a.depth, b.depth);
+    ASSERT_EQ(a.point1, b.point1);
+    ASSERT_EQ(a.point2, b.point2);
+    ASSERT_EQ(a.normal, b.normal);
+    ASSERT_EQ(a.faces, b.faces);
+    ASSERT_EQ(a.barycentric, b.barycentric);
+  }
+}
+
+// Of coarse meshes, whose vertices all have contacts, and of fine ones, with one contact for each part.
+TEST(QueryEdit, ContactsAreThoseOfTheEditedMesh) {
+  const std::array<Mesh, 4> meshes{cube(0.5), ring(8, 0.5), placed(sphere(2), "scale:0.6"),
+                                   placed(sphere(4), "scale:0.6")};
+  const Mesh other = moved(sphere(3), {0.4, 0.2, 0.1});
+  const ProximityOptions options{.contact_margin = 0.01};
+  std::size_t contacts = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    Mesh mesh = meshes[seed % 4];
+    RandomEdits edits(seed, {.defects = false});
+    ProximityQuery query(mesh, other, options), replaced(other, other, options);
+    for (int i = 0; i < 6; ++i) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", edit " << i);
+      const MeshEdit edit = edits.next(mesh);
+      apply(mesh, edit);
+      query.edit(0, edit);
+      replaced.replace(0, Shape(mesh));
+      ProximityQuery fresh(mesh, other, options);
+      expect_equal_contacts(query.contacts(), fresh.contacts());
+      expect_equal_contacts(replaced.contacts(), fresh.contacts());
+      if (HasFatalFailure()) return;
+      contacts += fresh.contacts().size();
+    }
+  }
+  EXPECT_GT(contacts, 10000u);
 }
 
 TEST(QueryEdit, ARefusedEditChangesNothing) {

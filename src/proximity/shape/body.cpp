@@ -40,8 +40,7 @@ Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
 Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
   if (atlas) surface_.emplace(mesh, *atlas);
   follow_positions();
-  cylinders_ = {internals(sites_).wide, internals(sites_).regions};
-  contact_parts_ = shape::contact_parts(internals(sites_).tree);
+  find_parts();
 }
 
 void Body::refit(std::span<const Vec3> positions) {
@@ -51,10 +50,20 @@ void Body::refit(std::span<const Vec3> positions) {
 }
 
 void Body::edit(const MeshEdit& edit) {
-  if (surface_) surface_->edit(edit);  // may throw for want of room, the sites only for what it throws for
-  sites_.edit(edit);
+  // Parts of contacts are nodes of the tree: with one that has grown by edits, they would be other contacts
+  // than those of the edited mesh by itself.
+  Mesh mesh = sites_.mesh();
+  apply(mesh, edit);
+  Sites sites(std::move(mesh));
+  if (surface_) surface_->edit(edit);
+  sites_ = std::move(sites);
   inside_.reset();
   follow_positions();
+  find_parts();
+}
+
+void Body::find_parts() {
+  cylinders_ = {internals(sites_).wide, internals(sites_).regions};
   contact_parts_ = shape::contact_parts(internals(sites_).tree);
 }
 

@@ -25,7 +25,8 @@ class Body {
 
   /// Moves the vertices to positions that are valid for this mesh (see validate_positions).
   void refit(std::span<const Vec3> positions);
-  /// Changes the mesh. Throws sdm::Error, and changes nothing, as Surface::edit and Sites::edit do.
+  /// Changes the mesh. Throws sdm::Error, and changes nothing, as Surface::edit and Sites::edit do. Then it
+  /// is like a body of the edited mesh, to the bit. Cost: that of its sites, and of Surface::edit.
   void edit(const MeshEdit& edit);
 
   /// Throws sdm::Error if there is no atlas.
@@ -45,14 +46,15 @@ class Body {
   /// The boundary of the solid. Requires a call of require_boundary().
   [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
 
-  /// Around the nodes of the tree; none after a refit or an edit, for which they would take longer than a few
-  /// searches save.
+  /// Around the nodes of the tree; none after a refit, for which they would take longer than a few searches
+  /// save.
   [[nodiscard]] const sites::CylinderTree& cylinders() const { return cylinders_; }
   /// See contact_parts(), of the first shape or that after the last edit.
   [[nodiscard]] std::span<const ContactPart> contact_parts() const { return contact_parts_; }
 
  private:
   void follow_positions();
+  void find_parts();
 
   std::optional<Surface> surface_;
   Sites sites_;
