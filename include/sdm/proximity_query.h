@@ -37,12 +37,18 @@ struct BoundedBool {
   Certainty certainty = Certainty::estimate;
 };
 
-/// A point of one body that is in contact, and a closest point of the other: outside, the closest point of
-/// its surface; inside, of the boundary of the solid, as far as it was found (see ProximityQuery::contacts).
+/// A point p of one body that is in contact, and the point q of the other body to which it is pushed. With
+/// b(x) the distance of a point x to the other body's surface or, inside a solid, to its boundary, q is
+///  - a closest point of the other body, |q − p| = b(p), or
+///  - the foot of p on a face that carries the surface around p (see ProximityQuery::contacts); if p is
+///  inside,
+///    that face is the nearest way out for some x of this surface with b(x) ≥ |q − p|.
+/// So depth ≤ ProximityQuery::penetration_depth()->upper for all contacts.
 struct Contact {
-  Vec3 point1{}, point2{};  ///< on O1 and on O2
-  /// Unit vector along which moving O1 separates it from O2: (point2 − point1) / depth, for depth of either
-  /// sign; where depth is 0, O2's outward pseudonormal. Swapping the two bodies negates it.
+  Vec3 point1{}, point2{};  ///< on O1 and on O2: p and q, or q and p if p is a point of O2
+  /// Unit vector along which moving O1 separates it from O2: point2 − point1 = depth · normal, to rounding,
+  /// for depth of either sign; where depth is 0, O2's outward pseudonormal. Moving O1 by depth along it takes
+  /// p to q, or q to p. Swapping the two bodies negates it.
   Vec3 normal{};
   double depth = 0;  ///< ±|point2 − point1|, exact; positive if the point in contact is inside the other body
   std::uint32_t patch = 0;  ///< contact patch: contacts on connected parts of the surface share one
@@ -103,13 +109,15 @@ class SDM_API ProximityQuery {
   /// Moves the vertices of the bodies, keeping their triangles and poses. An empty span leaves a body
   /// unchanged. Throws sdm::Error, and changes nothing, for a wrong number of positions, a coordinate that is
   /// not finite, or a body whose Shape is shared with anything else. Cost: that of Sites::refit and, with an
-  /// atlas, Surface::refit. Neither this nor the queries allocate memory once the bodies have been through
+  /// atlas, Surface::refit. The parts of a surface that have one contact each stay those of its shape before.
+  /// Neither this nor the queries allocate memory once the bodies have been through
   /// similar poses, unless a solid intersects itself.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
   /// Changes the mesh of a body, 0 or 1, as Sites::edit and, with an atlas, Surface::edit do, which keeps
   /// faces, texels and their numbers. The ids of its contacts may change. Throws sdm::Error, and changes
-  /// nothing, as they do and for a body whose Shape is shared. Cost: theirs, and a pass over the tree.
+  /// nothing, as they do and for a body whose Shape is shared. All results are those of the edited mesh, to
+  /// the bit. Cost: that of new Sites, and of Surface::edit.
   void edit(int body, const MeshEdit& edit);
   /// Replaces the shape of a body, 0 or 1, in the same pose. Cost: constant.
   void replace(int body, Shape shape);
@@ -137,9 +145,19 @@ class SDM_API ProximityQuery {
   ///    at the middle of its points closest to the other surface. Edges are those of the boundary of an open
   ///    mesh and convex ones, not those between faces in a plane, and of edges shorter than 1/16 of the size
   ///    of the smaller body only those without an end in contact.
-  /// So a box on a plate has contacts at its corners, and beams that cross where their edges cross. A corner
-  /// whose closest point is on a face that cannot push it, as the side of a box that it is flush with, is in
-  /// contact with the nearest face that can, up to 1/8 of the size of the smaller body below that face.
+  /// So a box on a plate has contacts at its corners, and beams that cross where their edges cross.
+  ///
+  /// Where a surface lies along a face of the other body, to about 3 degrees, the face carries the vertices
+  /// and the ends of parts of edges over it, whatever is closest to these points themselves: the side of a
+  /// table is closest to a corner of a box that is flush with it, and to the ends of the edges across it. Up
+  /// to 1/8 of the size of the smaller body below a solid's face, a face F carries a point p of a vertex or
+  /// an edge, with F's outward normal n, if the faces around p contain a point x that is at least as deep:
+  ///   b(x) ≥ n·(F − p), with F the nearest way out for x.
+  /// Where x is less deep than that, as where the surface is tilted, the contact is at x instead of p, with
+  /// the closest point there. Without such an x, F is not the way out of this surface, and the contact is
+  /// with the closest point of p. So all contacts have depth ≤ penetration_depth()->upper, and none has a
+  /// positive depth in a surface without an inside.
+  ///
   /// Contacts of a point inside a body that intersects itself are with the closest point of its boundary, or,
   /// if many faces meet there, with that of its surface. Sorted by patch, the patch with
   /// the deepest contact first, and by decreasing depth within a patch. Contacts belong to the same patch if

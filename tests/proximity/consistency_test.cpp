@@ -203,10 +203,12 @@ void check(const Body& a, const Body& b) {
     if (a.solid) least = std::max(least, depth_by_faces(a, b.mesh));
     if (b.solid) least = std::max(least, depth_by_faces(b, a.mesh));
     ASSERT_GE(depth->upper, least - tolerance);
-    for (const Contact& contact : query.contacts())
+    for (const Contact& contact : query.contacts()) {
+      ASSERT_LE(contact.depth, depth->upper);
       if (contact.depth > tolerance) {
         ASSERT_TRUE(collide);
       }
+    }
   }
 
   MultiBodyQuery bodies(with_atlases(std::vector{a.mesh, b.mesh}, kResolution));
