@@ -50,6 +50,7 @@ set(order
   io/write/report
   io/write/player
   io/write/vertices
+  io/points/text
   io/points)
 
 # Another engine is before the table of engines.

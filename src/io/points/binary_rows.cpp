@@ -8,7 +8,7 @@
 #include <array>
 
 #include "io/points/cloud_file.h"
-#include "io/points/column_names.h"
+#include "io/points/text/column_names.h"
 #include "io/read/byte_scanner.h"
 
 namespace sdm::io {

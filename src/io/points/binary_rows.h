@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/points/cloud_layout.h"
-#include "io/points/point_source.h"
+#include "io/points/text/point_source.h"
 
 namespace sdm::io {
 

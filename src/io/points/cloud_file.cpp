@@ -11,9 +11,9 @@
 
 #include "io/points/binary_rows.h"
 #include "io/points/cloud_layout.h"
-#include "io/points/ptx_scans.h"
-#include "io/points/text_dialect.h"
-#include "io/points/text_rows.h"
+#include "io/points/text/ptx_scans.h"
+#include "io/points/text/text_dialect.h"
+#include "io/points/text/text_rows.h"
 #include "io/read/read_polygons.h"
 #include "io/read/text_encoding.h"
 

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "io/points/cloud_layout.h"
-#include "io/points/point_source.h"
+#include "io/points/text/point_source.h"
 
 namespace sdm::io {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "io/points/column_names.h"
-#include "io/points/text_lines.h"
+#include "io/points/text/column_names.h"
+#include "io/points/text/text_lines.h"
 #include "io/read/byte_scanner.h"
 #include "io/read/ply_header.h"
 

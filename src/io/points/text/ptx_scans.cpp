@@ -1,4 +1,4 @@
-#include "io/points/ptx_scans.h"
+#include "io/points/text/ptx_scans.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>

@@ -1,4 +1,4 @@
-#include "io/points/text_dialect.h"
+#include "io/points/text/text_dialect.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
-#include "io/points/dialect_attempt.h"
-#include "io/points/text_lines.h"
+#include "io/points/text/dialect_attempt.h"
+#include "io/points/text/text_lines.h"
 
 namespace sdm {
 

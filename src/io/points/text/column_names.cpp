@@ -1,4 +1,4 @@
-#include "io/points/column_names.h"
+#include "io/points/text/column_names.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>

@@ -1,4 +1,4 @@
-#include "io/points/text_row.h"
+#include "io/points/text/text_row.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cstring>
 
-#include "io/points/text_lines.h"
+#include "io/points/text/text_lines.h"
 
 namespace sdm::io {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "io/points/point_source.h"
-#include "io/points/text_lines.h"
-#include "io/points/text_row.h"
+#include "io/points/text/point_source.h"
+#include "io/points/text/text_lines.h"
+#include "io/points/text/text_row.h"
 
 namespace sdm::io {
 

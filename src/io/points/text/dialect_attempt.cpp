@@ -1,4 +1,4 @@
-#include "io/points/dialect_attempt.h"
+#include "io/points/text/dialect_attempt.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <optional>
 
-#include "io/points/point_source.h"
-#include "io/points/text_dialect.h"
-#include "io/points/text_lines.h"
+#include "io/points/text/point_source.h"
+#include "io/points/text/text_dialect.h"
+#include "io/points/text/text_lines.h"
 
 namespace sdm::io {
 

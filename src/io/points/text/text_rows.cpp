@@ -1,4 +1,4 @@
-#include "io/points/text_rows.h"
+#include "io/points/text/text_rows.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/points/column_names.h"
-#include "io/points/text_dialect.h"
+#include "io/points/text/column_names.h"
+#include "io/points/text/text_dialect.h"
 
 namespace sdm::io {
 

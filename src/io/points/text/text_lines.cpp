@@ -1,4 +1,4 @@
-#include "io/points/text_lines.h"
+#include "io/points/text/text_lines.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "io/points/text_row.h"
+#include "io/points/text/text_row.h"
 
 namespace sdm::io {
 
