@@ -9,6 +9,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "bodies_report.h"
 #include "common_options.h"
@@ -161,6 +162,9 @@ void run(BodiesCommand command) {
     std::cout << to_text(report);
   } else if (!command.quiet) {
     std::cout << bodies_summary(command, bodies);
+    std::set<std::string> noted;
+    for (const Input& input : inputs)
+      if (noted.insert(input.file).second) std::cout << note_lines({&input}, 12);
   }
 }
 

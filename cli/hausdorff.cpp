@@ -155,7 +155,7 @@ void run(const HausdorffCommand& command) {
     json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
     std::cout << to_text(json);
   } else if (!command.quiet) {
-    std::cout << hausdorff_summary(command, answer);
+    std::cout << hausdorff_summary(command, answer) << note_lines({&o1, &o2}, 13);
   }
   constexpr int kExceeded = 3;
   if (command.tolerance && !verdict(answer.distance.distance, *command.tolerance).within)

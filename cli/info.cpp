@@ -28,14 +28,15 @@ struct Options {
 
 struct Info {
   sdm::MeshInfo mesh;
+  std::vector<std::string> notes{};
   std::vector<std::array<std::uint32_t, 2>> self_intersections{};
   std::optional<sdm::VolumeBounds> volume{};  ///< if closed and orientable
 };
 
 Info collect(const std::string& file) {
-  sdm::Mesh mesh = sdm::read_mesh(file);
-  Info info{sdm::inspect(mesh)};
-  const sdm::Sites sites(std::move(mesh));
+  sdm::MeshFile read = sdm::read_mesh_file(file);
+  Info info{sdm::inspect(read.mesh), std::move(read.notes)};
+  const sdm::Sites sites(std::move(read.mesh));
   info.self_intersections = sdm::self_intersections(sites);
   if (info.mesh.closed && info.mesh.orientable) info.volume = sdm::solid_volume(sites);
   return info;
@@ -66,7 +67,8 @@ nlohmann::ordered_json info_json(const std::string& file, const Info& all) {
           {"area", info.area},
           {"volume", all.volume
                          ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
-                         : nlohmann::ordered_json()}};
+                         : nlohmann::ordered_json()},
+          {"notes", all.notes}};
 }
 
 std::string text(bool value) {
@@ -120,6 +122,7 @@ void print_table(std::ostream& out, const std::string& file, const Info& all) {
   row("uvs", text(info.has_uvs));
   row("area", text(info.area));
   row("volume", text(all.volume));
+  for (const std::string& note : all.notes) row("note", note);
 }
 
 // One pair of face numbers a line.

@@ -245,7 +245,7 @@ int run(PointsCommand command) {
   if (command.json)
     std::cout << to_text(report);
   else if (!command.quiet)
-    std::cout << text_of(command, outcome)
+    std::cout << text_of(command, outcome) << note_lines({&o2}, 12)
               << fmt::format("  time      {} s\n  results   {}/: {}{}report.json\n",
                              number(std::round(total.lap()) / 1000, 6), command.out.string(),
                              outcome.aligned ? "alignment.json " : "", files(command));

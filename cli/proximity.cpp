@@ -55,7 +55,8 @@ void run(PairCommand command, const AlignCommand& align) {
     json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
     std::cout << to_text(json);
   } else if (!command.quiet) {
-    std::cout << o1.file << ", " << o2.file << "\n" << summary(query, command.units);
+    std::cout << o1.file << ", " << o2.file << "\n"
+              << summary(query, command.units) << note_lines({&o1, &o2}, 13);
     if (aligned) {
       std::cout << summary(*aligned, command.units);
       for (const std::string& note : notes(*aligned)) std::cout << "  note       " << note << '\n';

@@ -92,8 +92,17 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   Input input{.role = role, .file = file, .transform = transform, .mesh = std::move(read.mesh)};
   input.names = std::move(read.names);
   input.vertices = std::move(read.vertices);
+  input.notes = std::move(read.notes);
   sdm::scenes::place(input.mesh, sdm::scenes::parse_placement(transform));
   return input;
+}
+
+std::string note_lines(std::initializer_list<const Input*> inputs, int width) {
+  std::string text;
+  for (const Input* input : inputs)
+    for (const std::string& note : input->notes)
+      text += fmt::format("{:<{}}{}: {}\n", "  note", width, input->file, note);
+  return text;
 }
 
 void inspect(Input& input) {
@@ -107,7 +116,8 @@ Json to_json(const Input& input) {
           {"triangles", input.info->triangles},
           {"closed", input.info->closed},
           {"degenerate_faces", input.info->degenerate_faces},
-          {"duplicate_faces", input.info->duplicate_faces}};
+          {"duplicate_faces", input.info->duplicate_faces},
+          {"notes", input.notes}};
 }
 
 Json to_json(const sdm::Surface& surface) {
@@ -286,6 +296,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
   else
     add("  error     unknown: the paper's algorithm as printed gives an estimate\n");
   if (outcome.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
+  text += note_lines({&on, &to}, 12);
   for (const std::string& note : outcome.notes) add("  note      {}\n", note);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,

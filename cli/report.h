@@ -5,6 +5,7 @@
 #include <sdm/sdm.h>
 
 #include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -20,7 +21,11 @@ struct Input {
   std::optional<sdm::MeshInfo> info{};  ///< once inspected
   std::vector<sdm::FaceNames> names{};
   std::optional<sdm::FileVertices> vertices{};  ///< of the file, without the transform, if requested
+  std::vector<std::string> notes{};             ///< of sdm::MeshFile
 };
+
+/// A line of text for each note of some inputs, with the name of the file; values begin in column `width`.
+[[nodiscard]] std::string note_lines(std::initializer_list<const Input*> inputs, int width);
 
 /// Sets input.info, which to_json() needs, unless it is set.
 void inspect(Input& input);

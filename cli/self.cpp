@@ -128,7 +128,7 @@ void run(SelfCommand command) {
   if (command.json)
     std::cout << to_text(report);
   else if (!command.quiet)
-    std::cout << self_summary(command, report)
+    std::cout << self_summary(command, report) << note_lines({&input}, 14)
               << fmt::format("  time        {} s\n  results     {}/: {}report.json\n",
                              number(std::round(total.lap()) / 1000, 6), command.out.string(),
                              listed(command.files));

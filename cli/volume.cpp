@@ -164,11 +164,10 @@ std::string summary(const VolumeCommand& command, const VolumeOutcome& outcome) 
   return text;
 }
 
-VolumeOutcome compute(const VolumeCommand& command, Input& o2, const sdm::Progress& progress) {
+VolumeOutcome compute(const VolumeCommand& command, Input& o1, Input& o2, const sdm::Progress& progress) {
   Stopwatch watch;
   VolumeOutcome outcome;
   o2 = load_input("o2", command.o2, command.transform_o2);
-  Input o1;
   if (!command.o1.empty()) o1 = load_input("o1", command.o1, command.transform_o1);
   if (command.json) inspect(o2);
   outcome.import_ms = watch.lap();
@@ -195,10 +194,10 @@ void run(const VolumeCommand& command) {
   if (!command.out.empty()) out.emplace(std::filesystem::absolute(command.out).parent_path());
   ProgressLine progress(command.quiet);
   progress.step("import");
-  Input o2;
+  Input o1, o2;
   VolumeOutcome outcome;
   const auto work = [&] {
-    outcome = compute(command, o2, progress.callback());
+    outcome = compute(command, o1, o2, progress.callback());
     if (!out) return;
     progress.step("output");
     Stopwatch watch;
@@ -212,7 +211,7 @@ void run(const VolumeCommand& command) {
   if (command.json)
     std::cout << to_text(report_of(command, o2, outcome));
   else if (!command.quiet)
-    std::cout << summary(command, outcome);
+    std::cout << summary(command, outcome) << note_lines({&o1, &o2}, 13);
 }
 
 void check(const VolumeCommand& command, const CLI::App& app) {
