@@ -285,6 +285,47 @@ TEST(TimeOfContact, OfAWheelThatGrazes) {
     }
 }
 
+// A ball turns in an open socket, a bolt screws itself through a sleeve: all of their faces are close to
+// others at all times.
+TEST(TimeOfContact, OfBodiesThatTurnInsideOthers) {
+  const Mesh ball = sphere(4);
+  Mesh socket = ball;
+  std::erase_if(socket.triangles, [&](const Triangle& t) { return socket.positions[t[0]][2] > 0.9; });
+  for (const double gap : {0.01, 1e-6}) {
+    // The middles of the socket's faces are nearer than its corners, by less than 0.001.
+    Mesh wide = socket;
+    transform(wide, Transform::scaling(1.003 + gap));
+    const TimeOfContact free =
+        time_of_contact(Shape(ball), {{}, Transform::rotation({40, -20, 130})}, Shape(wide), {}, 0.1 * gap);
+    EXPECT_FALSE(free.contact);
+    EXPECT_EQ(free.certainty, Certainty::exact);
+  }
+  Mesh sleeve = band(96, false), bolt = sleeve;
+  const double inner = [&] {  // of the polygon's middles
+    double least = 1e9;
+    for (const Triangle& t : sleeve.triangles)
+      for (int i = 0; i < 3; ++i) {
+        const Vec3 middle = 0.5 * (sleeve.positions[t[i]] + sleeve.positions[t[(i + 1) % 3]]);
+        least = std::min(least, std::hypot(middle[0], middle[1]));
+      }
+    return least;
+  }();
+  double outer = 0;
+  for (const Vec3& p : bolt.positions) outer = std::max(outer, std::hypot(p[0], p[1]));
+  for (const double gap : {1e-3, 1e-7}) {
+    Mesh thin = bolt;
+    for (Vec3& p : thin.positions)
+      for (int k = 0; k < 2; ++k) p[k] *= inner * (1 - gap) / outer;
+    const Motion screws{.from = Transform::translation({0, 0, -5}),
+                        .to = Transform::translation({0, 0, 5}) * Transform::rotation({0, 0, 170})};
+    EXPECT_FALSE(time_of_contact(Shape(thin), screws, Shape(sleeve), {}, 0.1 * gap).contact);
+    const Motion tilts{.from = screws.from, .to = screws.to * Transform::rotation({3, 0, 0})};
+    const TimeOfContact found = time_of_contact(Shape(thin), tilts, Shape(sleeve), {}, 0.1 * gap);
+    EXPECT_TRUE(found.contact);
+    EXPECT_LE(found.separation, 0.1 * gap);
+  }
+}
+
 TEST(TimeOfContact, OfTrianglesThatFlyThroughEachOther) {
   const Shape triangle(single_triangle());
   Mesh crossing = single_triangle();

@@ -10,53 +10,6 @@
 namespace sdm::motion {
 namespace {
 
-// The parts of a surface, as SafeTime takes them.
-class Parts {
- public:
-  explicit Parts(const MovingSurface& surface)
-      : sites_(surface.sites),
-        motion_(surface.motion),
-        unit_(1 / sites_.frame.scale),
-        origin_(sites_.frame.origin - motion_.middle()) {}
-
-  [[nodiscard]] const hierarchy::AabbTree& tree() const { return sites_.tree; }
-
-  [[nodiscard]] Part node(std::uint32_t index) const {
-    const hierarchy::FloatBox& box = tree().box(index);
-    Part part;
-    for (int k = 0; k < 3; ++k) {
-      part.point[0][k] = origin_[k] + unit_ * (0.5 * (double{box.lo[k]} + box.hi[k]));
-      part.half[k] = unit_ * (0.5 * (double{box.hi[k]} - box.lo[k]));
-    }
-    part.radius[0] = from_axis(part.point[0]) + motion_.scale() * norm(part.half);
-    return part;
-  }
-  [[nodiscard]] Part face(std::uint32_t index) const {
-    Part part{.points = 3};
-    for (int i = 0; i < 3; ++i) {
-      part.point[i] = sites_.mesh.positions[sites_.mesh.triangles[index][i]] - motion_.middle();
-      part.radius[i] = from_axis(part.point[i]);
-    }
-    return part;
-  }
-  // In space.
-  [[nodiscard]] double size(std::uint32_t node) const {
-    const hierarchy::FloatBox& box = tree().box(node);
-    return motion_.scale() * unit_ *
-           ((box.hi[0] - box.lo[0]) + (box.hi[1] - box.lo[1]) + (box.hi[2] - box.lo[2]));
-  }
-
- private:
-  [[nodiscard]] double from_axis(const Vec3& p) const {
-    return motion_.scale() * norm(cross(p, motion_.mesh_axis()));
-  }
-
-  const sites::SitesData& sites_;
-  const DividedMotion& motion_;
-  const double unit_;
-  const Vec3 origin_;
-};
-
 // `vector` without its part along `along`, of length 1. Along such a direction, bodies do not approach with
 // their velocity: where they pass beside each other, it separates them for all time.
 Vec3 beside(const Vec3& vector, const Vec3& along) {
@@ -75,7 +28,7 @@ class Search {
         in_contact_(in_contact) {}
 
   FreeMotion run() {
-    if (parts_[0].tree().nodes.empty() || parts_[1].tree().nodes.empty()) return {};
+    if (parts_[0].empty() || parts_[1].empty()) return {};
     now_.push_back({});
     while (!now_.empty() || !later_.empty()) {
       if (now_.empty()) {
@@ -86,7 +39,7 @@ class Search {
       }
       const Pair pair = now_.back();
       now_.pop_back();
-      if (!pair.faces)
+      if (!pair.faces())
         advance_nodes(pair);
       else if (const FreeMotion free = advance_faces(pair); free.time < 1 || !free.decided)
         return free;
@@ -97,17 +50,20 @@ class Search {
  private:
   // Faces that graze each other along curved paths take some 1/√tolerance steps.
   static constexpr std::uint32_t kMostSteps = 1'000'000;
-  // Nodes whose next step is shorter, in units of the motion, are divided.
+  // Nodes are divided after a shorter step, in units of the motion.
   static constexpr double kLeastStep = 1.0 / 16;
 
-  // Two nodes, or two faces, that are safe until a time.
+  // Two parts that are safe until a time.
   struct Pair {
     double time = 0;
-    std::array<std::uint32_t, 2> index{};
-    bool faces = false;
+    std::array<Place, 2> place{};
     std::uint32_t steps = 0;
-    Vec3 direction{};  // along which this was found, for themselves or for the nodes that contain them
+    bool divide = false;  // rather than advance them again
+    Vec3 direction{};     // along which this was found, for themselves or for the nodes that contain them
+
+    [[nodiscard]] bool faces() const { return place[0].face && place[1].face; }
   };
+  using Two = std::array<const Part*, 2>;
 
   // The longest time along some directions.
   struct Longest {
@@ -115,38 +71,42 @@ class Search {
     Vec3 direction;
     [[nodiscard]] bool done() const { return time >= 1; }
   };
-  void offer(Longest& longest, const std::array<Part, 2>& parts, const Vec3& direction) const {
+  void offer(Longest& longest, const Two& parts, const Vec3& direction) const {
     if (longest.done()) return;
-    if (const double time = safe_.until(parts[0], parts[1], direction); time > longest.time)
+    if (const double time = safe_.until(*parts[0], *parts[1], direction); time > longest.time)
       longest = {time, direction};
   }
 
+  Two parts_of(const Pair& pair) { return {&parts_[0].at(pair.place[0]), &parts_[1].at(pair.place[1])}; }
+
   void advance_nodes(Pair pair) {
-    const std::array parts{parts_[0].node(pair.index[0]), parts_[1].node(pair.index[1])};
+    if (pair.divide) return divide(pair);
+    const Two parts = parts_of(pair);
     Longest longest{safe_.now(), pair.direction};
     offer(longest, parts, pair.direction);
-    const Vec3 from = safe_.place(0, parts[0].point[0]), to = safe_.place(1, parts[1].point[0]);
+    const Vec3 from = safe_.place(0, parts[0]->point[0]), to = safe_.place(1, parts[1]->point[0]);
     offer(longest, parts, beside(to - from, safe_.velocity(from, to)));
-    offer(longest, parts, normalized(to - from));
     for (int body = 0; body < 2; ++body)
-      for (int k = 0; k < 3; ++k) offer(longest, parts, facing(safe_.axis_of(body, k), to - from));
+      for (const Vec3& axis : parts[body]->axis)
+        if (!longest.done()) offer(longest, parts, facing(safe_.turned(body, axis), to - from));
+    offer(longest, parts, normalized(to - from));
     if (longest.done()) return;
-    const bool first = pair.steps++ == 0;
     pair.direction = longest.direction;
-    if (longest.time - safe_.now() > (first ? 0 : kLeastStep))
+    pair.divide = longest.time - safe_.now() < kLeastStep;
+    if (longest.time > safe_.now())
       put_off(pair, longest.time);
     else
       divide(pair);
   }
 
   FreeMotion advance_faces(Pair pair) {
-    const std::array parts{parts_[0].face(pair.index[0]), parts_[1].face(pair.index[1])};
+    const Two parts = parts_of(pair);
     Longest longest{safe_.now(), pair.direction};
     offer(longest, parts, pair.direction);
     if (longest.done()) return {};
     std::array<Corners, 2> at;
     for (int body = 0; body < 2; ++body)
-      for (int i = 0; i < 3; ++i) at[body][i] = safe_.place(body, parts[body].point[i]);
+      for (int i = 0; i < 3; ++i) at[body][i] = safe_.place(body, parts[body]->point[i]);
     const auto [squared, point1, point2] = closest_points(at[0], at[1]);
     const double distance = std::sqrt(squared);
     if (distance <= tolerance_ && in_contact_(safe_.now())) return {.time = safe_.now()};
@@ -167,7 +127,7 @@ class Search {
   // Rounding turns the vector between points that are very close, by its own size over their distance, and
   // lets large faces overlap along it. The directions that their features have in exact arithmetic are
   // perpendicular to an edge, or to one of each face.
-  void offer_features(Longest& longest, const std::array<Part, 2>& parts, const std::array<Corners, 2>& at,
+  void offer_features(Longest& longest, const Two& parts, const std::array<Corners, 2>& at,
                       const Vec3& between) const {
     std::array<Corners, 2> edges;
     for (int body = 0; body < 2; ++body)
@@ -193,25 +153,16 @@ class Search {
     std::ranges::push_heap(later_, std::greater{}, &Pair::time);
   }
 
-  // Into the pairs of the children of the larger node, or of the faces of two leaves.
+  // Into the pairs with the children of the larger node, or with the faces of a leaf.
   void divide(const Pair& pair) {
-    const auto [a, b] = pair.index;
-    const hierarchy::AabbTree &tree1 = parts_[0].tree(), &tree2 = parts_[1].tree();
-    Pair part{.time = pair.time, .direction = pair.direction};
-    const auto add = [&](std::uint32_t index1, std::uint32_t index2) {
-      part.index = {index1, index2};
+    const bool first = parts_[0].size(pair.place[0]) >= parts_[1].size(pair.place[1]) ? !pair.place[0].face
+                                                                                      : pair.place[1].face;
+    const int body = first ? 0 : 1;
+    Pair part{.time = pair.time, .place = pair.place, .direction = pair.direction};
+    parts_[body].for_each_child(pair.place[body], [&](const Place& child) {
+      part.place[body] = child;
       now_.push_back(part);
-    };
-    const bool leaf1 = tree1.nodes[a].leaf(), leaf2 = tree2.nodes[b].leaf();
-    if (leaf1 && leaf2) {
-      part.faces = true;
-      for (const std::uint32_t face1 : tree1.items_of(a))
-        for (const std::uint32_t face2 : tree2.items_of(b)) add(face1, face2);
-    } else if (leaf2 || (!leaf1 && parts_[0].size(a) >= parts_[1].size(b))) {
-      for (const std::uint32_t child : {a + 1, tree1.nodes[a].right}) add(child, b);
-    } else {
-      for (const std::uint32_t child : {b + 1, tree2.nodes[b].right}) add(a, child);
-    }
+    });
   }
 
   std::array<Parts, 2> parts_;

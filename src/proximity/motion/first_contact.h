@@ -3,16 +3,9 @@
 
 #include <functional>
 
-#include "proximity/motion/divided_motion.h"
-#include "sites/sites_data.h"
+#include "proximity/motion/parts.h"
 
 namespace sdm::motion {
-
-/// A surface and its motion.
-struct MovingSurface {
-  const sites::SitesData& sites;
-  const DividedMotion& motion;
-};
 
 /// Until when the motions are free.
 struct FreeMotion {

@@ -2,20 +2,11 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 
 #include "proximity/motion/divided_motion.h"
+#include "proximity/motion/parts.h"
 
 namespace sdm::motion {
-
-/// The convex hull of one box, or of three points: a node of a tree, or a face. In the frame of the mesh,
-/// relative to the middle of its box.
-struct Part {
-  std::array<Vec3, 3> point{};     ///< the middle of the box, or the corners of the face
-  std::array<double, 3> radius{};  ///< how far the box, or each corner, is from the axis at most, in space
-  std::size_t points = 1;
-  Vec3 half{};  ///< of the sides of the box; 0 for a face
-};
 
 /// The motions of O1 and O2 from some time on.
 class SafeTime {
@@ -32,8 +23,8 @@ class SafeTime {
 
   /// A point of a body at this time, relative to the centre of O1. `p` as a Part has it.
   [[nodiscard]] Vec3 place(int body, const Vec3& p) const;
-  /// A direction in the frame of the mesh, in space; not normalised.
-  [[nodiscard]] Vec3 axis_of(int body, int k) const;
+  /// A direction of the frame of a mesh in space; its length is scaled.
+  [[nodiscard]] Vec3 turned(int body, const Vec3& direction) const;
   /// The velocity of point2, of O2, relative to point1, of O1; as place() returns them.
   [[nodiscard]] Vec3 velocity(const Vec3& point1, const Vec3& point2) const;
 
