@@ -54,7 +54,7 @@ nb::object dict_of(const std::optional<TextDialect>& text) {
   result["decimal"] = sdm::name_of(text->decimal);
   result["columns"] = text->columns;
   result["header_line"] = text->header_line > 0 ? nb::cast(text->header_line) : nb::none();
-  return std::move(result);
+  return result;
 }
 
 nb::object read_points(nb::handle file, const std::optional<std::vector<std::string>>& columns,

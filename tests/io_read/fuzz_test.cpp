@@ -78,7 +78,8 @@ bool try_read(const Seed& seed) {
 class Mutator {
  public:
   explicit Mutator(const Seed& seed) : words_(words_of(seed.format())) {
-    words_.insert(words_.end(), {"999999999", "-1", "nan", "1e300", "\n", " ", "\\\n", "{", "]", "/"});
+    words_.insert(words_.end(), {"999999999", "-1", "nan", "1e300", "\n", " ", "\\\n", "{", "]", "/", ",",
+                                 ";", "\t", "\"", "\r", "#"});
     std::seed_seq numbers(seed.name.begin(), seed.name.end());
     random_.seed(numbers);
   }

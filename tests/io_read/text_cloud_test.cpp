@@ -94,6 +94,7 @@ TEST(TextCloud, NamesDecideWhatColumnsAre) {
   EXPECT_EQ(points_of("name\tx\ty\tz\nP 1\t5\t6\t12\n\t5\t6\t13\n"), expected) << "text, and an empty cell";
   EXPECT_EQ(points_of("name,x,y,z\n\"a, \"\"b\"\"\",5,6,12\nc#d,5,6,13\n"), expected);
   EXPECT_EQ(points_of("vertex,x,y,z,distance\n0,5,6,12,\n1,5,6,13,0.25\n"), expected) << "vertices.csv";
+  EXPECT_EQ(points_of("1,x,y,z,532\n9,5,6,12,0\n9,5,6,13,0\n"), expected) << "names that are numbers";
   EXPECT_EQ(columns_of("id,Z,y,x\n1,2,3,4\n"), "_,z,y,x");
 
   const Cloud normals = read("normal_x NY normal_z z y x\n0 0 1 12 6 5\n0 1 0 13 6 5\n");

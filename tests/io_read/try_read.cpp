@@ -42,6 +42,25 @@ void read_sequence(const std::filesystem::path& file) {
     require(sequence.positions(frame).size() == sequence.mesh().positions.size(), "frames of unequal size");
 }
 
+// NaN equals NaN.
+bool same(const Vec3& a, const Vec3& b) {
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+// The dialect that a text is said to have reads the same points.
+void read_again(const std::filesystem::path& file, const TextDialect& dialect) {
+  PointReader reader(file), again(file, dialect);
+  std::vector<Vec3> points, normals, same_points, same_normals;
+  bool more = true;
+  while (more) {
+    more = reader.read(3, points, normals);
+    require(again.read(3, same_points, same_normals) == more, "another number of points");
+    require(std::ranges::equal(points, same_points, same), "other points");
+    require(std::ranges::equal(normals, same_normals, same), "other normals");
+  }
+}
+
 void read_points(const std::filesystem::path& file) {
   constexpr std::size_t kMost = 2;  // in several parts
   PointReader reader(file);
@@ -54,6 +73,7 @@ void read_points(const std::filesystem::path& file) {
   }
   require(!reader.count() || *reader.count() == count, "not as many points as the header says");
   require(count <= std::filesystem::file_size(file), "more points than bytes");
+  if (const auto dialect = reader.dialect()) read_again(file, *dialect);
 }
 
 void read_transform(const std::filesystem::path& file) {

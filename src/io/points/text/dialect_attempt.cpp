@@ -119,7 +119,9 @@ void DialectAttempt::read() {
     }
     const Cells cells = cells_of(line.text, table_.plan.separator, table_.plan.decimal);
     const auto numbers = static_cast<std::size_t>(std::ranges::count_if(cells, number));
-    if (rows_.empty() && !header_ && numbers == 0) {
+    // Names may be numbers, but not those of x, y and z.
+    if (rows_.empty() && !header_ &&
+        (numbers == 0 || header_of(line.text, table_.plan.separator, cells.size()))) {
       header_ = line;
       continue;
     }

@@ -35,7 +35,7 @@ std::string_view take_line(std::string_view& text, char line_end) {
 std::string quoted(std::string_view text) {
   std::string result = "'";
   for (const char c : text.substr(0, 32)) result += c < ' ' || c > '~' ? '?' : c;
-  return result + (text.size() > 32 ? "…'" : "'");
+  return result + (text.size() > 32 ? "...'" : "'");
 }
 
 TextLines::TextLines(std::ifstream& stream, char line_end, std::uint64_t first_number)
