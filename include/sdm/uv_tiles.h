@@ -52,7 +52,8 @@ struct WrappedUvs {
 
 /// Moves all faces into the unit square, as a texture that repeats shows them. Faces in more than one tile
 /// are cut along the borders: pieces of texture area below 1e-14 are omitted. Throws sdm::Error as uv_tiles()
-/// does, and if there would be more than 2^24 further pieces. Cost: linear, and in the pieces.
+/// does, and if the tiles in the boxes of these faces are more than 2^16 and 16 for each face of the mesh;
+/// the message names the face with most of them. Cost: linear, and in the pieces.
 [[nodiscard]] SDM_API WrappedUvs wrap_uvs(const Mesh& mesh, const UvTiles& tiles);
 
 }  // namespace sdm

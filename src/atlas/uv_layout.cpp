@@ -40,6 +40,26 @@ void place_corners(const Mesh& mesh, const FaceGeometry& faces, double columns, 
   }
 }
 
+// Every face visits its texels, whether others own them or not. Beyond these limits together, which are
+// minutes of work, the map would have a value for few of the points that a texel stands for.
+constexpr double kMostTexels = 1 << 30, kMostLayers = 64;
+
+void check_layers(const FaceGeometry& faces, double columns, double rows, const Layout& layout) {
+  double texels = 0, largest = 0;
+  std::size_t face = 0;
+  for (std::size_t f = 0; f < layout.corners.size(); ++f) {
+    if (faces.area[f] == 0) continue;
+    const auto& [a, b, c] = layout.corners[f];
+    const double of_face = 0.5 * std::abs(cross(b - a, c - a));
+    texels += of_face;
+    if (of_face > largest) largest = of_face, face = f;
+  }
+  const double layers = texels / (columns * rows);
+  if (texels > kMostTexels && layers > kMostLayers)
+    fail("its faces cover the texture " + std::to_string(static_cast<std::uint64_t>(layers)) +
+         " times over, face " + std::to_string(face) + " most of it");
+}
+
 void check_overlaps(const FaceGeometry& faces, std::uint32_t longest, const Layout& layout) {
   const double steps_per_texel = static_cast<double>(kGridSteps) / longest;
   std::vector<GridTriangle> triangles;
@@ -103,6 +123,7 @@ Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
   layout.maps.resize(mesh.triangles.size());
   const std::uint32_t columns = options.resolution, rows = options.rows == 0 ? columns : options.rows;
   place_corners(mesh, faces, columns, rows, layout);
+  check_layers(faces, columns, rows, layout);
   if (options.strict_uv) check_overlaps(faces, std::max(columns, rows), layout);
 
   double surface_area = 0, atlas_area = 0, largest = 0;

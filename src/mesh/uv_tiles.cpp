@@ -20,7 +20,9 @@ namespace {
 constexpr double kOutside = 1e-6;     // as for AtlasKind::uv
 constexpr double kLeastArea = 1e-14;  // of a piece, of the texture
 constexpr double kMostTiles = 1e6;    // from the origin
-constexpr double kMostPieces = 1 << 24;
+// Of all faces that are cut together. One face may take all of the first ones: a texture that repeats a
+// hundred times on two triangles.
+constexpr double kMostPieces = 1 << 16, kMostPiecesPerFace = 16;
 
 // The range of tiles that a face meets by more than rounding, in one direction.
 std::array<std::int32_t, 2> tile_range(const std::array<Vec2, 3>& uv, int axis) {
@@ -136,6 +138,25 @@ void check_coordinates(const Mesh& mesh) {
                     Remedy::atlas_kind);
 }
 
+// Tiles are counted in the box of each face, since all of them are visited.
+void check_pieces(const Mesh& mesh, const UvTiles& tiles) {
+  const double most = kMostPieces + kMostPiecesPerFace * static_cast<double>(mesh.triangles.size());
+  double pieces = 0, largest = 0;
+  std::uint32_t face = 0;
+  for (const std::uint32_t f : tiles.crossing) {
+    const auto u = tile_range(mesh.corner_uvs.at(f), 0), v = tile_range(mesh.corner_uvs.at(f), 1);
+    const double of_face = (u[1] - u[0] + 1.0) * (v[1] - v[0] + 1.0);
+    pieces += of_face;
+    if (of_face > largest) largest = of_face, face = f;
+  }
+  const auto text = [](double count) { return std::to_string(static_cast<std::uint64_t>(count)); };
+  if (pieces > most)
+    throw Error("the texture repeats too often on the mesh: it would be cut into " + text(pieces) +
+                    " pieces, " + text(largest) + " of them of face " + std::to_string(face) +
+                    ", where at most " + text(most) + " are possible; use an atlas of charts",
+                Remedy::atlas_kind);
+}
+
 }  // namespace
 
 bool UvTiles::is_udim() const {
@@ -179,16 +200,7 @@ Mesh uv_tile_mesh(const Mesh& mesh, const UvTile& tile) try {
 
 WrappedUvs wrap_uvs(const Mesh& mesh, const UvTiles& tiles) try {
   check_coordinates(mesh);
-  double pieces = 0;
-  for (const std::uint32_t f : tiles.crossing) {
-    const auto u = tile_range(mesh.corner_uvs.at(f), 0), v = tile_range(mesh.corner_uvs.at(f), 1);
-    pieces += (u[1] - u[0] + 1.0) * (v[1] - v[0] + 1.0);
-  }
-  if (pieces > kMostPieces)
-    throw Error(
-        "the texture repeats too often on the mesh: more than 2^24 pieces of faces would be needed; use an "
-        "atlas of charts",
-        Remedy::atlas_kind);
+  check_pieces(mesh, tiles);
   WrappedUvs result{.mesh = mesh, .source_face = {}};
   result.source_face.resize(mesh.triangles.size());
   for (std::uint32_t f = 0; f < result.source_face.size(); ++f) result.source_face[f] = f;

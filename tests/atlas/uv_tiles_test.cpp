@@ -14,6 +14,7 @@
 namespace sdm {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -131,11 +132,39 @@ TEST(UvTiles, RoundingCrossesNoBorder) {
   EXPECT_TRUE(uv_tiles(mesh).is_unit_square());
 }
 
+TEST(UvTiles, ATextureMayRepeatOftenOnFewFaces) {
+  Mesh two{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}};
+  two.corner_uvs = {{{{0, 0}, {100, 0}, {100, 100}}}, {{{0, 0}, {100, 100}, {0, 100}}}};
+  const Mesh wrapped = wrap_uvs(two, uv_tiles(two)).mesh;
+  EXPECT_NEAR(static_cast<double>(wrapped.triangles.size()), 20000, 100);  // and slivers by rounding
+  double texture = 0;
+  for (const auto& [a, b, c] : wrapped.corner_uvs) texture += 0.5 * std::abs(cross(b - a, c - a));
+  EXPECT_NEAR(texture, 10000, 1e-8);
+}
+
+// Faces that all have the whole texture: their texels are counted before any is visited.
+TEST(UvTiles, FacesThatCoverTheTextureTooOftenAreRefused) {
+  Mesh mesh = test::height_field(60);
+  mesh.corner_uvs.assign(mesh.triangles.size(), {{{0, 0}, {1, 0}, {0, 1}}});
+  const AtlasOptions options{.kind = AtlasKind::uv, .resolution = 16};
+  EXPECT_EQ(Surface(mesh, options).mesh().triangles.size(), mesh.triangles.size());
+  EXPECT_THAT(
+      [&] { (void)Surface(mesh, {.kind = AtlasKind::uv, .resolution = 1024}); },
+      ThrowsMessage<Error>(AllOf(HasSubstr("cover the texture"), HasSubstr("use an atlas of charts"))));
+}
+
 TEST(UvTiles, ImpossibleCoordinatesAreErrors) {
   Mesh mesh = test::height_field(4);
   const Mesh far_away = with_uvs(mesh, 3e5, {0.5, 0.5});
   EXPECT_THAT([&] { (void)wrap_uvs(far_away, uv_tiles(far_away)); },
               ThrowsMessage<Error>(HasSubstr("repeats too often")));
+  // Two triangles in a strip of tiles, and in a square of them.
+  Mesh two{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}};
+  for (const double height : {1.0, 999999.0}) {
+    two.corner_uvs = {{{{0, 0}, {999999, 0}, {999999, height}}}, {{{0, 0}, {999999, height}, {0, height}}}};
+    EXPECT_THAT([&] { (void)wrap_uvs(two, uv_tiles(two)); },
+                ThrowsMessage<Error>(HasSubstr(" of them of face 0, where at most 65568 are possible")));
+  }
   mesh.corner_uvs[2][0][0] = std::numeric_limits<double>::infinity();
   EXPECT_THAT([&] { (void)uv_tiles(mesh); }, ThrowsMessage<Error>(HasSubstr("face 2 are beyond")));
   mesh.corner_uvs.clear();
