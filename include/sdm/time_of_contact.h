@@ -55,7 +55,8 @@ struct TimeOfContact {
 /// have contact or not. Where it is less than the rounding of coordinates, results are `bounded`.
 ///
 /// Throws sdm::Error for any other tolerance, and as Motion::at does. Cost: two searches for the closest
-/// faces, and that of the pairs of nodes that come near each other before the contact. Single-threaded.
+/// faces, that of the pairs of nodes that come near each other before the contact, and of a box around the
+/// faces of each of these nodes. Single-threaded.
 [[nodiscard]] SDM_API TimeOfContact time_of_contact(const Shape& o1, const Motion& motion1, const Shape& o2,
                                                     const Motion& motion2, double tolerance);
 

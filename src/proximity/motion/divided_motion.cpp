@@ -51,14 +51,15 @@ void DividedMotion::find_rotation(const mesh::Similarity& to) {
 }
 
 // Of translations: at most 16 roundings by half a unit, of poses, of the difference of two centres, of its
-// motion, and of products with a direction. Of rotations: sine, cosine, the matrix and its products, its
-// correction by set_pose, and speeds up to angle² times the radius.
+// motion, and of products with a direction. Of the points of a body: products with the matrix and a
+// direction; if it turns, also sine, cosine, the matrix, its correction by set_pose, and speeds up to angle²
+// times the radius.
 void DividedMotion::find_rounding(double radius) {
   constexpr double kUnit = std::numeric_limits<double>::epsilon();
   const double size =
       from_.scale * (std::abs(middle_[0]) + std::abs(middle_[1]) + std::abs(middle_[2]) + radius);
   for (int k = 0; k < 3; ++k)
-    rounding_[k] = kUnit * (8 * (std::abs(start_[k]) + std::abs(shift_[k])) + 64 * size);
+    rounding_[k] = kUnit * (8 * (std::abs(start_[k]) + std::abs(shift_[k])) + (turns() ? 64 : 16) * size);
 }
 
 std::array<Vec3, 3> DividedMotion::linear_at(double time) const {

@@ -63,7 +63,7 @@ class Search {
 
     [[nodiscard]] bool faces() const { return place[0].face && place[1].face; }
   };
-  using Two = std::array<const Part*, 2>;
+  using TwoParts = std::array<const Part*, 2>;
 
   // The longest time along some directions.
   struct Longest {
@@ -71,17 +71,17 @@ class Search {
     Vec3 direction;
     [[nodiscard]] bool done() const { return time >= 1; }
   };
-  void offer(Longest& longest, const Two& parts, const Vec3& direction) const {
+  void offer(Longest& longest, const TwoParts& parts, const Vec3& direction) const {
     if (longest.done()) return;
     if (const double time = safe_.until(*parts[0], *parts[1], direction); time > longest.time)
       longest = {time, direction};
   }
 
-  Two parts_of(const Pair& pair) { return {&parts_[0].at(pair.place[0]), &parts_[1].at(pair.place[1])}; }
+  TwoParts parts_of(const Pair& pair) { return {&parts_[0].at(pair.place[0]), &parts_[1].at(pair.place[1])}; }
 
   void advance_nodes(Pair pair) {
     if (pair.divide) return divide(pair);
-    const Two parts = parts_of(pair);
+    const TwoParts parts = parts_of(pair);
     Longest longest{safe_.now(), pair.direction};
     offer(longest, parts, pair.direction);
     const Vec3 from = safe_.place(0, parts[0]->point[0]), to = safe_.place(1, parts[1]->point[0]);
@@ -100,7 +100,7 @@ class Search {
   }
 
   FreeMotion advance_faces(Pair pair) {
-    const Two parts = parts_of(pair);
+    const TwoParts parts = parts_of(pair);
     Longest longest{safe_.now(), pair.direction};
     offer(longest, parts, pair.direction);
     if (longest.done()) return {};
@@ -127,7 +127,7 @@ class Search {
   // Rounding turns the vector between points that are very close, by its own size over their distance, and
   // lets large faces overlap along it. The directions that their features have in exact arithmetic are
   // perpendicular to an edge, or to one of each face.
-  void offer_features(Longest& longest, const Two& parts, const std::array<Corners, 2>& at,
+  void offer_features(Longest& longest, const TwoParts& parts, const std::array<Corners, 2>& at,
                       const Vec3& between) const {
     std::array<Corners, 2> edges;
     for (int body = 0; body < 2; ++body)

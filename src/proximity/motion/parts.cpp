@@ -95,7 +95,10 @@ Part Parts::fitted(std::span<const std::uint32_t> faces, const Part& box) const 
     }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares - sum * sum.transpose() / count);
   Part part;
-  for (int k = 0; k < 3; ++k) part.axis[k] = normalized(registration::vec3(solver.eigenvectors().col(k)));
+  // Perpendicular to each other to the last digit, as the box requires.
+  part.axis[0] = normalized(registration::vec3(solver.eigenvectors().col(0)));
+  part.axis[2] = normalized(cross(part.axis[0], registration::vec3(solver.eigenvectors().col(1))));
+  part.axis[1] = cross(part.axis[2], part.axis[0]);
   Box extent;
   double radius = 0, reach = 0;  // squared
   for (const std::uint32_t face : faces)
