@@ -423,7 +423,11 @@ TEST(ContactDepth, OfRandomPosesIsWithinTheBound) {
   for (int i = first; i < first + count; ++i) {
     SCOPED_TRACE("pose " + std::to_string(i));
     const Pose pose = Poses(static_cast<unsigned>(i)).pose();
-    ProximityQuery query(pose.bodies[0], pose.bodies[1], {.contact_margin = pose.margin});
+    Mesh before = pose.bodies[1];
+    if (i % 4 == 3)
+      for (Vec3& p : before.positions) p = {1.3 * p[0] + 0.2 * p[1], 0.7 * p[1], p[2] - 0.4 * p[0]};
+    ProximityQuery query(pose.bodies[0], before, {.contact_margin = pose.margin});
+    if (i % 4 == 3) query.refit({}, pose.bodies[1].positions);
     const double upper = query.penetration_depth()->upper;
     Box both = bounds(pose.bodies[0]);
     extend(both, bounds(pose.bodies[1]));
