@@ -184,10 +184,7 @@ AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& pl
   sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, command.text);
   if (sample.points.empty()) throw sdm::Error(command.cloud + ": there are no points with coordinates");
   sdm::transform(sample.points, placement);
-  sdm::Transform turn = placement;
-  for (auto& row : turn.rows) row[3] = 0;
-  turn.rows[3] = {0, 0, 0, 1};
-  for (sdm::Vec3& n : sample.normals) n = turn(n);
+  for (sdm::Vec3& n : sample.normals) n = placement.normal(n);
   return align_points(sample.points, sample.normals, sites, command.align, progress);
 }
 

@@ -107,7 +107,7 @@ struct PointSample {
 /// Options of measure_points().
 struct PointDistancesOptions {
   MapOptions map{};
-  Transform placement{};        ///< of the points, before they are measured and written
+  Transform placement{};        ///< of the points, before they are measured and written; not singular
   PictureOptions picture{};     ///< colours; `units`, `accuracy` and `largest` have no meaning here
   std::size_t chunk = 1 << 18;  ///< points in memory at a time, greater than 0
   TextDialect text{};           ///< of a cloud in text, as of PointReader

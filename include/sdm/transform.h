@@ -28,8 +28,14 @@ struct SDM_API Transform {
 
   /// Maps a point.
   [[nodiscard]] Vec3 operator()(const Vec3& p) const;
+  /// Maps a normal of a surface to that of the mapped surface, of unit length: by the inverse transpose of
+  /// the linear part, so that it stays perpendicular to the surface, and on its outside under a reflection
+  /// too. 0 if the map is singular, or `n` is 0 or not finite.
+  [[nodiscard]] Vec3 normal(const Vec3& n) const;
   /// The determinant of the linear part; negative for a reflection.
   [[nodiscard]] double determinant() const;
+  /// The sign of the determinant, without rounding: −1 for a reflection, 0 for a singular map.
+  [[nodiscard]] int orientation() const;
   /// (a * b)(p) = a(b(p)) up to rounding.
   friend SDM_API Transform operator*(const Transform& a, const Transform& b);
 };

@@ -2,10 +2,12 @@
 #include <sdm/transform.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "core/geometry/predicates.h"
 #include "core/geometry/vec.h"
 
 namespace sdm {
@@ -22,6 +24,17 @@ Transform rotation_about(int axis, double degrees) {
   map.rows[i][j] = -s;
   map.rows[j][i] = s;
   return map;
+}
+
+// The exponent of the power of two that scales the largest component to between 1/2 and 1; 0 for a zero.
+int largest_exponent(const Vec3& v) {
+  int exponent = 0;
+  (void)std::frexp(std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}), &exponent);
+  return exponent;
+}
+
+Vec3 scaled(const Vec3& v, int exponent) {
+  return {std::ldexp(v[0], exponent), std::ldexp(v[1], exponent), std::ldexp(v[2], exponent)};
 }
 
 }  // namespace
@@ -62,9 +75,33 @@ Vec3 Transform::operator()(const Vec3& p) const {
   return result;
 }
 
+Vec3 Transform::normal(const Vec3& n) const {
+  // M⁻ᵀ n is parallel to sign(det M) C n, C the cofactors of M. With M = D M', D the powers of two that scale
+  // the rows of M' to about 1, M⁻ᵀ = D⁻¹ M'⁻ᵀ, so that no product overflows or vanishes.
+  const int side = orientation();
+  if (side == 0 || !finite(n)) return {};
+  std::array<Vec3, 3> row;
+  std::array<int, 3> exponent;
+  for (int k = 0; k < 3; ++k) {
+    row[k] = {rows[k][0], rows[k][1], rows[k][2]};
+    exponent[k] = largest_exponent(row[k]);
+    row[k] = scaled(row[k], -exponent[k]);
+  }
+  const Vec3 m = scaled(n, -largest_exponent(n));
+  Vec3 result{dot(cross(row[1], row[2]), m), dot(cross(row[2], row[0]), m), dot(cross(row[0], row[1]), m)};
+  const int least = std::ranges::min(exponent);
+  for (int k = 0; k < 3; ++k) result[k] = side * std::ldexp(result[k], least - exponent[k]);
+  return normalized(scaled(result, -largest_exponent(result)));
+}
+
 double Transform::determinant() const {
   const auto row = [&](int k) { return Vec3{rows[k][0], rows[k][1], rows[k][2]}; };
   return dot(row(0), cross(row(1), row(2)));
+}
+
+int Transform::orientation() const {
+  const auto row = [&](int k) { return Vec3{rows[k][0], rows[k][1], rows[k][2]}; };
+  return core::orientation({}, row(0), row(1), row(2));
 }
 
 Transform operator*(const Transform& a, const Transform& b) {
@@ -93,7 +130,7 @@ void transform(std::span<Vec3> points, const Transform& map) {
 
 void transform(Mesh& mesh, const Transform& map) {
   transform(std::span(mesh.positions), map);
-  if (!(map.determinant() < 0)) return;
+  if (map.orientation() >= 0) return;
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   for (auto& uv : mesh.corner_uvs) std::swap(uv[1], uv[2]);
 }

@@ -304,6 +304,59 @@ TEST_F(PointsCommand, NormalsAreKeptAndTurned) {
   EXPECT_EQ(read_rows(out + "/points.ply", false).size(), 2u);
 }
 
+// By the inverse transpose: perpendicular to the surface, and on its outside under a reflection.
+TEST_F(PointsCommand, NormalsFollowMirroredAndUnevenMatrices) {
+  const std::string cloud = with("n.xyz", "3 0 0 1 0 0\n0 3 0 0.6 0.8 0\n");
+  const auto normals = [&](const std::string& matrix) {
+    const Outcome done = run(cloud, {"--transform-o1", "matrix:" + with("m.txt", matrix)});
+    EXPECT_EQ(done.code, 0) << done.err;
+    const std::vector<Row> rows = read_rows(out + "/points.ply", true);
+    return std::array{rows.at(0).normal, rows.at(1).normal};
+  };
+  const auto expect = [](const std::array<Vec3, 2>& found, const Vec3& a, const Vec3& b) {
+    EXPECT_LT(norm(found[0] - normalized(a)), 1e-6);
+    EXPECT_LT(norm(found[1] - normalized(b)), 1e-6);
+  };
+  expect(normals("-1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1"), {-1, 0, 0}, {-0.6, 0.8, 0});
+  expect(normals("2 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1"), {1, 0, 0}, {0.3, 0.8, 0});
+  expect(normals("1 1 0 0  0 1 0 0  0 0 1 0  0 0 0 1"), {1, -1, 0}, {0.6, 0.2, 0});
+  expect(normals("-2 0 0 0  0 1 0 0  0 0 3 0  0 0 0 1"), {-1, 0, 0}, {-0.3, 0.8, 0});
+  EXPECT_THAT(
+      run(cloud, {"--transform-o1", "matrix:" + with("m.txt", "1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1")}).err,
+      HasSubstr("singular"));
+  Transform flat;
+  flat.rows[1][1] = 0;
+  EXPECT_THAT(
+      error_of([&] { return measure_points(cloud, Sites(mesh), folder / "flat.ply", {.placement = flat}); }),
+      HasSubstr("singular"));
+}
+
+// Regression: the normals of a mirrored cloud were turned inside out, so that its samples were those of the
+// other side.
+TEST_F(PointsCommand, AlignsAMirroredCloudByItsNormals) {
+  std::mt19937 random(7);
+  mesh = joined(cube(1), ring(16, 0.5, {0.9, 0.4, 0.2}));
+  o2 = write_obj(folder / "joined.obj", mesh);
+  const std::string mirror = "-1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1";
+  // Points of a thin shell's outer side, mirrored, with normals that the matrix has to mirror back.
+  std::string text;
+  for (const Triangle& t : mesh.triangles) {
+    const auto& p = mesh.positions;
+    const Vec3 n = normalized(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
+    for (int i = 0; i < 20; ++i) {
+      std::uniform_real_distribution<double> unit(0, 1);
+      double u = unit(random), v = unit(random);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Vec3 q = p[t[0]] + u * (p[t[1]] - p[t[0]]) + v * (p[t[2]] - p[t[0]]);
+      text += fmt::format("{} {} {} {} {} {}\n", -q[0] + 0.02, q[1] - 0.01, q[2], -n[0], n[1], n[2]);
+    }
+  }
+  const Outcome found = run(with("mirrored.xyz", text),
+                            {"--transform-o1", "matrix:" + with("m.txt", mirror), "--align", "--json"});
+  ASSERT_EQ(found.code, 0) << found.err;
+  EXPECT_LT(Json::parse(found.out)["distance"]["p95_abs"], 1e-9);
+}
+
 // Places without a measurement keep their rows.
 TEST_F(PointsCommand, InvalidAndFarPoints) {
   const std::string cloud = with("gaps.xyz", "0 0 3\nnan nan nan\n0 0 1.5\n0 inf 0\n50 0 0\n");

@@ -2,6 +2,9 @@
 #include <sdm/error.h>
 #include <sdm/transform.h>
 
+#include <cmath>
+#include <random>
+
 #include "core/geometry/vec.h"
 #include "support/shapes.h"
 
@@ -68,6 +71,76 @@ TEST(Transform, ReflectionsKeepTheOrientation) {
   const double before = volume(mesh);
   transform(mesh, Transform::scaling(-2));
   EXPECT_NEAR(volume(mesh), 8 * before, 1e-12 * before);
+}
+
+void expect_normal(const Transform& map, const Vec3& n, const Vec3& expected) {
+  expect_near(map.normal(n), normalized(expected));
+}
+
+TEST(Transform, NormalsStayPerpendicularAndOutside) {
+  Transform mirror, stretched, shear;
+  mirror.rows[0][0] = -1;
+  mirror.rows[0][3] = 7;  // no part of the linear map
+  stretched.rows[0][0] = 2;
+  shear.rows[0][1] = 1;  // x + y
+  expect_normal({}, {0, 0, 4}, {0, 0, 1});
+  expect_normal(mirror, {1, 1, 0}, {-1, 1, 0});
+  expect_normal(mirror, {0, 0, 1}, {0, 0, 1});
+  expect_normal(Transform::scaling(-3), {1, 2, 3}, {-1, -2, -3});
+  expect_normal(stretched, {1, 1, 0}, {0.5, 1, 0});
+  expect_normal(shear, {1, 0, 0}, {1, -1, 0});
+  expect_normal(shear, {0, 1, 0}, {0, 1, 0});
+  expect_normal(Transform::rotation({0, 90, 0}), {0, 0, 1}, {1, 0, 0});
+}
+
+TEST(Transform, NormalsOfSingularMapsAreZero) {
+  Transform flat, twice;
+  flat.rows[2][2] = 0;
+  twice.rows = {{{1, 2, 3, 0}, {2, 4, 6, 0}, {0.1, 0.7, 0.3, 0}, {0, 0, 0, 1}}};
+  for (const Transform& map : {flat, twice, Transform::scaling(0)}) {
+    EXPECT_EQ(map.orientation(), 0);
+    EXPECT_EQ(map.normal({0.3, 0.4, 0.5}), Vec3{});
+  }
+  EXPECT_EQ(Transform().normal({}), Vec3{});
+  EXPECT_EQ(Transform().normal({0, NAN, 1}), Vec3{});
+}
+
+// Regression: the determinant of a tiny reflection is 0 in double precision.
+TEST(Transform, ReflectionsOfAnyScaleAreSeen) {
+  for (const double scale : {1e-150, 1e-3, 1e120}) {
+    EXPECT_EQ(Transform::scaling(-scale).orientation(), -1);
+    EXPECT_EQ(Transform::scaling(scale).orientation(), 1);
+    expect_normal(Transform::scaling(-scale), {1, 2, 3}, {-1, -2, -3});
+    Mesh mesh = test::tetrahedron();
+    const Triangle before = mesh.triangles[0];
+    transform(mesh, Transform::scaling(-scale));
+    EXPECT_EQ(mesh.triangles[0], (Triangle{before[0], before[2], before[1]}));
+  }
+  Transform uneven;
+  uneven.rows[0][0] = uneven.rows[1][1] = 1e-200;
+  expect_normal(uneven, {0, 0, 1}, {0, 0, 1});
+}
+
+// Of the faces of a mesh, under any map.
+TEST(Transform, NormalsAreThoseOfTheMappedMesh) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> entry(-1, 1);
+  const Mesh mesh = test::torus(8, 6);
+  const auto face_normal = [](const Mesh& m, const Triangle& t) {
+    return normalized(cross(m.positions[t[1]] - m.positions[t[0]], m.positions[t[2]] - m.positions[t[0]]));
+  };
+  for (int i = 0; i < 50; ++i) {
+    Transform map;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) map.rows[r][c] = entry(random);
+    if (std::abs(map.determinant()) < 0.05) continue;
+    Mesh moved = mesh;
+    transform(moved, map);
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      const Vec3 expected = face_normal(moved, moved.triangles[f]);
+      EXPECT_LT(norm(map.normal(face_normal(mesh, mesh.triangles[f])) - expected), 1e-9);
+    }
+  }
 }
 
 TEST(Transform, RejectedOverflowChangesNothing) {

@@ -35,19 +35,13 @@ struct Chunk {
   std::vector<std::uint32_t> faces;
 };
 
-/// Normals are moved by the cofactors of the linear part, which keep them perpendicular to surfaces.
-Vec3 moved_normal(const Transform& map, const Vec3& n) {
-  const auto row = [&](int k) { return Vec3{map.rows[k][0], map.rows[k][1], map.rows[k][2]}; };
-  const Vec3 result{dot(cross(row(1), row(2)), n), dot(cross(row(2), row(0)), n),
-                    dot(cross(row(0), row(1)), n)};
-  return normalized(result);
-}
-
 class Measurement {
  public:
   Measurement(const std::filesystem::path& cloud, const Sites& sites, const PointDistancesOptions& options)
       : reader_(cloud, options.text), cloud_(cloud.string()), sites_(sites), options_(options) {
     if (options.chunk == 0) throw Error("the number of points in memory must be greater than 0");
+    if (options.placement.orientation() == 0)
+      throw Error("the placement of the points is singular: it would flatten them");
     result_.has_normals = reader_.has_normals();
     result_.format = reader_.format();
     result_.text = reader_.dialect();
@@ -110,7 +104,7 @@ class Measurement {
 
   void measure(Chunk& chunk) const {
     for (Vec3& p : chunk.points) p = options_.placement(p);
-    for (Vec3& n : chunk.normals) n = moved_normal(options_.placement, n);
+    for (Vec3& n : chunk.normals) n = options_.placement.normal(n);
     // Points without a measurement are replaced by a point of O2, which costs nothing.
     std::vector<Vec3> queries = chunk.points;
     const Vec3 anywhere = sites_.mesh().positions[sites_.mesh().triangles[0][0]];

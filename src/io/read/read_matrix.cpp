@@ -116,7 +116,7 @@ Transform read_matrix(const std::filesystem::path& file) {
     }
     if (result.rows[3] != std::array<double, 4>{0, 0, 0, 1})
       throw Error("the last row is not 0 0 0 1; the translation is the last column, not the last row");
-    if (result.determinant() == 0) throw Error("the matrix is singular: it would flatten the mesh");
+    if (result.orientation() == 0) throw Error("the matrix is singular: it would flatten the mesh");
     return result;
   });
 }
