@@ -67,12 +67,11 @@ std::string direction(sdm::Vec3 v) {
   return fmt::format("({} {} {})", number(v[0]), number(v[1]), number(v[2]));
 }
 
-std::string in_words(const sdm::DegreeOfFreedom& freedom) {
+std::string in_words(const sdm::DegreeOfFreedom& freedom, double size) {
   constexpr double kSlight = 0.05;
   if (length(freedom.rotation) < kSlight) return "translation along " + direction(freedom.translation);
-  const sdm::Vec3& p = freedom.axis_point;
-  return fmt::format("rotation about {} through ({} {} {})", direction(freedom.rotation), number(p[0]),
-                     number(p[1]), number(p[2]));
+  return fmt::format("rotation about {} through {}", direction(freedom.rotation),
+                     place(freedom.axis_point, size));
 }
 
 }  // namespace
@@ -165,7 +164,7 @@ std::vector<std::string> notes(const AlignOutcome& outcome) {
                                 number(100 * (1 - a.fraction_used), 3), question));
   std::string free;
   for (const sdm::DegreeOfFreedom& f : a.freedoms)
-    if (f.free) free += (free.empty() ? "" : ", ") + in_words(f);
+    if (f.free) free += (free.empty() ? "" : ", ") + in_words(f, outcome.size);
   if (!free.empty())
     notes.push_back("the surfaces do not determine the alignment; these motions are as before: " + free);
   return notes;

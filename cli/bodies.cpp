@@ -9,12 +9,12 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "bodies_report.h"
 #include "common_options.h"
 #include "format.h"
 #include "map_files.h"
+#include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "poses_file.h"
@@ -81,12 +81,13 @@ nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector
   return report;
 }
 
-std::string bodies_summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies) {
+std::string bodies_summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies, const Notes& notes) {
   std::string text;
   for (std::size_t body = 0; body < bodies.size(); ++body)
     text += fmt::format("  {}  {}\n", body, command.files[body]);
   text += "\n" + table(bodies.pairs());
   text += fmt::format("\n  contacts  {}\n", bodies.contacts().size());
+  if (!notes.empty()) text += "\n" + note_lines(notes, 12);
   if (!command.units.empty()) text += fmt::format("\n  lengths in {}\n", command.units);
   if (!command.out.empty())
     text += fmt::format("\n  results   {}/: report.json and, of each body, N/: {}body.npy\n",
@@ -148,7 +149,11 @@ void run(BodiesCommand command) {
   if (!poses.empty()) set_poses(bodies, poses, command.poses);
   const double build_ms = watch.lap();
   progress.step("queries");
+  std::vector<sdm::Transform> set;
+  for (std::size_t body = 0; body < bodies.size(); ++body) set.push_back(bodies.pose(body));
+  const Notes notes = notes_on(inputs, set);
   nlohmann::ordered_json report = report_of(command, inputs, bodies);
+  report["notes"] = notes;
   report["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", watch.lap()}};
 
   if (out)
@@ -161,10 +166,7 @@ void run(BodiesCommand command) {
   if (command.json) {
     std::cout << to_text(report);
   } else if (!command.quiet) {
-    std::cout << bodies_summary(command, bodies);
-    std::set<std::string> noted;
-    for (const Input& input : inputs)
-      if (noted.insert(input.file).second) std::cout << note_lines({&input}, 12);
+    std::cout << bodies_summary(command, bodies, notes);
   }
 }
 

@@ -2,13 +2,38 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <sdm/types.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
 /// The shortest form with at most this many significant digits.
 [[nodiscard]] inline std::string number(double value, int digits = 5) {
   return fmt::format("{:.{}g}", value, digits);
+}
+
+/// The diagonal of a box.
+[[nodiscard]] inline double size_of(const sdm::Box& box) {
+  return std::hypot(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]);
+}
+
+/// A coordinate, to 1e-5 of `size` or better, and to `digits` significant digits at least: wherever a mesh
+/// lies, its places differ.
+[[nodiscard]] inline std::string coordinate(double value, double size, int digits = 5) {
+  constexpr double kResolution = 1e-5;
+  constexpr int kMost = 17;  // identify a double
+  if (value != 0 && size > 0 && std::isfinite(value) && std::isfinite(size))
+    digits = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1 -
+                            static_cast<int>(std::floor(std::log10(kResolution * size))),
+                        digits, kMost);
+  return number(value, digits);
+}
+
+/// A point of a mesh of that size, as (x y z).
+[[nodiscard]] inline std::string place(const sdm::Vec3& p, double size) {
+  return fmt::format("({} {} {})", coordinate(p[0], size), coordinate(p[1], size), coordinate(p[2], size));
 }
 
 /// For example " mm" for the units "mm"; empty without units.

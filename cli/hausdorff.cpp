@@ -4,12 +4,14 @@
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
 
 #include "common_options.h"
 #include "format.h"
+#include "notes.h"
 #include "option_checks.h"
 #include "progress_line.h"
 #include "proximity_report.h"
@@ -34,16 +36,18 @@ struct HausdorffAnswer {
   sdm::HausdorffDistance distance;
   int from = 0;  ///< the mesh, 0 or 1, that the witness starts on
   std::vector<sdm::HausdorffDistance> directions;
+  double size = 0;  ///< of the smaller mesh, for the digits of places
+  Notes notes;
 };
 
 HausdorffAnswer measure(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1,
                         const sdm::HausdorffOptions& options) {
   if (sites.size() == 1) {
     const sdm::HausdorffDistance d = sdm::one_sided_hausdorff(o1, sites[0], options);
-    return {d, 0, {d}};
+    return {d, 0, {d}, 0, {}};
   }
   const sdm::SymmetricHausdorff both = sdm::symmetric_hausdorff(sites[0], sites[1], options);
-  return {both.larger, both.larger_from, {both.from.begin(), both.from.end()}};
+  return {both.larger, both.larger_from, {both.from.begin(), both.from.end()}, 0, {}};
 }
 
 struct HausdorffVerdict {
@@ -78,10 +82,6 @@ Json hausdorff_json(const sdm::HausdorffDistance& h) {
   return json;
 }
 
-std::string place(const sdm::Vec3& p) {
-  return fmt::format("({} {} {})", number(p[0]), number(p[1]), number(p[2]));
-}
-
 std::string distance_line(const std::string& what, const sdm::HausdorffDistance& h, const std::string& unit) {
   const sdm::BoundedLength& d = h.distance;
   constexpr int kDigits = 9;
@@ -100,9 +100,9 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
   text += distance_line("hausdorff", answer.distance, unit);
   const auto& [p, q] = *answer.distance.distance.witness;
   const char* const names[2] = {"O1", "O2"};
-  text +=
-      fmt::format("             from {} of {}, face {}, to {} of {}, face {}\n", place(p), names[answer.from],
-                  answer.distance.faces[0], place(q), names[1 - answer.from], answer.distance.faces[1]);
+  text += fmt::format("             from {} of {}, face {}, to {} of {}, face {}\n", place(p, answer.size),
+                      names[answer.from], answer.distance.faces[0], place(q, answer.size),
+                      names[1 - answer.from], answer.distance.faces[1]);
   if (command.both) {
     text += distance_line("O1 -> O2", answer.directions[0], unit);
     text += distance_line("O2 -> O1", answer.directions[1], unit);
@@ -135,7 +135,9 @@ void run(const HausdorffCommand& command) {
   if (command.both) sites.emplace_back(o1.mesh);
   sites.emplace_back(o2.mesh);
   const double build_ms = watch.lap();
-  const HausdorffAnswer answer = decide(sites, o1.mesh, command, progress.callback());
+  HausdorffAnswer answer = decide(sites, o1.mesh, command, progress.callback());
+  answer.size = std::min(size_of(sdm::bounds(o1.mesh)), size_of(sdm::bounds(o2.mesh)));
+  answer.notes = notes_on(o1, o2);
   const double query_ms = watch.lap();
 
   if (command.json) {
@@ -152,10 +154,11 @@ void run(const HausdorffCommand& command) {
       const HausdorffVerdict v = verdict(answer.distance.distance, *command.tolerance);
       json["tolerance"] = {{"value", *command.tolerance}, {"within", v.within}, {"certified", v.certified}};
     }
+    json["notes"] = answer.notes;
     json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
     std::cout << to_text(json);
   } else if (!command.quiet) {
-    std::cout << hausdorff_summary(command, answer) << note_lines({&o1, &o2}, 13);
+    std::cout << hausdorff_summary(command, answer) << note_lines(answer.notes, 13);
   }
   constexpr int kExceeded = 3;
   if (command.tolerance && !verdict(answer.distance.distance, *command.tolerance).within)

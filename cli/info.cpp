@@ -14,7 +14,9 @@
 #include <string>
 
 #include "format.h"
+#include "notes.h"
 #include "output_folder.h"
+#include "report.h"
 
 namespace fs = std::filesystem;
 
@@ -28,15 +30,15 @@ struct Options {
 
 struct Info {
   sdm::MeshInfo mesh;
-  std::vector<std::string> notes{};
   std::vector<std::array<std::uint32_t, 2>> self_intersections{};
+  Notes notes{};
   std::optional<sdm::VolumeBounds> volume{};  ///< if closed and orientable
 };
 
 Info collect(const std::string& file) {
-  sdm::MeshFile read = sdm::read_mesh_file(file);
-  Info info{sdm::inspect(read.mesh), std::move(read.notes)};
-  const sdm::Sites sites(std::move(read.mesh));
+  Input input = load_input("mesh", file, "");
+  Info info{.mesh = sdm::inspect(input.mesh), .notes = std::move(input.notes)};
+  const sdm::Sites sites(std::move(input.mesh));
   info.self_intersections = sdm::self_intersections(sites);
   if (info.mesh.closed && info.mesh.orientable) info.volume = sdm::solid_volume(sites);
   return info;
@@ -77,8 +79,10 @@ std::string text(bool value) {
 std::string text(double value) {
   return number(value, 9);
 }
-std::string text(const sdm::Vec3& value) {
-  return fmt::format("{}  {}  {}", text(value[0]), text(value[1]), text(value[2]));
+std::string text(const sdm::Vec3& p, double size) {
+  constexpr int kDigits = 9;
+  return fmt::format("{}  {}  {}", coordinate(p[0], size, kDigits), coordinate(p[1], size, kDigits),
+                     coordinate(p[2], size, kDigits));
 }
 
 std::string text(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
@@ -100,13 +104,14 @@ void print_table(std::ostream& out, const std::string& file, const Info& all) {
     out << fmt::format("{:<20}{}\n", name, value);
   };
   const sdm::Vec3 &lo = info.bounds.lo, &hi = info.bounds.hi;
+  const double size = size_of(info.bounds);
   row("file", file);
   row("vertices", fmt::to_string(info.vertices));
   row("edges", fmt::to_string(info.edges));
   row("triangles", fmt::to_string(info.triangles));
-  row("lowest corner", text(lo));
-  row("highest corner", text(hi));
-  row("size", text(sdm::Vec3{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}));
+  row("lowest corner", text(lo, size));
+  row("highest corner", text(hi, size));
+  row("size", text(sdm::Vec3{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}, size));
   row("components", fmt::to_string(info.components));
   row("closed", info.closed ? "yes"
                             : fmt::format("no, {} boundary and {} non-manifold edges", info.boundary_edges,

@@ -7,6 +7,7 @@
 #include "format.h"
 #include "map_files.h"
 #include "map_options.h"
+#include "notes.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "report.h"
@@ -30,29 +31,6 @@ struct Result {
   Outcome outcome;
   nlohmann::ordered_json report;
 };
-
-/// What suggests that the meshes are not those, or not in the units, that the user meant.
-std::vector<std::string> notes(const sdm::Mesh& on, const sdm::Mesh& to, const Outcome& outcome) {
-  constexpr double kScale = 1000, kFar = 100;
-  std::vector<std::string> result;
-  const sdm::Box on_box = sdm::bounds(on), to_box = sdm::bounds(to);
-  const auto length = [](const sdm::Vec3& v) { return std::hypot(v[0], v[1], v[2]); };
-  const auto size = [&](const sdm::Box& box) {
-    return length({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
-  };
-  const double on_size = size(on_box), to_size = size(to_box);
-  sdm::Vec3 gap;  // between the boxes
-  for (int k = 0; k < 3; ++k)
-    gap[k] = std::max({0.0, on_box.lo[k] - to_box.hi[k], to_box.lo[k] - on_box.hi[k]});
-  if (on_size > kScale * to_size || to_size > kScale * on_size)
-    result.push_back(fmt::format("one mesh is {} times as large as the other; are both in the same units?",
-                                 number(std::max(on_size / to_size, to_size / on_size), 2)));
-  if (length(gap) > kFar * std::max(on_size, to_size))
-    result.push_back(fmt::format("the meshes are {} times their size apart; are both in the same place?",
-                                 number(length(gap) / std::max(on_size, to_size), 2)));
-  if (outcome.distance.texels == 0) result.push_back("no texel is within --max-distance; the map is empty");
-  return result;
-}
 
 /// What map.exr says about itself.
 std::vector<std::pair<std::string, std::string>> exr_attributes(const Input& on, const Input& to,
@@ -207,7 +185,10 @@ void write_results(const MapCommand& command, Input& on, Input& to, const AtlasP
     outcome.tolerance = sdm::check_tolerance(*surface, map, at_vertices, outcome.error_bound,
                                              outcome.accuracy, *command.picture.tolerance);
   }
-  outcome.notes = notes(on.mesh, to.mesh, outcome);
+  outcome.size = size_of(sdm::bounds(on.mesh));
+  outcome.notes = notes_on(on, to);
+  if (outcome.distance.texels == 0)
+    outcome.notes.push_back("no texel is within --max-distance; the map is empty");
   outcome.notes.insert(outcome.notes.end(), part.notes.begin(), part.notes.end());
   if (const std::size_t texels = surface->overlapping_texels(); texels > 0)
     outcome.notes.push_back(

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "format.h"
 #include "map_files.h"
 #include "map_numbers.h"
+#include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
@@ -43,6 +45,7 @@ struct PointsOutcome {
   sdm::PointDistances found;
   std::optional<AlignOutcome> aligned;
   double accuracy = 0;
+  Notes notes;
   double import_ms = 0, align_ms = 0, points_ms = 0;
 
   [[nodiscard]] bool within(const PointsCommand& command) const {
@@ -126,7 +129,7 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
                            {"exceeded_point_fraction",
                             static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points)},
                            {"within", outcome.within(command)}};
-  report["notes"] = outcome.aligned ? notes(*outcome.aligned) : std::vector<std::string>();
+  report["notes"] = outcome.notes;
   report["time_ms"] = {
       {"import", outcome.import_ms}, {"align", outcome.align_ms}, {"points", outcome.points_ms}};
   return report;
@@ -166,15 +169,12 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
                          found.max.distance - command.picture.tolerance->hi;
       const sdm::PointExtreme& most = below ? found.min : found.max;
       text += fmt::format(
-          "  tolerance FAIL: {} % of the points are out of it; {}{} at point {} ({} {} {})\n",
+          "  tolerance FAIL: {} % of the points are out of it; {}{} at point {} {}\n",
           number(100.0 * static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points)),
-          number(most.distance), unit, most.index, number(most.point[0]), number(most.point[1]),
-          number(most.point[2]));
+          number(most.distance), unit, most.index, place(most.point, size_of(found.bounds)));
     }
   }
-  if (outcome.aligned)
-    for (const std::string& note : notes(*outcome.aligned)) text += fmt::format("  note      {}\n", note);
-  return text;
+  return text + note_lines(outcome.notes, 12);
 }
 
 // The alignment of a sample of the points, after their placement.
@@ -227,6 +227,9 @@ int run(PointsCommand command) {
     const sdm::Box& box = outcome.found.bounds;
     outcome.accuracy =
         sdm::engine_accuracy(sdm::engines().front(), o2.mesh, {{box.lo, box.hi}, {{0, 1, 1}}, {}});
+    outcome.notes = o2.notes;
+    std::ranges::copy(notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(outcome.notes));
+    if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(outcome.notes));
     outcome.points_ms = watch.lap();
     command.picture.accuracy = options.picture.accuracy;
     report = report_of(command, o2, outcome);
@@ -242,7 +245,7 @@ int run(PointsCommand command) {
   if (command.json)
     std::cout << to_text(report);
   else if (!command.quiet)
-    std::cout << text_of(command, outcome) << note_lines({&o2}, 12)
+    std::cout << text_of(command, outcome)
               << fmt::format("  time      {} s\n  results   {}/: {}{}report.json\n",
                              number(std::round(total.lap()) / 1000, 6), command.out.string(),
                              outcome.aligned ? "alignment.json " : "", files(command));

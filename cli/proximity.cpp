@@ -4,11 +4,15 @@
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <memory>
 
 #include "alignment.h"
 #include "common_options.h"
+#include "format.h"
+#include "notes.h"
 #include "pair_options.h"
 #include "progress_line.h"
 #include "proximity_report.h"
@@ -34,6 +38,9 @@ void run(PairCommand command, const AlignCommand& align) {
   const double import_ms = watch.lap();
   std::optional<AlignOutcome> aligned;
   if (align.on) aligned = align_mesh(o1.mesh, sdm::Sites(o2.mesh), align, progress.callback());
+  Notes all_notes = notes_on(o1, o2);
+  if (aligned) std::ranges::copy(notes(*aligned), std::back_inserter(all_notes));
+  const double size = std::min(size_of(sdm::bounds(o1.mesh)), size_of(sdm::bounds(o2.mesh)));
   watch.lap();
   sdm::ProximityQuery query(o1.mesh, o2.mesh, command.options);
   const double build_ms = watch.lap();
@@ -47,20 +54,15 @@ void run(PairCommand command, const AlignCommand& align) {
     json["o1"] = to_json(o1);
     json["o2"] = to_json(o2);
     json["units"] = command.units;
-    if (aligned) {
-      json["alignment"] = to_json(*aligned);
-      json["notes"] = notes(*aligned);
-    }
+    if (aligned) json["alignment"] = to_json(*aligned);
+    json["notes"] = all_notes;
     json.update(answers);
     json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
     std::cout << to_text(json);
   } else if (!command.quiet) {
-    std::cout << o1.file << ", " << o2.file << "\n"
-              << summary(query, command.units) << note_lines({&o1, &o2}, 13);
-    if (aligned) {
-      std::cout << summary(*aligned, command.units);
-      for (const std::string& note : notes(*aligned)) std::cout << "  note       " << note << '\n';
-    }
+    std::cout << o1.file << ", " << o2.file << "\n" << summary(query, command.units, size);
+    if (aligned) std::cout << summary(*aligned, command.units);
+    std::cout << note_lines(all_notes, 13);
   }
 }
 

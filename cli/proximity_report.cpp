@@ -47,8 +47,8 @@ std::size_t patch_count(std::span<const sdm::Contact> contacts) {
   return contacts.empty() ? 0 : contacts.back().patch + 1;
 }
 
-std::string point(const sdm::Vec3& p) {
-  return fmt::format("({} {} {})", number(p[0]), number(p[1]), number(p[2]));
+std::string direction(const sdm::Vec3& v) {
+  return fmt::format("({} {} {})", number(v[0]), number(v[1]), number(v[2]));
 }
 
 std::string words(const sdm::BoundedLength& length, const std::string& unit) {
@@ -59,9 +59,10 @@ std::string words(const sdm::BoundedLength& length, const std::string& unit) {
   return fmt::format("{}{}{} ({})\n", number(length.value), unit, bounds, name(length.certainty));
 }
 
-std::string between(const sdm::BoundedLength& length) {
+std::string between(const sdm::BoundedLength& length, double size) {
   if (!length.witness) return {};
-  return fmt::format("            from {} to {}\n", point((*length.witness)[0]), point((*length.witness)[1]));
+  return fmt::format("            from {} to {}\n", place((*length.witness)[0], size),
+                     place((*length.witness)[1], size));
 }
 
 }  // namespace
@@ -82,14 +83,14 @@ Json to_json(sdm::ProximityQuery& query) {
   return json;
 }
 
-std::string summary(sdm::ProximityQuery& query, const std::string& units) {
+std::string summary(sdm::ProximityQuery& query, const std::string& units, double size) {
   const std::string unit = unit_suffix(units);
   const sdm::BoundedBool colliding = query.colliding();
   std::string text =
       fmt::format("  colliding  {} ({})\n", colliding.value ? "yes" : "no", name(colliding.certainty));
-  text += "  separation " + words(query.separation(), unit) + between(query.separation());
+  text += "  separation " + words(query.separation(), unit) + between(query.separation(), size);
   if (const auto& depth = query.penetration_depth())
-    text += "  depth      " + words(*depth, unit) + between(*depth);
+    text += "  depth      " + words(*depth, unit) + between(*depth, size);
   else
     text += fmt::format("  depth      none: {}\n", no_solid(query));
   const std::span<const sdm::Contact> contacts = query.contacts();
@@ -98,5 +99,5 @@ std::string summary(sdm::ProximityQuery& query, const std::string& units) {
   const sdm::Contact& deepest = contacts.front();
   return text + fmt::format("  contacts   {} in {} {}; the deepest, {}{}, pushes O1 along {}\n",
                             contacts.size(), patches, patches == 1 ? "patch" : "patches",
-                            number(deepest.depth), unit, point(deepest.normal));
+                            number(deepest.depth), unit, direction(deepest.normal));
 }

@@ -14,5 +14,5 @@
 /// All results of the query, which are computed if necessary.
 [[nodiscard]] nlohmann::ordered_json to_json(sdm::ProximityQuery& query);
 
-/// A few lines of text.
-[[nodiscard]] std::string summary(sdm::ProximityQuery& query, const std::string& units);
+/// A few lines of text. `size`: of the smaller body, for the digits of places.
+[[nodiscard]] std::string summary(sdm::ProximityQuery& query, const std::string& units, double size);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "format.h"
+#include "notes.h"
 #include "scenes/placement.h"
 
 using Json = nlohmann::ordered_json;
@@ -92,17 +93,10 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   Input input{.role = role, .file = file, .transform = transform, .mesh = std::move(read.mesh)};
   input.names = std::move(read.names);
   input.vertices = std::move(read.vertices);
-  input.notes = std::move(read.notes);
+  for (const std::string& note : read.notes) input.notes.push_back(fmt::format("{}: {}", file, note));
+  if (const auto note = note_on_precision(file, input.mesh)) input.notes.push_back(*note);
   sdm::scenes::place(input.mesh, sdm::scenes::parse_placement(transform));
   return input;
-}
-
-std::string note_lines(std::initializer_list<const Input*> inputs, int width) {
-  std::string text;
-  for (const Input* input : inputs)
-    for (const std::string& note : input->notes)
-      text += fmt::format("{:<{}}{}: {}\n", "  note", width, input->file, note);
-  return text;
 }
 
 void inspect(Input& input) {
@@ -116,8 +110,7 @@ Json to_json(const Input& input) {
           {"triangles", input.info->triangles},
           {"closed", input.info->closed},
           {"degenerate_faces", input.info->degenerate_faces},
-          {"duplicate_faces", input.info->duplicate_faces},
-          {"notes", input.notes}};
+          {"duplicate_faces", input.info->duplicate_faces}};
 }
 
 Json to_json(const sdm::Surface& surface) {
@@ -221,9 +214,8 @@ std::string farthest(const Outcome& outcome, const std::string& unit) {
   const sdm::Tolerance& tolerance = outcome.tolerance->tolerance;
   const sdm::Extreme& most = tolerance.lo - min.distance > max.distance - tolerance.hi ? min : max;
   if (std::isnan(most.distance)) return "no texel has a value";
-  return fmt::format("{}{} at {} ({} {} {})", number(most.distance), unit,
-                     most.at_vertex ? "vertex" : "texel", number(most.point[0]), number(most.point[1]),
-                     number(most.point[2]));
+  return fmt::format("{}{} at {} {}", number(most.distance), unit, most.at_vertex ? "vertex" : "texel",
+                     place(most.point, outcome.size));
 }
 
 // The --precision that would decide, and the resolution that it needs: texels are about as far apart as the
@@ -296,8 +288,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome, co
   else
     add("  error     unknown: the paper's algorithm as printed gives an estimate\n");
   if (outcome.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
-  text += note_lines({&on, &to}, 12);
-  for (const std::string& note : outcome.notes) add("  note      {}\n", note);
+  text += note_lines(outcome.notes, 12);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,
         number(overdraw(*outcome.raster)));

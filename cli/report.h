@@ -5,7 +5,6 @@
 #include <sdm/sdm.h>
 
 #include <filesystem>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -20,12 +19,9 @@ struct Input {
   sdm::Mesh mesh;
   std::optional<sdm::MeshInfo> info{};  ///< once inspected
   std::vector<sdm::FaceNames> names{};
+  std::vector<std::string> notes{};             ///< on the file
   std::optional<sdm::FileVertices> vertices{};  ///< of the file, without the transform, if requested
-  std::vector<std::string> notes{};             ///< of sdm::MeshFile
 };
-
-/// A line of text for each note of some inputs, with the name of the file; values begin in column `width`.
-[[nodiscard]] std::string note_lines(std::initializer_list<const Input*> inputs, int width);
 
 /// Sets input.info, which to_json() needs, unless it is set.
 void inspect(Input& input);
@@ -50,6 +46,7 @@ struct Outcome {
   double accuracy = 0;                     ///< of the engine; infinite if unknown
   double max_distance = 0;                 ///< infinite if there is no limit
   std::uint32_t resolution = 0, rows = 0;  ///< of the map
+  double size = 0;                         ///< of the mesh that is measured: the diagonal of its box
   bool embedded = true;                    ///< the other mesh does not intersect itself
   std::vector<std::string> notes;          ///< what the user probably did not intend
   std::optional<sdm::ToleranceVerdict> tolerance;

@@ -6,6 +6,7 @@
 #include "common_options.h"
 #include "format.h"
 #include "map_files.h"
+#include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
@@ -76,6 +77,7 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   report["distance"] = to_json(distance);
   report["texels_with_value"] = distance.texels;
   report["texels_without_value"] = map.beyond_max_distance;
+  report["notes"] = input.notes;
   report["time_ms"] = {{"import", import_ms}, {"atlas", atlas_ms},   {"sites", sites_ms},
                        {"map", map_ms},       {"export", export_ms}, {"total", import_ms + total.lap()}};
   const std::string text = to_text(report);
@@ -102,7 +104,7 @@ std::string self_summary(const SelfCommand& command, const Json& report) {
   if (report["texels_without_value"] != 0)
     text +=
         fmt::format("              {} texels have nothing in range\n", report["texels_without_value"].dump());
-  return text;
+  return text + note_lines(report["notes"].get<Notes>(), 14);
 }
 
 void run(SelfCommand command) {
@@ -128,7 +130,7 @@ void run(SelfCommand command) {
   if (command.json)
     std::cout << to_text(report);
   else if (!command.quiet)
-    std::cout << self_summary(command, report) << note_lines({&input}, 14)
+    std::cout << self_summary(command, report)
               << fmt::format("  time        {} s\n  results     {}/: {}report.json\n",
                              number(std::round(total.lap()) / 1000, 6), command.out.string(),
                              listed(command.files));

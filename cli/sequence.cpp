@@ -9,6 +9,7 @@
 #include <array>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -16,6 +17,7 @@
 
 #include "common_options.h"
 #include "format.h"
+#include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "pair_options.h"
@@ -134,6 +136,9 @@ class FrameLoop {
     map_options_.engine = sdm::make_engine(command_.engine.name);
     state_.options = options_of(command);
     const std::array<sdm::Mesh, 2> first{bodies_[0].mesh(), bodies_[1].mesh()};
+    for (int b = 0; b < 2; ++b)
+      if (const auto note = note_on_precision(bodies_[b].input(), first[b])) notes_.push_back(*note);
+    std::ranges::copy(notes_on(sdm::bounds(first[0]), sdm::bounds(first[1])), std::back_inserter(notes_));
     state_.meshes = {hash_of(first[0]), hash_of(first[1])};
     if (resumed_) check_meshes();
     if (!command_.range.empty()) command_.picture.range = {command_.range[0], command_.range[1]};
@@ -314,7 +319,8 @@ class FrameLoop {
     if (write) write_maps(index);
     if (player_) player_->add(index, query_->sites(0), query_->sites(1));
     frame.time.write = watch.lap();
-    const Json line = to_json(frame, contacts);
+    Json line = to_json(frame, contacts);
+    if (index == 0) line["notes"] = notes_;
     add_line(line);
     frames_.push_back(frame);
     state_.frames.push_back({line, hash_});
@@ -457,14 +463,16 @@ class FrameLoop {
   void print_summary() const {
     const bool temporal = temporal_.of(query_->surface(0)).maps() > 0;
     std::cout << fmt::format(
-        "{}, {}\n{}  results    {}/: frames.jsonl frames.csv{}{}{}{}{}\n", bodies_[0].input(),
-        bodies_[1].input(), summary(frames_, bad_, command_.pair.units), command_.out.string(),
-        frames_.empty() ? "" : " plot.png", temporal ? " temporal.exr min.png mean.png max.png" : "",
+        "{}, {}\n{}{}  results    {}/: frames.jsonl frames.csv{}{}{}{}{}\n", bodies_[0].input(),
+        bodies_[1].input(), summary(frames_, bad_, command_.pair.units), note_lines(notes_, 13),
+        command_.out.string(), frames_.empty() ? "" : " plot.png",
+        temporal ? " temporal.exr min.png mean.png max.png" : "",
         command_.player && player_->frames() > 0 ? " player.html" : "",
         animated_frames_ > 0 ? " animation.glb" : "", command_.maps_every > 0 ? " maps/" : "");
     if (animated_frames_ > 0 && animated_frames_ < player_->frames())
-      std::cout << fmt::format("  note       animation.glb has {} of {} frames, evenly spaced\n",
-                               animated_frames_, player_->frames());
+      std::cout << note_lines(Notes{fmt::format("animation.glb has {} of {} frames, evenly spaced",
+                                                animated_frames_, player_->frames())},
+                              13);
   }
 
   void write_temporal(const fs::path& folder, const sdm::TemporalMaps& temporal) {
@@ -509,6 +517,7 @@ class FrameLoop {
   SequenceState state_;
   TemporalRecorder temporal_;
   std::array<bool, 2> edited_{};  // bodies, since their bounds were built
+  Notes notes_;                   // on the inputs
   bool stopped_ = false, interrupted_ = false;
   sdm::MapOptions map_options_;
   sdm::DistanceMap map_, other_map_;

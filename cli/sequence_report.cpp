@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "format.h"
+#include "notes.h"
 #include "proximity_report.h"
 
 using Json = nlohmann::ordered_json;
@@ -74,9 +75,10 @@ std::string topology_summary(const std::vector<Frame>& frames) {
   std::string text = fmt::format("  topology   changes in {} frames\n", changes);
   for (int b = 0; b < 2; ++b)
     if (new_layout[b])
-      text += fmt::format("  note       frame {} of {} could not keep the layout of the frame before{}\n",
-                          new_layout[b]->index, b == 0 ? "O1" : "O2",
-                          b == 0 ? "; maps over time begin there" : "");
+      text += note_lines(Notes{fmt::format("frame {} of {} could not keep the layout of the frame before{}",
+                                           new_layout[b]->index, b == 0 ? "O1" : "O2",
+                                           b == 0 ? "; maps over time begin there" : "")},
+                         13);
   return text;
 }
 

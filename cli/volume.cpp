@@ -16,6 +16,7 @@
 
 #include "common_options.h"
 #include "format.h"
+#include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
@@ -42,6 +43,7 @@ struct VolumeCommand {
 struct VolumeOutcome {
   sdm::DistanceField field;
   std::optional<sdm::FieldProximity> proximity;
+  Notes notes;
   double min = std::numeric_limits<double>::quiet_NaN(), max = min;  // of the points with a value
   double import_ms = 0, sites_ms = 0, proximity_ms = 0, output_ms = 0;
 };
@@ -121,6 +123,7 @@ Json report_of(const VolumeCommand& command, const Input& o2, const VolumeOutcom
   json["units"] = command.units;
   json.update(field_json(outcome));
   if (outcome.proximity) json["proximity"] = proximity_json(command, *outcome.proximity);
+  json["notes"] = outcome.notes;
   json["file"] = command.out.empty() ? Json(nullptr) : Json(command.out.string());
   json["time_ms"] = {{"import", outcome.import_ms},
                      {"sites", outcome.sites_ms},
@@ -157,6 +160,7 @@ std::string summary(const VolumeCommand& command, const VolumeOutcome& outcome) 
     text += fmt::format("  colliding  {} ({})\n", p->colliding.value ? "yes" : "no",
                         name(p->colliding.certainty));
   }
+  text += note_lines(outcome.notes, 13);
   text += fmt::format("  time       {} s by {}\n",
                       number((f.report.milliseconds + f.report.sign_milliseconds) / 1000, 3),
                       sdm::field_method(f.report.method).name);
@@ -164,11 +168,13 @@ std::string summary(const VolumeCommand& command, const VolumeOutcome& outcome) 
   return text;
 }
 
-VolumeOutcome compute(const VolumeCommand& command, Input& o1, Input& o2, const sdm::Progress& progress) {
+VolumeOutcome compute(const VolumeCommand& command, Input& o2, const sdm::Progress& progress) {
   Stopwatch watch;
   VolumeOutcome outcome;
   o2 = load_input("o2", command.o2, command.transform_o2);
+  Input o1;
   if (!command.o1.empty()) o1 = load_input("o1", command.o1, command.transform_o1);
+  outcome.notes = command.o1.empty() ? o2.notes : notes_on(o1, o2);
   if (command.json) inspect(o2);
   outcome.import_ms = watch.lap();
   const sdm::Grid grid = grid_of(command, o2.mesh, o1.mesh);
@@ -194,10 +200,10 @@ void run(const VolumeCommand& command) {
   if (!command.out.empty()) out.emplace(std::filesystem::absolute(command.out).parent_path());
   ProgressLine progress(command.quiet);
   progress.step("import");
-  Input o1, o2;
+  Input o2;
   VolumeOutcome outcome;
   const auto work = [&] {
-    outcome = compute(command, o1, o2, progress.callback());
+    outcome = compute(command, o2, progress.callback());
     if (!out) return;
     progress.step("output");
     Stopwatch watch;
@@ -211,7 +217,7 @@ void run(const VolumeCommand& command) {
   if (command.json)
     std::cout << to_text(report_of(command, o2, outcome));
   else if (!command.quiet)
-    std::cout << summary(command, outcome) << note_lines({&o1, &o2}, 13);
+    std::cout << summary(command, outcome);
 }
 
 void check(const VolumeCommand& command, const CLI::App& app) {

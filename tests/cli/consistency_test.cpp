@@ -133,7 +133,7 @@ TEST_F(Consistency, NotesSuggestWrongUnits) {
     return report["notes"].dump();
   };
   EXPECT_EQ(notes({}), "[]");
-  EXPECT_THAT(notes({"--transform-o2", "scale:1000"}), HasSubstr("same units"));
+  EXPECT_THAT(notes({"--transform-o2", "scale:1000"}), HasSubstr("times the other"));
   EXPECT_THAT(notes({"--transform-o2", "translate:1000:0:0"}), HasSubstr("same place"));
   EXPECT_THAT(notes({"--max-distance", "1e-5"}), HasSubstr("no texel is within --max-distance"));
 }

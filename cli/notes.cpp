@@ -1,0 +1,142 @@
+#include "notes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "format.h"
+
+namespace {
+
+bool is_empty(const sdm::Box& box) {
+  return !(box.lo[0] <= box.hi[0]);
+}
+
+double gap(const sdm::Box& a, const sdm::Box& b) {
+  sdm::Vec3 d;
+  for (int k = 0; k < 3; ++k) d[k] = std::max({0.0, a.lo[k] - b.hi[k], b.lo[k] - a.hi[k]});
+  return std::hypot(d[0], d[1], d[2]);
+}
+
+struct Unit {
+  double times;
+  const char* question;
+};
+
+std::optional<std::string> note_on_sizes(const sdm::Box& a, const sdm::Box& b) {
+  constexpr double kTolerance = 0.05;
+  constexpr std::array kUnits{Unit{10, "millimetres and centimetres"}, Unit{25.4, "millimetres and inches"},
+                              Unit{100, "centimetres and metres"}, Unit{304.8, "millimetres and feet"},
+                              Unit{1000, "millimetres and metres"}};
+  const double sizes[] = {size_of(a), size_of(b)};
+  const double times = std::max(sizes[0], sizes[1]) / std::min(sizes[0], sizes[1]);
+  if (!std::isfinite(times)) return std::nullopt;
+  for (const Unit& unit : kUnits)
+    if (std::abs(times / unit.times - 1) <= kTolerance)
+      return fmt::format("one mesh is about {} times the other; {}?", unit.times, unit.question);
+  if (times > kUnits.back().times)
+    return fmt::format("one mesh is about {} times the other; are both in the same units?", number(times, 2));
+  return std::nullopt;
+}
+
+constexpr double kFar = 100;
+
+sdm::Box posed(const sdm::Box& box, const sdm::Transform& pose) {
+  sdm::Box result;
+  for (int corner = 0; corner < 8; ++corner) {
+    sdm::Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];
+    p = pose(p);
+    for (int k = 0; k < 3; ++k)
+      result.lo[k] = std::min(result.lo[k], p[k]), result.hi[k] = std::max(result.hi[k], p[k]);
+  }
+  return result;
+}
+
+void append(Notes& notes, const Notes& more) {
+  for (const std::string& note : more)
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+}
+
+}  // namespace
+
+Notes notes_on(const sdm::Box& a, const sdm::Box& b) {
+  if (is_empty(a) || is_empty(b)) return {};
+  Notes notes;
+  if (const auto note = note_on_sizes(a, b)) notes.push_back(*note);
+  const double size = std::max(size_of(a), size_of(b)), apart = gap(a, b);
+  if (apart > kFar * size)
+    notes.push_back(fmt::format("the meshes are {} times their size apart; are both in the same place?",
+                                number(apart / size, 2)));
+  return notes;
+}
+
+std::optional<std::string> note_on_precision(const std::string& file, const sdm::Mesh& mesh) {
+  constexpr double kCoarse = 1e-5;
+  constexpr int kBits = 23;  // of the fraction of a float
+  double largest = 0;
+  for (const sdm::Vec3& p : mesh.positions)
+    for (const double x : p) {
+      if (static_cast<double>(static_cast<float>(x)) != x) return std::nullopt;
+      largest = std::max(largest, std::abs(x));
+    }
+  const double size = size_of(sdm::bounds(mesh));
+  if (!(largest > 0 && size > 0)) return std::nullopt;
+  const double step = std::ldexp(1, std::ilogb(largest) - kBits);
+  if (!(step > kCoarse * size)) return std::nullopt;
+  // Round numbers, such as the integers of a text file, are as they are meant: of rounded ones, some have the
+  // last bit.
+  const auto has_last_bit = [&](const sdm::Vec3& p) {
+    return std::ranges::any_of(p, [&](double x) { return std::fmod(std::abs(x) / step, 2) == 1; });
+  };
+  if (std::ranges::none_of(mesh.positions, has_last_bit)) return std::nullopt;
+  return fmt::format(
+      "{}: coordinates in single precision are {} apart so far from the origin, {} of its size; export it in "
+      "double precision, or near the origin",
+      file, number(step, 2), number(step / size, 2));
+}
+
+Notes notes_on(const Input& o1, const Input& o2) {
+  Notes notes;
+  append(notes, o1.notes);
+  append(notes, o2.notes);
+  append(notes, notes_on(sdm::bounds(o1.mesh), sdm::bounds(o2.mesh)));
+  return notes;
+}
+
+Notes notes_on(std::span<const Input> bodies, std::span<const sdm::Transform> poses) {
+  constexpr std::size_t kMost = 1000;  // bodies of which each is compared with each
+  Notes notes;
+  std::vector<sdm::Box> boxes;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    append(notes, bodies[i].notes);
+    boxes.push_back(posed(sdm::bounds(bodies[i].mesh), poses[i]));
+  }
+  const auto largest = std::ranges::max_element(boxes, {}, size_of);
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (const auto note = note_on_sizes(*largest, boxes[i]))
+      append(notes,
+             {fmt::format("{} and {}: {}", bodies[static_cast<std::size_t>(largest - boxes.begin())].file,
+                          bodies[i].file, *note)});
+  if (boxes.size() > kMost) return notes;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const auto is_near = [&](const sdm::Box& other) {
+      return &other != &boxes[i] &&
+             gap(boxes[i], other) <= kFar * std::max(size_of(boxes[i]), size_of(other));
+    };
+    if (std::ranges::none_of(boxes, is_near))
+      notes.push_back(
+          fmt::format("body {} is more than {} times its size from all others; are they in the same "
+                      "place?",
+                      i, kFar));
+  }
+  return notes;
+}
+
+std::string note_lines(std::span<const std::string> notes, std::size_t column) {
+  std::string text;
+  for (const std::string& note : notes) text += fmt::format("  {:<{}}{}\n", "note", column - 2, note);
+  return text;
+}

@@ -1,0 +1,34 @@
+// What suggests that the inputs of a command are not those, or not in the units, that the user meant: the
+// lines `note` of every command's text, and the array `notes` of its JSON.
+#pragma once
+
+#include <sdm/mesh.h>
+#include <sdm/transform.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "report.h"
+
+using Notes = std::vector<std::string>;
+
+/// Of two boxes: one is about as many times as large as the other as a unit of length is (10, 25.4, 100,
+/// 304.8 or 1000, to 5 %), or more than 1000 times; or they are more than 100 times their size apart. By the
+/// diagonals of the boxes. None for a box that is empty.
+[[nodiscard]] Notes notes_on(const sdm::Box& a, const sdm::Box& b);
+
+/// The positions of a mesh are in single precision, and so far from the origin that neighbouring numbers are
+/// more than 1e-5 of its size apart.
+[[nodiscard]] std::optional<std::string> note_on_precision(const std::string& file, const sdm::Mesh& mesh);
+
+/// Of the files of both inputs, and of their boxes.
+[[nodiscard]] Notes notes_on(const Input& o1, const Input& o2);
+
+/// Of the files of bodies, of the largest of them and the others, and of bodies that are far from all others.
+/// `poses`: one of each body.
+[[nodiscard]] Notes notes_on(std::span<const Input> bodies, std::span<const sdm::Transform> poses);
+
+/// One line each; the text begins in the given column.
+[[nodiscard]] std::string note_lines(std::span<const std::string> notes, std::size_t column);
