@@ -15,7 +15,7 @@
 #include "io/points/text/text_dialect.h"
 #include "io/points/text/text_rows.h"
 #include "io/read/read_polygons.h"
-#include "io/read/text_encoding.h"
+#include "io/read/utf16.h"
 
 namespace sdm::io {
 namespace {
@@ -73,9 +73,9 @@ CloudFile::CloudFile(const std::filesystem::path& file, const TextDialect& given
   const std::uint64_t size = open(stream, file);
   std::string bytes(std::min<std::uint64_t>(size, kMaxCloudHeader), '\0');
   take(stream, bytes.data(), bytes.size());
-  if (is_utf16(bytes)) throw Error("this is UTF-16 text; save it as UTF-8");
-  const std::string_view begin = without_utf8_mark(bytes);
-  const std::uint64_t skipped = bytes.size() - begin.size();
+  if (is_utf16(bytes)) throw Error(std::string(kUtf16Fault));
+  const std::uint64_t skipped = bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // the UTF-8 byte order mark
+  const std::string_view begin = std::string_view(bytes).substr(skipped);
 
   if (std::optional<CloudLayout> layout = cloud_layout(begin)) {
     require_no_dialect(given, layout->format);
