@@ -181,7 +181,7 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
 AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& placement,
                           const sdm::Sites& sites, const sdm::Progress& progress) {
   constexpr std::size_t kSample = 1 << 18;
-  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, command.text);
+  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, command.text, progress);
   if (sample.points.empty()) throw sdm::Error(command.cloud + ": there are no points with coordinates");
   sdm::transform(sample.points, placement);
   for (sdm::Vec3& n : sample.normals) n = placement.normal(n);

@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/io.h>
 #include <sdm/map.h>
+#include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/transform.h>
@@ -100,9 +101,9 @@ class SDM_API PointReader {
 struct PointSample {
   std::vector<Vec3> points, normals;  ///< `normals` is empty if there are none
 };
-/// Draws such a sample. Throws sdm::Error as PointReader does. Cost: reads the file once.
+/// Draws such a sample. Throws sdm::Error as PointReader does; Cancelled. Cost: reads the file once.
 [[nodiscard]] SDM_API PointSample sample_points(const std::filesystem::path& file, std::size_t most,
-                                                const TextDialect& text = {});
+                                                const TextDialect& text = {}, const Progress& progress = {});
 
 /// Options of measure_points().
 struct PointDistancesOptions {

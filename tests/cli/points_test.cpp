@@ -562,6 +562,24 @@ TEST(PointReader, SamplesAllPartsOfAFile) {
   for (const Vec3& p : sample.points) mean += p[0] / 1000;
   EXPECT_NEAR(mean, 5000, 400) << "four standard deviations of the mean";
   EXPECT_EQ(sample_points(folder / "a.xyz", 20000).points.size(), 10000u);
+  const auto cancel = [](std::string_view, double) { return false; };
+  EXPECT_THROW((void)sample_points(folder / "a.xyz", 1000, {}, cancel), Cancelled);
+}
+
+// A text is read for the number of its points first.
+TEST(PointReader, CountingIsCancelled) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.xyz") << "1 2 3\n4 5 6\n";
+  const Sites sites(cube(1));
+  std::vector<std::string> steps;
+  PointDistancesOptions options;
+  options.map.progress = [&](std::string_view step, double) {
+    steps.emplace_back(step);
+    return false;
+  };
+  EXPECT_THROW((void)measure_points(folder / "a.xyz", sites, folder / "a.ply", options), Cancelled);
+  EXPECT_EQ(steps, std::vector<std::string>{"count"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.ply"));
 }
 
 }  // namespace

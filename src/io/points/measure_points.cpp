@@ -74,7 +74,14 @@ class Measurement {
   void count_points() {
     PointReader again(cloud_, options_.text);
     Chunk chunk;
-    while (again.read(options_.chunk, chunk.points, chunk.normals)) counted_ += chunk.points.size();
+    while (again.read(options_.chunk, chunk.points, chunk.normals)) {
+      counted_ += chunk.points.size();
+      report("count", 0);  // of a number that is not known
+    }
+  }
+
+  void report(const char* step, double fraction) const {
+    if (options_.map.progress && !options_.map.progress(step, fraction)) throw Cancelled();
   }
 
   void write_header(std::ostream& out) const {
@@ -95,10 +102,8 @@ class Measurement {
       append(file.stream(), current);
       file.check();
       std::swap(current, next);
-      if (options_.map.progress &&
-          !options_.map.progress("points", static_cast<double>(result_.points) /
-                                               static_cast<double>(std::max<std::uint64_t>(all, 1))))
-        throw Cancelled();
+      report("points",
+             static_cast<double>(result_.points) / static_cast<double>(std::max<std::uint64_t>(all, 1)));
     }
   }
 
