@@ -3,6 +3,7 @@
 #include <sdm/printable.h>
 
 #include <iostream>
+#include <new>
 
 namespace {
 
@@ -56,6 +57,10 @@ PrintableOutput::PrintableOutput()
 }
 
 PrintableOutput::~PrintableOutput() {
-  lines_->pubsync();
+  try {
+    lines_->pubsync();
+  } catch (const std::bad_alloc&) {
+    // The command fails already: it flushes what it prints when it succeeds.
+  }
   std::cout.rdbuf(original_);
 }

@@ -138,8 +138,12 @@ void GltfDocument::charge(std::size_t bytes, std::string_view purpose) const {
         "{} would take {:.3g} GB of memory, but a file of {} bytes may take {:.3g} GB; save "
         "it with fewer copies of its meshes",
         purpose, static_cast<double>(bytes) / 1e9, file_bytes_, static_cast<double>(limit) / 1e9));
-  require_memory(bytes, purpose);
   charged_ += bytes;
+  // Asking the system for every node would take longer than reading it.
+  constexpr std::size_t kUnchecked = std::size_t{16} << 20;
+  if (charged_ - checked_ < kUnchecked) return;
+  require_memory(charged_ - checked_, purpose);
+  checked_ = charged_;
 }
 
 void throw_gltf_fault(const json::exception& fault) {

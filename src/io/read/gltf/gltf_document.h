@@ -53,7 +53,7 @@ class GltfDocument {
   nlohmann::json root_;
   GltfBuffers buffers_;
   std::size_t file_bytes_ = 0;
-  mutable std::size_t charged_ = 0;
+  mutable std::size_t charged_ = 0, checked_ = 0;  // checked_: of it, also against the memory of the machine
 };
 
 }  // namespace sdm::io

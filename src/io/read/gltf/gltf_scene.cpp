@@ -126,8 +126,8 @@ void check_memory(const GltfDocument& document, const std::vector<GltfInstance>&
                     unmorphed.contains(node) ? std::vector<double>() : gltf_weights(document, instance));
     }
     size.add(size_of_node);
+    document.charge(size_of_node * bytes_per_item, "the scene");
   }
-  document.charge(size.items() * bytes_per_item, "the scene");
 }
 
 // Names are optional.

@@ -84,7 +84,7 @@ fs::path file_of_uri(std::string_view uri, const fs::path& folder) {
   std::error_code error;
   const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
   if (error) refuse(path, "the folder of the model cannot be resolved");
-  const fs::path file = fs::weakly_canonical(root / path, error);
+  fs::path file = fs::weakly_canonical(root / path, error);
   if (error) refuse(path, "it cannot be resolved");
   if (!is_inside(file, root)) refuse(path, "it is a link to a place outside of the folder of the model");
   return file;
