@@ -132,6 +132,15 @@ TEST(GltfMorph, DefaultWeightsApply) {
               1e-14);
 }
 
+TEST(GltfMorph, PrimitivesWithoutTargetsStay) {
+  CubeModel model = growing_cube();
+  const std::string still = R"(},{"attributes":{)" + model.attributes + R"(},"indices":)" + model.indices;
+  model.targets += still;
+  EXPECT_NEAR(volume(model.read(R"({"mesh":0,"weights":[1]})")), 3 + 1, 1e-14);
+  model.targets = still;
+  EXPECT_NEAR(volume(model.read(R"({"mesh":0,"weights":[1,2]})")), 1 + 1, 1e-14);
+}
+
 TEST(GltfMorph, FaultsAreNamed) {
   CubeModel model = growing_cube();
   EXPECT_THAT(model.fault(R"({"mesh":0,"weights":[1,2]})"), HasSubstr("2 weights for 1 morph targets"));

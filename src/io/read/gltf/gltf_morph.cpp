@@ -3,23 +3,22 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
+#include <algorithm>
+
 namespace sdm::io {
 
 using nlohmann::json;
 
 std::size_t gltf_target_count(const GltfDocument& document, std::size_t mesh) {
-  std::optional<std::size_t> count;
-  for (const json& primitive : list_of(document.item("meshes", mesh), "primitives")) {
-    const std::size_t targets = list_of(primitive, "targets").size();
-    if (count && *count != targets)
-      throw Error(fmt::format("the primitives of mesh {} differ in their number of morph targets", mesh));
-    count = targets;
-  }
-  return count.value_or(0);
+  std::size_t count = 0;
+  for (const json& primitive : list_of(document.item("meshes", mesh), "primitives"))
+    count = std::max(count, list_of(primitive, "targets").size());
+  return count;
 }
 
 std::vector<double> gltf_weights(const GltfDocument& document, const GltfInstance& instance) {
   const std::size_t targets = gltf_target_count(document, instance.mesh);
+  if (targets == 0) return {};  // weights without targets change nothing
   for (const json* owner :
        {&document.item("nodes", instance.node), &document.item("meshes", instance.mesh)}) {
     if (!owner->contains("weights")) continue;

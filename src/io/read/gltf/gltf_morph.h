@@ -9,7 +9,8 @@
 
 namespace sdm::io {
 
-/// Returns the number of morph targets of a mesh. Throws sdm::Error if its primitives differ in it.
+/// Returns the number of morph targets of a mesh: the most that a primitive has. The last ones do not change
+/// primitives that have fewer.
 [[nodiscard]] std::size_t gltf_target_count(const GltfDocument& document, std::size_t mesh);
 
 /// Returns the weights that the file gives the targets of a node's mesh: those of the node, otherwise those

@@ -4,8 +4,8 @@
 #include <sdm/error.h>
 #include <sdm/types.h>
 
+#include <algorithm>
 #include <array>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -37,9 +37,10 @@ void add_positions(const GltfDocument& document, const json& primitive, const Gl
   const GltfRows rest(document, whole_number(primitive.at("attributes"), "POSITION"));
   if (rest.columns() != 3) throw Error("the positions of a mesh are not of type VEC3");
   const auto displacements = gltf_displacements(document, primitive);
+  const std::size_t targets = std::min(weights.size(), displacements.size());
   for (std::size_t v = 0; v < rest.rows(); ++v) {
     Vec3 position = rest.vec3(v);
-    for (std::size_t t = 0; t < weights.size(); ++t)
+    for (std::size_t t = 0; t < targets; ++t)
       if (weights[t] != 0 && displacements[t]) position += weights[t] * displacements[t]->vec3(v);
     mesh.positions.push_back(placement[v](position));
   }
