@@ -56,8 +56,8 @@ void check_layers(const FaceGeometry& faces, double columns, double rows, const 
   }
   const double layers = texels / (columns * rows);
   if (texels > kMostTexels && layers > kMostLayers)
-    fail("its faces cover the texture " + std::to_string(static_cast<std::uint64_t>(layers)) +
-         " times over, face " + std::to_string(face) + " most of it");
+    fail("its faces, most of all face " + std::to_string(face) + ", cover the texture " +
+         std::to_string(static_cast<std::uint64_t>(layers)) + " times over");
 }
 
 void check_overlaps(const FaceGeometry& faces, std::uint32_t longest, const Layout& layout) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "io/read/ascii.h"
 #include "io/read/text_scanner.h"
 
 namespace sdm::io {

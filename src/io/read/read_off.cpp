@@ -2,7 +2,7 @@
 #include <sdm/error.h>
 
 #include "io/read/formats.h"
-#include "io/read/text_rows.h"
+#include "io/read/text_scanner.h"
 
 namespace sdm::io {
 namespace {

@@ -7,7 +7,7 @@
 #include "io/read/byte_scanner.h"
 #include "io/read/formats.h"
 #include "io/read/ply_header.h"
-#include "io/read/text_rows.h"
+#include "io/read/text_scanner.h"
 
 namespace sdm::io {
 namespace {

@@ -8,7 +8,6 @@
 #include <array>
 #include <vector>
 
-#include "io/read/ascii.h"
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
 #include "io/read/utf16.h"

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
-#include "io/read/ascii.h"
 #include "io/read/byte_scanner.h"
 #include "io/read/formats.h"
 #include "io/read/text_scanner.h"
