@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "mesh/similarity.h"
 #include "poses.h"
 #include "support/allocations.h"
 #include "support/meshes.h"
@@ -145,6 +146,47 @@ TEST(PairSearch, HintsChangeNoBit) {
         ASSERT_EQ(found.face1, expected.face1);
         ASSERT_EQ(found.face2, expected.face2);
       }
+    }
+  }
+}
+
+// Small bodies at distances, and with coordinates, of up to a million times their size: rounding is then far
+// more than of their size. Closest faces that were known before are found again.
+TEST(PairSearch, HintsChangeNoBitFarAway) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const auto vector = [&](double size) {
+    return size * Vec3{normal(random), normal(random), normal(random)};
+  };
+  const std::vector<Mesh> meshes{test::cube(), test::sphere(1), test::single_triangle(),
+                                 test::soup(10, random), test::fan(20)};
+  for (int i = 0; i < 240; ++i) {
+    SCOPED_TRACE(i);
+    const double far = std::pow(10, i % 6 + 1);
+    Mesh m1 = meshes[i % meshes.size()], m2 = meshes[i / 5 % meshes.size()];
+    const Affine placed = mesh::Similarity::of(Transform::translation(vector(i % 2 == 0 ? far : 0))).map;
+    m1 = moved(m1, placed);
+    const Affine pose =
+        mesh::Similarity::of(
+            Transform::translation(placed.offset + vector(i % 3 == 0 ? 3 : far)) *
+            Transform::quaternion({normal(random), normal(random), normal(random), normal(random)}))
+            .map;
+    const Sites o1(m1), o2(m2);
+    const MeshPair pair{internals(o1), internals(o2), pose};
+    PairWorkspace workspace;
+    const Separation expected = find_closest(pair, kAny, workspace);
+    ASSERT_NE(expected.face1, kNone);
+    EXPECT_NEAR(expected.distance, brute_force(m1, m2, pose), 1e-14 * (10 + 4 * far));
+    for (int hint = 0; hint < 10; ++hint) {
+      const auto face = [&](const Mesh& mesh) {
+        return static_cast<std::uint32_t>(random() % mesh.triangles.size());
+      };
+      const FacePair faces =
+          hint == 0 ? FacePair{expected.face1, expected.face2} : FacePair{face(m1), face(m2)};
+      const Separation found = find_closest(pair, kAny, workspace, faces);
+      ASSERT_EQ(found.distance, expected.distance);
+      ASSERT_EQ(found.face1, expected.face1);
+      ASSERT_EQ(found.face2, expected.face2);
     }
   }
 }

@@ -63,6 +63,7 @@ UnitMaps::UnitMaps(const MeshPair& pair) {
 
   const double scale_of_frame1 = std::min(1.0, 1 / stretch1);
   scale_ = scale_of_frame1 * frame1.scale;
+  rounding_ = 4e-15 * (1 / scale_ + norm(frame1.origin) + norm(pair.pose(frame2.origin)));
   unit[0] = static_cast<float>(kBelow * scale_of_frame1);
   unit[1] = std::isfinite(to[1].error) ? static_cast<float>(kBelow * scale_of_frame1 / stretch2) : 1;
 }

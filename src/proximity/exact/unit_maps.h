@@ -31,14 +31,15 @@ struct UnitMaps {
   /// Converts a length of O1, rounded up by more than the rounding error of a norm.
   [[nodiscard]] float round_up(double length) const;
 
-  /// A bound on the rounding error of distances of triangles in double precision, as a length of O1.
-  [[nodiscard]] double rounding() const { return 4e-15 / scale_; }
+  /// A bound on the rounding error of distances of triangles in double precision, as a length of O1: it grows
+  /// with their coordinates, and with the distance itself.
+  [[nodiscard]] double rounding() const { return rounding_; }
 
   /// The direction of a vector; not known if the vector is zero.
   [[nodiscard]] Direction direction(const Vec3& vector) const;
 
  private:
-  double scale_;
+  double scale_, rounding_;
 };
 
 }  // namespace sdm::exact
