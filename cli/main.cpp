@@ -5,11 +5,11 @@
 #include "hausdorff.h"
 #include "help_text.h"
 #include "info.h"
+#include "interrupts.h"
 #include "map.h"
 #include "output_folder.h"
 #include "paper.h"
 #include "points.h"
-#include "progress_line.h"
 #include "proximity.h"
 #include "scene.h"
 #include "self.h"
@@ -108,12 +108,12 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::set_terminate(end_by_uncaught_exception);
+  const Interrupts interrupts;
   try {
     const PrintableOutput output;
     return run(argc, argv);
   } catch (const sdm::Cancelled& error) {
     std::cerr << "sdm: error: " << error.what() << '\n';
-    ProgressLine::end_by_interrupt();
   } catch (const std::bad_alloc&) {
     std::cerr << "sdm: error: not enough memory; choose a lower --resolution or smaller meshes\n";
   } catch (const sdm::Error& error) {
@@ -121,5 +121,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     std::cerr << "sdm: error: " << printable_lines(error.what()) << '\n';
   }
+  Interrupts::end();
   return 1;
 }

@@ -27,7 +27,7 @@
 #include <utility>
 #include <vector>
 
-#include "progress_line.h"
+#include "interrupts.h"
 
 namespace fs = std::filesystem;
 
@@ -94,7 +94,7 @@ std::unique_ptr<const FolderLock> turn_to_move(const fs::path& folder) {
   for (std::optional<Clock::time_point> interrupted;; std::this_thread::sleep_for(kStep)) {
     auto lock = std::make_unique<const FolderLock>(folder);
     if (!lock->busy()) return lock;
-    if (!interrupted && ProgressLine::interrupted()) interrupted = Clock::now();
+    if (!interrupted && Interrupts::received()) interrupted = Clock::now();
     if (interrupted && Clock::now() - *interrupted > kAfterInterrupt) throw sdm::Cancelled();
     if (Clock::now() - start > kMost)
       fail(folder, fmt::format("another run has been moving files there for {} s", kMost.count()));
@@ -176,9 +176,11 @@ OutputFolder::OutputFolder(const fs::path& folder, Earlier earlier)
     existing_ = existing_.parent_path();
   if (!fs::is_directory(existing_, ignored)) fail(existing_, "it is not a folder");
   if (existing_ == folder_) remove_abandoned(folder_);
+  const Interrupts::Protected whole;
   try {
     std::tie(staging_, lock_) = make_staging(folder_);
-    outer_ = current_.exchange(this);
+    outer_ = current_;
+    current_ = this;
   } catch (...) {
     remove_traces();
     throw;
@@ -190,6 +192,7 @@ void OutputFolder::discard_current() {
 }
 
 OutputFolder::~OutputFolder() {
+  const Interrupts::Protected whole;
   current_ = outer_;
   remove_traces();
 }
@@ -233,6 +236,7 @@ std::string OutputFolder::with_final_path(std::string message) const {
 }
 
 void OutputFolder::commit() {
+  const Interrupts::Protected whole;
   const std::vector<fs::path> earlier = earlier_ ? earlier_() : std::vector<fs::path>();
   const fs::path files = staging();
   std::vector<std::pair<fs::path, fs::path>> moves;

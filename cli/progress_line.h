@@ -1,4 +1,4 @@
-// Progress on a terminal, and clean termination on Ctrl-C.
+// Progress on a terminal.
 #pragma once
 
 #include <sdm/error.h>
@@ -18,9 +18,7 @@ class Interrupted : public sdm::Cancelled {
   std::string message_;
 };
 
-/// A line on stderr that is rewritten, and removed at the end. Shown only if stderr is a terminal. During its
-/// lifetime, the first interrupt (Ctrl-C, SIGTERM or SIGHUP) cancels the work, and the second one terminates
-/// the program.
+/// A line on stderr that is rewritten, and removed at the end. Shown only if stderr is a terminal.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
@@ -28,15 +26,10 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// The callback refers to this object, which must outlive it.
+  /// The callback refers to this object, which must outlive it. It asks to cancel after an interrupt.
   [[nodiscard]] sdm::Progress callback();
   /// Throws sdm::Cancelled after an interrupt.
   void step(std::string_view name);
-  /// An interrupt has arrived.
-  [[nodiscard]] static bool interrupted();
-  /// Terminates the program with the signal that interrupted it, so that a loop in a shell script ends too.
-  /// To be called after the cleanup.
-  static void end_by_interrupt();
 
  private:
   bool show(std::string line);

@@ -17,6 +17,7 @@
 
 #include "common_options.h"
 #include "format.h"
+#include "interrupts.h"
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
@@ -158,6 +159,7 @@ class FrameLoop {
   /// reported as Interrupted or sdm::Error.
   /// Returns whether all frames are within the tolerance, if there is one.
   bool process() {
+    std::optional<Interrupts::Protected> keeping;  // the frames that an interrupt leaves finished
     out_.fill(
         [&] {
           if (resumed_) follow();
@@ -174,6 +176,7 @@ class FrameLoop {
           } catch (const sdm::Cancelled&) {
             if (state_.frames.size() == kept) throw;  // nothing new
             interrupted_ = true;
+            keeping.emplace();
           }
           write_results();
         },
@@ -313,10 +316,11 @@ class FrameLoop {
     const bool write = command_.maps_every > 0 && index % static_cast<std::size_t>(command_.maps_every) == 0;
     if (write || command_.measures() || !command_.no_temporal)
       sdm::compute_map(query_->surface(0), query_->sites(1), map_options_, map_);
-    if (!command_.no_temporal) temporal_.add(query_->surface(0), map_);
     if (command_.measures()) measure_distances(frame);
     frame.time.map = watch.lap();
     if (write) write_maps(index);
+    const Interrupts::Protected finished;  // from here on the frame belongs to the results
+    if (!command_.no_temporal) temporal_.add(query_->surface(0), map_);
     if (player_) player_->add(index, query_->sites(0), query_->sites(1));
     frame.time.write = watch.lap();
     Json line = to_json(frame, contacts);
@@ -369,6 +373,8 @@ class FrameLoop {
     if (!replaced) try {
         if (b == 0) temporal_.before_edit(query_->surface(0));
         query_->edit(b, change.edit);
+      } catch (const sdm::Cancelled&) {
+        throw;
       } catch (const sdm::Error&) {  // the atlas has no room
         replaced = true;
       }
@@ -401,8 +407,8 @@ class FrameLoop {
     const sdm::Mesh mesh = query_->surface(0).mesh();
     atlases_[0].resolution = sdm::resolution_for(mesh, atlases_[0], command_.map_precision);
     query_->replace(0, sdm::Shape(mesh, atlases_[0]));
-    bounds_[0].rebuild(query_->surface(0));
     temporal_.before_restart();
+    bounds_[0].rebuild(query_->surface(0));
     if (!frame.topology[0]) frame.topology[0].emplace();
     frame.topology[0]->new_layout = true;
   }
@@ -419,13 +425,22 @@ class FrameLoop {
     }
   }
 
+  // All of the frame's maps or, if it throws, none.
   void write_maps(std::size_t index) {
     const fs::path folder = out_.staging("maps");
-    for (int b = 0; b < (command_.both ? 2 : 1); ++b) {
-      const std::string name = fmt::format("{:04}{}", index, b == 0 ? "" : kOfO2);
-      const sdm::DistanceMap& map = b == 0 ? map_ : other_map_;
-      sdm::write_exr(folder / (name + ".exr"), query_->surface(b), map);
-      sdm::write_distance_png(folder / (name + ".png"), query_->surface(b), map, command_.picture);
+    std::vector<fs::path> written;
+    try {
+      for (int b = 0; b < (command_.both ? 2 : 1); ++b) {
+        const std::string name = fmt::format("{:04}{}", index, b == 0 ? "" : kOfO2);
+        const sdm::DistanceMap& map = b == 0 ? map_ : other_map_;
+        sdm::write_exr(written.emplace_back(folder / (name + ".exr")), query_->surface(b), map);
+        sdm::write_distance_png(written.emplace_back(folder / (name + ".png")), query_->surface(b), map,
+                                command_.picture);
+      }
+    } catch (...) {
+      std::error_code ignored;
+      for (const fs::path& file : written) fs::remove(file, ignored);
+      throw;
     }
   }
 

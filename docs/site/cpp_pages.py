@@ -20,7 +20,7 @@ SUBJECTS = {
     "Proximity": ["proximity_query", "shape", "multi_body_query", "self_proximity_query", "time_of_contact",
                   "hausdorff"],
     "Other queries": ["align", "rays", "volume"],
-    "Errors, progress and threads": ["error", "printable", "progress", "threads"],
+    "Errors, progress and threads": ["error", "printable", "progress", "cancellation", "threads"],
 }  # fmt: skip
 # Headers that declare nothing of their own.
 WITHOUT_PAGE = {"api", "sdm"}

@@ -14,6 +14,8 @@
 #include <mutex>
 #include <utility>
 
+#include "core/cancellation.h"
+
 namespace sdm::core {
 
 unsigned thread_count() {
@@ -61,11 +63,14 @@ void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& bod
   tbb::task_group_context context(tbb::task_group_context::isolated);
   Order order;
   order.part_added();
+  const CancelToken token = cancel_token();
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain),
         [&](const tbb::blocked_range<std::size_t>& range) {
           order.part_begins();
+          const CancelBy by(token);
+          poll();
           body(range.begin(), range.end());
           order.part_ends();
         },
@@ -79,6 +84,9 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
   if (!progress) return parallel_for(count, grain, body);
   std::atomic<std::size_t> done{0};
   std::atomic<bool> cancelled{false};
+  CancelToken token = cancel_token();
+  token.progress = &cancelled;
+  const CancelBy by(token);
   std::mutex reporting;
   std::size_t reported = 0;
   const auto report = [&] {
@@ -86,7 +94,6 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
     if (!progress(step, static_cast<double>(reported) / static_cast<double>(count))) cancelled = true;
   };
   parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-    if (cancelled.load(std::memory_order_relaxed)) return;
     body(begin, end);
     done += end - begin;
     // A thread that finds another one reporting continues: the next report includes its share.
@@ -101,8 +108,10 @@ void parallel_invoke(const std::function<void()>& first, const std::function<voi
   tbb::task_group_context context(tbb::task_group_context::isolated);
   Order order;
   order.part_added();
-  const auto part = [&](const std::function<void()>& task) {
+  const auto part = [&, token = cancel_token()](const std::function<void()>& task) {
     order.part_begins();
+    const CancelBy by(token);
+    poll();
     task();
     order.part_ends();
   };
@@ -120,6 +129,8 @@ class TaskGroup final : public Tasks {
     order_.part_added();
     group_.run([this, task = std::move(task)] {
       order_.part_begins();
+      const CancelBy by(token_);
+      poll();
       task();
       order_.part_ends();
     });
@@ -131,6 +142,7 @@ class TaskGroup final : public Tasks {
 
  private:
   tbb::task_group group_;
+  const CancelToken token_ = cancel_token();
   Order order_;
 };
 

@@ -1,4 +1,5 @@
 // Parallel loops and tasks. Results must not depend on how a range is divided or on the number of threads.
+// All poll for cancellation (core/cancellation.h) before each range and each task, on behalf of their caller.
 #pragma once
 
 #include <sdm/progress.h>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/cancellation.h"
 #include "core/geometry/predicates.h"
 #include "hierarchy/traverse.h"
 
@@ -58,6 +59,7 @@ std::optional<int> crossing(const Vec3& p, const Vec3& q, const std::array<Vec3,
 
 std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p, const Vec3& q) {
   const Segment segment(sites.frame, pose, p, q);
+  poll();
   std::optional<int> turns = 0;
   traverse(
       sites.tree, whole(sites.tree),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/cancellation.h"
 #include "core/geometry/triangle_pair.h"
 #include "core/parallel.h"
 #include "hierarchy/traverse.h"
@@ -165,6 +166,7 @@ bool SolidBoundary::find_cuts(const Piece& piece, std::span<const std::uint32_t>
 // The cells between the planes have the same sides everywhere.
 void SolidBoundary::divide(const Piece& piece, std::span<const std::uint32_t> near,
                            Division& division) const {
+  poll();
   division.known = true;
   division.pieces.clear(), division.near.clear();
   for (const std::uint32_t other : near)
@@ -262,7 +264,9 @@ SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
   found.lower = found.upper;
   push_node(0);
   bool unsure = false;  // whether what is nearer may be boundary
+  Poll due(64);
   for (std::size_t pieces = 0; !open.empty() && open.front().bound < found.upper;) {
+    due();
     std::pop_heap(open.begin(), open.end());
     const Open nearest = open.back();
     open.pop_back();
@@ -319,10 +323,12 @@ SolidBoundary::Volume SolidBoundary::volume() const {
   parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<Piece> open;             // each numbered by how often it has been divided,
     std::vector<Division> divisions(1);  // by the last piece of each number
+    Poll due(64);
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t k = kGrain * i; k < std::min(kGrain * (i + 1), faces.size()); ++k) {
         const bool may_repeat = sides_[faces[k]] == Sides::mixed;
         open.assign(1, whole_face(faces[k]));
+        due();
         while (!open.empty()) {
           const Piece piece = open.back();
           open.pop_back();

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/cancellation.h"
 #include "core/geometry/vec.h"
 #include "hierarchy/traverse.h"
 #include "inside/solid_angle.h"
@@ -38,9 +39,11 @@ WindingNumber::WindingNumber(const sites::SitesData& sites)
       farthest[k] = 0.5 / sites.frame.scale * (hi[k] - lo[k]) + std::abs(d.centre[k] - middle[k]);
     d.radius = norm(farthest);
   };
+  Poll due(1024);
   for_each_bottom_up(
       sites.tree,
       [&](std::uint32_t leaf) {
+        due();
         for (const std::uint32_t face : sites.tree.items_of(leaf)) {
           const auto [a, b, c] = corners(sites, face);
           const Vec3 moment = 0.5 * cross(b - a, c - a);
@@ -60,6 +63,7 @@ WindingNumber::WindingNumber(const sites::SitesData& sites)
 // largest norm of K's derivative on the way, which is 2 / |r|³; thus the error is at most 2·area·radius /
 // (distance − radius)³.
 double WindingNumber::operator()(const Vec3& q, double error) const {
+  poll();
   constexpr double kSphere = 4 * std::numbers::pi;
   if (sites_.tree.nodes.empty()) return 0;
   const double error_per_area = kSphere * error / dipoles_[0].area;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "atlas/size_text.h"
+#include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 
@@ -22,6 +23,7 @@ TemporalMaps::TemporalMaps(State state) : state_(std::move(state)) {
 }
 
 void TemporalMaps::add(const DistanceMap& map) try {
+  const Uncancellable whole;
   State& state = state_;
   if (state.maps == 0) {
     state.resolution = map.resolution;
@@ -51,6 +53,7 @@ void TemporalMaps::add(const DistanceMap& map) try {
 }
 
 void TemporalMaps::follow_edit(std::span<const std::uint32_t> before, const Surface& edited) try {
+  const Uncancellable whole;
   if (state_.maps == 0) return;
   const std::span<const std::uint32_t> now = edited.texel_faces();
   if (before.size() != state_.sum.size() || edited.resolution() != state_.resolution ||

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <new>
 
+#include "core/cancellation.h"
 #include "core/disjoint_sets.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
@@ -12,10 +13,14 @@
 namespace sdm {
 namespace {
 
+constexpr std::uint32_t kPolled = 4096;  // steps
+
 void count_components(const Mesh& mesh, MeshInfo& info) {
   DisjointSets sets(mesh.positions.size());
   std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  Poll due(kPolled);
   for (const Triangle& t : mesh.triangles) {
+    due();
     if (is_removed(t)) continue;
     for (const std::uint32_t v : t) used[v] = 1;
     sets.unite(t[0], t[1]);
@@ -31,14 +36,18 @@ void count_components(const Mesh& mesh, MeshInfo& info) {
 
 void count_nonmanifold_vertices(const Mesh& mesh, const mesh::Topology& topology, MeshInfo& info) {
   const mesh::VertexFaces rows = mesh::vertex_faces(mesh.positions.size(), mesh.triangles, topology);
+  Poll due(kPolled);
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    due();
     const std::span<const std::uint32_t> faces = rows.of(v);
     if (!faces.empty() && !mesh::is_fan(topology, v, faces)) ++info.nonmanifold_vertices;
   }
 }
 
 void measure(const Mesh& mesh, MeshInfo& info) {
+  Poll due(kPolled);
   for (const Triangle& t : mesh.triangles) {
+    due();
     const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
     const Vec3 n = cross(b - a, c - a);
     info.degenerate_faces += n == Vec3{};

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/memory.h"
 #include "mesh/validate.h"
 
@@ -85,6 +86,7 @@ struct Before {
 }  // namespace
 
 void apply(Mesh& mesh, const MeshEdit& edit) try {
+  const Uncancellable whole;
   check(mesh, edit);
   const Before before(mesh, edit);
   mesh.positions.insert(mesh.positions.end(), edit.added_vertices.begin(), edit.added_vertices.end());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/cancellation.h"
 #include "core/parallel.h"
 #include "mesh/half_edges.h"
 
@@ -14,7 +15,9 @@ constexpr std::size_t kGrain = 4096;
 CompressedRows<HalfEdge> half_edges_by_smaller_vertex(std::size_t vertex_count,
                                                       std::span<const Triangle> triangles) {
   return make_rows<HalfEdge>(vertex_count, [&](const auto& put) {
+    Poll due(kGrain);
     for (std::uint32_t f = 0; f < triangles.size(); ++f) {
+      due();
       const auto [a, b, c] = triangles[f];
       if (repeats_a_corner(triangles[f])) continue;
       put(std::min(a, b), HalfEdge{std::max(a, b), c, 3 * f});
@@ -131,6 +134,7 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
   result.flipped.assign(triangles.size(), 0);
   result.component.assign(triangles.size(), kNone);
   std::vector<std::uint32_t> members;  // of a component, in the order of their discovery
+  Poll due(kGrain);
   for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
     if (topology.ignored(seed) || result.component[seed] != kNone) continue;
     const auto component = static_cast<std::uint32_t>(result.first_face.size());
@@ -139,6 +143,7 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
     members.assign(1, static_cast<std::uint32_t>(seed));
     std::size_t flipped_members = 0;
     for (std::size_t next = 0; next < members.size(); ++next) {
+      due();
       const std::uint32_t f = members[next];
       flipped_members += result.flipped[f];
       for (const std::uint32_t neighbour : neighbours[f]) {
@@ -165,9 +170,12 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
 VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> triangles,
                          const Topology& topology) {
   return make_rows<std::uint32_t>(vertex_count, [&](const auto& put) {
-    for (std::uint32_t f = 0; f < triangles.size(); ++f)
+    Poll due(kGrain);
+    for (std::uint32_t f = 0; f < triangles.size(); ++f) {
+      due();
       if (!topology.ignored(f))
         for (const std::uint32_t v : triangles[f]) put(v, f);
+    }
   });
 }
 

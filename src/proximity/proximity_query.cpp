@@ -4,6 +4,7 @@
 #include <new>
 #include <string>
 
+#include "core/cancellation.h"
 #include "core/memory.h"
 #include "proximity/pair/pair_answers.h"
 #include "proximity/shape/posed_body.h"
@@ -57,6 +58,7 @@ ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;
 
 void ProximityQuery::set_pose(int body, const Transform& pose) {
   check_body(body);
+  const Uncancellable whole;
   impl_->bodies[body].set_pose(pose);
   impl_->begin();
 }
@@ -67,6 +69,7 @@ Transform ProximityQuery::pose(int body) const {
 }
 
 void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
+  const Uncancellable whole;
   const std::array positions{o1, o2};
   for (int b = 0; b < 2; ++b)
     if (!positions[b].empty()) impl_->bodies[b].check_refit(positions[b]);
@@ -79,6 +82,7 @@ void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
 
 void ProximityQuery::edit(int body, const MeshEdit& edit) {
   check_body(body);
+  const Uncancellable whole;
   impl_->bodies[body].require_own_shape();
   with_memory([&] {
     impl_->bodies[body].edit(edit);
@@ -88,6 +92,7 @@ void ProximityQuery::edit(int body, const MeshEdit& edit) {
 
 void ProximityQuery::replace(int body, Shape shape) {
   check_body(body);
+  const Uncancellable whole;
   impl_->bodies[body].replace(std::move(shape));
   impl_->begin_anew();
 }

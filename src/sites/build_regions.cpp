@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/parallel.h"
 #include "hierarchy/traverse.h"
 #include "sites/cone_rays.h"
@@ -43,7 +44,9 @@ class SiteOrder {
     places.corners.reserve(faces.size());
     places.edges.reserve(edge_place_.size());
     owners.reserve(faces.size() + 1);
+    Poll due(kGrain);
     for (const std::uint32_t face : faces) {
+      due();
       owners.push_back(next_owner(face));
       const Triangle& t = s_.triangles[face];
       Triangle& corners = places.corners.emplace_back();
@@ -115,7 +118,9 @@ Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
   parallel_invoke(
       [&] {
         neighbours = make_rows<std::uint32_t>(vertices, [&](const auto& put) {
+          Poll due(kGrain);
           for (const SitePlaces::Edge& edge : places.edges) {
+            due();
             put(edge.corners[0], edge.corners[1]);
             put(edge.corners[1], edge.corners[0]);
           }
@@ -123,8 +128,11 @@ Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
       },
       [&] {
         places.fans = make_rows<std::uint32_t>(vertices, [&](const auto& put) {
-          for (std::uint32_t f = 0; f < faces; ++f)
+          Poll due(kGrain);
+          for (std::uint32_t f = 0; f < faces; ++f) {
+            due();
             for (std::uint32_t k = 0; k < 3; ++k) put(places.corners[f][k], 4 * f + k);
+          }
         });
         regions.vertices.resize(vertices), regions.points.resize(vertices);
         regions.bounds.resize(regions.leaves.size() - 1);

@@ -3,6 +3,7 @@
 #include <new>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/memory.h"
 #include "sites/sites_data.h"
 
@@ -18,12 +19,16 @@ Sites::Sites(Sites&&) noexcept = default;
 Sites& Sites::operator=(Sites&&) noexcept = default;
 
 void Sites::refit(std::span<const Vec3> positions) try {
+  const Uncancellable whole;
   data_->refit(positions);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the sites of a mesh");
 }
 
-void Sites::edit(const MeshEdit& edit) try { data_->edit(edit); } catch (const std::bad_alloc&) {
+void Sites::edit(const MeshEdit& edit) try {
+  const Uncancellable whole;
+  data_->edit(edit);
+} catch (const std::bad_alloc&) {
   throw out_of_memory("the sites of a mesh");
 }
 

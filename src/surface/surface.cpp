@@ -3,6 +3,7 @@
 #include <new>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "surface/stored_atlas.h"
@@ -29,12 +30,16 @@ std::vector<std::uint8_t> Surface::stored_atlas() const try {
 }
 
 void Surface::refit(std::span<const Vec3> positions) try {
+  const Uncancellable whole;
   data_->refit(positions);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the atlas");
 }
 
-void Surface::edit(const MeshEdit& edit) try { data_->edit(edit); } catch (const std::bad_alloc&) {
+void Surface::edit(const MeshEdit& edit) try {
+  const Uncancellable whole;
+  data_->edit(edit);
+} catch (const std::bad_alloc&) {
   throw out_of_memory("the atlas");
 }
 

@@ -11,7 +11,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -22,6 +25,22 @@ void set_limit(__rlimit_resource resource, std::optional<std::uint64_t> value) {
   if (!value) return;
   const rlimit limit{*value, *value};
   setrlimit(resource, &limit);
+}
+
+/// The processor time, in seconds, that a child has used so far.
+double cpu_time(pid_t child) {
+  std::ifstream file("/proc/" + std::to_string(child) + "/stat");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::istringstream fields(text.substr(std::min(text.size(), text.rfind(')') + 1)));
+  std::string skipped;
+  for (int i = 3; i < 14; ++i) fields >> skipped;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
 /// Reads both ends until they are closed. Calls `read_some` after each part.
@@ -74,22 +93,29 @@ Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& opt
   close(err[1]);
 
   std::thread interrupter;
+  std::optional<double> cpu_at_signal;
+  const auto interrupt = [&](int signal) {
+    cpu_at_signal = cpu_time(child);
+    kill(child, signal);
+  };
   const bool to_kill = options.kill_after_ms > 0;
   if (const int ms = to_kill ? options.kill_after_ms : options.interrupt_after_ms; ms > 0)
-    interrupter = std::thread([=, &options] {
+    interrupter = std::thread([=, &options, &interrupt] {
       std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-      kill(child, to_kill ? SIGKILL : options.signal);
+      interrupt(to_kill ? SIGKILL : options.signal);
     });
   Outcome run;
   bool sent = options.interrupt_after_lines == 0;
   drain({out[0], err[0]}, {&run.out, &run.err}, [&] {
     if (sent || std::ranges::count(run.out, '\n') < options.interrupt_after_lines) return;
     sent = true;
-    kill(child, options.signal);
+    interrupt(options.signal);
   });
   if (interrupter.joinable()) interrupter.join();
   int status = 0;
-  waitpid(child, &status, 0);
+  rusage used{};
+  wait4(child, &status, 0, &used);
+  if (cpu_at_signal) run.cpu_after_signal = seconds(used.ru_utime) + seconds(used.ru_stime) - *cpu_at_signal;
   run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return run;
 }

@@ -12,6 +12,8 @@ namespace sdm::test {
 struct Outcome {
   int code = -1;  ///< exit code, or 128 + the signal that ended it
   std::string out, err;
+  double cpu_after_signal =
+      0;  ///< seconds of processor time, of all threads, from the first signal to the end
 };
 
 struct Conditions {

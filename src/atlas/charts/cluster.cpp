@@ -8,6 +8,7 @@
 
 #include "atlas/charts/normal_cone.h"
 #include "core/bucket_queue.h"
+#include "core/cancellation.h"
 #include "core/geometry/unit_frame.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
@@ -21,6 +22,7 @@ namespace {
 // it.
 constexpr double kMargin = 1e-6;
 constexpr int kRounds = 2;
+constexpr std::uint32_t kPolled = 4096;  // faces
 // So many clusters come from a rough surface. Each of them, grown about the normal of one face, is too wide
 // to be merged with another; grown again beside all the others, they are not.
 constexpr std::size_t kManyClusters = 4096;
@@ -102,6 +104,7 @@ class Clustering {
   // Every face without a cluster starts one, with its normal as the axis, which grows as far as possible.
   void flood_rest() {
     std::vector<std::uint32_t> queue;
+    Poll due(kPolled);
     for (const std::uint32_t seed : scattered_order(label_.size())) {
       if (label_[seed] != kNone || faces_.area[seed] == 0) continue;
       const auto cluster = static_cast<std::uint32_t>(axes_.size());
@@ -112,6 +115,7 @@ class Clustering {
       for (std::size_t i = 0; i < queue.size(); ++i) {
         if (i + 2 * kAhead < queue.size()) prefetch(queue[i + 2 * kAhead]);
         if (i + kAhead < queue.size()) prefetch_neighbours(queue[i + kAhead]);
+        due();
         const std::uint32_t face = queue[i];
         for (const std::uint32_t next : nodes_[face].neighbours)
           if (next != kNone && label_[next] == kNone && fits(nodes_[next], axis)) {
@@ -135,7 +139,9 @@ class Clustering {
     std::fill(label_.begin(), label_.end(), kNone);
     BucketQueue<Front> queue(typical_step() / 4);
     for (std::uint32_t c = 0; c < seeds.size(); ++c) queue.push(0, {0, seeds[c], c});
+    Poll due(kPolled);
     while (const auto front = queue.pop()) {
+      due();
       if (const Front* ahead = queue.ahead(2 * kAhead)) prefetch(ahead->face);
       if (const Front* ahead = queue.ahead(kAhead)) prefetch_neighbours(ahead->face);
       if (label_[front->face] != kNone) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cancellation.h"
 #include "core/rows.h"
 
 namespace sdm::atlas {
@@ -120,11 +121,13 @@ std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const 
 
   const Buckets buckets(boxes);
   std::uint64_t pairs = 0;
+  Poll due(256);
   for (std::size_t cell = 0; cell < buckets.cells(); ++cell) {
     const auto list = buckets.list(cell);
     // Starts with the last of the list: where layers overlap, a pair far apart in the list splits the stack
     // in the middle.
     for (std::size_t i = 0; i + 1 < list.size(); ++i) {
+      due();
       if ((pairs += list.size() - i) > budget) return std::pair(solid[list[i]], solid[list.back()]);
       for (std::size_t j = list.size() - 1; j > i; --j) {
         const Rectangle &a = boxes[list[i]], &b = boxes[list[j]];

@@ -10,6 +10,7 @@
 #include "atlas/packing/bitmap_bin.h"
 #include "atlas/packing/footprint.h"
 #include "atlas/packing/too_small.h"
+#include "core/cancellation.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -104,6 +105,7 @@ class Packer {
     const bool many = shapes_.size() > kManyCharts;
     std::unordered_map<std::uint64_t, std::uint32_t> first_rows;
     for (const std::uint32_t s : order_) {
+      poll();
       const Vec2& size = shapes_[s].size;
       if (scale * std::max(size[0], size[1]) + 2.0 * gutter_ > resolution_) return std::nullopt;
       const Footprint footprint = make_footprint(shapes_[s], {scale, gutter_, cell_});

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/cancellation.h"
 #include "core/excerpt.h"
 #include "io/read/byte_scanner.h"
 #include "io/read/formats.h"
@@ -117,6 +118,7 @@ class PlyReader {
 
   // Reads a row into scalars_ and lists_, both indexed by property.
   void read_row(const Element& element, std::size_t row) {
+    due_();
     in_.begin_row();
     scalars_.resize(element.properties.size());
     lists_.resize(element.properties.size());
@@ -216,6 +218,7 @@ class PlyReader {
 
   const PlyHeader& header_;
   Source in_;
+  Poll due_{4096};  // rows
   PolygonMesh mesh_;
   std::vector<Vec2> vertex_uvs_;
   std::vector<double> scalars_;

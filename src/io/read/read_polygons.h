@@ -33,6 +33,8 @@ auto with_error_prefix(const std::string& name, const Read& read) {
   const std::string prefix = name.empty() ? "" : name + ": ";
   try {
     return read();
+  } catch (const Cancelled&) {
+    throw;
   } catch (const Error& fault) {
     throw Error(printable(prefix + fault.what()));
   } catch (const std::bad_alloc&) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/cancellation.h"
+
 namespace sdm::io {
 
 /// Returns whether a word is this one in lower case, but for the case of ASCII letters.
@@ -44,6 +46,7 @@ class TextScanner {
   }
   /// Advances to the next word on this line. Returns whether there is one.
   bool more_on_line() {
+    due_();
     for (; at_ != end_; ++at_) {
       if (*at_ == newline_ || *at_ == '#') return false;
       if (*at_ == '\\') {
@@ -137,6 +140,7 @@ class TextScanner {
   const char* at_;
   const char* end_;
   char newline_;
+  Poll due_{1 << 14};  // words
 };
 
 /// Reads rows, each of which begins on a line of its own. A row may continue on further lines if it ends with

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/geometry/sweep.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -203,6 +204,7 @@ Transform MultiBodyQuery::pose(std::size_t body) const {
 }
 
 void MultiBodyQuery::refit(std::size_t body, std::span<const Vec3> positions) try {
+  const Uncancellable whole;
   impl_->check(impl_->checked(body), positions);
   impl_->moved();
   impl_->bodies[body].refit(positions);
@@ -211,6 +213,7 @@ void MultiBodyQuery::refit(std::size_t body, std::span<const Vec3> positions) tr
 }
 
 void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) try {
+  const Uncancellable whole;
   impl_->check_count(positions.size(), "positions");
   for (std::size_t b = 0; b < size(); ++b)
     if (!positions[b].empty()) impl_->check(b, positions[b]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/cancellation.h"
 #include "core/parallel.h"
 
 namespace sdm::contacts {
@@ -38,7 +39,7 @@ std::span<const Contact> ContactFinder::find(const Bodies& bodies, const exact::
   const bool alone = near_.leaves[0].size() + near_.leaves[1].size() <= kFewLeaves;
   const auto for_each = [&](std::size_t count, const auto& body) {
     const auto range = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) body(i);
+      for (std::size_t i = begin; i < end; ++i) poll(), body(i);
     };
     if (alone)
       range(0, count);

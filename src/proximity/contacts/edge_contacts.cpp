@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/cancellation.h"
 #include "core/geometry/triangle_pair.h"
 #include "core/geometry/vec.h"
 #include "engine/cpu/cpu_engine.h"
@@ -146,8 +147,10 @@ void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, do
   const sites::SitesData& sites = internals(other.sites());
   const double limit = margin + kRounding / sites.frame.scale;
   intervals_.clear();
-  for (const std::uint32_t face : faces_.find(sites, {edge.a, edge.b}, limit))
+  for (const std::uint32_t face : faces_.find(sites, {edge.a, edge.b}, limit)) {
+    poll();
     add_interval(edge, sites, face, limit);
+  }
   std::ranges::sort(intervals_, {}, &Interval::from);
 }
 
@@ -162,8 +165,10 @@ void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, dou
   const Vec3 along = edge.b - edge.a;
   const FacesNearEdge::Segment in_contact{edge.a + from * along, edge.a + to * along};
   const double below = other.solid() ? reach : 0;  // a surface has no inside
-  for (const std::uint32_t face : faces_.find_supporting(sites, in_contact, edge.sides, margin, below))
+  for (const std::uint32_t face : faces_.find_supporting(sites, in_contact, edge.sides, margin, below)) {
+    poll();
     add_support(edge, other, face, margin, below);
+  }
   std::ranges::sort(supported_, {}, [](const SupportedPart& p) { return std::tuple(p.from, p.to, p.face); });
   // Faces that continue each other support one part.
   for (std::size_t i = 0; i < supported_.size(); ++i) {

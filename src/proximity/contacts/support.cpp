@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cancellation.h"
 #include "hierarchy/traverse.h"
 
 namespace sdm::contacts {
@@ -49,6 +50,7 @@ bool is_support(const shape::Body& body, std::uint32_t face) {
 
 Support support_of_vertex(const shape::Body& body, const Vec3& vertex, std::span<const Vec3> spokes,
                           double margin, double reach) {
+  poll();
   const sites::SitesData& sites = internals(body.sites());
   Box box;
   const double most = std::max(margin, reach);

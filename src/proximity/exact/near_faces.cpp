@@ -10,6 +10,7 @@
 #include <bit>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/parallel.h"
 #include "proximity/exact/face_lanes-inl.h"
 
@@ -44,7 +45,9 @@ class NearFacesSearch {
     half_.open.erase(half_.open.begin());
   }
   void open_all() {
+    Poll due(256);
     while (!half_.open.empty()) {
+      due();
       const Entry entry = half_.open.back();
       half_.open.pop_back();
       visit(entry);

@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "proximity/exact/cylinder_lanes-inl.h"
 #include "proximity/exact/face_lanes-inl.h"
 #include "proximity/exact/triangle_lanes-inl.h"
@@ -97,7 +98,9 @@ class PairSearch {
     // Without a bound, caps of large meshes are mostly too large: trying costs a tenth of the search.
     if (!separate || bound_ == kNoDistance || !pair_caps()) w_.overlapping.assign(1, {});
     Entry entry;
+    Poll due(256);
     while (!intersection_.intersecting) {
+      due();
       const bool more = next(entry);
       if (more && entry.leaves())
         compare_leaves(entry);
@@ -516,7 +519,9 @@ class PairSearch {
     std::vector<Candidate>& all = w_.candidates;
     if constexpr (separate) {
       if (all.size() > TrianglePairs::kLanes) std::ranges::sort(all, {}, &Candidate::least);
-      for (size_t next = 0; next < all.size() && !(all[next].least > limit_);) next = compare_some(next);
+      Poll due(256);
+      for (size_t next = 0; next < all.size() && !(all[next].least > limit_); due())
+        next = compare_some(next);
     }
     all.clear();
   }

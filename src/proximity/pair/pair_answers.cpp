@@ -56,7 +56,8 @@ BoundedBool PairAnswers::colliding() {
 }
 
 const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
-  if (!std::exchange(depth_found_, true)) depth_ = depth();
+  if (!depth_found_) depth_ = depth();
+  depth_found_ = true;  // unless that has thrown
   return depth_;
 }
 

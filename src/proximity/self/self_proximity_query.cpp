@@ -8,6 +8,7 @@
 #include <new>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -114,6 +115,7 @@ SelfProximityQuery::SelfProximityQuery(SelfProximityQuery&&) noexcept = default;
 SelfProximityQuery& SelfProximityQuery::operator=(SelfProximityQuery&&) noexcept = default;
 
 void SelfProximityQuery::refit(std::span<const Vec3> positions) try {
+  const Uncancellable whole;
   impl_->sites.refit(positions);
   impl_->closest.reset();
 } catch (const std::bad_alloc&) {

@@ -2,6 +2,7 @@
 
 #include <new>
 
+#include "core/cancellation.h"
 #include "core/memory.h"
 #include "surface/sampling_bound/piece_assignment.h"
 
@@ -22,6 +23,7 @@ SamplingBound::SamplingBound(SamplingBound&&) noexcept = default;
 SamplingBound& SamplingBound::operator=(SamplingBound&&) noexcept = default;
 
 void SamplingBound::refit(const Surface& surface) {
+  const Uncancellable whole;
   impl_->pieces.require_same(surface);
   impl_->pieces.measure(surface, impl_->radii);
 }

@@ -49,6 +49,8 @@ FileBytes decode_data_uri(std::string_view uri) {
 FileBytes read_buffer(const std::filesystem::path& file, std::string_view uri) {
   try {
     return read_bytes(file);
+  } catch (const Cancelled&) {
+    throw;
   } catch (const Error& fault) {
     throw Error(fmt::format("buffer '{}': {}", excerpt(decode_uri(uri)), fault.what()));
   }

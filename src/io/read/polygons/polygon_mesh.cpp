@@ -8,11 +8,14 @@
 #include <random>
 #include <string>
 
+#include "core/cancellation.h"
 #include "core/geometry/vec.h"
 #include "io/read/polygons/triangulate.h"
 
 namespace sdm::io {
 namespace {
+
+constexpr std::uint32_t kPolled = 4096;  // steps
 
 std::ptrdiff_t face_of_corner(const PolygonMesh& polygons, std::size_t corner) {
   return std::ranges::upper_bound(polygons.ends, corner) - polygons.ends.begin();
@@ -25,7 +28,9 @@ void check_indices(const PolygonMesh& polygons) {
         fmt::format("there are no triangles, only a cloud of {} points; reconstruct a mesh from them first",
                     polygons.positions.size()));
   }
+  Poll due(kPolled);
   for (std::size_t c = 0; c < polygons.corners.size(); ++c) {
+    due();
     if (polygons.corners[c] < polygons.positions.size()) continue;
     throw Error(fmt::format("index out of range: face {} refers to vertex {} of {}",
                             face_of_corner(polygons, c), polygons.corners[c], polygons.positions.size()));
@@ -79,7 +84,9 @@ std::vector<std::uint32_t> weld(const PolygonMesh& polygons, Mesh& mesh) {
                     static_cast<std::size_t>(std::count(renumbered.begin(), renumbered.end(), kNone));
   mesh.positions.reserve(used);
   PositionTable table(used, mesh.positions);
+  Poll due(kPolled);
   for (std::size_t v = 0; v < renumbered.size(); ++v) {
+    due();
     if (renumbered[v] == kNone) continue;
     if (!finite(polygons.positions[v]))
       throw Error(fmt::format("vertex {} has a NaN or infinite coordinate", v));
@@ -130,6 +137,8 @@ void PolygonNames::begin(std::size_t polygon, std::string_view name) {
 }
 
 void PolygonMesh::end_polygon() {
+  thread_local Poll due(kPolled);
+  due();
   const std::size_t begin = ends.empty() ? 0 : ends.back();
   if (corners.size() >= kNone) throw Error("there are more than 2^32 corners of faces");
   if (corners.size() - begin >= 3) {
@@ -185,7 +194,9 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
     if (with_uvs) mesh.corner_uvs.push_back({uv(a), uv(b), uv(c)});
   };
   std::uint32_t begin = 0;
+  Poll due(kPolled);
   for (const std::uint32_t end : polygons.ends) {
+    due();
     if (end - begin == 3) {
       add_triangle(begin, begin + 1, begin + 2);
     } else {

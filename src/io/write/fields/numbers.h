@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "core/cancellation.h"
 #include "io/write/little_endian.h"
 
 namespace sdm::io {
@@ -16,6 +17,7 @@ void write_numbers(std::ostream& out, std::span<const T> numbers) {
   constexpr std::size_t kMost = 1 << 16;  // at a time
   std::string bytes;
   for (std::size_t i = 0; i < numbers.size(); i += kMost) {
+    poll();
     bytes.clear();
     for (const T number : numbers.subspan(i, std::min(kMost, numbers.size() - i)))
       append_little_endian(bytes, number);

@@ -9,6 +9,7 @@
 #include <new>
 #include <vector>
 
+#include "core/cancellation.h"
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "io/write/player/animated_model.h"
@@ -96,6 +97,7 @@ std::size_t SequencePlayer::frames() const {
 }
 
 void SequencePlayer::add(std::size_t frame, const Sites& o1, const Sites& o2) try {
+  const Uncancellable whole;
   const std::array<const Sites*, 2> sites{&o1, &o2};
   for (int b = 0; b < 2; ++b)
     if (!impl_->bodies[b].fits(sites[b]->mesh()))

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "core/cancellation.h"
 #include "core/geometry/vec.h"
 
 namespace sdm::io {
@@ -32,15 +33,19 @@ std::vector<std::uint32_t> clustered(const Mesh& mesh, std::span<const float> di
     return std::isfinite(distances[v]) ? std::abs(distances[v]) : -1;
   };
   std::unordered_map<std::uint64_t, std::uint32_t> largest;
+  Poll due(4096);
   for (const Triangle& triangle : mesh.triangles)
     for (const std::uint32_t v : triangle) {
+      due();
       const auto [place, is_new] = largest.try_emplace(key(mesh.positions[v]), v);
       if (!is_new && size(v) > size(place->second)) place->second = v;
     }
   std::vector<std::uint32_t> result(mesh.positions.size(), kNone);
   for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t v : triangle)
+    for (const std::uint32_t v : triangle) {
+      due();
       if (result[v] == kNone) result[v] = largest.at(key(mesh.positions[v]));
+    }
   return result;
 }
 
@@ -67,6 +72,7 @@ FewerVertices fewer_vertices(const Mesh& mesh, std::span<const float> distances,
   if (!(cell > 0)) cell = diagonal(bounds(mesh));
   std::vector<Triangle> triangles;
   do {
+    poll();
     triangles = remaining(mesh, clustered(mesh, distances, cell));
     cell *= 1.25;
   } while (triangles.size() > most);
