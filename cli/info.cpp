@@ -28,49 +28,64 @@ struct Options {
   bool json = false;
 };
 
+using FacePairs = std::vector<std::array<std::uint32_t, 2>>;
+
 struct Info {
   sdm::MeshInfo mesh;
-  std::vector<std::array<std::uint32_t, 2>> self_intersections{};
   Notes notes{};
-  std::optional<sdm::VolumeBounds> volume{};  ///< if closed and orientable
+  std::uint64_t budget = 0;                       ///< of the search for self-intersections, in pairs of faces
+  std::optional<FacePairs> self_intersections{};  ///< unless it takes more
+  std::optional<sdm::VolumeBounds> volume{};      ///< if closed and orientable, and these are known
+
+  [[nodiscard]] bool is_solid() const { return mesh.closed && mesh.orientable; }
 };
 
 Info collect(const std::string& file) {
   Input input = load_input("mesh", file, "");
   Info info{.mesh = sdm::inspect(input.mesh), .notes = std::move(input.notes)};
   const sdm::Sites sites(std::move(input.mesh));
-  info.self_intersections = sdm::self_intersections(sites);
-  if (info.mesh.closed && info.mesh.orientable) info.volume = sdm::solid_volume(sites);
+  info.budget = sdm::self_intersection_budget(sites);
+  info.self_intersections = sdm::self_intersections(sites, info.budget);
+  if (info.is_solid() && info.self_intersections)
+    info.volume = sdm::solid_volume(sites, info.self_intersections->empty());
   return info;
 }
 
 constexpr std::size_t kShown = 3;  // pairs of intersecting faces
 
+std::string not_determined(const Info& info) {
+  return fmt::format("not determined: more than {} pairs of faces are near each other", info.budget);
+}
+
 nlohmann::ordered_json info_json(const std::string& file, const Info& all) {
   const sdm::MeshInfo& info = all.mesh;
-  return {{"file", file},
-          {"vertices", info.vertices},
-          {"edges", info.edges},
-          {"triangles", info.triangles},
-          {"bounds", {{"lo", info.bounds.lo}, {"hi", info.bounds.hi}}},
-          {"components", info.components},
-          {"closed", info.closed},
-          {"orientable", info.orientable},
-          {"oriented", info.oriented},
-          {"manifold", info.manifold},
-          {"boundary_edges", info.boundary_edges},
-          {"nonmanifold_edges", info.nonmanifold_edges},
-          {"nonmanifold_vertices", info.nonmanifold_vertices},
-          {"degenerate_faces", info.degenerate_faces},
-          {"duplicate_faces", info.duplicate_faces},
-          {"unused_vertices", info.unused_vertices},
-          {"self_intersections", all.self_intersections.size()},
-          {"uvs", info.has_uvs},
-          {"area", info.area},
-          {"volume", all.volume
-                         ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
-                         : nlohmann::ordered_json()},
-          {"notes", all.notes}};
+  return {
+      {"file", file},
+      {"vertices", info.vertices},
+      {"edges", info.edges},
+      {"triangles", info.triangles},
+      {"bounds", {{"lo", info.bounds.lo}, {"hi", info.bounds.hi}}},
+      {"components", info.components},
+      {"closed", info.closed},
+      {"orientable", info.orientable},
+      {"oriented", info.oriented},
+      {"manifold", info.manifold},
+      {"boundary_edges", info.boundary_edges},
+      {"nonmanifold_edges", info.nonmanifold_edges},
+      {"nonmanifold_vertices", info.nonmanifold_vertices},
+      {"degenerate_faces", info.degenerate_faces},
+      {"duplicate_faces", info.duplicate_faces},
+      {"unused_vertices", info.unused_vertices},
+      {"self_intersections", all.self_intersections ? nlohmann::ordered_json(all.self_intersections->size())
+                                                    : nlohmann::ordered_json()},
+      {"not_determined",
+       all.self_intersections ? nlohmann::ordered_json() : nlohmann::ordered_json(not_determined(all))},
+      {"uvs", info.has_uvs},
+      {"area", info.area},
+      {"volume", all.volume
+                     ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
+                     : nlohmann::ordered_json()},
+      {"notes", all.notes}};
 }
 
 std::string text(bool value) {
@@ -85,17 +100,18 @@ std::string text(const sdm::Vec3& p, double size) {
                      coordinate(p[2], size, kDigits));
 }
 
-std::string text(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+std::string text(const FacePairs& pairs) {
   if (pairs.empty()) return "none";
   std::string result = fmt::format("{} pair{} of faces: ", pairs.size(), pairs.size() == 1 ? "" : "s");
   for (std::size_t i = 0; i < std::min(kShown, pairs.size()); ++i)
     result += fmt::format("{}{} and {}", i == 0 ? "" : ", ", pairs[i][0], pairs[i][1]);
   return result + (pairs.size() > kShown ? ", ..." : "");
 }
-std::string text(const std::optional<sdm::VolumeBounds>& volume) {
-  if (!volume) return "none: not closed and orientable";
-  if (volume->lower == volume->upper) return text(volume->lower);
-  return fmt::format("between {} and {}", text(volume->lower), text(volume->upper));
+std::string volume_text(const Info& info) {
+  if (!info.is_solid()) return "none: not closed and orientable";
+  if (!info.volume) return "not determined, as the self-intersections";
+  if (info.volume->lower == info.volume->upper) return text(info.volume->lower);
+  return fmt::format("between {} and {}", text(info.volume->lower), text(info.volume->upper));
 }
 
 void print_table(std::ostream& out, const std::string& file, const Info& all) {
@@ -123,15 +139,15 @@ void print_table(std::ostream& out, const std::string& file, const Info& all) {
                                               info.nonmanifold_edges, info.nonmanifold_vertices));
   row("degenerate faces", fmt::to_string(info.degenerate_faces));
   row("duplicate faces", fmt::to_string(info.duplicate_faces));
-  row("self-intersections", text(all.self_intersections));
+  row("self-intersections", all.self_intersections ? text(*all.self_intersections) : not_determined(all));
   row("uvs", text(info.has_uvs));
   row("area", text(info.area));
-  row("volume", text(all.volume));
+  row("volume", volume_text(all));
   for (const std::string& note : all.notes) row("note", note);
 }
 
 // One pair of face numbers a line.
-std::string to_csv(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+std::string to_csv(const FacePairs& pairs) {
   std::string csv = "face1,face2\n";
   for (const auto& [a, b] : pairs) csv += fmt::format("{},{}\n", a, b);
   return csv;
@@ -139,8 +155,12 @@ std::string to_csv(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
 
 void run(const Options& options) {
   const Info info = collect(options.file);
-  if (!options.self_intersections.empty())
-    write_whole(options.self_intersections, to_csv(info.self_intersections));
+  if (!options.self_intersections.empty()) {
+    if (!info.self_intersections)
+      throw sdm::Error(fmt::format("{}: the self-intersections are {}; cut the mesh into parts", options.file,
+                                   not_determined(info)));
+    write_whole(options.self_intersections, to_csv(*info.self_intersections));
+  }
   if (options.json)
     std::cout << info_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
               << '\n';
@@ -159,7 +179,9 @@ void add_info_command(CLI::App& app) {
   command->add_flag("--json", options->json, "Print JSON");
   command
       ->add_option("--self-intersections", options->self_intersections,
-                   "Write all pairs of faces that intersect, numbered from 0, to this CSV file")
+                   "Write all pairs of faces that intersect, numbered from 0, to this CSV file; an error "
+                   "where these are not determined, since more than 200 pairs for each face, and more than "
+                   "20 million, are near each other")
       ->type_name("FILE");
   command->footer("Example:\n  sdm info scan.ply");
   command->callback([options] { run(*options); });

@@ -112,8 +112,9 @@ Computed compute(const MapCommand& command, Input& on, Input& to, const AtlasPar
         Stopwatch watch;
         if (!sites) sites = std::make_unique<sdm::Sites>(to.mesh);
         outcome.time.sites = watch.lap();
-        // While the atlas leaves a core idle:
-        outcome.embedded = sdm::is_embedded(*sites);
+        // While the atlas leaves a core idle. Without an inside it decides nothing.
+        if (sdm::choose_sign(*sites, command.map.sign).method == sdm::SignMethod::exact)
+          outcome.embedded = sdm::is_embedded(*sites);
         sdm::MapOptions options = command.map;
         options.progress = nullptr;  // the atlas reports
         at_vertices = sdm::distances_at_vertices(mesh, *sites, options);
@@ -205,7 +206,7 @@ void write_results(const MapCommand& command, Input& on, Input& to, const AtlasP
   report["version"] = sdm::kVersion;
   report["o1"] = to_json(o1);
   report["o2"] = to_json(o2);
-  report[to.role]["embedded"] = outcome.embedded;
+  report[to.role]["embedded"] = outcome.embedded ? nlohmann::ordered_json(*outcome.embedded) : nullptr;
   report["measured_on"] = on.role;
   report["units"] = command.picture.units;
   if (aligned) report["alignment"] = to_json(*aligned);

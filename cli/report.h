@@ -47,7 +47,7 @@ struct Outcome {
   double max_distance = 0;                 ///< infinite if there is no limit
   std::uint32_t resolution = 0, rows = 0;  ///< of the map
   double size = 0;                         ///< of the mesh that is measured: the diagonal of its box
-  bool embedded = true;                    ///< the other mesh does not intersect itself
+  std::optional<bool> embedded{};          ///< the other mesh does not intersect itself; if it has an inside
   std::vector<std::string> notes;          ///< what the user probably did not intend
   std::optional<sdm::ToleranceVerdict> tolerance;
   MapNumbers numbers;

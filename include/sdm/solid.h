@@ -19,5 +19,7 @@ struct VolumeBounds {
 /// sdm::Error for a mesh that is not closed and orientable, or if there is not enough memory. Cost: that of
 /// is_embedded(); if the mesh is not embedded, also that of dividing the faces that intersect others.
 [[nodiscard]] SDM_API VolumeBounds solid_volume(const Sites& sites);
+/// The same, where is_embedded() is known.
+[[nodiscard]] SDM_API VolumeBounds solid_volume(const Sites& sites, bool embedded);
 
 }  // namespace sdm

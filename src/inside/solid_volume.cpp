@@ -10,10 +10,23 @@
 
 namespace sdm {
 
-VolumeBounds solid_volume(const Sites& sites) try {
+namespace {
+
+void check_solid(const Sites& sites) {
+  if (!internals(sites).is_solid()) throw Error("a mesh that is not closed and orientable has no volume");
+}
+
+}  // namespace
+
+VolumeBounds solid_volume(const Sites& sites) {
+  check_solid(sites);
+  return solid_volume(sites, is_embedded(sites));
+}
+
+VolumeBounds solid_volume(const Sites& sites, bool embedded) try {
+  check_solid(sites);
   const sites::SitesData& data = internals(sites);
-  if (!data.is_solid()) throw Error("a mesh that is not closed and orientable has no volume");
-  if (!is_embedded(sites)) {
+  if (!embedded) {
     const inside::SolidBoundary::Volume bounds =
         inside::SolidBoundary(data, inside::FaceSides(data)).volume();
     return {bounds.lower, bounds.upper};

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <numeric>
 
+#include "core/cancellation.h"
 #include "core/geometry/triangle_pair.h"
 #include "core/geometry/vec.h"
 #include "core/parallel.h"
@@ -40,65 +42,98 @@ double volume(const Shell& shell, const inside::FaceTree& faces, std::span<const
   return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
 
-// Pairs of shells, the smaller number first, in lexicographic order.
-using ShellPairs = std::vector<std::array<std::uint32_t, 2>>;
-
-void insert(ShellPairs& pairs, std::uint32_t a, std::uint32_t b) {
-  const std::array pair{std::min(a, b), std::max(a, b)};
-  const auto at = std::ranges::lower_bound(pairs, pair);
-  if (at == pairs.end() || *at != pair) pairs.insert(at, pair);
-}
-bool contains(const ShellPairs& pairs, std::uint32_t a, std::uint32_t b) {
-  return std::ranges::binary_search(pairs, std::array{std::min(a, b), std::max(a, b)});
-}
-
-// Finds the shells that have a point in common.
-void find_intersecting(const inside::FaceTree& faces, std::span<const std::uint32_t> component,
-                       ShellPairs& pairs) {
-  pairs.clear();
-  const hierarchy::AabbTree& tree = faces.tree;
-  // Of each node the shell that its faces belong to, or kNone if they belong to several.
-  thread_local std::vector<std::uint32_t> shells;
-  std::vector<std::uint32_t>& shell = shells;
-  shell.resize(tree.nodes.size());
+// Of each node of the tree the shell that its faces belong to, or kNone if they belong to several.
+void label_nodes(const hierarchy::AabbTree& tree, std::span<const std::uint32_t> component,
+                 std::vector<std::uint32_t>& label) {
+  label.resize(tree.nodes.size());
   for_each_bottom_up(
       tree,
       [&](std::uint32_t leaf) {
         const auto items = tree.items_of(leaf);
-        shell[leaf] = component[items.front()];
+        label[leaf] = component[items.front()];
         for (const std::uint32_t face : items)
-          if (component[face] != shell[leaf]) shell[leaf] = kNone;
+          if (component[face] != label[leaf]) label[leaf] = kNone;
       },
       [&](std::uint32_t node, std::uint32_t left, std::uint32_t right) {
-        shell[node] = shell[left] == shell[right] ? shell[left] : kNone;
-      });
-  const FaceSoup mesh{faces.positions, faces.triangles, tree};
-  traverse_pairs(
-      tree, {0, 0},
-      [&](const hierarchy::NodePair& pair) {
-        const std::uint32_t a = shell[pair[0]], b = shell[pair[1]];
-        if (a != kNone && b != kNone && (a == b || contains(pairs, a, b))) return false;
-        return overlap(tree, pair);
-      },
-      [&](const hierarchy::NodePair& leaves) {
-        for_each_face_pair(tree, leaves, [&](std::uint32_t f, std::uint32_t g) {
-          const std::uint32_t a = component[f], b = component[g];
-          if (a != b && !contains(pairs, a, b) && triangles_intersect(mesh.corners(f), mesh.corners(g)))
-            insert(pairs, a, b);
-        });
+        label[node] = label[left] == label[right] ? label[left] : kNone;
       });
 }
 
-// Whether the shell lies inside an odd number of those that it does not intersect.
-bool hollow(const Shell& shell, const inside::FaceTree& faces, std::span<const std::uint32_t> component,
-            const ShellPairs& intersecting) {
-  const Vec3& corner = faces.positions[faces.triangles[shell.faces.front()][0]];
-  bool odd = false;
+using ShellNode = std::array<std::uint32_t, 2>;  // a shell, and a node of the tree
+
+// The nodes that together have all faces of each shell: the largest ones of its faces only, and leaves that
+// it shares with others. Sorted.
+void find_nodes_of_shells(const hierarchy::AabbTree& tree, std::span<const std::uint32_t> component,
+                          std::span<const std::uint32_t> label, std::vector<ShellNode>& nodes) {
+  nodes.clear();
+  for (std::uint32_t node = 0; node < tree.nodes.size(); ++node) {
+    if (label[node] != kNone) continue;
+    if (tree.nodes[node].leaf()) {
+      for (const std::uint32_t face : tree.items_of(node)) nodes.push_back({component[face], node});
+    } else {
+      for (const std::uint32_t child : {node + 1, tree.nodes[node].right})
+        if (label[child] != kNone) nodes.push_back({label[child], child});
+    }
+  }
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+}
+
+std::span<const ShellNode> nodes_of(std::uint32_t shell, std::span<const ShellNode> nodes) {
+  const auto [begin, end] =
+      std::ranges::equal_range(nodes, shell, {}, [](const ShellNode& n) { return n[0]; });
+  return {begin, end};
+}
+
+// Finds the other shells around a corner of the shell, in ascending order: those that a ray from it crosses
+// an odd number of times.
+void find_around(const Shell& shell, const inside::FaceTree& faces, std::span<const std::uint32_t> component,
+                 std::span<const std::uint32_t> faces_at, std::vector<std::uint32_t>& around) {
+  around.clear();
+  // One of few faces: a ray from where many meet would meet the boxes of all of them.
+  constexpr std::size_t kTried = 8;
+  std::uint32_t vertex = faces.triangles[shell.faces.front()][0];
+  for (const std::uint32_t face : shell.faces.first(std::min(kTried, shell.faces.size())))
+    for (const std::uint32_t v : faces.triangles[face])
+      if (faces_at[v] < faces_at[vertex]) vertex = v;
+  const Vec3& corner = faces.positions[vertex];
   for_each_crossing(faces, faces.frame.to_unit(corner), [&](std::uint32_t face) {
-    const std::uint32_t other = component[face];
-    odd ^= other != shell.component && !contains(intersecting, shell.component, other);
+    if (component[face] != shell.component) around.push_back(component[face]);
   });
-  return odd;
+  std::ranges::sort(around);
+  auto end = around.begin();
+  for (auto next = around.begin(); next != around.end();) {
+    const auto same = std::find_if(next, around.end(), [&](std::uint32_t other) { return other != *next; });
+    if ((same - next) % 2 == 1) *end++ = *next;
+    next = same;
+  }
+  around.erase(end, around.end());
+}
+
+// Removes from `others` the shells that have a point in common with this one, whose faces are below `nodes`.
+void remove_intersecting(const Shell& shell, const inside::FaceTree& faces,
+                         std::span<const std::uint32_t> component, std::span<const std::uint32_t> label,
+                         std::span<const ShellNode> nodes, std::vector<std::uint32_t>& others) {
+  const hierarchy::AabbTree& tree = faces.tree;
+  const FaceSoup mesh{faces.positions, faces.triangles, tree};
+  const auto wanted = [&](std::uint32_t other) { return std::ranges::binary_search(others, other); };
+  Poll due(128);
+  for (const auto& [unused, node] : nodes) {
+    if (others.empty()) return;
+    traverse_pairs(
+        tree, {node, 0},
+        [&](const hierarchy::NodePair& pair) {
+          due();
+          return (label[pair[1]] == kNone || wanted(label[pair[1]])) && overlap(tree, pair);
+        },
+        [&](const hierarchy::NodePair& leaves) {
+          for (const std::uint32_t f : tree.items_of(leaves[0]))
+            for (const std::uint32_t g : tree.items_of(leaves[1]))
+              if (component[f] == shell.component && wanted(component[g]) &&
+                  triangles_intersect(mesh.corners(f), mesh.corners(g)))
+                others.erase(std::ranges::lower_bound(others, component[g]));
+        });
+  }
 }
 
 }  // namespace
@@ -110,19 +145,48 @@ Shells find_shells(const mesh::Orientation& orientation) {
   });
 }
 
+// A shell is hollow, a cavity, if it lies inside an odd number of those that it does not intersect.
 void orient_outward(const inside::FaceTree& faces, const mesh::Orientation& orientation, const Shells& shells,
                     std::vector<std::uint8_t>& inverted) {
   inverted = orientation.flipped;
-  thread_local ShellPairs pairs_of_this_thread;
-  ShellPairs& intersecting = pairs_of_this_thread;
-  if (shells.size() > 1) find_intersecting(faces, orientation.component, intersecting);
+  const std::span<const std::uint32_t> component = orientation.component;
+  const bool several = shells.size() > 1;
+  // Kept by the thread, so that a refit allocates nothing.
+  thread_local std::vector<std::vector<std::uint32_t>> around_of_this_thread;
+  thread_local std::vector<std::uint32_t> label_of_this_thread;
+  thread_local std::vector<ShellNode> nodes_of_this_thread;
+  thread_local std::vector<std::uint32_t> faces_at_of_this_thread;
+  std::vector<std::uint32_t>& faces_at = faces_at_of_this_thread;  // each vertex
+  std::vector<std::vector<std::uint32_t>>& around = around_of_this_thread;
+  std::vector<std::uint32_t>& label = label_of_this_thread;
+  std::vector<ShellNode>& nodes = nodes_of_this_thread;
+  if (several && around.size() < shells.size()) around.resize(shells.size());
+  if (several) {
+    faces_at.assign(faces.positions.size(), 0);
+    for (const Triangle& t : faces.triangles)
+      for (const std::uint32_t v : t) ++faces_at[v];
+  }
+  std::atomic<bool> nested{false};
+  const auto shell_of = [&](std::size_t s) { return Shell{static_cast<std::uint32_t>(s), shells.of(s)}; };
+  parallel_for(several ? shells.size() : 0, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      find_around(shell_of(s), faces, component, faces_at, around[s]);
+      if (!around[s].empty()) nested = true;
+    }
+  });
+  if (nested) {
+    label_nodes(faces.tree, component, label);
+    find_nodes_of_shells(faces.tree, component, label, nodes);
+  }
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      Shell shell{static_cast<std::uint32_t>(s), shells.of(s)};
+      Shell shell = shell_of(s);
       shell.inward = volume(shell, faces, orientation.flipped) < 0;
-      const bool is_hollow = shells.size() > 1 && hollow(shell, faces, orientation.component, intersecting);
-      if (shell.inward != is_hollow)
-        for (std::uint32_t f : shell.faces) inverted[f] ^= 1;
+      if (several && !around[s].empty())
+        remove_intersecting(shell, faces, component, label, nodes_of(shell.component, nodes), around[s]);
+      const bool hollow = several && around[s].size() % 2 == 1;
+      if (shell.inward != hollow)
+        for (const std::uint32_t f : shell.faces) inverted[f] ^= 1;
     }
   });
 }

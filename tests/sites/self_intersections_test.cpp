@@ -1,13 +1,19 @@
 // Intersections of the faces of a mesh, against CGAL and brute force.
 #include <gtest/gtest.h>
 #include <sdm/self_intersections.h>
+#include <sdm/solid.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "core/geometry/vec.h"
+#include "sites/intersecting_faces.h"
+#include "sites/sites_data.h"
 #include "support/meshes.h"
 #include "support/pair_oracle.h"
 #include "support/shapes.h"
@@ -133,6 +139,104 @@ TEST(SelfIntersections, IgnoreFacesWithoutSites) {
   mesh.triangles.push_back({2, 1, 0});  // a duplicate
   mesh.triangles.push_back({0, 1, 1});
   EXPECT_TRUE(is_embedded(Sites(mesh)));
+}
+
+// Many faces around a vertex, an edge, or both, in all numbers of common corners; many of them intersect.
+Mesh around_hubs(int faces, std::mt19937& random) {
+  std::uniform_real_distribution<double> u(-1, 1);
+  std::uniform_int_distribution<int> grid(-2, 2), kind(0, 5);
+  Mesh mesh{{{0, 0, 0}, {0, 0, 1}, {1, 0.5, 0.25}}, {}, {}};
+  const auto point = [&](bool on_grid) {
+    mesh.positions.push_back(on_grid ? Vec3{1. * grid(random), 1. * grid(random), 1. * grid(random)}
+                                     : Vec3{u(random), u(random), u(random)});
+    return static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  };
+  for (int f = 0; f < faces; ++f) {
+    const bool on_grid = f % 3 == 0;  // coplanar faces, and directions that agree
+    switch (kind(random)) {
+      case 0:
+        mesh.triangles.push_back({0, 1, point(on_grid)});
+        break;
+      case 1:
+        mesh.triangles.push_back({2, point(on_grid), 0});
+        break;
+      case 2:
+        mesh.triangles.push_back({point(on_grid), 1, point(on_grid)});
+        break;
+      case 3:
+        mesh.triangles.push_back({2, point(on_grid), point(on_grid)});
+        break;
+      default:
+        mesh.triangles.push_back({0, point(on_grid), point(on_grid)});
+    }
+  }
+  mesh.triangles.push_back({point(false), point(false), point(false)});
+  return mesh;
+}
+
+TEST(SelfIntersections, OfManyFacesAroundVerticesAndEdgesAreThoseOfAllPairs) {
+  std::mt19937 random(8);
+  for (int round = 0; round < 2; ++round) {
+    const Sites sites(around_hubs(round == 0 ? 1600 : 900, random));
+    const sites::SitesData& data = internals(sites);
+    const sites::FaceSoup soup{data.mesh.positions, data.mesh.triangles, data.tree};
+    Pairs all;
+    std::vector<std::uint32_t> faces = data.tree.items;
+    std::ranges::sort(faces);
+    for (std::size_t a = 0; a < faces.size(); ++a)
+      for (std::size_t b = a + 1; b < faces.size(); ++b)
+        if (sites::faces_intersect(soup, faces[a], faces[b])) all.push_back({faces[a], faces[b]});
+    EXPECT_GT(all.size(), 1000u);
+    EXPECT_EQ(self_intersections(sites), all);
+    EXPECT_EQ(self_intersections(sites, all.size() - 1), std::nullopt);
+    EXPECT_FALSE(is_embedded(sites));
+  }
+}
+
+// All pairs of these faces touch: testing each would take minutes.
+TEST(SelfIntersections, OfManyFacesAtOneVertexOrEdgeEnd) {
+  constexpr int kFaces = 50'000;
+  Mesh wheel{{{0, 0, 1}}, {}, {}}, book{{{0, 0, 0}, {0, 0, 1}}, {}, {}}, star{{{0, 0, 0}}, {}, {}};
+  for (int i = 0; i < kFaces; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kFaces;
+    const Vec3 at{std::cos(angle), std::sin(angle), 0.1 * std::sin(9 * angle)};
+    wheel.positions.push_back(at), book.positions.push_back(at);
+    const auto n = static_cast<std::uint32_t>(i);
+    wheel.triangles.push_back({0, n + 1, (n + 1) % kFaces + 1});
+    book.triangles.push_back({0, 1, n + 2});
+  }
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  for (std::uint32_t i = 0; i < 10'000; ++i) {  // thin tetrahedra
+    const Vec3 tip = normalized(Vec3{normal(random), normal(random), normal(random)});
+    const Vec3 side = 1e-6 * normalized(cross(tip, {0.3, 0.5, 0.7})), other = cross(tip, side);
+    const std::uint32_t a = 3 * i + 1, b = a + 1, c = a + 2;
+    for (const Vec3& p : {tip + side, tip + other, tip - side - other}) star.positions.push_back(p);
+    for (const Triangle& t : {Triangle{0, b, a}, {0, c, b}, {0, a, c}, {a, b, c}})
+      star.triangles.push_back(t);
+  }
+  for (const Mesh* mesh : {&wheel, &book, &star}) {
+    const Sites sites(*mesh);
+    EXPECT_TRUE(is_embedded(sites));
+    EXPECT_EQ(self_intersections(sites, self_intersection_budget(sites)), Pairs());
+  }
+  EXPECT_NEAR(solid_volume(Sites(star)).lower, 10'000 * 1.5e-12 / 3, 1e-6 * 10'000 * 1.5e-12);
+}
+
+// Each crosses half of the others.
+TEST(SelfIntersections, OfNeedlesAreNotDetermined) {
+  Mesh mesh;
+  constexpr int kNeedles = 30'000;
+  for (int i = 0; i < kNeedles; ++i) {
+    const double at = static_cast<double>(i / 2) / kNeedles, width = 0.3 / kNeedles;
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3& p : {Vec3{-1, at, -0.1}, Vec3{2, at, 0.1}, Vec3{2, at + width, 0.2}})
+      mesh.positions.push_back(i % 2 == 0 ? p : Vec3{p[1], p[0], -p[2]});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const Sites sites(mesh);
+  EXPECT_FALSE(is_embedded(sites));
+  EXPECT_EQ(self_intersections(sites, 1'000'000), std::nullopt);
 }
 
 }  // namespace

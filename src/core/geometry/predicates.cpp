@@ -54,6 +54,8 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   }
   if (std::abs(determinant) > kError3 * magnitude + kUnderflow) return sign(determinant);
   if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;  // no volume
+  for (int k = 0; k < 3; ++k)
+    if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return 0;  // as in a flat part of a drawing
   return exact(a, b, c, d);
 }
 
