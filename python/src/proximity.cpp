@@ -83,7 +83,8 @@ first, and by decreasing depth within a patch; those of many bodies first by pai
       .def_prop_ro(
           "depth", contact_column(&PyContacts::depth, [](const Contact& c) { return c.depth; }),
           nb::sig("def depth(self) -> numpy.ndarray"),
-          "±|point2 - point1|, (n,) float64; positive if the point in contact is inside the other body.")
+          R"(±|point2 - point1|, (n,) float64; positive if the point in contact is inside the other body.
+At most penetration_depth().upper.)")
       .def_prop_ro(
           "patch", contact_column(&PyContacts::patch, [](const Contact& c) { return c.patch; }),
           nb::sig("def patch(self) -> numpy.ndarray"),
