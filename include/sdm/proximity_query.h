@@ -101,7 +101,8 @@ class SDM_API ProximityQuery {
 
   /// Sets the pose of a body, 0 or 1: a map from the frame of its mesh to space, of a rotation, a uniform
   /// scale and a translation. Initially the identity. The nearest such map is used; throws sdm::Error, and
-  /// changes nothing, if `pose` differs from it by more than 1e-5 of the scale. Cost: constant.
+  /// changes nothing, if `pose` differs from it by more than 1e-5 of the scale, or moves the body beyond what
+  /// a mesh can have: coordinates of 1e37. Cost: constant.
   void set_pose(int body, const Transform& pose);
   /// The pose of a body.
   [[nodiscard]] Transform pose(int body) const;

@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "engine/blocks.h"
 #include "map/engine_of.h"
+#include "mesh/validate.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 
@@ -18,7 +19,7 @@ namespace sdm {
 std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
                                          const MapOptions& options) try {
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
-  constexpr double kMaxCoordinate = 1e37;  // as for meshes
+  using mesh::kMaxCoordinate;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const double x : points[i])
       if (!(std::abs(x) <= kMaxCoordinate))

@@ -17,7 +17,7 @@ constexpr std::size_t kMaxTriangles = std::size_t{1} << 30;
 
 // Distances are stored in single precision, and products of six coordinates must be finite in double: both
 // are true up to this coordinate.
-constexpr double kMaxCoordinate = 1e37, kMinSize = 1e-30;
+using mesh::kMaxCoordinate, mesh::kMinSize;
 
 bool has_area(const Mesh& mesh, const Triangle& t) {
   const Vec3& a = mesh.positions[t[0]];

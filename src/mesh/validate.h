@@ -7,6 +7,9 @@
 
 namespace sdm::mesh {
 
+/// Larger coordinates, and smaller meshes, are refused: their products leave the range of double precision.
+inline constexpr double kMaxCoordinate = 1e37, kMinSize = 1e-30;
+
 /// Throws sdm::Error for a coordinate that is not finite or too large to compute with.
 void validate_positions(std::span<const Vec3> positions);
 

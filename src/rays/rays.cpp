@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "mesh/validate.h"
 #include "rays/trace.h"
 
 namespace sdm {
@@ -15,7 +16,8 @@ namespace {
 constexpr std::size_t kGrain = 256;
 
 void validate(std::span<const Ray> rays) {
-  constexpr double kMaxCoordinate = 1e37, kMinDirection = 1e-30;  // as for meshes
+  using mesh::kMaxCoordinate;
+  constexpr double kMinDirection = mesh::kMinSize;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto fail = [&](const char* what) { throw Error("ray " + std::to_string(i) + " has " + what); };
     double largest = 0;

@@ -9,6 +9,7 @@
 #include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "mesh/similarity.h"
+#include "mesh/validate.h"
 #include "registration/correspondences.h"
 #include "registration/freedoms.h"
 #include "registration/point_to_plane.h"
@@ -167,7 +168,7 @@ Alignment align(const Mesh& o1, const Sites& o2, const AlignOptions& options) tr
 
 Alignment align(std::span<const Vec3> points, std::span<const Vec3> normals, const Sites& o2,
                 const AlignOptions& options) try {
-  constexpr double kMaxCoordinate = 1e37;  // as for meshes
+  using mesh::kMaxCoordinate;
   if (points.empty()) throw Error("an alignment needs points");
   if (!normals.empty() && normals.size() != points.size())
     throw Error("an alignment needs one normal for each point, or none");

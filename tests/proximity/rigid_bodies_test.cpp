@@ -294,6 +294,48 @@ TEST(RigidBodies, RejectPosesThatAreNotRigid) {
     }
 }
 
+// Regression: beyond, the separation was infinite, and said to be exact.
+TEST(RigidBodies, RejectPosesThatLeaveTheRangeOfMeshes) {
+  ProximityQuery query(cube(), cube());
+  MultiBodyQuery bodies(std::vector{cube(), cube()});
+  const auto expect_unchanged = [&](double separation) {
+    EXPECT_EQ(query.separation().value, separation);
+    EXPECT_EQ(bodies.pairs()[0].separation.value, separation);
+  };
+  for (const double far : {5.0, 1e20, 9e36}) {
+    query.set_pose(1, Transform::translation({far, 0, 0}));
+    bodies.set_pose(1, Transform::translation({far, 0, 0}));
+    expect_unchanged(far - 2);
+    EXPECT_EQ(query.separation().certainty, Certainty::exact);
+  }
+  query.set_pose(1, Transform::translation({5, 0, 0}));
+  bodies.set_pose(1, Transform::translation({5, 0, 0}));
+  for (const double far : {1.1e37, -1e38, 1e155, 1e300})
+    for (const Transform& pose : {Transform::translation({0, far, 0}), Transform::scaling(std::abs(far))}) {
+      EXPECT_THROW(query.set_pose(0, pose), Error);
+      EXPECT_THROW(query.set_pose(1, pose), Error);
+      EXPECT_THROW(bodies.set_pose(1, pose), Error);
+      EXPECT_THROW(bodies.set_poses(std::vector{Transform(), pose}), Error);
+      expect_unchanged(3);
+    }
+  EXPECT_THROW(query.set_pose(1, Transform::scaling(1e-31)), Error);
+  expect_unchanged(3);
+}
+
+// So that a body does not leave it later, either.
+TEST(RigidBodies, RejectShapesThatLeaveTheRangeInTheirPose) {
+  Mesh large = cube();
+  for (Vec3& p : large.positions) p = 10.0 * p;
+  ProximityQuery query(cube(), cube());
+  query.set_pose(1, Transform::scaling(5e36));
+  EXPECT_THROW(query.refit({}, large.positions), Error);
+  EXPECT_THROW(query.replace(1, Shape(large)), Error);
+  EXPECT_THROW(query.edit(1, {.moved_vertices = {{0, {9, 9, 9}}}}), Error);
+  EXPECT_EQ(query.sites(1).mesh().positions, cube().positions);
+  query.refit({}, cube(1.5).positions);
+  EXPECT_TRUE(std::isfinite(query.separation().value));
+}
+
 // Bodies of two shapes, one of which deforms.
 class SharedShapes : public testing::Test {
  protected:

@@ -194,7 +194,8 @@ void MultiBodyQuery::set_pose(std::size_t body, const Transform& pose) {
 
 void MultiBodyQuery::set_poses(std::span<const Transform> poses) {
   impl_->check_count(poses.size(), "poses");
-  for (std::size_t b = 0; b < size(); ++b) on_behalf_of(b, [&] { (void)mesh::Similarity::of(poses[b]); });
+  for (std::size_t b = 0; b < size(); ++b)
+    on_behalf_of(b, [&] { (void)impl_->bodies[b].checked_pose(poses[b]); });
   for (std::size_t b = 0; b < size(); ++b) impl_->bodies[b].set_pose(poses[b]);
   impl_->moved();
 }

@@ -17,6 +17,8 @@ DividedMotion::DividedMotion(const Motion& motion, const Shape& shape)
     throw Error("the scale of a body changes during its motion from " + std::to_string(from_.scale) + " to " +
                 std::to_string(to.scale));
   const Box& box = internals(shape)->box();
+  shape::check_posed(from_, box);
+  shape::check_posed(to, box);
   middle_ = centre(box);
   start_ = from_.map(middle_);
   shift_ = to.map(middle_) - start_;

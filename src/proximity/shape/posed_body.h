@@ -12,15 +12,22 @@
 
 namespace sdm::shape {
 
+/// Throws sdm::Error unless a body with that box has, in that pose, coordinates that meshes can have:
+/// distances are then finite.
+void check_posed(const mesh::Similarity& pose, const Box& box);
+
 class PosedBody {
  public:
   explicit PosedBody(Shape shape) : shape_(std::move(shape)) { follow(); }
 
-  /// Throws sdm::Error unless the pose is a Similarity. Cost: constant.
+  /// Throws sdm::Error unless the pose is a Similarity that keeps the body where it can be computed with.
+  /// Cost: constant.
   void set_pose(const Transform& pose) {
-    pose_ = mesh::Similarity::of(pose);
+    pose_ = checked_pose(pose);
     follow();
   }
+  /// The pose that set_pose() would set. Throws as it does.
+  [[nodiscard]] mesh::Similarity checked_pose(const Transform& pose) const;
   /// Throws sdm::Error if another Shape shares the mesh.
   void require_own_shape() const;
   /// Throws sdm::Error for positions that are not valid for the mesh, and if another Shape shares it.
@@ -31,12 +38,15 @@ class PosedBody {
     follow();
   }
 
-  /// Requires a shape of its own. Throws as Body::edit does.
+  /// Requires a shape of its own. Throws as Body::edit does, and for vertices that the pose moves too far.
   void edit(const MeshEdit& edit) {
+    check_edit(edit);
     internals(shape_)->edit(edit);
     follow();
   }
+  /// Throws sdm::Error, and changes nothing, if the pose moves the shape too far.
   void replace(Shape shape) {
+    check_posed(pose_, internals(shape)->box());
     shape_ = std::move(shape);
     follow();
   }
@@ -57,6 +67,7 @@ class PosedBody {
   }
 
  private:
+  void check_edit(const MeshEdit& edit) const;
   void follow() {
     constexpr double kRounding = 1e-15;  // of mapped points
     box_ = image(pose_.map, body().box());
