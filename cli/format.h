@@ -23,7 +23,7 @@
 /// lies, its places differ.
 [[nodiscard]] inline std::string coordinate(double value, double size, int digits = 5) {
   constexpr double kResolution = 1e-5;
-  constexpr int kMost = 17;  // identify a double
+  constexpr int kMost = 15;  // all that a double has of any decimal number
   if (value != 0 && size > 0 && std::isfinite(value) && std::isfinite(size))
     digits = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1 -
                             static_cast<int>(std::floor(std::log10(kResolution * size))),

@@ -73,17 +73,18 @@ Notes notes_on(const sdm::Box& a, const sdm::Box& b) {
   return notes;
 }
 
-std::optional<std::string> note_on_precision(const std::string& file, const sdm::Mesh& mesh) {
+std::optional<std::string> note_on_precision(const std::string& file, std::span<const sdm::Vec3> positions,
+                                             double size) {
   constexpr double kCoarse = 1e-5;
   constexpr int kBits = 23;  // of the fraction of a float
   double largest = 0;
-  for (const sdm::Vec3& p : mesh.positions)
+  for (const sdm::Vec3& p : positions)
     for (const double x : p) {
+      if (!std::isfinite(x)) continue;  // a place of a cloud without a point
       if (static_cast<double>(static_cast<float>(x)) != x) return std::nullopt;
       largest = std::max(largest, std::abs(x));
     }
-  const double size = size_of(sdm::bounds(mesh));
-  if (!(largest > 0 && size > 0)) return std::nullopt;
+  if (!(largest > 0 && size > 0 && std::isfinite(size))) return std::nullopt;
   const double step = std::ldexp(1, std::ilogb(largest) - kBits);
   if (!(step > kCoarse * size)) return std::nullopt;
   // Round numbers, such as the integers of a text file, are as they are meant: of rounded ones, some have the
@@ -91,7 +92,7 @@ std::optional<std::string> note_on_precision(const std::string& file, const sdm:
   const auto has_last_bit = [&](const sdm::Vec3& p) {
     return std::ranges::any_of(p, [&](double x) { return std::fmod(std::abs(x) / step, 2) == 1; });
   };
-  if (std::ranges::none_of(mesh.positions, has_last_bit)) return std::nullopt;
+  if (std::ranges::none_of(positions, has_last_bit)) return std::nullopt;
   return fmt::format(
       "{}: coordinates in single precision are {} apart so far from the origin, {} of its size; export it in "
       "double precision, or near the origin",

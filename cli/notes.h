@@ -19,9 +19,10 @@ using Notes = std::vector<std::string>;
 /// diagonals of the boxes. None for a box that is empty.
 [[nodiscard]] Notes notes_on(const sdm::Box& a, const sdm::Box& b);
 
-/// The positions of a mesh are in single precision, and so far from the origin that neighbouring numbers are
-/// more than 1e-5 of its size apart.
-[[nodiscard]] std::optional<std::string> note_on_precision(const std::string& file, const sdm::Mesh& mesh);
+/// The positions in a file are in single precision, and so far from the origin that neighbouring numbers are
+/// more than 1e-5 of `size`, that of the mesh or cloud, apart.
+[[nodiscard]] std::optional<std::string> note_on_precision(const std::string& file,
+                                                           std::span<const sdm::Vec3> positions, double size);
 
 /// Of the files of both inputs, and of their boxes.
 [[nodiscard]] Notes notes_on(const Input& o1, const Input& o2);

@@ -188,6 +188,15 @@ AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& pl
   return align_points(sample.points, sample.normals, sites, command.align, progress);
 }
 
+// By the first points of the file; `box`: of all of them. A placement may have changed their size.
+std::optional<std::string> precision_note(const PointsCommand& command, const sdm::Box& box) {
+  if (!command.transform_o1.empty()) return std::nullopt;
+  constexpr std::size_t kFirst = 1 << 16;
+  sdm::PointSample first;
+  sdm::PointReader(command.cloud, command.text).read(kFirst, first.points, first.normals);
+  return note_on_precision(command.cloud, first.points, size_of(box));
+}
+
 std::string files(const PointsCommand& command) {
   return fmt::format("{}{}", command.ply ? "points.ply " : "", command.html ? "report.html " : "");
 }
@@ -227,7 +236,8 @@ int run(PointsCommand command) {
     const sdm::Box& box = outcome.found.bounds;
     outcome.accuracy =
         sdm::engine_accuracy(sdm::engines().front(), o2.mesh, {{box.lo, box.hi}, {{0, 1, 1}}, {}});
-    outcome.notes = o2.notes;
+    if (const auto note = precision_note(command, box)) outcome.notes.push_back(*note);
+    std::ranges::copy(o2.notes, std::back_inserter(outcome.notes));
     std::ranges::copy(notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(outcome.notes));
     if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(outcome.notes));
     outcome.points_ms = watch.lap();

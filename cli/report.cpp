@@ -94,7 +94,8 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   input.names = std::move(read.names);
   input.vertices = std::move(read.vertices);
   for (const std::string& note : read.notes) input.notes.push_back(fmt::format("{}: {}", file, note));
-  if (const auto note = note_on_precision(file, input.mesh)) input.notes.push_back(*note);
+  if (const auto note = note_on_precision(file, input.mesh.positions, size_of(sdm::bounds(input.mesh))))
+    input.notes.push_back(*note);
   sdm::scenes::place(input.mesh, sdm::scenes::parse_placement(transform));
   return input;
 }

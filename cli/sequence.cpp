@@ -138,7 +138,9 @@ class FrameLoop {
     state_.options = options_of(command);
     const std::array<sdm::Mesh, 2> first{bodies_[0].mesh(), bodies_[1].mesh()};
     for (int b = 0; b < 2; ++b)
-      if (const auto note = note_on_precision(bodies_[b].input(), first[b])) notes_.push_back(*note);
+      if (const auto note =
+              note_on_precision(bodies_[b].input(), first[b].positions, size_of(sdm::bounds(first[b]))))
+        notes_.push_back(*note);
     std::ranges::copy(notes_on(sdm::bounds(first[0]), sdm::bounds(first[1])), std::back_inserter(notes_));
     state_.meshes = {hash_of(first[0]), hash_of(first[1])};
     if (resumed_) check_meshes();

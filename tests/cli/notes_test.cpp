@@ -136,6 +136,19 @@ TEST_F(Notes, TellOfCoordinatesThatAreCoarseForTheSize) {
   expect_notes({"self", stl, "--resolution", "64", "--write", "none", "-o", out}, coarse);
   expect_notes({"info", text}, Not(HasSubstr("single precision")));
   expect_notes({"info", write_stl(folder / "near.stl", ring(16, 10))}, Not(HasSubstr("single precision")));
+  // Of a cloud by its own numbers.
+  const std::string cloud = folder / "far.ply";
+  {
+    std::ofstream stream(cloud, std::ios::binary);
+    stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << far.positions.size()
+           << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    for (const Vec3& p : far.positions)
+      for (const double x : p) {
+        const auto rounded = static_cast<float>(x);
+        stream.write(reinterpret_cast<const char*>(&rounded), 4);
+      }
+  }
+  expect_notes({"points", cloud, text, "--write", "none", "-o", out}, AllOf(coarse, HasSubstr("far.ply")));
   // The integers of a text file are as they are meant.
   Mesh whole = cube(5);
   for (Vec3& p : whole.positions) p[1] += 4500000;
