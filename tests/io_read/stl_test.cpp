@@ -126,6 +126,7 @@ TEST(StlText, FaultsNameTheLine) {
   expect_fault(start + "outer loop\nvertex 0 0\nvertex 1 0 0\n", "line 5: expected a number, not 'vertex'");
   expect_fault(start + "outer loop\nfacet normal 0 0 1\n", "line 4: a facet begins within a loop");
   expect_fault(start + "outer loop\nouter loop\n", "line 4: a loop begins within a loop");
+  expect_fault(start + "facet normal 0 0 1\n", "line 3: the facet before this one has no loop");
   expect_fault(start + "endloop\n", "line 3: endloop outside a loop");
   expect_fault(start + "endfacet\n", "line 3: a facet has no loop");
   expect_fault(start + "endsolid\n", "line 3: a solid ends within a facet");

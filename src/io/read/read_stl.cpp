@@ -71,6 +71,7 @@ class StlTextReader {
       mesh_.positions.push_back({x, y, z});
     } else if (is("facet")) {
       require(!in_loop_, start, "a facet begins within a loop");
+      require(!in_facet_, start, "the facet before this one has no loop of vertices");
       in_facet_ = true;
       skip_normal();
     } else if (is("outer")) {
