@@ -47,8 +47,8 @@ bool find(const System& system, const std::vector<std::string>& names, std::size
 }  // namespace
 
 std::optional<NamedColumns> named_columns(const std::vector<std::string_view>& names) {
-  std::vector<std::string> all;
-  for (const std::string_view name : names) all.push_back(plain(name));
+  std::vector<std::string> all(names.size());
+  std::ranges::transform(names, all.begin(), plain);
   NamedColumns result;
   const auto in_any = [&](const auto& systems, std::size_t first_role) {
     return std::ranges::any_of(
