@@ -46,6 +46,16 @@ AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> 
   return build_aabb_tree(to_float(boxes), std::move(indices), leaf_size);
 }
 
+int depth(const AabbTree& tree) {
+  int deepest = 0;
+  std::vector<int> level(tree.nodes.size(), 0);
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    deepest = std::max(deepest, level[i]);
+    if (!tree.nodes[i].leaf()) level[i + 1] = level[tree.nodes[i].right] = level[i] + 1;
+  }
+  return deepest;
+}
+
 void refit_leaves(AabbTree& tree, std::span<const FloatBox> leaf_boxes) {
   auto& nodes = tree.nodes;
   std::size_t leaf = leaf_boxes.size();

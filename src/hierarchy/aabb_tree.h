@@ -59,6 +59,12 @@ struct AabbTree {
   }
 };
 
+/// No node of a tree is more levels below the root: recursive functions need little stack.
+inline constexpr int kDeepest = 96;
+
+/// The most levels that a node is below the root. Cost: linear.
+[[nodiscard]] int depth(const AabbTree& tree);
+
 /// Builds a tree of the boxes that `indices` selects, with at most `leaf_size` of them per leaf, by the
 /// binned surface area heuristic. Boxes are in the unit frame. The result does not depend on the number of
 /// threads. Cost: O(n log n), all cores.

@@ -18,6 +18,9 @@ namespace sdm::hierarchy::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr uint32_t kParallelItems = 2048;  // smaller subtrees are built by one thread
+// Below this level, nodes are divided into halves: whatever the boxes, no node is deeper than this and the
+// logarithm of the number of items, which bounds the stack of recursions. Trees of meshes are far less deep.
+constexpr int kLastCut = kDeepest - 32;
 
 // A box as −lo and hi, so that a union is a maximum. The fourth lane of each is unused.
 struct Bounds {
@@ -139,9 +142,10 @@ class Builder {
   }
 
   // Moves the items to the other array, those of the left side first; returns where the right side begins.
-  uint32_t split(uint32_t begin, uint32_t end, int level, const Binning& binning) {
+  // Not inlined: its arrays would be on the stack at every level of the recursion.
+  HWY_NOINLINE uint32_t split(uint32_t begin, uint32_t end, int level, const Binning& binning) {
     const Bounds* items = items_[level % 2].get();
-    const auto [axis, bin] = best_cut(items + begin, end - begin, binning);
+    const auto [axis, bin] = level < kLastCut ? best_cut(items + begin, end - begin, binning) : Cut{-1, 0};
     const uint32_t half = begin + (end - begin) / 2;
     // Without branches, which would be mispredicted every other time: each item is written to both ends of
     // the gap between the two sides, and the gap shrinks at the end where the item belongs.

@@ -16,8 +16,8 @@ struct TreeEdit {
 
 /// Removes and adds items. Nodes without items disappear; an added item goes to the leaf that it enlarges
 /// least on the way down, and leaves of more than `leaf_size` items are built into subtrees. There must be an
-/// item before and after. Boxes are not up to date: refit them. Cost: a copy of the tree, plus n log n in the
-/// added items.
+/// item before and after. Boxes are not up to date: refit them. Many edits at one place can exceed kDeepest.
+/// Cost: a copy of the tree, plus n log n in the added items.
 [[nodiscard]] AabbTree edit_tree(const AabbTree& tree, const TreeEdit& edit, std::uint32_t leaf_size);
 
 }  // namespace sdm::hierarchy

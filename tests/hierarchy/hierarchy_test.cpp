@@ -301,5 +301,27 @@ TEST(UnitFrame, BringsAnySizeIntoTheCubeByAPowerOfTwo) {
   EXPECT_EQ(UnitFrame::of({{5, 5, 5}, {5, 5, 5}}).to_unit({5, 5, 5}), (Vec3{0, 0, 0}));
 }
 
+// Boxes towards a corner, each smaller than the one before by a little: every cut separates few of them.
+TEST(AabbTree, IsNotDeepWhateverTheBoxes) {
+  for (const double ratio : {0.5, 0.875, 0.93, 0.99}) {
+    std::vector<Box> boxes;
+    for (int axis = 0; axis < 3; ++axis)
+      for (double size = 1; size > 1e-30; size *= ratio) {
+        Box box{{}, {1e-30, 1e-30, 1e-30}};
+        box.hi[axis] = size;
+        box.lo[axis] = 0.999 * size;
+        boxes.push_back(box);
+      }
+    const hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, all(boxes.size()), 8);
+    expect_valid(tree, boxes, 8);
+    EXPECT_LE(hierarchy::depth(tree), hierarchy::kDeepest);
+  }
+  const auto boxes = random_boxes(1000, 7);
+  const hierarchy::AabbTree tree = hierarchy::build_aabb_tree(boxes, all(boxes.size()), 8);
+  EXPECT_GE(hierarchy::depth(tree), 7);  // 2⁷ leaves of 8
+  EXPECT_LE(hierarchy::depth(tree), 20);
+  EXPECT_EQ(hierarchy::depth(hierarchy::build_aabb_tree(boxes, all(8), 8)), 0);
+}
+
 }  // namespace
 }  // namespace sdm
