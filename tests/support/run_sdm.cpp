@@ -85,6 +85,7 @@ Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& opt
     if (options.file_size) std::signal(SIGXFSZ, SIG_IGN);
     set_limit(RLIMIT_FSIZE, options.file_size);
     set_limit(RLIMIT_AS, options.memory);
+    set_limit(RLIMIT_STACK, options.stack);
     for (const std::string& variable : options.environment) putenv(const_cast<char*>(variable.c_str()));
     execv(SDM_COMMAND, argv.data());
     _exit(127);

@@ -19,6 +19,7 @@ struct Outcome {
 struct Conditions {
   std::optional<std::uint64_t> file_size{};  ///< no file can grow beyond it: a full disk
   std::optional<std::uint64_t> memory{};     ///< address space
+  std::optional<std::uint64_t> stack{};      ///< of the main thread
   std::vector<std::string> environment{};    ///< NAME=value, besides that of this program
   bool terminal = false;                     ///< stderr is a terminal
   int interrupt_after_ms = 0;                ///< send `signal` then, unless 0

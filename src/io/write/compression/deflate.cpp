@@ -3,6 +3,8 @@
 #include <isa-l/igzip_lib.h>
 #include <sdm/error.h>
 
+#include <memory>
+
 namespace sdm::io {
 namespace {
 
@@ -12,7 +14,8 @@ std::vector<std::uint8_t> compressed(std::span<const std::uint8_t> bytes, std::s
   // The second of three levels: 1 to 2 % larger than by libdeflate's fastest, in a third of the time.
   constexpr std::uint32_t kLevel = 2;
   std::vector<std::uint8_t> buffer(ISAL_DEF_LVL2_DEFAULT), result(most);
-  isal_zstream stream{};
+  const auto on_heap = std::make_unique<isal_zstream>();  // 80 kB, too much for a small stack
+  isal_zstream& stream = *on_heap;
   isal_deflate_stateless_init(&stream);
   stream.level = kLevel;
   stream.level_buf = buffer.data();
