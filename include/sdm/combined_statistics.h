@@ -16,12 +16,13 @@ namespace sdm {
 /// not be kept.
 class SDM_API CombinedStatistics {
  public:
-  /// Throws sdm::Error if the map does not belong to this surface, or if there is not enough memory. Cost:
+  /// Throws sdm::Error, and changes nothing, if the map does not belong to this surface, or if there is not
+  /// enough memory. Cost:
   /// linear in texels; 8 bytes for each texel with a value.
   void add(const Surface& surface, const DistanceMap& map);
 
-  /// As statistics(), over the texels of all maps, each weighted by its area on its surface. Cost: linear in
-  /// texels, all cores.
+  /// As statistics(), over the texels of all maps, each weighted by its area on its surface. Throws
+  /// sdm::Error if there is not enough memory. Cost: linear in texels, all cores.
   [[nodiscard]] DistanceStatistics statistics() const;
 
  private:

@@ -1,5 +1,13 @@
 /// The exceptions that the public functions throw. Kernels never throw.
 ///
+/// A call that changes an object and throws *changes nothing*: the object is as it was, and the call may be
+/// repeated. Where a change happens in place, because a copy would take longer than the change, a failure in
+/// its midst *leaves the object broken* instead, if the documentation of the call says so: every later call
+/// of the object throws sdm::Error, and it can only be destroyed or assigned to. References and spans that it
+/// has returned remain valid, but what they refer to is unspecified. Wrong arguments never break an object; a
+/// lack of memory may. A call that changes nothing can be repeated after any failure; an object that it was
+/// to write its results to has unspecified values.
+///
 /// Threads: exceptions are values.
 #pragma once
 

@@ -49,8 +49,8 @@ struct MeshEdit {
 /// Changes the mesh, which must be valid in the sense of validate(). Throws sdm::Error, and changes nothing,
 /// if an index is out of range, if a face is removed or reconnected twice, or has been removed before, if a
 /// new triangle has three equal corners, if there are texture coordinates for some added faces only or for a
-/// mesh without any, or if the result is not valid. Cost: by the size of the edit, plus the bounds of the
-/// result, which take a pass over its faces.
+/// mesh without any, if the result is not valid, or if there is not enough memory. Cost: by the size of the
+/// edit, plus the bounds of the result, which take a pass over its faces.
 SDM_API void apply(Mesh& mesh, const MeshEdit& edit);
 
 }  // namespace sdm

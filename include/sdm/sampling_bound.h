@@ -39,8 +39,9 @@ class SDM_API SamplingBound {
   /// Measures the radii again after Surface::refit of the same surface. The assignment of pieces to samples
   /// does not change: the bound remains valid, and remains tight as long as neighbouring points stay
   /// together. Throws sdm::Error, and changes nothing, for another surface, and after Surface::edit: a bound
-  /// must then be built again. Allocates nothing. Cost: linear in faces, samples and pieces, all cores; much
-  /// less than construction.
+  /// must then be built again. Allocates nothing but tasks; without memory for those, it throws and leaves
+  /// the object broken (see sdm/error.h). Cost: linear in faces, samples and pieces, all cores; much less
+  /// than construction.
   void refit(const Surface& surface);
 
   /// The largest radius: no point of the surface is farther from its nearest sample.

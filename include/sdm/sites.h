@@ -46,13 +46,14 @@ class SDM_API Sites {
   /// Moves the vertices and keeps the triangles. Cost: linear; for a closed mesh of several components also a
   /// ray for each of them, and tests of the pairs of faces of different components whose boxes overlap.
   /// Throws sdm::Error, and changes nothing, when the count differs or a coordinate is not finite or beyond
-  /// 1e37.
+  /// 1e37. If there is not enough memory, it also throws, and changes nothing or leaves the object broken
+  /// (see sdm/error.h).
   void refit(std::span<const Vec3> positions);
 
   /// Changes the mesh. Afterwards every query has the result of Sites(mesh()), edge numbers included: those
   /// follow from the vertices (see edges()), so they shift when edges appear or disappear. Of sites equally
   /// close in the precision of the engine, another one may be found. Throws sdm::Error, and changes nothing,
-  /// as apply() does.
+  /// as apply() does, and if there is not enough memory.
   ///
   /// Cost: linear in the mesh even for a small edit, all cores: three to four times a refit, or two thirds to
   /// nine tenths of building anew. Edges and the tree are repaired where the mesh changed; the orientation,

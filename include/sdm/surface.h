@@ -45,7 +45,9 @@ class SDM_API Surface {
 
   /// Moves the vertices and keeps the triangles and the atlas: the samples of a face move affinely with it;
   /// the map of a face whose vertices do not move is bit-identical. Throws sdm::Error, and changes nothing,
-  /// when the count differs or a coordinate is not finite or beyond 1e37. Cost: linear in faces, all cores.
+  /// when the count differs or a coordinate is not finite or beyond 1e37. If there is not enough memory, it
+  /// also throws, and changes nothing or leaves the object broken (see sdm/error.h). Cost: linear in faces,
+  /// all cores.
   void refit(std::span<const Vec3> positions);
 
   /// Changes the mesh and keeps the atlas of all that stays: for every face that is neither removed nor
@@ -57,7 +59,8 @@ class SDM_API Surface {
   /// texel (x, y) keeps its index. sample_texels() changes; a SamplingBound must be built again.
   ///
   /// Throws sdm::Error, and changes nothing, as apply() does, if a chart of added faces is wider than the
-  /// atlas, if more than 65535 rows would be needed, and if no face would own a texel. Cost: by the size of
+  /// atlas, if more than 65535 rows would be needed, if no face would own a texel, and if there is not enough
+  /// memory. Cost: by the size of
   /// the edit, plus copies of the mesh and its maps and a pass over the samples; over the texels where faces
   /// are added, and over the faces where vertices are moved; the first edit also rasterises all faces.
   void edit(const MeshEdit& edit);

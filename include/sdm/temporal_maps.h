@@ -32,13 +32,13 @@ class SDM_API TemporalMaps {
   /// sdm::Error if the sizes do not match.
   explicit TemporalMaps(State state);
 
-  /// Adds a map. Throws sdm::Error if its size differs from that of earlier maps. Cost: O(n) in texels,
-  /// all cores.
+  /// Adds a map. Throws sdm::Error, and changes nothing, if its size differs from that of earlier maps or
+  /// there is not enough memory. Cost: O(n) in texels, all cores.
   void add(const DistanceMap& map);
 
   /// Follows an edit of the surface: texels whose face stays keep their statistics, all others become NaN for
-  /// good. `before`: Surface::texel_faces() before Surface::edit. Throws sdm::Error if the sizes do not
-  /// match. Cost: O(n) in texels.
+  /// good. `before`: Surface::texel_faces() before Surface::edit. Throws sdm::Error, and changes
+  /// nothing, if the sizes do not match or there is not enough memory. Cost: O(n) in texels.
   void follow_edit(std::span<const std::uint32_t> before, const Surface& edited);
 
   /// The number of maps added.

@@ -195,12 +195,15 @@ class EdgeMerge {
 
 }  // namespace
 
-bool edit_topology(const TriangleEdit& edit, Topology& topology, VertexFaces& faces) {
-  ChangedVertices changed = around_changes(edit, faces);
+bool edit_topology(const TriangleEdit& edit, const TopologyBefore& before, Topology& topology,
+                   VertexFaces& faces) {
+  ChangedVertices changed = around_changes(edit, before.faces);
   if (!sort_and_count(changed)) return false;
-  std::vector<std::array<std::uint32_t, 3>> face_edges = std::move(topology.face_edges);
+  std::vector<std::array<std::uint32_t, 3>> face_edges;
+  face_edges.reserve(edit.after.size());
+  face_edges = before.topology.face_edges;
   face_edges.resize(edit.after.size(), {kNone, kNone, kNone});
-  std::size_t collapsed = topology.collapsed_faces;
+  std::size_t collapsed = before.topology.collapsed_faces;
   for (const std::uint32_t f : edit.changed) {
     face_edges[f] = {kNone, kNone, kNone};
     collapsed -= repeats_a_corner(edit.before[f]);
@@ -208,9 +211,9 @@ bool edit_topology(const TriangleEdit& edit, Topology& topology, VertexFaces& fa
   }
   for (std::size_t f = edit.before.size(); f < edit.after.size(); ++f)
     collapsed += repeats_a_corner(edit.after[f]);
-  topology = EdgeMerge(topology, changed).run(std::move(face_edges));
+  topology = EdgeMerge(before.topology, changed).run(std::move(face_edges));
   topology.collapsed_faces = collapsed;
-  faces = edited_faces(faces, changed, edit.vertex_count);
+  faces = edited_faces(before.faces, changed, edit.vertex_count);
   return true;
 }
 

@@ -12,10 +12,16 @@ struct TriangleEdit {
   std::size_t vertex_count;                 ///< now
 };
 
-/// Updates the topology of a mesh without duplicate faces, and the faces of its vertices, to those that
-/// build_topology() and vertex_faces() would return. Returns false, and changes nothing, if there are
-/// duplicate faces now. Cost: copying the edges and the faces of vertices, plus the edges of vertices of
-/// changed faces.
-[[nodiscard]] bool edit_topology(const TriangleEdit& edit, Topology& topology, VertexFaces& faces);
+/// The topology of a mesh without duplicate faces.
+struct TopologyBefore {
+  const Topology& topology;
+  const VertexFaces& faces;
+};
+
+/// Sets the topology, and the faces of vertices, to those that build_topology() and vertex_faces() would
+/// return after the edit. Returns false, and sets nothing, if there are duplicate faces then. Cost: copying
+/// the edges and the faces of vertices, plus the edges of vertices of changed faces.
+[[nodiscard]] bool edit_topology(const TriangleEdit& edit, const TopologyBefore& before, Topology& topology,
+                                 VertexFaces& faces);
 
 }  // namespace sdm::mesh

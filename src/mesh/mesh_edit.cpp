@@ -74,6 +74,7 @@ struct Before {
     for (const auto& reconnected : edit.reconnected_faces)
       triangles.emplace_back(reconnected.face, mesh.triangles[reconnected.face]);
   }
+  // Allocates nothing.
   void restore(Mesh& mesh) const {
     mesh.positions.resize(vertices);
     mesh.triangles.resize(faces);
@@ -89,16 +90,17 @@ void apply(Mesh& mesh, const MeshEdit& edit) try {
   const Uncancellable whole;
   check(mesh, edit);
   const Before before(mesh, edit);
-  mesh.positions.insert(mesh.positions.end(), edit.added_vertices.begin(), edit.added_vertices.end());
-  for (const auto& [vertex, position] : edit.moved_vertices) mesh.positions[vertex] = position;
-  for (const std::uint32_t face : edit.removed_faces) mesh.triangles[face].fill(mesh.triangles[face][0]);
-  for (const auto& [face, triangle] : edit.reconnected_faces) mesh.triangles[face] = triangle;
-  mesh.triangles.insert(mesh.triangles.end(), edit.added_faces.begin(), edit.added_faces.end());
-  if (!mesh.corner_uvs.empty()) {
-    mesh.corner_uvs.insert(mesh.corner_uvs.end(), edit.added_corner_uvs.begin(), edit.added_corner_uvs.end());
-    mesh.corner_uvs.resize(mesh.triangles.size());
-  }
   try {
+    mesh.positions.insert(mesh.positions.end(), edit.added_vertices.begin(), edit.added_vertices.end());
+    for (const auto& [vertex, position] : edit.moved_vertices) mesh.positions[vertex] = position;
+    for (const std::uint32_t face : edit.removed_faces) mesh.triangles[face].fill(mesh.triangles[face][0]);
+    for (const auto& [face, triangle] : edit.reconnected_faces) mesh.triangles[face] = triangle;
+    mesh.triangles.insert(mesh.triangles.end(), edit.added_faces.begin(), edit.added_faces.end());
+    if (!mesh.corner_uvs.empty()) {
+      mesh.corner_uvs.insert(mesh.corner_uvs.end(), edit.added_corner_uvs.begin(),
+                             edit.added_corner_uvs.end());
+      mesh.corner_uvs.resize(mesh.triangles.size());
+    }
     mesh::validate_edited(mesh);
   } catch (...) {
     before.restore(mesh);

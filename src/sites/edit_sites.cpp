@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "core/geometry/vec.h"
@@ -28,38 +28,33 @@ std::vector<std::uint32_t> changed_faces(const MeshEdit& edit) {
 
 }  // namespace
 
+// Nearly everything is built anew, so that the edited sites replace the others only when they are complete.
 void SitesData::edit(const MeshEdit& edit) {
-  Mesh edited = mesh;
-  apply(edited, edit);
-  const std::vector<std::uint32_t> changed = changed_faces(edit);
-  const std::vector<Triangle> before = std::exchange(mesh, std::move(edited)).triangles;
+  static_assert(std::is_nothrow_move_assignable_v<SitesData>);
+  intact_.require();
+  *this = SitesData(*this, edit);
+}
+
+SitesData::SitesData(SitesData& before, const MeshEdit& edit)
+    : mesh(before.mesh), faces_added_to_tree_(before.faces_added_to_tree_) {
+  apply(mesh, edit);
+  const std::size_t vertices = mesh.positions.size(), faces = mesh.triangles.size();
   const bool repaired =
-      topology.duplicate_faces == 0 &&
-      mesh::edit_topology({before, mesh.triangles, changed, mesh.positions.size()}, topology, vertex_faces);
+      before.topology.duplicate_faces == 0 &&
+      mesh::edit_topology({before.mesh.triangles, mesh.triangles, changed_faces(edit), vertices},
+                          {before.topology, before.vertex_faces}, topology, vertex_faces);
   if (!repaired) {
-    topology = mesh::build_topology(mesh.positions.size(), mesh.triangles);
-    vertex_faces = mesh::vertex_faces(mesh.positions.size(), mesh.triangles, topology);
+    topology = mesh::build_topology(vertices, mesh.triangles);
+    vertex_faces = mesh::vertex_faces(vertices, mesh.triangles, topology);
   }
-  const UnitFrame frame_before = std::exchange(frame, UnitFrame::of(bounds(mesh)));
+  frame = UnitFrame::of(bounds(mesh));
   parallel_invoke([&] { find_orientation(); },
                   [&] {
-                    if (!repaired || !similar(frame, frame_before) || !edit_tree(frame_before)) build_tree();
+                    if (!repaired || !similar(frame, before.frame) || !edit_tree(before)) build_tree();
                   });
-
-  normals.face.resize(mesh.triangles.size());
-  normals.vertex.resize(mesh.positions.size());
-  sliver.resize(mesh.triangles.size());
-  const auto forget = [&](std::size_t face) {  // what is computed only for faces and vertices that have sites
-    normals.face[face] = {};
-    sliver[face] = 0;
-  };
-  for (const std::uint32_t face : changed) {
-    forget(face);
-    for (const std::uint32_t v : before[face]) normals.vertex[v] = {};
-  }
-  if (!repaired)
-    for (std::size_t face = 0; face < mesh.triangles.size(); ++face)
-      if (topology.ignored(face)) forget(face);
+  normals = {std::vector<Vec3>(faces), std::vector<Vec3>(vertices)};
+  sliver.resize(faces);
+  last_refit_ = std::move(before.last_refit_);
   assign_sites(last_refit_);
   find_leaf_boxes(regions, frame, last_refit_.placed, last_refit_.boxes);
   hierarchy::refit_leaves(tree, last_refit_.boxes);
@@ -67,24 +62,24 @@ void SitesData::edit(const MeshEdit& edit) {
   compute_regions(last_refit_);
 }
 
-// False if too many faces would have been added since the tree was built.
-bool SitesData::edit_tree(const UnitFrame& frame_before) {
+// False if too many faces would have been added since the tree was built, or too many at one place.
+bool SitesData::edit_tree(const SitesData& before) {
   std::vector<std::uint8_t> in_tree(mesh.triangles.size(), 0), kept(mesh.triangles.size(), 0);
-  for (const std::uint32_t face : tree.items) in_tree[face] = 1;
+  for (const std::uint32_t face : before.tree.items) in_tree[face] = 1;
   std::vector<std::uint32_t> added;
   for (std::uint32_t face = 0; face < kept.size(); ++face) {
     kept[face] = in_tree[face] && !topology.ignored(face);
     if (!in_tree[face] && !topology.ignored(face)) added.push_back(face);
   }
   faces_added_to_tree_ += added.size();
-  if (kAddedShare * faces_added_to_tree_ > tree.items.size()) return false;
+  if (kAddedShare * faces_added_to_tree_ > before.tree.items.size()) return false;
   const auto box_of = [&](std::uint32_t face) {
     Box box;
-    for (const std::uint32_t v : mesh.triangles[face]) extend(box, frame_before.to_unit(mesh.positions[v]));
+    for (const std::uint32_t v : mesh.triangles[face]) extend(box, before.frame.to_unit(mesh.positions[v]));
     return hierarchy::FloatBox::around(box);
   };
-  tree = hierarchy::edit_tree(tree, {kept, added, box_of}, FaceBounds::kWidth);
-  return true;
+  tree = hierarchy::edit_tree(before.tree, {kept, added, box_of}, FaceBounds::kWidth);
+  return hierarchy::depth(tree) <= hierarchy::kDeepest;
 }
 
 }  // namespace sdm::sites

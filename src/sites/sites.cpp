@@ -33,16 +33,16 @@ void Sites::edit(const MeshEdit& edit) try {
 }
 
 const Mesh& Sites::mesh() const {
-  return data_->mesh;
+  return internals(*this).mesh;
 }
 std::span<const std::array<std::uint32_t, 2>> Sites::edges() const {
-  return data_->topology.edges;
+  return internals(*this).topology.edges;
 }
 bool Sites::closed() const {
-  return data_->closed;
+  return internals(*this).closed;
 }
 bool Sites::orientable() const {
-  return data_->orientation.orientable;
+  return internals(*this).orientation.orientable;
 }
 
 }  // namespace sdm

@@ -63,16 +63,23 @@ void SitesData::build_tree() {
   faces_added_to_tree_ = 0;
 }
 
+// In place, since copies would take longer than the rest: what may fail for want of memory comes first, as
+// far as it can be foreseen.
 void SitesData::refit(std::span<const Vec3> positions) {
+  intact_.require();
   mesh::validate_positions(positions, mesh.positions.size());
-  std::ranges::copy(positions, mesh.positions.begin());
-  frame = UnitFrame::of(bounds(mesh));
   Refit& refit = last_refit_;
-  place(regions, mesh.positions, refit.placed);
-  find_leaf_boxes(regions, frame, refit.placed, refit.boxes);
-  hierarchy::refit_leaves(tree, refit.boxes);
-  hierarchy::refit(wide, tree);
-  compute_regions(refit);
+  place(regions, positions, refit.placed);
+  refit.boxes.reserve(regions.bounds.size());
+  refit.shapes.reserve(regions.faces.size());
+  intact_.change([&] {
+    std::ranges::copy(positions, mesh.positions.begin());
+    frame = UnitFrame::of(bounds(mesh));
+    find_leaf_boxes(regions, frame, refit.placed, refit.boxes);
+    hierarchy::refit_leaves(tree, refit.boxes);
+    hierarchy::refit(wide, tree);
+    compute_regions(refit);
+  });
 }
 
 // The boxes of faces are those of their vertices, each rounded outwards.

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "core/intact.h"
 #include "hierarchy/aabb_tree.h"
 #include "hierarchy/wide_tree.h"
 #include "inside/crossings/ray_parity.h"
@@ -22,6 +23,8 @@ class SitesData {
   explicit SitesData(Mesh mesh);
   void refit(std::span<const Vec3> positions);
   void edit(const MeshEdit& edit);
+  /// Throws sdm::Error if a refit failed half-way.
+  void require_intact() const { intact_.require(); }
 
   /// Whether the mesh bounds a solid, and so has an inside.
   [[nodiscard]] bool is_solid() const { return closed && orientation.orientable; }
@@ -64,9 +67,12 @@ class SitesData {
     std::vector<FaceShape> shapes;
   };
 
+  /// Those of an edited mesh. Takes the memory of last_refit_, and changes nothing else.
+  SitesData(SitesData& before, const MeshEdit& edit);
+
   [[nodiscard]] std::vector<hierarchy::FloatBox> face_boxes() const;
   void build_tree();
-  [[nodiscard]] bool edit_tree(const UnitFrame& frame_before);
+  [[nodiscard]] bool edit_tree(const SitesData& before);
   void find_orientation();
   void assign_sites(Refit& refit);  ///< to the leaves of the tree
   void set_inverted();
@@ -74,14 +80,16 @@ class SitesData {
 
   Refit last_refit_;
   std::size_t faces_added_to_tree_ = 0;  ///< since it was built
+  Intact intact_{"a Sites object"};
 };
 
 }  // namespace sdm::sites
 
 namespace sdm {
 
-/// The data of Sites. Found by argument-dependent lookup.
+/// The data of Sites. Throws sdm::Error if a refit failed half-way. Found by argument-dependent lookup.
 [[nodiscard]] inline const sites::SitesData& internals(const Sites& sites) {
+  sites.data_->require_intact();
   return *sites.data_;
 }
 

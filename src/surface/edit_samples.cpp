@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/geometry/spatial_order.h"
+#include "core/memory.h"
 #include "surface/surface_data.h"
 
 namespace sdm::surface {
@@ -43,7 +44,9 @@ void edit_samples(SurfaceData& s, std::span<const std::uint8_t> removed_faces,
     points[i] = s.texel_point(s.texel_faces[texels[i]], texels[i]);
   const std::vector<std::uint32_t> order = spatial_order(points);
 
-  s.samples.resize(after);
+  reserve_for(s.samples, after);
+  reserve_for(s.sample_faces, after);
+  s.samples.resize(after);  // from here on, nothing fails
   s.sample_faces.resize(after);
   std::size_t next = 0;
   const auto fill = [&](std::size_t first, std::size_t end) {

@@ -12,7 +12,8 @@ class SurfaceData;
 /// Removes the samples of removed faces, one flag for each face, and adds the owned texels `added`, whose
 /// faces are those of texel_faces. Packets of 16 samples that lose none stay as they are; the samples of all
 /// others and the added ones are distributed anew over these packets, those near each other in space
-/// together. Cost: a pass over the samples, plus n log n in the samples that are distributed.
+/// together. Changes nothing if it throws. Cost: a pass over the samples, plus n log n in the samples that
+/// are distributed.
 void edit_samples(SurfaceData& surface, std::span<const std::uint8_t> removed_faces,
                   std::span<const std::uint32_t> added);
 

@@ -69,65 +69,124 @@ atlas::Room SurfaceData::occupied_room() const {
   return room;
 }
 
+// The change itself. Tables of texels are too large to copy for an edit, so it happens in place, and is
+// undone unless it is completed.
+class SurfaceData::Edit {
+ public:
+  /// Everything that changes is prepared: the mesh and the maps of its faces, those of added ones among them;
+  /// and room is reserved for what grows, so that only the order of the samples may still fail.
+  Edit(SurfaceData& surface, std::span<const std::uint32_t> removed, Mesh& mesh,
+       std::vector<atlas::FaceMap>& maps, std::uint32_t rows)
+      : s_(surface), removed_(removed), mesh_(mesh), maps_(maps), faces_(surface.face_charts.size()) {
+    for (const std::uint32_t f : removed) {
+      charts_.push_back(s_.face_charts[f]);
+      corners_.push_back(s_.corners[f]);
+      if (s_.face_charts[f] == kNone) continue;
+      for (const std::uint32_t texel : owned_texels(s_, f)) freed_.push_back({texel, f});
+    }
+    texels_ = s_.texel_faces.size();
+    reserve_for(s_.texel_faces, std::size_t{s_.resolution} * rows);
+    reserve_for(s_.corners, mesh.triangles.size());
+    reserve_for(s_.face_charts, mesh.triangles.size());
+    rows_ = rows;
+  }
+  ~Edit() {
+    if (begun_ && !completed_) undo();
+  }
+  Edit(const Edit&) = delete;
+  Edit& operator=(const Edit&) = delete;
+
+  /// Of removed faces.
+  [[nodiscard]] std::size_t freed_texels() const { return freed_.size(); }
+
+  /// Charts have the numbers of their faces in the mesh.
+  void run(const atlas::Layout& added) {
+    begun_ = true;
+    exchange();
+    s_.texel_faces.resize(std::size_t{s_.resolution} * rows_, kNone);
+    for (const auto& [texel, face] : freed_) s_.texel_faces[texel] = kNone;
+    s_.corners.insert(s_.corners.end(), added.corners.begin(), added.corners.end());
+    s_.face_charts.resize(s_.mesh.triangles.size(), kNone);
+    for (const std::uint32_t f : removed_) s_.face_charts[f] = kNone, s_.maps[f] = {}, s_.corners[f] = {};
+    for (std::size_t c = 0; c < added.charts.size(); ++c)
+      for (const std::uint32_t f : added.charts[c])
+        s_.face_charts[f] = static_cast<std::uint32_t>(s_.chart_count + c);
+    std::vector<std::uint8_t> removed(s_.mesh.triangles.size(), 0);
+    for (const std::uint32_t f : removed_) removed[f] = 1;
+    edit_samples(s_, removed,
+                 atlas::rasterise_added(added.charts, s_.corners, s_.resolution, s_.texel_faces));
+    completed_ = true;
+  }
+
+ private:
+  void exchange() {
+    std::swap(s_.mesh, mesh_);
+    std::swap(s_.maps, maps_);
+  }
+  void undo() {
+    exchange();
+    s_.texel_faces.resize(texels_);
+    for (std::uint32_t& face : s_.texel_faces)
+      if (face >= faces_) face = kNone;
+    for (const auto& [texel, face] : freed_) s_.texel_faces[texel] = face;
+    s_.corners.resize(faces_);
+    s_.face_charts.resize(faces_);
+    for (std::size_t i = 0; i < removed_.size(); ++i) {
+      s_.face_charts[removed_[i]] = charts_[i];
+      s_.corners[removed_[i]] = corners_[i];
+    }
+  }
+
+  SurfaceData& s_;
+  std::span<const std::uint32_t> removed_;
+  Mesh& mesh_;
+  std::vector<atlas::FaceMap>& maps_;
+  // Before the edit.
+  std::size_t faces_, texels_ = 0;
+  std::vector<std::uint32_t> charts_;                // of removed faces
+  std::vector<std::array<Vec2, 3>> corners_;         // likewise
+  std::vector<std::array<std::uint32_t, 2>> freed_;  // texels that removed faces own, and these faces
+
+  std::uint32_t rows_ = 0;
+  bool begun_ = false, completed_ = false;
+};
+
 void SurfaceData::edit(const MeshEdit& edit) {
+  intact_.require();
   Mesh edited = mesh;
   apply(edited, edit);
   const auto first_added = static_cast<std::uint32_t>(mesh.triangles.size());
-  const std::size_t face_count = edited.triangles.size();
 
-  // Everything that may fail comes before any change. The room is given back only if all succeeds, and made
-  // anew otherwise.
+  // The room is given back only if all succeeds, and made anew otherwise.
   atlas::Room room = std::exchange(room_, {});
   if (room.empty()) room = occupied_room();
-  std::vector<std::uint8_t> removed(face_count, 0);
-  std::vector<std::uint32_t> freed;
-  for (const std::uint32_t f : edit.removed_faces) {
-    if (face_charts[f] == kNone) continue;
-    removed[f] = 1;
-    room.remove(corners[f]);
-    const std::vector<std::uint32_t> texels = owned_texels(*this, f);
-    freed.insert(freed.end(), texels.begin(), texels.end());
-  }
+  for (const std::uint32_t f : edit.removed_faces)
+    if (face_charts[f] != kNone) room.remove(corners[f]);
   atlas::Layout added;
   if (!edit.added_faces.empty())
     added = atlas::added_layout(
         mesh_of_added(edited, first_added),
         {.kind = kind, .resolution = resolution, .max_stretch = stretch_limit, .gutter = gutter}, scale,
         room);
-  if (freed.size() == samples.size() && added.charts.empty())
-    throw Error("no face of the edited mesh would own a texel; lay it out anew");
+  for (std::vector<std::uint32_t>& chart : added.charts)
+    for (std::uint32_t& f : chart) f += first_added;
   constexpr std::size_t kBytesPerTexel = 8;
   if (room.rows() > rows)
     require_memory(kBytesPerTexel * resolution * room.rows(), "adding rows to the atlas");
   std::vector<atlas::FaceMap> new_maps = maps;
   move_maps(*this, edited, edit, new_maps);
   new_maps.insert(new_maps.end(), added.maps.begin(), added.maps.end());
+  auto new_identity = std::make_shared<Identity>();
 
-  mesh = std::move(edited);
-  maps = std::move(new_maps);
+  Edit change(*this, edit.removed_faces, edited, new_maps, room.rows());
+  if (change.freed_texels() == samples.size() && added.charts.empty())
+    throw Error("no face of the edited mesh would own a texel; lay it out anew");
+  change.run(added);
   rows = room.rows();
   room_ = std::move(room);
-  for (const std::uint32_t texel : freed) texel_faces[texel] = kNone;
-  texel_faces.resize(std::size_t{resolution} * rows, kNone);
-  corners.insert(corners.end(), added.corners.begin(), added.corners.end());
-  face_charts.resize(face_count, kNone);
-  for (const std::uint32_t f : edit.removed_faces) {
-    face_charts[f] = kNone;
-    maps[f] = {};
-    corners[f] = {};
-  }
-  for (std::vector<std::uint32_t>& chart : added.charts) {
-    for (std::uint32_t& f : chart) {
-      f += first_added;
-      face_charts[f] = static_cast<std::uint32_t>(chart_count);
-    }
-    ++chart_count;
-  }
-  const std::vector<std::uint32_t> owned =
-      atlas::rasterise_added(added.charts, corners, resolution, texel_faces);
+  chart_count += added.charts.size();
   max_stretch = std::max(max_stretch, added.max_stretch);
-  edit_samples(*this, removed, owned);
-  identity = std::make_shared<Identity>();
+  identity = std::move(new_identity);
 }
 
 }  // namespace sdm::surface

@@ -24,7 +24,7 @@ Surface::Surface(Mesh mesh, const AtlasOptions& options, std::span<const std::ui
 }
 
 std::vector<std::uint8_t> Surface::stored_atlas() const try {
-  return surface::store_atlas(*data_);
+  return surface::store_atlas(internals(*this));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("storing the atlas");
 }
@@ -48,72 +48,75 @@ Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;
 
 const Mesh& Surface::mesh() const {
-  return data_->mesh;
+  return internals(*this).mesh;
 }
 AtlasKind Surface::atlas_kind() const {
-  return data_->kind;
+  return internals(*this).kind;
 }
 std::uint32_t Surface::resolution() const {
-  return data_->resolution;
+  return internals(*this).resolution;
 }
 std::uint32_t Surface::rows() const {
-  return data_->rows;
+  return internals(*this).rows;
 }
 std::span<const std::uint32_t> Surface::texel_faces() const {
-  return data_->texel_faces;
+  return internals(*this).texel_faces;
 }
 std::span<const std::uint32_t> Surface::sample_texels() const {
-  return data_->samples;
+  return internals(*this).samples;
 }
 std::vector<Vec3> Surface::sample_points() const try {
-  return data_->sample_points();
+  return internals(*this).sample_points();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the samples of the atlas");
 }
 std::size_t Surface::chart_count() const {
-  return data_->chart_count;
+  return internals(*this).chart_count;
 }
 std::span<const std::uint32_t> Surface::face_charts() const {
-  return data_->face_charts;
+  return internals(*this).face_charts;
 }
 std::uint32_t Surface::gutter() const {
-  return data_->gutter;
+  return internals(*this).gutter;
 }
 std::size_t Surface::overlapping_texels() const {
-  return data_->overlapping_texels;
+  return internals(*this).overlapping_texels;
 }
 double Surface::max_stretch() const {
-  return data_->max_stretch;
+  return internals(*this).max_stretch;
 }
 
 Vec3 Surface::texel_point(std::uint32_t texel) const {
-  return data_->texel_point(data_->texel_faces[texel], texel);
+  const surface::SurfaceData& data = internals(*this);
+  return data.texel_point(data.texel_faces[texel], texel);
 }
 
 Vec3 Surface::to_surface(std::uint32_t face, const Vec2& uv) const {
-  return data_->to_surface(face, uv);
+  return internals(*this).to_surface(face, uv);
 }
 
 // Solves p − vertex 0 = a ∂p/∂u + b ∂p/∂v in the plane of the two, with normal n = ∂p/∂u × ∂p/∂v: a |n|² = (p
 // × ∂p/∂v)·n, b |n|² = (∂p/∂u × p)·n.
 Vec2 Surface::to_atlas(std::uint32_t face, const Vec3& point) const {
-  const auto& [origin, edges] = data_->maps[face];
-  const Vec3 p = point - data_->mesh.positions[data_->mesh.triangles[face][0]];
+  const surface::SurfaceData& data = internals(*this);
+  const auto& [origin, edges] = data.maps[face];
+  const Vec3 p = point - data.mesh.positions[data.mesh.triangles[face][0]];
   const Vec3 n = cross(edges[0], edges[1]);
   const double area = squared_norm(n);
   return origin + Vec2{dot(cross(p, edges[1]), n) / area, dot(cross(edges[0], p), n) / area};
 }
 
 std::array<Vec2, 3> Surface::atlas_corners(std::uint32_t face) const {
-  return data_->corners[face];
+  return internals(*this).corners[face];
 }
 
 std::array<Vec3, 2> Surface::texel_edges(std::uint32_t face) const {
-  return data_->maps[face].edges;
+  return internals(*this).maps[face].edges;
 }
 
 double Surface::utilisation() const {
-  return static_cast<double>(data_->samples.size()) / static_cast<double>(data_->texel_faces.size());
+  const surface::SurfaceData& data = internals(*this);
+  return static_cast<double>(data.samples.size()) / static_cast<double>(data.texel_faces.size());
 }
 
 }  // namespace sdm

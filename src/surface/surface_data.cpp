@@ -90,16 +90,20 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options, std::span<c
 }
 
 void SurfaceData::refit(std::span<const Vec3> positions) {
+  intact_.require();
   std::vector<Vec3>& current = mesh.positions;
   mesh::validate_positions(positions, current.size());
-  parallel_for(mesh.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  const auto move = [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const Triangle& t = mesh.triangles[f];
       const bool moved = std::ranges::any_of(t, [&](std::uint32_t v) { return positions[v] != current[v]; });
       if (moved && face_charts[f] != kNone) maps[f].edges = atlas::affine_edges(corners[f], positions, t);
     }
+  };
+  intact_.change([&] {
+    parallel_for(mesh.triangles.size(), 4096, move);
+    std::ranges::copy(positions, current.begin());
   });
-  std::ranges::copy(positions, current.begin());
 }
 
 void SurfaceData::place_samples(std::size_t first, std::span<Vec3> points) const {

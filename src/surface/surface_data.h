@@ -8,6 +8,7 @@
 #include "atlas/layout.h"
 #include "atlas/packing/room.h"
 #include "core/geometry/vec.h"
+#include "core/intact.h"
 
 namespace sdm::surface {
 
@@ -23,6 +24,8 @@ class SurfaceData {
   SurfaceData(Mesh mesh, const AtlasOptions& options, std::span<const std::uint8_t> atlas);
   void refit(std::span<const Vec3> positions);
   void edit(const MeshEdit& edit);
+  /// Throws sdm::Error if a refit failed half-way.
+  void require_intact() const { intact_.require(); }
 
   /// M⁻¹ of the face.
   [[nodiscard]] Vec3 to_surface(std::uint32_t face, const Vec2& uv) const {
@@ -55,17 +58,21 @@ class SurfaceData {
   std::shared_ptr<const Identity> identity = std::make_shared<Identity>();
 
  private:
+  class Edit;
+
   [[nodiscard]] atlas::Room occupied_room() const;
 
   atlas::Room room_;  ///< of the present layout, or empty: only edits need it
+  Intact intact_{"a Surface object"};
 };
 
 }  // namespace sdm::surface
 
 namespace sdm {
 
-/// The data of Surface. Found by argument-dependent lookup.
+/// The data of Surface. Throws sdm::Error if a refit failed half-way. Found by argument-dependent lookup.
 [[nodiscard]] inline const surface::SurfaceData& internals(const Surface& surface) {
+  surface.data_->require_intact();
   return *surface.data_;
 }
 

@@ -184,5 +184,23 @@ TEST(SitesEdit, MovesTheMeshFarAway) {
   expect_same_answers(sites, Sites(mesh), queries(mesh, random));
 }
 
+// The tree is traversed recursively. Faces added in one place make the same leaf deeper every time.
+TEST(SitesEdit, AtOnePlaceDoesNotMakeTheTreeDeep) {
+  Sites sites(test::ring(48));
+  double size = 0.1;
+  for (int i = 0; i < 110; ++i) {
+    MeshEdit edit;
+    for (int k = 0; k < 9; ++k, size *= 0.98) {
+      const auto n = static_cast<std::uint32_t>(sites.mesh().positions.size() + edit.added_vertices.size());
+      edit.added_vertices.insert(edit.added_vertices.end(), {{size, 0, 0}, {0, size, 0}, {0, 0, size}});
+      edit.added_faces.push_back({n, n + 1, n + 2});
+    }
+    sites.edit(edit);
+    ASSERT_LE(hierarchy::depth(internals(sites).tree), hierarchy::kDeepest) << i;
+  }
+  std::mt19937 random(5);
+  expect_same_answers(sites, Sites(sites.mesh()), queries(sites.mesh(), random));
+}
+
 }  // namespace
 }  // namespace sdm
