@@ -75,16 +75,19 @@ class SDM_API MultiBodyQuery {
 
   /// Moves the vertices of a body, keeping its triangles and its pose. Throws sdm::Error, and changes
   /// nothing, for a body that does not exist or whose Shape is shared, a wrong number of positions, or a
-  /// coordinate that is not finite or beyond 1e37. Cost: linear.
+  /// coordinate that is not finite or beyond 1e37. If there is not enough memory, it also throws, and changes
+  /// nothing or leaves the object broken (see sdm/error.h). Cost: linear.
   void refit(std::size_t body, std::span<const Vec3> positions);
   /// The same for all bodies, on all cores: one entry per body; an empty one leaves the body unchanged.
   void refit(std::span<const std::span<const Vec3>> positions);
 
   /// Returns all pairs that collide or whose separation is at most max_distance. Sorted by first, then by
   /// second body. The results of a pair are those of ProximityQuery. Computed by the first call after a body
-  /// has moved, and valid until one moves again. Neither this nor refit() allocates memory once the bodies
-  /// have been through similar poses, unless a solid intersects itself. Cost: a sweep over the boxes of the
-  /// bodies, then that of ProximityQuery for each candidate pair, the pairs distributed over all cores.
+  /// has moved, and valid until one moves again. Throws sdm::Error if there is not enough memory, as
+  /// contacts() does; the next call then computes them. Neither this nor refit() allocates memory once the
+  /// bodies have been through similar poses, unless a solid intersects itself. Cost: a sweep over the boxes
+  /// of the bodies, then that of ProximityQuery for each candidate pair, the pairs distributed over all
+  /// cores.
   [[nodiscard]] std::span<const PairProximity> pairs();
   /// Returns the contacts of all pairs, those of each pair as by ProximityQuery::contacts, sorted by first,
   /// then by second body. Computed by the first call after a body has moved, and valid until one moves again.
@@ -99,7 +102,8 @@ class SDM_API MultiBodyQuery {
   /// there is not enough memory. Cost: that of compute_map to each body whose box is nearer than the
   /// distances found so far, all cores.
   [[nodiscard]] NearestMap nearest_map(std::size_t body) const;
-  /// The same, into `nearest`, whose memory is reused where possible.
+  /// The same, into `nearest`, whose memory is reused where possible. If it throws, the values of `nearest`
+  /// are unspecified.
   void nearest_map(std::size_t body, NearestMap& nearest) const;
 
   /// The atlas and the sites of a body, in the frame of its mesh, without the pose. Both throw sdm::Error for

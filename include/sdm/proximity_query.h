@@ -109,21 +109,24 @@ class SDM_API ProximityQuery {
 
   /// Moves the vertices of the bodies, keeping their triangles and poses. An empty span leaves a body
   /// unchanged. Throws sdm::Error, and changes nothing, for a wrong number of positions, a coordinate that is
-  /// not finite, or a body whose Shape is shared with anything else. Cost: that of Sites::refit and, with an
-  /// atlas, Surface::refit. The parts of a surface that have one contact each stay those of its shape before.
-  /// Neither this nor the queries allocate memory once the bodies have been through
-  /// similar poses, unless a solid intersects itself.
+  /// not finite, or a body whose Shape is shared with anything else. If there is not enough memory, it also
+  /// throws, and changes nothing or leaves the object broken (see sdm/error.h). Cost: that of Sites::refit
+  /// and, with an atlas, Surface::refit. The parts of a surface that have one contact each stay those of its
+  /// shape before. Neither this nor the queries allocate memory once the bodies have been through similar
+  /// poses, unless a solid intersects itself.
   void refit(std::span<const Vec3> o1, std::span<const Vec3> o2);
 
   /// Changes the mesh of a body, 0 or 1, as Sites::edit and, with an atlas, Surface::edit do, which keeps
   /// faces, texels and their numbers. The ids of its contacts may change. Throws sdm::Error, and changes
-  /// nothing, as they do and for a body whose Shape is shared. All results are those of the edited mesh, to
-  /// the bit. Cost: that of new Sites, and of Surface::edit.
+  /// nothing, for what they throw for and for a body whose Shape is shared. If there is not enough memory, it
+  /// changes nothing or leaves the object broken (see sdm/error.h). All results are those of the edited mesh,
+  /// to the bit. Cost: that of new Sites, and of Surface::edit.
   void edit(int body, const MeshEdit& edit);
   /// Replaces the shape of a body, 0 or 1, in the same pose. Cost: constant.
   void replace(int body, Shape shape);
 
-  // Results are computed by the first call after a body has moved.
+  // Results are computed by the first call after a body has moved. If it throws, as there is not enough
+  // memory, the next call computes them.
 
   /// The smallest distance between the two surfaces, from the triangles: exact, and 0 if they intersect.
   [[nodiscard]] const BoundedLength& separation();

@@ -118,7 +118,8 @@ class SDM_API SelfProximityQuery {
   SelfProximityQuery& operator=(SelfProximityQuery&&) noexcept;
 
   /// Moves the vertices; the excluded faces stay the same. Throws sdm::Error, and changes nothing, for a
-  /// wrong number of positions or a coordinate that is not finite or beyond 1e37. Cost: linear.
+  /// wrong number of positions or a coordinate that is not finite or beyond 1e37. If there is not enough
+  /// memory, it also throws, and changes nothing or leaves the object broken (see sdm/error.h). Cost: linear.
   void refit(std::span<const Vec3> positions);
 
   /// The smallest distance between two faces that do not exclude each other, 0 if they intersect; exact.

@@ -20,6 +20,10 @@ struct ProximityQuery::Impl {
         answers(options.contact_margin, options.depth_precision) {
     begin();
   }
+  // Every call but construction begins with this.
+  void require_intact() const {
+    for (const shape::PosedBody& body : bodies) body.body().require_intact();
+  }
   // The faces that were closest before are most likely near the closest ones now.
   void begin() { answers.begin(bodies[0], bodies[1], answers.closest_faces()); }
   void begin_anew() { answers.begin(bodies[0], bodies[1]); }
@@ -57,6 +61,7 @@ ProximityQuery::ProximityQuery(ProximityQuery&&) noexcept = default;
 ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;
 
 void ProximityQuery::set_pose(int body, const Transform& pose) {
+  impl_->require_intact();
   check_body(body);
   const Uncancellable whole;
   impl_->bodies[body].set_pose(pose);
@@ -64,11 +69,13 @@ void ProximityQuery::set_pose(int body, const Transform& pose) {
 }
 
 Transform ProximityQuery::pose(int body) const {
+  impl_->require_intact();
   check_body(body);
   return impl_->bodies[body].pose().transform();
 }
 
 void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
+  impl_->require_intact();
   const Uncancellable whole;
   const std::array positions{o1, o2};
   for (int b = 0; b < 2; ++b)
@@ -81,6 +88,7 @@ void ProximityQuery::refit(std::span<const Vec3> o1, std::span<const Vec3> o2) {
 }
 
 void ProximityQuery::edit(int body, const MeshEdit& edit) {
+  impl_->require_intact();
   check_body(body);
   const Uncancellable whole;
   impl_->bodies[body].require_own_shape();
@@ -91,6 +99,7 @@ void ProximityQuery::edit(int body, const MeshEdit& edit) {
 }
 
 void ProximityQuery::replace(int body, Shape shape) {
+  impl_->require_intact();
   check_body(body);
   const Uncancellable whole;
   impl_->bodies[body].replace(std::move(shape));
@@ -98,24 +107,30 @@ void ProximityQuery::replace(int body, Shape shape) {
 }
 
 const BoundedLength& ProximityQuery::separation() {
+  impl_->require_intact();
   return with_memory([&]() -> const BoundedLength& { return impl_->answers.separation(); });
 }
 BoundedBool ProximityQuery::colliding() {
+  impl_->require_intact();
   return with_memory([&] { return impl_->answers.colliding(); });
 }
 const std::optional<BoundedLength>& ProximityQuery::penetration_depth() {
+  impl_->require_intact();
   return with_memory(
       [&]() -> const std::optional<BoundedLength>& { return impl_->answers.penetration_depth(); });
 }
 std::span<const Contact> ProximityQuery::contacts() {
+  impl_->require_intact();
   return with_memory([&] { return impl_->answers.contacts(); });
 }
 
 const Surface& ProximityQuery::surface(int body) const {
+  impl_->require_intact();
   check_body(body);
   return impl_->bodies[body].body().surface();
 }
 const Sites& ProximityQuery::sites(int body) const {
+  impl_->require_intact();
   check_body(body);
   return impl_->bodies[body].body().sites();
 }

@@ -11,6 +11,7 @@
 
 #include "core/cancellation.h"
 #include "core/geometry/sweep.h"
+#include "core/intact.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "proximity/bodies/nearest_body.h"
@@ -74,6 +75,7 @@ class AnswersPool {
 struct MultiBodyQuery::Impl {
   MultiBodyOptions options;
   std::vector<shape::PosedBody> bodies;
+  Intact intact{"a MultiBodyQuery object"};  // every call but construction requires it first
   AnswersPool pool;
   Sweep sweep;
   std::vector<Box> boxes;
@@ -100,12 +102,14 @@ struct MultiBodyQuery::Impl {
   void moved() { pairs_found = contacts_found = false; }
 
   [[nodiscard]] std::size_t checked(std::size_t body) const {
+    intact.require();
     if (body >= bodies.size())
       throw Error("there is no body " + std::to_string(body) + " among " + std::to_string(bodies.size()) +
                   "; they are numbered from 0");
     return body;
   }
   void check_count(std::size_t count, const char* what) const {
+    intact.require();
     if (count != bodies.size())
       throw Error("there are " + std::to_string(bodies.size()) + " bodies, but " + what + " for " +
                   std::to_string(count) + " were given; give one entry per body");
@@ -142,7 +146,6 @@ struct MultiBodyQuery::Impl {
 
   void find_pairs() {
     const std::span<const Sweep::Pair> near = near_pairs(options.max_distance);
-    candidates = near.size();
     pairs.resize(near.size());
     for_near_pairs(near, [&](std::size_t i, pair::PairAnswers& answers) {
       if (!answers.within(options.max_distance)) {
@@ -156,6 +159,7 @@ struct MultiBodyQuery::Impl {
                   .penetration_depth = answers.penetration_depth()};
     });
     std::erase_if(pairs, [](const PairProximity& pair) { return pair.first == kNone; });
+    candidates = near.size();
   }
 
   void find_contacts() {
@@ -184,6 +188,7 @@ MultiBodyQuery::MultiBodyQuery(MultiBodyQuery&&) noexcept = default;
 MultiBodyQuery& MultiBodyQuery::operator=(MultiBodyQuery&&) noexcept = default;
 
 std::size_t MultiBodyQuery::size() const {
+  impl_->intact.require();
   return impl_->bodies.size();
 }
 
@@ -208,7 +213,7 @@ void MultiBodyQuery::refit(std::size_t body, std::span<const Vec3> positions) tr
   const Uncancellable whole;
   impl_->check(impl_->checked(body), positions);
   impl_->moved();
-  impl_->bodies[body].refit(positions);
+  impl_->intact.change([&] { impl_->bodies[body].refit(positions); });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a query of many bodies");
 }
@@ -223,12 +228,13 @@ void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) try
     for (std::size_t b = begin; b < end; ++b)
       if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
   };
-  parallel_for(size(), 1, refit);
+  impl_->intact.change([&] { parallel_for(positions.size(), 1, refit); });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a query of many bodies");
 }
 
 std::span<const PairProximity> MultiBodyQuery::pairs() try {
+  impl_->intact.require();
   if (!impl_->pairs_found) impl_->find_pairs();
   impl_->pairs_found = true;
   return impl_->pairs;
@@ -237,6 +243,7 @@ std::span<const PairProximity> MultiBodyQuery::pairs() try {
 }
 
 std::span<const BodyContact> MultiBodyQuery::contacts() try {
+  impl_->intact.require();
   if (!impl_->contacts_found) impl_->find_contacts();
   impl_->contacts_found = true;
   return impl_->contacts;
@@ -245,6 +252,7 @@ std::span<const BodyContact> MultiBodyQuery::contacts() try {
 }
 
 std::size_t MultiBodyQuery::candidate_pairs() const {
+  impl_->intact.require();
   return impl_->candidates;
 }
 

@@ -3,13 +3,15 @@
 
 #include <cmath>
 #include <limits>
+#include <new>
 
+#include "core/memory.h"
 #include "mesh/similarity.h"
 
 namespace sdm {
 
 std::vector<float> nearest_distances_at_vertices(const MultiBodyQuery& bodies, std::size_t body,
-                                                 double max_distance) {
+                                                 double max_distance) try {
   using mesh::Similarity;
   const Mesh& mesh = bodies.sites(body).mesh();
   const Similarity pose = Similarity::of(bodies.pose(body));
@@ -28,6 +30,8 @@ std::vector<float> nearest_distances_at_vertices(const MultiBodyQuery& bodies, s
     }
   }
   return nearest;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the distances of vertices");
 }
 
 }  // namespace sdm

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "core/geometry/sweep.h"
 #include "core/geometry/vec.h"

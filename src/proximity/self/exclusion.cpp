@@ -48,11 +48,38 @@ class Neighbours {
 
   // In increasing order.
   [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t patch) const {
-    // None is set between calls.
-    thread_local struct { std::vector<bool> joints, patches; } met;
+    std::vector<std::uint32_t> reached{patch};
+    reach(patch, reached);
+    std::ranges::sort(reached);
+    return reached;
+  }
+
+ private:
+  struct Met {
+    std::vector<bool> joints, patches;
+  };
+  // Resets what was set for these patches.
+  struct Forget {
+    const Neighbours& neighbours;
+    Met& met;
+    const std::vector<std::uint32_t>&reached, &rejected;
+
+    ~Forget() {
+      for (const std::uint32_t p : rejected) met.patches[p] = false;
+      for (const std::uint32_t p : reached) {
+        met.patches[p] = false;
+        for (const std::uint32_t joint : neighbours.joints_of_.of(p)) met.joints[joint] = false;
+      }
+    }
+  };
+
+  // Adds the patches that `patch` reaches, other than itself.
+  void reach(std::uint32_t patch, std::vector<std::uint32_t>& reached) const {
+    thread_local Met met;  // none is set between calls
     if (met.joints.size() < patches_at_.size()) met.joints.resize(patches_at_.size());
     if (met.patches.size() < patches_.count()) met.patches.resize(patches_.count());
-    std::vector<std::uint32_t> reached{patch}, rejected;
+    std::vector<std::uint32_t> rejected;
+    const Forget forget{*this, met, reached, rejected};  // also if memory runs out
     met.patches[patch] = true;
     std::size_t begin = 0;
     for (std::uint32_t ring = 1; begin < reached.size() && (rule_.geodesic || ring <= rule_.rings); ++ring)
@@ -62,21 +89,13 @@ class Neighbours {
           met.joints[joint] = true;
           for (const std::uint32_t other : patches_at_.of(joint)) {
             if (met.patches[other]) continue;
-            met.patches[other] = true;
             const bool admitted = ring == 1 || !rule_.geodesic || within(*rule_.geodesic, patch, other);
             (admitted ? reached : rejected).push_back(other);
+            met.patches[other] = true;
           }
         }
-    for (const std::uint32_t p : rejected) met.patches[p] = false;
-    for (const std::uint32_t p : reached) {
-      met.patches[p] = false;
-      for (const std::uint32_t joint : joints_of_.of(p)) met.joints[joint] = false;
-    }
-    std::ranges::sort(reached);
-    return reached;
   }
 
- private:
   // Finds the joints: vertices at which patches meet, with these patches.
   void join(const CompressedRows<std::uint32_t>& faces_of_vertex) {
     std::vector<std::uint32_t> around;

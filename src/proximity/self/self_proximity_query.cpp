@@ -116,8 +116,8 @@ SelfProximityQuery& SelfProximityQuery::operator=(SelfProximityQuery&&) noexcept
 
 void SelfProximityQuery::refit(std::span<const Vec3> positions) try {
   const Uncancellable whole;
+  impl_->closest.reset();  // before a refit that may fail half-way
   impl_->sites.refit(positions);
-  impl_->closest.reset();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a proximity query of a mesh with itself");
 }
@@ -136,6 +136,7 @@ std::optional<BoundedLength> SelfProximityQuery::separation() try {
 }
 
 std::span<const Contact> SelfProximityQuery::contacts(double margin) try {
+  internals(impl_->sites).require_intact();
   if (!(margin >= 0 && std::isfinite(margin)))
     throw Error("a contact margin of " + std::to_string(margin) + " is out of range; use 0 or more");
   impl_->find_contacts(margin);
@@ -145,9 +146,11 @@ std::span<const Contact> SelfProximityQuery::contacts(double margin) try {
 }
 
 const Sites& SelfProximityQuery::sites() const {
+  internals(impl_->sites).require_intact();
   return impl_->sites;
 }
 const Exclusion& SelfProximityQuery::exclusion() const {
+  internals(impl_->sites).require_intact();
   return impl_->exclusion;
 }
 

@@ -44,9 +44,11 @@ Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
 }
 
 void Body::refit(std::span<const Vec3> positions) {
-  if (surface_) surface_->refit(positions);
-  sites_.refit(positions);
-  follow_positions();
+  intact_.change([&] {
+    if (surface_) surface_->refit(positions);
+    sites_.refit(positions);
+    follow_positions();
+  });
 }
 
 void Body::edit(const MeshEdit& edit) {
@@ -56,10 +58,12 @@ void Body::edit(const MeshEdit& edit) {
   apply(mesh, edit);
   Sites sites(std::move(mesh));
   if (surface_) surface_->edit(edit);
-  sites_ = std::move(sites);
-  inside_.reset();
-  follow_positions();
-  find_parts();
+  intact_.change([&] {
+    sites_ = std::move(sites);
+    inside_.reset();
+    follow_positions();
+    find_parts();
+  });
 }
 
 void Body::find_parts() {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/intact.h"
 #include "inside/inside.h"
 #include "inside/solid_boundary.h"
 #include "proximity/shape/contact_parts.h"
@@ -28,6 +29,9 @@ class Body {
   /// Changes the mesh. Throws sdm::Error, and changes nothing, as Surface::edit and Sites::edit do. Then it
   /// is like a body of the edited mesh, to the bit. Cost: that of its sites, and of Surface::edit.
   void edit(const MeshEdit& edit);
+  /// Throws sdm::Error if a refit or an edit failed half-way. Whoever changes a body asks this before all
+  /// else that uses it.
+  void require_intact() const { intact_.require(); }
 
   /// Throws sdm::Error if there is no atlas.
   [[nodiscard]] const Surface& surface() const;
@@ -56,6 +60,7 @@ class Body {
   void follow_positions();
   void find_parts();
 
+  Intact intact_{"a body"};
   std::optional<Surface> surface_;
   Sites sites_;
   Box box_;
