@@ -41,8 +41,9 @@ class SDM_API SequencePlayer {
   SequencePlayer(SequencePlayer&&) noexcept;
   SequencePlayer& operator=(SequencePlayer&&) noexcept;
 
-  /// Adds a frame, whose number is greater than that of the last one. Throws sdm::Error if a mesh has other
-  /// triangles. Cost: a closest point for each vertex drawn.
+  /// Adds a frame, whose number is greater than that of the last one. Throws sdm::Error, and changes nothing,
+  /// if a mesh has other triangles or there is not enough memory. Cost: a closest point for each vertex
+  /// drawn.
   void add(std::size_t frame, const Sites& o1, const Sites& o2);
 
   /// `options` with a range from the distances of the frames so far, as fixed_colors() does it.

@@ -4,10 +4,13 @@
 
 #include <cstdint>
 #include <limits>
+#include <new>
+
+#include "core/memory.h"
 
 namespace sdm {
 
-std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, MapOptions options) {
+std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, MapOptions options) try {
   if (options.engine && engine_info(*options.engine).maps_only) options.engine = nullptr;
   const SignMethod sign = choose_sign(sites, options.sign).method;
   const std::vector<ClosestPoint> closest = closest_points(sites, mesh.positions, options);
@@ -18,6 +21,8 @@ std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, M
     if (closest[i].type != SiteType::none)
       result[i] = static_cast<float>(inside[i] ? -closest[i].distance : closest[i].distance);
   return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the distances of vertices");
 }
 
 }  // namespace sdm

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 #include <string>
 
+#include "core/memory.h"
 #include "engine/cpu/cpu_engine.h"
 #include "engine/gl/gl_engine.h"
 #include "engine/reference/reference_engine.h"
@@ -40,12 +42,14 @@ std::span<const EngineInfo> engines() {
   return kInfos;
 }
 
-std::shared_ptr<const Engine> make_engine(std::string_view name) {
+std::shared_ptr<const Engine> make_engine(std::string_view name) try {
   const Row* row = std::ranges::find(kEngines, name, [](const Row& r) { return r.info.name; });
   if (row != std::end(kEngines)) return row->make();
   std::string known;
   for (const EngineInfo& info : kInfos) known += (known.empty() ? "" : ", ") + std::string(info.name);
   throw Error("there is no engine '" + std::string(name) + "'; the engines are " + known);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("an engine");
 }
 
 }  // namespace sdm

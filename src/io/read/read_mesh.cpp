@@ -1,7 +1,9 @@
 #include <sdm/io.h>
 
 #include <algorithm>
+#include <new>
 
+#include "core/memory.h"
 #include "io/read/file_bytes.h"
 #include "io/read/read_polygons.h"
 
@@ -29,15 +31,17 @@ void add_names(const char* kind, const io::PolygonNames& polygons,
 
 }  // namespace
 
-Mesh read_mesh(const std::filesystem::path& file) {
+Mesh read_mesh(const std::filesystem::path& file) try {
   return io::with_error_prefix(file.string(), [&] {
     Mesh mesh = io::to_mesh(io::read_polygons(io::read_bytes(file).view(), file));
     validate(mesh);
     return mesh;
   });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the name of a mesh file");
 }
 
-MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions& options) {
+MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions& options) try {
   return io::with_error_prefix(file.string(), [&] {
     io::PolygonMesh polygons = io::read_polygons(io::read_bytes(file).view(), file);
     std::vector<std::uint32_t> renumbered, triangle_ends;
@@ -56,6 +60,8 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
                                      .ends = std::move(polygons.ends)};
     return result;
   });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the name of a mesh file");
 }
 
 }  // namespace sdm

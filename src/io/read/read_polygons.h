@@ -30,15 +30,15 @@ namespace sdm::io {
 /// with `name`, unless that is empty. It is printable(), whatever the file contains.
 template <typename Read>
 auto with_error_prefix(const std::string& name, const Read& read) {
-  const std::string prefix = name.empty() ? "" : name + ": ";
+  const auto prefix = [&] { return name.empty() ? "" : name + ": "; };
   try {
     return read();
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& fault) {
-    throw Error(printable(prefix + fault.what()));
+    throw Error(printable(prefix() + fault.what()));
   } catch (const std::bad_alloc&) {
-    throw Error(printable(prefix) + "there is not enough memory to read it");
+    throw Error(printable(prefix()) + "there is not enough memory to read it");
   }
 }
 

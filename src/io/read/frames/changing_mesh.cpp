@@ -195,11 +195,11 @@ ChangingMesh::ChangingMesh(PolygonMesh polygons) {
 }
 
 void ChangingMesh::start(NextFile next) {
-  mesh_ = std::move(next.mesh);
+  weld_tolerance_ = kWeldTolerance * diagonal(bounds(next.mesh));
+  mesh_ = std::move(next.mesh);  // from here on, nothing fails
   vertex_ = std::move(next.vertex);
   cycles_ = std::move(next.cycles);
   faces_ = std::move(next.faces);
-  weld_tolerance_ = kWeldTolerance * diagonal(bounds(mesh_));
   change_ = {.edit = {}, .replaced = true};
 }
 

@@ -3,10 +3,12 @@
 #include <sdm/sequence.h>
 
 #include <cmath>
+#include <new>
 #include <optional>
 #include <utility>
 
 #include "core/geometry/vec.h"
+#include "core/memory.h"
 #include "io/read/file_bytes.h"
 #include "io/read/frames/changing_mesh.h"
 #include "io/read/frames/frame_source.h"
@@ -107,13 +109,15 @@ void MeshSequence::Impl::read(std::size_t frame) {
   mesh::validate_positions(positions);
 }
 
-MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& options)
+MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& options) try
     : impl_(std::make_unique<Impl>()) {
   if (!(options.rate >= 0) || !std::isfinite(options.rate))
     throw Error(
         "the rate of a sequence must be a number of frames per second, or 0 for one frame at every key");
   impl_->input = input;
   io::with_error_prefix(input, [&] { impl_->open(options); });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a sequence");
 }
 MeshSequence::~MeshSequence() = default;
 MeshSequence::MeshSequence(MeshSequence&&) noexcept = default;
@@ -136,7 +140,7 @@ std::string MeshSequence::frame_name(std::size_t frame) const {
   return impl_->source->name(frame);
 }
 
-std::span<const Vec3> MeshSequence::positions(std::size_t frame) {
+std::span<const Vec3> MeshSequence::positions(std::size_t frame) try {
   if (frame >= frame_count())
     throw Error(
         fmt::format("{}: there is no frame {}; the sequence has {}", impl_->input, frame, frame_count()));
@@ -148,6 +152,8 @@ std::span<const Vec3> MeshSequence::positions(std::size_t frame) {
       impl_->read(frame);
   });
   return impl_->changing ? mesh().positions : impl_->positions;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a frame of a sequence");
 }
 
 }  // namespace sdm

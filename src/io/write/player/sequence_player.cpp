@@ -73,11 +73,10 @@ struct SequencePlayer::Impl {
             .panels = panels};
   }
 
-  /// Leaves every second frame.
+  /// Leaves every second frame. Does not fail.
   void thin_out() {
-    std::vector<PlayerFrame> rest;
-    for (std::size_t i = 0; i < frames.size(); i += 2) rest.push_back(std::move(frames[i]));
-    frames = std::move(rest);
+    for (std::size_t i = 1; 2 * i < frames.size(); ++i) frames[i] = std::move(frames[2 * i]);
+    frames.erase(frames.begin() + static_cast<std::ptrdiff_t>((frames.size() + 1) / 2), frames.end());
     stride *= 2;
   }
 };
@@ -103,8 +102,11 @@ void SequencePlayer::add(std::size_t frame, const Sites& o1, const Sites& o2) tr
     if (!impl_->bodies[b].fits(sites[b]->mesh()))
       throw Error("a frame of a player has other triangles than the first one");
   const std::size_t number = impl_->added.size();
-  impl_->added.push_back(frame);
-  if (number % impl_->stride != 0) return;
+  reserve_for(impl_->added, number + 1);
+  if (number % impl_->stride != 0) {
+    impl_->added.push_back(frame);
+    return;
+  }
   PlayerFrame shown{.number = number, .positions = {}, .distances = {}};
   for (int b = 0; b < 2; ++b) {
     const Mesh mesh = impl_->bodies[b].mesh(sites[b]->mesh().positions);
@@ -112,6 +114,7 @@ void SequencePlayer::add(std::size_t frame, const Sites& o1, const Sites& o2) tr
     shown.positions[b] = as_floats(mesh.positions);
   }
   impl_->frames.push_back(std::move(shown));
+  impl_->added.push_back(frame);  // this and what follows does not fail
   if (impl_->frames.size() > 2 && impl_->frames.size() * impl_->numbers_of_frame() > kMostNumbers)
     impl_->thin_out();
 } catch (const std::bad_alloc&) {
