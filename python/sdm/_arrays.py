@@ -11,8 +11,16 @@ def _shape(shape: tuple) -> str:
     return "(" + ", ".join(str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
 
 
-def _numpy(array: Any, name: str) -> np.ndarray:
+def _is_masked(array: Any) -> bool:
+    if isinstance(array, np.ma.MaskedArray):
+        return bool(np.ma.is_masked(array))
+    return isinstance(array, (list, tuple)) and any(map(_is_masked, array))
+
+
+def numpy_of(array: Any, name: str) -> np.ndarray:
     """An array of any kind as NumPy's, without a copy where that is possible."""
+    if _is_masked(array):  # NumPy would take the numbers behind the mask
+        raise Error(f"{name} has masked values; leave their rows out, or give them values with filled()")
     try:
         if not isinstance(array, np.ndarray) and hasattr(array, "__dlpack__"):
             device = array.__dlpack_device__()[0]
@@ -30,7 +38,7 @@ def _numpy(array: Any, name: str) -> np.ndarray:
 
 
 def _numbers(array: Any, name: str, kinds: str, what: str, shape: tuple) -> np.ndarray:
-    numbers = _numpy(array, name)
+    numbers = numpy_of(array, name)
     fits = numbers.ndim == len(shape) and all(n in (m, None) for m, n in zip(numbers.shape, shape))
     if not fits:
         expected = _shape(tuple("n" if n is None else n for n in shape))
@@ -59,7 +67,7 @@ def motion(poses: Any, name: str) -> np.ndarray:
     """The poses at the start and at the end: two of them, or one for both; None: the identity."""
     if poses is None:
         poses = np.eye(4)
-    numbers = _numpy(poses, name)
+    numbers = numpy_of(poses, name)
     if numbers.ndim == 2:
         numbers = np.stack((numbers, numbers))
     if numbers.shape != (2, 4, 4):
@@ -69,7 +77,7 @@ def motion(poses: Any, name: str) -> np.ndarray:
 
 def lengths(array: Any, name: str, count: int) -> np.ndarray:
     """One number for each of ``count`` items, from as many or from one for all."""
-    numbers = _numpy(array, name)
+    numbers = numpy_of(array, name)
     if numbers.ndim == 0:
         numbers = np.broadcast_to(numbers, (count,))
     elif numbers.shape != (count,):

@@ -226,9 +226,7 @@ class DistanceMap:
         .glb to metres. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a
         .html. The complete file appears, or none. Raises Error, naming the file and the fault.
         """
-        name = os.fspath(file)
-        if not isinstance(name, str):
-            name = os.fsdecode(name)
+        name = os.fsdecode(file)
         suffix = os.path.splitext(name)[1].lower()
         if suffix not in (".exr", ".png", ".glb", ".html", ".ply", ".csv", ".npy", ".vtp"):
             raise Error(f"{name}: a map is saved as .exr, .png, .glb, .html, .ply, .csv, .npy or .vtp, not as '{suffix}'")
@@ -279,7 +277,7 @@ def map(
     a: object,
     b: object,
     *,
-    resolution: "int | None" = None,
+    resolution: "int | tuple[int, int] | None" = None,
     precision: "float | None" = None,
     engine: str = "cpu",
     transform: object = None,
@@ -293,8 +291,9 @@ def map(
     """Computes the distance from every point of the surface of ``a`` (O1) to ``b`` (O2).
 
     a, b: meshes in any form (see Mesh). A Surface for ``a`` and a Sites for ``b`` are used as they are.
-    resolution: texels per side, 1024 by default. precision: instead, the largest distance from a point of the surface to
-    the nearest texel's centre. atlas, max_stretch, gutter: as of Surface.
+    resolution: texels per side, 1024 by default; with atlas='uv' also two integers, the texels per row and the rows.
+    precision: instead, the largest distance from a point of the surface to the nearest texel's centre. atlas, max_stretch,
+    gutter: as of Surface.
     engine: 'cpu', 'gl' (on OpenGL) or 'reference' (simple and slow).
     transform: a 4 × 4 affine matrix that moves ``a`` first, for column vectors; a reflection also reverses the faces.
     sign: 'automatic': negative inside a closed, orientable ``b``, else unsigned; 'none'; 'exact'; 'winding': by generalised
@@ -333,7 +332,7 @@ def self_map(
     rings: int = 1,
     geodesic: "float | None" = None,
     max_distance: float = float("inf"),
-    resolution: "int | None" = None,
+    resolution: "int | tuple[int, int] | None" = None,
     precision: "float | None" = None,
     atlas: str = "charts",
     max_stretch: float = 1.3,

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ._arrays import numpy_of
 from ._core import Error, Mesh, read
 
 _FORMS = (
@@ -16,7 +17,7 @@ def _of_corners(uvs: Any, vertices: Any, faces: np.ndarray) -> "np.ndarray | Non
     """Texture coordinates of corners, from those of vertices."""
     if uvs is None or np.shape(uvs) != (len(vertices), 2) or len(faces) == 0:
         return None
-    return np.asarray(uvs)[np.asarray(faces)]
+    return numpy_of(uvs, "texture coordinates")[numpy_of(faces, "faces")]
 
 
 def _trimesh(mesh: Any) -> tuple:
@@ -25,9 +26,9 @@ def _trimesh(mesh: Any) -> tuple:
 
 
 def _open3d_legacy(mesh: Any) -> tuple:
-    faces = np.asarray(mesh.triangles)
-    uvs = np.asarray(getattr(mesh, "triangle_uvs", ()))
-    return np.asarray(mesh.vertices), faces, uvs.reshape(-1, 3, 2) if len(uvs) == 3 * len(faces) > 0 else None
+    faces = numpy_of(mesh.triangles, "faces")
+    uvs = numpy_of(getattr(mesh, "triangle_uvs", ()), "texture coordinates")
+    return numpy_of(mesh.vertices, "vertices"), faces, uvs.reshape(-1, 3, 2) if len(uvs) == 3 * len(faces) > 0 else None
 
 
 def _open3d_tensor(mesh: Any) -> tuple:
@@ -40,10 +41,10 @@ def _pyvista(mesh: Any) -> tuple:
     def all_triangles(faces: np.ndarray) -> bool:
         return len(faces) % 4 == 0 and bool((faces[::4] == 3).all())
 
-    faces = np.asarray(mesh.faces)
+    faces = numpy_of(mesh.faces, "faces")
     if not all_triangles(faces):
         mesh = mesh.triangulate()
-        faces = np.asarray(mesh.faces)
+        faces = numpy_of(mesh.faces, "faces")
     if not all_triangles(faces):
         raise Error("the mesh of pyvista has faces that are no polygons; extract its surface first")
     faces = faces.reshape(-1, 4)[:, 1:]
@@ -55,9 +56,9 @@ def _meshio(mesh: Any) -> tuple:
     triangles = []
     for block in mesh.cells:
         if block.type == "triangle":
-            triangles.append(np.asarray(block.data))
+            triangles.append(numpy_of(block.data, "faces"))
         elif block.type == "quad":
-            corners = np.asarray(block.data)
+            corners = numpy_of(block.data, "faces")
             triangles.append(corners[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3))
         elif block.type not in ("vertex", "line"):
             raise Error(f"the mesh of meshio has cells of type '{block.type}'; only triangles and quads are surfaces")

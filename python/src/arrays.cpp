@@ -11,11 +11,44 @@ namespace sdm::python {
 namespace {
 
 // The slow path, for all that is not float64 or uint32 in C order: python/sdm/_arrays.py.
+// Arrays that the fast path may take as they are: not those of a subclass with a mask, which it would ignore.
+bool may_be_used(nb::handle array) {
+  return !nb::hasattr(array, "mask");
+}
+
 nb::object converted(const char* function, nb::handle array, const char* name) {
   return nb::module_::import_("sdm._arrays").attr(function)(array, name);
 }
 
 }  // namespace
+
+std::filesystem::path path_of(nb::handle file) {
+  const nb::bytes bytes(nb::module_::import_("os").attr("fsencode")(file));
+  std::string name(static_cast<const char*>(bytes.data()), bytes.size());
+  if (name.find('\0') != std::string::npos)
+    throw Error("the name of a file contains a NUL character: " + std::string(nb::repr(file).c_str()));
+  return name;
+}
+
+std::int64_t integer_of(nb::handle value, const char* name, std::int64_t least, std::int64_t most) {
+  PyObject* index = PyNumber_Index(value.ptr());
+  if (index == nullptr) {
+    PyErr_Clear();
+    const nb::str type(nb::borrow(value.type()).attr("__name__"));
+    throw nb::type_error((std::string(name) + " must be an integer, not " + type.c_str()).c_str());
+  }
+  const nb::object owner = nb::steal(index);
+  int overflow = 0;
+  const long long result = PyLong_AsLongLongAndOverflow(index, &overflow);
+  if (overflow != 0 || result < least || result > most) throw Error(std::string(name) + " is out of range");
+  return result;
+}
+
+double real_of(nb::handle value) {
+  const double result = PyFloat_AsDouble(value.ptr());
+  if (result == -1 && PyErr_Occurred() != nullptr) nb::raise_python_error();
+  return result;
+}
 
 void for_parts(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& body) {
   constexpr std::size_t kPart = 1 << 15;
@@ -27,7 +60,7 @@ void for_parts(std::size_t count, const std::function<void(std::size_t begin, st
 }
 
 Points::Points(nb::handle array, const char* name) {
-  if (!nb::try_cast(array, array_, false))
+  if (!may_be_used(array) || !nb::try_cast(array, array_, false))
     array_ = nb::cast<decltype(array_)>(converted("points", array, name));
 }
 
@@ -42,7 +75,7 @@ Lengths::Lengths(nb::handle value, const char* name, std::size_t count)
 
 std::vector<Triangle> triangles(nb::handle array, const char* name) {
   nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> indices;
-  if (!nb::try_cast(array, indices, false))
+  if (!may_be_used(array) || !nb::try_cast(array, indices, false))
     indices = nb::cast<decltype(indices)>(converted("triangles", array, name));
   static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
   const auto* first = reinterpret_cast<const Triangle*>(indices.data());
@@ -77,7 +110,8 @@ Transform affine(const double* numbers, const char* name) {
 Transform transform(nb::handle matrix, const char* name) {
   using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
   Matrix numbers;
-  if (!nb::try_cast(matrix, numbers, false)) numbers = nb::cast<Matrix>(converted("matrix", matrix, name));
+  if (!may_be_used(matrix) || !nb::try_cast(matrix, numbers, false))
+    numbers = nb::cast<Matrix>(converted("matrix", matrix, name));
   return affine(numbers.data(), name);
 }
 

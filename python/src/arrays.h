@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <initializer_list>
 #include <memory>
@@ -43,6 +44,16 @@ class Lengths {
  private:
   nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu> array_;
 };
+
+/// The name of a file: a str, bytes or os.PathLike. Throws sdm::Error for one that contains a NUL, where the
+/// name of the system's calls would end, and a TypeError for anything else.
+[[nodiscard]] std::filesystem::path path_of(nb::handle file);
+/// An integer, of Python or NumPy. Throws a TypeError for anything else: a float is none, even without a
+/// fraction. Throws sdm::Error for less than `least` or more than `most`.
+[[nodiscard]] std::int64_t integer_of(nb::handle value, const char* name, std::int64_t least,
+                                      std::int64_t most = 0xFFFFFFFE);
+/// A number. Throws a TypeError for anything else, such as text.
+[[nodiscard]] double real_of(nb::handle value);
 
 /// Copies m × 3 integers. Throws sdm::Error for any other array, and for numbers that are no index.
 [[nodiscard]] std::vector<Triangle> triangles(nb::handle array, const char* name);

@@ -59,13 +59,13 @@ FileVertices file_vertices(const Mesh& mesh) {
   return result;
 }
 
-void write(const PyMap& self, const std::string& format, const std::string& file, const std::string& colormap,
+void write(const PyMap& self, const std::string& format, nb::handle file, const std::string& colormap,
            std::optional<std::pair<double, double>> range, nb::handle tolerance, const std::string& units,
            std::uint32_t largest, nb::handle progress) {
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   const PictureOptions picture = picture_of(self, {colormap, range, tolerance, units}, largest);
-  const std::filesystem::path path(file);
+  const std::filesystem::path path = path_of(file);
   const Surface& surface = self.on->surface;
   using WriteVertices = void (*)(const std::filesystem::path&, const FileVertices&, std::span<const float>);
   const std::map<std::string, WriteVertices> of_vertices{{"ply", write_vertices_ply},
@@ -113,6 +113,7 @@ nb::dict atlas_numbers(const Surface& surface) {
   nb::dict json;
   json["kind"] = name_of(surface.atlas_kind());
   json["resolution"] = surface.resolution();
+  json["rows"] = surface.rows();
   json["charts"] = surface.chart_count();
   json["texels"] = surface.sample_texels().size();
   json["utilisation"] = surface.utilisation();
@@ -248,10 +249,11 @@ nb::dict report(const PyMap& self, const VertexDistances& at_vertices, const std
   return json;
 }
 
-void write_page(const PyMap& self, const std::string& file, const VertexDistances& at_vertices,
+void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_vertices,
                 const std::string& report, const std::string& up, std::uint32_t largest,
                 std::size_t triangles) {
   if (up != "y" && up != "z") throw Error("up must be 'y' or 'z', not '" + up + "'");
+  const std::filesystem::path path = path_of(file);
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   HtmlOptions options{.other = self.exclusion ? nullptr : &self.to->sites.mesh(),
@@ -260,7 +262,7 @@ void write_page(const PyMap& self, const std::string& file, const VertexDistance
                       .triangles = triangles};
   options.triangles_of_other = std::min(options.triangles_of_other, triangles);
   run(nb::none(), [&](const Progress&) {
-    write_html(file, self.on->surface, self.map, span_of(at_vertices), report, options);
+    write_html(path, self.on->surface, self.map, span_of(at_vertices), report, options);
   });
 }
 

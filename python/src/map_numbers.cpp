@@ -192,9 +192,9 @@ Tolerance tolerance_of(nb::handle value, SignMethod sign) {
   Tolerance tolerance;
   if (nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value)) {
     if (nb::len(value) != 2) throw Error("tolerance must be a number, or the least and the most distance");
-    tolerance = {nb::cast<double>(nb::float_(value[0])), nb::cast<double>(nb::float_(value[1]))};
+    tolerance = {real_of(value[0]), real_of(value[1])};
   } else {
-    tolerance = nb::cast<double>(nb::float_(nb::borrow(value)));
+    tolerance = real_of(value);
   }
   if (!(tolerance.lo <= tolerance.hi) || !std::isfinite(tolerance.hi - tolerance.lo))
     throw Error("tolerance must be a finite number that is not negative, or two, the smaller one first");

@@ -124,8 +124,7 @@ array([ 0.5,  0. ,  0. , -0.5]))");
   module.def(
       "read",
       [](nb::handle file) {
-        const nb::str path(nb::module_::import_("os").attr("fspath")(file));
-        const std::filesystem::path name(path.c_str());
+        const std::filesystem::path name = path_of(file);
         return new PyMesh{run_short([&] { return read_mesh(name); })};
       },
       nb::rv_policy::take_ownership, nb::arg("file").none(),

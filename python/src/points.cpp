@@ -21,11 +21,6 @@
 namespace sdm::python {
 namespace {
 
-std::filesystem::path path_of(nb::handle file) {
-  const nb::str path(nb::module_::import_("os").attr("fspath")(file));
-  return {path.c_str()};
-}
-
 TextSeparator separator_of(const std::string& name) {
   for (const TextSeparator s : {TextSeparator::automatic, TextSeparator::blank, TextSeparator::tab,
                                 TextSeparator::comma, TextSeparator::semicolon})

@@ -86,7 +86,7 @@ Lengths are in metres, z is up. The frames are bit-identical in every run.)")
       [](const std::string& name, nb::handle mesh) {
         const SceneKind kind = kind_of(name);
         scenes::SceneOptions options;
-        if (!mesh.is_none()) options.mesh = nb::str(nb::module_::import_("os").attr("fspath")(mesh)).c_str();
+        if (!mesh.is_none()) options.mesh = path_of(mesh);
         PyScene* result = nullptr;
         run(nb::none(), [&](const Progress&) { result = new PyScene{scenes::Scene(kind, options), {}}; });
         return result;

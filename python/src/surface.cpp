@@ -21,22 +21,26 @@ struct Layout {
 };
 
 Layout layout(nb::handle resolution, nb::handle precision, const char* atlas, double max_stretch,
-              std::int64_t gutter) {
+              nb::handle gutter) {
   if (!resolution.is_none() && !precision.is_none())
     throw Error("resolution and precision exclude each other; give one of them");
   Layout result;
   result.options.kind = atlas_of(atlas);
-  const auto unsigned_of = [](std::int64_t value, const char* name) {
-    if (value < 0 || value > 0xFFFFFFFE) throw Error(std::string(name) + " is out of range");
-    return static_cast<std::uint32_t>(value);
+  const auto unsigned_of = [](nb::handle value, const char* name) {
+    return static_cast<std::uint32_t>(integer_of(value, name, 0));
   };
-  result.options.resolution =
-      resolution.is_none()
-          ? kDefaultResolution
-          : unsigned_of(nb::cast<std::int64_t>(nb::int_(nb::borrow(resolution))), "resolution");
+  result.options.resolution = kDefaultResolution;
+  if (nb::isinstance<nb::tuple>(resolution) || nb::isinstance<nb::list>(resolution)) {
+    if (nb::len(resolution) != 2)
+      throw Error("resolution must be an integer, or two: texels per row, and rows");
+    result.options.resolution = unsigned_of(nb::object(resolution[0]), "resolution");
+    result.options.rows = unsigned_of(nb::object(resolution[1]), "resolution");
+  } else if (!resolution.is_none()) {
+    result.options.resolution = unsigned_of(resolution, "resolution");
+  }
   result.options.max_stretch = max_stretch;
   result.options.gutter = unsigned_of(gutter, "gutter");
-  if (!precision.is_none()) result.precision = nb::cast<double>(nb::float_(nb::borrow(precision)));
+  if (!precision.is_none()) result.precision = real_of(precision);
   return result;
 }
 
@@ -67,10 +71,11 @@ nb::capsule owner_of(const std::shared_ptr<const std::vector<Value>>& values) {
 void bind_surface(nb::module_& module) {
   nb::class_<PySurface> surface_class(
       module, "Surface",
-      R"(The surface on which distances are measured (O1): a mesh laid out in a square texture.
+      R"(The surface on which distances are measured (O1): a mesh laid out in a texture.
 
 mesh, faces: as Mesh.
-resolution: texels per side, 16 to 32768; 1024 by default.
+resolution: texels per side, 16 to 32768; 1024 by default. With atlas='uv' also two integers, the texels
+per row and the rows.
 precision: instead of the resolution, the largest distance allowed from a point of the surface
 to the nearest texel's centre, in units of the mesh.
 atlas: 'charts': clusters of faces; 'triangles': single faces, without distortion; 'uv': the
@@ -90,7 +95,7 @@ True)");
       .def(
           "__init__",
           [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle resolution, nb::handle precision,
-             const char* atlas, double max_stretch, std::int64_t gutter, nb::handle progress) {
+             const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
             const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
             Mesh value = mesh_of(mesh, faces);
             run(progress, [&](const Progress& report) {
@@ -103,8 +108,10 @@ True)");
           },
           nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(), SDM_LAYOUT_ARGUMENTS,
           nb::arg("progress") = nb::none(),
-          nb::sig("def __init__(self, mesh: object, faces: object = None, *, resolution: int | None = None, "
-                  "precision: float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, gutter: "
+          nb::sig("def __init__(self, mesh: object, faces: object = None, *, resolution: int | tuple[int, "
+                  "int] | None = "
+                  "None, precision: float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, "
+                  "gutter: "
                   "int = 1, "
                   "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> None"))
       .def(
@@ -138,7 +145,8 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
           "resolution", [](const PySurface& self) { return self.surface.resolution(); }, "Texels per row.")
       .def_prop_ro(
           "rows", [](const PySurface& self) { return self.surface.rows(); },
-          "Texels per column: as many, until edits add rows.")
+          "Texels per column: as many as per row unless ``resolution`` was two numbers, until edits add "
+          "rows.")
       .def_prop_ro(
           "atlas", [](const PySurface& self) { return name_of(self.surface.atlas_kind()); },
           "The kind of the atlas: 'charts', 'triangles' or 'uv'.")
@@ -175,8 +183,9 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
           "The face that owns each texel, or NONE, (H, W) uint32, read-only; row 0 at the top.")
       .def("__repr__", [](const PySurface& self) {
         const Mesh& mesh = self.surface.mesh();
-        return nb::str("sdm.Surface({} vertices, {} faces, {}² texels)")
-            .format(mesh.positions.size(), mesh.triangles.size(), self.surface.resolution());
+        return nb::str("sdm.Surface({} vertices, {} faces, {} × {} texels)")
+            .format(mesh.positions.size(), mesh.triangles.size(), self.surface.resolution(),
+                    self.surface.rows());
       });
   bind_edit(surface_class);
 
@@ -184,7 +193,7 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
   module.def(
       "prepare",
       [](nb::handle a, nb::handle b, nb::handle motion, nb::handle resolution, nb::handle precision,
-         const char* atlas, double max_stretch, std::int64_t gutter, nb::handle progress) {
+         const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
         const bool has_surface = nb::isinstance<PySurface>(a), has_sites = nb::isinstance<PySites>(b);
         if (has_surface && !(resolution.is_none() && precision.is_none()))
           throw Error("a Surface has its resolution; give another form of the mesh for another one");
@@ -217,8 +226,9 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
       nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(), nb::arg("transform") = nb::none(),
       SDM_LAYOUT_ARGUMENTS, nb::arg("progress") = nb::none(),
       nb::sig(
-          "def prepare(a: object, b: object, *, transform: object = None, resolution: int | None = None, "
-          "precision: "
+          "def prepare(a: object, b: object, *, transform: object = None, resolution: int | tuple[int, int] "
+          "| "
+          "None = None, precision: "
           "float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, gutter: int = 1, progress: "
           "collections.abc.Callable[[str, float], bool | None] | None = None) -> tuple[Surface, Sites]"));
 }

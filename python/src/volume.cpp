@@ -177,8 +177,7 @@ because a distance changes no faster than the point moves. Raises Error for coor
       .def(
           "save",
           [](const F& self, nb::handle file) {
-            const nb::str path(nb::module_::import_("os").attr("fspath")(file));
-            const std::filesystem::path name(path.c_str());
+            const std::filesystem::path name = path_of(file);
             run_short([&] { write_field(name, self.field); });
           },
           nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),

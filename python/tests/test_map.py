@@ -337,7 +337,7 @@ def test_tolerances(distance_map):
     for tolerance in ((-0.1, 0.2), -1, (1, 0), (1, 2, 3), np.nan):
         with pytest.raises(sdm.Error):
             unsigned.check(tolerance)
-    with pytest.raises(ValueError):
+    with pytest.raises(TypeError):
         unsigned.check("text")
 
 

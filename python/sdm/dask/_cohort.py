@@ -1,5 +1,6 @@
 import contextlib
 import copy
+import operator
 import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -9,6 +10,7 @@ import dask
 import numpy as np
 
 import sdm
+from sdm._arrays import numpy_of
 
 from . import _files, _meshes
 
@@ -146,8 +148,8 @@ def _portable_copy(copy: Any) -> Any:
     if isinstance(copy, (str, os.PathLike)):
         return os.path.abspath(os.fsdecode(copy)), None
     if isinstance(copy, tuple) and len(copy) == 2 and isinstance(copy[0], (str, os.PathLike)):
-        return os.path.abspath(os.fsdecode(copy[0])), int(copy[1])
-    return np.array(copy)
+        return os.path.abspath(os.fsdecode(copy[0])), operator.index(copy[1])
+    return np.array(numpy_of(copy, "a copy"))
 
 
 def _vertices(copy: Any) -> np.ndarray:

@@ -1,4 +1,5 @@
 import contextlib
+import operator
 import os
 import re
 import time
@@ -12,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 import sdm
+from sdm import _arrays
 
 from . import _files, _meshes
 
@@ -82,9 +84,9 @@ def map_pairs(
         if suffix not in _FORMATS:
             raise sdm.Error(f"a map is saved as {', '.join(_FORMATS)}, not as '{suffix}'")
     options = {
-        "resolution": None if resolution is None else int(resolution),
+        "resolution": None if resolution is None else operator.index(resolution),
         "precision": None if precision is None else float(precision), "engine": engine, "sign": sign,
-        "max_distance": float(max_distance), "atlas": atlas, "max_stretch": float(max_stretch), "gutter": int(gutter),
+        "max_distance": float(max_distance), "atlas": atlas, "max_stretch": float(max_stretch), "gutter": operator.index(gutter),
     }  # fmt: skip
     work = {
         "map": options, "align": bool(align), "tolerance": _limits(tolerance), "formats": formats,
@@ -132,8 +134,8 @@ def _limits(tolerance: Any) -> "list | None":
 def _matrix(transform: Any) -> Any:
     """Returns a list, or None, or the error that says why it is no matrix."""
     try:
-        return None if transform is None else np.asarray(transform, np.float64).tolist()
-    except (TypeError, ValueError):
+        return None if transform is None else _arrays.matrix(transform, "transform").tolist()
+    except (TypeError, ValueError, sdm.Error):
         return sdm.Error("the transform must be a 4 × 4 matrix")
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import sdm
+from sdm._arrays import numpy_of
 
 from . import _files, _meshes
 
@@ -116,7 +117,7 @@ def _arrays(mesh: Any, faces: Any) -> tuple:
                 return np.load(value, mmap_mode="r")
             except (OSError, ValueError) as error:
                 raise sdm.Error(f"{os.fsdecode(value)}: {error}") from None
-        return np.asarray(value)
+        return numpy_of(value, "an array")
 
     if faces is None:
         with _meshes.naming(_meshes.name_of(mesh, "the mesh")):
