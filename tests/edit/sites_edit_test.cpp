@@ -186,11 +186,11 @@ TEST(SitesEdit, MovesTheMeshFarAway) {
 
 // The tree is traversed recursively. Faces added in one place make the same leaf deeper every time.
 TEST(SitesEdit, AtOnePlaceDoesNotMakeTheTreeDeep) {
-  Sites sites(test::ring(48));
+  Sites sites(test::ring(56));
   double size = 0.1;
-  for (int i = 0; i < 110; ++i) {
+  for (int i = 0; i < 90; ++i) {
     MeshEdit edit;
-    for (int k = 0; k < 9; ++k, size *= 0.98) {
+    for (int k = 0; k < 9; ++k, size *= 0.99) {
       const auto n = static_cast<std::uint32_t>(sites.mesh().positions.size() + edit.added_vertices.size());
       edit.added_vertices.insert(edit.added_vertices.end(), {{size, 0, 0}, {0, size, 0}, {0, 0, size}});
       edit.added_faces.push_back({n, n + 1, n + 2});

@@ -4,7 +4,6 @@
 #include <sdm/sequence.h>
 #include <sys/stat.h>
 
-#include <chrono>
 #include <fstream>
 #include <vector>
 
