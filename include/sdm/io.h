@@ -169,8 +169,8 @@ SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface
 /// The same for statistics over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
 
-/// Writes one number per texel, such as NearestMap::body, as NPY of shape (resolution, resolution), uint32,
-/// row 0 at the top. Also throws sdm::Error unless there are resolution² numbers.
+/// Writes one number per texel, such as NearestMap::body, as NPY of shape (rows, resolution), uint32, row 0
+/// at the top. Also throws sdm::Error unless they are one or more whole rows of `resolution` numbers.
 SDM_API void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
                        std::span<const std::uint32_t> values);
 

@@ -4,7 +4,11 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <gtest/gtest.h>
+#include <sdm/error.h>
 #include <sdm/io.h>
+
+#include <cstring>
+#include <fstream>
 
 #include <tiny_gltf.h>
 
@@ -54,6 +58,19 @@ TEST_F(TallAtlas, PicturesHaveAllRows) {
   EXPECT_EQ(pixels.height, surface.rows());
   write_distance_png(folder / "distance.png", surface, map, {.largest = 64});
   EXPECT_LE(read_png(folder / "distance.png").width, 64u + 400);
+}
+
+// Regression: only squares were written.
+TEST_F(TallAtlas, NumbersOfTexelsHaveAllRows) {
+  const auto faces = surface.texel_faces();
+  write_npy(folder / "face.npy", kSide, faces);
+  std::ifstream in(folder / "face.npy", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_NE(bytes.find("'shape': (" + std::to_string(surface.rows()) + ", 128)"), std::string::npos);
+  ASSERT_EQ(bytes.size(), 128 + 4 * faces.size());
+  EXPECT_EQ(std::memcmp(bytes.data() + 128, faces.data(), 4 * faces.size()), 0);
+  EXPECT_THROW(write_npy(folder / "part.npy", kSide, faces.first(kSide + 1)), Error);
+  EXPECT_THROW(write_npy(folder / "none.npy", kSide, faces.first(0)), Error);
 }
 
 TEST_F(TallAtlas, TheModelsCoordinatesReferToAllRows) {

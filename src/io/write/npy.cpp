@@ -27,11 +27,12 @@ std::string io::npy_header(std::string_view type, std::span<const std::uint64_t>
 
 void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
                std::span<const std::uint32_t> values) try {
-  if (values.size() != std::size_t{resolution} * resolution)
-    throw Error(fmt::format("cannot write {}: there are {} values for {}² texels", file.string(),
+  if (resolution == 0 || values.empty() || values.size() % resolution != 0)
+    throw Error(fmt::format("cannot write {}: {} values are not whole rows of {} texels", file.string(),
                             values.size(), resolution));
+  const std::uint64_t rows = values.size() / resolution;
   io::AtomicFile out(file);
-  out.stream() << io::npy_header("<u4", std::array<std::uint64_t, 2>{resolution, resolution});
+  out.stream() << io::npy_header("<u4", std::array<std::uint64_t, 2>{rows, resolution});
   std::string bytes;
   bytes.reserve(values.size_bytes());
   for (const std::uint32_t value : values) io::append_little_endian(bytes, value);
