@@ -29,6 +29,7 @@ export class Callouts {
     private readonly view: View,
     private readonly unit: string,
     private readonly isSigned: boolean,
+    private readonly size: number, // of the part
     private readonly show: (at: Vec) => void,
   ) {}
 
@@ -40,7 +41,7 @@ export class Callouts {
       'li',
       { value: number },
       make('button', { type: 'button', class: 'link', click: () => this.show(callout.at), 'aria-label': `Show callout ${number}, ${value}` }, value),
-      ` at (${place(callout.point)})${callout.detail ? `, ${callout.detail}` : ''} `,
+      ` at (${place(callout.point, this.size)})${callout.detail ? `, ${callout.detail}` : ''} `,
       make('button', { type: 'button', class: 'remove', click: remove, 'aria-label': `Remove callout ${number}` }, '×'),
     );
     const label = make('div', { class: 'callout' }, make('b', {}, String(number)), ` ${value}`);

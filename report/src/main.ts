@@ -51,7 +51,7 @@ class Page {
     this.cloud = cloud && new Cloud(cloud, page.colors);
     this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false);
     this.view = new View(byId('view'), this.subject, ghost, page.up, () => this.callouts?.update());
-    this.callouts = new Callouts(this.view, this.unit, this.signs, (at) => this.lookAt(at));
+    this.callouts = new Callouts(this.view, this.unit, this.signs, this.subject.size, (at) => this.lookAt(at));
     const ghostShown = this.apart();
     this.state = makeControls(
       report,
@@ -186,7 +186,7 @@ class Page {
     const distance = Number.isNaN(found.distance) ? 'none in range' : `${exactText(found.distance)}${this.unit}`;
     values.replaceChildren(
       row('Distance', distance, 'probe-distance'),
-      row('Position', place(toFile(this.subject, found.at)), 'probe-position'),
+      row('Position', place(toFile(this.subject, found.at), this.subject.size), 'probe-position'),
       ...found.rows.map(([label, text, id]) => row(label, text, id)),
     );
   }
@@ -215,7 +215,7 @@ class Page {
       return [
         String(i + 1),
         make('button', { type: 'button', class: 'link', click: show, 'aria-label': `Show place ${i + 1}, ${value}` }, value),
-        place(w.point),
+        place(w.point, this.subject.size),
         w.number !== undefined ? `point ${count(w.number)}` : w.texel ? 'measured point' : 'vertex of the part',
       ];
     });

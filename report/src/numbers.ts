@@ -44,8 +44,13 @@ export function percent(fraction: number): string {
   return `${text(100 * fraction, fraction > 0.1 ? 4 : 3)} %`;
 }
 
-export function place(point: Vec): string {
-  return point.map((x) => text(x, 6)).join(', ');
+/// A point of something of that size: to 1e-5 of it or better, however far from the origin it is.
+export function place(point: Vec, size: number): string {
+  const digits = (x: number) => {
+    const needed = Math.floor(Math.log10(Math.abs(x))) + 1 - Math.floor(Math.log10(1e-5 * size));
+    return Number.isFinite(needed) ? Math.min(15, Math.max(6, needed)) : 6;
+  };
+  return point.map((x) => text(x, digits(x))).join(', ');
 }
 
 export function count(value: number): string {

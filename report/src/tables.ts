@@ -1,6 +1,6 @@
 // The text of the page: numbers, inputs and method.
 import { byId, make, table } from './dom';
-import { count, percent, place, signedText, text } from './numbers';
+import { count, percent, signedText, text } from './numbers';
 import { Input, PageData, Report, reportText } from './page_data';
 import { isCloud, isSigned, unitOf } from './verdict';
 
@@ -204,7 +204,7 @@ function cell(key: string, value: unknown): string {
     if (/fraction/.test(key)) return percent(value);
     return Number.isInteger(value) ? count(value) : text(value);
   }
-  if (Array.isArray(value) && value.every((x) => typeof x === 'number')) return place(value as [number, number, number]);
+  if (Array.isArray(value) && value.every((x) => typeof x === 'number')) return value.map((x: number) => text(x, 10)).join(', ');
   return String(value);
 }
 
