@@ -41,7 +41,8 @@ struct ExclusionRule {
 /// 1.6 L. Where the surface at rest folds back within that, it excludes the other side as well.
 class SDM_API Exclusion {
  public:
-  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, and if there is not
+  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, with rings if more
+  /// than 100 pairs of faces for each face, and more than 100 million, share a vertex, and if there is not
   /// enough memory; Cancelled. Memory: with a geodesic length, whatever it is, up to about 200 numbers per
   /// face of a surface with well-shaped faces, but always as many as faces share a vertex; with rings, the
   /// sizes of all neighbourhoods. Cost: linear in that, most of it on all cores.

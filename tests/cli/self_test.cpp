@@ -84,6 +84,15 @@ TEST_F(SelfCommand, NothingInRangeIsReportedWithNulls) {
   EXPECT_EQ(names_in(out), kResults);
 }
 
+// Each of these faces excludes all others: so many numbers would fill the memory.
+TEST_F(SelfCommand, ManyFacesAtOneVertexAreAnError) {
+  write_obj(o1, fan(10'100));
+  const Outcome run = run_sdm(self());
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("not determined: more than 100000000 pairs of faces share a vertex"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST_F(SelfCommand, FailuresAndWrongUsageLeaveNoTrace) {
   const std::vector<std::string> before = names_in(folder.path());
   const std::vector<std::vector<std::string>> wrong_tails{{"--rings", "0"},

@@ -171,12 +171,25 @@ class Neighbours {
   std::vector<Sphere> spheres_;  // around patches
 };
 
+// All faces at a vertex exclude each other.
+void check_pairs(const CompressedRows<std::uint32_t>& faces_of_vertex, std::size_t faces) {
+  constexpr std::uint64_t kLeast = 100'000'000, kOfEachFace = 100;
+  const std::uint64_t most = std::max<std::uint64_t>(kLeast, kOfEachFace * faces);
+  std::uint64_t pairs = 0;
+  for (std::size_t v = 0; v < faces_of_vertex.size(); ++v)
+    pairs += std::uint64_t{faces_of_vertex.of(v).size()} * faces_of_vertex.of(v).size();
+  if (pairs > most)
+    throw Error("the distances of the mesh to itself are not determined: more than " + std::to_string(most) +
+                " pairs of faces share a vertex; divide the vertices of most faces");
+}
+
 }  // namespace
 
 Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress& progress) try {
   validate(rest);
   check(rule);
   const CompressedRows<std::uint32_t> faces_of_vertex = self::faces_of_vertices(rest);
+  if (!rule.geodesic) check_pairs(faces_of_vertex, rest.triangles.size());
   self::Patches grouped = rule.geodesic
                               ? self::group_faces(rest, faces_of_vertex, kPatchRadius * *rule.geodesic)
                               : self::single_faces(rest.triangles.size());
