@@ -168,6 +168,12 @@ MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {
   return MultiBodyQuery(std::move(shapes), options);
 }
 
+std::size_t faces_of(const MultiBodyQuery& query) {
+  std::size_t faces = 0;
+  for (std::size_t body = 0; body < query.size(); ++body) faces += query.sites(body).mesh().triangles.size();
+  return faces;
+}
+
 }  // namespace
 
 void bind_bodies(nb::module_& module) {
@@ -252,7 +258,7 @@ or coordinates that are not finite. Cost: linear.)")
           [](Q& self) {
             const auto lock = self.access.change();
             auto result = std::make_unique<PyPairs>();
-            run_short([&] {
+            run_sized(faces_of(self.query), [&] {
               const auto pairs = self.query.pairs();
               result->pairs.assign(pairs.begin(), pairs.end());
             });
@@ -266,7 +272,7 @@ or coordinates that are not finite. Cost: linear.)")
             const auto lock = self.access.change();
             auto result = std::make_unique<PyContacts>();
             result->has_bodies = true;
-            run_short([&] {
+            run_sized(faces_of(self.query), [&] {
               for (const BodyContact& contact : self.query.contacts()) {
                 result->contacts.push_back(contact.contact);
                 result->bodies.push_back({contact.first, contact.second});
@@ -281,7 +287,7 @@ or coordinates that are not finite. Cost: linear.)")
           [](const Q& self, std::int64_t body) {
             const auto lock = self.access.use();
             auto result = std::make_unique<PyNearestMap>();
-            run_short([&] { self.query.nearest_map(index_of(body), result->nearest); });
+            run_sized(faces_of(self.query), [&] { self.query.nearest_map(index_of(body), result->nearest); });
             return result.release();
           },
           nb::rv_policy::take_ownership, nb::arg("body"),
@@ -293,8 +299,9 @@ resolution.)")
           [](const Q& self, std::int64_t body, double max_distance) {
             const auto lock = self.access.use();
             std::vector<float> distances;
-            run_short(
-                [&] { distances = nearest_distances_at_vertices(self.query, index_of(body), max_distance); });
+            run_sized(faces_of(self.query), [&] {
+              distances = nearest_distances_at_vertices(self.query, index_of(body), max_distance);
+            });
             const std::size_t count = distances.size();
             return array_of<float>(std::move(distances), {count});
           },

@@ -194,7 +194,7 @@ nb::dict report(const PyMap& self, const VertexDistances& at_vertices, const std
   std::size_t boundary_texels = 0;
   std::optional<Extremes> places;
   std::optional<ToleranceVerdict> verdict;
-  run_short([&] {
+  run(nb::none(), [&](const Progress&) {
     run_concurrently({[&] { on = inspect(surface.mesh()); },
                       [&] {
                         if (!of_itself) to = inspect(self.to->sites.mesh());

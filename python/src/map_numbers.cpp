@@ -39,7 +39,7 @@ nb::object bounds(const PyMap& self) {
   const auto sites_lock = self.use_sites();
   double lower = kInfinity, upper = -lower, radius = 0;
   const double accuracy = self.accuracy();
-  run_short([&] {
+  run_sized(self.texels(), [&] {
     const SamplingBound bound(self.on->surface);
     const auto texels = self.on->surface.sample_texels();
     const auto radii = bound.sample_radii();

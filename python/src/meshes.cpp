@@ -125,7 +125,9 @@ array([ 0.5,  0. ,  0. , -0.5]))");
       "read",
       [](nb::handle file) {
         const std::filesystem::path name = path_of(file);
-        return new PyMesh{run_short([&] { return read_mesh(name); })};
+        Mesh mesh;
+        run(nb::none(), [&](const Progress&) { mesh = read_mesh(name); });
+        return new PyMesh{std::move(mesh)};
       },
       nb::rv_policy::take_ownership, nb::arg("file").none(),
       nb::sig("def read(file: str | os.PathLike[str]) -> Mesh"),

@@ -60,7 +60,7 @@ void merge(const PySites& part, const Numbers& vertices, const Numbers& edges, c
            nb::handle queries, Best best) {
   const Points points(queries, "queries");
   const auto lock = part.access.use();
-  run_short([&] {
+  run_sized(points.get().size(), [&] {
     std::vector<ClosestInParts> results = best.get();
     merge_closest(part.sites, {numbers_of(vertices), numbers_of(edges), numbers_of(faces)}, points.get(),
                   results);

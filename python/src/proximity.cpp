@@ -156,6 +156,10 @@ atlas. Raises Error for a mesh that cannot be used.
       });
 }
 
+std::size_t faces_of(const ProximityQuery& query) {
+  return query.sites(0).mesh().triangles.size() + query.sites(1).mesh().triangles.size();
+}
+
 }  // namespace
 
 const char* name_of(Certainty certainty) {
@@ -165,7 +169,7 @@ const char* name_of(Certainty certainty) {
 Shape shape_of(nb::handle body) {
   if (nb::isinstance<PyShape>(body)) return nb::cast<const PyShape&>(body).shape;
   const Mesh mesh = mesh_of(body, nb::none());
-  return run_short([&] { return Shape(mesh); });
+  return run_sized(mesh.triangles.size(), [&] { return Shape(mesh); });
 }
 
 void bind_proximity(nb::module_& module) {
@@ -241,14 +245,14 @@ whose Shape is shared. Cost: linear.)")
           "separation",
           [](Q& self) {
             const auto lock = self.access.change();
-            return run_short([&] { return self.query.separation(); });
+            return run_sized(faces_of(self.query), [&] { return self.query.separation(); });
           },
           "Returns the smallest distance between the two surfaces: exact, and 0 if they intersect.")
       .def(
           "colliding",
           [](Q& self) {
             const auto lock = self.access.change();
-            return run_short([&] { return self.query.colliding(); });
+            return run_sized(faces_of(self.query), [&] { return self.query.colliding(); });
           },
           "Returns whether the surfaces intersect or one body is a solid that contains part of the other. "
           "Exact.")
@@ -256,7 +260,7 @@ whose Shape is shared. Cost: linear.)")
           "penetration_depth",
           [](Q& self) {
             const auto lock = self.access.change();
-            return run_short([&] { return self.query.penetration_depth(); });
+            return run_sized(faces_of(self.query), [&] { return self.query.penetration_depth(); });
           },
           nb::sig("def penetration_depth(self) -> BoundedLength | None"),
           R"(Returns the largest distance from a surface point of either body that lies inside the other to
@@ -267,7 +271,7 @@ is a solid.)")
           [](Q& self) {
             const auto lock = self.access.change();
             auto result = std::make_unique<PyContacts>();
-            run_short([&] {
+            run_sized(faces_of(self.query), [&] {
               const auto contacts = self.query.contacts();
               result->contacts.assign(contacts.begin(), contacts.end());
             });

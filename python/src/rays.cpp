@@ -131,8 +131,8 @@ void bind_map_rays(nb::class_<PyMap>& map) {
            self.require_other_mesh();
            const auto lock = self.use_surface();
            const auto sites_lock = self.use_sites();
-           auto values =
-               run_short([&] { return free_distances(self.on->surface, self.map, self.to->sites); });
+           auto values = run_sized(
+               self.texels(), [&] { return free_distances(self.on->surface, self.map, self.to->sites); });
            return array_of<double>(std::move(values), {self.rows(), self.map.resolution});
          },
          nb::sig("def free_distances(self) -> numpy.ndarray"))

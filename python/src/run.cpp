@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include <sdm/cancellation.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -30,7 +32,7 @@ class Exchange {
     finished_ = true;
     changed_.notify_all();
   }
-  [[nodiscard]] bool cancelled() const { return cancelled_; }
+  [[nodiscard]] const std::atomic<bool>& cancelled() const { return cancelled_; }
 
   // On the waiting thread. Calls on_report for every report, and on_pause when there is none for a while;
   // they return false to cancel.
@@ -74,6 +76,7 @@ void run(nb::handle progress, const std::function<void(const Progress&)>& work) 
   {
     const nb::gil_scoped_release released;
     std::thread computation([&] {
+      const CancelScope scope(exchange.cancelled());
       try {
         work([&](std::string_view step, double fraction) {
           return reports ? exchange.report(step, fraction) : !exchange.cancelled();

@@ -7,7 +7,10 @@
 
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
+#include <type_traits>
+#include <utility>
 
 namespace sdm::python {
 
@@ -16,15 +19,31 @@ namespace nb = nanobind;
 /// Runs `work` on a thread of its own while this one, without the GIL, waits for it. Calls
 /// progress(step, fraction), if it is not None, on this thread, and lets Python handle signals about twenty
 /// times a second. If progress returns False, `work` is cancelled, and throws Cancelled; if it raises, or a
-/// signal does (KeyboardInterrupt), `work` is cancelled and the exception is raised. Work that takes no
-/// progress is completed first.
+/// signal does (KeyboardInterrupt), `work` is cancelled (sdm::CancelScope), whether or not it uses the
+/// progress, and the exception is raised.
 void run(nb::handle progress, const std::function<void(const Progress&)>& work);
 
-/// Runs short work on this thread, without the GIL.
+/// Runs short work on this thread, without the GIL. It is completed before Python handles a signal.
 template <class Work>
 auto run_short(Work work) {
   const nb::gil_scoped_release released;
   return work();
+}
+
+/// Runs work that takes long if `size`, in faces, points or texels, is large: then as run() without progress,
+/// otherwise as run_short(), which a thread of its own would slow down.
+template <class Work>
+auto run_sized(std::size_t size, Work work) {
+  constexpr std::size_t kShort = 4000;
+  using Result = decltype(work());
+  if (size <= kShort) return run_short(work);
+  if constexpr (std::is_void_v<Result>) {
+    run(nb::none(), [&](const Progress&) { work(); });
+  } else {
+    std::optional<Result> result;
+    run(nb::none(), [&](const Progress&) { result.emplace(work()); });
+    return std::move(*result);
+  }
 }
 
 /// Lets several calls use an object, or one change it. A call that would have to wait for another one throws

@@ -66,7 +66,8 @@ linear.)")
           "separation",
           [](Q& self) {
             const auto lock = self.access.change();
-            return run_short([&] { return self.query.separation(); });
+            return run_sized(self.query.sites().mesh().triangles.size(),
+                             [&] { return self.query.separation(); });
           },
           nb::sig("def separation(self) -> BoundedLength | None"),
           R"(Returns the smallest distance between two faces that do not exclude each other, 0 if they
@@ -77,7 +78,7 @@ index first.)")
           [](Q& self, double margin) {
             const auto lock = self.access.change();
             auto result = std::make_unique<PyContacts>();
-            run_short([&] {
+            run_sized(self.query.sites().mesh().triangles.size(), [&] {
               const auto contacts = self.query.contacts(margin);
               result->contacts.assign(contacts.begin(), contacts.end());
             });

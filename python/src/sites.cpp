@@ -133,7 +133,8 @@ array([-0.25]))");
           "__init__",
           [](PySites* self, nb::handle mesh, nb::handle faces) {
             Mesh value = mesh_of(mesh, faces);
-            run_short([&] { new (self) PySites(std::move(value)); });
+            const std::size_t size = value.triangles.size();
+            run_sized(size, [&] { new (self) PySites(std::move(value)); });
           },
           nb::arg("mesh").none(), nb::arg("faces") = nb::none(),
           nb::sig("def __init__(self, mesh: object, faces: object = None) -> None"))

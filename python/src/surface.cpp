@@ -137,7 +137,8 @@ the object. Cost: linear.)")
           "covering_radius",
           [](const PySurface& self) {
             const auto lock = self.access.use();
-            return run_short([&] { return covering_radius(self.surface); });
+            return run_sized(self.surface.texel_faces().size(),
+                             [&] { return covering_radius(self.surface); });
           },
           R"(Returns an upper bound on the distance from any point of the surface to the nearest texel's
 centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")

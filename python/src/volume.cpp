@@ -167,7 +167,7 @@ Arrays are read-only and have the shape (nz, ny, nx): the value of the point wit
           [](const F& self, nb::handle points) {
             const Points p(points, "points");
             auto result = std::make_unique<PyFieldSamples>();
-            run_short([&] { result->samples = sample_field(self.field, p.get()); });
+            run_sized(p.get().size(), [&] { result->samples = sample_field(self.field, p.get()); });
             return result.release();
           },
           nb::rv_policy::take_ownership, nb::arg("points").none(),
@@ -178,7 +178,7 @@ because a distance changes no faster than the point moves. Raises Error for coor
           "save",
           [](const F& self, nb::handle file) {
             const std::filesystem::path name = path_of(file);
-            run_short([&] { write_field(name, self.field); });
+            run_sized(self.field.distance.size(), [&] { write_field(name, self.field); });
           },
           nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
           R"(Writes the field: .npy (the distances, indexed [i, j, k]), .vti (VTK ImageData, for ParaView) or
