@@ -40,15 +40,15 @@ struct BoundedBool {
 /// A point p of one body that is in contact, and the point q of the other body to which it is pushed. With
 /// b(x) the distance of a point x to the other body's surface or, inside a solid, to its boundary, q is
 ///  - a closest point of the other body, |q − p| = b(p), or
-///  - the foot of p on a face that carries the surface around p (see ProximityQuery::contacts); if p is
-///  inside,
-///    that face is the nearest way out for some x of this surface with b(x) ≥ |q − p|.
+///  - the foot of p on a face that carries the surface around p (see ProximityQuery::contacts). If p is
+///    inside, that face is the nearest way out for some x of this surface with b(x) ≥ |q − p|, to 1e-6 of the
+///    diagonal of both bodies' box.
 /// So depth ≤ ProximityQuery::penetration_depth()->upper for all contacts.
 struct Contact {
   Vec3 point1{}, point2{};  ///< on O1 and on O2: p and q, or q and p if p is a point of O2
   /// Unit vector along which moving O1 separates it from O2: point2 − point1 = depth · normal, to rounding,
-  /// for depth of either sign; where depth is 0, O2's outward pseudonormal. Moving O1 by depth along it takes
-  /// p to q, or q to p. Swapping the two bodies negates it.
+  /// for depth of either sign; where depth is 0, to 1e-6 of the diagonal of both bodies' box, O2's outward
+  /// pseudonormal. Moving O1 by depth along it takes p to q, or q to p. Swapping the two bodies negates it.
   Vec3 normal{};
   double depth = 0;  ///< ±|point2 − point1|, exact; positive if the point in contact is inside the other body
   std::uint32_t patch = 0;  ///< contact patch: contacts on connected parts of the surface share one

@@ -237,24 +237,28 @@ double signed_distance(const Mesh& solid, const Vec3& p) {
 }
 
 /// Whether a function that is 1-Lipschitz is at least `value` somewhere on a triangle: by dividing it again
-/// and again, where the values are largest first, without what is too far below.
+/// and again, where the values are largest or, to be `sure`, where it may be largest first.
 template <class Function>
-bool exceeds(const Function& f, const Corners& triangle, double value) {
+bool exceeds(const Function& f, const Corners& triangle, double value, bool sure) {
   struct Part {
     Corners at;
     Vec3 values;  // at the corners
-    [[nodiscard]] double largest() const { return std::ranges::max(values); }
-    bool operator<(const Part& other) const { return largest() < other.largest(); }
+    [[nodiscard]] double upper() const {
+      double longest = 0;
+      for (int k = 0; k < 3; ++k) longest = std::max(longest, norm(at[(k + 1) % 3] - at[k]));
+      return std::ranges::min(values) + longest;
+    }
   };
-  std::priority_queue<Part> open;
+  const auto less = [sure](const Part& a, const Part& b) {
+    return sure ? a.upper() < b.upper() : std::ranges::max(a.values) < std::ranges::max(b.values);
+  };
+  std::priority_queue<Part, std::vector<Part>, decltype(less)> open(less);
   open.push({triangle, {f(triangle[0]), f(triangle[1]), f(triangle[2])}});
-  for (int divided = 0; !open.empty() && divided < 500; ++divided) {
+  for (int divided = 0; !open.empty() && divided < (sure ? 20000 : 500); ++divided) {
     const Part part = open.top();
     open.pop();
-    if (part.largest() >= value) return true;
-    double longest = 0;
-    for (int k = 0; k < 3; ++k) longest = std::max(longest, norm(part.at[(k + 1) % 3] - part.at[k]));
-    if (std::ranges::min(part.values) + longest < value) continue;
+    if (std::ranges::max(part.values) >= value) return true;
+    if (part.upper() < value) continue;
     Part middle;
     for (int k = 0; k < 3; ++k) {
       middle.at[k] = 0.5 * (part.at[k] + part.at[(k + 1) % 3]);
@@ -287,7 +291,8 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
     if (std::abs(sum - 1) > 1e-9 || norm(at - points[k]) > rounding) return "point off its face";
   }
   if (std::abs(norm(c.normal) - 1) > 1e-9) return "normal not of length 1";
-  if (norm(vector - c.depth * along) > rounding) return "normal not along the points";
+  if (std::abs(c.depth) > rounding && norm(vector - c.depth * along) > rounding)
+    return "normal not along the points";
   if (c.depth > upper) return "deeper than the bound";
   if (c.depth > rounding && signed_distance(other, p + (1e-3 * c.depth) * along) > rounding)
     return "not inside";
@@ -305,23 +310,22 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
   // It is the nearest one for a point of the surface beside it.
   const Mesh& own = pose.bodies[side];
   const Box box_of_other = bounds(other);
-  for (const Triangle& face : own.triangles) {
-    const Corners corners{own.positions[face[0]], own.positions[face[1]], own.positions[face[2]]};
-    if (oracle::distance(p, corners[0], corners[1], corners[2]) > rounding) continue;
-    const auto depth_at = [&](const Vec3& q) {
-      const double below = dot(normal, other.positions[t[0]] - q);
-      const double beyond = box_distance({q, q}, box_of_other);
-      return std::min(below, beyond > 0 ? -beyond : -signed_distance(other, q));
-    };
-    // First close to the point.
-    for (const double reach : {4.0, 30.0, 1e9}) {
+  const auto depth_at = [&](const Vec3& q) {
+    const double below = dot(normal, other.positions[t[0]] - q);
+    const double beyond = box_distance({q, q}, box_of_other);
+    return std::min(below, beyond > 0 ? -beyond : -signed_distance(other, q));
+  };
+  // First close to the point.
+  for (const auto& [reach, sure] :
+       {std::pair(4.0, false), {30.0, false}, {1e9, false}, {4.0, true}, {30.0, true}})
+    for (const Triangle& face : own.triangles) {
+      Corners near{own.positions[face[0]], own.positions[face[1]], own.positions[face[2]]};
+      if (oracle::distance(p, near[0], near[1], near[2]) > rounding) continue;
       double size = 0;
-      for (const Vec3& corner : corners) size = std::max(size, norm(corner - p));
-      Corners near = corners;
+      for (const Vec3& corner : near) size = std::max(size, norm(corner - p));
       for (Vec3& corner : near) corner = p + std::min(1.0, reach * c.depth / size) * (corner - p);
-      if (exceeds(depth_at, near, c.depth - rounding)) return {};
+      if (exceeds(depth_at, near, c.depth - rounding, sure)) return {};
     }
-  }
   return "not the way out of its surface";
 }
 
