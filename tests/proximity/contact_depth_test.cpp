@@ -323,7 +323,9 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
       if (oracle::distance(p, near[0], near[1], near[2]) > rounding) continue;
       double size = 0;
       for (const Vec3& corner : near) size = std::max(size, norm(corner - p));
-      for (Vec3& corner : near) corner = p + std::min(1.0, reach * c.depth / size) * (corner - p);
+      for (Vec3& corner : near)
+        corner = p + std::min(1.0, reach * c.depth / (sure ? std::max(norm(corner - p), rounding) : size)) *
+                         (corner - p);
       if (exceeds(depth_at, near, c.depth - rounding, sure)) return {};
     }
   return "not the way out of its surface";
