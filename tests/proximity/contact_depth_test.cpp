@@ -254,7 +254,7 @@ bool exceeds(const Function& f, const Corners& triangle, double value, bool sure
   };
   std::priority_queue<Part, std::vector<Part>, decltype(less)> open(less);
   open.push({triangle, {f(triangle[0]), f(triangle[1]), f(triangle[2])}});
-  for (int divided = 0; !open.empty() && divided < (sure ? 20000 : 500); ++divided) {
+  for (int divided = 0; !open.empty() && divided < (sure ? 200000 : 500); ++divided) {
     const Part part = open.top();
     open.pop();
     if (std::ranges::max(part.values) >= value) return true;
@@ -317,7 +317,7 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
   };
   // First close to the point.
   for (const auto& [reach, sure] :
-       {std::pair(4.0, false), {30.0, false}, {1e9, false}, {4.0, true}, {30.0, true}})
+       {std::pair(4.0, false), {30.0, false}, {1e9, false}, {4.0, true}, {30.0, true}, {1e9, true}})
     for (const Triangle& face : own.triangles) {
       Corners near{own.positions[face[0]], own.positions[face[1]], own.positions[face[2]]};
       if (oracle::distance(p, near[0], near[1], near[2]) > rounding) continue;
