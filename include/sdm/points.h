@@ -30,6 +30,7 @@ enum class TextSeparator {
   semicolon,  ///< each semicolon
 };
 
+/// What stands between the whole and the fractional part of the numbers of a text.
 enum class DecimalMark { automatic, point, comma };
 
 /// How the rows of a text without a format of its own ("XYZ", CSV, PTS) are read. Fields that are automatic
@@ -46,8 +47,9 @@ struct TextDialect {
   std::uint64_t header_line = 0;
 };
 
-/// "blank", "tab", "comma", "semicolon"; "point", "comma"; or "automatic".
+/// "automatic", "blank", "tab", "comma" or "semicolon".
 [[nodiscard]] SDM_API std::string name_of(TextSeparator separator);
+/// "automatic", "point" or "comma".
 [[nodiscard]] SDM_API std::string name_of(DecimalMark mark);
 
 /// Throws sdm::Error if no file can be read in this way, as its columns are not as TextDialect requires.

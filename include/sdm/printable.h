@@ -11,9 +11,9 @@
 namespace sdm {
 
 /// Returns `text` (UTF-8) with everything escaped that a terminal would obey or show in another order:
-/// control characters, line ends and tabs included, and the marks of writing direction become \u001b, bytes
-/// that are not UTF-8 \xff. Text that has none is returned unchanged, so escaping twice changes nothing.
-/// Cost: linear.
+/// control characters, line ends and tabs included, and the marks of writing direction become `\u` and four
+/// hexadecimal digits, bytes that are not UTF-8 `\x` and two. Text that has none is returned unchanged, so
+/// escaping twice changes nothing. Cost: linear.
 [[nodiscard]] SDM_API std::string printable(std::string_view text);
 
 }  // namespace sdm
