@@ -88,7 +88,8 @@ class SDM_API PointReader {
   /// The number of points, where the header has it.
   [[nodiscard]] std::optional<std::uint64_t> count() const;
   /// Replaces `points` by the next points, at most `most`, and `normals` by theirs, if the file has them. NaN
-  /// marks points without a measurement, as PCD has them. Returns whether there were any.
+  /// marks points without a measurement, as PCD has them. Returns whether there were any. Throws
+  /// sdm::Error, which names the file and the fault; the object is then broken (see sdm/error.h).
   bool read(std::size_t most, std::vector<Vec3>& points, std::vector<Vec3>& normals);
 
  private:

@@ -148,6 +148,18 @@ TEST(TextCloud, RowsThatDoNotFitAreErrorsWithTheirLine) {
   }
 }
 
+// The points after the row would pass for the next ones.
+TEST(TextCloud, AReaderThatHasFailedReadsNoFurther) {
+  std::string rows;
+  for (int i = 0; i < 2000; ++i) rows += "1 2 3\n";
+  PointReader reader(write_file("cloud.txt", rows + "4 5\n" + rows));
+  Points points, normals;
+  constexpr std::size_t kMost = 1500;
+  ASSERT_TRUE(reader.read(kMost, points, normals));
+  EXPECT_THAT(error_of([&] { (void)reader.read(kMost, points, normals); }), HasSubstr("line 2001"));
+  EXPECT_THAT(error_of([&] { (void)reader.read(kMost, points, normals); }), HasSubstr("failed half-way"));
+}
+
 TEST(TextCloud, LineEndsAndByteOrderMarks) {
   const Points expected{{5, 5, 12}, {5, 5, 13}, {5, 6, 14}};
   for (const char* mark : {"", "\xEF\xBB\xBF"})

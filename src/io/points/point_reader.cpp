@@ -5,6 +5,7 @@
 #include <random>
 #include <string>
 
+#include "core/intact.h"
 #include "io/points/cloud_file.h"
 #include "io/read/read_polygons.h"
 
@@ -17,6 +18,7 @@ struct PointReader::Impl {
 
   std::string name;
   CloudFile file;
+  Intact intact{"a point reader"};  // a row that cannot be read would be left out of later reads
 };
 
 PointReader::PointReader(const std::filesystem::path& file, const TextDialect& text)
@@ -44,7 +46,8 @@ std::optional<std::uint64_t> PointReader::count() const {
 bool PointReader::read(std::size_t most, std::vector<Vec3>& points, std::vector<Vec3>& normals) {
   points.clear();
   normals.clear();
-  with_error_prefix(impl_->name, [&] { impl_->file.source->read(most, points, normals); });
+  with_error_prefix(impl_->name,
+                    [&] { impl_->intact.change([&] { impl_->file.source->read(most, points, normals); }); });
   return !points.empty();
 }
 
