@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include "cli/samples.h"
 #include "support/run_sdm.h"
@@ -28,7 +29,7 @@ const std::vector<LongCommand> kLongCommands{
     {"map", {"map", "FINE", "FINE2", "-o", "OUT", "--resolution", "4096"}},
     {"map_winding", {"map", "FINE", "OPEN", "-o", "OUT", "--resolution", "2048", "--sign", "winding"}},
     {"map_align", {"map", "FINE", "SPHERES", "-o", "OUT", "--resolution", "4096", "--align"}},
-    {"points", {"points", "FINE", "SPHERES", "-o", "OUT"}},
+    {"points", {"points", "CLOUD", "SPHERES", "-o", "OUT"}},
     {"hausdorff", {"hausdorff", "FINE", "SPHERES", "--precision", "1e-9"}},
     {"proximity", {"proximity", "FINE", "SPHERES"}},
     {"bodies", {"bodies", "FINE", "SPHERES", "NEEDLES", "-o", "OUT", "--resolution", "2048"}},
@@ -55,7 +56,7 @@ Mesh crossing_needles(int n) {
 struct Interrupt : ::testing::TestWithParam<LongCommand> {
   TemporaryFolder folder;
   std::string inputs = folder / "in", out = folder / "out";
-  std::string fine, fine2, spheres, open, needles, frames;
+  std::string fine, fine2, spheres, open, needles, frames, cloud;
 
   Interrupt() {
     fs::create_directory(inputs);
@@ -71,6 +72,11 @@ struct Interrupt : ::testing::TestWithParam<LongCommand> {
       std::ranges::fill(many.triangles[f], many.triangles[f][0]);
     std::erase_if(many.triangles, is_removed);
     open = write_obj(in / "open.obj", many);
+    cloud = in / "cloud.xyz";
+    std::ofstream points(cloud);
+    for (int i = 0; i < 200000; ++i)  // scattered over the spheres
+      points << 0.001 * (i * 7 % 997) << ' ' << 0.001 * (i * 11 % 991) << ' ' << 0.001 * (i * 13 % 983)
+             << '\n';
     frames = in / "frames";
     fs::create_directory(frames);
     for (int i = 0; i < 40; ++i)
@@ -85,6 +91,7 @@ struct Interrupt : ::testing::TestWithParam<LongCommand> {
       if (a == "OPEN") a = open;
       if (a == "NEEDLES") a = needles;
       if (a == "FRAMES") a = frames;
+      if (a == "CLOUD") a = cloud;
       if (a.starts_with("OUT")) a.replace(0, 3, out);
     }
     return result;
