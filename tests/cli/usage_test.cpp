@@ -11,10 +11,10 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <sstream>
 #include <vector>
 
+#include "support/matches.h"
 #include "support/temporary_folder.h"
 
 namespace sdm::test {
@@ -101,18 +101,15 @@ TEST(Usage, CompletionsAndTheManualNameAllOptions) {
 std::map<std::string, std::size_t> whole_number_options(const std::string& command) {
   const std::string help = run_sdm({command, "--help"}, {.environment = {"COLUMNS=200"}}).out;
   std::map<std::string, std::size_t> options;
-  const std::regex pattern("(--[a-z0-9-]+) (N|NX NY NZ)(?![A-Za-z])");
-  for (std::sregex_iterator i(help.begin(), help.end(), pattern), end; i != end; ++i)
-    options[(*i)[1]] = (*i)[2] == "N" ? 1 : 3;
+  for (const Match& match : matches(help, "(--[a-z0-9-]+) (N|NX NY NZ)([^A-Za-z]|$)"))
+    options[match.groups[0]] = match.groups[1] == "N" ? 1 : 3;
   return options;
 }
 
 std::vector<std::string> command_names() {
   const std::string help = run_sdm({"--help"}, {.environment = {"COLUMNS=200"}}).out;
   std::vector<std::string> names;
-  const std::regex pattern("\n  ([a-z]+)  +[A-Z]");
-  for (std::sregex_iterator i(help.begin(), help.end(), pattern), end; i != end; ++i)
-    names.push_back((*i)[1]);
+  for (const Match& match : matches(help, "^  ([a-z]+)  +[A-Z]")) names.push_back(match.groups[0]);
   return names;
 }
 

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 #include <sdm/io.h>
 
-#include <regex>
-
 #include "io_read/writers.h"
+#include "support/matches.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
@@ -25,7 +24,13 @@ void expect_cube(std::string_view contents) {
 }
 
 std::string replaced(const std::string& text, const char* pattern, const std::string& by) {
-  return std::regex_replace(text, std::regex(pattern), by);
+  std::string result;
+  std::size_t at = 0;
+  for (const Match& match : matches(text, pattern)) {
+    result += text.substr(at, match.begin - at) + by;
+    at = match.end;
+  }
+  return result + text.substr(at);
 }
 
 std::string cube_text() {
