@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/cancellation.h"
 #include "core/geometry/triangle_pair.h"
 #include "proximity/motion/safe_time.h"
 
@@ -30,7 +31,9 @@ class Search {
   FreeMotion run() {
     if (parts_[0].empty() || parts_[1].empty()) return {};
     now_.push_back({});
+    Poll due(256);
     while (!now_.empty() || !later_.empty()) {
+      due();
       if (now_.empty()) {
         std::ranges::pop_heap(later_, std::greater{}, &Pair::time);
         now_.push_back(later_.back());
