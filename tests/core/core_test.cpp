@@ -8,10 +8,12 @@
 #include <mutex>
 #include <numeric>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "core/disjoint_sets.h"
 #include "core/geometry/barycentric.h"
+#include "core/geometry/box_groups.h"
 #include "core/geometry/spatial_order.h"
 #include "core/geometry/sweep.h"
 #include "core/geometry/vec.h"
@@ -176,28 +178,64 @@ TEST(CompressedRows, KeepTheOrderWithinARow) {
   EXPECT_EQ(make_rows<int>(0, [](const auto&) {}).size(), 0u);
 }
 
-TEST(Sweep, VisitsEveryPairThatIsNearOnceAndNoOther) {
+// The groups as their smallest members, by all pairs of boxes.
+std::vector<std::uint32_t> groups_by_pairs(const std::vector<Box>& boxes) {
+  const auto n = static_cast<std::uint32_t>(boxes.size());
+  DisjointSets groups(n);
+  for (std::uint32_t a = 0; a < n; ++a)
+    for (std::uint32_t b = a + 1; b < n; ++b)
+      if (box_distance(boxes[a], boxes[b]) == 0) groups.unite(a, b);
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t i = 0; i < n; ++i) result.push_back(groups.find(i));
+  return result;
+}
+
+std::vector<std::uint32_t> found_groups(const std::vector<Box>& boxes) {
+  BoxGroups finder;
+  DisjointSets groups;
+  finder.find(std::vector<Box>(7, Box{{0, 0, 0}, {1, 1, 1}}), groups);  // whose memory is used again
+  finder.find(boxes, groups);
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) result.push_back(groups.find(i));
+  return result;
+}
+
+TEST(BoxGroups, AreThoseOfAllPairs) {
   std::mt19937 random(13);
   std::uniform_real_distribution<double> u(-1, 1);
-  Sweep sweep;
-  for (const double reach : {0.0, 0.1, 5.0}) {
-    std::vector<Box> boxes(200);
-    for (Box& box : boxes) {
-      const Vec3 p{u(random), 3 * u(random), u(random)};
-      extend(box, p);
-      extend(box, p + 0.1 * Vec3{u(random), u(random), u(random)});
-    }
-    std::vector<int> offered(boxes.size() * boxes.size(), 0);
-    sweep.for_each_near(boxes, reach, [&](std::uint32_t a, std::uint32_t b) {
-      ++offered[std::min(a, b) * boxes.size() + std::max(a, b)];
-    });
-    for (std::size_t a = 0; a < boxes.size(); ++a)
-      for (std::size_t b = 0; b < boxes.size(); ++b) {
-        const int times = offered[a * boxes.size() + b];
-        EXPECT_EQ(times, a < b && box_distance(boxes[a], boxes[b]) <= reach ? 1 : 0);
+  std::set<std::size_t> counts;
+  for (const double size : {0.0, 0.05, 0.2, 0.5, 2.0})
+    for (const std::size_t n : {0u, 1u, 2u, 5u, 60u, 300u}) {
+      std::vector<Box> boxes(n);
+      for (Box& box : boxes) {
+        const Vec3 p{u(random), 3 * u(random), u(random)};
+        extend(box, p);
+        extend(box, p + size * Vec3{u(random), u(random), u(random)});
       }
+      const auto groups = found_groups(boxes);
+      EXPECT_EQ(groups, groups_by_pairs(boxes)) << n << ' ' << size;
+      counts.insert(std::set(groups.begin(), groups.end()).size());
+    }
+  EXPECT_GT(counts.size(), 10u);
+}
+
+TEST(BoxGroups, TouchingBoxesMeet) {
+  EXPECT_EQ(found_groups({{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{3, 0, 0}, {4, 1, 1}}}),
+            (std::vector<std::uint32_t>{0, 0, 2}));
+}
+
+// Each of these has 2.5e9 pairs of boxes that meet: finding each of them would take minutes.
+TEST(BoxGroups, CostsNoMoreWhereAllMeet) {
+  constexpr std::uint32_t kBoxes = 100'000;
+  const std::vector<std::uint32_t> one_group(kBoxes, 0);
+  EXPECT_EQ(found_groups(std::vector<Box>(kBoxes, Box{{0, 0, 0}, {1, 1, 1}})), one_group);
+  std::vector<Box> strips;
+  for (std::uint32_t i = 0; i < kBoxes / 2; ++i) {
+    const double at = 2.0 * i, end = kBoxes;
+    strips.push_back({{0, at, 0}, {end, at + 1, 0}});
+    strips.push_back({{at, 0, 0}, {at + 1, end, 0}});
   }
-  sweep.for_each_near({}, 1, [](std::uint32_t, std::uint32_t) { FAIL(); });
+  EXPECT_EQ(found_groups(strips), one_group);
 }
 
 TEST(BoxDistance, IsTheLeastDistanceOfPointsOfTheBoxes) {

@@ -39,9 +39,22 @@ int Sweep::sort(std::span<const Box> boxes) {
 
 std::span<const Sweep::Pair> Sweep::near_pairs(std::span<const Box> boxes, double reach) {
   pairs_.clear();
-  for_each_near(boxes, reach, [&](std::uint32_t a, std::uint32_t b) {
-    pairs_.push_back({std::min(a, b), std::max(a, b)});
-  });
+  if (boxes.empty()) return pairs_;
+  const int axis = sort(boxes);
+  const double surely_far = reach / (kRoundedDown * kRoundedDown);
+  for (std::size_t i = 0; i < sorted_.size(); ++i) {
+    const Box box = sorted_[i];
+    for (std::size_t j = i + 1; j < sorted_.size(); ++j) {
+      const Box& other = sorted_[j];
+      if (kRoundedDown * (other.lo[axis] - box.hi[axis]) > reach) break;
+      // Most are too far apart along one of the other axes. Without branches:
+      bool far = false;
+      for (int k = 0; k < 3; ++k)
+        far |= (other.lo[k] - box.hi[k] > surely_far) | (box.lo[k] - other.hi[k] > surely_far);
+      if (!far && box_distance(box, other) <= reach)
+        pairs_.push_back({std::min(order_[i], order_[j]), std::max(order_[i], order_[j])});
+    }
+  }
   std::ranges::sort(pairs_);
   return pairs_;
 }

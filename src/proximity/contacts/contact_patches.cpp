@@ -5,13 +5,10 @@
 #include <tuple>
 #include <utility>
 
-#include "core/geometry/vec.h"
-
 namespace sdm::contacts {
 
 std::span<const Contact> ContactPatches::sort(std::span<Contact> contacts, std::span<const Box> boxes) {
-  patches_.reset(boxes.size());
-  sweep_.for_each_near(boxes, 0, [&](std::uint32_t a, std::uint32_t b) { patches_.unite(a, b); });
+  groups_.find(boxes, patches_);
   order_.resize(contacts.size());
   std::iota(order_.begin(), order_.end(), 0u);
   // Distinct keys make the order unique; a stable sort would allocate memory.

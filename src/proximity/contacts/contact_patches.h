@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
-#include "core/geometry/sweep.h"
+#include "core/geometry/box_groups.h"
 
 namespace sdm::contacts {
 
@@ -24,7 +24,7 @@ class ContactPatches {
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> patch_of_;  ///< of the representative of a set of boxes
   DisjointSets patches_;
-  Sweep sweep_;
+  BoxGroups groups_;
 };
 
 }  // namespace sdm::contacts
