@@ -206,6 +206,15 @@ TEST(TextCloud, OptionsDecideWhatIsAmbiguous) {
             (Points{{5, 5, 12}, {5, 5, 13}, {5, 5, 14}}));
   EXPECT_EQ(points_of(counted, {.columns = {"x", "y", "z"}}), (Points{{1, 5, 5}, {2, 5, 5}, {3, 5, 5}}));
 
+  const std::string grid = "0 4 1.5 2.5 0.5\n0 7 1.5 2.25 0.5\n1 2 1.25 2.5 0.75\n";
+  EXPECT_THAT(fault(grid), AllOf(HasSubstr("the row and column of a scanner"), HasSubstr(kOptions)));
+  EXPECT_EQ(points_of(grid, {.columns = {"row", "column", "x", "y", "z"}}),
+            (Points{{1.5, 2.5, 0.5}, {1.5, 2.25, 0.5}, {1.25, 2.5, 0.75}}));
+  EXPECT_EQ(points_of(grid, {.columns = {"x", "y", "z"}}), (Points{{0, 4, 1.5}, {0, 7, 1.5}, {1, 2, 1.25}}));
+  // Not in the order of a grid; colours after a height.
+  EXPECT_EQ(points_of("0 4 1.5 2.5 0.5\n0 2 1.5 2.25 0.5\n1 2 1.25 2.5 0.75\n").size(), 3u);
+  EXPECT_EQ(points_of("0 4 1.5 200 90\n0 5 1.5 210 90\n1 2 1.25 180 91\n").size(), 3u);
+
   const std::string halves = "1,5,2,5,12,25\n1,5,3,5,12,75\n";
   EXPECT_THAT(fault(halves), AllOf(HasSubstr("decimal commas"), HasSubstr(kOptions)));
   EXPECT_EQ(points_of(halves, {.decimal = DecimalMark::point}), (Points{{1, 5, 2}, {1, 5, 3}}));

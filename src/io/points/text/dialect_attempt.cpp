@@ -90,6 +90,8 @@ std::string DialectAttempt::doubt() const {
   if (!by_place_ || table_.plan.has_normals()) return {};
   if (counting_ && rows_.size() >= kRows)
     return "the first column counts the rows, so that it may be x or the number of the point";
+  if (cell_of_grid_ && rows_.size() >= kRows && has_fraction_[0] && has_fraction_[1] && has_fraction_[2])
+    return "the first two columns may be x and y, or the row and column of a scanner before x, y and z";
   if (halves_ && given_.separator == TextSeparator::automatic && given_.decimal == DecimalMark::automatic)
     return fmt::format("the rows may be {} numbers, or {} with decimal commas", columns_, columns_ / 2);
   return {};
@@ -173,6 +175,7 @@ void DialectAttempt::plan(const TextLine& first_row, Cells row) {
   by_place_ = true;
   normals_ = columns_ >= kRoles;
   counting_ = columns_ > 3;
+  cell_of_grid_ = columns_ > 4;
   halves_ = table_.plan.separator == TextSeparator::comma && columns_ >= 6 && columns_ % 2 == 0;
   use({.columns = {0, 1, 2}});
 }
@@ -226,7 +229,22 @@ void DialectAttempt::examine(const TextLine& row, const Cells& cells) {
   const auto count = lone_count(cells[0]);
   counting_ = counting_ && count && is_number(cells[3]) && (rows_.size() == 1 || *count == last_count_ + 1);
   last_count_ = count.value_or(0);
+  if (cell_of_grid_) examine_grid(row, cells);
   for (std::size_t i = 0; halves_ && i < columns_; ++i) halves_ = is_whole(cells[i], i % 2 == 0);
+}
+
+// Scanners write their points by row and column, or by column and row, often with gaps.
+void DialectAttempt::examine_grid(const TextLine& row, const Cells& cells) {
+  const auto first = lone_count(cells[0]), second = lone_count(cells[1]);
+  RowNumbers point{};
+  RowPlan plan = table_.plan;
+  plan.want({2, 3, 4});
+  cell_of_grid_ = first && second && read_row(row.text, plan, point);
+  if (!cell_of_grid_) return;
+  const GridCell cell{*first, *second};
+  cell_of_grid_ = rows_.size() == 1 || last_cell_ < cell;
+  last_cell_ = cell;
+  for (std::size_t k = 0; k < 3; ++k) has_fraction_[k] |= point[k] != std::trunc(point[k]);
 }
 
 }  // namespace sdm::io

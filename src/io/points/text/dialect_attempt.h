@@ -1,11 +1,13 @@
 // The first lines of a text, read in one dialect.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/points/text/column_names.h"
@@ -59,6 +61,7 @@ class DialectAttempt {
   [[nodiscard]] std::string other_columns(std::size_t named) const;
   void use(const NamedColumns& named);
   void examine(const TextLine& row, const Cells& cells);
+  void examine_grid(const TextLine& row, const Cells& cells);
   [[nodiscard]] bool is_number(std::string_view cell) const;
 
   const TextBeginning& beginning_;
@@ -69,9 +72,13 @@ class DialectAttempt {
   std::size_t columns_ = 0, numbers_ = 0;
   std::optional<TextLine> header_;
   // Of columns that are known by their place alone: whether columns 4 to 6 are normals, column 1 counts the
-  // rows, and all cells are whole numbers that may be halves of numbers with decimal commas.
-  bool by_place_ = false, normals_ = false, counting_ = false, halves_ = false;
+  // rows, columns 1 and 2 increase as the cells of a grid do, with which of columns 3 to 5 having fractions,
+  // and all cells are whole numbers that may be halves of numbers with decimal commas.
+  using GridCell = std::pair<std::uint64_t, std::uint64_t>;
+  bool by_place_ = false, normals_ = false, counting_ = false, cell_of_grid_ = false, halves_ = false;
+  std::array<bool, 3> has_fraction_{};
   std::uint64_t last_count_ = 0;
+  GridCell last_cell_{};
 };
 
 }  // namespace sdm::io
