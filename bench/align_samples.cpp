@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "arrays.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "refine_mesh.h"
 #include "scenes.h"
 #include "timing.h"

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "core/stopwatch.h"
 #include "fcl_crowd.h"
+#include "geometry/vec.h"
 #include "harness.h"
 #include "scenes/scene.h"
 #include "timing.h"

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "core/geometry/affine.h"
+#include "geometry/affine.h"
 
 namespace sdm::bench {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "harness.h"
 #include "scenes.h"
 #include "scenes/scene.h"

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "core/stopwatch.h"
+#include "geometry/vec.h"
 #include "harness.h"
 #include "timing.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/geometry/vec.h"
 #include "engine/cpu/point_group.h"
+#include "geometry/vec.h"
 
 namespace sdm::bench {
 

@@ -1,5 +1,5 @@
 // The paper's Algorithm 1 as it is printed, and each correction of the gl engine
-// (engine/gl/polygons/corrections.h) added to it alone, and removed alone from the engine. Errors are those
+// (gl/polygons/corrections.h) added to it alone, and removed alone from the engine. Errors are those
 // of |distance|, in millionths of the diagonal of the bounding box of both meshes, over texels with a value;
 // "wrong" is the percentage of texels whose distance, site or vector is wrong by more than the accuracy of
 // the engine, or that have no value; "none" that of the latter; "repaired" that of texels that the cpu engine
@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/gl/gl_engine.h"
+#include "gl/gl_engine.h"
 #include "harness.h"
 #include "paper/corrections.h"
 #include "scenes.h"

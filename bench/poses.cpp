@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "proximity/exact/pair_search.h"
+#include "query/pairs/pair_search.h"
 
 namespace sdm::bench {
 
@@ -22,10 +22,10 @@ Affine random_rotation(std::mt19937& random) {
 std::vector<Affine> random_poses(const Sites& o1, const Sites& o2, std::size_t count, std::mt19937& random) {
   const Box box1 = bounds(o1.mesh()), box2 = bounds(o2.mesh());
   const double size = 0.5 * (diagonal(box1) + diagonal(box2));
-  exact::PairWorkspace workspace;
+  pairs::PairWorkspace workspace;
   std::vector<Affine> poses;
   while (poses.size() < count) {
-    exact::MeshPair pair{internals(o1), internals(o2), random_rotation(random)};
+    pairs::MeshPair pair{internals(o1), internals(o2), random_rotation(random)};
     const Vec3 away = random_rotation(random).rows[0];
     const Vec3 centred = centre(box1) - pair.pose(centre(box2));
     const auto place = [&](double distance) { pair.pose.offset = centred + distance * away; };
@@ -34,10 +34,10 @@ std::vector<Affine> random_poses(const Sites& o1, const Sites& o2, std::size_t c
     place(at);
     // Move closer by the separation, which cannot make the surfaces intersect, until they touch.
     for (int step = 0; step < 60 && stand != Stand::deep; ++step) {
-      const double free = exact::find_closest(pair, 4 * size, workspace).distance;
+      const double free = pairs::find_closest(pair, 4 * size, workspace).distance;
       if (free < 1e-15 * size) break;
       place(at - free);
-      if (exact::find_intersection(pair, workspace).intersecting) break;
+      if (pairs::find_intersection(pair, workspace).intersecting) break;
       at -= free;
     }
     at += stand == Stand::far ? 0.5 * size : stand == Stand::near ? 0.01 * size : 0;

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "proximity/exact/mesh_pair.h"
+#include "query/pairs/mesh_pair.h"
 
 namespace sdm::bench {
 

@@ -21,13 +21,13 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "core/stopwatch.h"
 #include "fcl_pair.h"
+#include "geometry/vec.h"
 #include "harness.h"
 #include "mesh/similarity.h"
 #include "poses.h"
-#include "proximity/exact/pair_search.h"
+#include "query/pairs/pair_search.h"
 #include "refine_mesh.h"
 #include "scenes.h"
 #include "scenes/letters.h"
@@ -92,7 +92,7 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
   std::mt19937 random(1);
   const sites::CylinderTree cylinders1(internals(o1).wide, internals(o1).regions),
       cylinders2(internals(o2).wide, internals(o2).regions);
-  exact::PairWorkspace workspace;
+  pairs::PairWorkspace workspace;
   Times separation, collision;
   ProximityQuery query(m1, m2);
   std::vector<double> no_contacts;
@@ -100,12 +100,12 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
   std::vector<double> same_side;
   std::size_t wrong = 0;
   for (const Affine& pose : random_poses(o1, o2, static_cast<std::size_t>(trial.repetitions), random)) {
-    const exact::MeshPair posed{internals(o1), internals(o2), pose, {&cylinders1, &cylinders2}};
-    const auto separate = [&] { return exact::find_closest(posed, 10 * size, workspace); };
-    const auto collide = [&] { return exact::find_intersection(posed, workspace).intersecting; };
+    const pairs::MeshPair posed{internals(o1), internals(o2), pose, {&cylinders1, &cylinders2}};
+    const auto separate = [&] { return pairs::find_closest(posed, 10 * size, workspace); };
+    const auto collide = [&] { return pairs::find_intersection(posed, workspace).intersecting; };
     // FCL returns -1 for surfaces that intersect, and rounds transformed vertices differently: for surfaces
     // that just touch, it may return either.
-    const exact::Separation found = separate();
+    const pairs::Separation found = separate();
     const bool same_distance = std::abs(found.distance - std::max(0.0, fcl.distance(pose))) <= 1e-6 * size;
     const bool same_verdict = collide() == fcl.collide(pose) || found.distance < 1e-12 * size;
     wrong += !same_distance || !same_verdict || collide() != found.intersecting;

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "gl_counters.h"
 #include "harness.h"
 #include "scenes.h"

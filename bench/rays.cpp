@@ -16,13 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/line_triangle.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "embree_rays.h"
+#include "geometry/line_triangle.h"
+#include "geometry/vec.h"
 #include "harness.h"
-#include "rays/hemisphere.h"
+#include "query/rays/hemisphere.h"
 #include "timing.h"
 
 namespace sdm::bench {

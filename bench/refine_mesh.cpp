@@ -4,7 +4,7 @@
 #include <map>
 #include <random>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::bench {
 namespace {

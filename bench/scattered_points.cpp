@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "harness.h"
 #include "refine_mesh.h"
 #include "scenes.h"

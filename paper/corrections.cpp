@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/vec.h"
-#include "engine/gl/gl_engine.h"
+#include "geometry/vec.h"
+#include "gl/gl_engine.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::paper {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/gl/polygons/corrections.h"
+#include "gl/polygons/corrections.h"
 
 namespace sdm::paper {
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "paper/affine_map.h"
 #include "paper/charts/svg.h"
 #include "paper/figures.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "paper/affine_map.h"
 #include "paper/charts/face_drawing.h"
 #include "paper/figures.h"

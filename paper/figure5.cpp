@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "paper/charts/chart.h"
 #include "paper/charts/face_drawing.h"
 #include "paper/figures.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "paper/charts/chart.h"
 #include "paper/figures.h"
 #include "paper/pieces.h"

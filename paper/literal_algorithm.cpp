@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include "core/geometry/vec.h"
-#include "engine/gl/gl_engine.h"
+#include "geometry/vec.h"
+#include "gl/gl_engine.h"
 #include "paper/charts/bars.h"
 #include "paper/corrections.h"
 #include "paper/figures.h"

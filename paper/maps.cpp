@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io/write/pictures/legend.h"
 
 namespace sdm::paper {

@@ -1,6 +1,6 @@
 #include "paper/recording.h"
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::paper {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "surface/sampling_bound/sample_tree.h"
 
 namespace sdm::paper {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::paper {
 namespace {

@@ -7,10 +7,10 @@
 #include <set>
 #include <span>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "engine/gl/polygons/convex_polygon.h"
-#include "engine/gl/polygons/site_region.h"
+#include "geometry/vec.h"
+#include "gl/polygons/convex_polygon.h"
+#include "gl/polygons/site_region.h"
 #include "sites/sites_data.h"
 
 namespace sdm::paper {

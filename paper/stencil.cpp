@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "engine/gl/stencil_cache.h"
+#include "gl/stencil_cache.h"
 #include "paper/charts/chart.h"
 #include "paper/figures.h"
 #include "paper/maps.h"

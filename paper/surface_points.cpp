@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "paper/random.h"
 
 namespace sdm::paper {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "io/write/gutter.h"
 
 namespace sdm::paper {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/contacts.h"
 
 namespace sdm::scenes {

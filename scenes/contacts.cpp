@@ -2,7 +2,7 @@
 
 #include <sdm/closest_points.h>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

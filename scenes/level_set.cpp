@@ -4,8 +4,8 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

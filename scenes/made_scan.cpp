@@ -9,7 +9,7 @@
 #include <numeric>
 #include <random>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/divide_edges.h"
 #include "scenes/rotation.h"
 

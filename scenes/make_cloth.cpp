@@ -1,5 +1,5 @@
 // The scene `cloth`.
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/ball.h"
 #include "scenes/box_mesh.h"
 #include "scenes/cloth.h"

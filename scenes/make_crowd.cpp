@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "scenes/simulation.h"
 
 namespace sdm::scenes {

@@ -1,7 +1,7 @@
 // The scene `figure`: a man, 1 high, who walks on the spot in a box, facing −y.
 #include <numbers>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/box_mesh.h"
 #include "scenes/level_set.h"
 #include "scenes/reduce_mesh.h"

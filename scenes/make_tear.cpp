@@ -1,7 +1,7 @@
 // The scene `tear`.
 #include <sdm/closest_points.h>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/ball.h"
 #include "scenes/box_mesh.h"
 #include "scenes/cloth.h"

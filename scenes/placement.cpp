@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

@@ -1,7 +1,7 @@
 // Rotations in three dimensions.
 #pragma once
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::scenes {
 

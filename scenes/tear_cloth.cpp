@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/cloth.h"
 
 namespace sdm::scenes {

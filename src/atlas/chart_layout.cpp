@@ -9,8 +9,8 @@
 #include "atlas/layout.h"
 #include "atlas/packing/fit.h"
 #include "atlas/packing/pack.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

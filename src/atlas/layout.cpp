@@ -1,6 +1,6 @@
 #include "atlas/layout.h"
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 

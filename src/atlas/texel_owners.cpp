@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "atlas/packing/rasterise.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

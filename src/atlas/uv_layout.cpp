@@ -8,7 +8,7 @@
 #include "atlas/charts/face_geometry.h"
 #include "atlas/charts/overlap.h"
 #include "atlas/layout.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

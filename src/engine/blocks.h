@@ -11,7 +11,7 @@
 namespace sdm::engine {
 
 /// The largest block. Blocks have a power-of-four size and are aligned, so the points of a block are
-/// neighbours where all points are in an order like that of core/geometry/spatial_order.h.
+/// neighbours where all points are in an order like that of geometry/spatial_order.h.
 inline constexpr std::size_t kLargestBlock = 1 << 16;
 
 /// Calls body(begin, end) for blocks of `count` points, on all cores. Blocks are as large as load balancing

@@ -5,10 +5,10 @@
 #include <new>
 #include <string>
 
-#include "core/geometry/barycentric.h"
-#include "core/geometry/spatial_order.h"
 #include "core/memory.h"
 #include "engine/blocks.h"
+#include "geometry/barycentric.h"
+#include "geometry/spatial_order.h"
 #include "map/engine_of.h"
 #include "mesh/validate.h"
 #include "sites/closest_on_face.h"

@@ -6,9 +6,9 @@
 #include <new>
 
 #include "core/memory.h"
-#include "inside/inside.h"
 #include "map/engine_of.h"
 #include "map/map_writer.h"
+#include "query/inside/inside.h"
 
 namespace sdm {
 

@@ -6,8 +6,8 @@
 
 #include "core/cancellation.h"
 #include "core/disjoint_sets.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "mesh/topology.h"
 
 namespace sdm {

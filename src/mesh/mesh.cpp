@@ -6,8 +6,8 @@
 #include <mutex>
 #include <string>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "mesh/validate.h"
 
 namespace sdm {

@@ -3,7 +3,7 @@
 
 #include <sdm/transform.h>
 
-#include "core/geometry/affine.h"
+#include "geometry/affine.h"
 
 namespace sdm::mesh {
 

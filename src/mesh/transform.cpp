@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "core/geometry/predicates.h"
-#include "core/geometry/vec.h"
+#include "geometry/predicates.h"
+#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

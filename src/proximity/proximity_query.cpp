@@ -7,7 +7,7 @@
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "proximity/pair/pair_answers.h"
-#include "proximity/shape/posed_body.h"
+#include "query/shape/posed_body.h"
 
 namespace sdm {
 

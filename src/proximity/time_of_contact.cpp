@@ -5,8 +5,8 @@
 #include <new>
 #include <string>
 
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "proximity/motion/first_contact.h"
 #include "proximity/pair/pair_answers.h"
 

@@ -6,8 +6,8 @@
 #include <new>
 #include <string>
 
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "mesh/validate.h"
 #include "registration/correspondences.h"

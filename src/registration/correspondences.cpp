@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "engine/blocks.h"
 #include "engine/cpu/cpu_engine.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::registration {

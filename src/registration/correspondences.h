@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry/affine.h"
+#include "geometry/affine.h"
 #include "registration/samples.h"
 
 namespace sdm::registration {

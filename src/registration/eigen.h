@@ -6,7 +6,7 @@
 
 #include <sdm/types.h>
 
-#include "core/geometry/affine.h"
+#include "geometry/affine.h"
 
 namespace sdm::registration {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "registration/point_to_plane.h"
 
 namespace sdm::registration {

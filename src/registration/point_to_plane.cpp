@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::registration {
 namespace {

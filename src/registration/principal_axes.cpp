@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "registration/eigen.h"
 
 namespace sdm::registration {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/affine.h"
+#include "geometry/affine.h"
 
 namespace sdm::registration {
 

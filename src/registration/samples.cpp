@@ -6,8 +6,8 @@
 #include <numeric>
 #include <random>
 
-#include "core/geometry/spatial_order.h"
-#include "core/geometry/vec.h"
+#include "geometry/spatial_order.h"
+#include "geometry/vec.h"
 
 namespace sdm::registration {
 namespace {

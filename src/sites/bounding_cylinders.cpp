@@ -160,7 +160,7 @@ class Extents {
 
 // Puts the cylinder of child i of a node around the parts that for_each_part calls its argument with.
 template <class ForEachPart>
-void Enclose(const hierarchy::WideTree::Node& node, size_t i, const ForEachPart& for_each_part,
+void Enclose(const tree::WideTree::Node& node, size_t i, const ForEachPart& for_each_part,
              BoundingCylinders& result) {
   float axis[3], middle[3], squared = 0;
   MeanAxis mean;
@@ -189,7 +189,7 @@ void Enclose(const hierarchy::WideTree::Node& node, size_t i, const ForEachPart&
 // Computes the cylinders of a child of a node that has few leaves, and of all nodes below it.
 class EncloseGroup {
  public:
-  EncloseGroup(CylinderTree& tree, const hierarchy::WideTree& wide, const Regions& regions)
+  EncloseGroup(CylinderTree& tree, const tree::WideTree& wide, const Regions& regions)
       : tree_(tree), wide_(wide), regions_(regions) {}
 
   void run(uint32_t n, uint32_t i) {
@@ -210,18 +210,18 @@ class EncloseGroup {
           for (uint32_t leaf = 0; leaf < range.count; ++leaf) add(faces[leaf]);
         },
         tree_.nodes[n]);
-    if (hierarchy::WideTree::is_leaf(child)) return;
+    if (tree::WideTree::is_leaf(child)) return;
     for (uint32_t j = 0; j < wide_.nodes[child].count; ++j) enclose(child, j);
   }
 
   CylinderTree& tree_;
-  const hierarchy::WideTree& wide_;
+  const tree::WideTree& wide_;
   const Regions& regions_;
   uint32_t first_ = 0;
   Faces faces_[CylinderTree::kFewLeaves];
 };
 
-void EncloseFaces(CylinderTree& tree, const hierarchy::WideTree& wide, const Regions& regions, size_t begin,
+void EncloseFaces(CylinderTree& tree, const tree::WideTree& wide, const Regions& regions, size_t begin,
                   size_t end) {
   EncloseGroup group(tree, wide, regions);
   for (auto n = static_cast<uint32_t>(begin); n < end; ++n)
@@ -232,12 +232,12 @@ void EncloseFaces(CylinderTree& tree, const hierarchy::WideTree& wide, const Reg
 
 // For the other nodes: around the cylinders of their grandchildren, which are thinner than those of the
 // children.
-void EncloseCylinders(CylinderTree& tree, const hierarchy::WideTree& wide) {
+void EncloseCylinders(CylinderTree& tree, const tree::WideTree& wide) {
   for (auto n = static_cast<uint32_t>(wide.nodes.size()); n-- > 0;)
     for (uint32_t i = 0; i < wide.nodes[n].count; ++i) {
       const uint32_t child = wide.nodes[n].child[i];
       if (tree.has_few_leaves(child)) continue;
-      const hierarchy::WideTree::Node& below = wide.nodes[child];
+      const tree::WideTree::Node& below = wide.nodes[child];
       Enclose(
           wide.nodes[n], i,
           [&](const auto& add) HWY_ATTR {
@@ -255,7 +255,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sdm::sites {
 
-using hierarchy::WideTree;
+using tree::WideTree;
 
 HWY_EXPORT(EncloseFaces);
 HWY_EXPORT(EncloseCylinders);

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "hierarchy/wide_tree.h"
 #include "sites/regions.h"
+#include "tree/wide_tree.h"
 
 namespace sdm::sites {
 
@@ -14,7 +14,7 @@ namespace sdm::sites {
 inline constexpr float kCylinderRounding = 1e-6f;
 
 struct BoundingCylinders {
-  static constexpr int kWidth = hierarchy::WideTree::kWidth;
+  static constexpr int kWidth = tree::WideTree::kWidth;
   alignas(32) float centre[3][kWidth] = {};
   alignas(32) float axis[3][kWidth] = {};
   alignas(32) float radius[kWidth] = {};
@@ -33,7 +33,7 @@ class CylinderTree {
 
   CylinderTree() = default;
   /// The leaves of `wide` are those of `regions`. Cost: linear, all cores.
-  CylinderTree(const hierarchy::WideTree& wide, const Regions& regions);
+  CylinderTree(const tree::WideTree& wide, const Regions& regions);
 
   /// The leaves below a child of a wide node.
   [[nodiscard]] LeafRange leaves_of(std::uint32_t child) const;

@@ -3,9 +3,9 @@
 
 #include "core/cancellation.h"
 #include "core/parallel.h"
-#include "hierarchy/traverse.h"
 #include "sites/cone_rays.h"
 #include "sites/regions.h"
+#include "tree/traverse.h"
 
 namespace sdm::sites {
 namespace {
@@ -96,7 +96,7 @@ class SiteOrder {
 
 }  // namespace
 
-Regions build_regions(const RegionSource& s, const hierarchy::AabbTree& tree) {
+Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
   Regions regions;
   SitePlaces& places = regions.places;
   SiteOrder sites(s);

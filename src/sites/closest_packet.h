@@ -3,7 +3,7 @@
 
 #include <sdm/sites.h>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::sites {
 

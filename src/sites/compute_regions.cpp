@@ -11,7 +11,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "core/geometry/vec_lanes-inl.h"
+#include "geometry/vec_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::sites::HWY_NAMESPACE {

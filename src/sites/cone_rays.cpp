@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::sites::HWY_NAMESPACE {

@@ -1,11 +1,11 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "hierarchy/edit_tree.h"
+#include "geometry/vec.h"
 #include "mesh/edit_topology.h"
 #include "sites/sites_data.h"
+#include "tree/edit_tree.h"
 
 namespace sdm::sites {
 namespace {
@@ -57,8 +57,8 @@ SitesData::SitesData(SitesData& before, const MeshEdit& edit)
   last_refit_ = std::move(before.last_refit_);
   assign_sites(last_refit_);
   find_leaf_boxes(regions, frame, last_refit_.placed, last_refit_.boxes);
-  hierarchy::refit_leaves(tree, last_refit_.boxes);
-  wide = hierarchy::collapse(tree);
+  tree::refit_leaves(tree, last_refit_.boxes);
+  wide = tree::collapse(tree);
   compute_regions(last_refit_);
 }
 
@@ -76,10 +76,10 @@ bool SitesData::edit_tree(const SitesData& before) {
   const auto box_of = [&](std::uint32_t face) {
     Box box;
     for (const std::uint32_t v : mesh.triangles[face]) extend(box, before.frame.to_unit(mesh.positions[v]));
-    return hierarchy::FloatBox::around(box);
+    return tree::FloatBox::around(box);
   };
-  tree = hierarchy::edit_tree(before.tree, {kept, added, box_of}, FaceBounds::kWidth);
-  return hierarchy::depth(tree) <= hierarchy::kDeepest;
+  tree = tree::edit_tree(before.tree, {kept, added, box_of}, FaceBounds::kWidth);
+  return tree::depth(tree) <= tree::kDeepest;
 }
 
 }  // namespace sdm::sites

@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "core/cancellation.h"
-#include "core/geometry/sweep.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/sweep.h"
+#include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
 
 namespace sdm::sites {
 namespace {
 
-using hierarchy::AabbTree;
-using hierarchy::FloatBox;
-using hierarchy::NodePair;
+using tree::AabbTree;
+using tree::FloatBox;
+using tree::NodePair;
 using Visit = std::function<bool(std::uint32_t, std::uint32_t)>;
 
 // A vertex or an edge of more faces is a hub. Fewer than that make at most so many pairs of each face.
@@ -96,7 +96,7 @@ struct Forest {
       std::vector<std::uint32_t> indices(end - begin);
       std::iota(indices.begin(), indices.end(), static_cast<std::uint32_t>(begin));
       constexpr std::uint32_t kLeafFaces = 8;
-      add(hierarchy::build_aabb_tree(std::span<const FloatBox>(all), std::move(indices), kLeafFaces));
+      add(tree::build_aabb_tree(std::span<const FloatBox>(all), std::move(indices), kLeafFaces));
       hubs.push_back(items[begin].hubs);
       begin = end;
     }

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/geometry/predicates.h"
-#include "core/geometry/vec.h"
+#include "geometry/predicates.h"
+#include "geometry/vec.h"
 
 namespace sdm::sites {
 namespace {

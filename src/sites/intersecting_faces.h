@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "core/geometry/triangle_pair.h"
-#include "hierarchy/traverse.h"
+#include "geometry/triangle_pair.h"
 #include "mesh/topology.h"
+#include "tree/traverse.h"
 
 namespace sdm::sites {
 
@@ -13,7 +13,7 @@ namespace sdm::sites {
 struct FaceSoup {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
-  const hierarchy::AabbTree& tree;
+  const tree::AabbTree& tree;
 
   [[nodiscard]] Corners corners(std::uint32_t face) const {
     const Triangle& t = triangles[face];
@@ -26,8 +26,8 @@ struct FaceSoup {
 [[nodiscard]] bool faces_intersect(const FaceSoup& mesh, std::uint32_t a, std::uint32_t b);
 
 /// Whether the boxes of two nodes overlap.
-[[nodiscard]] inline bool overlap(const hierarchy::AabbTree& tree, const hierarchy::NodePair& pair) {
-  const hierarchy::FloatBox &a = tree.box(pair[0]), &b = tree.box(pair[1]);
+[[nodiscard]] inline bool overlap(const tree::AabbTree& tree, const tree::NodePair& pair) {
+  const tree::FloatBox &a = tree.box(pair[0]), &b = tree.box(pair[1]);
   for (int k = 0; k < 3; ++k)
     if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
   return true;
@@ -35,8 +35,7 @@ struct FaceSoup {
 
 /// Calls take(face, face) for each pair of faces of two leaves, each once.
 template <class Take>
-void for_each_face_pair(const hierarchy::AabbTree& tree, const hierarchy::NodePair& leaves,
-                        const Take& take) {
+void for_each_face_pair(const tree::AabbTree& tree, const tree::NodePair& leaves, const Take& take) {
   const auto first = tree.items_of(leaves[0]), second = tree.items_of(leaves[1]);
   for (std::size_t i = 0; i < first.size(); ++i)
     for (std::size_t j = leaves[0] == leaves[1] ? i + 1 : 0; j < second.size(); ++j)

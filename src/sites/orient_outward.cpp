@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "core/cancellation.h"
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
 
 namespace sdm::sites {
@@ -43,7 +43,7 @@ double volume(const Shell& shell, const inside::FaceTree& faces, std::span<const
 }
 
 // Of each node of the tree the shell that its faces belong to, or kNone if they belong to several.
-void label_nodes(const hierarchy::AabbTree& tree, std::span<const std::uint32_t> component,
+void label_nodes(const tree::AabbTree& tree, std::span<const std::uint32_t> component,
                  std::vector<std::uint32_t>& label) {
   label.resize(tree.nodes.size());
   for_each_bottom_up(
@@ -63,7 +63,7 @@ using ShellNode = std::array<std::uint32_t, 2>;  // a shell, and a node of the t
 
 // The nodes that together have all faces of each shell: the largest ones of its faces only, and leaves that
 // it shares with others. Sorted.
-void find_nodes_of_shells(const hierarchy::AabbTree& tree, std::span<const std::uint32_t> component,
+void find_nodes_of_shells(const tree::AabbTree& tree, std::span<const std::uint32_t> component,
                           std::span<const std::uint32_t> label, std::vector<ShellNode>& nodes) {
   nodes.clear();
   for (std::uint32_t node = 0; node < tree.nodes.size(); ++node) {
@@ -114,7 +114,7 @@ void find_around(const Shell& shell, const inside::FaceTree& faces, std::span<co
 void remove_intersecting(const Shell& shell, const inside::FaceTree& faces,
                          std::span<const std::uint32_t> component, std::span<const std::uint32_t> label,
                          std::span<const ShellNode> nodes, std::vector<std::uint32_t>& others) {
-  const hierarchy::AabbTree& tree = faces.tree;
+  const tree::AabbTree& tree = faces.tree;
   const FaceSoup mesh{faces.positions, faces.triangles, tree};
   const auto wanted = [&](std::uint32_t other) { return std::ranges::binary_search(others, other); };
   Poll due(128);
@@ -122,11 +122,11 @@ void remove_intersecting(const Shell& shell, const inside::FaceTree& faces,
     if (others.empty()) return;
     traverse_pairs(
         tree, {node, 0},
-        [&](const hierarchy::NodePair& pair) {
+        [&](const tree::NodePair& pair) {
           due();
           return (label[pair[1]] == kNone || wanted(label[pair[1]])) && overlap(tree, pair);
         },
-        [&](const hierarchy::NodePair& leaves) {
+        [&](const tree::NodePair& leaves) {
           for (const std::uint32_t f : tree.items_of(leaves[0]))
             for (const std::uint32_t g : tree.items_of(leaves[1]))
               if (component[f] == shell.component && wanted(component[g]) &&

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "inside/crossings/ray_parity.h"
+#include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
 
 namespace sdm::sites {

@@ -1,6 +1,6 @@
 #include "sites/pseudonormals.h"
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::sites {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "sites/compute_regions.h"
 
 namespace sdm::sites {
@@ -63,14 +63,14 @@ void place(const Regions& regions, std::span<const Vec3> positions, std::vector<
 }
 
 void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                     std::vector<hierarchy::FloatBox>& boxes) {
+                     std::vector<tree::FloatBox>& boxes) {
   boxes.resize(regions.leaves.size() - 1);
   parallel_for(boxes.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
       Box box;
       for (std::uint32_t i = regions.leaves[leaf]; i < regions.leaves[leaf + 1]; ++i)
         for (const std::uint32_t v : regions.places.corners[i]) extend(box, placed[v]);
-      boxes[leaf] = hierarchy::FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
+      boxes[leaf] = tree::FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
     }
   });
 }

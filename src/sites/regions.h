@@ -16,9 +16,9 @@
 #include <span>
 #include <vector>
 
-#include "hierarchy/aabb_tree.h"
 #include "mesh/topology.h"
 #include "sites/pseudonormals.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::sites {
 
@@ -112,7 +112,7 @@ struct RegionSource {
 
 /// Assigns the sites to the leaves of `tree`, whose items are faces, at most FaceBounds::kWidth per leaf.
 /// refit() computes their regions. Cost: linear, all cores.
-[[nodiscard]] Regions build_regions(const RegionSource& source, const hierarchy::AabbTree& tree);
+[[nodiscard]] Regions build_regions(const RegionSource& source, const tree::AabbTree& tree);
 
 /// Sets `placed` to the positions in the order of the regions' vertices. Refits read each position several
 /// times, and this order follows the tree, while that of a mesh is arbitrary. Cost: linear, all cores.
@@ -120,7 +120,7 @@ void place(const Regions& regions, std::span<const Vec3> positions, std::vector<
 
 /// Sets `boxes` to those of the leaves. Cost: linear, all cores.
 void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<const Vec3> placed,
-                     std::vector<hierarchy::FloatBox>& boxes);
+                     std::vector<tree::FloatBox>& boxes);
 
 struct FaceShape {
   Vec3 normal;  ///< unit length, outward, 0 without area

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "mesh/validate.h"
 
 namespace sdm::sites {
@@ -36,7 +36,7 @@ SitesData::SitesData(Mesh given) {
       },
       [&] {
         build_tree();
-        wide = hierarchy::collapse(tree);
+        wide = tree::collapse(tree);
       });
   normals = {std::vector<Vec3>(triangles.size()), std::vector<Vec3>(mesh.positions.size())};
   sliver.resize(triangles.size());
@@ -59,7 +59,7 @@ void SitesData::assign_sites(Refit& refit) {
 }
 
 void SitesData::build_tree() {
-  tree = hierarchy::build_aabb_tree(face_boxes(), faces_with_sites(topology), kLeafFaces);
+  tree = tree::build_aabb_tree(face_boxes(), faces_with_sites(topology), kLeafFaces);
   faces_added_to_tree_ = 0;
 }
 
@@ -76,19 +76,19 @@ void SitesData::refit(std::span<const Vec3> positions) {
     std::ranges::copy(positions, mesh.positions.begin());
     frame = UnitFrame::of(bounds(mesh));
     find_leaf_boxes(regions, frame, refit.placed, refit.boxes);
-    hierarchy::refit_leaves(tree, refit.boxes);
-    hierarchy::refit(wide, tree);
+    tree::refit_leaves(tree, refit.boxes);
+    tree::refit(wide, tree);
     compute_regions(refit);
   });
 }
 
 // The boxes of faces are those of their vertices, each rounded outwards.
-std::vector<hierarchy::FloatBox> SitesData::face_boxes() const {
-  std::vector<hierarchy::FloatBox> corners(mesh.positions.size()), boxes(mesh.triangles.size());
+std::vector<tree::FloatBox> SitesData::face_boxes() const {
+  std::vector<tree::FloatBox> corners(mesh.positions.size()), boxes(mesh.triangles.size());
   parallel_for(corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const Vec3 p = frame.to_unit(mesh.positions[v]);
-      corners[v] = hierarchy::FloatBox::around({p, p});
+      corners[v] = tree::FloatBox::around({p, p});
     }
   });
   parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {

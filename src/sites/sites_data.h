@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "core/intact.h"
-#include "hierarchy/aabb_tree.h"
-#include "hierarchy/wide_tree.h"
-#include "inside/crossings/ray_parity.h"
+#include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
 #include "sites/orient_outward.h"
 #include "sites/pseudonormals.h"
 #include "sites/regions.h"
+#include "tree/aabb_tree.h"
+#include "tree/wide_tree.h"
 
 namespace sdm::sites {
 
@@ -52,10 +52,10 @@ class SitesData {
   std::vector<std::uint8_t>
       inverted;  ///< of each face: opposite to the outward orientation; if open, to its neighbours
 
-  UnitFrame frame;           ///< of the faces that have sites
-  hierarchy::AabbTree tree;  ///< over those faces, in the unit frame
-  hierarchy::WideTree wide;  ///< the same, collapsed
-  Regions regions;           ///< by the leaves of both
+  UnitFrame frame;      ///< of the faces that have sites
+  tree::AabbTree tree;  ///< over those faces, in the unit frame
+  tree::WideTree wide;  ///< the same, collapsed
+  Regions regions;      ///< by the leaves of both
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a reliable normal
 
@@ -63,14 +63,14 @@ class SitesData {
   /// Intermediate data of a refit, whose memory the next one reuses.
   struct Refit {
     std::vector<Vec3> placed;
-    std::vector<hierarchy::FloatBox> boxes;
+    std::vector<tree::FloatBox> boxes;
     std::vector<FaceShape> shapes;
   };
 
   /// Those of an edited mesh. Takes the memory of last_refit_, and changes nothing else.
   SitesData(SitesData& before, const MeshEdit& edit);
 
-  [[nodiscard]] std::vector<hierarchy::FloatBox> face_boxes() const;
+  [[nodiscard]] std::vector<tree::FloatBox> face_boxes() const;
   void build_tree();
   [[nodiscard]] bool edit_tree(const SitesData& before);
   void find_orientation();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/geometry/spatial_order.h"
 #include "core/memory.h"
+#include "geometry/spatial_order.h"
 #include "surface/surface_data.h"
 
 namespace sdm::surface {

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "atlas/texel_owners.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "surface/edit_samples.h"
 #include "surface/surface_data.h"
 

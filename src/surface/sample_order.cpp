@@ -7,10 +7,10 @@
 #include <span>
 #include <utility>
 
-#include "core/geometry/spatial_order.h"
-#include "core/geometry/unit_frame.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/spatial_order.h"
+#include "geometry/unit_frame.h"
+#include "geometry/vec.h"
 #include "surface/surface_data.h"
 
 namespace sdm::surface {

@@ -9,7 +9,7 @@ namespace sdm::surface {
 class SurfaceData;
 
 /// The owned texels in an order such that every aligned run of 16·2^k of them lies in a small box on the
-/// surface, as core/geometry/spatial_order.h describes. Squares of 4² texels of one chart stay together: they
+/// surface, as geometry/spatial_order.h describes. Squares of 4² texels of one chart stay together: they
 /// are small boxes already, and there are far fewer of them to sort. Does not use SurfaceData::samples. Cost:
 /// linear in texels, plus n log n in squares and in texels beside them; all cores.
 [[nodiscard]] std::vector<std::uint32_t> sample_order(const SurfaceData& surface);

@@ -13,7 +13,7 @@
 
 #include "atlas/packing/fit.h"
 #include "atlas/size_text.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "surface/surface_data.h"
 
 namespace sdm::surface {

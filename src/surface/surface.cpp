@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/cancellation.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "surface/stored_atlas.h"
 #include "surface/surface_data.h"
 

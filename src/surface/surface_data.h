@@ -7,8 +7,8 @@
 
 #include "atlas/layout.h"
 #include "atlas/packing/room.h"
-#include "core/geometry/vec.h"
 #include "core/intact.h"
+#include "geometry/vec.h"
 
 namespace sdm::surface {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::volume {
 

@@ -50,7 +50,7 @@ std::vector<DrawnSite> drawn_sites(const sites::SitesData& sites) {
 }
 
 SliceRules::SliceRules(const FieldTask& task, const UnitGrid& grid) {
-  const hierarchy::FloatBox& o2 = task.sites.tree.box(0);
+  const tree::FloatBox& o2 = task.sites.tree.box(0);
   double size = 0, reach = 0;
   for (int k = 0; k < 3; ++k) {
     const double lo = grid.at(k, 0), hi = grid.at(k, grid.dims[k] - 1);

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "engine/gl/polygons/raster_polygon.h"
-#include "engine/gl/polygons/site_region.h"
+#include "gl/polygons/raster_polygon.h"
+#include "gl/polygons/site_region.h"
 #include "volume/field_writer.h"
 #include "volume/grid.h"
 

@@ -3,8 +3,8 @@
 
 #include <sdm/volume.h>
 
-#include "core/geometry/unit_frame.h"
-#include "core/geometry/vec.h"
+#include "geometry/unit_frame.h"
+#include "geometry/vec.h"
 
 namespace sdm::volume {
 

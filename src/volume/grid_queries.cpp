@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/geometry/spatial_order.h"
 #include "core/parallel.h"
 #include "engine/blocks.h"
+#include "geometry/spatial_order.h"
 #include "volume/grid.h"
 
 namespace sdm::volume {

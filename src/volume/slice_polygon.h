@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/gl/polygons/convex_polygon.h"
+#include "gl/polygons/convex_polygon.h"
 #include "volume/drawn_sites.h"
 
 namespace sdm::volume {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::volume {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::test {
 namespace {

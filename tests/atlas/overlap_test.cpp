@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "atlas/invariants.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/run_sdm.h"
 

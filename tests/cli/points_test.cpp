@@ -17,7 +17,7 @@
 #include <random>
 
 #include "cli/samples.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "support/error_of.h"
 #include "support/meshes.h"

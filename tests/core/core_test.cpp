@@ -12,15 +12,15 @@
 #include <thread>
 
 #include "core/disjoint_sets.h"
-#include "core/geometry/barycentric.h"
-#include "core/geometry/box_groups.h"
-#include "core/geometry/spatial_order.h"
-#include "core/geometry/sweep.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/platform.h"
 #include "core/rows.h"
+#include "geometry/barycentric.h"
+#include "geometry/box_groups.h"
+#include "geometry/spatial_order.h"
+#include "geometry/sweep.h"
+#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "core/geometry/vec.h"
 #include "edit/random_edits.h"
+#include "geometry/vec.h"
 #include "support/made_up_maps.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::test {
 namespace {

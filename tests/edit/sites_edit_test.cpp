@@ -5,8 +5,8 @@
 
 #include <cstring>
 
-#include "core/geometry/vec.h"
 #include "edit/random_edits.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "support/oracle.h"
 #include "support/points.h"
@@ -196,7 +196,7 @@ TEST(SitesEdit, AtOnePlaceDoesNotMakeTheTreeDeep) {
       edit.added_faces.push_back({n, n + 1, n + 2});
     }
     sites.edit(edit);
-    ASSERT_LE(hierarchy::depth(internals(sites).tree), hierarchy::kDeepest) << i;
+    ASSERT_LE(tree::depth(internals(sites).tree), tree::kDeepest) << i;
   }
   std::mt19937 random(5);
   expect_same_answers(sites, Sites(sites.mesh()), queries(sites.mesh(), random));

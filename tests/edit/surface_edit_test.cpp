@@ -8,8 +8,8 @@
 #include <sdm/threads.h>
 
 #include "atlas/invariants.h"
-#include "core/geometry/vec.h"
 #include "edit/random_edits.h"
+#include "geometry/vec.h"
 #include "support/points.h"
 #include "support/shapes.h"
 #include "surface/surface_data.h"

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "engine/cpu/finish.h"
 #include "engine/reference/reference_engine.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "support/map_checks.h"
 #include "support/points.h"

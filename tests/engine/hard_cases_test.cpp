@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/engines.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

@@ -1,5 +1,5 @@
 // Every texel of every map by rasterisation against the reference engine.
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "gl/support.h"
 #include "support/map_checks.h"
 #include "support/oracle.h"

@@ -1,7 +1,7 @@
 // Contexts: choice of the device, current thread, errors. These tests require a device; without a graphics
 // card, Mesa's llvmpipe is one.
 #define EGL_NO_X11
-#include "engine/gl/device/context.h"
+#include "gl/device/context.h"
 
 #include <epoxy/egl.h>
 #include <gmock/gmock.h>

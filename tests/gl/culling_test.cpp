@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "engine/gl/pair_culling.h"
-#include "engine/gl/polygons/oriented_box.h"
 #include "engine/reference/reference_engine.h"
+#include "gl/pair_culling.h"
+#include "gl/polygons/oriented_box.h"
 #include "support/meshes.h"
 #include "support/points.h"
 #include "support/shapes.h"
@@ -110,7 +110,7 @@ TEST(Culling, OverlappingBoxesAreNeverSeparated) {
     Box other;
     extend(other, Vec3{unit(random), unit(random), unit(random)});
     extend(other, Vec3{unit(random), unit(random), unit(random)});
-    const bool may = may_meet(box, hierarchy::FloatBox::around(other));
+    const bool may = may_meet(box, tree::FloatBox::around(other));
     apart += !may;
     for (int k = 0; k < 20 && !may; ++k) {
       Vec3 p = box.centre;

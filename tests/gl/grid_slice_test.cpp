@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "engine/gl/rasteriser.h"
 #include "engine/reference/reference_engine.h"
+#include "gl/rasteriser.h"
 #include "sites/closest_on_face.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

@@ -3,8 +3,8 @@
 // never too small; those to its plane or line are exact within its region, and too short beyond.
 #include <cmath>
 
-#include "core/geometry/vec.h"
-#include "engine/gl/gl_engine.h"
+#include "geometry/vec.h"
+#include "gl/gl_engine.h"
 #include "gl/support.h"
 #include "support/error_of.h"
 #include "support/map_checks.h"

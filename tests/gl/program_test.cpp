@@ -1,11 +1,11 @@
 // Shader programs, and the error if a driver rejects one.
-#include "engine/gl/device/program.h"
+#include "gl/device/program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "engine/gl/device/context.h"
-#include "engine/gl/shaders.h"
+#include "gl/device/context.h"
+#include "gl/shaders.h"
 #include "support/error_of.h"
 
 namespace sdm::gl {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/points.h"
 #include "support/shapes.h"

@@ -1,5 +1,5 @@
 // The stencil cache against a simple model: a list in order of use.
-#include "engine/gl/stencil_cache.h"
+#include "gl/stencil_cache.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/engine.h"
-#include "engine/gl/domain_tree.h"
+#include "gl/domain_tree.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 #include "surface/surface_data.h"
@@ -45,7 +45,7 @@ TEST(Tiles, PartitionTheOwnedTexels) {
     std::ranges::sort(owned);
     EXPECT_EQ(all, owned);
     std::set<std::uint32_t> leaves;
-    for (const hierarchy::AabbTree::Node& node : tile_tree.tree.nodes)
+    for (const tree::AabbTree::Node& node : tile_tree.tree.nodes)
       if (node.leaf()) {
         EXPECT_EQ(node.count, 1u);
         leaves.insert(tile_tree.tree.items[node.first]);
@@ -105,7 +105,7 @@ TEST(Tiles, BoundsHoldForEverySample) {
     DomainTree tree(surface, tile_tree, internals(sites).frame);
     set_bounds(tree, internals(sites), 0, 1e9);
     for (std::uint32_t i = 0; i < tree.tree.nodes.size(); ++i) {
-      const hierarchy::AabbTree::Node& node = tree.tree.nodes[i];
+      const tree::AabbTree::Node& node = tree.tree.nodes[i];
       if (!node.leaf()) {
         EXPECT_EQ(tree.bound[i], std::max(tree.bound[i + 1], tree.bound[node.right]));
         continue;

@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io_read/writers.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

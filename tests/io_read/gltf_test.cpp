@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"
 #include "support/error_of.h"

@@ -15,7 +15,7 @@
 #include <set>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

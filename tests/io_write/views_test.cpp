@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io/write/views/render_view.h"
 #include "io/write/views/view_layout.h"
 #include "io_write/read_png.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm {

@@ -4,33 +4,33 @@ cmake_minimum_required(VERSION 3.23)
 # circle nor an arrow that points up. Prints the graph: for each folder the folders that it includes.
 set(order
   core
-  core/geometry
-  hierarchy
+  geometry
+  tree
   mesh
+  mesh/crossings
   atlas/charts
   atlas/packing
   atlas
   surface
   surface/sampling_bound
-  inside/crossings
   sites
-  inside
+  query/inside
+  query/rays
+  query/pairs
+  query/shape
   engine
   engine/reference
   engine/cpu
-  engine/gl/device
-  engine/gl/polygons
-  engine/gl
-  engine/table
+  gl/device
+  gl/polygons
+  gl
+  engines
   map/statistics
   map
   registration
-  hausdorff
+  certify/hausdorff
+  certify/depth
   volume
-  rays
-  proximity/exact
-  proximity/shape
-  proximity/depth
   proximity/contacts
   proximity/pair
   proximity/motion
@@ -57,7 +57,7 @@ set(order
 file(GLOB engines LIST_DIRECTORIES true RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/engine/*)
 foreach(engine ${engines})
   if(IS_DIRECTORY ${SOURCE_DIR}/src/${engine} AND NOT engine IN_LIST order)
-    list(FIND order engine/table place)
+    list(FIND order engines place)
     list(INSERT order ${place} ${engine})
   endif()
 endforeach()

@@ -1,5 +1,5 @@
 // Collision of solids: nested, hollow, touching, apart.
-#include "proximity/exact/collision.h"
+#include "query/pairs/collision.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "support/shapes.h"
 
-namespace sdm::exact {
+namespace sdm::pairs {
 namespace {
 
 bool collide(const Mesh& m1, const Mesh& m2, const Affine& pose = {}) {
@@ -70,4 +70,4 @@ TEST(SolidCollision, TouchingCounts) {
 }
 
 }  // namespace
-}  // namespace sdm::exact
+}  // namespace sdm::pairs

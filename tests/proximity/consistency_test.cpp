@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/pair_oracle.h"

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/sweep.h"
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
+#include "geometry/sweep.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
 

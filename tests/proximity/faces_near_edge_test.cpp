@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "proximity/contacts/faces_near_edge.h"
 #include "proximity/contacts/support.h"
 #include "support/meshes.h"

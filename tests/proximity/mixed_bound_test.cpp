@@ -1,5 +1,5 @@
 // Bounds on the smallest of several functions over a triangle, and the distances that they are made from.
-#include "proximity/depth/mixed_bound.h"
+#include "certify/depth/mixed_bound.h"
 
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
-#include "proximity/depth/face_distances.h"
+#include "certify/depth/face_distances.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

@@ -9,10 +9,10 @@
 #include <set>
 #include <vector>
 
-#include "core/geometry/sweep.h"
-#include "core/geometry/vec.h"
 #include "fcl_pair.h"
-#include "proximity/exact/mesh_pair.h"
+#include "geometry/sweep.h"
+#include "geometry/vec.h"
+#include "query/pairs/mesh_pair.h"
 #include "support/allocations.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"
@@ -156,7 +156,7 @@ TEST(MultiBodyQuery, AgreesWithFclAndBruteForce) {
     apart += pair.separation.value > 0;
     if (a.triangles.size() * b.triangles.size() > 4000) continue;
     const Sites o1(a), o2(b);
-    const exact::MeshPair triangles{internals(o1), internals(o2)};
+    const pairs::MeshPair triangles{internals(o1), internals(o2)};
     double least = kAny;
     for (std::uint32_t f = 0; f < a.triangles.size(); ++f)
       for (std::uint32_t g = 0; g < b.triangles.size(); ++g)

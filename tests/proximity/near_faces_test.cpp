@@ -7,17 +7,17 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "mesh/similarity.h"
-#include "proximity/exact/near_faces.h"
+#include "query/pairs/near_faces.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
 
-std::vector<bool> found(const exact::NearFaces& near, const sites::SitesData& sites, int side) {
+std::vector<bool> found(const pairs::NearFaces& near, const sites::SitesData& sites, int side) {
   std::vector<bool> faces(sites.mesh.triangles.size());
   std::size_t marked = 0;
   for (std::uint32_t leaf = 0; leaf + 1 < sites.regions.leaves.size(); ++leaf) {
@@ -33,10 +33,10 @@ std::vector<bool> found(const exact::NearFaces& near, const sites::SitesData& si
 // Compares the near faces with those of all pairs. Returns the number of faces that intersect the other
 // surface.
 std::size_t compare(const Mesh& a, const Mesh& b, const Transform& pose, double reach,
-                    exact::NearFacesWorkspace& workspace, exact::NearFaces& near) {
+                    pairs::NearFacesWorkspace& workspace, pairs::NearFaces& near) {
   const Sites o1(a), o2(b);
-  const exact::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
-  exact::find_near_faces(pair, reach, workspace, near);
+  const pairs::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
+  pairs::find_near_faces(pair, reach, workspace, near);
   const std::array marks{found(near, internals(o1), 0), found(near, internals(o2), 1)};
   std::array expected{std::vector<bool>(a.triangles.size()), std::vector<bool>(b.triangles.size())};
   for (std::uint32_t i = 0; i < a.triangles.size(); ++i)
@@ -67,8 +67,8 @@ TEST(NearFaces, AreThoseOfAllPairs) {
     return Transform::translation({0.4 * normal(random), 0.4 * normal(random), 0.4 * normal(random)}) *
            Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
   };
-  exact::NearFacesWorkspace workspace;  // its memory is reused
-  exact::NearFaces near;
+  pairs::NearFacesWorkspace workspace;  // its memory is reused
+  pairs::NearFaces near;
   std::size_t intersecting = 0;
   for (std::size_t trial = 0; trial < 48; ++trial) {
     SCOPED_TRACE(trial);
@@ -84,18 +84,18 @@ TEST(NearFaces, DoNotDependOnTheNumberOfThreads) {
   const Sites o1(placed(torus(96, 48), "fit")), o2(placed(sphere(5), "fit"));
   std::mt19937 random(9);
   std::normal_distribution<double> normal;
-  std::array<exact::NearFacesWorkspace, 2> workspaces;
-  std::array<exact::NearFaces, 2> near;
+  std::array<pairs::NearFacesWorkspace, 2> workspaces;
+  std::array<pairs::NearFaces, 2> near;
   std::size_t leaves = 0;
   for (int trial = 0; trial < 24; ++trial) {
     SCOPED_TRACE(trial);
     const Transform pose =
         Transform::translation({0.2 * normal(random), 0.2 * normal(random), 0.2 * normal(random)}) *
         Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
-    const exact::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
+    const pairs::MeshPair pair{internals(o1), internals(o2), mesh::Similarity::of(pose).map};
     for (const std::size_t i : {0, 1}) {
       const ThreadLimit limit(i == 0 ? 1 : 2);
-      exact::find_near_faces(pair, trial % 3 == 2 ? 0.05 : 0, workspaces[i], near[i]);
+      pairs::find_near_faces(pair, trial % 3 == 2 ? 0.05 : 0, workspaces[i], near[i]);
       for (std::vector<std::uint32_t>& sorted : near[i].leaves) std::ranges::sort(sorted);
     }
     for (const std::size_t side : {0, 1}) {

@@ -1,5 +1,5 @@
 // Properties of the closest points of any two surfaces.
-#include "proximity/exact/pair_search.h"
+#include "query/pairs/pair_search.h"
 
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>
@@ -15,7 +15,7 @@
 #include "support/pair_oracle.h"
 #include "support/shapes.h"
 
-namespace sdm::exact {
+namespace sdm::pairs {
 namespace {
 
 constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -399,4 +399,4 @@ TEST(PairSearch, DoesNotDependOnEarlierSearches) {
 }
 
 }  // namespace
-}  // namespace sdm::exact
+}  // namespace sdm::pairs

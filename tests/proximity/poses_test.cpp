@@ -8,14 +8,14 @@
 
 #include "fcl_pair.h"
 #include "poses.h"
-#include "proximity/exact/pair_search.h"
+#include "query/pairs/pair_search.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"
 #include "support/pair_oracle.h"
 #include "support/shapes.h"
 #include "support/simd_targets.h"
 
-namespace sdm::exact {
+namespace sdm::pairs {
 namespace {
 
 struct Pair {
@@ -119,4 +119,4 @@ INSTANTIATE_TEST_SUITE_P(Pairs, Poses, testing::ValuesIn(kPairs), [](const auto&
 });
 
 }  // namespace
-}  // namespace sdm::exact
+}  // namespace sdm::pairs

@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "support/allocations.h"
 #include "support/meshes.h"

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/allocations.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

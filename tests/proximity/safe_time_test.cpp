@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm::motion {

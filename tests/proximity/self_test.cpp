@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"
 #include "support/oracle.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 

@@ -1,16 +1,16 @@
 // Two triangles of every kind against exact arithmetic.
-#include "core/geometry/triangle_pair.h"
+#include "geometry/triangle_pair.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "core/geometry/predicates.h"
-#include "core/geometry/vec.h"
+#include "geometry/predicates.h"
+#include "geometry/vec.h"
 #include "support/pair_oracle.h"
 
-namespace sdm::exact {
+namespace sdm::pairs {
 namespace {
 
 Vec3 grid_point(std::mt19937& random, int side) {
@@ -186,4 +186,4 @@ TEST(Orientation, IsConsistentUnderPermutationAndScaling) {
 }
 
 }  // namespace
-}  // namespace sdm::exact
+}  // namespace sdm::pairs

@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/points.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io/write/report/area_by_value.h"
 #include "io/write/report/fewer_vertices.h"
 #include "io/write/report/packed_arrays.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <sdm/self_proximity_query.h>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/box_mesh.h"
 
 namespace sdm::scenes {

@@ -3,7 +3,7 @@
 #include <sdm/closest_points.h>
 #include <sdm/multi_body_query.h>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/scene.h"
 
 namespace sdm::scenes {

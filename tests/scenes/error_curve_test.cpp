@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "scenes/scene.h"
 #include "support/meshes.h"
 #include "support/oracle.h"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

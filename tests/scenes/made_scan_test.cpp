@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/divide_edges.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/box_mesh.h"
 #include "scenes/contacts.h"
 #include "scenes/reduce_mesh.h"

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/placement.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

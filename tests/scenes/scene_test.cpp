@@ -6,7 +6,7 @@
 #include <sdm/map.h>
 #include <sdm/threads.h>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/scene.h"
 #include "support/meshes.h"
 

@@ -4,7 +4,7 @@
 #include <sdm/surface.h>
 #include <sdm/threads.h>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "scenes/scene.h"
 
 namespace sdm::scenes {

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
 #include "sites/sites_data.h"
 #include "support/meshes.h"

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "support/shapes.h"
 

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <queue>
 
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "support/oracle.h"
 
 namespace sdm::oracle {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/oracle.h"
 
 namespace sdm::test {

@@ -15,7 +15,7 @@
 
 #include <algorithm>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::oracle {
 namespace {

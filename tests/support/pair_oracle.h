@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "core/geometry/triangle_pair.h"
+#include "geometry/triangle_pair.h"
 
 namespace sdm::oracle {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/points.h"
 
 namespace sdm::test {

@@ -12,8 +12,8 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 #include "surface/sample_blocks.h"

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "surface/sampling_bound/sample_tree.h"
 

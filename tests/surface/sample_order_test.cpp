@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/geometry/spatial_order.h"
-#include "core/geometry/vec.h"
+#include "geometry/spatial_order.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 #include "surface/surface_data.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "atlas/invariants.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 

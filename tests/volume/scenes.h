@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 

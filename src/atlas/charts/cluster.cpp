@@ -9,11 +9,11 @@
 #include "atlas/charts/normal_cone.h"
 #include "core/bucket_queue.h"
 #include "core/cancellation.h"
-#include "core/geometry/unit_frame.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "core/rows.h"
 #include "core/scattered_order.h"
+#include "geometry/unit_frame.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

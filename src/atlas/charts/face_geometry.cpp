@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "mesh/topology.h"
 
 namespace sdm::atlas {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "atlas/charts/tangent_frame.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "atlas/charts/overlap.h"
 #include "atlas/charts/tangent_frame.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

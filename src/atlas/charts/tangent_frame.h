@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "atlas/packing/rasterise.h"
-#include "core/geometry/vec.h"
 #include "core/scattered_order.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

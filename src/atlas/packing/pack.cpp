@@ -11,9 +11,9 @@
 #include "atlas/packing/footprint.h"
 #include "atlas/packing/too_small.h"
 #include "core/cancellation.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

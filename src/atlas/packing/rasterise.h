@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::atlas {
 

@@ -73,7 +73,7 @@ HWY_INLINE void improve(Nearest& nearest, const SiteList<Some>& list, const floa
 struct FromBoxes {
   BlockVec x, y, z, squared;
 
-  HWY_INLINE FromBoxes(Block d, const hierarchy::WideTree::Node& node, size_t i, const float* c) {
+  HWY_INLINE FromBoxes(Block d, const tree::WideTree::Node& node, size_t i, const float* c) {
     const auto from = [&](int k) HWY_ATTR {
       const BlockVec p = hn::Set(d, c[k]);
       return hn::Sub(p, hn::Min(hn::Max(p, hn::Load(d, node.lo[k] + i)), hn::Load(d, node.hi[k] + i)));
@@ -85,7 +85,7 @@ struct FromBoxes {
 
 class Search {
  public:
-  Search(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit, Descent& descent)
+  Search(const tree::WideTree& tree, const sites::Regions& regions, float limit, Descent& descent)
       : tree_(tree), regions_(regions), limit_(limit), s_(descent) {}
 
   // Finds the winners of a ball's points by one traversal for all of them, or by one for each of its child
@@ -139,9 +139,9 @@ class Search {
 
   // Improves `nearest` to the closest centre of a face to p.
   void improve_in_tree(Nearest& nearest, const float* p) {
-    hierarchy::traverse_nearest_child_first(
+    tree::traverse_nearest_child_first(
         tree_, s_.stack,
-        [&](const hierarchy::WideTree::Node& node, float* squared) HWY_ATTR {
+        [&](const tree::WideTree::Node& node, float* squared) HWY_ATTR {
           count_work(&WorkCounts::nodes);
           return select(node.count, [&](size_t i) HWY_ATTR {
             const Block d;
@@ -181,7 +181,7 @@ class Search {
     open.assign(1, 0);
     s_.leaves.clear();
     while (!open.empty()) {
-      const hierarchy::WideTree::Node& node = tree_.nodes[open.back()];
+      const tree::WideTree::Node& node = tree_.nodes[open.back()];
       open.pop_back();
       count_work(&WorkCounts::nodes);
       const uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
@@ -202,7 +202,7 @@ class Search {
     count_work(&WorkCounts::leaves, s_.leaves.size());
     s_.owners.clear();
     for (const uint32_t child : s_.leaves) {
-      const uint32_t leaf = hierarchy::WideTree::leaf_number(child), first = regions_.leaves[leaf];
+      const uint32_t leaf = tree::WideTree::leaf_number(child), first = regions_.leaves[leaf];
       uint32_t places[SiteBlock::kWidth];
       for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
       append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {
@@ -305,15 +305,14 @@ class Search {
     }
   }
 
-  const hierarchy::WideTree& tree_;
+  const tree::WideTree& tree_;
   const sites::Regions& regions_;
   const float limit_;
   Descent& s_;
   Nearest last_{0, {}, false};  // from the previous traversal
 };
 
-void FindWinners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,
-                 Descent& descent) {
+void FindWinners(const tree::WideTree& tree, const sites::Regions& regions, float limit, Descent& descent) {
   Search(tree, regions, limit, descent).start(descent.points.top, 0);
 }
 
@@ -325,8 +324,7 @@ namespace sdm::cpu {
 
 HWY_EXPORT(FindWinners);
 
-void find_winners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,
-                  Descent& descent) {
+void find_winners(const tree::WideTree& tree, const sites::Regions& regions, float limit, Descent& descent) {
   HWY_DYNAMIC_DISPATCH(FindWinners)(tree, regions, limit, descent);
 }
 

@@ -6,8 +6,8 @@
 
 #include "engine/cpu/point_group.h"
 #include "engine/cpu/site_lists.h"
-#include "hierarchy/traverse_wide.h"
 #include "sites/sites_data.h"
+#include "tree/traverse_wide.h"
 
 namespace sdm::cpu {
 
@@ -16,7 +16,7 @@ struct Descent {
   PointGroup points;
   std::uint32_t winners[PointGroup::kMostPoints];  ///< SiteId::packed of each point's closest site
 
-  std::vector<hierarchy::OpenChild<float>> stack;
+  std::vector<tree::OpenChild<float>> stack;
   std::vector<std::uint32_t> open, leaves, owners, edges, vertices;
   SiteLists gathered, lists[PointGroup::kLevels];
 };
@@ -24,7 +24,6 @@ struct Descent {
 /// Finds the closest site within `limit` of every point of descent.points; a site beyond the limit may also
 /// be returned. Selects in single precision: a winner can differ from the closest site only where the two
 /// distances are equal up to rounding. Dispatches at run time to the best vector instructions of the machine.
-void find_winners(const hierarchy::WideTree& tree, const sites::Regions& regions, float limit,
-                  Descent& descent);
+void find_winners(const tree::WideTree& tree, const sites::Regions& regions, float limit, Descent& descent);
 
 }  // namespace sdm::cpu

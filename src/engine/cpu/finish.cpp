@@ -8,11 +8,11 @@
 
 #include <bit>
 
-#include "core/geometry/vec.h"
-#include "core/geometry/vec_lanes-inl.h"
 #include "engine/cpu/ablation.h"
 #include "engine/cpu/cpu_engine.h"
 #include "engine/engine.h"
+#include "geometry/vec.h"
+#include "geometry/vec_lanes-inl.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -14,7 +14,7 @@ namespace sdm::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The ball around a packet's points, centred on their bounding box.
-void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, hierarchy::FloatBox& box) {
+void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, tree::FloatBox& box) {
   const hn::CappedTag<float, PointGroup::kPacket> d;
   const auto load = [&](int k, size_t i) HWY_ATTR {
     return hn::Load(d, group.position[k] + PointGroup::kPacket * packet + i);
@@ -67,7 +67,7 @@ bool MoveToFrame(std::span<const Vec3> points, const UnitFrame& frame,
   return some_far_away;
 }
 
-void AroundPackets(PointGroup& group, hierarchy::FloatBox* boxes) {
+void AroundPackets(PointGroup& group, tree::FloatBox* boxes) {
   for (size_t i = 0; i < group.packets; ++i) AroundPacket(group, i, group.balls[0][i], boxes[i]);
 }
 
@@ -83,11 +83,11 @@ HWY_EXPORT(MoveToFrame);
 
 // The ball around the points of some balls, centred on their bounding box, which replaces the box of the
 // first.
-Ball around(std::span<const Ball> balls, std::span<hierarchy::FloatBox> boxes, hierarchy::FloatBox& box) {
+Ball around(std::span<const Ball> balls, std::span<tree::FloatBox> boxes, tree::FloatBox& box) {
   box = boxes[0];
   Ball ball{};
   for (int k = 0; k < 3; ++k) {
-    for (const hierarchy::FloatBox& b : boxes)
+    for (const tree::FloatBox& b : boxes)
       box.lo[k] = std::min(box.lo[k], b.lo[k]), box.hi[k] = std::max(box.hi[k], b.hi[k]);
     ball.centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
   }

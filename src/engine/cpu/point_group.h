@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "hierarchy/aabb_tree.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::cpu {
 
@@ -30,7 +30,7 @@ struct PointGroup {
   int top = 0;                                 ///< the level of the single ball
   alignas(64) float position[3][kMostPoints];  ///< of the points; the last one is repeated to fill its packet
   std::vector<Ball> balls[kLevels];
-  std::vector<hierarchy::FloatBox> boxes;  ///< bounding boxes of the points of a level's balls, for place()
+  std::vector<tree::FloatBox> boxes;  ///< bounding boxes of the points of a level's balls, for place()
 
   /// Sets the group to 1 to kMostPoints points, mapped into the frame. Balls are small if the points are in
   /// an order like that of core/spatial_order.h. Up to rounding, they contain their points and the balls

@@ -11,8 +11,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/vec.h"
 #include "engine/cpu/region_kernels-inl.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -49,9 +49,9 @@ class SinglePoint {
   // Finds the faces that may be closest.
   void collect() {
     m_.candidates.clear();
-    hierarchy::traverse_nearest_child_first(
+    tree::traverse_nearest_child_first(
         sites_.wide, m_.stack,
-        [&](const hierarchy::WideTree::Node& node, float* squared)
+        [&](const tree::WideTree::Node& node, float* squared)
             HWY_ATTR { return near_children(node, squared); },
         [&](float squared) { return squared <= squared_limit_; },
         [&](uint32_t leaf) HWY_ATTR { visit(leaf); });
@@ -60,7 +60,7 @@ class SinglePoint {
   [[nodiscard]] float squared_limit() const { return squared_limit_; }
 
  private:
-  uint32_t near_children(const hierarchy::WideTree::Node& node, float* squared) const {
+  uint32_t near_children(const tree::WideTree::Node& node, float* squared) const {
     const Block d;
     uint32_t near = 0;
     for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d)) {

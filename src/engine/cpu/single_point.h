@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "hierarchy/traverse_wide.h"
 #include "sites/sites_data.h"
+#include "tree/traverse_wide.h"
 
 namespace sdm::cpu {
 
@@ -17,7 +17,7 @@ struct SinglePointMemory {
     float squared;
     std::uint32_t face;
   };
-  std::vector<hierarchy::OpenChild<float>> stack;
+  std::vector<tree::OpenChild<float>> stack;
   std::vector<Candidate> candidates;
 };
 

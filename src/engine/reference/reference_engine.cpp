@@ -2,16 +2,16 @@
 #include <algorithm>
 #include <tuple>
 
-#include "core/geometry/vec.h"
 #include "engine/reference/reference_engine.h"
-#include "hierarchy/traverse.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
+#include "tree/traverse.h"
 
 namespace sdm::reference {
 namespace {
 
 // A lower bound on the computed distance of a point of the unit frame to the faces in a box.
-double lower_bound(const hierarchy::FloatBox& box, const Vec3& p) {
+double lower_bound(const tree::FloatBox& box, const Vec3& p) {
   return (1 - kSlack) * norm(gap(box, p)) - kSlack;
 }
 
@@ -25,8 +25,8 @@ ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q, dou
   const Vec3 unit = sites.frame.to_unit(q);
   ClosestPoint best;
   best.distance = max_distance;
-  hierarchy::traverse_nearer_first(
-      sites.tree, [&](const hierarchy::FloatBox& box) { return lower_bound(box, unit); },
+  tree::traverse_nearer_first(
+      sites.tree, [&](const tree::FloatBox& box) { return lower_bound(box, unit); },
       // A node is visited even if its bound equals the best distance: the first of equally close sites is
       // returned, and O2 may lie at exactly max_distance.
       [&](double bound) { return bound <= best.distance * sites.frame.scale; },

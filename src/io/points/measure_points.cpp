@@ -11,8 +11,8 @@
 #include <new>
 #include <string>
 
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "io/points/measured_rows.h"
 #include "io/read/byte_scanner.h"
 #include "io/write/atomic_file.h"

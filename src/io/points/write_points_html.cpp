@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "io/points/measured_rows.h"
 #include "io/write/atomic_file.h"
 #include "io/write/report/embedded_page.h"

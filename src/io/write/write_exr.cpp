@@ -1,6 +1,6 @@
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "io/write/atomic_file.h"
 #include "io/write/compression/deflate.h"
 #include "io/write/gutter.h"

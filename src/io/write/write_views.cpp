@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "io/write/atomic_file.h"
 #include "io/write/pictures/canvas.h"
 #include "io/write/pictures/legend.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_statistics.h"
 #include "map/statistics/weighted_texels.h"

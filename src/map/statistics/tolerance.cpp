@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "map/statistics/tolerance_limits.h"
 
 namespace sdm {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "surface/surface_data.h"
 
 namespace sdm::map {

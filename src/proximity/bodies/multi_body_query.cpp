@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "core/cancellation.h"
-#include "core/geometry/sweep.h"
 #include "core/intact.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/sweep.h"
 #include "proximity/bodies/nearest_body.h"
 #include "proximity/pair/pair_answers.h"
-#include "proximity/shape/posed_body.h"
+#include "query/shape/posed_body.h"
 
 namespace sdm {
 namespace {

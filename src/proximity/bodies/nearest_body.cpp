@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "core/geometry/sweep.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
 #include "engine/cpu/cpu_engine.h"
+#include "geometry/sweep.h"
+#include "geometry/vec.h"
 #include "map/map_writer.h"
 #include "surface/sample_blocks.h"
 #include "surface/surface_data.h"

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "proximity/shape/posed_body.h"
+#include "query/shape/posed_body.h"
 
 namespace sdm::bodies {
 

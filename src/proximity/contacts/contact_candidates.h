@@ -7,8 +7,8 @@
 #include "mesh/similarity.h"
 #include "proximity/contacts/contact_regions.h"
 #include "proximity/contacts/one_sided.h"
-#include "proximity/exact/near_faces.h"
-#include "proximity/shape/posed_body.h"
+#include "query/pairs/near_faces.h"
+#include "query/shape/posed_body.h"
 
 namespace sdm::contacts {
 
@@ -23,7 +23,7 @@ struct ContactQuery {
   double limit = 0;  ///< the margin, in the frame of the other body
   double length = 0;
   double size = 0;                         ///< of the smaller body, in the frame of the other one
-  const exact::NearFaces* near = nullptr;  ///< with sorted leaves
+  const pairs::NearFaces* near = nullptr;  ///< with sorted leaves
 
   [[nodiscard]] const shape::Body& on() const { return bodies[side]->body(); }
   [[nodiscard]] const shape::Body& other() const { return bodies[1 - side]->body(); }

@@ -31,10 +31,10 @@ void ContactFinder::add_tasks(int side) {
         {.side = side, .leaves = leaves.subspan(first, std::min(kLeavesOfTask, leaves.size() - first))});
 }
 
-std::span<const Contact> ContactFinder::find(const Bodies& bodies, const exact::MeshPair& meshes,
+std::span<const Contact> ContactFinder::find(const Bodies& bodies, const pairs::MeshPair& meshes,
                                              const std::array<mesh::Similarity, 2>& to_other, double margin,
                                              double length) {
-  exact::find_near_faces(meshes, margin / bodies[0]->pose().scale, near_workspace_, near_);
+  pairs::find_near_faces(meshes, margin / bodies[0]->pose().scale, near_workspace_, near_);
   for (std::vector<std::uint32_t>& leaves : near_.leaves) std::ranges::sort(leaves);
   const bool alone = near_.leaves[0].size() + near_.leaves[1].size() <= kFewLeaves;
   const auto for_each = [&](std::size_t count, const auto& body) {

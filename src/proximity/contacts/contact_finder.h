@@ -19,7 +19,7 @@ class ContactFinder {
   /// body to that of the other. `length`: below this length, the vector to the other body does not determine
   /// the normal. Cost: of the pairs of faces within the margin, on two cores, and of a few closest points for
   /// each contact, on all.
-  [[nodiscard]] std::span<const Contact> find(const Bodies& bodies, const exact::MeshPair& meshes,
+  [[nodiscard]] std::span<const Contact> find(const Bodies& bodies, const pairs::MeshPair& meshes,
                                               const std::array<mesh::Similarity, 2>& to_other, double margin,
                                               double length);
 
@@ -32,8 +32,8 @@ class ContactFinder {
   };
   void add_tasks(int side);
 
-  exact::NearFacesWorkspace near_workspace_;
-  exact::NearFaces near_;
+  pairs::NearFacesWorkspace near_workspace_;
+  pairs::NearFaces near_;
   std::array<ContactCandidates, 2> candidates_;  ///< of each body
   std::vector<Task> tasks_;
   std::vector<FeatureContacts> found_;  ///< by each task

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
-#include "core/geometry/box_groups.h"
+#include "geometry/box_groups.h"
 
 namespace sdm::contacts {
 

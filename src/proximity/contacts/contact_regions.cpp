@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/geometry/sweep.h"
-#include "core/geometry/vec.h"
 #include "engine/cpu/cpu_engine.h"
+#include "geometry/sweep.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
@@ -17,7 +17,7 @@ constexpr double kRounding = 1e-9;  // of distances, relative to themselves
 // Nodes of a part with at most so many leaves are not divided.
 constexpr std::uint32_t kFewLeaves = 16;
 
-using hierarchy::WideTree;
+using tree::WideTree;
 using Kind = ContactRegion::Kind;
 
 }  // namespace
@@ -25,7 +25,7 @@ using Kind = ContactRegion::Kind;
 // A node without near faces is inside or outside as a whole, as far as it is connected. The distance is
 // 1-Lipschitz: in a ball whose centre is farther than its radius and the margin, nothing is in contact.
 void ContactRegions::find(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other,
-                          double margin, const exact::NearFaces& near, int side) {
+                          double margin, const pairs::NearFaces& near, int side) {
   on_ = &on, other_ = &other, to_other_ = &to_other, margin_ = margin, near_ = &near, side_ = side;
   regions_.clear(), stack_.clear();
   open({});

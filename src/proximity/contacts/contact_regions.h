@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "proximity/contacts/surface_point.h"
-#include "proximity/exact/near_faces.h"
-#include "proximity/shape/posed_body.h"
+#include "query/pairs/near_faces.h"
+#include "query/shape/posed_body.h"
 
 namespace sdm::contacts {
 
@@ -37,7 +37,7 @@ class ContactRegions {
   /// sorted leaves; `on` is its surface `side`. Nodes of one part follow each other. Cost: of a closest point
   /// for each region.
   void find(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other, double margin,
-            const exact::NearFaces& near, int side);
+            const pairs::NearFaces& near, int side);
 
   [[nodiscard]] std::span<const ContactRegion> regions() const { return regions_; }
 
@@ -63,7 +63,7 @@ class ContactRegions {
   const shape::Body *on_ = nullptr, *other_ = nullptr;
   const mesh::Similarity* to_other_ = nullptr;
   double margin_ = 0;
-  const exact::NearFaces* near_ = nullptr;
+  const pairs::NearFaces* near_ = nullptr;
   int side_ = 0;
   std::vector<Node> stack_;
   std::vector<ContactRegion> regions_;

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();

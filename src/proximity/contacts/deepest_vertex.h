@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/affine.h"
+#include "geometry/affine.h"
 #include "mesh/similarity.h"
 #include "proximity/contacts/surface_point.h"
 

@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include "core/cancellation.h"
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
 #include "engine/cpu/cpu_engine.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {

@@ -8,7 +8,7 @@
 #include "proximity/contacts/faces_near_edge.h"
 #include "proximity/contacts/support.h"
 #include "proximity/contacts/way_out.h"
-#include "proximity/shape/body.h"
+#include "query/shape/body.h"
 
 namespace sdm::contacts {
 

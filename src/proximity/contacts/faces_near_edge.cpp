@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sdm::contacts::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr size_t kWidth = hierarchy::WideTree::kWidth;
+constexpr size_t kWidth = tree::WideTree::kWidth;
 static_assert(kWidth == sites::FaceBounds::kWidth);
 using Lanes = hn::CappedTag<float, kWidth>;
 using Vec = hn::Vec<Lanes>;
@@ -75,7 +75,7 @@ class Boxes {
     added.rest = hn::Set(d, rest + behind);
   }
 
-  HWY_INLINE uint32_t passed(const hierarchy::WideTree::Node& node) const {
+  HWY_INLINE uint32_t passed(const tree::WideTree::Node& node) const {
     const Lanes d;
     uint32_t children = 0;
     for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
@@ -200,15 +200,15 @@ void Collect(const sites::SitesData& sites, const Boxes& boxes, const Faces& fac
   const sites::Regions& regions = sites.regions;
   stack.assign(1, 0);
   while (!stack.empty()) {
-    const hierarchy::WideTree::Node& node = sites.wide.nodes[stack.back()];
+    const tree::WideTree::Node& node = sites.wide.nodes[stack.back()];
     stack.pop_back();
     for (uint32_t open = boxes.passed(node); open != 0; open &= open - 1) {
       const uint32_t child = node.child[std::countr_zero(open)];
-      if (!hierarchy::WideTree::is_leaf(child)) {
+      if (!tree::WideTree::is_leaf(child)) {
         stack.push_back(child);
         continue;
       }
-      const uint32_t leaf = hierarchy::WideTree::leaf_number(child), first = regions.leaves[leaf];
+      const uint32_t leaf = tree::WideTree::leaf_number(child), first = regions.leaves[leaf];
       uint32_t near = regions.thin[leaf];  // their normals are unreliable
       for (size_t i = 0; i < kWidth; i += hn::Lanes(Lanes())) near |= faces(regions.bounds[leaf], i);
       near &= (1u << (regions.leaves[leaf + 1] - first)) - 1;
@@ -251,7 +251,7 @@ std::optional<FacesNearEdge::UnitSegment> to_unit(const sites::SitesData& sites,
                                                   const FacesNearEdge::Segment& segment, double reach) {
   const UnitFrame& frame = sites.frame;
   const Vec3 a = frame.to_unit(segment.a), along = frame.to_unit(segment.b) - a;
-  const hierarchy::FloatBox& box = sites.tree.box(0);
+  const tree::FloatBox& box = sites.tree.box(0);
   constexpr double kRounding = FacesNearEdge::kRounding;
   const double around = (1 + kRounding) * frame.scale * reach + kRounding;
   double from = 0, to = 1, most = 0;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::contacts {

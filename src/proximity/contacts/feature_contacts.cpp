@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/barycentric.h"
-#include "core/geometry/vec.h"
+#include "geometry/barycentric.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::contacts {
@@ -115,7 +115,7 @@ Box FeatureContacts::box_of(Regions part) {
   const OneSidedVertices& vertices = candidates_->vertices();
   const sites::SitesData& sites = internals(on().sites());
   constexpr float kRounding = 1e-6f;
-  hierarchy::FloatBox unit;
+  tree::FloatBox unit;
   unit.lo.fill(std::numeric_limits<float>::infinity());
   unit.hi.fill(-std::numeric_limits<float>::infinity());
   const auto extend_by = [&](std::span<const float, 3> lo, std::span<const float, 3> hi) {
@@ -125,7 +125,7 @@ Box FeatureContacts::box_of(Regions part) {
   };
   for (const ContactRegion& region : part) {
     if (region.is_inside()) {
-      const hierarchy::FloatBox& whole = sites.tree.box(region.source);
+      const tree::FloatBox& whole = sites.tree.box(region.source);
       extend_by(whole.lo, whole.hi);
       continue;
     }

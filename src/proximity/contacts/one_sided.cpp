@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::contacts {
 

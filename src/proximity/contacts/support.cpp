@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/cancellation.h"
-#include "hierarchy/traverse.h"
+#include "tree/traverse.h"
 
 namespace sdm::contacts {
 namespace {
@@ -57,12 +57,12 @@ Support support_of_vertex(const shape::Body& body, const Vec3& vertex, std::span
   const Vec3 around{most, most, most};
   extend(box, sites.frame.to_unit(vertex - around));
   extend(box, sites.frame.to_unit(vertex + around));
-  const hierarchy::FloatBox near = hierarchy::FloatBox::around(box);
+  const tree::FloatBox near = tree::FloatBox::around(box);
   Support best;
-  const auto enter = [&](hierarchy::Subtree subtree) {
+  const auto enter = [&](tree::Subtree subtree) {
     return squared_norm(gap(sites.tree.box(subtree.root), near)) == 0;
   };
-  hierarchy::traverse(sites.tree, hierarchy::whole(sites.tree), enter, [&](std::uint32_t leaf) {
+  tree::traverse(sites.tree, tree::whole(sites.tree), enter, [&](std::uint32_t leaf) {
     for (const std::uint32_t face : sites.tree.items_of(leaf)) {
       const Vec3& normal = sites.normals.face[face];
       if (!can_push(normal, spokes) || !is_support(body, face)) continue;

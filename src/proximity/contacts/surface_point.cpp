@@ -1,7 +1,7 @@
 #include "proximity/contacts/surface_point.h"
 
-#include "core/geometry/vec.h"
 #include "engine/cpu/cpu_engine.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {

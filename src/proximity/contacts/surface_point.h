@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "proximity/shape/body.h"
+#include "query/shape/body.h"
 
 namespace sdm::contacts {
 

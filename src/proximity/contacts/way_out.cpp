@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {

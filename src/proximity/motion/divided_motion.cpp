@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "proximity/shape/posed_body.h"
+#include "query/shape/posed_body.h"
 
 namespace sdm::motion {
 

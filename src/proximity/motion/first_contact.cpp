@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/cancellation.h"
-#include "core/geometry/triangle_pair.h"
+#include "geometry/triangle_pair.h"
 #include "proximity/motion/safe_time.h"
 
 namespace sdm::motion {

@@ -57,7 +57,7 @@ Part Parts::face(std::uint32_t index) const {
 }
 
 Part Parts::box_of_tree(std::uint32_t node) const {
-  const hierarchy::FloatBox& box = sites_.tree.box(node);
+  const tree::FloatBox& box = sites_.tree.box(node);
   Part part;
   for (int k = 0; k < 3; ++k) {
     part.point[0][k] = origin_[k] + unit_ * (0.5 * (double{box.lo[k]} + box.hi[k]));

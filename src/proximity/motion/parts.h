@@ -47,12 +47,12 @@ class Parts {
   /// Calls put(place) for the children of a node, or the faces of a leaf.
   template <class Put>
   void for_each_child(const Place& place, const Put& put) const {
-    if (hierarchy::WideTree::is_leaf(place.child)) {
+    if (tree::WideTree::is_leaf(place.child)) {
       for (const std::uint32_t face : sites_.tree.items_of(place.source))
         put(Place{.child = face, .face = true});
       return;
     }
-    const hierarchy::WideTree::Node& node = sites_.wide.nodes[place.child];
+    const tree::WideTree::Node& node = sites_.wide.nodes[place.child];
     for (std::uint32_t i = 0; i < node.count; ++i)
       put(Place{.child = node.child[i], .source = node.source[i]});
   }

@@ -7,9 +7,9 @@
 #include <limits>
 #include <string>
 
-#include "core/geometry/sweep.h"
-#include "core/geometry/vec.h"
-#include "proximity/exact/collision.h"
+#include "geometry/sweep.h"
+#include "geometry/vec.h"
+#include "query/pairs/collision.h"
 
 namespace sdm::pair {
 namespace {
@@ -49,7 +49,7 @@ const BoundedLength& PairAnswers::separation() {
 BoundedBool PairAnswers::colliding() {
   if (!colliding_)
     colliding_ = {box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
-                      (surfaces_intersect() || exact::one_contains_part_of_other(meshes())),
+                      (surfaces_intersect() || pairs::one_contains_part_of_other(meshes())),
                   Certainty::exact};
   return *colliding_;
 }
@@ -74,7 +74,7 @@ bool PairAnswers::within(double distance) {
   return (separation_ && separation_->value <= distance) || colliding().value;
 }
 
-exact::MeshPair PairAnswers::meshes() const {
+pairs::MeshPair PairAnswers::meshes() const {
   const shape::Body &o1 = bodies_[0]->body(), &o2 = bodies_[1]->body();
   return {internals(o1.sites()), internals(o2.sites()), to_other_[1].map, {&o1.cylinders(), &o2.cylinders()}};
 }
@@ -82,7 +82,7 @@ exact::MeshPair PairAnswers::meshes() const {
 // Computes separation_ if it is at most `bound`, and returns whether it is.
 bool PairAnswers::find_closest(double bound) {
   const mesh::Similarity& pose = bodies_[0]->pose();
-  const exact::Separation c = exact::find_closest(meshes(), bound / pose.scale, workspace_, closest_faces_);
+  const pairs::Separation c = pairs::find_closest(meshes(), bound / pose.scale, workspace_, closest_faces_);
   if (c.face1 == kNone) return false;
   intersecting_ = c.intersecting;
   closest_faces_ = {c.face1, c.face2};
@@ -96,7 +96,7 @@ bool PairAnswers::find_closest(double bound) {
 }
 
 bool PairAnswers::surfaces_intersect() {
-  if (!intersecting_) intersecting_ = exact::find_intersection(meshes(), workspace_).intersecting;
+  if (!intersecting_) intersecting_ = pairs::find_intersection(meshes(), workspace_).intersecting;
   return *intersecting_;
 }
 

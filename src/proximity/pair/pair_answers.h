@@ -7,17 +7,17 @@
 #include <optional>
 #include <span>
 
+#include "certify/depth/depth_search.h"
 #include "proximity/contacts/contact_finder.h"
-#include "proximity/depth/depth_search.h"
-#include "proximity/exact/pair_search.h"
-#include "proximity/shape/posed_body.h"
+#include "query/pairs/pair_search.h"
+#include "query/shape/posed_body.h"
 
 namespace sdm::pair {
 
 /// Throws sdm::Error unless both are finite and at least 0.
 void check_options(double contact_margin, double depth_precision);
 
-using exact::FacePair, exact::kNoFaces;
+using pairs::FacePair, pairs::kNoFaces;
 
 /// Results as documented at ProximityQuery, each computed on first use. Memory is reused from pair to pair;
 /// results do not depend on earlier pairs.
@@ -48,7 +48,7 @@ class PairAnswers {
   [[nodiscard]] std::span<const Contact> contacts();
 
  private:
-  [[nodiscard]] exact::MeshPair meshes() const;
+  [[nodiscard]] pairs::MeshPair meshes() const;
   bool find_closest(double bound);
   [[nodiscard]] bool surfaces_intersect();
   [[nodiscard]] std::optional<BoundedLength> depth();
@@ -58,7 +58,7 @@ class PairAnswers {
   std::array<mesh::Similarity, 2> to_other_;  // from the frame of each body to that of the other
   double precision_ = 0;                      // error of a computed distance
   contacts::ContactFinder contact_finder_;
-  exact::PairWorkspace workspace_;
+  pairs::PairWorkspace workspace_;
   depth::DepthSearch depth_search_;
 
   // Results for the current bodies.

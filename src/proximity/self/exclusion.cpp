@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rows.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "proximity/self/patches.h"
 
 namespace sdm {

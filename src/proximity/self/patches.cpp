@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::self {
 namespace {

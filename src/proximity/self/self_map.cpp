@@ -8,10 +8,10 @@
 #include <new>
 
 #include "core/atomic_extremes.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rows.h"
+#include "geometry/vec.h"
 #include "map/map_writer.h"
 #include "proximity/self/self_search.h"
 #include "surface/tiles.h"

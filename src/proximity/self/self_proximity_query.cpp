@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "core/cancellation.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "proximity/contacts/contact_patches.h"
 #include "proximity/self/self_search.h"
 

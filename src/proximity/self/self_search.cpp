@@ -5,17 +5,17 @@
 #include <tuple>
 #include <utility>
 
-#include "core/geometry/triangle_pair.h"
-#include "core/geometry/vec.h"
-#include "hierarchy/traverse_wide.h"
+#include "geometry/triangle_pair.h"
+#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
+#include "tree/traverse_wide.h"
 
 namespace sdm::self {
 
-using hierarchy::WideTree;
+using tree::WideTree;
 
 struct SelfSearch::Scratch {
-  std::vector<hierarchy::OpenChild<float>> stack;
+  std::vector<tree::OpenChild<float>> stack;
   std::vector<std::pair<double, std::uint32_t>> candidates;  ///< with their distance from the ball's centre
   // All 0 between searches.
   std::vector<std::uint8_t> excluded;  ///< for each patch
@@ -161,14 +161,13 @@ void SelfSearch::open(std::uint32_t place) {
 template <class Visit>
 void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) const {
   const UnitFrame& frame = sites_.frame;
-  const hierarchy::FloatBox unit =
-      hierarchy::FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
+  const tree::FloatBox unit = tree::FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
   const auto within = [&](float squared) {
     // Distances are too large by 1e-6 of themselves at most, coordinates in the unit frame by 1e-16.
     const double most = (1 + 1e-6) * frame.scale * limit + 1e-15;
     return !(squared > most * most);
   };
-  hierarchy::traverse_nearest_child_first(
+  tree::traverse_nearest_child_first(
       sites_.wide, scratch_.stack,
       [&](const WideTree::Node& node, float(&squared)[WideTree::kWidth]) {
         squared_distances(node, unit, squared);

@@ -7,9 +7,9 @@
 #include <new>
 
 #include "core/atomic_extremes.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "surface/sampling_bound/face_cutter.h"
 #include "surface/sampling_bound/face_frame.h"
 

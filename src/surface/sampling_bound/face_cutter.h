@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "surface/sampling_bound/near_samples.h"
 #include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/polygon.h"

@@ -3,7 +3,7 @@
 
 #include <sdm/mesh.h>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::surface {
 

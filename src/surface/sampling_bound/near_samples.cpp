@@ -1,7 +1,7 @@
 #include "surface/sampling_bound/near_samples.h"
 
 #include "atlas/charts/face_geometry.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::surface {
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/atomic_extremes.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "surface/sample_blocks.h"
 #include "surface/sampling_bound/face_frame.h"
 #include "surface/surface_data.h"

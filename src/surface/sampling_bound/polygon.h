@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::surface {
 

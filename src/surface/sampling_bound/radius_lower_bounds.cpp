@@ -1,7 +1,7 @@
 // Lower bounds on the radii, from the true distances of points of the surface to the nearest sample.
 #include "core/atomic_extremes.h"
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "surface/sample_blocks.h"
 #include "surface/sampling_bound/face_frame.h"
 #include "surface/sampling_bound/piece_assignment.h"

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "atlas/packing/too_small.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

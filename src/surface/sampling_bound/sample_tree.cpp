@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
-#include "hierarchy/traverse.h"
+#include "geometry/vec.h"
+#include "tree/traverse.h"
 
 namespace sdm::surface {
 
@@ -32,7 +32,7 @@ SampleTree::SampleTree(const Surface& surface, double radius)
   first_.push_back(count);
   std::vector<std::uint32_t> runs(boxes.size());
   std::iota(runs.begin(), runs.end(), 0u);
-  tree_ = hierarchy::build_aabb_tree(boxes, std::move(runs), 1);
+  tree_ = tree::build_aabb_tree(boxes, std::move(runs), 1);
 }
 
 std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end, double radius) const {
@@ -54,9 +54,9 @@ std::uint32_t SampleTree::nearest(const Vec3& query) const {
   const Vec3 unit_query = frame_.to_unit(query);
   std::uint32_t sample = 0;
   double least = std::numeric_limits<double>::infinity();  // squared
-  hierarchy::traverse_nearer_first(
+  tree::traverse_nearer_first(
       tree_,
-      [&](const hierarchy::FloatBox& box) {
+      [&](const tree::FloatBox& box) {
         return squared_norm((1 / frame_.scale) * gap(box, unit_query));  // exact: the scale is a power of two
       },
       [&](double squared_distance) { return squared_distance < least; },

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "hierarchy/aabb_tree.h"
 #include "surface/surface_data.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::surface {
 
@@ -29,7 +29,7 @@ class SampleTree {
   const SurfaceData& surface_;
   UnitFrame frame_;
   std::vector<std::size_t> first_;  ///< sample of each run, and the end of the last run
-  hierarchy::AabbTree tree_;        ///< over runs, one a leaf
+  tree::AabbTree tree_;             ///< over runs, one a leaf
 };
 
 }  // namespace sdm::surface

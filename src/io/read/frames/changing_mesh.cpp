@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "mesh/validate.h"
 
 namespace sdm::io {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "io/read/file_bytes.h"
 #include "io/read/frames/changing_mesh.h"
 #include "io/read/frames/frame_source.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <nlohmann/json_fwd.hpp>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::io {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/spatial_order.h"
+#include "geometry/spatial_order.h"
 
 namespace sdm::io {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/cancellation.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io/read/polygons/triangulate.h"
 
 namespace sdm::io {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::io {
 namespace {

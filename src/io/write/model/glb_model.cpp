@@ -3,7 +3,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::io {
 

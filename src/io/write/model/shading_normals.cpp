@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::io {
 namespace {

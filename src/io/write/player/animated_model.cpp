@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io/write/atomic_file.h"
 #include "io/write/model/glb_model.h"
 #include "io/write/pictures/color_scale.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io/write/atomic_file.h"
 #include "io/write/pictures/color_scale.h"
 #include "io/write/report/embedded_page.h"

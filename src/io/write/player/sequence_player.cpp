@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/cancellation.h"
-#include "core/geometry/vec.h"
 #include "core/memory.h"
+#include "geometry/vec.h"
 #include "io/write/player/animated_model.h"
 #include "io/write/player/drawn_body.h"
 #include "io/write/player/player_page.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "core/cancellation.h"
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::io {
 namespace {

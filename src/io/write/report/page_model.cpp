@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/geometry/vec.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "io/write/model/model_vertices.h"
 #include "io/write/model/shading_normals.h"
 #include "io/write/pictures/atlas_picture.h"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 
 namespace sdm::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/geometry/vec.h"
+#include "geometry/vec.h"
 #include "io/write/pictures/canvas.h"
 
 namespace sdm::io {

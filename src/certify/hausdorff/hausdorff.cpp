@@ -1,0 +1,78 @@
+#include <sdm/error.h>
+#include <sdm/hausdorff.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "certify/hausdorff/part_search.h"
+#include "certify/hausdorff/vertex_search.h"
+#include "core/memory.h"
+#include "geometry/vec.h"
+#include "sites/sites_data.h"
+
+namespace sdm {
+namespace {
+
+double largest_coordinate(const Box& box) {
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  return largest;
+}
+
+void check(const HausdorffOptions& options) {
+  if (!(options.precision >= 0)) throw Error("the precision of a Hausdorff distance must be at least 0");
+}
+
+HausdorffDistance search(const Mesh& a, const sites::SitesData& b, const HausdorffOptions& options) {
+  constexpr double kRounding = 1e-12;
+  const Box box = bounds(a);
+  Box both = bounds(b.mesh);
+  extend(both, box);
+  const double size = diagonal(both), coordinate = largest_coordinate(box);
+  const double asked = options.precision > 0 ? options.precision : HausdorffOptions::kPrecision * size;
+  const double precision = std::max(asked, kRounding * std::max(size, largest_coordinate(both)));
+
+  hausdorff::LowerBound lower;
+  const auto vertices = hausdorff::search_vertices(a, b, options.progress, lower);
+  hausdorff::PartSearch parts(b, precision, coordinate, lower);
+  parts.start(a, vertices);
+  const double upper = parts.finish(options.progress);
+
+  HausdorffDistance result{.faces = lower.faces};
+  BoundedLength& distance = result.distance;
+  distance.value = norm(lower.closest - lower.point);
+  distance.lower = std::min(lower.value, distance.value);
+  distance.upper = std::max(upper, distance.value);
+  distance.certainty =
+      distance.upper - distance.lower <= kRounding * size ? Certainty::exact : Certainty::bounded;
+  distance.witness = std::array{lower.point, lower.closest};
+  return result;
+}
+
+}  // namespace
+
+HausdorffDistance one_sided_hausdorff(const Mesh& a, const Sites& b, const HausdorffOptions& options) try {
+  check(options);
+  validate(a);
+  return search(a, internals(b), options);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the Hausdorff distance");
+}
+
+SymmetricHausdorff symmetric_hausdorff(const Sites& a, const Sites& b, const HausdorffOptions& options) try {
+  check(options);
+  SymmetricHausdorff result{
+      .from = {search(a.mesh(), internals(b), options), search(b.mesh(), internals(a), options)}};
+  const BoundedLength &first = result.from[0].distance, &second = result.from[1].distance;
+  result.larger_from = second.lower > first.lower ? 1 : 0;
+  result.larger = result.from[result.larger_from];
+  BoundedLength& larger = result.larger.distance;
+  larger.upper = std::max(first.upper, second.upper);
+  if (larger.upper > result.from[result.larger_from].distance.upper) larger.certainty = Certainty::bounded;
+  return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the Hausdorff distance");
+}
+
+}  // namespace sdm

@@ -1,0 +1,26 @@
+// The largest distance that is known to occur.
+#pragma once
+
+#include <algorithm>
+
+#include "certify/hausdorff/nearest_face.h"
+#include "geometry/vec.h"
+
+namespace sdm::hausdorff {
+
+/// A point of A with the distance to B there.
+struct LowerBound {
+  double value = -1;        ///< ≤ the largest distance
+  Vec3 point{}, closest{};  ///< of A and of B
+  std::array<std::uint32_t, 2> faces{kNone, kNone};
+
+  void raise(const LowerBound& other) {
+    if (other.value > value) *this = other;
+  }
+  /// `point` is a point of a face of A, at most `rounding` from it.
+  void raise(const Vec3& p, double rounding, std::uint32_t face, const NearestFace& nearest) {
+    raise({std::max(0.0, nearest.lower - rounding), p, nearest.point, {face, nearest.face}});
+  }
+};
+
+}  // namespace sdm::hausdorff

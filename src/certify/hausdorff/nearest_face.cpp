@@ -1,0 +1,55 @@
+#include "certify/hausdorff/nearest_face.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "certify/hausdorff/face_distance.h"
+#include "geometry/vec.h"
+#include "tree/traverse.h"
+
+namespace sdm::hausdorff {
+
+NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint32_t start) {
+  NearestFace best;
+  double lower = std::numeric_limits<double>::infinity();
+  best.upper = lower;
+  // For the unit vector u towards the best point, all points s of a face have |s − p| ≥ u·(s − p): most faces
+  // are excluded by that alone.
+  Vec3 towards{};
+  const auto beyond = [&](const Corners& face) {
+    constexpr double kRounding = 1e-14;
+    double least = std::numeric_limits<double>::infinity(), size = 0;
+    for (const Vec3& corner : face) {
+      const Vec3 r = corner - p;
+      least = std::min(least, dot(towards, r));
+      size = std::max(size, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
+    }
+    return least - kRounding * size >= best.upper;
+  };
+  const auto offer = [&](std::uint32_t face) {
+    const Corners corners = corners_of(sites.mesh, face);
+    if (beyond(corners)) return;
+    const FaceDistance d = face_distance(p, corners);
+    lower = std::min(lower, d.lower);
+    if (!(d.upper < best.upper)) return;
+    best.face = face, best.upper = d.upper, best.point = d.point;
+    towards = normalized(best.point - p);
+  };
+  offer(start);
+  const Vec3 unit = sites.frame.to_unit(p);
+  // Mapping p and the corners of faces into the frame rounds.
+  const double rounding = 1e-15 * (1 + std::abs(unit[0]) + std::abs(unit[1]) + std::abs(unit[2]));
+  const auto lower_bound = [&](const tree::FloatBox& box) {
+    return (1 - 1e-12) * norm(gap(box, unit)) - rounding;
+  };
+  tree::traverse_nearer_first(
+      sites.tree, lower_bound, [&](double bound) { return bound < best.upper * sites.frame.scale; },
+      [&](std::uint32_t leaf) {
+        for (const std::uint32_t face : sites.tree.items_of(leaf))
+          if (face != start) offer(face);
+      });
+  best.lower = std::min(lower, best.upper);  // what was excluded is no closer than `upper`
+  return best;
+}
+
+}  // namespace sdm::hausdorff

@@ -1,0 +1,24 @@
+// The face of B that is closest to a point, in double precision, with bounds that hold in spite of rounding.
+#pragma once
+
+#include "geometry/triangle_pair.h"
+#include "sites/sites_data.h"
+
+namespace sdm::hausdorff {
+
+[[nodiscard]] inline Corners corners_of(const Mesh& mesh, std::uint32_t face) {
+  const auto [a, b, c] = mesh.triangles[face];
+  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
+}
+
+/// lower ≤ d(p, B) ≤ upper
+struct NearestFace {
+  std::uint32_t face = kNone;
+  double lower = 0, upper = 0;
+  Vec3 point{};  ///< of the face, at most `upper` from p
+};
+
+/// `start` is a face of B: the closer it is, the less of the tree is searched.
+[[nodiscard]] NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint32_t start);
+
+}  // namespace sdm::hausdorff

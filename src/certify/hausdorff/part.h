@@ -1,0 +1,60 @@
+// A part of a face of A, and an upper bound on the distance from its points to B.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "geometry/triangle_pair.h"
+#include "sites/sites_data.h"
+
+namespace sdm::hausdorff {
+
+/// A triangle of A or a part of one, with faces S_k of B that are near it.
+///
+/// The bound: d(p, B) ≤ d(p, S_k) for each k, so also ≤ Σ μ_k d(p, S_k) for weights μ_k ≥ 0 with sum 1. As
+/// the distance to a convex set is convex, so is this sum: its maximum over the triangle is attained at a
+/// corner. `upper` is the smallest of these maxima over all μ, the value of a matrix game. By duality it is
+/// also the maximum over the triangle of min over k of l_k, where l_k is linear and equal to d(·, S_k) at the
+/// corners. `weights` are the barycentric coordinates of that maximum. It exceeds the maximum of min over k
+/// of d(·, S_k) by the square of the size of the triangle only, even where several S_k are equally close.
+struct Part {
+  static constexpr int kMostFaces = 6;
+
+  Corners at{};                                  ///< the corners a_i
+  std::uint32_t face = kNone;                    ///< of A
+  std::uint16_t depth = 0;                       ///< number of divisions
+  bool stalled = false;                          ///< the last division did not improve the bound
+  std::uint16_t count = 0;                       ///< number of S_k
+  std::array<std::uint32_t, kMostFaces> near{};  ///< S_k
+  std::array<Vec3, kMostFaces> distances{};      ///< d(a_i, S_k), rounded upwards, at [k][i]
+  double upper = std::numeric_limits<double>::infinity();
+  Vec3 weights{};
+  std::uint32_t mixed = 0;  ///< a bit for each k with μ_k > 0
+
+  /// Adds a face, in place of one that is not mixed if there are kMostFaces. Returns false, and does nothing,
+  /// if another is as close, up to the tolerance.
+  bool add(const sites::SitesData& b, std::uint32_t near_face, double tolerance);
+  /// Sets `upper` and `weights`. There must be a face.
+  void bound();
+  /// Where the bound is attained if distances were linear.
+  [[nodiscard]] Vec3 highest_point() const;
+  /// Number of corners with a positive weight.
+  [[nodiscard]] int support() const;
+  /// The index of the face closest to a corner.
+  [[nodiscard]] int closest(int corner) const;
+};
+
+/// Up to three parts that make up a part.
+struct Pieces {
+  std::array<Part, 3> part;
+  int count = 0;
+};
+
+/// Divides a part by segments from one of its points to its corners, where that helps faces of B to be the
+/// closest on a whole piece each: at a vertex that the mixed faces share, or at the place on a side where two
+/// faces are equally far. After a division that did not improve the bound, a side is cut in the middle, the
+/// longest. `tolerance` is the difference of distances that counts as equal. Sets the bounds of the pieces.
+[[nodiscard]] Pieces divide(const Part& part, const sites::SitesData& b, double tolerance);
+
+}  // namespace sdm::hausdorff

@@ -1,0 +1,71 @@
+#include "geometry/predicates.h"
+
+#include <cmath>
+#include <limits>
+
+#include "geometry/exact_integer.h"
+#include "geometry/filter.h"
+#include "geometry/vec.h"
+
+namespace sdm::core {
+namespace {
+
+int sign(double x) {
+  return (x > 0) - (x < 0);
+}
+
+template <std::size_t n, std::size_t count>
+std::array<std::array<Integer, n>, count - 1> differences(
+    const std::array<std::array<double, n>, count>& points) {
+  int exponent = std::numeric_limits<int>::max();
+  for (const auto& p : points)
+    for (const double x : p)
+      if (x != 0) exponent = std::min(exponent, exponent_of(x));
+  std::array<std::array<Integer, n>, count - 1> result;
+  for (std::size_t i = 1; i < count; ++i)
+    for (std::size_t k = 0; k < n; ++k)
+      result[i - 1][k] = in_units(points[i][k], exponent) - in_units(points[0][k], exponent);
+  return result;
+}
+
+int exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const auto [u, v, w] = differences(std::array{a, b, c, d});
+  const Integer determinant = w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
+                              w[2] * (u[0] * v[1] - u[1] * v[0]);
+  return determinant.sign();
+}
+
+int exact(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const auto [u, v] = differences(std::array{a, b, c});
+  const Integer determinant = u[0] * v[1] - u[1] * v[0];
+  return determinant.sign();
+}
+
+}  // namespace
+
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 u = b - a, v = c - a, w = d - a;
+  double determinant = 0, magnitude = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const double plus = u[i] * v[j], minus = u[j] * v[i];
+    determinant += w[k] * (plus - minus);
+    magnitude += std::abs(w[k]) * (std::abs(plus) + std::abs(minus));
+  }
+  if (std::abs(determinant) > kError3 * magnitude + kUnderflow) return sign(determinant);
+  if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;  // no volume
+  for (int k = 0; k < 3; ++k)
+    if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return 0;  // as in a flat part of a drawing
+  return exact(a, b, c, d);
+}
+
+int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const Vec2 u = b - a, v = c - a;
+  const double plus = u[0] * v[1], minus = u[1] * v[0];
+  if (std::abs(plus - minus) > kError2 * (std::abs(plus) + std::abs(minus)) + kUnderflow)
+    return sign(plus - minus);
+  if (a == b || a == c || b == c) return 0;  // no area
+  return exact(a, b, c);
+}
+
+}  // namespace sdm::core

@@ -1,0 +1,63 @@
+// Convex polygons in an image, and clipping them by half-planes.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <array>
+#include <span>
+
+#include "geometry/vec.h"
+
+namespace sdm::gl {
+
+/// The half-plane value + gradient·(u, v) ≥ 0.
+struct HalfPlane {
+  double value = 0;
+  Vec2 gradient{};
+
+  [[nodiscard]] double operator()(const Vec2& uv) const { return value + dot(gradient, uv); }
+};
+
+/// Corners in order around the polygon; none for the empty polygon.
+class ConvexPolygon {
+ public:
+  /// A cut adds at most one corner, so this fits seven of a domain's outline and five walls of a region, or
+  /// the six sides of its box.
+  static constexpr int kMaxCorners = 13;
+
+  ConvexPolygon() = default;
+  static ConvexPolygon rectangle(const Vec2& lo, const Vec2& hi) {
+    ConvexPolygon p;
+    p.corners_ = {lo, {hi[0], lo[1]}, hi, {lo[0], hi[1]}};
+    p.count_ = 4;
+    return p;
+  }
+
+  [[nodiscard]] std::span<const Vec2> corners() const { return {corners_.data(), count_}; }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+
+  /// Keeps the part in the half-plane (Sutherland & Hodgman 1974). Corners beyond kMaxCorners, which only
+  /// rounding could produce, are dropped.
+  void cut(const HalfPlane& keep) {
+    std::array<double, kMaxCorners> height;
+    bool all = true;
+    for (std::size_t i = 0; i < count_; ++i) all &= (height[i] = keep(corners_[i])) >= 0;
+    if (all) return;
+    std::array<Vec2, kMaxCorners> kept;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::size_t j = i + 1 < count_ ? i + 1 : 0;
+      if (height[i] >= 0 && n < kMaxCorners) kept[n++] = corners_[i];
+      if ((height[i] >= 0) != (height[j] >= 0) && n < kMaxCorners)
+        kept[n++] = corners_[i] + height[i] / (height[i] - height[j]) * (corners_[j] - corners_[i]);
+    }
+    corners_ = kept;
+    count_ = n < 3 ? 0 : n;
+  }
+
+ private:
+  std::array<Vec2, kMaxCorners> corners_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace sdm::gl

@@ -1,0 +1,37 @@
+// Replaces the gl engine in builds without OpenGL.
+#include <sdm/error.h>
+#include <sdm/gl.h>
+
+#include "gl/gl_engine.h"
+
+namespace sdm {
+namespace {
+
+[[noreturn]] void refuse() {
+  throw Error(
+      "this sdm was built without OpenGL (SDM_BUILD_GL=OFF), which the gl engine needs: use another engine");
+}
+
+}  // namespace
+
+std::vector<GlDevice> gl_devices() {
+  refuse();
+}
+
+GlDevice gl_device(const GlOptions&, std::uint32_t) {
+  refuse();
+}
+
+std::shared_ptr<const Engine> make_gl_engine(const GlOptions&) {
+  refuse();
+}
+
+std::shared_ptr<const Engine> gl::make_gl_engine(const GlOptions&, const Corrections&) {
+  refuse();
+}
+
+std::optional<GlReport> gl_report(const Engine&) {
+  return std::nullopt;
+}
+
+}  // namespace sdm

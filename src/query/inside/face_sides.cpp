@@ -1,0 +1,66 @@
+#include "query/inside/face_sides.h"
+
+#include <algorithm>
+
+#include "geometry/vec.h"
+#include "query/inside/near_faces.h"
+#include "query/inside/solid.h"
+
+namespace sdm::inside {
+
+FaceSides::FaceSides(const sites::SitesData& solid)
+    : solid_(&solid),
+      count_(solid.mesh.triangles.size()),
+      sides_(std::make_unique<std::atomic<Sides>[]>(count_)) {
+  forget();
+}
+
+void FaceSides::forget() {
+  const Box box = bounds(solid_->mesh);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  const double unit = 1 / solid_->frame.scale, rounding = 1e-14 * largest;
+  offset_ = std::max(1e-9 * unit, rounding);
+  if (offset_ > 0.25 * kClearance * unit) offset_ = 0;
+  for (std::size_t f = 0; f < count_; ++f) sides_[f].store(Sides::unknown, std::memory_order_relaxed);
+}
+
+Sides FaceSides::of_face(std::uint32_t face) const {
+  Sides sides = sides_[face].load(std::memory_order_relaxed);
+  if (sides == Sides::unknown) sides_[face].store(sides = find(face), std::memory_order_relaxed);
+  return sides;
+}
+
+Sides FaceSides::of_site(SiteType type, std::uint32_t site) const {
+  if (type == SiteType::face) return of_face(site);
+  const std::span<const std::uint32_t> faces =
+      type == SiteType::edge ? solid_->topology.edge_faces(site) : solid_->vertex_faces.of(site);
+  const Sides first = of_face(faces.front());
+  for (const std::uint32_t face : faces.subspan(1))
+    if (first == Sides::mixed || of_face(face) != first) return Sides::mixed;
+  return type == SiteType::vertex && !mesh::is_fan(solid_->topology, site, faces) ? Sides::mixed : first;
+}
+
+Sides FaceSides::find(std::uint32_t face) const {
+  if (offset_ == 0 || solid_->sliver[face] || solid_->topology.ignored(face)) return Sides::mixed;
+  thread_local std::vector<std::uint32_t> near;
+  find_near_faces(*solid_, face, near);
+  if (!near.empty()) return Sides::mixed;
+  if (const Sides sides = known_to_neighbour(face); sides != Sides::unknown) return sides;
+  const auto& [a, b, c] = solid_->mesh.triangles[face];
+  const std::vector<Vec3>& p = solid_->mesh.positions;
+  const Vec3 beside = (1.0 / 3) * (p[a] + p[b] + p[c]) + offset_ * solid_->normals.face[face];
+  return sides_by_winding(winding(*solid_, {}, beside));
+}
+
+// No face comes between those of an edge if one of them is met by none.
+Sides FaceSides::known_to_neighbour(std::uint32_t face) const {
+  for (const std::uint32_t edge : solid_->topology.face_edges[face])
+    for (const std::uint32_t other : solid_->topology.edge_faces(edge)) {
+      const Sides sides = sides_[other].load(std::memory_order_relaxed);
+      if (sides != Sides::unknown && sides != Sides::mixed) return sides;
+    }
+  return Sides::unknown;
+}
+
+}  // namespace sdm::inside

@@ -1,0 +1,62 @@
+// Inside or outside of a mesh. All such tests go through this header: InsideTest for queries whose closest
+// points are known, and contains(), which is exact, for a moved solid. SitesData::is_solid determines which
+// meshes have an inside.
+#pragma once
+
+#include <sdm/sign.h>
+
+#include <optional>
+#include <span>
+
+#include "query/inside/face_sides.h"
+#include "query/inside/solid.h"
+#include "query/inside/winding_number.h"
+#include "sites/closest_packet.h"
+#include "sites/sites_data.h"
+
+namespace sdm::inside {
+
+/// Tests whether points lie inside O2, by one method, for many queries.
+///
+/// For a solid: those with a winding number other than 0. No face lies between a query and its closest point,
+/// so the query is on that side of the closest face on which it lies as seen from there (the pseudonormal of
+/// the site says which, Bærentzen & Aanæs 2005), and FaceSides says whether that side is inside. Where other
+/// faces are too near, the winding number is computed. Queries that are nearer to the last one than that one
+/// is to the surface need none of this: no face lies between the two.
+class InsideTest {
+ public:
+  /// `method` as chosen by choose_sign; `none` makes every answer "outside". `error`: the closest points of
+  /// packets are closest to within this length.
+  InsideTest(const sites::SitesData& sites, SignMethod method, double error = 0);
+  /// Adapts to new positions of the sites. Reuses the memory.
+  void refit();
+
+  /// `closest` is the closest point of the query (not used by the generalised winding number). On the
+  /// surface: outside.
+  [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
+  /// A bit mask of the queries of a packet that are inside. Fastest if successive packets are near to each
+  /// other.
+  [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries,
+                                         const sites::ClosestPacket& closest) const;
+
+  /// For a query inside a solid: whether its closest point lies on the boundary, to 1e-6 of the size of the
+  /// solid. True for solids that do not intersect themselves. False also where this was not decided.
+  [[nodiscard]] bool at_boundary(const Vec3& query, const ClosestPoint& closest) const;
+  /// For a solid: the sides of its faces.
+  [[nodiscard]] const FaceSides& sides() const { return *sides_; }
+
+ private:
+  [[nodiscard]] bool inside_solid(const Vec3& query, const ClosestPoint& closest) const;
+  [[nodiscard]] bool inside_ball(const Vec3& query, const ClosestPoint& closest) const;
+
+  const sites::SitesData& sites_;
+  SignMethod method_;
+  Box box_;  ///< of O2: no point outside it is inside O2, even where rounding would decide
+  double error_;
+  double clearance_ = 0;     ///< kClearance in units of the mesh
+  std::uint64_t shape_ = 0;  ///< unique, over all objects, for these positions
+  std::optional<FaceSides> sides_;
+  std::optional<WindingNumber> winding_;
+};
+
+}  // namespace sdm::inside

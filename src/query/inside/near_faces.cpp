@@ -1,0 +1,156 @@
+#include "query/inside/near_faces.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "tree/traverse.h"
+
+namespace sdm::inside {
+namespace {
+
+// The extent of points along an axis.
+template <std::size_t N>
+std::pair<double, double> extent(const std::array<Vec3, N>& points, const Vec3& axis) {
+  std::pair<double, double> range{dot(points[0], axis), dot(points[0], axis)};
+  for (std::size_t i = 1; i < N; ++i) {
+    const double along = dot(points[i], axis);
+    range = {std::min(range.first, along), std::max(range.second, along)};
+  }
+  return range;
+}
+
+// Triangles that share a corner, as vectors from there to the others: whether a plane through the corner
+// separates them by kClearAngle.
+bool apart_at_corner(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) {
+  constexpr double kRounding = 1e-12;
+  const std::array<double, 4> length{norm(a[0]), norm(a[1]), norm(b[0]), norm(b[1])};
+  const auto separates = [&](const Vec3& axis) {
+    const double size = norm(axis);
+    // Sines of the angles between the plane and the vectors, times size.
+    const double a0 = dot(a[0], axis) / length[0], a1 = dot(a[1], axis) / length[1],
+                 b0 = dot(b[0], axis) / length[2], b1 = dot(b[1], axis) / length[3];
+    const double far = kClearAngle * size, none = kRounding * size;
+    const double a_least = std::min(a0, a1), a_most = std::max(a0, a1), b_least = std::min(b0, b1),
+                 b_most = std::max(b0, b1);
+    return (a_least > -none && b_most < -far) || (a_least > far && b_most < none) ||
+           (b_least > -none && a_most < -far) || (b_least > far && a_most < none);
+  };
+  if (separates(a[0] + a[1] - b[0] - b[1])) return true;
+  const Vec3 a_normal = cross(a[0], a[1]), b_normal = cross(b[0], b[1]);
+  if (separates(a_normal) || separates(b_normal)) return true;
+  for (int i = 0; i < 2; ++i)
+    if (separates(cross(a[i], a_normal)) || separates(cross(b[i], b_normal))) return true;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      if (separates(cross(a[i], b[j]))) return true;
+  return false;
+}
+
+// Triangles on both sides of the edge from p to q, with third corners c and d: whether they form an angle
+// larger than kClearAngle.
+bool unfolded(const Vec3& p, const Vec3& q, const Vec3& c, const Vec3& d) {
+  const Vec3 along = normalized(q - p);
+  const auto inward = [&](const Vec3& corner) {
+    const Vec3 r = corner - p;
+    return normalized(r - dot(r, along) * along);
+  };
+  return norm(inward(c) - inward(d)) > kClearAngle;
+}
+
+// Neither face of an edge is turned over more than this, by their unit normals.
+constexpr double kUnfolded = -0.99;
+
+// Whether `face` has the clearance from `other`, whose box overlaps its enlarged one.
+bool clear_of(const sites::SitesData& sites, std::uint32_t face, std::uint32_t other) {
+  const Triangle &a = sites.mesh.triangles[face], &b = sites.mesh.triangles[other];
+  std::array<int, 3> mine{}, theirs{};  // the shared corners, then the others
+  int shared = 0, own = 2;
+  bool taken[3] = {};
+  for (int i = 0; i < 3; ++i) {
+    const int j = a[i] == b[0] ? 0 : a[i] == b[1] ? 1 : a[i] == b[2] ? 2 : 3;
+    if (j == 3)
+      mine[own--] = i;
+    else
+      mine[shared] = i, theirs[shared++] = j, taken[j] = true;
+  }
+  own = 2;
+  for (int j = 0; j < 3; ++j)
+    if (!taken[j]) theirs[own--] = j;
+  const std::vector<Vec3>& at = sites.mesh.positions;
+  switch (shared) {
+    case 0:
+      return apart(unit_corners(sites, face), unit_corners(sites, other));
+    case 1: {
+      const Vec3& corner = at[a[mine[0]]];
+      return apart_at_corner({at[a[mine[1]]] - corner, at[a[mine[2]]] - corner},
+                             {at[b[theirs[1]]] - corner, at[b[theirs[2]]] - corner});
+    }
+    case 2:
+      if (!sites.sliver[face] && !sites.sliver[other] &&
+          dot(sites.normals.face[face], sites.normals.face[other]) > kUnfolded)
+        return true;
+      return unfolded(at[a[mine[0]]], at[a[mine[1]]], at[a[mine[2]]], at[b[theirs[2]]]);
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+Corners unit_corners(const sites::SitesData& sites, std::uint32_t face) {
+  const auto& [a, b, c] = sites.mesh.triangles[face];
+  const std::vector<Vec3>& p = sites.mesh.positions;
+  return {sites.frame.to_unit(p[a]), sites.frame.to_unit(p[b]), sites.frame.to_unit(p[c])};
+}
+
+// The axes are those of the separating axis theorem for triangles in space and in one plane.
+bool apart(const Corners& a, const Corners& b) {
+  const auto separates = [&](const Vec3& axis) {
+    const auto [a_least, a_most] = extent(a, axis);
+    const auto [b_least, b_most] = extent(b, axis);
+    const double gap = std::max(a_least - b_most, b_least - a_most);
+    return gap > 0 && gap * gap > kClearance * kClearance * squared_norm(axis);
+  };
+  std::array<Vec3, 3> a_edge, b_edge;
+  for (int i = 0; i < 3; ++i) a_edge[i] = a[(i + 1) % 3] - a[i], b_edge[i] = b[(i + 1) % 3] - b[i];
+  const Vec3 a_normal = cross(a_edge[0], a_edge[1]), b_normal = cross(b_edge[0], b_edge[1]);
+  if (separates(a_normal) || separates(b_normal)) return true;
+  for (int i = 0; i < 3; ++i)
+    if (separates(cross(a_edge[i], a_normal)) || separates(cross(b_edge[i], b_normal))) return true;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (separates(cross(a_edge[i], b_edge[j]))) return true;
+  return false;
+}
+
+void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vector<std::uint32_t>& near) {
+  near.clear();
+  const auto box_of = [&](std::uint32_t f) {
+    const Triangle& t = sites.mesh.triangles[f];
+    const Vec3 &a = sites.mesh.positions[t[0]], &b = sites.mesh.positions[t[1]],
+               &c = sites.mesh.positions[t[2]];
+    Box box;
+    for (int k = 0; k < 3; ++k)
+      box.lo[k] = std::min(std::min(a[k], b[k]), c[k]), box.hi[k] = std::max(std::max(a[k], b[k]), c[k]);
+    return box;
+  };
+  const double margin = kClearance / sites.frame.scale;
+  const Box box = box_of(face);
+  const Box reach{box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
+  const auto unit = tree::FloatBox::around({sites.frame.to_unit(reach.lo), sites.frame.to_unit(reach.hi)});
+  traverse(
+      sites.tree, whole(sites.tree),
+      [&](tree::Subtree below) {
+        const tree::FloatBox& of = sites.tree.box(below.root);
+        bool apart = false;
+        for (int k = 0; k < 3; ++k) apart = apart || of.hi[k] < unit.lo[k] || unit.hi[k] < of.lo[k];
+        return !apart;
+      },
+      [&](std::uint32_t leaf) {
+        for (const std::uint32_t other : sites.tree.items_of(leaf))
+          if (other != face && overlap(reach, box_of(other)) && !clear_of(sites, face, other))
+            near.push_back(other);
+      });
+}
+
+}  // namespace sdm::inside

@@ -1,0 +1,31 @@
+// Faces so near to another one that the two might intersect.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "sites/sites_data.h"
+
+namespace sdm::inside {
+
+using Corners = std::array<Vec3, 3>;
+
+/// Lengths in the unit frame: twice the error with which engines find closest sites, and more.
+inline constexpr double kClearance = 4e-6;
+/// In radians: faces that share a corner or an edge at a smaller angle count as near.
+inline constexpr double kClearAngle = 1e-3;
+
+/// The corners of a face in the unit frame.
+[[nodiscard]] Corners unit_corners(const sites::SitesData& sites, std::uint32_t face);
+
+/// Whether an axis was found along which the triangles are farther apart than kClearance. If so they are; if
+/// not, they may be.
+[[nodiscard]] bool apart(const Corners& a, const Corners& b);
+
+/// Sets `near` to the faces that may be nearer to `face` than kClearance, apart from the corners and edges
+/// that they share, or at an angle smaller than kClearAngle there. A face without any is embedded: no other
+/// face intersects it. Cost: O(log n), plus linear in the faces whose boxes are near.
+void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vector<std::uint32_t>& near);
+
+}  // namespace sdm::inside

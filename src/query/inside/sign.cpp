@@ -1,0 +1,65 @@
+#include <sdm/error.h>
+#include <sdm/sign.h>
+
+#include <new>
+#include <string>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "query/inside/inside.h"
+
+namespace sdm {
+namespace {
+
+// The reason why O2 has no inside, as a clause; empty if it has one.
+std::string open_reason(const sites::SitesData& sites) {
+  if (sites.is_solid()) return {};
+  std::size_t boundary = 0, nonmanifold = 0;
+  for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
+    boundary += sites.topology.edge_faces(e).size() == 1;
+    nonmanifold += sites.topology.edge_faces(e).size() > 2;
+  }
+  if (boundary > 0) return "O2 is open (" + std::to_string(boundary) + " boundary edges)";
+  if (nonmanifold > 0)
+    return "O2 is not manifold (" + std::to_string(nonmanifold) + " edges of more than two faces)";
+  return "O2 is not orientable";
+}
+
+}  // namespace
+
+SignUsed choose_sign(const Sites& sites, SignMethod asked) {
+  const std::string open = open_reason(internals(sites));
+  switch (asked) {
+    case SignMethod::none:
+      return {SignMethod::none, "asked for"};
+    case SignMethod::winding:
+      if (open.empty())
+        return {SignMethod::exact, "requested by winding number; O2 is closed and orientable"};
+      return {SignMethod::winding, "requested; an estimate, because " + open};
+    case SignMethod::exact:
+      if (!open.empty())
+        throw Error(
+            "the inside of O2 is not defined: " + open + "; use sign none, or winding for an estimate",
+            Remedy::sign_method);
+      return {SignMethod::exact, "requested; O2 is closed and orientable"};
+    case SignMethod::automatic:
+      break;
+  }
+  if (!open.empty()) return {SignMethod::none, open};
+  return {SignMethod::exact, "O2 is closed and orientable"};
+}
+
+std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3> queries,
+                                       std::span<const ClosestPoint> closest, SignMethod method) try {
+  if (queries.size() != closest.size()) throw Error("inside_flags() needs one closest point for each query");
+  const inside::InsideTest test(internals(sites), choose_sign(sites, method).method);
+  std::vector<std::uint8_t> result(queries.size());
+  parallel_for(queries.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result[i] = test(queries[i], closest[i]);
+  });
+  return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("inside or outside of points");
+}
+
+}  // namespace sdm

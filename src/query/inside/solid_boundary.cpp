@@ -1,0 +1,363 @@
+#include "query/inside/solid_boundary.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/cancellation.h"
+#include "core/parallel.h"
+#include "geometry/triangle_pair.h"
+#include "query/inside/solid.h"
+#include "tree/traverse.h"
+
+namespace sdm::inside {
+namespace {
+
+// Lengths in the unit frame. Faces nearer to a plane than kFlat lie in it. kBeside is less than kClearance,
+// so that no face lies between a piece that is clear of others and a point at this distance, and more than
+// kFlat.
+constexpr double kFlat = 1e-7, kBeside = 1e-6;
+// Pieces that are thinner are not divided, and those thinner than kThinnest are ignored.
+constexpr double kThin = 1e-5, kThinnest = 1e-9;
+// A piece that more planes cut is divided into quarters first, unless its sides are shorter than kFinest; one
+// that more than kMostCuts cut is not divided.
+constexpr std::size_t kFewCuts = 6, kMostCuts = 64;
+constexpr double kFinest = 2e-3;
+constexpr std::size_t kGrain = 256;
+
+// Whether `piece` lies in triangle t: in its plane, and within its sides.
+bool covers(const Corners& t, const Corners& piece) {
+  const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+  const double size = norm(normal);
+  if (size == 0) return false;
+  for (const Vec3& p : piece) {
+    if (std::abs(dot(normal, p - t[0])) > kFlat * size) return false;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 side = t[(k + 1) % 3] - t[k];
+      if (dot(cross(normal, side), p - t[k]) < -kFlat * size * norm(side)) return false;
+    }
+  }
+  return true;
+}
+
+bool finest(const Corners& t) {
+  return squared_norm(t[1] - t[0]) < kFinest * kFinest && squared_norm(t[2] - t[1]) < kFinest * kFinest &&
+         squared_norm(t[0] - t[2]) < kFinest * kFinest;
+}
+
+Vec3 closest_in(const Corners& t, const Vec3& p) {
+  return closest_points(t, {p, p, p}).point1;
+}
+
+// Convex, in a plane.
+using Polygon = std::vector<Vec3>;
+
+Vec3 mean(const Polygon& polygon) {
+  Vec3 sum{};
+  for (const Vec3& p : polygon) sum = sum + p;
+  return (1.0 / static_cast<double>(polygon.size())) * sum;
+}
+
+// Twice the area by the longest side or diagonal from the first corner: at least its width.
+double width(const Polygon& polygon) {
+  double area = 0, longest = 0;
+  for (std::size_t i = 1; i < polygon.size(); ++i) {
+    longest = std::max({longest, norm(polygon[i] - polygon[0]), norm(polygon[i] - polygon[i - 1])});
+    if (i > 1) area += norm(cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]));
+  }
+  return longest > 0 ? area / longest : 0;
+}
+
+// Cuts off what is above the plane, and returns it; neither part is thinner than kThinnest.
+template <class Plane>
+Polygon cut(Polygon& polygon, const Plane& plane) {
+  thread_local std::vector<double> height;
+  height.clear();
+  double least = 0, most = 0;
+  for (const Vec3& p : polygon) {
+    const double h = plane.height(p);
+    height.push_back(std::abs(h) <= kThinnest ? 0 : h);
+    least = std::min(least, height.back()), most = std::max(most, height.back());
+  }
+  Polygon above, below;
+  if (least == 0 || most == 0) return above;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const std::size_t next = (i + 1) % polygon.size();
+    if (height[i] >= 0) above.push_back(polygon[i]);
+    if (height[i] <= 0) below.push_back(polygon[i]);
+    if (height[i] * height[next] < 0) {
+      const double t = height[i] / (height[i] - height[next]);
+      const Vec3 between = polygon[i] + t * (polygon[next] - polygon[i]);
+      above.push_back(between), below.push_back(between);
+    }
+  }
+  polygon = std::move(below);
+  return above;
+}
+
+}  // namespace
+
+struct SolidBoundary::Plane {
+  Vec3 point, normal;
+
+  [[nodiscard]] double height(const Vec3& p) const { return dot(normal, p - point); }
+  [[nodiscard]] bool equals(const Plane& other) const {
+    return std::abs(height(other.point)) < kFlat && squared_norm(cross(normal, other.normal)) < kFlat * kFlat;
+  }
+};
+
+std::array<SolidBoundary::Piece, 4> SolidBoundary::Piece::quarters() const {
+  std::array<Vec3, 3> middle;  // of each side
+  for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]);
+  return {Piece{face, {at[0], middle[0], middle[2]}}, Piece{face, {middle[0], at[1], middle[1]}},
+          Piece{face, {middle[2], middle[1], at[2]}}, Piece{face, middle}};
+}
+
+SolidBoundary::SolidBoundary(const sites::SitesData& solid, const FaceSides& sides)
+    : solid_(solid),
+      sides_(solid.mesh.triangles.size()),
+      mixed_number_(sides_.size(), kNone),
+      beside_(sides.offset()) {
+  const std::vector<std::uint32_t>& faces = solid.tree.items;  // neighbours one after another
+  parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sides_[faces[i]] = sides.of_face(faces[i]);
+  });
+  std::vector<std::uint32_t> mixed;
+  for (const std::uint32_t face : faces)
+    if (sides_[face] == Sides::mixed) {
+      mixed_number_[face] = static_cast<std::uint32_t>(mixed.size());
+      mixed.push_back(face);
+    }
+  mixed_ = std::make_unique<MixedFace[]>(mixed.size());
+  parallel_for(mixed.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) find_near_faces(solid, mixed[i], mixed_[i].near);
+  });
+}
+
+SolidBoundary::Piece SolidBoundary::whole_face(std::uint32_t face) const {
+  const Sides sides = sides_[face];
+  return {face, unit_corners(solid_, face), sides == Sides::mixed ? Sides::unknown : sides};
+}
+
+bool SolidBoundary::find_cuts(const Piece& piece, std::span<const std::uint32_t> faces, std::size_t most,
+                              std::vector<Plane>& cuts) const {
+  const Vec3& normal = solid_.normals.face[piece.face];
+  bool covered = false;
+  cuts.clear();
+  const auto add = [&](const Plane& plane) {
+    if (std::ranges::none_of(cuts, [&](const Plane& known) { return known.equals(plane); }))
+      cuts.push_back(plane);
+  };
+  for (const std::uint32_t other : faces) {
+    if (cuts.size() > most) break;
+    const Corners t = unit_corners(solid_, other);
+    if (std::ranges::all_of(t,
+                            [&](const Vec3& p) { return std::abs(dot(normal, p - piece.at[0])) < kFlat; })) {
+      covered = true;
+      for (int k = 0; k < 3; ++k)
+        if (const Vec3 wall = cross(normal, t[(k + 1) % 3] - t[k]); norm(wall) > 0)
+          add({t[k], normalized(wall)});
+    } else if (const Vec3 own = cross(t[1] - t[0], t[2] - t[0]); norm(own) > 0) {
+      add({t[0], normalized(own)});
+    }
+  }
+  return covered;
+}
+
+// The cells between the planes have the same sides everywhere.
+void SolidBoundary::divide(const Piece& piece, std::span<const std::uint32_t> near,
+                           Division& division) const {
+  poll();
+  division.known = true;
+  division.pieces.clear(), division.near.clear();
+  for (const std::uint32_t other : near)
+    if (!apart(piece.at, unit_corners(solid_, other))) division.near.push_back(other);
+  std::vector<Plane> cuts;
+  const std::size_t most = finest(piece.at) ? kMostCuts : kFewCuts;
+  const bool covered = find_cuts(piece, division.near, most, cuts), too_many = cuts.size() > most;
+  if (too_many && !finest(piece.at)) {
+    for (const Piece& quarter : piece.quarters()) division.pieces.push_back(quarter);
+    return;
+  }
+  std::vector<Polygon> cells{{piece.at.begin(), piece.at.end()}};
+  if (!too_many)
+    for (const Plane& plane : cuts)
+      for (std::size_t i = 0, count = cells.size(); i < count; ++i)
+        if (Polygon above = cut(cells[i], plane); !above.empty()) cells.push_back(std::move(above));
+  for (const Polygon& cell : cells) {
+    const double thickness = width(cell);
+    if (thickness < kThinnest) continue;
+    Sides sides = Sides::mixed;
+    if (!too_many && !(covered && thickness < kThin)) sides = sides_beside(mean(cell), piece.face, covered);
+    if (sides == Sides::buried) continue;
+    for (std::size_t i = 2; i < cell.size(); ++i)
+      division.pieces.push_back({piece.face, {cell[0], cell[i - 1], cell[i]}, sides});
+  }
+}
+
+const SolidBoundary::Division& SolidBoundary::divide(const Piece& piece, MixedFace& face) const {
+  Division division = std::move(face.parts[piece.number].division);
+  if (!division.known) {
+    const std::uint32_t whole = face.parts[piece.number].whole;
+    divide(piece, whole == kNone ? face.near : face.parts[whole].division.near, division);
+    for (Piece& part : division.pieces)
+      if (part.sides == Sides::unknown) {
+        part.number = static_cast<std::uint32_t>(face.parts.size());
+        face.parts.emplace_back().whole = piece.number;
+      }
+  }
+  return face.parts[piece.number].division = std::move(division);
+}
+
+bool SolidBoundary::is_inside(const Vec3& point) const {
+  return winding(solid_, {}, solid_.frame.origin + (1 / solid_.frame.scale) * point) != 0;
+}
+
+Sides SolidBoundary::sides_beside(const Vec3& point, std::uint32_t face, bool covered) const {
+  const Vec3& outwards = solid_.normals.face[face];
+  if (!covered && beside_ > 0)
+    return sides_by_winding(
+        winding(solid_, {}, solid_.frame.origin + (1 / solid_.frame.scale) * point + beside_ * outwards));
+  // So that several faces are crossed at once.
+  const bool outer = is_inside(point + kBeside * outwards), inner = is_inside(point - kBeside * outwards);
+  return outer == inner ? Sides::buried : inner ? Sides::boundary : Sides::reversed;
+}
+
+bool SolidBoundary::repeats_earlier_face(const Piece& piece) const {
+  return std::ranges::any_of(mixed(piece.face).near, [&](std::uint32_t other) {
+    return other < piece.face && !apart(piece.at, unit_corners(solid_, other)) &&
+           covers(unit_corners(solid_, other), piece.at);
+  });
+}
+
+SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
+  constexpr std::size_t kMostPieces = 2000;
+  const Vec3 q = solid_.frame.to_unit(p);
+  const double unit = 1 / solid_.frame.scale;
+  // What may be nearest: a node of the tree, or part of a face, with a lower bound on its distance.
+  struct Open {
+    double bound = 0;
+    std::uint32_t node = kNone;
+    Piece piece{};
+    Vec3 point{};
+    bool operator<(const Open& other) const { return bound > other.bound; }  // the nearest on top
+  };
+  thread_local std::vector<Open> heap;
+  std::vector<Open>& open = heap;
+  open.clear();
+  const auto push = [&](const Open& o) {
+    open.push_back(o);
+    std::push_heap(open.begin(), open.end());
+  };
+  const auto push_node = [&](std::uint32_t node) {
+    push({.bound = norm(gap(solid_.tree.box(node), q)), .node = node});
+  };
+  const auto push_piece = [&](const Piece& piece) {
+    const Vec3 c = closest_in(piece.at, q);
+    push({.bound = norm(c - q), .piece = piece, .point = c});
+  };
+  // Beyond the box there is no solid, so the boundary is met on the way out.
+  Closest found{.upper = std::numeric_limits<double>::infinity()};
+  const tree::FloatBox& box = solid_.tree.box(0);
+  for (int k = 0; k < 3; ++k)
+    for (const double end : {double{box.lo[k]}, double{box.hi[k]}})
+      found.upper = std::min(found.upper, std::abs(end - q[k]) + 2 * kBeside);
+  found.lower = found.upper;
+  push_node(0);
+  bool unsure = false;  // whether what is nearer may be boundary
+  Poll due(64);
+  for (std::size_t pieces = 0; !open.empty() && open.front().bound < found.upper;) {
+    due();
+    std::pop_heap(open.begin(), open.end());
+    const Open nearest = open.back();
+    open.pop_back();
+    if (nearest.node != kNone) {
+      const tree::AabbTree::Node& node = solid_.tree.nodes[nearest.node];
+      if (node.leaf()) {
+        for (const std::uint32_t face : solid_.tree.items_of(nearest.node))
+          if (sides_[face] != Sides::buried && !solid_.sliver[face]) push_piece(whole_face(face));
+      } else {
+        push_node(nearest.node + 1), push_node(node.right);
+      }
+      continue;
+    }
+    const Piece& piece = nearest.piece;
+    if (piece.sides == Sides::unknown) {
+      if (++pieces > kMostPieces) {
+        found.lower = std::min(found.lower, nearest.bound);
+        break;
+      }
+      MixedFace& face = mixed(piece.face);
+      const std::lock_guard lock(face.mutex);
+      for (const Piece& part : divide(piece, face).pieces) push_piece(part);
+      continue;
+    }
+    double beside = 0;
+    if (piece.sides == Sides::mixed) {
+      const Vec3 outwards = normalized(nearest.point - q);
+      beside = kBeside;
+      // If nothing nearer may be boundary, this side is inside.
+      if (is_inside(nearest.point + beside * outwards) ||
+          (unsure && !is_inside(nearest.point - beside * outwards))) {
+        found.lower = std::min(found.lower, nearest.bound), unsure = true;
+        continue;
+      }
+    }
+    found.upper = nearest.bound + beside;
+    found.point = solid_.frame.origin + unit * nearest.point;
+    found.face = piece.face;
+    found.lower = std::min(found.lower, nearest.bound);
+    break;
+  }
+  found.lower = std::min(found.lower, found.upper);
+  return {unit * found.lower, unit * found.upper, found.point, found.face};
+}
+
+SolidBoundary::Volume SolidBoundary::volume() const {
+  const std::vector<std::uint32_t>& faces = solid_.tree.items;
+  // Six times the volume, and what the parts that may or may not be boundary contribute; in parts that do not
+  // depend on the number of threads.
+  struct Sum {
+    double sure = 0, unsure = 0;
+  };
+  std::vector<Sum> sums((faces.size() + kGrain - 1) / kGrain);
+  parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<Piece> open;             // each numbered by how often it has been divided,
+    std::vector<Division> divisions(1);  // by the last piece of each number
+    Poll due(64);
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t k = kGrain * i; k < std::min(kGrain * (i + 1), faces.size()); ++k) {
+        const bool may_repeat = sides_[faces[k]] == Sides::mixed;
+        open.assign(1, whole_face(faces[k]));
+        due();
+        while (!open.empty()) {
+          const Piece piece = open.back();
+          open.pop_back();
+          if (piece.sides == Sides::unknown && !solid_.sliver[piece.face]) {
+            if (piece.number + 2 > divisions.size()) divisions.resize(piece.number + 2);
+            Division& division = divisions[piece.number + 1];
+            divide(piece, piece.number == 0 ? mixed(piece.face).near : divisions[piece.number].near,
+                   division);
+            for (Piece& part : division.pieces) {
+              part.number = piece.number + 1;
+              open.push_back(part);
+            }
+            continue;
+          }
+          const auto& [a, b, c] = piece.at;
+          const double flux = dot(a, cross(b, c)) * (solid_.inverted[piece.face] ? -1 : 1);
+          if (piece.sides == Sides::boundary || piece.sides == Sides::reversed) {
+            if (may_repeat && repeats_earlier_face(piece)) continue;
+            sums[i].sure += piece.sides == Sides::boundary ? flux : -flux;
+          } else if (piece.sides != Sides::buried) {
+            sums[i].unsure += std::abs(flux);
+          }
+        }
+      }
+  });
+  Sum all;
+  for (const Sum& sum : sums) all.sure += sum.sure, all.unsure += sum.unsure;
+  const double unit = 1 / (6 * solid_.frame.scale * solid_.frame.scale * solid_.frame.scale);
+  return {unit * std::max(0.0, all.sure - all.unsure), unit * (all.sure + all.unsure)};
+}
+
+}  // namespace sdm::inside

@@ -1,0 +1,47 @@
+#include <sdm/error.h>
+#include <sdm/self_intersections.h>
+#include <sdm/solid.h>
+
+#include <new>
+
+#include "core/memory.h"
+#include "geometry/vec.h"
+#include "query/inside/solid_boundary.h"
+
+namespace sdm {
+
+namespace {
+
+void check_solid(const Sites& sites) {
+  if (!internals(sites).is_solid()) throw Error("a mesh that is not closed and orientable has no volume");
+}
+
+}  // namespace
+
+VolumeBounds solid_volume(const Sites& sites) {
+  check_solid(sites);
+  return solid_volume(sites, is_embedded(sites));
+}
+
+VolumeBounds solid_volume(const Sites& sites, bool embedded) try {
+  check_solid(sites);
+  const sites::SitesData& data = internals(sites);
+  if (!embedded) {
+    const inside::SolidBoundary::Volume bounds =
+        inside::SolidBoundary(data, inside::FaceSides(data)).volume();
+    return {bounds.lower, bounds.upper};
+  }
+  // The divergence theorem: tetrahedra between the faces and a point near them.
+  double six_volumes = 0;
+  for (const std::uint32_t face : data.tree.items) {
+    const Triangle& t = data.mesh.triangles[face];
+    const auto from_origin = [&](int k) { return data.mesh.positions[t[k]] - data.frame.origin; };
+    const double six_volume = dot(from_origin(0), cross(from_origin(1), from_origin(2)));
+    six_volumes += data.inverted[face] ? -six_volume : six_volume;
+  }
+  return {six_volumes / 6, six_volumes / 6};
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the volume of a solid");
+}
+
+}  // namespace sdm

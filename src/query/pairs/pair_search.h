@@ -1,0 +1,91 @@
+// The closest faces of two surfaces, by traversing both trees: only triangles that are compared are
+// transformed.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "query/pairs/mesh_pair.h"
+
+namespace sdm::pairs {
+
+/// Per-thread memory, reused between searches; results do not depend on it.
+struct PairWorkspace {
+  /// A node or leaf of the wide tree, the binary node that it stands for, and which child of which wide node
+  /// it is, where its box and its cylinder are; kNone for the root.
+  struct Place {
+    std::uint32_t child = 0, source = 0, slot = kNone;
+
+    /// Child `i` of the node with this index.
+    static Place of(const tree::WideTree::Node& node, std::uint32_t index, std::uint32_t i) {
+      return {node.child[i], node.source[i], tree::WideTree::kWidth * index + i};
+    }
+
+    [[nodiscard]] bool leaf() const { return tree::WideTree::is_leaf(child); }
+    [[nodiscard]] std::uint32_t leaf_number() const { return tree::WideTree::leaf_number(child); }
+  };
+  struct Entry {
+    std::array<Place, 2> place;  ///< in the trees of O1 and O2; initially both roots
+    float least = 0;  ///< lower bound on the distance; if the boxes overlap, minus the depth of the overlap
+
+    [[nodiscard]] bool leaves() const { return place[0].leaf() && place[1].leaf(); }
+  };
+  /// A heap with the nearest pair on top.
+  class Heap {
+   public:
+    [[nodiscard]] bool empty() const { return entries_.empty(); }
+    void clear() { entries_.clear(); }
+    [[nodiscard]] const Entry& top() const { return entries_.front(); }
+    void push(const Entry& entry) {
+      entries_.push_back(entry);
+      std::ranges::push_heap(entries_, std::greater{}, &Entry::least);
+    }
+    Entry pop() {
+      std::ranges::pop_heap(entries_, std::greater{}, &Entry::least);
+      const Entry entry = entries_.back();
+      entries_.pop_back();
+      return entry;
+    }
+
+   private:
+    std::vector<Entry> entries_;
+  };
+
+  /// Faces by their position in the order of the trees, and a lower bound on their distance.
+  struct Candidate {
+    float least;
+    std::uint32_t owner1, owner2;
+  };
+  /// Faces that may be closest, and their distance.
+  struct Tie {
+    double distance;
+    FacePair faces;
+  };
+
+  /// A node, and a lower bound on its extent in a direction.
+  struct Ahead {
+    Place place;
+    float along = 0;
+  };
+
+  std::vector<Entry> overlapping;  ///< a stack
+  std::vector<Ahead> ahead;        ///< a stack
+  Heap apart;
+  std::vector<Candidate> candidates;  ///< still to be compared
+  std::vector<Tie> ties;              ///< at the smallest distance found so far, to rounding
+};
+
+/// Finds the closest points of the two surfaces, if their distance is at most `bound`. Of several pairs of
+/// faces at the same distance, to rounding, the one with the smallest numbers.
+///
+/// `hint`: faces of O1 and O2 that may be close to each other; they change how long the search takes, not its
+/// result. Cost: logarithmic if few faces are candidates, in the worst case all pairs of candidates;
+/// single-threaded, without allocation once the workspace has grown.
+[[nodiscard]] Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace,
+                                      const FacePair& hint = kNoFaces);
+
+/// Finds two faces, one of each surface, that have a point in common, if any; decided exactly.
+[[nodiscard]] Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace);
+
+}  // namespace sdm::pairs

@@ -1,0 +1,112 @@
+#include <sdm/error.h>
+#include <sdm/rays.h>
+#include <sdm/tolerance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <numeric>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "geometry/vec.h"
+#include "query/rays/hemisphere.h"
+#include "query/rays/trace.h"
+#include "surface/surface_data.h"
+
+namespace sdm {
+namespace {
+
+/// The largest error of a distance by any engine, in units of the meshes.
+double largest_error(const Surface& surface, const Sites& sites) {
+  EngineInfo worst = engines().front();
+  for (const EngineInfo& engine : engines())
+    worst.relative_error = std::max(worst.relative_error, engine.relative_error);
+  return engine_accuracy(worst, surface.mesh(), sites.mesh());
+}
+
+void check_resolution(const Surface& surface, const DistanceMap& map, const char* function) {
+  if (map.distance.size() != surface.texel_faces().size())
+    throw Error(std::string(function) + "() needs a map of the surface: their resolutions differ");
+}
+
+double free_distance(float distance, double error) {
+  return std::isnan(distance) ? 0 : std::max(0.0, std::abs(static_cast<double>(distance)) - error);
+}
+
+/// Working memory for the rays of one sample.
+struct SampleRays {
+  std::vector<Vec3> directions;
+  std::vector<Ray> rays;
+  std::vector<std::uint8_t> occluded;
+  rays::Scratch scratch;
+
+  /// The fraction of rays from a point that are free.
+  float visibility(const sites::SitesData& sites, const Ray& first, const Vec3& normal, std::uint64_t seed,
+                   std::uint32_t texel) {
+    rays::cosine_hemisphere(normal, seed, texel, directions);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      rays[i] = first;
+      rays[i].direction = directions[i];
+    }
+    rays::occluded(sites, rays, scratch, occluded.data());
+    const auto hits = std::count(occluded.begin(), occluded.end(), 1);
+    return static_cast<float>(1 - static_cast<double>(hits) / static_cast<double>(rays.size()));
+  }
+
+  void resize(std::size_t count) {
+    directions.resize(count);
+    rays.resize(count);
+    occluded.resize(count);
+  }
+};
+
+}  // namespace
+
+std::vector<double> free_distances(const Surface& surface, const DistanceMap& map, const Sites& sites) {
+  check_resolution(surface, map, "free_distances");
+  const double error = largest_error(surface, sites);
+  std::vector<double> result(map.distance.size());
+  std::ranges::transform(map.distance, result.begin(), [&](float d) { return free_distance(d, error); });
+  return result;
+}
+
+std::vector<float> ambient_occlusion(const Surface& surface, const DistanceMap& map, const Sites& sites,
+                                     const AmbientOcclusionOptions& options) try {
+  constexpr std::uint32_t kMostRays = 1 << 16;
+  constexpr std::size_t kGrain = 16;
+  check_resolution(surface, map, "ambient_occlusion");
+  if (options.rays < 1 || options.rays > kMostRays)
+    throw Error("ambient_occlusion() needs 1 to 65536 rays for each sample");
+  if (!(options.max_distance > 0)) throw Error("ambient_occlusion() needs a max_distance greater than 0");
+  const surface::SurfaceData& on = internals(surface);
+  const double error = largest_error(surface, sites);
+  std::vector<float> result(map.distance.size(), std::numeric_limits<float>::quiet_NaN());
+  parallel_for(on.samples.size(), kGrain, options.progress, "ambient occlusion",
+               [&](std::size_t begin, std::size_t end) {
+                 thread_local SampleRays some;
+                 thread_local std::vector<Vec3> points;
+                 some.resize(options.rays);
+                 points.resize(end - begin);
+                 on.place_samples(begin, points);
+                 for (std::size_t i = begin; i < end; ++i) {
+                   const std::uint32_t texel = on.samples[i];
+                   const double free = free_distance(map.distance[texel], error);
+                   if (free > options.max_distance) {
+                     result[texel] = 1;
+                     continue;
+                   }
+                   const auto& [a, b, c] = on.mesh.triangles[on.sample_faces[i]];
+                   const std::vector<Vec3>& p = on.mesh.positions;
+                   const Ray first{points[i - begin], {}, free, options.max_distance};
+                   result[texel] =
+                       some.visibility(internals(sites), first, normalized(cross(p[b] - p[a], p[c] - p[a])),
+                                       options.seed, texel);
+                 }
+               });
+  return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("ambient occlusion");
+}
+
+}  // namespace sdm

@@ -1,0 +1,177 @@
+#include "query/rays/trace.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "query/rays/trace.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each set of instructions.
+#include <hwy/highway.h>
+
+#include <bit>
+
+#include "geometry/barycentric.h"
+#include "geometry/line_triangle.h"
+#include "query/rays/unit_ray.h"
+
+#ifndef SDM_TRACE_ONCE
+#define SDM_TRACE_ONCE
+namespace sdm::rays {
+namespace {
+
+Corners corners_of(const sites::SitesData& sites, std::uint32_t face) {
+  const auto& [a, b, c] = sites.mesh.triangles[face];
+  return {sites.mesh.positions[a], sites.mesh.positions[b], sites.mesh.positions[c]};
+}
+
+// The first parameter of the ray in the face; infinite if there is none.
+double meet(const sites::SitesData& sites, const Ray& ray, std::uint32_t face) {
+  const auto hit = line_meets_triangle(ray.origin, ray.direction, corners_of(sites, face));
+  if (hit && hit->last >= ray.t_min && hit->first <= ray.t_max) return std::max(hit->first, ray.t_min);
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+}  // namespace sdm::rays
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::rays::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr size_t kWidth = tree::WideTree::kWidth;
+static_assert(kWidth == sites::FaceBounds::kWidth);
+using Block = hn::CappedTag<float, kWidth>;
+using BlockVec = hn::Vec<Block>;
+
+// Evaluates test(i) → mask over eight lanes and returns the first `count` results as a bit mask.
+template <class Test>
+HWY_INLINE uint32_t select(uint32_t count, const Test& test) {
+  const Block d;
+  uint32_t bits = 0;
+  for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, test(i), bytes);
+    bits |= static_cast<uint32_t>(bytes[0]) << i;
+  }
+  return bits & ((1u << count) - 1);
+}
+
+// The boxes of a node's children that the ray may meet; `enter` is set to where it does. T. Ize, Robust BVH
+// Ray Traversal, 2013: differences and products have the right sign and a relative error of three roundings;
+// what is left of the interval is widened by more than those of both its ends.
+HWY_INLINE uint32_t boxes_met(const tree::WideTree::Node& node, const UnitRay& ray, float* enter) {
+  return select(node.count, [&](size_t i) HWY_ATTR {
+    const Block d;
+    BlockVec first = hn::Set(d, ray.begin), last = hn::Set(d, ray.end);
+    for (int k = 0; k < 3; ++k) {
+      const BlockVec inverse = hn::Set(d, ray.inverse[k]);
+      const BlockVec lo =
+          hn::Mul(hn::Sub(hn::Load(d, node.lo[k] + i), hn::Set(d, ray.beyond_lo[k])), inverse);
+      const BlockVec hi =
+          hn::Mul(hn::Sub(hn::Load(d, node.hi[k] + i), hn::Set(d, ray.before_hi[k])), inverse);
+      first = hn::Max(first, hn::Min(lo, hi));
+      last = hn::Min(last, hn::Max(lo, hi));
+    }
+    hn::Store(first, d, enter + i);
+    return hn::Le(first, hn::Mul(last, hn::Set(d, 1 + 0x1p-20f)));
+  });
+}
+
+// The faces of a leaf that the ray may meet: it passes through the disc around the face. With q from the
+// origin to the centre of the disc, D = n·direction and H = n·q, it meets the plane at s = H / D, and
+//   |s direction − q| ≤ radius  ⇔  |H direction − D q| ≤ |D| radius.
+// Both sides are below 10, with errors of a few units in the last place and of the ray's own error.
+HWY_INLINE uint32_t discs_met(const sites::FaceBounds& bounds, uint32_t count, const UnitRay& ray) {
+  return select(count, [&](size_t i) HWY_ATTR {
+    const Block d;
+    const BlockVec slack = hn::Set(d, 16 * ray.error);
+    BlockVec speed = hn::Zero(d), height = hn::Zero(d), q[3];
+    for (int k = 0; k < 3; ++k) {
+      const BlockVec normal = hn::Load(d, bounds.normal[k] + i);
+      q[k] = hn::Sub(hn::Load(d, bounds.centre[k] + i), hn::Set(d, ray.origin[k]));
+      speed = hn::MulAdd(normal, hn::Set(d, ray.direction[k]), speed);
+      height = hn::MulAdd(normal, q[k], height);
+    }
+    BlockVec squared = hn::Zero(d);
+    for (int k = 0; k < 3; ++k) {
+      const BlockVec beside = hn::NegMulAdd(speed, q[k], hn::Mul(height, hn::Set(d, ray.direction[k])));
+      squared = hn::MulAdd(beside, beside, squared);
+    }
+    height = hn::Xor(height, hn::And(speed, hn::SignBit(d)));  // both have the sign of s
+    speed = hn::Abs(speed);
+    const BlockVec within = hn::MulAdd(speed, hn::Load(d, bounds.radius + i), slack);
+    const auto met = hn::Le(squared, hn::Mul(within, within));
+    const auto after = hn::Ge(hn::Add(height, slack), hn::Mul(speed, hn::Set(d, ray.begin)));
+    const auto before = hn::Le(hn::Sub(height, slack), hn::Mul(speed, hn::Set(d, ray.end)));
+    return hn::And(met, hn::And(after, before));
+  });
+}
+
+// Calls visit(face) for the faces that the ray may meet, roughly from front to back, until it returns true.
+template <class Visit>
+HWY_INLINE void for_each_face(const sites::SitesData& sites, const UnitRay& ray, Scratch& scratch,
+                              const Visit& visit) {
+  const sites::Regions& regions = sites.regions;
+  bool done = false;
+  tree::traverse_nearest_child_first(
+      sites.wide, scratch.stack,
+      [&](const tree::WideTree::Node& node, float* enter) HWY_ATTR { return boxes_met(node, ray, enter); },
+      [&](float enter) { return !done && enter <= ray.end; },
+      [&](uint32_t leaf) HWY_ATTR {
+        const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
+        uint32_t met = discs_met(regions.bounds[leaf], count, ray) | regions.thin[leaf];
+        for (; met != 0 && !done; met &= met - 1)
+          done = visit(regions.owners[first + static_cast<uint32_t>(std::countr_zero(met))].face);
+      });
+}
+
+void FirstHits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits) {
+  for (size_t i = 0; i < rays.size(); ++i) {
+    RayHit& hit = hits[i] = {};
+    UnitRay unit;
+    if (!unit.place(rays[i], sites.frame)) continue;
+    for_each_face(sites, unit, scratch, [&](uint32_t face) HWY_ATTR {
+      const double t = meet(sites, rays[i], face);
+      if (t < hit.t || (t == hit.t && face < hit.face && hit.face != kNone)) {
+        hit.t = t, hit.face = face;
+        unit.end_at(t);
+      }
+      return false;
+    });
+    if (hit.face == kNone) continue;
+    const auto [a, b, c] = corners_of(sites, hit.face);
+    hit.barycentric = barycentric(a, b, c, rays[i].origin + hit.t * rays[i].direction);
+  }
+}
+
+void Occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, uint8_t* result) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < rays.size(); ++i) {
+    result[i] = 0;
+    UnitRay unit;
+    if (!unit.place(rays[i], sites.frame)) continue;
+    for_each_face(sites, unit, scratch, [&](uint32_t face) HWY_ATTR {
+      result[i] = meet(sites, rays[i], face) < kInfinity;
+      return result[i] != 0;
+    });
+  }
+}
+
+}  // namespace sdm::rays::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sdm::rays {
+
+HWY_EXPORT(FirstHits);
+HWY_EXPORT(Occluded);
+
+void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits) {
+  HWY_DYNAMIC_DISPATCH(FirstHits)(sites, rays, scratch, hits);
+}
+void occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch,
+              std::uint8_t* result) {
+  HWY_DYNAMIC_DISPATCH(Occluded)(sites, rays, scratch, result);
+}
+
+}  // namespace sdm::rays
+#endif

@@ -1,0 +1,28 @@
+// Rays against the eight-wide tree over the faces of O2: boxes and discs in single precision exclude faces,
+// eight at a time; the faces that remain are tested exactly, in double precision.
+#pragma once
+
+#include <sdm/rays.h>
+
+#include <span>
+#include <vector>
+
+#include "sites/sites_data.h"
+#include "tree/traverse_wide.h"
+
+namespace sdm::rays {
+
+/// Per-thread memory, reused between rays.
+struct Scratch {
+  std::vector<tree::OpenChild<float>> stack;
+};
+
+/// As sdm::first_hits, into `hits`, on the calling thread. Dispatches at run time to the best vector
+/// instructions of the machine.
+void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits);
+
+/// As sdm::occluded.
+void occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch,
+              std::uint8_t* result);
+
+}  // namespace sdm::rays

@@ -1,0 +1,96 @@
+#include "query/shape/body.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/vec.h"
+
+namespace sdm::shape {
+namespace {
+
+// The ball about a point that contains the boxes two levels below the root of the tree.
+Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
+  constexpr double kRounding = 1e-6;  // of the boxes, in units of the frame
+  const Vec3 c = sites.frame.to_unit(centre);
+  double squared = 0;
+  const auto include = [&](const tree::WideTree::Node& node, std::uint32_t i) {
+    double to_corner = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double x = std::max(c[k] - node.lo[k][i], node.hi[k][i] - c[k]);
+      to_corner += x * x;
+    }
+    squared = std::max(squared, to_corner);
+  };
+  const tree::WideTree::Node& root = sites.wide.nodes[0];
+  for (std::uint32_t i = 0; i < root.count; ++i) {
+    if (tree::WideTree::is_leaf(root.child[i])) {
+      include(root, i);
+      continue;
+    }
+    const tree::WideTree::Node& node = sites.wide.nodes[root.child[i]];
+    for (std::uint32_t j = 0; j < node.count; ++j) include(node, j);
+  }
+  return {centre, (std::sqrt(squared) + kRounding) / sites.frame.scale};
+}
+
+}  // namespace
+
+Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
+  if (atlas) surface_.emplace(mesh, *atlas);
+  follow_positions();
+  find_parts();
+}
+
+void Body::refit(std::span<const Vec3> positions) {
+  intact_.change([&] {
+    if (surface_) surface_->refit(positions);
+    sites_.refit(positions);
+    follow_positions();
+  });
+}
+
+void Body::edit(const MeshEdit& edit) {
+  // Parts of contacts are nodes of the tree: with one that has grown by edits, they would be other contacts
+  // than those of the edited mesh by itself.
+  Mesh mesh = sites_.mesh();
+  apply(mesh, edit);
+  Sites sites(std::move(mesh));
+  if (surface_) surface_->edit(edit);
+  intact_.change([&] {
+    sites_ = std::move(sites);
+    inside_.reset();
+    follow_positions();
+    find_parts();
+  });
+}
+
+void Body::find_parts() {
+  cylinders_ = {internals(sites_).wide, internals(sites_).regions};
+  contact_parts_ = shape::contact_parts(internals(sites_).tree);
+}
+
+const Surface& Body::surface() const {
+  if (!surface_)
+    throw Error(
+        "there is no map of this body: its shape has no atlas; construct its Shape with AtlasOptions");
+  return *surface_;
+}
+
+void Body::require_boundary() const {
+  std::call_once(boundary_->built, [this] { boundary_->value.emplace(internals(sites_), inside_->sides()); });
+}
+
+void Body::follow_positions() {
+  cylinders_ = {};
+  box_ = bounds(sites_.mesh());
+  ball_ = ball_about(0.5 * (box_.lo + box_.hi), internals(sites_));
+  if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
+  if (inside_)
+    inside_->refit();
+  else
+    inside_.emplace(internals(sites_), solid() ? SignMethod::exact : SignMethod::none);
+}
+
+}  // namespace sdm::shape

@@ -1,0 +1,81 @@
+// A mesh in both roles: the sites of an O2 and, for maps, the surface of an O1.
+#pragma once
+
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/intact.h"
+#include "query/inside/inside.h"
+#include "query/inside/solid_boundary.h"
+#include "query/shape/contact_parts.h"
+#include "query/shape/node_ball.h"
+#include "sites/bounding_cylinders.h"
+
+namespace sdm::shape {
+
+class Body {
+ public:
+  /// Throws sdm::Error as Surface and Sites do. `atlas`: none if null.
+  Body(const Mesh& mesh, const AtlasOptions* atlas);
+
+  /// Moves the vertices to positions that are valid for this mesh (see validate_positions).
+  void refit(std::span<const Vec3> positions);
+  /// Changes the mesh. Throws sdm::Error, and changes nothing, as Surface::edit and Sites::edit do. Then it
+  /// is like a body of the edited mesh, to the bit. Cost: that of its sites, and of Surface::edit.
+  void edit(const MeshEdit& edit);
+  /// Throws sdm::Error if a refit or an edit failed half-way. Whoever changes a body asks this before all
+  /// else that uses it.
+  void require_intact() const { intact_.require(); }
+
+  /// Throws sdm::Error if there is no atlas.
+  [[nodiscard]] const Surface& surface() const;
+  [[nodiscard]] const Sites& sites() const { return sites_; }
+  /// The bounding box of all faces.
+  [[nodiscard]] const Box& box() const { return box_; }
+  /// A ball about the middle of the box that contains all faces: of round bodies, it is smaller than the box.
+  [[nodiscard]] const Ball& ball() const { return ball_; }
+  /// Whether it is a solid, with an inside.
+  [[nodiscard]] bool solid() const { return internals(sites_).is_solid(); }
+  [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
+
+  /// Builds boundary() for the current shape unless already built: only solids that intersect themselves need
+  /// it. Thread-safe.
+  void require_boundary() const;
+  /// The boundary of the solid. Requires a call of require_boundary().
+  [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
+
+  /// Around the nodes of the tree; none after a refit, for which they would take longer than a few searches
+  /// save.
+  [[nodiscard]] const sites::CylinderTree& cylinders() const { return cylinders_; }
+  /// See contact_parts(), of the first shape or that after the last edit.
+  [[nodiscard]] std::span<const ContactPart> contact_parts() const { return contact_parts_; }
+
+ private:
+  void follow_positions();
+  void find_parts();
+
+  Intact intact_{"a body"};
+  std::optional<Surface> surface_;
+  Sites sites_;
+  Box box_;
+  Ball ball_;
+  std::optional<inside::InsideTest> inside_;
+  sites::CylinderTree cylinders_;
+  std::vector<ContactPart> contact_parts_;
+
+  /// A value that queries build when they need it.
+  template <class Value>
+  struct Lazy {
+    std::once_flag built;
+    std::optional<Value> value;
+  };
+  std::unique_ptr<Lazy<inside::SolidBoundary>> boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
+};
+
+}  // namespace sdm::shape

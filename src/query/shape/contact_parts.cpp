@@ -1,0 +1,29 @@
+#include "query/shape/contact_parts.h"
+
+#include "geometry/vec.h"
+#include "tree/traverse.h"
+
+namespace sdm::shape {
+
+std::vector<ContactPart> contact_parts(const tree::AabbTree& tree) {
+  const auto size = [&](std::uint32_t node) {
+    const tree::FloatBox& box = tree.box(node);
+    return norm(
+        {double{box.hi[0]} - box.lo[0], double{box.hi[1]} - box.lo[1], double{box.hi[2]} - box.lo[2]});
+  };
+  std::vector<ContactPart> parts(tree.nodes.size());
+  if (parts.empty()) return parts;
+  const tree::LeafOrder leaves(tree);
+  const double largest = kContactPart * size(0);
+  tree::Subtree part;
+  const auto enter = [&](tree::Subtree subtree) {
+    if (subtree.root >= part.end && size(subtree.root) <= largest) part = subtree;
+    parts[subtree.root] = {subtree.root < part.end ? part.root : kNone, leaves.before[subtree.root],
+                           leaves.before[subtree.end]};
+    return true;
+  };
+  tree::traverse(tree, tree::whole(tree), enter, [](std::uint32_t) {});
+  return parts;
+}
+
+}  // namespace sdm::shape

@@ -1,0 +1,51 @@
+#include "query/shape/posed_body.h"
+
+#include <sdm/error.h>
+
+#include "geometry/vec.h"
+#include "mesh/validate.h"
+
+namespace sdm::shape {
+
+void check_posed(const mesh::Similarity& pose, const Box& box) {
+  const Box posed = image(pose.map, box);
+  for (int k = 0; k < 3; ++k)
+    if (!(posed.lo[k] >= -mesh::kMaxCoordinate && posed.hi[k] <= mesh::kMaxCoordinate))
+      throw Error("the pose moves it beyond 1e37, too far for the computation; use smaller values");
+}
+
+mesh::Similarity PosedBody::checked_pose(const Transform& pose) const {
+  const auto result = mesh::Similarity::of(pose);
+  check_posed(result, body().box());
+  if (!(result.scale * diagonal(body().box()) > mesh::kMinSize))
+    throw Error("the pose makes it smaller than 1e-30, too small for the computation; scale it up");
+  return result;
+}
+
+void PosedBody::require_own_shape() const {
+  if (internals(shape_).use_count() > 1)
+    throw Error(
+        "its shape is shared and cannot be deformed; give a body that deforms a Shape of its own, and keep "
+        "no copy");
+}
+
+void PosedBody::check_refit(std::span<const Vec3> positions) const {
+  require_own_shape();
+  mesh::validate_positions(positions, body().sites().mesh().positions.size());
+  Box box;
+  for (const Vec3& p : positions) extend(box, p);
+  check_posed(pose_, box);
+}
+
+void PosedBody::check_edit(const MeshEdit& edit) const {
+  if (edit.moved_vertices.empty() && edit.added_vertices.empty()) return;
+  Box box = body().box();
+  const auto add = [&](const Vec3& p) {
+    if (finite(p)) extend(box, p);  // Body::edit refuses the others, and names them
+  };
+  for (const MeshEdit::MovedVertex& moved : edit.moved_vertices) add(moved.position);
+  for (const Vec3& p : edit.added_vertices) add(p);
+  check_posed(pose_, box);
+}
+
+}  // namespace sdm::shape

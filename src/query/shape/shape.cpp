@@ -1,0 +1,31 @@
+#include <sdm/shape.h>
+
+#include <new>
+
+#include "core/memory.h"
+#include "query/shape/body.h"
+
+namespace sdm {
+
+Shape::Shape(const Mesh& mesh) try : body_(std::make_shared<shape::Body>(mesh, nullptr)) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a shape");
+}
+Shape::Shape(const Mesh& mesh, const AtlasOptions& atlas) try
+    : body_(std::make_shared<shape::Body>(mesh, &atlas)) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a shape");
+}
+
+const Surface& Shape::surface() const {
+  return body_->surface();
+}
+const Sites& Shape::sites() const {
+  return body_->sites();
+}
+
+const std::shared_ptr<shape::Body>& internals(const Shape& shape) {
+  return shape.body_;
+}
+
+}  // namespace sdm

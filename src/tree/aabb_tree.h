@@ -1,0 +1,81 @@
+// A binary tree of axis-aligned boxes: building and refitting. traverse.h has its traversals.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "geometry/unit_frame.h"
+
+namespace sdm::tree {
+
+/// A box in single precision, rounded outwards: it contains the box that it is made from.
+struct FloatBox {
+  std::array<float, 3> lo, hi;
+
+  static FloatBox around(const Box& box);
+};
+
+/// The union of two boxes.
+inline FloatBox unite(const FloatBox& a, const FloatBox& b) {
+  FloatBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(a.lo[k], b.lo[k]);
+    box.hi[k] = std::max(a.hi[k], b.hi[k]);
+  }
+  return box;
+}
+
+/// The distance between two boxes, or a box and a point, along each axis; 0 where they overlap.
+inline Vec3 gap(const FloatBox& a, const FloatBox& b) {
+  Vec3 gap;
+  for (int k = 0; k < 3; ++k) gap[k] = std::max({0.0, double{a.lo[k]} - b.hi[k], double{b.lo[k]} - a.hi[k]});
+  return gap;
+}
+inline Vec3 gap(const FloatBox& box, const Vec3& p) {
+  Vec3 gap;
+  for (int k = 0; k < 3; ++k) gap[k] = std::max({box.lo[k] - p[k], p[k] - box.hi[k], 0.0});
+  return gap;
+}
+
+/// Nodes are in depth-first order: the left child of node i is i + 1.
+struct AabbTree {
+  struct Node {
+    FloatBox box;
+    std::uint32_t right = 0;  ///< inner node: its right child
+    std::uint32_t first = 0;  ///< leaf: its first item, in `items`
+    std::uint32_t count = 0;  ///< 0 for an inner node
+
+    [[nodiscard]] bool leaf() const { return count > 0; }
+  };
+  std::vector<Node> nodes;           ///< empty when there are no items
+  std::vector<std::uint32_t> items;  ///< indices of boxes, in the order of the leaves
+
+  [[nodiscard]] const FloatBox& box(std::uint32_t node) const { return nodes[node].box; }
+  [[nodiscard]] std::span<const std::uint32_t> items_of(std::uint32_t leaf) const {
+    return {items.data() + nodes[leaf].first, nodes[leaf].count};
+  }
+};
+
+/// No node of a tree is more levels below the root: recursive functions need little stack.
+inline constexpr int kDeepest = 96;
+
+/// The most levels that a node is below the root. Cost: linear.
+[[nodiscard]] int depth(const AabbTree& tree);
+
+/// Builds a tree of the boxes that `indices` selects, with at most `leaf_size` of them per leaf, by the
+/// binned surface area heuristic. Boxes are in the unit frame. The result does not depend on the number of
+/// threads. Cost: O(n log n), all cores.
+[[nodiscard]] AabbTree build_aabb_tree(std::span<const FloatBox> boxes, std::vector<std::uint32_t> indices,
+                                       std::uint32_t leaf_size);
+[[nodiscard]] AabbTree build_aabb_tree(std::span<const Box> boxes, std::vector<std::uint32_t> indices,
+                                       std::uint32_t leaf_size);
+
+/// Recomputes all boxes from those of the items; the tree keeps its structure. Cost: linear, all cores.
+void refit(AabbTree& tree, std::span<const Box> boxes);
+/// The same, from the boxes of the leaves in their order. Cost: linear.
+void refit_leaves(AabbTree& tree, std::span<const FloatBox> leaf_boxes);
+
+}  // namespace sdm::tree

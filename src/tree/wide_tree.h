@@ -1,0 +1,53 @@
+// An AABB tree collapsed to eight children per node, which vector instructions test together.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tree/aabb_tree.h"
+
+namespace sdm::tree {
+
+struct WideTree {
+  static constexpr int kWidth = 8;
+
+  /// A child is the index of another wide node, or of a leaf of the binary tree, counted in tree order.
+  [[nodiscard]] static constexpr bool is_leaf(std::uint32_t child) { return (child & kLeafBit) != 0; }
+  [[nodiscard]] static constexpr std::uint32_t leaf_number(std::uint32_t child) { return child & ~kLeafBit; }
+  [[nodiscard]] static constexpr std::uint32_t leaf(std::uint32_t number) { return number | kLeafBit; }
+
+  struct Node {
+    alignas(32) float lo[3][kWidth] = {};  ///< 0 in unused lanes: vector loads read them
+    alignas(32) float hi[3][kWidth] = {};
+    std::uint32_t child[kWidth] = {};
+    std::uint32_t source[kWidth] = {};  ///< node of the binary tree for each child
+    std::uint32_t count = 0;            ///< children in use, which come first
+    std::uint32_t leaves = 0;           ///< a bit for each child that is a leaf
+  };
+  std::vector<Node> nodes;  ///< the root is nodes[0]; empty for an empty tree
+
+ private:
+  static constexpr std::uint32_t kLeafBit = 0x80000000u;
+};
+
+/// Squared distances from a box to the boxes of a node's children, at most 1e-6 of themselves too large.
+inline void squared_distances(const WideTree::Node& node, const FloatBox& box,
+                              float (&squared)[WideTree::kWidth]) {
+  for (int i = 0; i < WideTree::kWidth; ++i) squared[i] = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < WideTree::kWidth; ++i) {
+      const float gap = std::max(std::max(node.lo[k][i] - box.hi[k], box.lo[k] - node.hi[k][i]), 0.0f);
+      squared[i] += gap * gap;
+    }
+}
+
+/// Collapses a tree: a node's child of largest area is replaced by its children until there are eight. Cost:
+/// linear.
+[[nodiscard]] WideTree collapse(const AabbTree& tree);
+
+/// Copies the boxes of the binary tree after a refit. Cost: linear.
+void refit(WideTree& wide, const AabbTree& tree);
+
+}  // namespace sdm::tree

@@ -1,0 +1,76 @@
+// Points inside solids, by the winding number.
+#include "query/inside/solid.h"
+
+#include <gtest/gtest.h>
+#include <sdm/mesh.h>
+#include <sdm/sites.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "poses.h"
+#include "sites/sites_data.h"
+#include "support/meshes.h"
+#include "support/oracle.h"
+#include "support/points.h"
+#include "support/shapes.h"
+
+namespace sdm::inside {
+namespace {
+
+TEST(Solid, WindingIsUndecidedThroughEdges) {
+  const Sites cube(test::cube()), mirrored(test::flipped(test::cube()));
+  const Vec3 middle{0, 0, 0};
+  for (const Vec3& q : {Vec3{3, 3, 3}, Vec3{3, 0, 3}, Vec3{3, 3, 1}, Vec3{0, 0, 4}})
+    EXPECT_FALSE(winding(internals(cube), {}, middle, q)) << "corner, edge, edge, diagonal of a side";
+  for (const Vec3& q : {Vec3{3, 1, 2}, Vec3{-1, 0.5, -4}, Vec3{0.5, -4, 0}}) {
+    const std::optional<int> turns = winding(internals(cube), {}, middle, q);
+    ASSERT_TRUE(turns);
+    EXPECT_EQ(std::abs(*turns), 1);
+    EXPECT_EQ(winding(internals(mirrored), {}, middle, q), turns);
+    EXPECT_EQ(winding(internals(cube), {}, Vec3{-1.5, 0.9, -3}, q), 0) << "outside";
+  }
+}
+
+TEST(Solid, ContainsOnTheGrid) {
+  Mesh mesh = test::cube();
+  for (int axis = 0; axis < 3; ++axis)  // shear: slanted sides
+    for (Vec3& p : mesh.positions) p[axis] += 0.25 * p[(axis + 1) % 3];
+  const Sites cube(test::cube(4)), slanted(mesh);
+  const Affine in_place;
+  const oracle::CgalInside expected(mesh);
+  for (int x = -7; x <= 7; ++x)
+    for (int y = -7; y <= 7; ++y)
+      for (int z = -7; z <= 7; ++z) {
+        const Vec3 p{double(x), double(y), double(z)};
+        const double most = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+        if (most != 4) {
+          EXPECT_EQ(contains(internals(cube), in_place, p), most < 4);
+        }
+        const Vec3 q = 0.26 * p + Vec3{0.01, 0.02, 0.03};
+        EXPECT_EQ(contains(internals(slanted), in_place, q), expected(q));
+      }
+}
+
+TEST(Solid, ContainsAgreesWithCgal) {
+  std::mt19937 random(11);
+  const Mesh mesh = test::load("elephant.off", "fit");
+  const Sites sites(mesh);
+  ASSERT_TRUE(internals(sites).is_solid());
+  const oracle::CgalInside expected(mesh);
+  int inside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p = test::random_point(bounds(mesh), random);
+    Affine pose = bench::random_rotation(random);
+    pose.offset = {1, 2, 3};
+    if (i % 2 == 1) pose.rows[1] = -2.0 * pose.rows[1];  // mirrored
+    ASSERT_EQ(contains(internals(sites), {}, p), expected(p));
+    ASSERT_EQ(contains(internals(sites), pose, pose(p)), expected(p));
+    inside += expected(p);
+  }
+  EXPECT_GT(inside, 100);
+}
+
+}  // namespace
+}  // namespace sdm::inside
