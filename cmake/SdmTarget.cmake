@@ -1,3 +1,19 @@
+# sdm_unite_folders(<target> <file>...): where CMAKE_UNITY_BUILD is on, compiles the sources of a folder as one, which
+# takes about half the time, as they share most of their headers. Names in unnamed namespaces are unique in a folder.
+function(sdm_unite_folders target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  foreach(source ${ARGN})
+    file(STRINGS ${source} includes_itself REGEX "^#define HWY_TARGET_INCLUDE")
+    get_filename_component(folder ${source} DIRECTORY)
+    string(MAKE_C_IDENTIFIER "${folder}" group)
+    if(includes_itself OR group STREQUAL "_")
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    else()
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    endif()
+  endforeach()
+endfunction()
+
 # sdm_add_library(<name> SOURCES <file>... [LINK <target>...] [LINK_PRIVATE <target>...])
 # Adds the exported library sdm::<name without sdm_>, static or shared as set by BUILD_SHARED_LIBS, from the object
 # library <name>_objects. All symbols except those of the public API (SDM_API) are hidden, and internal headers are on
@@ -7,6 +23,7 @@ function(sdm_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LINK_PRIVATE" ${ARGN})
   set(internal_folders ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/src)
   add_library(${name}_objects OBJECT ${ARG_SOURCES})
+  sdm_unite_folders(${name}_objects ${ARG_SOURCES})
   target_include_directories(${name}_objects
     PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include
     PRIVATE ${internal_folders})

@@ -10,7 +10,7 @@
 namespace sdm::gl {
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kNodeGrain = 1024;
 
 Box box_of(const PlanarDomain& domain) {
   Box box;
@@ -32,7 +32,7 @@ DomainTree::DomainTree(const Surface& surface, const TileTree& tile_tree, const 
     : tree(tile_tree.tree), leaves(tree), bound(tree.nodes.size()) {
   const surface::Tiles& tiles = tile_tree.tiles;
   std::vector<Box> boxes(tiles.count());
-  parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(boxes.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       boxes[i] = box_of(face_domain(surface, tiles, static_cast<std::uint32_t>(i), frame, GlClip::planes));
   });
@@ -46,7 +46,7 @@ void set_bounds(DomainTree& tree, double bound) {
 void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, double largest) {
   const std::vector<std::uint32_t> nodes = leaf_nodes(tree.tree);
   const UnitFrame& frame = sites.frame;
-  parallel_for(nodes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(nodes.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Vec3> middles;
     for (std::size_t i = begin; i < end; ++i) {
       const tree::FloatBox& box = tree.tree.box(nodes[i]);

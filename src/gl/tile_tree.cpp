@@ -10,12 +10,12 @@
 namespace sdm::gl {
 namespace {
 
-constexpr std::size_t kGrain = 512;  // tiles
+constexpr std::size_t kTileGrain = 512;  // tiles
 
 tree::AabbTree build_tree(const Surface& surface, const surface::Tiles& tiles) {
   const UnitFrame frame = UnitFrame::of(bounds(surface.mesh()));
   std::vector<Box> boxes(tiles.count());
-  parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(boxes.size(), kTileGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t tile = begin; tile < end; ++tile)
       for (const std::uint32_t texel : tiles.of(static_cast<std::uint32_t>(tile)))
         extend(boxes[tile], frame.to_unit(surface.texel_point(texel)));

@@ -9,7 +9,7 @@
 namespace sdm::mesh {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 14;
+constexpr std::size_t kEditGrain = 1 << 14;
 
 // The vertices whose faces an edit changes, with what is built anew for each of them.
 struct ChangedVertices {
@@ -172,7 +172,7 @@ class EdgeMerge {
   }
 
   void renumber(std::vector<std::array<std::uint32_t, 3>>& face_edges) {
-    parallel_for(face_edges.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(face_edges.size(), kEditGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f)
         for (std::uint32_t& e : face_edges[f])
           if (e != kNone) e = renumbered_[e];

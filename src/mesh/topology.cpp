@@ -10,12 +10,12 @@
 namespace sdm::mesh {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kBuildGrain = 4096;
 
 CompressedRows<HalfEdge> half_edges_by_smaller_vertex(std::size_t vertex_count,
                                                       std::span<const Triangle> triangles) {
   return make_rows<HalfEdge>(vertex_count, [&](const auto& put) {
-    Poll due(kGrain);
+    Poll due(kBuildGrain);
     for (std::uint32_t f = 0; f < triangles.size(); ++f) {
       due();
       const auto [a, b, c] = triangles[f];
@@ -33,7 +33,7 @@ using Neighbours = std::array<std::uint32_t, 3>;
 
 std::vector<Neighbours> find_neighbours(std::span<const Triangle> triangles, const Topology& topology) {
   std::vector<Neighbours> neighbours(triangles.size(), {kNone, kNone, kNone});
-  parallel_for(topology.edges.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(topology.edges.size(), kBuildGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
       const auto faces = topology.edge_faces(e);
       if (faces.size() != 2) continue;
@@ -97,7 +97,7 @@ bool Topology::closed() const {
 Topology build_topology(std::size_t vertex_count, std::span<const Triangle> triangles) {
   CompressedRows<HalfEdge> half_edges = half_edges_by_smaller_vertex(vertex_count, triangles);
   std::vector<Share> first(vertex_count + 1);  // of each vertex, once summed
-  parallel_for(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertex_count, kBuildGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) first[v + 1] = sort_half_edges(half_edges.of(v));
   });
   std::partial_sum(first.begin(), first.end(), first.begin());
@@ -110,7 +110,7 @@ Topology build_topology(std::size_t vertex_count, std::span<const Triangle> tria
   topology.incident.offsets.back() = first.back().half_edges;
   topology.collapsed_faces = triangles.size() - half_edges.items.size() / 3;
   topology.duplicate_faces = (half_edges.items.size() - topology.incident.items.size()) / 3;
-  parallel_for(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertex_count, kBuildGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       auto [edges, incident] = first[v];
       std::uint32_t larger = kNone;
@@ -134,7 +134,7 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
   result.flipped.assign(triangles.size(), 0);
   result.component.assign(triangles.size(), kNone);
   std::vector<std::uint32_t> members;  // of a component, in the order of their discovery
-  Poll due(kGrain);
+  Poll due(kBuildGrain);
   for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
     if (topology.ignored(seed) || result.component[seed] != kNone) continue;
     const auto component = static_cast<std::uint32_t>(result.first_face.size());
@@ -170,7 +170,7 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
 VertexFaces vertex_faces(std::size_t vertex_count, std::span<const Triangle> triangles,
                          const Topology& topology) {
   return make_rows<std::uint32_t>(vertex_count, [&](const auto& put) {
-    Poll due(kGrain);
+    Poll due(kBuildGrain);
     for (std::uint32_t f = 0; f < triangles.size(); ++f) {
       due();
       if (!topology.ignored(f))

@@ -10,7 +10,7 @@
 namespace sdm::sites {
 namespace {
 
-constexpr std::size_t kGrain = 1024;  // faces
+constexpr std::size_t kRegionGrain = 1024;  // faces
 
 // Whether the faces around the sites owned by a face form closed, consistently oriented fans.
 bool encloses(const RegionSource& s, const Regions& regions, std::size_t owner) {
@@ -44,7 +44,7 @@ class SiteOrder {
     places.corners.reserve(faces.size());
     places.edges.reserve(edge_place_.size());
     owners.reserve(faces.size() + 1);
-    Poll due(kGrain);
+    Poll due(kRegionGrain);
     for (const std::uint32_t face : faces) {
       due();
       owners.push_back(next_owner(face));
@@ -118,7 +118,7 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
   parallel_invoke(
       [&] {
         neighbours = make_rows<std::uint32_t>(vertices, [&](const auto& put) {
-          Poll due(kGrain);
+          Poll due(kRegionGrain);
           for (const SitePlaces::Edge& edge : places.edges) {
             due();
             put(edge.corners[0], edge.corners[1]);
@@ -128,7 +128,7 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
       },
       [&] {
         places.fans = make_rows<std::uint32_t>(vertices, [&](const auto& put) {
-          Poll due(kGrain);
+          Poll due(kRegionGrain);
           for (std::uint32_t f = 0; f < faces; ++f) {
             due();
             for (std::uint32_t k = 0; k < 3; ++k) put(places.corners[f][k], 4 * f + k);
@@ -144,7 +144,7 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
   std::vector<Vec3> placed;
   place(regions, s.positions, placed);
   const bool closed = s.topology.closed();
-  parallel_for(faces, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(faces, kRegionGrain, [&](std::size_t begin, std::size_t end) {
     for (std::uint32_t e = regions.owners[begin].edges; e < regions.owners[end].edges; ++e)
       regions.edges[e].edge = sites.edges()[e];
     for (std::uint32_t v = regions.owners[begin].vertices; v < regions.owners[end].vertices; ++v)

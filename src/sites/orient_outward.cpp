@@ -14,7 +14,7 @@
 namespace sdm::sites {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kShellPart = 4096;
 
 struct Shell {
   std::uint32_t component;
@@ -29,11 +29,11 @@ double volume(const Shell& shell, const inside::FaceTree& faces, std::span<const
   const Vec3& origin = p[faces.triangles[shell.faces.front()][0]];
   thread_local std::vector<double> parts_of_this_thread;  // a thread waiting for a loop starts no other shell
   std::vector<double>& parts = parts_of_this_thread;
-  parts.assign((shell.faces.size() + kGrain - 1) / kGrain, 0);
+  parts.assign((shell.faces.size() + kShellPart - 1) / kShellPart, 0);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      for (const std::uint32_t f :
-           shell.faces.subspan(i * kGrain).first(std::min(kGrain, shell.faces.size() - i * kGrain))) {
+      for (const std::uint32_t f : shell.faces.subspan(i * kShellPart)
+                                       .first(std::min(kShellPart, shell.faces.size() - i * kShellPart))) {
         const Triangle& t = faces.triangles[f];
         const double v = dot(p[t[0]] - origin, cross(p[t[1]] - origin, p[t[2]] - origin));
         parts[i] += flipped[f] ? -v : v;

@@ -11,7 +11,7 @@ namespace sdm::sites {
 namespace {
 
 constexpr std::uint32_t kLeafFaces = FaceBounds::kWidth;
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kBoxGrain = 4096;
 
 std::vector<std::uint32_t> faces_with_sites(const mesh::Topology& topology) {
   std::vector<std::uint32_t> faces;
@@ -85,13 +85,13 @@ void SitesData::refit(std::span<const Vec3> positions) {
 // The boxes of faces are those of their vertices, each rounded outwards.
 std::vector<tree::FloatBox> SitesData::face_boxes() const {
   std::vector<tree::FloatBox> corners(mesh.positions.size()), boxes(mesh.triangles.size());
-  parallel_for(corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(corners.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const Vec3 p = frame.to_unit(mesh.positions[v]);
       corners[v] = tree::FloatBox::around({p, p});
     }
   });
-  parallel_for(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(boxes.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const auto [a, b, c] = mesh.triangles[f];
       boxes[f] = unite(unite(corners[a], corners[b]), corners[c]);

@@ -4,14 +4,10 @@
 
 #include "core/memory.h"
 #include "geometry/spatial_order.h"
+#include "surface/sample_order.h"
 #include "surface/surface_data.h"
 
 namespace sdm::surface {
-namespace {
-
-constexpr std::size_t kPacket = 16;
-
-}  // namespace
 
 void edit_samples(SurfaceData& s, std::span<const std::uint8_t> removed_faces,
                   std::span<const std::uint32_t> added) {

@@ -16,9 +16,9 @@
 namespace sdm::surface {
 namespace {
 
-constexpr std::uint32_t kSide = 4;                           // of a square of texels
-constexpr std::size_t kPacket = std::size_t{kSide} * kSide;  // samples
-constexpr std::size_t kParallel = 1 << 13;                   // below this many items, one thread
+constexpr std::uint32_t kSide = 4;  // of a square of texels
+static_assert(kPacket == kSide * kSide);
+constexpr std::size_t kParallel = 1 << 13;  // below this many items, one thread
 
 // Up to this resolution every texel is on its own: packets are then smaller and maps faster, which is what
 // counts where one atlas serves many frames. Above it, ordering single texels would take longer than maps

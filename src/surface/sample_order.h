@@ -1,12 +1,16 @@
 // The order of a surface's samples.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace sdm::surface {
 
 class SurfaceData;
+
+/// Samples that engines measure at once.
+inline constexpr std::size_t kPacket = 16;
 
 /// The owned texels in an order such that every aligned run of 16·2^k of them lies in a small box on the
 /// surface, as geometry/spatial_order.h describes. Squares of 4² texels of one chart stay together: they

@@ -28,6 +28,12 @@ inline FloatBox unite(const FloatBox& a, const FloatBox& b) {
   return box;
 }
 
+/// Half the area of the surface of a box.
+inline float half_area(const FloatBox& box) {
+  const float x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
+  return x * y + y * z + z * x;
+}
+
 /// The distance between two boxes, or a box and a point, along each axis; 0 where they overlap.
 inline Vec3 gap(const FloatBox& a, const FloatBox& b) {
   Vec3 gap;

@@ -8,11 +8,6 @@
 namespace sdm::tree {
 namespace {
 
-float half_area(const FloatBox& box) {
-  const float x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
-  return x * y + y * z + z * x;
-}
-
 class TreeEditor {
  public:
   TreeEditor(const AabbTree& tree, const TreeEdit& edit, std::uint32_t leaf_size)

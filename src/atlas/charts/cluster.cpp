@@ -58,7 +58,7 @@ std::vector<Node> to_nodes(const Mesh& mesh, const FaceGeometry& faces) {
   return nodes;
 }
 
-double dot(const Vec3f& a, const Vec3f& b) {
+double float_dot(const Vec3f& a, const Vec3f& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -87,7 +87,7 @@ class Clustering {
  private:
   [[nodiscard]] bool fits(const Node& face, const Vec3f& axis) const {
     // A single face fits its own normal despite rounding.
-    return dot(face.normal, axis) >= std::min(cos_, 1 - kMargin);
+    return float_dot(face.normal, axis) >= std::min(cos_, 1 - kMargin);
   }
 
   // Faces that will be visited soon: growing clusters waits for memory most of the time.
@@ -154,8 +154,8 @@ class Clustering {
         if (!fits(other, axis)) continue;
         const Vec3f step = {other.centroid[0] - node.centroid[0], other.centroid[1] - node.centroid[1],
                             other.centroid[2] - node.centroid[2]};
-        const double turn = 1 - dot(other.normal, axis);
-        const double cost = front->cost + std::sqrt(dot(step, step)) * (1 + kTurnCost * turn);
+        const double turn = 1 - float_dot(other.normal, axis);
+        const double cost = front->cost + std::sqrt(float_dot(step, step)) * (1 + kTurnCost * turn);
         queue.push(cost, {static_cast<float>(cost), next, front->cluster});
       }
     }

@@ -10,7 +10,7 @@ namespace {
 
 // A few suffice to exchange three constraints; more are due to rounding.
 constexpr int kMostSteps = 16;
-constexpr double kRounding = 1e-12;  // of weights, and of values relative to the bound
+constexpr double kWeightRounding = 1e-12;  // of weights, and of values relative to the bound
 
 double largest(const CornerValues& values) {
   return std::max({values[0], values[1], values[2]});
@@ -92,11 +92,11 @@ class LargestValue {
   // Replaces an active constraint by one that the point violates. Returns false if it violates none.
   bool enter() {
     Constraint entering;
-    double least = -kRounding;
+    double least = -kWeightRounding;
     for (int k = 0; k < 3; ++k)
       if (weights_[k] < least) least = weights_[k], entering = {.weight = k};
-    if (least == -kRounding) {
-      double lowest = t_ - kRounding * t_;
+    if (least == -kWeightRounding) {
+      double lowest = t_ - kWeightRounding * t_;
       for (const CornerValues& f : functions_) {
         const double value = weights_[0] * f[0] + weights_[1] * f[1] + weights_[2] * f[2];
         if (value < lowest) lowest = value, entering = {.function = &f};
@@ -110,7 +110,8 @@ class LargestValue {
     for (int n = 0; n < 3; ++n) {
       const Row& column = inverse_[n];
       share[n] = entered[0] * column[0] + entered[1] * column[1] + entered[2] * column[2];
-      if (share[n] > kRounding && column[2] < ratio * share[n]) ratio = column[2] / share[n], leaving = n;
+      if (share[n] > kWeightRounding && column[2] < ratio * share[n])
+        ratio = column[2] / share[n], leaving = n;
     }
     if (leaving < 0) return false;
     Row& left = inverse_[leaving];

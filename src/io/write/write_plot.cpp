@@ -53,12 +53,6 @@ struct Frame {
   [[nodiscard]] double up(double v) const { return bottom() - y.part(v) * (bottom() - top); }
 };
 
-void draw_line(Canvas& canvas, double x0, double y0, double x1, double y1) {
-  cairo_move_to(canvas.cairo(), x0, y0);
-  cairo_line_to(canvas.cairo(), x1, y1);
-  cairo_stroke(canvas.cairo());
-}
-
 void draw_grid(Canvas& canvas, const Frame& frame) {
   cairo_set_line_width(canvas.cairo(), 1);
   const std::vector<double> heights = ticks(frame.y.lo, frame.y.hi, 5),
@@ -66,14 +60,14 @@ void draw_grid(Canvas& canvas, const Frame& frame) {
   const auto step = [](const std::vector<double>& t) { return t.size() > 1 ? t[1] - t[0] : 1; };
   for (const double v : heights) {
     canvas.set_color(kGrid);
-    draw_line(canvas, kLeft, frame.up(v), frame.right(), frame.up(v));
+    canvas.line(kLeft, frame.up(v), frame.right(), frame.up(v));
     canvas.set_color(kInk);
     canvas.text(kLeft - 8, frame.up(v) + 0.36 * kTextSize, tick_label(v, step(heights)), kTextSize,
                 kLeft - 12, false, 1);
   }
   for (const double v : places) {
     canvas.set_color(kGrid);
-    draw_line(canvas, frame.across(v), frame.top, frame.across(v), frame.bottom());
+    canvas.line(frame.across(v), frame.top, frame.across(v), frame.bottom());
     canvas.set_color(kInk);
     canvas.text(frame.across(v), frame.bottom() + 1.4 * kTextSize, tick_label(v, step(places)), kTextSize, 60,
                 false, 0.5);
@@ -118,7 +112,7 @@ void draw_panel(Canvas& canvas, double top, std::span<const double> places, cons
     if (panel.curves.size() == 1) continue;
     constexpr double kName = 110;
     cairo_set_line_width(canvas.cairo(), 3);
-    draw_line(canvas, name_end - kName, top + kTop - 17, name_end - kName + 18, top + kTop - 17);
+    canvas.line(name_end - kName, top + kTop - 17, name_end - kName + 18, top + kTop - 17);
     canvas.set_color(kInk);
     canvas.text(name_end - kName + 24, top + kTop - 12, curve.name, kTextSize, kName - 30);
     name_end -= kName;

@@ -28,8 +28,8 @@ using namespace io;
 
 namespace {
 
-constexpr double kFoot = 46;  // below the cells: the scale bar
-constexpr double kTitleSize = 18, kTextSize = 15;
+constexpr double kScaleBarHeight = 46;  // below the cells
+constexpr double kTitleText = 18, kViewText = 15;
 constexpr double kRing = 9;         // the radius of marks
 constexpr double kTextWidth = 196;  // the widest text of a mark
 constexpr std::array kDashes{4.0, 3.0};
@@ -67,12 +67,6 @@ ViewScene scene_of(const Surface& surface, const DistanceMap& map, std::span<con
   return scene;
 }
 
-void draw_line(Canvas& canvas, double x0, double y0, double x1, double y1) {
-  cairo_move_to(canvas.cairo(), x0, y0);
-  cairo_line_to(canvas.cairo(), x1, y1);
-  cairo_stroke(canvas.cairo());
-}
-
 // The axes of the mesh that lie in the picture, from the lower left corner of a cell.
 void draw_axes(Canvas& canvas, const PlacedView& view) {
   constexpr double kLength = 26, kHead = 6;
@@ -85,14 +79,14 @@ void draw_axes(Canvas& canvas, const PlacedView& view) {
       const double dx = p.right[k], dy = -p.up[k];
       if (dx == 0 && dy == 0) continue;
       const double to_x = x + kLength * dx, to_y = y + kLength * dy;
-      draw_line(canvas, x, y, to_x, to_y);
+      canvas.line(x, y, to_x, to_y);
       cairo_move_to(canvas.cairo(), to_x + kHead * dx, to_y + kHead * dy);
       cairo_line_to(canvas.cairo(), to_x - 0.5 * kHead * dy, to_y + 0.5 * kHead * dx);
       cairo_line_to(canvas.cairo(), to_x + 0.5 * kHead * dy, to_y - 0.5 * kHead * dx);
       cairo_close_path(canvas.cairo());
       halo ? cairo_stroke(canvas.cairo()) : cairo_fill(canvas.cairo());
       if (!halo)
-        canvas.text(to_x + 14 * dx, to_y + 14 * dy + 0.36 * kTextSize, std::string(1, "xyz"[k]), kTextSize,
+        canvas.text(to_x + 14 * dx, to_y + 14 * dy + 0.36 * kViewText, std::string(1, "xyz"[k]), kViewText,
                     20, false, 0.5);
       cairo_new_path(canvas.cairo());
     }
@@ -116,14 +110,14 @@ void draw_mark(Canvas& canvas, const PlacedView& view, const Mark& mark, bool hi
     cairo_stroke(cairo);
     cairo_set_dash(cairo, nullptr, 0, 0);
     if (hidden) continue;
-    for (const double dx : {-1.0, 1.0}) draw_line(canvas, x + dx * kRing, y, x + dx * (kRing + 5), y);
-    for (const double dy : {-1.0, 1.0}) draw_line(canvas, x, y + dy * kRing, x, y + dy * (kRing + 5));
+    for (const double dx : {-1.0, 1.0}) canvas.line(x + dx * kRing, y, x + dx * (kRing + 5), y);
+    for (const double dy : {-1.0, 1.0}) canvas.line(x, y + dy * kRing, x, y + dy * (kRing + 5));
   }
 
   constexpr double kHeight = 24, kAway = 18;
   const double width = hidden ? 196 : 132;
   const double left = view.x + 4, right = view.x + p.width - width - 4.0;
-  const double top = view.y + 4 + kViewTitle, bottom = view.y + p.height - kHeight - 4.0;
+  const double top = view.y + 4 + kTitleText, bottom = view.y + p.height - kHeight - 4.0;
   Vec2 text{x + kAway, y - kHeight - 6};
   if (text[0] > right) text[0] = x - kAway - width;
   text = {std::clamp(text[0], left, std::max(left, right)), std::clamp(text[1], top, std::max(top, bottom))};
@@ -136,7 +130,7 @@ void draw_mark(Canvas& canvas, const PlacedView& view, const Mark& mark, bool hi
     const double to_y = std::clamp(y, text[1], text[1] + kHeight);
     if (const double away = std::hypot(to_x - x, to_y - y); away > kRing) {
       cairo_set_line_width(cairo, 1.5);
-      draw_line(canvas, x + kRing * (to_x - x) / away, y + kRing * (to_y - y) / away, to_x, to_y);
+      canvas.line(x + kRing * (to_x - x) / away, y + kRing * (to_y - y) / away, to_x, to_y);
       cairo_new_path(cairo);
     }
   }
@@ -144,7 +138,7 @@ void draw_mark(Canvas& canvas, const PlacedView& view, const Mark& mark, bool hi
   cairo_rectangle(cairo, text[0], text[1], width, kHeight);
   cairo_fill(cairo);
   canvas.set_color(kInk);
-  canvas.text(text[0] + width / 2, text[1] + 17, mark.text + (hidden ? ", behind" : ""), kTextSize, width - 8,
+  canvas.text(text[0] + width / 2, text[1] + 17, mark.text + (hidden ? ", behind" : ""), kViewText, width - 8,
               false, 0.5);
 }
 
@@ -155,14 +149,14 @@ void draw_scale_bar(Canvas& canvas, const ViewLayout& layout, const std::string&
   double length = decade;
   for (const double step : {2.0, 5.0})
     if (step * decade <= most) length = step * decade;
-  const double x = 2 * kViewGap, end = x + layout.scale * length, y = layout.height + 0.35 * kFoot;
+  const double x = 2 * kViewGap, end = x + layout.scale * length, y = layout.height + 0.35 * kScaleBarHeight;
   canvas.set_color(kInk);
   cairo_set_line_width(canvas.cairo(), 2);
-  draw_line(canvas, x, y, end, y);
-  for (const double at : {x, end}) draw_line(canvas, at, y - 6, at, y + 6);
+  canvas.line(x, y, end, y);
+  for (const double at : {x, end}) canvas.line(at, y - 6, at, y + 6);
   cairo_new_path(canvas.cairo());
-  canvas.text(end + 14, y + 0.36 * kTextSize,
-              value_label(length) + (units.empty() ? "" : " " + units) + ", in all views", kTextSize, 300);
+  canvas.text(end + 14, y + 0.36 * kViewText,
+              value_label(length) + (units.empty() ? "" : " " + units) + ", in all views", kViewText, 300);
 }
 
 }  // namespace
@@ -197,13 +191,14 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
   LegendText text = legend_text(map, found.min.distance, found.max.distance, scale, options.units);
   if (other != nullptr) text.notes.emplace_back("pale: O2");
   const Picture legend = draw_legend(scale, text, layout.height);
-  Canvas canvas(layout.width + legend.width, std::max(layout.height + kFoot, double(legend.height)), 1);
+  Canvas canvas(layout.width + legend.width, std::max(layout.height + kScaleBarHeight, double(legend.height)),
+                1);
   canvas.image(layout.width, 0, legend);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const PlacedView& view = layout.views[i];
     canvas.image(view.x, view.y, views[i].picture);
     canvas.set_color(kInk);
-    canvas.text(view.x + 12, view.y + 25, view.name, kTitleSize, view.projection.width - 24, true);
+    canvas.text(view.x + 12, view.y + 25, view.name, kTitleText, view.projection.width - 24, true);
     draw_axes(canvas, view);
     std::vector<Vec2> texts;
     for (std::size_t k = 0; k < marks.size(); ++k)

@@ -13,9 +13,9 @@ namespace {
 
 // A node is deep if its centre is inside by more than so many radii.
 constexpr double kDeep = 2;
-constexpr double kRounding = 1e-9;  // of distances, relative to themselves
+constexpr double kRelativeRounding = 1e-9;  // of distances
 // Nodes of a part with at most so many leaves are not divided.
-constexpr std::uint32_t kFewLeaves = 16;
+constexpr std::uint32_t kWholeLeaves = 16;
 
 using tree::WideTree;
 using Kind = ContactRegion::Kind;
@@ -37,7 +37,7 @@ void ContactRegions::find(const shape::Body& on, const shape::Body& other, const
     const std::uint32_t near_face = find_near_face(place);
     if (near_face != kNone) node.face = near_face;
     Kind kind = in_part ? Kind::part : Kind::coarse;
-    bool whole = leaf || (in_part && place.last_leaf - place.first_leaf <= kFewLeaves);
+    bool whole = leaf || (in_part && place.last_leaf - place.first_leaf <= kWholeLeaves);
     if (!whole && near_face == kNone) {
       const Position position = find_position(node, in_part ? 1 : kDeep);
       if (position == Position::free) continue;
@@ -75,7 +75,7 @@ ContactRegions::Position ContactRegions::find_position(Node& node, double depth)
   };
   if (!is_within(free)) {
     // The surface does not meet this ball, which is on the side of any other such ball that it overlaps.
-    if (!(norm(centre - node.known.centre) < (1 - kRounding) * (free + node.known.radius)))
+    if (!(norm(centre - node.known.centre) < (1 - kRelativeRounding) * (free + node.known.radius)))
       (void)is_within(std::numeric_limits<double>::infinity());
     if (!node.known.inside) return Position::free;
     if (inside <= free || !is_within(inside)) return Position::inside;

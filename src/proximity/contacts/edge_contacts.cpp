@@ -8,13 +8,13 @@
 #include "core/cancellation.h"
 #include "engine/cpu/cpu_engine.h"
 #include "geometry/triangle_pair.h"
+#include "geometry/unit_frame.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
 namespace {
 
-constexpr double kRounding = 1e-9;   // of distances, relative to the size of the other body
 constexpr double kSamePoint = 1e-6;  // of the length of the edge
 // Faces continue each other where their heights differ by at most this part of them: the planes of faces of a
 // curved surface are not the same, but the side and the top of a table are something else.
@@ -145,7 +145,7 @@ void EdgeContacts::add_interval(const Edge& edge, const sites::SitesData& sites,
 
 void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, double margin) {
   const sites::SitesData& sites = internals(other.sites());
-  const double limit = margin + kRounding / sites.frame.scale;
+  const double limit = margin + kFrameRounding / sites.frame.scale;
   intervals_.clear();
   for (const std::uint32_t face : faces_.find(sites, {edge.a, edge.b}, limit)) {
     poll();
@@ -227,7 +227,7 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
   found_.clear();
   find_intervals(edge, other, margin);
   find_supports(edge, other, margin, reach, tolerance);
-  const double rounding = kRounding / sites.frame.scale;
+  const double rounding = kFrameRounding / sites.frame.scale;
   for (auto first = intervals_.begin(); first != intervals_.end();) {
     auto next = first;
     double end = first->to;

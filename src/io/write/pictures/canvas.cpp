@@ -55,6 +55,12 @@ void Canvas::text(double x, double baseline, const std::string& text, double siz
   cairo_show_text(cairo(), text.c_str());
 }
 
+void Canvas::line(double x0, double y0, double x1, double y1) {
+  cairo_move_to(cairo(), x0, y0);
+  cairo_line_to(cairo(), x1, y1);
+  cairo_stroke(cairo());
+}
+
 void Canvas::image(double x, double y, const Picture& picture) {
   const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> image(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(picture.width),

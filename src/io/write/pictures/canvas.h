@@ -17,6 +17,8 @@ class Canvas {
 
   [[nodiscard]] cairo_t* cairo() { return context_.get(); }
   void set_color(Rgb color);
+  /// Draws a line in the colour, width and dashes of cairo().
+  void line(double x0, double y0, double x1, double y1);
   /// Draws text at (x, baseline), narrowed to fit `room`. `align`: 0: the text starts at x; 1: it ends there;
   /// 0.5: it is centred.
   void text(double x, double baseline, const std::string& text, double size, double room, bool bold = false,

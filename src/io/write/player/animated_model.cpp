@@ -18,7 +18,7 @@ namespace {
 
 // Viewers keep morph targets as layers of a texture, of which WebGL 2 has 256 at least.
 constexpr std::size_t kMostFrames = 250;
-constexpr std::size_t kMostNumbers = 12'000'000;  // floats of all morph targets
+constexpr std::size_t kMostMorphNumbers = 12'000'000;  // floats of all morph targets
 
 constexpr std::array<float, 3> kPlain{0.46f, 0.5f, 0.55f};  // linear, of a body without colours
 
@@ -38,7 +38,7 @@ Frames chosen(const PlayerContent& content, double per_second) {
   std::size_t numbers = 1;  // of a frame
   for (int b = 0; b < 2; ++b)
     numbers += 3 * content.frames[0].positions[b].size() + 3 * content.frames[0].distances[b].size();
-  const std::size_t most = std::clamp<std::size_t>(kMostNumbers / numbers, 2, kMostFrames);
+  const std::size_t most = std::clamp<std::size_t>(kMostMorphNumbers / numbers, 2, kMostFrames);
   const std::size_t step = (content.frames.size() + most - 1) / most;
   Frames frames;
   for (std::size_t i = 0; i < content.frames.size(); i += step) {

@@ -22,7 +22,7 @@ using namespace io;
 
 namespace {
 
-constexpr std::size_t kMostNumbers = 8'000'000;  // coordinates of all frames
+constexpr std::size_t kMostCoordinates = 8'000'000;  // of all frames
 
 /// The distances of all frames together: of the vertices drawn, each with the same weight.
 DistanceStatistics pooled(const std::vector<PlayerFrame>& frames) {
@@ -115,7 +115,7 @@ void SequencePlayer::add(std::size_t frame, const Sites& o1, const Sites& o2) tr
   }
   impl_->frames.push_back(std::move(shown));
   impl_->added.push_back(frame);  // this and what follows does not fail
-  if (impl_->frames.size() > 2 && impl_->frames.size() * impl_->numbers_of_frame() > kMostNumbers)
+  if (impl_->frames.size() > 2 && impl_->frames.size() * impl_->numbers_of_frame() > kMostCoordinates)
     impl_->thin_out();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the frames of a player");

@@ -12,8 +12,8 @@
 namespace sdm::io {
 namespace {
 
-constexpr std::size_t kMost = 10;   // places
-constexpr std::size_t kParts = 16;  // of the samples
+constexpr std::size_t kMost = 10;  // places
+constexpr std::size_t kPartsOfSamples = 16;
 // Of so many samples, which are close together on the surface, the one of the largest |distance| will do.
 constexpr std::size_t kRun = 64;
 
@@ -70,10 +70,11 @@ std::vector<Place> worst_places(const Surface& surface, const DistanceMap& map,
     const float d = map.distance[texel];
     return std::isfinite(d) ? std::abs(d) : -1;
   };
-  std::vector<LargestByCell> parts(kParts, LargestByCell(box));
-  parallel_for(kParts, 1, [&](std::size_t begin, std::size_t end) {
+  std::vector<LargestByCell> parts(kPartsOfSamples, LargestByCell(box));
+  parallel_for(kPartsOfSamples, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part)
-      for (std::size_t run = part * runs / kParts; run < (part + 1) * runs / kParts; ++run) {
+      for (std::size_t run = part * runs / kPartsOfSamples; run < (part + 1) * runs / kPartsOfSamples;
+           ++run) {
         const auto texels = samples.subspan(run * kRun, std::min(kRun, samples.size() - run * kRun));
         const std::uint32_t texel = *std::ranges::max_element(texels, {}, size);
         if (size(texel) > 0) parts[part].add({map.distance[texel], surface.texel_point(texel), texel});
