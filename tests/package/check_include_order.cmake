@@ -6,6 +6,7 @@ set(order
   core
   geometry
   tree
+  search
   mesh
   mesh/crossings
   atlas/charts

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "certify/depth/face_distances.h"
-#include "certify/depth/mixed_bound.h"
 #include "core/parallel.h"
 #include "engine/cpu/cpu_engine.h"
 #include "geometry/sweep.h"
 #include "geometry/vec.h"
 #include "query/shape/node_ball.h"
+#include "search/mixed_bound.h"
 #include "sites/sites_data.h"
 #include "tree/traverse.h"
 
@@ -180,7 +180,7 @@ void DepthSearch::tighten(Part& part) {
     exits.values(part.at, functions_);
     for (const Near& n : near(part)) functions_.push_back(n.distance);
     if (by_known) add_distances(part);
-    const MixedBound mixed = mixed_bound(functions_, sure_ / scale);
+    const search::MixedBound mixed = search::mixed_bound(functions_, sure_ / scale);
     part.upper = std::min(part.upper, scale * mixed.value);
     part.reach = mixed.value;
     if (part.upper > sure_) place(part, mixed.weights);
@@ -425,7 +425,7 @@ double DepthSearch::bound_outside(const Part& part, const Value& value, double d
   for (const Near& n : near(part)) functions[count++] = n.distance;
   for (std::size_t n = 0; n < value.nears; ++n) functions[count++] = value.near[n].distance;
   const double enough = sure_ / unit(part.body);
-  const double mixed = mixed_bound(std::span(functions).first(count), enough).value;
+  const double mixed = search::mixed_bound(std::span(functions).first(count), enough).value;
   if (mixed <= enough) return mixed;
 
   // The way is at least as long before x as the surface is far from c.

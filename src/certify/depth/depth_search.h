@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "certify/depth/exit_directions.h"
-#include "certify/depth/mixed_bound.h"
 #include "geometry/triangle_pair.h"
 #include "query/shape/posed_body.h"
 

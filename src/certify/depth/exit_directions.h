@@ -6,12 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include "certify/depth/mixed_bound.h"
 #include "geometry/triangle_pair.h"
 #include "mesh/similarity.h"
+#include "search/mixed_bound.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {
+
+using search::CornerValues;
 
 /// A point p inside a solid S leaves it in the direction u, |u| = 1, no later than at the plane that supports
 /// S there, so its distance to the boundary is

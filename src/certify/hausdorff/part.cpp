@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <span>
 
 #include "certify/hausdorff/face_distance.h"
 #include "certify/hausdorff/nearest_face.h"
 #include "geometry/vec.h"
+#include "search/mixed_bound.h"
 
 namespace sdm::hausdorff {
 namespace {
@@ -17,11 +20,6 @@ double largest(const Vec3& v) {
 
 double least(const Vec3& v) {
   return std::min({v[0], v[1], v[2]});
-}
-
-// v scaled to the sum 1; NaN if the sum is 0.
-Vec3 barycentric(const Vec3& v) {
-  return (1 / (v[0] + v[1] + v[2])) * v;
 }
 
 // The parameter in (0, 1) of the point of a side at which two faces are equally far from it, by regula falsi
@@ -75,51 +73,14 @@ bool Part::add(const sites::SitesData& b, std::uint32_t near_face, double tolera
   return true;
 }
 
-// By the theory of linear programs, the smallest maximum is attained by a mixture of one, two or three faces
-// for which as many corners have the same value. All of these are tried: each is a bound.
 void Part::bound() {
-  upper = std::numeric_limits<double>::infinity();
-  const std::size_t n = count;
-  const auto& d = distances;
-  for (std::size_t k = 0; k < n; ++k)
-    if (const double value = largest(d[k]); value < upper) {
-      upper = value, mixed = 1u << k;
-      weights = {};
-      weights[static_cast<std::size_t>(std::ranges::max_element(d[k]) - d[k].begin())] = 1;
-    }
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t l = 0; l < k; ++l)
-      for (std::size_t i = 0; i < 3; ++i) {
-        // (1 − t) d[k] + t d[l] has the same value at corners i and j.
-        const std::size_t j = i < 2 ? i + 1 : 0;
-        const double rise_k = d[k][j] - d[k][i], rise_l = d[l][j] - d[l][i];
-        if (!(rise_k * rise_l < 0)) continue;
-        const double t = rise_k / (rise_k - rise_l);
-        const Vec3 mixture = (1 - t) * d[k] + t * d[l];
-        const double value = std::max(mixture[i], mixture[j]);
-        if (!(value < upper) || mixture[3 - i - j] > value) continue;
-        // Where l_k and l_l are equal on the side.
-        const double first = d[k][i] - d[l][i], second = d[l][j] - d[k][j], s = first / (first + second);
-        if (!(s >= 0 && s <= 1)) continue;
-        upper = value, mixed = 1u << k | 1u << l;
-        weights = {};
-        weights[i] = 1 - s, weights[j] = s;
-      }
-  for (std::size_t k = 2; k < n; ++k)
-    for (std::size_t l = 1; l < k; ++l)
-      for (std::size_t m = 0; m < l; ++m) {
-        const Vec3 x{d[k][1] - d[k][0], d[l][1] - d[l][0], d[m][1] - d[m][0]},
-            y{d[k][2] - d[k][0], d[l][2] - d[l][0], d[m][2] - d[m][0]};
-        const Vec3 mu = barycentric(cross(x, y));
-        const double value = largest(mu[0] * d[k] + mu[1] * d[l] + mu[2] * d[m]);
-        if (!(least(mu) > 0 && value < upper)) continue;
-        const Vec3 highest = barycentric(cross(d[l] - d[k], d[m] - d[k]));
-        if (!(least(highest) >= 0)) continue;
-        upper = value, mixed = 1u << k | 1u << l | 1u << m;
-        weights = highest;
-      }
   constexpr double kRounding = 1e-15;
-  upper *= 1 + kRounding;
+  const search::MixedBound best =
+      search::mixed_bound(std::span(distances).first(count), -std::numeric_limits<double>::infinity());
+  upper = (1 + kRounding) * best.value, weights = best.weights;
+  mixed = 0;
+  for (const std::uint32_t k : best.mixed)
+    if (k != kNone) mixed |= 1u << k;
 }
 
 Vec3 Part::highest_point() const {

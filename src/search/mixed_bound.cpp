@@ -1,11 +1,11 @@
-#include "certify/depth/mixed_bound.h"
+#include "search/mixed_bound.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <optional>
 
-namespace sdm::depth {
+namespace sdm::search {
 namespace {
 
 // A few suffice to exchange three constraints; more are due to rounding.
@@ -60,7 +60,23 @@ class LargestValue {
     if (!(sum > 0.5)) return {};
     return largest(mean) / sum;
   }
-  [[nodiscard]] const CornerValues& weights() const { return weights_; }
+  // Of the point, with sum 1. Those whose constraints are active are 0, without rounding.
+  [[nodiscard]] CornerValues weights() const {
+    CornerValues weights;
+    for (int k = 0; k < 3; ++k) weights[k] = std::max(0.0, weights_[k]);
+    for (const Constraint& c : active_)
+      if (c.function == nullptr) weights[c.weight] = 0;
+    const double sum = weights[0] + weights[1] + weights[2];
+    for (double& weight : weights) weight /= sum;
+    return weights;
+  }
+  [[nodiscard]] std::array<std::uint32_t, 3> mixed() const {
+    std::array<std::uint32_t, 3> mixed{kNone, kNone, kNone};
+    for (int n = 0; n < 3; ++n)
+      if (active_[n].function != nullptr && inverse_[n][2] > kRounding)
+        mixed[n] = static_cast<std::uint32_t>(active_[n].function - functions_.data());
+    return mixed;
+  }
 
  private:
   using Row = std::array<double, 3>;
@@ -133,8 +149,7 @@ class LargestValue {
 }  // namespace
 
 MixedBound mixed_bound(std::span<const CornerValues> functions, double enough) {
-  constexpr double kThird = 1.0 / 3;
-  MixedBound result{std::numeric_limits<double>::infinity(), {kThird, kThird, kThird}};
+  MixedBound result;
   const CornerValues* first = nullptr;
   for (const CornerValues& values : functions)
     if (const double most = largest(values); most < result.value) result.value = most, first = &values;
@@ -142,10 +157,8 @@ MixedBound mixed_bound(std::span<const CornerValues> functions, double enough) {
   LargestValue program(functions, *first);
   program.solve(enough);
   result.value = std::min(result.value, program.bound().value_or(result.value));
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) sum += result.weights[k] = std::max(0.0, program.weights()[k]);
-  for (double& weight : result.weights) weight /= sum;
+  result.weights = program.weights(), result.mixed = program.mixed();
   return result;
 }
 
-}  // namespace sdm::depth
+}  // namespace sdm::search

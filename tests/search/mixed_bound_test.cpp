@@ -1,21 +1,15 @@
-// Bounds on the smallest of several functions over a triangle, and the distances that they are made from.
-#include "certify/depth/mixed_bound.h"
+// Bounds on the smallest of several functions over a triangle.
+#include "search/mixed_bound.h"
 
 #include <gtest/gtest.h>
-#include <sdm/sdm.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
-#include "certify/depth/face_distances.h"
-#include "geometry/vec.h"
-#include "sites/closest_on_face.h"
-#include "support/meshes.h"
-#include "support/shapes.h"
-
-namespace sdm::depth {
+namespace sdm::search {
 namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
@@ -42,7 +36,7 @@ TEST(MixedBound, IsAboveTheSmallestFunctionEverywhere) {
           least = std::min(least, (i * a + j * b + (kSteps - i - j) * c) / kSteps);
         most = std::max(most, least);
       }
-    const auto [bound, weights] = mixed_bound(functions, kNever);
+    const auto [bound, weights, mixed] = mixed_bound(functions, kNever);
     EXPECT_GE(bound, most - 1e-12);
     double best = 1e9;
     for (const CornerValues& values : functions) best = std::min(best, largest(values));
@@ -54,6 +48,10 @@ TEST(MixedBound, IsAboveTheSmallestFunctionEverywhere) {
     EXPECT_NEAR(weights[0] + weights[1] + weights[2], 1, 1e-12);
     EXPECT_GE(*std::ranges::min_element(weights), 0);
     smaller += bound < best;
+    std::vector<CornerValues> in_mean;
+    for (const std::uint32_t f : mixed)
+      if (f != kNone) in_mean.push_back(functions.at(f));
+    EXPECT_NEAR(mixed_bound(in_mean, kNever).value, bound, 1e-9) << "the others are not needed";
     if (functions.size() == 2) {
       EXPECT_NEAR(bound, most, 2.0 / kSteps);
     }
@@ -63,27 +61,16 @@ TEST(MixedBound, IsAboveTheSmallestFunctionEverywhere) {
   EXPECT_EQ(mixed_bound({}, 0).value, std::numeric_limits<double>::infinity());
 }
 
-// Also of slivers, segments and points, in all regions around them.
-TEST(FaceDistances, AreThoseOfClosestOnFace) {
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal;
-  for (const Mesh& mesh :
-       {test::soup(60, random), test::degenerate_soup(60, 6), test::needles(1e-9), test::cube()}) {
-    const Sites o2(mesh);
-    const sites::SitesData& sites = internals(o2);
-    for (int trial = 0; trial < 500; ++trial) {
-      const auto face = [&] { return static_cast<std::uint32_t>(random() % mesh.triangles.size()); };
-      const std::array faces{face(), face()};
-      std::array<Vec3, 4> points;
-      for (Vec3& p : points) p = {normal(random), normal(random), normal(random)};
-      points[3] = mesh.positions[mesh.triangles[faces[0]][1]];
-      const auto distances = face_distances(sites, points, faces);
-      for (int f = 0; f < 2; ++f)
-        for (int i = 0; i < 4; ++i)
-          EXPECT_NEAR(distances[f][i], sites::closest_on_face(sites, faces[f], points[i]).distance, 1e-12);
-    }
+// A single function is as large as at its largest corner, and there alone.
+TEST(MixedBound, OfOneFunctionIsAtACorner) {
+  for (int corner = 0; corner < 3; ++corner) {
+    CornerValues values{1, 2, 3};
+    std::swap(values[2], values[corner]);
+    const MixedBound bound = mixed_bound({&values, 1}, kNever);
+    EXPECT_EQ(bound.value, 3);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(bound.weights[k], k == corner ? 1 : 0);
   }
 }
 
 }  // namespace
-}  // namespace sdm::depth
+}  // namespace sdm::search
