@@ -24,7 +24,7 @@ void check(const HausdorffOptions& options) {
   if (!(options.precision >= 0)) throw Error("the precision of a Hausdorff distance must be at least 0");
 }
 
-HausdorffDistance search(const Mesh& a, const sites::SitesData& b, const HausdorffOptions& options) {
+HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const HausdorffOptions& options) {
   constexpr double kRounding = 1e-12;
   const Box box = bounds(a);
   Box both = bounds(b.mesh);
@@ -36,8 +36,7 @@ HausdorffDistance search(const Mesh& a, const sites::SitesData& b, const Hausdor
   hausdorff::LowerBound lower;
   const auto vertices = hausdorff::search_vertices(a, b, options.progress, lower);
   hausdorff::PartSearch parts(b, precision, coordinate, lower);
-  parts.start(a, vertices);
-  const double upper = parts.finish(options.progress);
+  const double upper = parts(a, vertices, options.progress);
 
   HausdorffDistance result{.faces = lower.faces};
   BoundedLength& distance = result.distance;
@@ -55,15 +54,15 @@ HausdorffDistance search(const Mesh& a, const sites::SitesData& b, const Hausdor
 HausdorffDistance one_sided_hausdorff(const Mesh& a, const Sites& b, const HausdorffOptions& options) try {
   check(options);
   validate(a);
-  return search(a, internals(b), options);
+  return bound_distance(a, internals(b), options);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the Hausdorff distance");
 }
 
 SymmetricHausdorff symmetric_hausdorff(const Sites& a, const Sites& b, const HausdorffOptions& options) try {
   check(options);
-  SymmetricHausdorff result{
-      .from = {search(a.mesh(), internals(b), options), search(b.mesh(), internals(a), options)}};
+  SymmetricHausdorff result{.from = {bound_distance(a.mesh(), internals(b), options),
+                                     bound_distance(b.mesh(), internals(a), options)}};
   const BoundedLength &first = result.from[0].distance, &second = result.from[1].distance;
   result.larger_from = second.lower > first.lower ? 1 : 0;
   result.larger = result.from[result.larger_from];
