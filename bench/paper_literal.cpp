@@ -21,7 +21,7 @@
 
 #include "gl/gl_engine.h"
 #include "harness.h"
-#include "paper/corrections.h"
+#include "research/figures/corrections.h"
 #include "scenes.h"
 #include "scenes/reduce_mesh.h"
 #include "scenes/scene.h"
@@ -30,9 +30,9 @@
 namespace sdm::bench {
 namespace {
 
-std::vector<paper::Variant> variants() {
-  std::vector<paper::Variant> result = paper::added_corrections();
-  std::ranges::move(paper::removed_corrections(), std::back_inserter(result));
+std::vector<figures::Variant> variants() {
+  std::vector<figures::Variant> result = figures::added_corrections();
+  std::ranges::move(figures::removed_corrections(), std::back_inserter(result));
   return result;
 }
 
@@ -46,9 +46,9 @@ Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, std::uint32_
   const DistanceMap reference = map_by(make_engine("reference"));
   Outcome outcome{.verified = true};
   std::vector<Contender> contenders;
-  for (const paper::Variant& variant : variants()) {
+  for (const figures::Variant& variant : variants()) {
     const auto engine = gl::make_gl_engine({.device = device, .clip = GlClip::stencil}, variant.corrections);
-    const paper::MapErrors e = paper::errors_of(map_by(engine), reference, surface, sites);
+    const figures::MapErrors e = figures::errors_of(map_by(engine), reference, surface, sites);
     const GlReport report = gl_report(*engine).value();
     const auto texels = static_cast<double>(report.texels);
     if (outcome.rows.empty() && e.wrong > 0) {

@@ -1,5 +1,6 @@
 #include "alignment.h"
 
+#include <sdm/error.h>
 #include <sdm/io.h>
 
 #include <algorithm>

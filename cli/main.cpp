@@ -8,7 +8,6 @@
 #include "interrupts.h"
 #include "map.h"
 #include "output_folder.h"
-#include "paper.h"
 #include "points.h"
 #include "proximity.h"
 #include "scene.h"
@@ -81,7 +80,6 @@ int run(int argc, char** argv) {
     add_info_command(app);
     add_devices_command(app);
     add_scene_command(app);
-    add_paper_command(app);
     add_completion_command(app);
     app.failure_message(usage_error);
     if (argc == 3 && std::string_view(argv[1]) == "help" && std::string_view(argv[2]) == "--man") {

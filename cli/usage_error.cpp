@@ -48,7 +48,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
 std::string usage_error(const CLI::App* app, const CLI::Error& error) {
   const std::vector<CLI::App*> commands = app->get_subcommands();
   const CLI::App* command = commands.empty() ? app : commands.front();
-  std::string text = "sdm: error: ";
+  std::string text = app->get_name() + ": error: ";
   if (const std::vector<std::string> extras = command->remaining(true); !extras.empty()) {
     const std::string& name = extras.front();
     text += name.starts_with('-') ? "unknown option " + name + suggestion(name, option_names(*command))
@@ -56,8 +56,8 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error) {
   } else {
     text += error.what();
   }
-  return printable_lines(text) + "\nRun " + (command == app ? "sdm" : "sdm " + command->get_name()) +
-         " --help for more information.\n";
+  return printable_lines(text) + "\nRun " + app->get_name() +
+         (command == app ? "" : " " + command->get_name()) + " --help for more information.\n";
 }
 
 std::vector<std::string> arguments(const CLI::App& app, int argc, char** argv) {

@@ -37,8 +37,7 @@ const std::vector<LongCommand> kLongCommands{
     {"self", {"self", "NEEDLES", "-o", "OUT", "--resolution", "2048"}},
     {"volume", {"volume", "SPHERES", "--grid", "700", "700", "700", "-o", "OUT/field.vti"}},
     {"info", {"info", "NEEDLES"}},
-    {"scene", {"scene", "cloth", "--frames", "100000", "-o", "OUT"}},
-    {"paper", {"paper", "-o", "OUT"}}};
+    {"scene", {"scene", "cloth", "--frames", "100000", "-o", "OUT"}}};
 
 /// n triangles along x and n along y, each of which crosses all of the others.
 Mesh crossing_needles(int n) {

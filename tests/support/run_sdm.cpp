@@ -67,8 +67,9 @@ void drain(std::array<int, 2> ends, std::array<std::string*, 2> texts,
 
 }  // namespace
 
-Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& options) {
-  std::vector<char*> argv{const_cast<char*>("sdm")};
+Outcome run_program(const char* program, const std::vector<std::string>& arguments,
+                    const Conditions& options) {
+  std::vector<char*> argv{const_cast<char*>(program)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 
@@ -87,7 +88,7 @@ Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& opt
     set_limit(RLIMIT_AS, options.memory);
     set_limit(RLIMIT_STACK, options.stack);
     for (const std::string& variable : options.environment) putenv(const_cast<char*>(variable.c_str()));
-    execv(SDM_COMMAND, argv.data());
+    execv(program, argv.data());
     _exit(127);
   }
   close(out[1]);
@@ -119,6 +120,10 @@ Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& opt
   if (cpu_at_signal) run.cpu_after_signal = seconds(used.ru_utime) + seconds(used.ru_stime) - *cpu_at_signal;
   run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return run;
+}
+
+Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& options) {
+  return run_program(SDM_COMMAND, arguments, options);
 }
 
 }  // namespace sdm::test

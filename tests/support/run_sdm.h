@@ -1,4 +1,4 @@
-// Runs the command sdm in a process of its own.
+// Runs the command sdm, or another program, in a process of its own.
 #pragma once
 
 #include <csignal>
@@ -28,6 +28,9 @@ struct Conditions {
   int kill_after_ms = 0;  ///< send SIGKILL then, unless 0
 };
 
+[[nodiscard]] Outcome run_program(const char* program, const std::vector<std::string>& arguments,
+                                  const Conditions& options = {});
+/// The command sdm.
 [[nodiscard]] Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& options = {});
 
 }  // namespace sdm::test
