@@ -10,7 +10,6 @@
 #include <bit>
 #include <limits>
 
-#include "engine/cpu/ablation.h"
 #include "engine/cpu/site_lists-inl.h"
 #include "engine/cpu/work_counts.h"
 
@@ -28,13 +27,8 @@ constexpr std::size_t kLeavesPerPoint = 4;
 // Lists of up to this many sites are evaluated for all packets of a ball instead of being filtered further:
 // more where there are only four packets. (Measured.)
 constexpr std::size_t few_sites(int level) {
-  if (!uses(Idea::short_lists)) return 0;
   return level == 1 ? 8 : 3;
 }
-// The highest level whose groups are traversed as one.
-constexpr int kHighestGroups = !uses(Idea::groups)         ? 0
-                               : !uses(Idea::large_groups) ? 1
-                                                           : PointGroup::kLevels - 1;
 
 }  // namespace
 }  // namespace sdm::cpu
@@ -91,9 +85,6 @@ class Search {
   // Finds the winners of a ball's points by one traversal for all of them, or by one for each of its child
   // balls.
   void start(int level, size_t index) {
-    if constexpr (kHighestGroups < PointGroup::kLevels - 1)
-      if (level > kHighestGroups)
-        return for_children(level, index, [&](size_t child) { start(level - 1, child); });
     const Ball& ball = s_.points.balls[level][index];
     SiteLists& lists = s_.lists[level];
     lists.clear();
@@ -102,7 +93,7 @@ class Search {
     if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the previous group is near
       nearest = last_, nearest.squared = squared_distance(ball, last_.point);
     improve_in_tree(nearest, ball.centre);
-    if (uses(Idea::last_nearest) && nearest.found) last_ = nearest;
+    if (nearest.found) last_ = nearest;
     const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
     const size_t points = PointGroup::points_at(level);
     const size_t most_leaves = points > kFewPoints ? points / kPointsPerLeaf : points * kLeavesPerPoint;
@@ -206,7 +197,6 @@ class Search {
       uint32_t places[SiteBlock::kWidth];
       for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
       append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {
-               if constexpr (!uses(Idea::face_bounds)) return hn::FirstN(Block(), SiteBlock::kWidth - lane);
                return may_be_closest(Block(), regions_.bounds[leaf], lane, reach);
              }));
     }

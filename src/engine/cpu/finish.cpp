@@ -8,7 +8,6 @@
 
 #include <bit>
 
-#include "engine/cpu/ablation.h"
 #include "engine/cpu/cpu_engine.h"
 #include "engine/engine.h"
 #include "geometry/vec.h"
@@ -186,8 +185,7 @@ void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const
     pending &= ~lanes;
     uint32_t open = lanes;
     if (site.packed == kNone) continue;
-    if (uses(Idea::packed_finish) && site.packed != SiteId::kUnsettled)
-      open &= ~on_site(sites, site, p, lanes);
+    if (site.packed != SiteId::kUnsettled) open &= ~on_site(sites, site, p, lanes);
     for (; open != 0; open &= open - 1) {
       const auto i = static_cast<size_t>(std::countr_zero(open));
       found.set(i, queries[i],

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/cpu/ablation.h"
 #include "engine/cpu/point_group.h"
 #include "engine/cpu/site_lists.h"
 
@@ -73,12 +72,7 @@ struct CandidateBound {
   HWY_INLINE hn::Mask<D> holds(D d, hn::Vec<D> squared_to_b, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) const {
     const auto a_to_b = square_norm(d, hn::Sub(hn::Set(d, from_a[0]), x), hn::Sub(hn::Set(d, from_a[1]), y),
                                     hn::Sub(hn::Set(d, from_a[2]), z));
-    auto bound = hn::MulAdd(hn::Set(d, 2 * radius), hn::Sqrt(a_to_b), hn::Set(d, squared));
-    if constexpr (!uses(Idea::convexity)) {
-      const float squared_to_a = from_a[0] * from_a[0] + from_a[1] * from_a[1] + from_a[2] * from_a[2];
-      const float farthest = std::sqrt(squared_to_a) + 2 * radius;
-      bound = hn::Set(d, farthest * farthest + squared - squared_to_a);
-    }
+    const auto bound = hn::MulAdd(hn::Set(d, 2 * radius), hn::Sqrt(a_to_b), hn::Set(d, squared));
     return hn::Le(squared_to_b, hn::Min(bound, hn::Set(d, squared_limit)));
   }
 };
@@ -118,8 +112,7 @@ HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, si
   // The distance from the disc's axis, reduced by the cancellation error in the difference of squares.
   const BlockVec beside =
       hn::Sqrt(hn::Max(hn::NegMulAdd(squared, hn::Set(d, 1e-6f), hn::Sub(squared, h2)), hn::Zero(d)));
-  const BlockVec slope =
-      uses(Idea::cones) ? hn::Load(d, bounds.slope + i) : hn::Set(d, sites::FaceBounds::kOpen);
+  const BlockVec slope = hn::Load(d, bounds.slope + i);
   const BlockVec most = hn::MulAdd(slope, hn::Add(hn::Abs(h), reach_radius), hn::Add(radius, reach_radius));
   // c − b = h normal + s (r − h normal), where the convex piece B is the disc.
   const BlockVec beyond = hn::Max(hn::Sub(beside, radius), hn::Zero(d));
@@ -141,8 +134,7 @@ HWY_INLINE BlockMask may_be_closest(Block d, const FaceBlock& block, size_t i, c
   // The convex piece B is the whole plane of the face.
   const BlockVec h = height(d, plane, i, reach.centre);
   const auto from = [&](int k) HWY_ATTR { return hn::Mul(h, hn::Load(d, plane[k] + i)); };
-  const BlockMask near = reach.holds(d, hn::Mul(h, h), from(0), from(1), from(2));
-  return uses(Idea::regions) ? hn::And(pass, near) : near;
+  return hn::And(pass, reach.holds(d, hn::Mul(h, h), from(0), from(1), from(2)));
 }
 
 HWY_INLINE BlockVec squared(Block d, const FaceBlock& block, size_t i, const float* p) {
@@ -181,8 +173,7 @@ HWY_INLINE BlockMask may_be_closest(Block d, const EdgeBlock& block, size_t i, c
   const BlockVec s = hn::Min(hn::Max(t, hn::Zero(d)), length);
   for (int k = 0; k < 3; ++k)
     r[k] = hn::NegMulAdd(s, hn::Load(d, block.row[EdgeBlock::kDirection + k] + i), r[k]);
-  const BlockMask near = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
-  return uses(Idea::regions) ? hn::And(pass, near) : near;
+  return hn::And(pass, reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]));
 }
 
 HWY_INLINE BlockVec squared(Block d, const EdgeBlock& block, size_t i, const float* p) {
@@ -229,7 +220,7 @@ HWY_INLINE BlockMask may_be_closest(Block d, const VertexBlock& block, size_t i,
   for (int k = 0; k < 3; ++k)
     r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.row[VertexBlock::kPoint + k] + i));
   BlockMask pass = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
-  for (size_t ray = 0; uses(Idea::regions) && ray < sites::VertexRegion::kRays; ++ray) {
+  for (size_t ray = 0; ray < sites::VertexRegion::kRays; ++ray) {
     const SiteBlock::Row* direction = block.row + VertexBlock::ray(ray);
     BlockVec along = hn::Mul(r[0], hn::Load(d, direction[0] + i));
     along = hn::MulAdd(r[1], hn::Load(d, direction[1] + i), along);

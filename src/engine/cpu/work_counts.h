@@ -1,5 +1,5 @@
 // Work counters of the cpu engine's search, which do not depend on the machine's speed. Only builds with
-// -DSDM_COUNT_WORK=ON have them, such as those of bench/ablation; in others they cost nothing.
+// -DSDM_COUNT_WORK=ON have them, for bench/compare; in others they cost nothing.
 #pragma once
 
 #include <cstddef>
