@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "geometry/exact_integer.h"
-#include "geometry/filter.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 
 namespace sdm::core {

@@ -1,11 +1,9 @@
 // Distance and intersection of two triangles of any shape, including needles, segments and points.
 #pragma once
 
-#include <sdm/types.h>
+#include "geometry/triangle.h"
 
 namespace sdm::core {
-
-using Corners = std::array<Vec3, 3>;
 
 /// The squared distance of the bounding boxes of two triangles: a lower bound for the triangles.
 [[nodiscard]] double squared_box_distance(const Corners& a, const Corners& b);

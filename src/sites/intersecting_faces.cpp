@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/predicates.h"
+#include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 
 namespace sdm::sites {
@@ -74,10 +75,7 @@ bool separated(const Corners& p, const Corners& q) {
 // other.
 bool faces_intersect(const FaceSoup& mesh, std::uint32_t a, std::uint32_t b) {
   const SharedFirst v(mesh.triangles[a], mesh.triangles[b]);
-  const auto at = [&](const std::array<std::uint32_t, 3>& t) {
-    return Corners{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-  };
-  const Corners p = at(v.a), q = at(v.b);
+  const Corners p = corners_of(mesh.positions, v.a), q = corners_of(mesh.positions, v.b);
   if (boxes_apart(p, q)) return false;
   switch (v.shared) {
     case 0:

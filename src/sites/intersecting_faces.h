@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "geometry/triangle_pair.h"
+#include "geometry/triangle.h"
 #include "mesh/topology.h"
 #include "tree/traverse.h"
 
@@ -15,10 +15,7 @@ struct FaceSoup {
   std::span<const Triangle> triangles;
   const tree::AabbTree& tree;
 
-  [[nodiscard]] Corners corners(std::uint32_t face) const {
-    const Triangle& t = triangles[face];
-    return {positions[t[0]], positions[t[1]], positions[t[2]]};
-  }
+  [[nodiscard]] Corners corners(std::uint32_t face) const { return corners_of(positions, triangles[face]); }
 };
 
 /// Whether two different faces have a point in common beyond the corners and edges that they share. Faces

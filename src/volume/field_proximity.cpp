@@ -10,6 +10,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/triangle.h"
 #include "volume/grid.h"
 #include "volume/interpolation.h"
 
@@ -52,14 +53,14 @@ struct Extremes {
 
 // A face, divided into congruent triangles.
 struct FaceSamples {
-  std::array<Vec3, 3> corners;
+  Corners corners;
   double parts;   // of each side
   double radius;  // no point of the face is farther from all samples
 
   // Discs around the corners of a triangle with the radius L / √3, for its longest side L, cover it: that is
   // at least the radius of the smallest disc that contains it (Jung 1901).
   FaceSamples(const Mesh& mesh, const Triangle& t, double spacing)
-      : corners{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]} {
+      : corners(corners_of(mesh.positions, t)) {
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, norm(corners[(k + 1) % 3] - corners[k]));
     parts = std::max(1.0, std::ceil(longest / spacing));

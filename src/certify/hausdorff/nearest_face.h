@@ -1,15 +1,10 @@
 // The face of B that is closest to a point, in double precision, with bounds that hold in spite of rounding.
 #pragma once
 
-#include "geometry/triangle_pair.h"
+#include "geometry/triangle.h"
 #include "sites/sites_data.h"
 
 namespace sdm::hausdorff {
-
-[[nodiscard]] inline Corners corners_of(const Mesh& mesh, std::uint32_t face) {
-  const auto [a, b, c] = mesh.triangles[face];
-  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
-}
 
 /// lower ≤ d(p, B) ≤ upper
 struct NearestFace {

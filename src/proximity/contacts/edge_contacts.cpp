@@ -46,11 +46,6 @@ double last_within(const Function& f, double limit, double in, double out) {
   return in;
 }
 
-Corners corners_of(const sites::SitesData& sites, std::uint32_t face) {
-  const auto& [i, j, k] = sites.mesh.triangles[face];
-  return {sites.mesh.positions[i], sites.mesh.positions[j], sites.mesh.positions[k]};
-}
-
 // The points of an edge whose distances from the plane of a face are at most `limit`.
 struct Slab {
   double height = 0, rise = 0;  // above the plane, at the start and along the edge
@@ -110,7 +105,7 @@ EdgeContacts::Part bisected(const EdgeContacts::Edge& edge, const sites::SitesDa
 EdgeContacts::Part EdgeContacts::within(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
                                         double limit, double closest) {
   if (sites.sliver[face] == 0) {
-    const Corners corners = corners_of(sites, face);
+    const Corners corners = corners_of(sites.mesh, face);
     const Vec3& normal = sites.normals.face[face];
     const Slab slab(edge, corners, normal, limit);
     if (!slab.empty() && beside_prism(edge, corners, normal, slab, limit) == BesidePrism::inside)
@@ -121,7 +116,7 @@ EdgeContacts::Part EdgeContacts::within(const Edge& edge, const sites::SitesData
 
 void EdgeContacts::add_interval(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
                                 double limit) {
-  const Corners corners = corners_of(sites, face), segment{edge.a, edge.b, edge.b};
+  const Corners corners = corners_of(sites.mesh, face), segment{edge.a, edge.b, edge.b};
   if (sites.sliver[face] == 0) {  // otherwise, its normal is rounding noise
     const Vec3& normal = sites.normals.face[face];
     const Slab slab(edge, corners, normal, limit);

@@ -11,8 +11,8 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rows.h"
+#include "geometry/point_triangle.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "proximity/self/patches.h"
 
 namespace sdm {
@@ -133,10 +133,6 @@ class Neighbours {
     });
   }
 
-  [[nodiscard]] Corners corners(std::uint32_t face) const {
-    const Triangle& t = mesh_.triangles[face];
-    return {mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]};
-  }
   [[nodiscard]] bool within(double length, std::uint32_t p, std::uint32_t q) const {
     const Sphere &a = spheres_[p], &b = spheres_[q];
     const double reach = length + a.radius + b.radius;
@@ -150,12 +146,11 @@ class Neighbours {
     return faces_within(length, faces_p[0], faces_q[0]);
   }
   [[nodiscard]] bool face_within(double length, std::uint32_t f, const Vec3& point) const {
-    const Corners a = corners(f), b{point, point, point};
     const double most = (1 + 1e-12) * length * length;
-    return squared_box_distance(a, b) <= most && closest_or_common(a, b).squared <= most;
+    return squared_norm(closest_on_triangle(point, corners_of(mesh_, f)) - point) <= most;
   }
   [[nodiscard]] bool faces_within(double length, std::uint32_t f, std::uint32_t g) const {
-    const Corners a = corners(f), b = corners(g);
+    const Corners a = corners_of(mesh_, f), b = corners_of(mesh_, g);
     const double most = length * length;
     // Corners or boxes decide in nearly all cases.
     for (const Vec3& p : a)

@@ -32,11 +32,6 @@ namespace {
 
 constexpr double kAbove = 1 + 1e-12;  // larger than the rounding error of squares: ties must be compared
 
-Corners corners(const Mesh& mesh, std::uint32_t face) {
-  const Triangle& t = mesh.triangles[face];
-  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-}
-
 }  // namespace
 
 bool FacePair::before(const FacePair& other) const {
@@ -186,7 +181,7 @@ void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) c
 }
 
 bool SelfSearch::beyond(std::uint32_t face, const Vec3& q, double limit) const {
-  return squared_box_distance(corners(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit;
+  return squared_box_distance(corners_of(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit;
 }
 
 // A bound on the distance from the centre c to a face g that is closest to a point q of the ball: with d_c =
@@ -226,11 +221,11 @@ ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
 FacePair SelfSearch::nearest(double max_distance) const {
   FacePair best;
   double limit = max_distance;
-  const Corners own = corners(sites_.mesh, face_);
+  const Corners own = corners_of(sites_.mesh, face_);
   Box box;
   for (const Vec3& p : own) extend(box, p);
   visit_near(box, limit, [&](std::uint32_t other) {
-    const Corners others = corners(sites_.mesh, other);
+    const Corners others = corners_of(sites_.mesh, other);
     if (squared_box_distance(own, others) > kAbove * limit * limit) return;
     const bool first = face_ < other;  // the same order, and so the same rounding, from either face
     const PointPair c = first ? closest_or_common(own, others) : closest_or_common(others, own);

@@ -4,12 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/triangle.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {
-
-using Corners = std::array<Vec3, 3>;
 
 /// Lengths in the unit frame: twice the error with which engines find closest sites, and more.
 inline constexpr double kClearance = 4e-6;

@@ -3,15 +3,12 @@
 namespace sdm::pairs {
 
 Corners MeshPair::face1(std::uint32_t face) const {
-  const auto& [a, b, c] = o1.mesh.triangles[face];
-  const auto& at = o1.mesh.positions;
-  return {at[a], at[b], at[c]};
+  return corners_of(o1.mesh, face);
 }
 
 Corners MeshPair::face2(std::uint32_t face) const {
-  const auto& [a, b, c] = o2.mesh.triangles[face];
-  const auto& at = o2.mesh.positions;
-  return {pose(at[a]), pose(at[b]), pose(at[c])};
+  const auto [a, b, c] = corners_of(o2.mesh, face);
+  return {pose(a), pose(b), pose(c)};
 }
 
 }  // namespace sdm::pairs

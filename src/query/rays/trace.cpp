@@ -17,14 +17,9 @@
 namespace sdm::rays {
 namespace {
 
-Corners corners_of(const sites::SitesData& sites, std::uint32_t face) {
-  const auto& [a, b, c] = sites.mesh.triangles[face];
-  return {sites.mesh.positions[a], sites.mesh.positions[b], sites.mesh.positions[c]};
-}
-
 // The first parameter of the ray in the face; infinite if there is none.
 double meet(const sites::SitesData& sites, const Ray& ray, std::uint32_t face) {
-  const auto hit = line_meets_triangle(ray.origin, ray.direction, corners_of(sites, face));
+  const auto hit = line_meets_triangle(ray.origin, ray.direction, corners_of(sites.mesh, face));
   if (hit && hit->last >= ray.t_min && hit->first <= ray.t_max) return std::max(hit->first, ray.t_min);
   return std::numeric_limits<double>::infinity();
 }
@@ -138,7 +133,7 @@ void FirstHits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch
       return false;
     });
     if (hit.face == kNone) continue;
-    const auto [a, b, c] = corners_of(sites, hit.face);
+    const auto [a, b, c] = corners_of(sites.mesh, hit.face);
     hit.barycentric = barycentric(a, b, c, rays[i].origin + hit.t * rays[i].direction);
   }
 }

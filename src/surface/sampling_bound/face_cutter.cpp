@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/triangle.h"
+
 namespace sdm::surface {
 namespace {
 
@@ -10,17 +12,12 @@ namespace {
 /// square.
 constexpr double kNearEnough = 1.1;
 
-std::array<Vec3, 3> vertices_of(const Mesh& mesh, std::size_t face) {
-  const auto& [a, b, c] = mesh.triangles[face];
-  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
-}
-
 }  // namespace
 
 double typical_radius(const Surface& surface) {
   double doubled_area = 0;
   for (std::size_t f = 0; f < surface.mesh().triangles.size(); ++f) {
-    const auto [a, b, c] = vertices_of(surface.mesh(), f);
+    const auto [a, b, c] = corners_of(surface.mesh(), f);
     doubled_area += norm(cross(b - a, c - a));
   }
   return 0.5 * std::sqrt(doubled_area / static_cast<double>(surface.sample_texels().size()));
@@ -50,7 +47,7 @@ FaceCutter::FaceCutter(const Surface& surface)
 
 CutFace FaceCutter::face(std::uint32_t index) const {
   const double radius = owns_texel_[index] ? half_diagonal(surface_.texel_edges(index)) : typical_;
-  return {index, vertices_of(surface_.mesh(), index), kNearEnough * radius};
+  return {index, corners_of(surface_.mesh(), index), kNearEnough * radius};
 }
 
 }  // namespace sdm::surface

@@ -1,11 +1,12 @@
 // Closest points of triangles: the minimum over all pairs of features. The points lie on the features
 // regardless of rounding.
+#include "geometry/triangle_pair.h"
+
 #include <algorithm>
 #include <limits>
 #include <tuple>
 
-#include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
+#include "geometry/point_triangle.h"
 
 namespace sdm::core {
 namespace {
@@ -15,45 +16,16 @@ void offer(PointPair& best, const Vec3& point1, const Vec3& point2) {
   if (squared < best.squared) best = {squared, point1, point2};
 }
 
-// Data common to all features of a triangle.
-struct Sides {
-  const Corners& corner;
-  Corners side;
-  Vec3 normal, inverse_squared;  // of sides: 1 / length², or 0
-  double inverse_normal;         // 1 / |normal|², or 0
-
-  explicit Sides(const Corners& t)
-      : corner(t), side{t[1] - t[0], t[2] - t[1], t[0] - t[2]}, normal(cross(side[0], side[1])) {
-    for (int k = 0; k < 3; ++k) inverse_squared[k] = inverse(squared_norm(side[k]));
-    inverse_normal = inverse(squared_norm(normal));
-  }
-
-  static double inverse(double x) { return x > std::numeric_limits<double>::min() ? 1 / x : 0; }
-
-  [[nodiscard]] Vec3 on_side(int k, const Vec3& p) const {
-    return corner[k] + std::clamp(dot(p - corner[k], side[k]) * inverse_squared[k], 0.0, 1.0) * side[k];
-  }
-  /// Whether the orthogonal projection of p lies in the triangle; `foot` receives it.
-  [[nodiscard]] bool over(const Vec3& p, Vec3& foot) const {
-    // n·(r × s) = (n × r)·s: the barycentric coordinates of corners 1 and 2.
-    const Vec3 turned = cross(normal, p - corner[0]);
-    const double v = -dot(turned, side[2]) * inverse_normal, w = -dot(turned, side[0]) * inverse_normal;
-    if (!(v > 0 && w > 0 && v + w < 1)) return false;
-    foot = corner[0] + v * side[0] - w * side[2];
-    return true;
-  }
-};
-
 // The points where the lines of two segments are closest, if both lie within the segments. Uses cross
 // products: products of dot products cancel completely where the segments are nearly parallel.
 void offer_crossing(PointPair& best, const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
   const Vec3 n = cross(u, v), r = q - p;
-  const double inverse = Sides::inverse(squared_norm(n));
+  const double inverse = TriangleSides::inverse(squared_norm(n));
   const double s = dot(cross(r, v), n) * inverse, t = dot(cross(r, u), n) * inverse;
   if (s > 0 && s < 1 && t > 0 && t < 1) offer(best, p + s * u, q + t * v);
 }
 
-PointPair closest(const Sides& a, const Sides& b) {
+PointPair closest(const TriangleSides& a, const TriangleSides& b) {
   PointPair best{std::numeric_limits<double>::infinity(), {}, {}};
   for (int i = 0; i < 3; ++i) {
     const Vec3 &p = a.corner[i], &q = b.corner[i];
@@ -83,15 +55,15 @@ double squared_box_distance(const Corners& a, const Corners& b) {
 }
 
 PointPair closest_points(const Corners& a, const Corners& b) {
-  return closest(Sides(a), Sides(b));
+  return closest(TriangleSides(a), TriangleSides(b));
 }
 
 Vec3 common_point(const Corners& a, const Corners& b) {
   // A corner and the other triangle, two edges, or an edge and the interior of the triangle that it crosses.
-  const Sides sides[2] = {Sides(a), Sides(b)};
+  const TriangleSides sides[2] = {TriangleSides(a), TriangleSides(b)};
   PointPair best = closest(sides[0], sides[1]);
   for (int i = 0; i < 2; ++i) {
-    const Sides &edges = sides[i], &face = sides[1 - i];
+    const TriangleSides &edges = sides[i], &face = sides[1 - i];
     for (int k = 0; k < 3; ++k) {
       const double along = dot(edges.side[k], face.normal);
       const double t = dot(face.corner[0] - edges.corner[k], face.normal) / along;
