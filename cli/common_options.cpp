@@ -2,7 +2,9 @@
 
 #include <sdm/threads.h>
 
+#include <algorithm>
 #include <tuple>
+#include <vector>
 
 #include "option_checks.h"
 
@@ -84,6 +86,13 @@ void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
   add_choice<sdm::EngineInfo>(app, "--engine", engine, help, choices);
 }
 
+std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, const sdm::GlOptions& gl,
+                                               const sdm::AtlasOptions& atlas) {
+  if (engine.name != "gl") return sdm::make_engine(engine.name);
+  (void)sdm::gl_device(gl, std::max(atlas.resolution, atlas.rows));  // fails before a surface is built
+  return sdm::make_gl_engine(gl);
+}
+
 void add_sign_option(CLI::App& app, sdm::SignMethod& sign) {
   add_choice<sdm::SignMethod>(app, "--sign", sign,
                               "How the inside of O2 (negative) is determined; auto: exact if O2 is "
@@ -94,23 +103,28 @@ void add_sign_option(CLI::App& app, sdm::SignMethod& sign) {
                                {"winding", sdm::SignMethod::winding}});
 }
 
-void add_color_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range) {
+void add_color_options(CLI::App& app, sdm::PictureOptions& picture) {
   add_choice<sdm::Colormap>(app, "--colormap", picture.colormap,
                             "Colormap; auto: diverging if distances have both signs, otherwise viridis",
                             {{"auto", sdm::Colormap::automatic},
                              {"viridis", sdm::Colormap::viridis},
                              {"diverging", sdm::Colormap::diverging},
                              {"paper2006", sdm::Colormap::paper2006}});
-  app.add_option("--range", range,
-                 "The distances at the ends of the colour scale; by default up to the 99th percentile of "
-                 "|distance|, to both sides of 0 if distances have both signs")
+  app.add_option_function<std::vector<double>>(
+         "--range",
+         [&picture](const std::vector<double>& range) {
+           if (!(range[0] < range[1])) throw CLI::ValidationError("--range", "LO must be below HI");
+           picture.range = {range[0], range[1]};
+         },
+         "The distances at the ends of the colour scale; by default up to the 99th percentile of "
+         "|distance|, to both sides of 0 if distances have both signs")
       ->expected(2)
       ->check(number("a number", [](double) { return true; }))
       ->type_name("LO HI");
 }
 
-void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range) {
-  add_color_options(app, picture, range);
+void add_picture_options(CLI::App& app, sdm::PictureOptions& picture) {
+  add_color_options(app, picture);
   app.add_option(
          "--picture-size", picture.largest,
          "The most pixels a side of the pictures and of the model's texture; of a larger map, they show "
@@ -174,8 +188,4 @@ sdm::ThreadLimit* limit_of_process = nullptr;
 
 void limit_threads(unsigned count) {
   limit_of_process = new sdm::ThreadLimit(count);
-}
-
-void check_range(const std::vector<double>& range) {
-  if (!range.empty() && !(range[0] < range[1])) throw CLI::ValidationError("--range", "LO must be below HI");
 }

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <sdm/engine.h>
+#include <sdm/gl.h>
 #include <sdm/io.h>
 #include <sdm/surface.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 // Parsing sets the given targets, which must outlive it.
 
@@ -28,12 +29,17 @@ void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::stri
 void check_layout(const sdm::AtlasOptions& atlas);
 /// --engine.
 void add_engine_option(CLI::App& app, sdm::EngineInfo& engine);
+/// Makes the engine of that option. Throws sdm::Error if there is none on this computer for maps as large as
+/// those of the atlas.
+[[nodiscard]] std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine,
+                                                             const sdm::GlOptions& gl,
+                                                             const sdm::AtlasOptions& atlas);
 /// --sign.
 void add_sign_option(CLI::App& app, sdm::SignMethod& sign);
 /// --colormap and --range.
-void add_color_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
-/// These, --picture-size and --units.
-void add_picture_options(CLI::App& app, sdm::PictureOptions& picture, std::vector<double>& range);
+void add_color_options(CLI::App& app, sdm::PictureOptions& picture);
+/// --colormap, --range, --picture-size, --units, --up and --unlit.
+void add_picture_options(CLI::App& app, sdm::PictureOptions& picture);
 /// --up; `files` that it applies to, in the help text.
 void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files);
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance);
@@ -47,6 +53,3 @@ void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
 /// Limits the threads of this process to `count`, 0: all cores. Never lifted: oneTBB would start threads
 /// then, which fails if memory is short, although the results are complete.
 void limit_threads(unsigned count);
-
-/// Throws CLI::ValidationError unless the range is empty or increasing.
-void check_range(const std::vector<double>& range);

@@ -333,14 +333,7 @@ int run(MapCommand command) {
   OutputFolder out(command.out, [&] { return stale_files(command.out); });
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.map.progress = progress.callback();
-  if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
-
-  if (command.engine.name == "gl") {
-    (void)sdm::gl_device(command.gl, std::max(command.atlas.resolution, command.atlas.rows));  // fails early
-    command.map.engine = sdm::make_gl_engine(command.gl);
-  } else {
-    command.map.engine = sdm::make_engine(command.engine.name);
-  }
+  command.map.engine = make_engine(command.engine, command.gl, command.atlas);
 
   progress.step("import");
   Stopwatch import;

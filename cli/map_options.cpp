@@ -76,12 +76,11 @@ void add_options(CLI::App& app, MapCommand& c) {
 
   add_write_option(app, c.files, true);
   add_channels_option(app, c.layers);
-  add_picture_options(app, c.picture, c.range);
+  add_picture_options(app, c.picture);
   add_run_options(app, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
 }
 
 void check_combination(const CLI::App& app, const MapCommand& c) {
-  check_range(c.range);
   check_layout(c.atlas);
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");

@@ -24,7 +24,7 @@ struct MapCommand {
   sdm::PictureOptions picture;
   MapFiles files;
   sdm::ExrLayers layers;
-  std::vector<double> range, bands;
+  std::vector<double> bands;
   std::optional<double> precision;
   unsigned threads = 0;
   bool both = false, json = false, quiet = false;

@@ -35,7 +35,6 @@ struct PointsCommand {
   sdm::MapOptions map;
   sdm::PictureOptions picture;
   sdm::TextDialect text;
-  std::vector<double> range;
   bool ply = true, html = sdm::can_write_html();
   unsigned threads = 0;
   bool json = false, quiet = false;
@@ -210,7 +209,6 @@ int run(PointsCommand command) {
   });
   ProgressLine progress(command.quiet);
   command.map.progress = progress.callback();
-  if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
   progress.step("import");
   sdm::PointDistancesOptions options{.map = command.map, .picture = command.picture, .text = command.text};
@@ -326,14 +324,13 @@ void add_points_command(CLI::App& app) {
       ->type_name("D");
   add_sign_option(*points, c.map.sign);
   add_tolerance_option(*points, c.picture.tolerance);
-  add_color_options(*points, c.picture, c.range);
+  add_color_options(*points, c.picture);
   points->add_option("--units", c.picture.units, "Units of the cloud and the mesh, for printed values")
       ->type_name("NAME");
   add_files_option(*points, c);
   add_up_option(*points, c.picture.up, "report.html");
   add_run_options(*points, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   points->callback([command] {
-    check_range(command->range);
     try {
       sdm::validate(command->text);
     } catch (const sdm::Error& fault) {

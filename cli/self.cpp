@@ -29,7 +29,6 @@ struct SelfCommand {
   sdm::SelfProximityOptions self;
   sdm::PictureOptions picture;
   MapFiles files;
-  std::vector<double> range;
   unsigned threads = 0;
   bool json = false, quiet = false;
 };
@@ -117,7 +116,6 @@ void run(SelfCommand command) {
   });
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.self.progress = progress.callback();
-  if (!command.range.empty()) command.picture.range = {command.range[0], command.range[1]};
 
   progress.step("import");
   Stopwatch import;
@@ -170,10 +168,9 @@ void add_self_command(CLI::App& app) {
   add_resolution_option(*self, c.atlas);
   add_layout_options(*self, c.atlas, "the mesh");
   add_write_option(*self, c.files, true);
-  add_picture_options(*self, c.picture, c.range);
+  add_picture_options(*self, c.picture);
   add_run_options(*self, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
   self->callback([command] {
-    check_range(command->range);
     check_layout(command->atlas);
     run(*command);
   });

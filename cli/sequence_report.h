@@ -5,6 +5,7 @@
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -39,6 +40,11 @@ struct Frame {
   std::uint32_t resolution = 0;                              ///< texels per row of O1's atlas
   std::array<std::optional<FrameDistances>, 2> distances{};  ///< of each body, where asked for
   FrameTimes time;
+
+  /// Whether no distance is out of the tolerance, if there is one.
+  [[nodiscard]] bool within() const {
+    return std::ranges::all_of(distances, [](const auto& d) { return !d || d->within(); });
+  }
 };
 
 /// A frame that could not be used.

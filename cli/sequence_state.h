@@ -15,8 +15,11 @@
 
 /// A hash of positions, to recognise inputs that have changed. Cost: O(n).
 [[nodiscard]] std::uint64_t hash_of(std::span<const sdm::Vec3> positions);
-/// Of positions and triangles.
+/// A hash of positions and triangles.
 [[nodiscard]] std::uint64_t hash_of(const sdm::Mesh& mesh);
+
+/// Hashes of the positions that were read of a frame; none of a body that is at rest, or was not read.
+using FrameHash = std::array<std::optional<std::uint64_t>, 2>;
 
 // NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw
 struct SequenceState {
@@ -24,15 +27,15 @@ struct SequenceState {
 
   /// A frame that is finished, or was skipped.
   struct Frame {
-    nlohmann::ordered_json line;                         ///< of frames.jsonl
-    std::array<std::optional<std::uint64_t>, 2> hash{};  ///< of each body's positions; none: not read
+    nlohmann::ordered_json line;  ///< of frames.jsonl
+    FrameHash hash{};
   };
 
-  nlohmann::ordered_json options;         ///< all that affect results, by their names
+  nlohmann::ordered_json options{};       ///< all that affect results, by their names
   std::array<std::uint64_t, 2> meshes{};  ///< hashes of the first frame of each body
   std::uint32_t resolution = 0;           ///< of the first layout of O1
-  std::vector<Frame> frames;              ///< from frame 0 on
-  sdm::TemporalMaps temporal;             ///< of `frames`
+  std::vector<Frame> frames{};            ///< from frame 0 on
+  sdm::TemporalMaps temporal{};           ///< of `frames`
 
   /// Throws sdm::Error if the file cannot be written.
   void write(const std::filesystem::path& file) const;
