@@ -37,7 +37,7 @@ struct MeshEdit {
   std::vector<MovedVertex> moved_vertices{};
   std::vector<Vec3> added_vertices{};
   std::vector<Triangle> added_faces{};  ///< may refer to added vertices
-  /// Of added faces, for meshes with texture coordinates; empty: zeros.
+  /// Texture coordinates at the corners of the added faces, for meshes that have them; empty: zeros.
   std::vector<std::array<Vec2, 3>> added_corner_uvs{};
 };
 

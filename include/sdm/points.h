@@ -43,7 +43,7 @@ struct TextDialect {
   /// ignored any other name, such as "_". As in a header, case does not matter, and easting, northing and
   /// elevation (or height) stand for x, y and z. Columns after the last are ignored.
   std::vector<std::string> columns{};
-  /// Of a file that was opened: the line of the header, from 1; 0 if it has none.
+  /// The line of the header in a file that was opened, from 1; 0 if it has none.
   std::uint64_t header_line = 0;
 };
 
@@ -81,7 +81,7 @@ class SDM_API PointReader {
 
   /// "PLY", "PCD", "LAS", "PTX" or "text".
   [[nodiscard]] std::string format() const;
-  /// Of text: how it is read, without automatic fields and with a name for each column, "_" if it is ignored.
+  /// How a text is read, without automatic fields and with a name for each column, "_" if it is ignored.
   [[nodiscard]] std::optional<TextDialect> dialect() const;
   /// Whether the file has normals.
   [[nodiscard]] bool has_normals() const;

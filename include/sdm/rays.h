@@ -28,7 +28,7 @@ struct Ray {
 struct RayHit {
   double t = std::numeric_limits<double>::infinity();
   std::uint32_t face = kNone;  ///< kNone: the ray does not meet O2
-  /// Of the face's corners: not negative, with a sum of 1 up to rounding. Their point is that of t to
+  /// Weights of the face's corners: not negative, with a sum of 1 up to rounding. Their point is that of t to
   /// rounding; of a needle, to 1e-7 of its length.
   Vec3 barycentric{};
 };

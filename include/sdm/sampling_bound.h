@@ -54,7 +54,7 @@ class SDM_API SamplingBound {
   /// r_i of each of Surface::sample_texels; 0 for a sample that no point is assigned to. Valid until the next
   /// refit.
   [[nodiscard]] std::span<const float> sample_radii() const;
-  /// For each face, a radius within which every one of its points has a sample, possibly on another face.
+  /// A radius for each face, within which every one of its points has a sample, possibly on another face.
   /// Valid until the next refit.
   [[nodiscard]] std::span<const float> face_radii() const;
 

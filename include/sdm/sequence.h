@@ -17,7 +17,7 @@ namespace sdm {
 
 /// Options of a MeshSequence.
 struct SequenceOptions {
-  /// For glTF animations: frames per second, from the first key to the last; 0: one frame per key.
+  /// Frames per second of glTF animations, from the first key to the last; 0: one frame per key.
   double rate = 0;
   /// Vertices and faces may be added and removed between numbered files; see MeshSequence::change.
   bool allow_topology = false;
@@ -25,8 +25,8 @@ struct SequenceOptions {
 
 /// How a frame differs from the one that was read before.
 struct TopologyChange {
-  /// From the mesh before to that of the frame, moved vertices included. Empty if the triangles are the same;
-  /// the vertices may have moved then.
+  /// Leads from the mesh before to that of the frame, moved vertices included. Empty if the triangles are the
+  /// same; the vertices may have moved then.
   MeshEdit edit{};
   /// Too little stays for an edit: the mesh of the frame is another one, with numbers of its own.
   bool replaced = false;
@@ -76,7 +76,7 @@ class SDM_API MeshSequence {
   /// size of the frame's file; for NPY, in that of the frame.
   [[nodiscard]] std::span<const Vec3> positions(std::size_t frame);
 
-  /// With SequenceOptions::allow_topology: how mesh() has changed in the last successful call of positions().
+  /// How mesh() has changed in the last successful call of positions(), with SequenceOptions::allow_topology.
   /// Vertices and faces that stay keep their numbers, as MeshEdit describes. What stays:
   ///  - A vertex is the one with the same number in the file before, so files must only add vertices at the
   ///    end of their lists. If a list has become shorter, or if no face of the file before shares a vertex

@@ -20,9 +20,10 @@ class Body;
 /// it.
 class SDM_API Shape {
  public:
-  /// Without an atlas: for all queries but maps. Throws sdm::Error as Sites does. Cost: that of Sites.
+  /// Makes a shape without an atlas, for all queries but maps. Throws sdm::Error as Sites does. Cost: that of
+  /// Sites.
   explicit Shape(const Mesh& mesh);
-  /// With an atlas. Throws sdm::Error as Surface and Sites do. Cost: theirs.
+  /// Makes a shape with an atlas. Throws sdm::Error as Surface and Sites do. Cost: theirs.
   Shape(const Mesh& mesh, const AtlasOptions& atlas);
 
   /// Throws sdm::Error if there is no atlas.

@@ -22,7 +22,7 @@ struct DistanceStatistics {
   double min = 0, max = 0, mean = 0, rms = 0;
   double stddev = 0;                                   ///< about the mean
   double p01 = 0, p05 = 0, p50 = 0, p95 = 0, p99 = 0;  ///< area-weighted percentiles
-  // Of |distance|.
+  // Statistics of |distance|.
   double mean_abs = 0, max_abs = 0;
   double p50_abs = 0, p95_abs = 0, p99_abs = 0;
 };

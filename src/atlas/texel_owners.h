@@ -8,9 +8,9 @@
 
 namespace sdm::atlas {
 
-/// For each texel, the face whose triangle in the atlas contains its centre, or kNone. Every chart owns at
-/// least one texel, except for AtlasKind::uv, where faces may overlap: `overlapping` is set to the number of
-/// centres that lie in a face that does not own them, by more than rounding.
+/// Returns for each texel the face whose triangle in the atlas contains its centre, or kNone. Every chart
+/// owns at least one texel, except for AtlasKind::uv, where faces may overlap: `overlapping` is set to the
+/// number of centres that lie in a face that does not own them, by more than rounding.
 [[nodiscard]] std::vector<std::uint32_t> rasterise(const Layout& layout, AtlasKind kind,
                                                    std::uint32_t resolution, std::uint32_t rows,
                                                    std::size_t& overlapping);

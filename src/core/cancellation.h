@@ -39,7 +39,7 @@ class Uncancellable : CancelBy {
 /// Throws Cancelled if this thread's work is to be cancelled. Cost: a few nanoseconds.
 void poll();
 
-/// For the bodies of loops: polls at every `stride`-th call.
+/// Polls at every `stride`-th call, in the body of a loop.
 class Poll {
  public:
   explicit Poll(std::uint32_t stride) : stride_(stride) {}

@@ -20,8 +20,8 @@ class BoxGroups {
   void find(std::span<const Box> boxes, DisjointSets& groups);
 
  private:
-  /// Of a binary tree that halves the boxes at the median of their centres: order_[begin], ..., order_[end −
-  /// 1].
+  /// A node of a binary tree that halves the boxes at the median of their centres: order_[begin], ...,
+  /// order_[end − 1].
   struct Node {
     Box box;
     std::uint32_t begin, end;

@@ -27,7 +27,7 @@ CompressedRows<HalfEdge> half_edges_by_smaller_vertex(std::size_t vertex_count,
   });
 }
 
-// For each half-edge of a face: twice the neighbouring face, plus 1 if both traverse the edge in the same
+// Has for each half-edge of a face twice the neighbouring face, plus 1 if both traverse the edge in the same
 // direction; kNone unless there is exactly one neighbour.
 using Neighbours = std::array<std::uint32_t, 3>;
 
@@ -160,7 +160,7 @@ Orientation orient(std::span<const Triangle> triangles, const Topology& topology
         }
       }
     }
-    // Of the two consistent orientations, the one that flips fewer faces.
+    // Takes the one of the two consistent orientations that flips fewer faces.
     if (flipped_members > members.size() - flipped_members)
       for (const std::uint32_t f : members) result.flipped[f] ^= 1;
   }

@@ -31,7 +31,7 @@ struct Topology {
 /// Cost: O(n log d), d the largest valence, all cores.
 [[nodiscard]] Topology build_topology(std::size_t vertex_count, std::span<const Triangle> triangles);
 
-/// For each face, whether to flip it so that neighbours across two-face edges are consistently oriented,
+/// Which faces to flip so that neighbours across two-face edges are consistently oriented,
 /// flipping the fewer faces of each component of such neighbours; `orientable` is false when no choice
 /// satisfies all of them. Ignored faces are not flipped.
 struct Orientation {

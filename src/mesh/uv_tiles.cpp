@@ -20,8 +20,8 @@ namespace {
 constexpr double kOutside = 1e-6;     // as for AtlasKind::uv
 constexpr double kLeastArea = 1e-14;  // of a piece, of the texture
 constexpr double kMostTiles = 1e6;    // from the origin
-// Of all faces that are cut together. One face may take all of the first ones: a texture that repeats a
-// hundred times on two triangles.
+// Limits for all faces that are cut together. One face may take all of the first ones: a texture that repeats
+// a hundred times on two triangles.
 constexpr double kMostPieces = 1 << 16, kMostPiecesPerFace = 16;
 
 // The range of tiles that a face meets by more than rounding, in one direction.

@@ -33,7 +33,7 @@ struct Correspondences {
 [[nodiscard]] Correspondences find_correspondences(const Samples& samples, const Affine& pose,
                                                    const Target& target);
 
-/// At most `most` of the pairs, evenly spread.
+/// Returns at most `most` of the pairs, evenly spread.
 [[nodiscard]] Correspondences thinned(const Correspondences& pairs, std::size_t most);
 
 /// The normals of the surface that the faces of O2 approximate, at the closest points: interpolated between

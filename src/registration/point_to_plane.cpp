@@ -35,7 +35,7 @@ Matrix6 information(const Correspondences& pairs, std::span<const Vec3> normals,
 }
 
 double trimming_cut(const Correspondences& pairs, const Pivot& pivot, const Motions& motions) {
-  // Of a normal distribution, the median magnitude is 0.6745 standard deviations.
+  // The median magnitude of a normal distribution is 0.6745 standard deviations.
   constexpr double kCut = 3 * 1.4826, kRounding = 1e-9, kLeast = 0.25;
   std::vector<double> distances;
   for (std::size_t i = 0; i < pairs.points.size(); ++i)

@@ -230,7 +230,7 @@ void EncloseFaces(CylinderTree& tree, const tree::WideTree& wide, const Regions&
         if (tree.has_few_leaves(wide.nodes[n].child[i])) group.run(n, i);
 }
 
-// For the other nodes: around the cylinders of their grandchildren, which are thinner than those of the
+// Encloses, for inner nodes, the cylinders of their grandchildren, which are thinner than those of the
 // children.
 void EncloseCylinders(CylinderTree& tree, const tree::WideTree& wide) {
   for (auto n = static_cast<uint32_t>(wide.nodes.size()); n-- > 0;)

@@ -18,7 +18,7 @@ namespace sdm::sites::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace core::HWY_NAMESPACE;
 
-// In single precision, the walls of a face thinner than this, in the unit frame, would enclose nothing. Its
+// The walls of a face thinner than this, in the unit frame, would enclose nothing in single precision. Its
 // edges represent it instead: no point of it is farther from them than half of this.
 constexpr double kThin = 1e-6;
 // Faces whose smallest height is below this fraction of their longest side have normals that consist of
@@ -58,7 +58,7 @@ class ToUnit {
   explicit ToUnit(const UnitFrame& frame) : frame_(frame) {}
 
   HWY_INLINE Vec3v point(const Vec3v& p) const { return between(splat(frame_.origin), p); }
-  // From a to b. The scale is a power of two: the difference is as exact as the mesh.
+  // The vector from a to b. The scale is a power of two: the difference is as exact as the mesh.
   HWY_INLINE Vec3v between(const Vec3v& a, const Vec3v& b) const {
     return mul(hn::Set(Doubles(), frame_.scale), sub(b, a));
   }

@@ -159,7 +159,7 @@ class Hubs {
       items.clear();
       for (const std::uint32_t face : s_.vertex_faces.of(hub))
         items.push_back({hub_edges_of(face, hub), face, arc_of(face, hub)});
-      // Of several hubs that two faces share, the first one visits them.
+      // The first of several hubs that two faces share visits them.
       among(items, {}, [&](std::uint32_t a, std::uint32_t b) { return first_in_common(a, b) == hub; });
     }
     for (const std::uint32_t edge : edges_) {

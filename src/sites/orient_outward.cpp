@@ -42,7 +42,7 @@ double volume(const Shell& shell, const inside::FaceTree& faces, std::span<const
   return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
 
-// Of each node of the tree the shell that its faces belong to, or kNone if they belong to several.
+// Labels each node of the tree with the shell that its faces belong to, or kNone if they belong to several.
 void label_nodes(const tree::AabbTree& tree, std::span<const std::uint32_t> component,
                  std::vector<std::uint32_t>& label) {
   label.resize(tree.nodes.size());

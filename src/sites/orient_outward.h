@@ -12,7 +12,7 @@ namespace sdm::sites {
 using Shells = CompressedRows<std::uint32_t>;
 [[nodiscard]] Shells find_shells(const mesh::Orientation& orientation);
 
-/// For a closed, orientable mesh: sets `inverted` for the faces that run clockwise seen from outside. A shell
+/// Sets `inverted` for the faces of a closed, orientable mesh that run clockwise seen from outside. A shell
 /// bounds a solid if it lies inside an even number of other shells, and a cavity if inside an odd number;
 /// shells that it touches or intersects do not count. Cost: linear, all cores, plus a ray for each shell and
 /// the pairs of faces of different shells whose boxes overlap, if there are several.

@@ -36,7 +36,7 @@ struct alignas(64) EdgeRegion {
   std::uint32_t edge;
 };
 
-/// In the cone where every ray·(x − point) ≤ 0.
+/// The cone where every ray·(x − point) ≤ 0.
 struct alignas(64) VertexRegion {
   static constexpr int kRays = 4;
   float point[3], ray[kRays][3];

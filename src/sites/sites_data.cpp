@@ -63,8 +63,8 @@ void SitesData::build_tree() {
   faces_added_to_tree_ = 0;
 }
 
-// In place, since copies would take longer than the rest: what may fail for want of memory comes first, as
-// far as it can be foreseen.
+// Refits in place, since copies would take longer than the rest: what may fail for want of memory comes
+// first, as far as it can be foreseen.
 void SitesData::refit(std::span<const Vec3> positions) {
   intact_.require();
   mesh::validate_positions(positions, mesh.positions.size());

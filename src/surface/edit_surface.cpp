@@ -96,7 +96,7 @@ class SurfaceData::Edit {
   Edit(const Edit&) = delete;
   Edit& operator=(const Edit&) = delete;
 
-  /// Of removed faces.
+  /// The texels of removed faces.
   [[nodiscard]] std::size_t freed_texels() const { return freed_.size(); }
 
   /// Charts have the numbers of their faces in the mesh.

@@ -168,7 +168,7 @@ class Clustering {
     return UnitFrame::of(bounds(mesh_)).scale * std::sqrt(area / static_cast<double>(faces_.area.size()));
   }
 
-  // For each cluster, the face closest to its centre of gravity.
+  // Returns for each cluster the face closest to its centre of gravity.
   [[nodiscard]] std::vector<std::uint32_t> central_faces() const {
     std::vector<Vec3> centre(axes_.size());
     std::vector<double> area(axes_.size());

@@ -31,7 +31,7 @@ std::vector<std::array<std::uint32_t, 3>> face_neighbours(const Mesh& mesh) {
 Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   std::array<Vec3, 3> edges = {b - a, c - b, a - c};
   if (cross(edges[0], edges[2]) == Vec3{}) return {};
-  // Without the scale, squares of small lengths would underflow.
+  // The scale keeps squares of small lengths from underflow.
   double scale = 0;
   for (const Vec3& e : edges)
     for (const double x : e) scale = std::max(scale, std::abs(x));

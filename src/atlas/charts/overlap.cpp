@@ -131,8 +131,8 @@ std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const 
       if ((pairs += list.size() - i) > budget) return std::pair(solid[list[i]], solid[list.back()]);
       for (std::size_t j = list.size() - 1; j > i; --j) {
         const Rectangle &a = boxes[list[i]], &b = boxes[list[j]];
-        // Of the cells that two boxes share, only the one with the low corner of their intersection tests the
-        // pair.
+        // Among the cells that two boxes share, only the one with the low corner of their intersection tests
+        // the pair.
         if (!boxes_meet(a, b)) continue;
         if (buckets.cell_of(std::max(a.lo[0], b.lo[0]), std::max(a.lo[1], b.lo[1])) != cell) continue;
         const std::size_t first = solid[list[i]], second = solid[list[j]];

@@ -9,7 +9,7 @@
 namespace sdm::atlas {
 namespace {
 
-// At most this many edges of a hull are tried.
+// The largest number of edges of a hull that are tried.
 constexpr std::size_t kDirections = 256;
 
 // The direction of a side of the smallest bounding rectangle: it lies along an edge of the hull (Freeman &

@@ -13,7 +13,7 @@
 namespace sdm::atlas {
 namespace {
 
-// In a fan of many slivers, nearly every pair needs a box test: such a chart is cut instead of tested in
+// Nearly every pair of a fan of many slivers needs a box test: such a chart is cut instead of tested in
 // full.
 std::uint64_t pair_budget(std::size_t faces) {
   return 10'000'000 + 100 * std::uint64_t{faces};

@@ -31,8 +31,8 @@ class BitmapBin {
   };
 
   BitmapBin(std::uint32_t width, std::uint32_t height);
-  /// For runs of at most `longest` cells; cells are taken where `taken`, of whole rows from the first on, is
-  /// not 0.
+  /// Makes a bin for runs of at most `longest` cells; cells are taken where `taken`, of whole rows from the
+  /// first on, is not 0.
   BitmapBin(std::uint32_t width, std::uint32_t height, std::uint32_t longest,
             std::span<const std::uint16_t> taken);
   /// The memory of a bin of this size, in bytes.

@@ -92,7 +92,7 @@ class Fitter {
 std::vector<Placement> fit(std::span<const Shape> shapes, double scale, Room& room) {
   const Fitter fitter(shapes, scale, room);
   const std::uint32_t n = room.resolution(), most = kMaxRows - room.rows();
-  // Without new rows first; then about as many as are needed, and twice as many whenever these do not
+  // Adds no rows at first; then about as many as are needed, and twice as many whenever these do not
   // suffice.
   const auto needed = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, 2 * fitter.texels() / n + 1));
   std::uint32_t more = 0;

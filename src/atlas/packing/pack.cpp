@@ -31,7 +31,7 @@ constexpr std::array<double, kTrials> kFirstShares{0.70, 0.82};
 constexpr int kGuesses = 4;
 // How much taller than the atlas the bin of a trial is, so that it shows how many rows are missing.
 constexpr double kTallness = 1.25;
-// From this number of charts, speed is preferred over filling the last gaps.
+// The number of charts from which speed is preferred over filling the last gaps.
 constexpr std::size_t kManyCharts = 4096;
 constexpr double kPrecisionOfMany = 0.02;
 

@@ -18,7 +18,7 @@ enum class NumberType { int8, uint8, int16, uint16, int32, uint32, int64, uint64
 /// Returns the number stored at `bytes`.
 [[nodiscard]] double load_number(const char* bytes, NumberType type, std::endian order);
 
-/// Of x, y, z and the three components of the normal.
+/// Where a row has one of x, y, z and the three components of the normal.
 struct CloudColumn {
   std::size_t place = 0;  ///< of text: the index of the number; else the offset in bytes
   NumberType type = NumberType::float64;
@@ -40,7 +40,7 @@ struct CloudLayout {
   bool compressed = false;
 };
 
-/// At most as much of a file is read for its header.
+/// The bytes of a file that are read for its header, at most.
 inline constexpr std::size_t kMaxCloudHeader = std::size_t{1} << 18;
 
 /// The layout of a PLY, PCD or LAS file that begins with `bytes`, of which kMaxCloudHeader suffice; nothing

@@ -30,7 +30,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kPagePoints = 150'000;
-// Of the longest side of the box: finer than of meshes, as clouds have outliers far away.
+// Steps in the longest side of the box, as a power of two: more than for meshes, as clouds have outliers far
+// away.
 constexpr int kStepBits = 26;
 
 struct Shown {
@@ -42,7 +43,7 @@ struct Shown {
 class Picks {
  public:
   Picks(std::uint64_t count, std::uint64_t parts) : count_(count), parts_(parts) { advance(); }
-  /// For ascending numbers.
+  /// Whether a number is shown; called with ascending numbers.
   bool operator()(std::uint64_t number) {
     if (part_ >= parts_ || number != next_) return false;
     ++part_, advance();

@@ -12,7 +12,7 @@
 namespace sdm::io {
 namespace {
 
-// In every format, the mesh and the data it is built from take at most five times the memory of the file.
+// The mesh and the data it is built from take, in every format, at most five times the memory of the file.
 constexpr std::size_t kMemoryPerByte = 5;
 
 }  // namespace

@@ -119,7 +119,7 @@ class TextScanner {
   static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
   static bool is_delimiter(char c) { return is_blank(c) || c == '#' || c == '\\'; }
 
-  // At a backslash: advances to the end of the line if nothing else follows.
+  // Advances from a backslash to the end of the line if nothing else follows.
   bool join_lines() {
     const char* next = at_ + 1;
     if (next != end_ && *next == '\r' && newline_ == '\n') ++next;

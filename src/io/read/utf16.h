@@ -6,7 +6,7 @@
 
 namespace sdm::io {
 
-/// For the message about a file for which is_utf16() holds.
+/// The fault of a file for which is_utf16() holds.
 inline constexpr std::string_view kUtf16Fault = "this is UTF-16 text; save it as UTF-8";
 
 /// Returns whether the bytes begin with a byte order mark of UTF-16, or with ASCII characters of two bytes

@@ -49,7 +49,7 @@ FacePieces cut_faces(const Surface& surface) {
   for (std::uint32_t i = 0; i < samples.size(); ++i) sample_of[samples[i]] = i;
 
   constexpr std::size_t kFacesPerGroup = 64;
-  // In the order of the charts, so that lookups are local.
+  // The order of the charts keeps lookups local.
   const std::span<const std::uint32_t> charts = surface.face_charts();
   std::vector<std::uint32_t> order(charts.size());
   std::iota(order.begin(), order.end(), 0u);

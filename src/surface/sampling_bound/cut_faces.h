@@ -17,7 +17,7 @@ struct FacePiece {
 struct FacePieces {
   /// Each group holds the pieces of a few neighbouring faces. Sample indices are global.
   std::vector<std::vector<FacePiece>> face_groups;
-  /// For each sample, whether its face contains an end of each diagonal of its square; no part of such a
+  /// Whether the face of each sample contains an end of each diagonal of its square; no part of such a
   /// square is among the pieces.
   std::vector<std::uint8_t> whole_square;
 };

@@ -36,8 +36,8 @@ class NearSamples {
     std::uint32_t texel = kNone;                                ///< the texel of the sample
     double distance = std::numeric_limits<double>::infinity();  ///< of the outline's farthest corner
   };
-  /// For a piece of the face in the square of the texel at (x, y): the first sample found within `enough`,
-  /// otherwise the nearest.
+  /// Returns, for a piece of the face in the square of the texel at (x, y), the first sample found within
+  /// `enough`, otherwise the nearest.
   [[nodiscard]] Choice choose(std::uint32_t face, double x, double y, const Outline& outline,
                               double enough) const;
   /// The same for a piece of a face that is not in the atlas.

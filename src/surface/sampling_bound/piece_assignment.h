@@ -59,9 +59,9 @@ class PieceAssignment {
   /// in other blocks.
   [[nodiscard]] double face_radius_about(const Surface& surface, BlockRange blocks, const Vec3& p) const;
 
-  /// For each face, the largest distance from some of its points to the nearest sample, rounded downwards: a
-  /// lower bound on its radius. `bound` is the largest of the present radii. Cost: a few nearest-sample
-  /// searches per face, all cores.
+  /// Returns for each face the largest distance from some of its points to the nearest sample, rounded
+  /// downwards: a lower bound on its radius. `bound` is the largest of the present radii. Cost: a few
+  /// nearest-sample searches per face, all cores.
   [[nodiscard]] std::vector<double> radius_lower_bounds(const Surface& surface, double bound) const;
 
  private:

@@ -149,7 +149,7 @@ void DialectAttempt::read() {
   rows_ = std::move(rows_with_normals_);
 }
 
-// By the given names, by those of the file, or by the place of the columns.
+// Finds the columns by the given names, by those of the file, or by their place.
 void DialectAttempt::plan(const TextLine& first_row, Cells row) {
   const bool open_end = row.back().empty();  // a separator after the last column
   if (open_end && !header_ && row.size() > 3) row.pop_back();

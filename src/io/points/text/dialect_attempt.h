@@ -42,7 +42,7 @@ class DialectAttempt {
   [[nodiscard]] const std::optional<Misfit>& misfit() const { return misfit_; }
   /// The number of rows that fit.
   [[nodiscard]] std::size_t rows() const { return rows_.size(); }
-  /// Of the first row; of the header, if there is no row.
+  /// The number of columns of the first row, or of the header if there is no row.
   [[nodiscard]] std::size_t columns() const { return columns_; }
   /// The number of cells that are numbers.
   [[nodiscard]] std::size_t numbers() const { return numbers_; }
@@ -71,7 +71,7 @@ class DialectAttempt {
   std::vector<RowNumbers> rows_, rows_with_normals_;
   std::size_t columns_ = 0, numbers_ = 0;
   std::optional<TextLine> header_;
-  // Of columns that are known by their place alone: whether columns 4 to 6 are normals, column 1 counts the
+  // What is known of columns that have no names: whether columns 4 to 6 are normals, column 1 counts the
   // rows, columns 1 and 2 increase as the cells of a grid do, with which of columns 3 to 5 having fractions,
   // and all cells are whole numbers that may be halves of numbers with decimal commas.
   using GridCell = std::pair<std::uint64_t, std::uint64_t>;

@@ -55,7 +55,7 @@ bool same_separator(const DialectAttempt& a, const DialectAttempt& b) {
   return a.table().plan.separator == b.table().plan.separator;
 }
 
-// With the fault of the dialect that fits best.
+// Throws the fault of the dialect that fits best.
 [[noreturn]] void fail(const std::vector<DialectAttempt>& all, bool any_given) {
   const auto key = [](const DialectAttempt& a) { return std::pair(a.rows(), a.columns()); };
   const DialectAttempt& best = *std::ranges::max_element(all, {}, key);
@@ -77,7 +77,7 @@ TextTable io::find_dialect(std::string_view begin, bool whole, const TextDialect
   const DialectAttempt* best = nullptr;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const DialectAttempt* fits = all[i].misfit() ? nullptr : &all[i];
-    // With the same separator, the decimal mark of more numbers: coordinates that fit both have none.
+    // The decimal mark of more numbers is taken: coordinates that fit both have none.
     for (; i + 1 < all.size() && same_separator(all[i], all[i + 1]); ++i)
       if (!all[i + 1].misfit() && (!fits || all[i + 1].numbers() > fits->numbers())) fits = &all[i + 1];
     if (fits && best && !fits->agrees_with(*best))

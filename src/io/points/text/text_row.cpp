@@ -78,7 +78,7 @@ const char* RowScanner::parse(const char* first, const char* last, double& value
     const auto [end, fault] = std::from_chars(first, last, value);
     return fault == std::errc() ? end : nullptr;
   }
-  // With a digit on either side of the comma, so that a comma after a number is none of its marks.
+  // A decimal comma has a digit on either side: a comma after a number does not belong to it.
   const char* end = first;
   while (end != last && !is_separator(*end) && !is_blank(*end)) ++end;
   std::array<char, 128> copy;

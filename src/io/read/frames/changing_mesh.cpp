@@ -26,7 +26,7 @@ bool is_soup(const PolygonCycles& polygons, std::size_t vertices) {
                               [&](std::uint32_t v) { return std::exchange(used[v], 1) != 0; });
 }
 
-// For each vertex of the file, the first one that is the same vertex of the mesh, or kNone.
+// Returns for each vertex of the file the first one that is the same vertex of the mesh, or kNone.
 std::vector<std::uint32_t> first_of_each(std::span<const std::uint32_t> vertex, std::size_t mesh_vertices) {
   std::vector<std::uint32_t> first(mesh_vertices, kNone), result(vertex.size(), kNone);
   for (std::uint32_t v = 0; v < vertex.size(); ++v) {
@@ -207,7 +207,7 @@ void ChangingMesh::follow(PolygonMesh polygons) {
   const bool same = polygons.positions.size() == vertex_.size() && polygons.ends == cycles_.ends &&
                     polygons.corners == cycles_.corners;
   if (same && move(polygons)) return;
-  // Of a list that has become shorter it is unknown which vertices are gone.
+  // Which vertices are gone is unknown of a list that has become shorter.
   const bool numbers_stay =
       same || (polygons.positions.size() >= vertex_.size() && !is_soup(cycles_, vertex_.size()));
   if (numbers_stay) keep_welded(polygons);
@@ -251,7 +251,8 @@ void ChangingMesh::keep_welded(PolygonMesh& polygons) const {
       polygons.positions[v] = polygons.positions[first[v]];
 }
 
-// By the numbers in the files, then by the vertices that those are now: a corner may refer to a copy.
+// Matches faces by the numbers in the files, then by the vertices that those are now: a corner may refer to a
+// copy.
 void ChangingMesh::match(NextFile& next, bool numbers_stay) const {
   if (numbers_stay) {
     next.keep_numbered(vertex_, mesh_.positions.size());

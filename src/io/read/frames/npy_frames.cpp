@@ -123,7 +123,7 @@ class NpyFrames : public FrameSource {
                       data, shape[0], frame_bytes));
   }
 
-  // In Fortran order, element (t, v, k) has the index t + T·(v + V·k).
+  // Reads Fortran order, where element (t, v, k) has the index t + T·(v + V·k).
   void read_strided(std::size_t frame) {
     const std::uint64_t frames = header_.shape[0], vertices = header_.shape[1], size = header_.number_bytes;
     for (std::uint64_t k = 0; k < 3; ++k)

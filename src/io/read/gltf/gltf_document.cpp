@@ -46,7 +46,7 @@ Chunks split(std::string_view bytes) {
   return chunks;
 }
 
-// In glTF 1.0, the version could be a number or missing, and meshes were members of an object.
+// The version could be a number or missing in glTF 1.0, where meshes were members of an object.
 void check_version(const json& root) {
   if (const auto meshes = root.find("meshes"); meshes != root.end() && meshes->is_object())
     refuse_version("1.0");

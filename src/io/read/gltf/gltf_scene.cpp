@@ -51,7 +51,7 @@ bool add_uvs(const GltfDocument& document, const json& attributes, std::size_t v
   if (!attributes.contains("TEXCOORD_0")) return false;
   const GltfRows uvs(document, whole_number(attributes, "TEXCOORD_0"));
   if (uvs.columns() != 2 || uvs.rows() != vertices) return false;
-  // In glTF, v points down.
+  // glTF's v points down.
   for (std::size_t v = 0; v < vertices; ++v) mesh.uvs.push_back({uvs.number(v, 0), 1 - uvs.number(v, 1)});
   return true;
 }

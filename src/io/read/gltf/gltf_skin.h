@@ -13,7 +13,7 @@ namespace sdm::io {
 /// of a skin, which replace that (glTF 2.0, 3.7.3).
 class GltfPlacement {
  public:
-  /// Of a node without a skin.
+  /// Places what belongs to a node without a skin.
   explicit GltfPlacement(const GltfTransform& to_scene);
   /// `joints` move positions at rest to the scene, and must outlive the object. Throws sdm::Error if the
   /// attributes of the primitive do not give a joint and a weight to each of its vertices.

@@ -45,7 +45,7 @@ class Triangulator {
   std::vector<Vec2> plane_;
   std::vector<Corner> corners_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  // For large polygons: the ranks of all corners, and the remaining corners that are not convex.
+  // An index of large polygons: the ranks of all corners, and the remaining corners that are not convex.
   bool indexed_ = false;
   Tournament<Rank> ranks_;
   CornerTree reflex_;
