@@ -174,14 +174,142 @@ std::size_t faces_of(const MultiBodyQuery& query) {
   return faces;
 }
 
+void bind_motion(nb::class_<PyMultiBodyQuery>& query) {
+  query
+      .def(
+          "__init__",
+          [](PyMultiBodyQuery* self, nb::handle bodies, double max_distance, double depth_precision,
+             double contact_margin) {
+            new (self) PyMultiBodyQuery{query_of(bodies, {.max_distance = max_distance,
+                                                          .depth_precision = depth_precision,
+                                                          .contact_margin = contact_margin}),
+                                        {}};
+          },
+          nb::arg("bodies").none(), nb::kw_only(),
+          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("depth_precision") = 0.0,
+          nb::arg("contact_margin") = 0.0,
+          nb::sig(
+              "def __init__(self, bodies: collections.abc.Iterable[object], *, max_distance: float = ..., "
+              "depth_precision: float = 0.0, contact_margin: float = 0.0) -> None"))
+      .def("__len__", [](const PyMultiBodyQuery& self) { return self.query.size(); })
+      .def(
+          "set_pose",
+          [](PyMultiBodyQuery& self, std::int64_t body, nb::handle pose) {
+            const Transform matrix = transform(pose, "pose");
+            const auto lock = self.access.change();
+            self.query.set_pose(index_of(body), matrix);
+          },
+          nb::arg("body"), nb::arg("pose").none(),
+          nb::sig("def set_pose(self, body: int, pose: object) -> None"),
+          "Sets the pose of a body, as ProximityQuery.set_pose().")
+      .def(
+          "set_poses",
+          [](PyMultiBodyQuery& self, nb::handle poses) {
+            std::vector<Transform> transforms;
+            for (const nb::handle pose : nb::iter(poses)) transforms.push_back(transform(pose, "pose"));
+            const auto lock = self.access.change();
+            self.query.set_poses(transforms);
+          },
+          nb::arg("poses").none(), nb::sig("def set_poses(self, poses: object) -> None"),
+          "Sets the poses of all bodies, (n, 4, 4) numbers.")
+      .def(
+          "pose",
+          [](const PyMultiBodyQuery& self, std::int64_t body) {
+            const auto lock = self.access.use();
+            return matrix(self.query.pose(index_of(body)));
+          },
+          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.ndarray"),
+          "The pose of a body, (4, 4) float64.")
+      .def(
+          "refit",
+          [](PyMultiBodyQuery& self, std::int64_t body, nb::handle vertices) {
+            const Points positions(vertices, "vertices");
+            if (positions.get().empty()) throw Error("vertices is empty");  // would leave the body unchanged
+            const auto lock = self.access.change();
+            run_short([&] { self.query.refit(index_of(body), positions.get()); });
+          },
+          nb::arg("body"), nb::arg("vertices").none(),
+          nb::sig("def refit(self, body: int, vertices: object) -> None"),
+          R"(Moves the vertices of a body, (n, 3) numbers, keeping its faces and its pose. Raises Error,
+and changes nothing, for a body that does not exist or whose Shape is shared, another number of vertices,
+or coordinates that are not finite. Cost: linear.)");
+}
+
+void bind_answers(nb::class_<PyMultiBodyQuery>& query) {
+  query
+      .def(
+          "pairs",
+          [](PyMultiBodyQuery& self) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PyPairs>();
+            run_sized(faces_of(self.query), [&] {
+              const auto pairs = self.query.pairs();
+              result->pairs.assign(pairs.begin(), pairs.end());
+            });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership,
+          "Returns all pairs that collide or whose separation is at most max_distance.")
+      .def(
+          "contacts",
+          [](PyMultiBodyQuery& self) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PyContacts>();
+            result->has_bodies = true;
+            run_sized(faces_of(self.query), [&] {
+              for (const BodyContact& contact : self.query.contacts()) {
+                result->contacts.push_back(contact.contact);
+                result->bodies.push_back({contact.first, contact.second});
+              }
+            });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership,
+          "Returns the contacts of all pairs, those of each as by ProximityQuery.contacts().");
+}
+
+void bind_nearest(nb::class_<PyMultiBodyQuery>& query) {
+  query
+      .def(
+          "nearest_map",
+          [](const PyMultiBodyQuery& self, std::int64_t body) {
+            const auto lock = self.access.use();
+            auto result = std::make_unique<PyNearestMap>();
+            run_sized(faces_of(self.query), [&] { self.query.nearest_map(index_of(body), result->nearest); });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership, nb::arg("body"),
+          R"(Returns the distances from the texels of a body to the nearest other body; texels with none
+within max_distance have no value. Raises Error for a body that does not exist, or whose Shape has no
+resolution.)")
+      .def(
+          "distances_at_vertices",
+          [](const PyMultiBodyQuery& self, std::int64_t body, double max_distance) {
+            const auto lock = self.access.use();
+            std::vector<float> distances;
+            run_sized(faces_of(self.query), [&] {
+              distances = nearest_distances_at_vertices(self.query, index_of(body), max_distance);
+            });
+            const std::size_t count = distances.size();
+            return array_of<float>(std::move(distances), {count});
+          },
+          nb::arg("body"), nb::kw_only(), nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::sig(
+              "def distances_at_vertices(self, body: int, *, max_distance: float = ...) -> numpy.ndarray"),
+          R"(Returns the distance from each vertex of a body to the nearest other body, (n,) float32,
+signed as in nearest_map(); NaN where none is within max_distance.)")
+      .def("__repr__", [](const PyMultiBodyQuery& self) {
+        return nb::str("sdm.MultiBodyQuery({} bodies)").format(self.query.size());
+      });
+}
+
 }  // namespace
 
 void bind_bodies(nb::module_& module) {
   bind_pairs(module);
   bind_nearest_map(module);
-  using Q = PyMultiBodyQuery;
-  nb::class_<Q>(module, "MultiBodyQuery",
-                R"(Proximity of bodies that move and deform, each against all others.
+  nb::class_<PyMultiBodyQuery> query(module, "MultiBodyQuery",
+                                     R"(Proximity of bodies that move and deform, each against all others.
 
 bodies: each any form of a mesh (see Mesh), or a Shape, which many bodies can share.
 max_distance: > 0, in units of the meshes. Pairs farther apart are not reported.
@@ -196,122 +324,10 @@ A call raises Error while another thread uses the object.
 >>> query.set_poses(poses)
 >>> query.pairs().bodies
 array([[0, 1],
-       [1, 2]], dtype=uint32))")
-      .def(
-          "__init__",
-          [](Q* self, nb::handle bodies, double max_distance, double depth_precision, double contact_margin) {
-            new (self) Q{query_of(bodies, {.max_distance = max_distance,
-                                           .depth_precision = depth_precision,
-                                           .contact_margin = contact_margin}),
-                         {}};
-          },
-          nb::arg("bodies").none(), nb::kw_only(),
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("depth_precision") = 0.0,
-          nb::arg("contact_margin") = 0.0,
-          nb::sig(
-              "def __init__(self, bodies: collections.abc.Iterable[object], *, max_distance: float = ..., "
-              "depth_precision: float = 0.0, contact_margin: float = 0.0) -> None"))
-      .def("__len__", [](const Q& self) { return self.query.size(); })
-      .def(
-          "set_pose",
-          [](Q& self, std::int64_t body, nb::handle pose) {
-            const Transform matrix = transform(pose, "pose");
-            const auto lock = self.access.change();
-            self.query.set_pose(index_of(body), matrix);
-          },
-          nb::arg("body"), nb::arg("pose").none(),
-          nb::sig("def set_pose(self, body: int, pose: object) -> None"),
-          "Sets the pose of a body, as ProximityQuery.set_pose().")
-      .def(
-          "set_poses",
-          [](Q& self, nb::handle poses) {
-            std::vector<Transform> transforms;
-            for (const nb::handle pose : nb::iter(poses)) transforms.push_back(transform(pose, "pose"));
-            const auto lock = self.access.change();
-            self.query.set_poses(transforms);
-          },
-          nb::arg("poses").none(), nb::sig("def set_poses(self, poses: object) -> None"),
-          "Sets the poses of all bodies, (n, 4, 4) numbers.")
-      .def(
-          "pose",
-          [](const Q& self, std::int64_t body) {
-            const auto lock = self.access.use();
-            return matrix(self.query.pose(index_of(body)));
-          },
-          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.ndarray"),
-          "The pose of a body, (4, 4) float64.")
-      .def(
-          "refit",
-          [](Q& self, std::int64_t body, nb::handle vertices) {
-            const Points positions(vertices, "vertices");
-            if (positions.get().empty()) throw Error("vertices is empty");  // would leave the body unchanged
-            const auto lock = self.access.change();
-            run_short([&] { self.query.refit(index_of(body), positions.get()); });
-          },
-          nb::arg("body"), nb::arg("vertices").none(),
-          nb::sig("def refit(self, body: int, vertices: object) -> None"),
-          R"(Moves the vertices of a body, (n, 3) numbers, keeping its faces and its pose. Raises Error,
-and changes nothing, for a body that does not exist or whose Shape is shared, another number of vertices,
-or coordinates that are not finite. Cost: linear.)")
-      .def(
-          "pairs",
-          [](Q& self) {
-            const auto lock = self.access.change();
-            auto result = std::make_unique<PyPairs>();
-            run_sized(faces_of(self.query), [&] {
-              const auto pairs = self.query.pairs();
-              result->pairs.assign(pairs.begin(), pairs.end());
-            });
-            return result.release();
-          },
-          nb::rv_policy::take_ownership,
-          "Returns all pairs that collide or whose separation is at most max_distance.")
-      .def(
-          "contacts",
-          [](Q& self) {
-            const auto lock = self.access.change();
-            auto result = std::make_unique<PyContacts>();
-            result->has_bodies = true;
-            run_sized(faces_of(self.query), [&] {
-              for (const BodyContact& contact : self.query.contacts()) {
-                result->contacts.push_back(contact.contact);
-                result->bodies.push_back({contact.first, contact.second});
-              }
-            });
-            return result.release();
-          },
-          nb::rv_policy::take_ownership,
-          "Returns the contacts of all pairs, those of each as by ProximityQuery.contacts().")
-      .def(
-          "nearest_map",
-          [](const Q& self, std::int64_t body) {
-            const auto lock = self.access.use();
-            auto result = std::make_unique<PyNearestMap>();
-            run_sized(faces_of(self.query), [&] { self.query.nearest_map(index_of(body), result->nearest); });
-            return result.release();
-          },
-          nb::rv_policy::take_ownership, nb::arg("body"),
-          R"(Returns the distances from the texels of a body to the nearest other body; texels with none
-within max_distance have no value. Raises Error for a body that does not exist, or whose Shape has no
-resolution.)")
-      .def(
-          "distances_at_vertices",
-          [](const Q& self, std::int64_t body, double max_distance) {
-            const auto lock = self.access.use();
-            std::vector<float> distances;
-            run_sized(faces_of(self.query), [&] {
-              distances = nearest_distances_at_vertices(self.query, index_of(body), max_distance);
-            });
-            const std::size_t count = distances.size();
-            return array_of<float>(std::move(distances), {count});
-          },
-          nb::arg("body"), nb::kw_only(), nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
-          nb::sig(
-              "def distances_at_vertices(self, body: int, *, max_distance: float = ...) -> numpy.ndarray"),
-          R"(Returns the distance from each vertex of a body to the nearest other body, (n,) float32,
-signed as in nearest_map(); NaN where none is within max_distance.)")
-      .def("__repr__",
-           [](const Q& self) { return nb::str("sdm.MultiBodyQuery({} bodies)").format(self.query.size()); });
+       [1, 2]], dtype=uint32))");
+  bind_motion(query);
+  bind_answers(query);
+  bind_nearest(query);
 }
 
 }  // namespace sdm::python

@@ -39,27 +39,8 @@ Mesh mesh_of(nb::handle mesh, nb::handle faces) {
   return result;
 }
 
-void bind_meshes(nb::module_& module) {
-  nb::class_<PyMesh>(
-      module, "Mesh",
-      R"(A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.
-
-Accepts the same forms of a mesh as every function of this package:
-
-- two arrays ``(vertices, faces)``: n × 3 numbers of any dtype, m × 3 integers
-- the path of an OBJ, PLY, STL, OFF, glTF, GLB or 3DS file
-- ``Mesh``, ``Sites``, ``Surface``
-- ``trimesh.Trimesh``, ``open3d.geometry.TriangleMesh``, ``open3d.t.geometry.TriangleMesh``,
-  ``pyvista.PolyData``, ``meshio.Mesh``
-
-Faces are counter-clockwise seen from outside. Raises Error for an object that is no mesh, for
-an index out of range, for coordinates that are NaN or beyond 1e37, and if no face has an area.
-
->>> mesh = sdm.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
->>> mesh.vertices.shape, mesh.faces.dtype
-((3, 3), dtype('uint32'))
->>> vertices, faces = mesh)")
-      .def(
+void bind_arrays(nb::class_<PyMesh>& mesh) {
+  mesh.def(
           "__init__",
           [](PyMesh* self, nb::handle mesh, nb::handle faces) {
             Mesh value = mesh_of(mesh, faces);
@@ -111,6 +92,29 @@ array([2., 1., 1.]))")
         return nb::str("sdm.Mesh({} vertices, {} faces)")
             .format(self.mesh.positions.size(), self.mesh.triangles.size());
       });
+}
+
+void bind_meshes(nb::module_& module) {
+  nb::class_<PyMesh> mesh(
+      module, "Mesh",
+      R"(A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.
+
+Accepts the same forms of a mesh as every function of this package:
+
+- two arrays ``(vertices, faces)``: n × 3 numbers of any dtype, m × 3 integers
+- the path of an OBJ, PLY, STL, OFF, glTF, GLB or 3DS file
+- ``Mesh``, ``Sites``, ``Surface``
+- ``trimesh.Trimesh``, ``open3d.geometry.TriangleMesh``, ``open3d.t.geometry.TriangleMesh``,
+  ``pyvista.PolyData``, ``meshio.Mesh``
+
+Faces are counter-clockwise seen from outside. Raises Error for an object that is no mesh, for
+an index out of range, for coordinates that are NaN or beyond 1e37, and if no face has an area.
+
+>>> mesh = sdm.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+>>> mesh.vertices.shape, mesh.faces.dtype
+((3, 3), dtype('uint32'))
+>>> vertices, faces = mesh)");
+  bind_arrays(mesh);
 
   module.def(
       "fit_to_unit", [](nb::handle mesh) { return matrix(fit_to_unit(mesh_of(mesh, nb::none()))); },

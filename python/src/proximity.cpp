@@ -172,12 +172,108 @@ Shape shape_of(nb::handle body) {
   return run_sized(mesh.triangles.size(), [&] { return Shape(mesh); });
 }
 
+void bind_motion(nb::class_<PyProximityQuery>& query) {
+  query
+      .def(
+          "__init__",
+          [](PyProximityQuery* self, nb::handle o1, nb::handle o2, double depth_precision,
+             double contact_margin) {
+            const ProximityOptions options{.depth_precision = depth_precision,
+                                           .contact_margin = contact_margin};
+            new (self) PyProximityQuery{ProximityQuery(shape_of(o1), shape_of(o2), options), {}};
+          },
+          nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("depth_precision") = 0.0,
+          nb::arg("contact_margin") = 0.0,
+          nb::sig("def __init__(self, o1: object, o2: object, *, depth_precision: float = 0.0, "
+                  "contact_margin: float = "
+                  "0.0) -> None"))
+      .def(
+          "set_pose",
+          [](PyProximityQuery& self, int body, nb::handle pose) {
+            const Transform matrix = transform(pose, "pose");
+            const auto lock = self.access.change();
+            self.query.set_pose(checked(body), matrix);
+          },
+          nb::arg("body"), nb::arg("pose").none(),
+          nb::sig("def set_pose(self, body: int, pose: object) -> None"),
+          R"(Sets the pose of a body, 0 or 1: a 4 × 4 matrix from the frame of its mesh to space, for
+column vectors, of a rotation, a uniform scale and a translation. Initially the identity. Raises Error, and
+changes nothing, if it differs from such a matrix by more than 1e-5 of the scale. Cost: constant.)")
+      .def(
+          "pose",
+          [](const PyProximityQuery& self, int body) {
+            const auto lock = self.access.use();
+            return matrix(self.query.pose(checked(body)));
+          },
+          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.ndarray"),
+          "The pose of a body, (4, 4) float64.")
+      .def(
+          "refit",
+          [](PyProximityQuery& self, nb::handle o1, nb::handle o2) {
+            const OptionalPoints first(o1, "o1"), second(o2, "o2");
+            const auto lock = self.access.change();
+            run_short([&] { self.query.refit(first.get(), second.get()); });
+          },
+          nb::arg("o1") = nb::none(), nb::arg("o2") = nb::none(),
+          nb::sig("def refit(self, o1: object = None, o2: object = None) -> None"),
+          R"(Moves the vertices of the bodies, (n, 3) numbers each; None leaves a body unchanged. Raises
+Error, and changes nothing, for another number of vertices, coordinates that are not finite, or a body
+whose Shape is shared. Cost: linear.)");
+}
+
+void bind_answers(nb::class_<PyProximityQuery>& query) {
+  query
+      .def(
+          "separation",
+          [](PyProximityQuery& self) {
+            const auto lock = self.access.change();
+            return run_sized(faces_of(self.query), [&] { return self.query.separation(); });
+          },
+          "Returns the smallest distance between the two surfaces: exact, and 0 if they intersect.")
+      .def(
+          "colliding",
+          [](PyProximityQuery& self) {
+            const auto lock = self.access.change();
+            return run_sized(faces_of(self.query), [&] { return self.query.colliding(); });
+          },
+          "Returns whether the surfaces intersect or one body is a solid that contains part of the other. "
+          "Exact.")
+      .def(
+          "penetration_depth",
+          [](PyProximityQuery& self) {
+            const auto lock = self.access.change();
+            return run_sized(faces_of(self.query), [&] { return self.query.penetration_depth(); });
+          },
+          nb::sig("def penetration_depth(self) -> BoundedLength | None"),
+          R"(Returns the largest distance from a surface point of either body that lies inside the other to
+the boundary of that other body: exactly 0 if they do not collide, otherwise bounded; None if neither body
+is a solid.)")
+      .def(
+          "contacts",
+          [](PyProximityQuery& self) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PyContacts>();
+            run_sized(faces_of(self.query), [&] {
+              const auto contacts = self.query.contacts();
+              result->contacts.assign(contacts.begin(), contacts.end());
+            });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership,
+          R"(Returns the contacts of both bodies: none if they are farther apart than the margin.
+
+>>> query = sdm.ProximityQuery(box, box, contact_margin=0.1)
+>>> query.set_pose(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.05], [0, 0, 0, 1]])
+>>> contacts = query.contacts()
+>>> float(contacts.depth.max().round(6))
+-0.05)");
+}
+
 void bind_proximity(nb::module_& module) {
   bind_lengths(module);
   bind_contacts(module);
   bind_shape(module);
-  using Q = PyProximityQuery;
-  nb::class_<Q>(
+  nb::class_<PyProximityQuery> query(
       module, "ProximityQuery",
       R"(Proximity of two bodies that move and deform: separation, collision, penetration depth, contacts.
 
@@ -196,95 +292,9 @@ A call raises Error while another thread uses the object.
 >>> query.separation()
 sdm.BoundedLength(2, exact)
 >>> bool(query.colliding())
-False)")
-      .def(
-          "__init__",
-          [](Q* self, nb::handle o1, nb::handle o2, double depth_precision, double contact_margin) {
-            const ProximityOptions options{.depth_precision = depth_precision,
-                                           .contact_margin = contact_margin};
-            new (self) Q{ProximityQuery(shape_of(o1), shape_of(o2), options), {}};
-          },
-          nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("depth_precision") = 0.0,
-          nb::arg("contact_margin") = 0.0,
-          nb::sig("def __init__(self, o1: object, o2: object, *, depth_precision: float = 0.0, "
-                  "contact_margin: float = "
-                  "0.0) -> None"))
-      .def(
-          "set_pose",
-          [](Q& self, int body, nb::handle pose) {
-            const Transform matrix = transform(pose, "pose");
-            const auto lock = self.access.change();
-            self.query.set_pose(checked(body), matrix);
-          },
-          nb::arg("body"), nb::arg("pose").none(),
-          nb::sig("def set_pose(self, body: int, pose: object) -> None"),
-          R"(Sets the pose of a body, 0 or 1: a 4 × 4 matrix from the frame of its mesh to space, for
-column vectors, of a rotation, a uniform scale and a translation. Initially the identity. Raises Error, and
-changes nothing, if it differs from such a matrix by more than 1e-5 of the scale. Cost: constant.)")
-      .def(
-          "pose",
-          [](const Q& self, int body) {
-            const auto lock = self.access.use();
-            return matrix(self.query.pose(checked(body)));
-          },
-          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.ndarray"),
-          "The pose of a body, (4, 4) float64.")
-      .def(
-          "refit",
-          [](Q& self, nb::handle o1, nb::handle o2) {
-            const OptionalPoints first(o1, "o1"), second(o2, "o2");
-            const auto lock = self.access.change();
-            run_short([&] { self.query.refit(first.get(), second.get()); });
-          },
-          nb::arg("o1") = nb::none(), nb::arg("o2") = nb::none(),
-          nb::sig("def refit(self, o1: object = None, o2: object = None) -> None"),
-          R"(Moves the vertices of the bodies, (n, 3) numbers each; None leaves a body unchanged. Raises
-Error, and changes nothing, for another number of vertices, coordinates that are not finite, or a body
-whose Shape is shared. Cost: linear.)")
-      .def(
-          "separation",
-          [](Q& self) {
-            const auto lock = self.access.change();
-            return run_sized(faces_of(self.query), [&] { return self.query.separation(); });
-          },
-          "Returns the smallest distance between the two surfaces: exact, and 0 if they intersect.")
-      .def(
-          "colliding",
-          [](Q& self) {
-            const auto lock = self.access.change();
-            return run_sized(faces_of(self.query), [&] { return self.query.colliding(); });
-          },
-          "Returns whether the surfaces intersect or one body is a solid that contains part of the other. "
-          "Exact.")
-      .def(
-          "penetration_depth",
-          [](Q& self) {
-            const auto lock = self.access.change();
-            return run_sized(faces_of(self.query), [&] { return self.query.penetration_depth(); });
-          },
-          nb::sig("def penetration_depth(self) -> BoundedLength | None"),
-          R"(Returns the largest distance from a surface point of either body that lies inside the other to
-the boundary of that other body: exactly 0 if they do not collide, otherwise bounded; None if neither body
-is a solid.)")
-      .def(
-          "contacts",
-          [](Q& self) {
-            const auto lock = self.access.change();
-            auto result = std::make_unique<PyContacts>();
-            run_sized(faces_of(self.query), [&] {
-              const auto contacts = self.query.contacts();
-              result->contacts.assign(contacts.begin(), contacts.end());
-            });
-            return result.release();
-          },
-          nb::rv_policy::take_ownership,
-          R"(Returns the contacts of both bodies: none if they are farther apart than the margin.
-
->>> query = sdm.ProximityQuery(box, box, contact_margin=0.1)
->>> query.set_pose(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.05], [0, 0, 0, 1]])
->>> contacts = query.contacts()
->>> float(contacts.depth.max().round(6))
--0.05)");
+False)");
+  bind_motion(query);
+  bind_answers(query);
   bind_self_proximity(module);
 }
 

@@ -15,34 +15,18 @@ struct PySelfProximityQuery {
   Access access;
 };
 
-}  // namespace
-
-void bind_self_proximity(nb::module_& module) {
-  using Q = PySelfProximityQuery;
-  nb::class_<Q>(module, "SelfProximityQuery",
-                R"(Proximity of a deforming mesh to itself. Results are exact: computed from the triangles.
-
-rest: any form of a mesh (see Mesh), at rest.
-rings: a face excludes itself and this many rings of faces around it, connected by shared vertices; ≥ 1.
-geodesic: instead of rings, exclude everything closer than this along the surface at rest.
-max_distance: of separation(), > 0. Both in units of the mesh.
-progress: called as progress(step, fraction), on this thread; False cancels.
-
-A call raises Error while another thread uses the object.
-
->>> query = sdm.SelfProximityQuery(sphere, geodesic=1.5)
->>> 1 < query.separation().value < 2
-True)")
+void bind_mesh(nb::class_<PySelfProximityQuery>& query) {
+  query
       .def(
           "__init__",
-          [](Q* self, nb::handle rest, std::uint32_t rings, std::optional<double> geodesic,
+          [](PySelfProximityQuery* self, nb::handle rest, std::uint32_t rings, std::optional<double> geodesic,
              double max_distance, nb::handle progress) {
             Mesh mesh = mesh_of(rest, nb::none());
             run(progress, [&](const Progress& report) {
               const SelfProximityOptions options{.exclusion = {.rings = rings, .geodesic = geodesic},
                                                  .max_distance = max_distance,
                                                  .progress = report};
-              new (self) Q{SelfProximityQuery(std::move(mesh), options), {}};
+              new (self) PySelfProximityQuery{SelfProximityQuery(std::move(mesh), options), {}};
             });
           },
           nb::arg("rest").none(), nb::kw_only(), nb::arg("rings") = 1, nb::arg("geodesic") = nb::none(),
@@ -53,7 +37,7 @@ True)")
                   "-> None"))
       .def(
           "refit",
-          [](Q& self, nb::handle vertices) {
+          [](PySelfProximityQuery& self, nb::handle vertices) {
             const Points positions(vertices, "vertices");
             const auto lock = self.access.change();
             run_short([&] { self.query.refit(positions.get()); });
@@ -61,10 +45,14 @@ True)")
           nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
           R"(Moves the vertices, (n, 3) numbers; the excluded faces stay the same. Raises Error, and
 changes nothing, for another number of vertices or coordinates that are not finite or beyond 1e37. Cost:
-linear.)")
+linear.)");
+}
+
+void bind_answers(nb::class_<PySelfProximityQuery>& query) {
+  query
       .def(
           "separation",
-          [](Q& self) {
+          [](PySelfProximityQuery& self) {
             const auto lock = self.access.change();
             return run_sized(self.query.sites().mesh().triangles.size(),
                              [&] { return self.query.separation(); });
@@ -75,7 +63,7 @@ intersect; None if there are none within max_distance. The witness is a point on
 index first.)")
       .def(
           "contacts",
-          [](Q& self, double margin) {
+          [](PySelfProximityQuery& self, double margin) {
             const auto lock = self.access.change();
             auto result = std::make_unique<PyContacts>();
             run_sized(self.query.sites().mesh().triangles.size(), [&] {
@@ -87,11 +75,33 @@ index first.)")
           nb::rv_policy::take_ownership, nb::arg("margin"),
           R"(Returns the contacts of faces within ``margin``, in units of the mesh, of a face that they do
 not exclude, with the nearest such face. depth is -|point2 - point1|, as a surface has no inside.)")
-      .def("__repr__", [](const Q& self) {
+      .def("__repr__", [](const PySelfProximityQuery& self) {
         const Mesh& mesh = self.query.sites().mesh();
         return nb::str("sdm.SelfProximityQuery({} vertices, {} faces)")
             .format(mesh.positions.size(), mesh.triangles.size());
       });
+}
+
+}  // namespace
+
+void bind_self_proximity(nb::module_& module) {
+  nb::class_<PySelfProximityQuery> query(
+      module, "SelfProximityQuery",
+      R"(Proximity of a deforming mesh to itself. Results are exact: computed from the triangles.
+
+rest: any form of a mesh (see Mesh), at rest.
+rings: a face excludes itself and this many rings of faces around it, connected by shared vertices; ≥ 1.
+geodesic: instead of rings, exclude everything closer than this along the surface at rest.
+max_distance: of separation(), > 0. Both in units of the mesh.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+A call raises Error while another thread uses the object.
+
+>>> query = sdm.SelfProximityQuery(sphere, geodesic=1.5)
+>>> 1 < query.separation().value < 2
+True)");
+  bind_mesh(query);
+  bind_answers(query);
 }
 
 }  // namespace sdm::python

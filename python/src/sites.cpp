@@ -110,49 +110,33 @@ there is no closest point. Raises Error without gradients.
       });
 }
 
-}  // namespace
+void bind_construction(nb::class_<PySites>& sites) {
+  sites.def(
+      "__init__",
+      [](PySites* self, nb::handle mesh, nb::handle faces) {
+        Mesh value = mesh_of(mesh, faces);
+        const std::size_t size = value.triangles.size();
+        run_sized(size, [&] { new (self) PySites(std::move(value)); });
+      },
+      nb::arg("mesh").none(), nb::arg("faces") = nb::none(),
+      nb::sig("def __init__(self, mesh: object, faces: object = None) -> None"));
+}
 
-void bind_sites(nb::module_& module) {
-  bind_closest_points(module);
-  nb::class_<PySites> sites(
-      module, "Sites",
-      R"(The object that distances are measured to (O2): the faces, edges and vertices of a mesh,
-prepared for queries.
-
-mesh, faces: as Mesh. Raises Error for a mesh that cannot be used. Cost: O(m log m) for m faces,
-all cores. Several threads may query an object at the same time; refit() raises Error while they
-do.
-
->>> sites = sdm.Sites(box)
->>> sites.closest_points([[2, 0.5, 0.5]]).point
-array([[1. , 0.5, 0.5]])
->>> sites.signed_distance([[0.5, 0.5, 0.75]])
-array([-0.25]))");
-  sites
-      .def(
-          "__init__",
-          [](PySites* self, nb::handle mesh, nb::handle faces) {
-            Mesh value = mesh_of(mesh, faces);
-            const std::size_t size = value.triangles.size();
-            run_sized(size, [&] { new (self) PySites(std::move(value)); });
-          },
-          nb::arg("mesh").none(), nb::arg("faces") = nb::none(),
-          nb::sig("def __init__(self, mesh: object, faces: object = None) -> None"))
-      .def(
-          "closest_points",
-          [](nb::handle self, nb::handle points, double max_distance, const char* sign, bool gradients,
-             const char* engine, nb::handle progress) {
-            return closest(self, points, {max_distance, sign, gradients, engine, progress}).release();
-          },
-          nb::rv_policy::take_ownership, nb::arg("points").none(), nb::kw_only(),
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("sign") = "none",
-          nb::arg("gradients") = false, nb::arg("engine") = "cpu", nb::arg("progress") = nb::none(),
-          nb::sig(
-              "def closest_points(self, points: object, *, max_distance: float = ..., sign: str = 'none', "
+void bind_closest(nb::class_<PySites>& sites) {
+  sites.def(
+      "closest_points",
+      [](nb::handle self, nb::handle points, double max_distance, const char* sign, bool gradients,
+         const char* engine, nb::handle progress) {
+        return closest(self, points, {max_distance, sign, gradients, engine, progress}).release();
+      },
+      nb::rv_policy::take_ownership, nb::arg("points").none(), nb::kw_only(),
+      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("sign") = "none",
+      nb::arg("gradients") = false, nb::arg("engine") = "cpu", nb::arg("progress") = nb::none(),
+      nb::sig("def closest_points(self, points: object, *, max_distance: float = ..., sign: str = 'none', "
               "gradients: bool = False, engine: str = 'cpu', progress: collections.abc.Callable[[str, "
               "float], "
               "bool | None] | None = None) -> ClosestPoints"),
-          R"(Returns the closest point of the mesh to each of n points.
+      R"(Returns the closest point of the mesh to each of n points.
 
 points: (n, 3) numbers. float64 in C order is used without a copy, and must not change during the call.
 max_distance: > 0, in units of the mesh; points farther away have no closest point.
@@ -171,7 +155,11 @@ Cancelled. Cost: one search per point, all cores.
 >>> closest.distance
 array([1.        , 1.73205081])
 >>> closest.site_type == [sdm.SiteType.FACE, sdm.SiteType.VERTEX]
-array([ True,  True]))")
+array([ True,  True]))");
+}
+
+void bind_signs(nb::class_<PySites>& sites) {
+  sites
       .def(
           "signed_distance",
           [](nb::handle self, nb::handle points, const char* sign, double max_distance, nb::handle progress) {
@@ -208,22 +196,25 @@ array([-0.5,  1. ]))")
 As the sign of signed_distance(): exact at points farther from the mesh than 1e-6 of the diagonal.
 
 >>> sdm.Sites(box).contains([[0.5, 0.5, 0.5], [2, 0.5, 0.5]])
-array([ True, False]))")
-      .def(
-          "refit",
-          [](PySites& self, nb::handle vertices) {
-            const Points positions(vertices, "vertices");
-            const auto lock = self.access.change();
-            self.positions = run_short([&] {
-              const std::span<const Vec3> given = positions.get();
-              auto kept = std::make_shared<std::vector<Vec3>>(given.begin(), given.end());
-              self.sites.refit(*kept);
-              return kept;
-            });
-            ++self.shape;
-          },
-          nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
-          R"(Moves the vertices and keeps the faces.
+array([ True, False]))");
+}
+
+void bind_refit(nb::class_<PySites>& sites) {
+  sites.def(
+      "refit",
+      [](PySites& self, nb::handle vertices) {
+        const Points positions(vertices, "vertices");
+        const auto lock = self.access.change();
+        self.positions = run_short([&] {
+          const std::span<const Vec3> given = positions.get();
+          auto kept = std::make_shared<std::vector<Vec3>>(given.begin(), given.end());
+          self.sites.refit(*kept);
+          return kept;
+        });
+        ++self.shape;
+      },
+      nb::arg("vertices").none(), nb::sig("def refit(self, vertices: object) -> None"),
+      R"(Moves the vertices and keeps the faces.
 
 vertices: (n, 3) numbers. Earlier results do not change. Raises Error, and changes nothing, for another
 number of vertices, for coordinates that are not finite or beyond 1e37, and while another call uses the
@@ -232,7 +223,11 @@ object. Cost: linear, a fraction of building the object.
 >>> sites = sdm.Sites(box)
 >>> sites.refit(sites.vertices + [0, 0, 1])
 >>> sites.signed_distance([[0.5, 0.5, 0.75]])
-array([0.25]))")
+array([0.25]))");
+}
+
+void bind_views(nb::class_<PySites>& sites) {
+  sites
       .def_prop_ro(
           "vertices", [](const PySites& self) { return positions_view(self.positions); },
           nb::sig("def vertices(self) -> numpy.ndarray"),
@@ -276,6 +271,31 @@ array([0.25]))")
         return nb::str("sdm.Sites({} vertices, {} faces, {})")
             .format(mesh.positions.size(), mesh.triangles.size(), self.sites.closed() ? "closed" : "open");
       });
+}
+
+}  // namespace
+
+void bind_sites(nb::module_& module) {
+  bind_closest_points(module);
+  nb::class_<PySites> sites(
+      module, "Sites",
+      R"(The object that distances are measured to (O2): the faces, edges and vertices of a mesh,
+prepared for queries.
+
+mesh, faces: as Mesh. Raises Error for a mesh that cannot be used. Cost: O(m log m) for m faces,
+all cores. Several threads may query an object at the same time; refit() raises Error while they
+do.
+
+>>> sites = sdm.Sites(box)
+>>> sites.closest_points([[2, 0.5, 0.5]]).point
+array([[1. , 0.5, 0.5]])
+>>> sites.signed_distance([[0.5, 0.5, 0.75]])
+array([-0.25]))");
+  bind_construction(sites);
+  bind_closest(sites);
+  bind_signs(sites);
+  bind_refit(sites);
+  bind_views(sites);
   bind_edit(sites);
   bind_rays(module, sites);
 }

@@ -66,55 +66,78 @@ nb::capsule owner_of(const std::shared_ptr<const std::vector<Value>>& values) {
   nb::arg("resolution") = nb::none(), nb::arg("precision") = nb::none(), nb::arg("atlas") = "charts", \
   nb::arg("max_stretch") = AtlasOptions{}.max_stretch, nb::arg("gutter") = AtlasOptions{}.gutter
 
-}  // namespace
+// Both objects of sdm.map, built beside each other.
+nb::tuple prepare(nb::handle a, nb::handle b, nb::handle motion, nb::handle resolution, nb::handle precision,
+                  const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
+  const bool has_surface = nb::isinstance<PySurface>(a), has_sites = nb::isinstance<PySites>(b);
+  if (has_surface && !(resolution.is_none() && precision.is_none()))
+    throw Error("a Surface has its resolution; give another form of the mesh for another one");
+  if (has_surface && !motion.is_none())
+    throw Error("a Surface cannot be transformed; refit() it, or give another form of the mesh");
+  const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
+  Mesh on = has_surface ? Mesh{} : mesh_of(a, nb::none());
+  Mesh to = has_sites ? Mesh{} : mesh_of(b, nb::none());
+  std::optional<Transform> matrix;
+  if (!motion.is_none()) matrix = python::transform(motion, "transform");
+  std::unique_ptr<PySurface> surface;
+  std::unique_ptr<PySites> sites;
+  run(progress, [&](const Progress& report) {
+    std::vector<std::function<void()>> tasks;
+    if (!has_surface) {
+      tasks.emplace_back([&] {
+        validate(on);
+        if (matrix) transform(on, *matrix);
+        surface = built(std::move(on), options, report);
+      });
+    }
+    if (!has_sites) tasks.emplace_back([&] { sites = std::make_unique<PySites>(std::move(to)); });
+    run_concurrently(tasks);
+  });
+  const auto object_of = [](auto& owned, nb::handle given) -> nb::object {
+    return owned ? nb::cast(owned.release(), nb::rv_policy::take_ownership) : nb::borrow(given);
+  };
+  return nb::make_tuple(object_of(surface, a), object_of(sites, b));
+}
 
-void bind_surface(nb::module_& module) {
-  nb::class_<PySurface> surface_class(
-      module, "Surface",
-      R"(The surface on which distances are measured (O1): a mesh laid out in a texture.
+void bind_prepare(nb::module_& module) {
+  module.def(
+      "prepare", &prepare, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
+      nb::arg("transform") = nb::none(), SDM_LAYOUT_ARGUMENTS, nb::arg("progress") = nb::none(),
+      nb::sig(
+          "def prepare(a: object, b: object, *, transform: object = None, resolution: int | tuple[int, int] "
+          "| "
+          "None = None, precision: "
+          "float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, gutter: int = 1, progress: "
+          "collections.abc.Callable[[str, float], bool | None] | None = None) -> tuple[Surface, Sites]"));
+}
 
-mesh, faces: as Mesh.
-resolution: texels per side, 16 to 32768; 1024 by default. With atlas='uv' also two integers, the texels
-per row and the rows.
-precision: instead of the resolution, the largest distance allowed from a point of the surface
-to the nearest texel's centre, in units of the mesh.
-atlas: 'charts': clusters of faces; 'triangles': single faces, without distortion; 'uv': the
-mesh's own texture coordinates.
-max_stretch: bounds the growth of lengths from atlas to surface, for charts; in (1, 100].
-gutter: free texels around each chart.
-progress: called as progress(step, fraction), on this thread; False cancels.
+void bind_construction(nb::class_<PySurface>& surface) {
+  surface.def(
+      "__init__",
+      [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle resolution, nb::handle precision,
+         const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
+        const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
+        Mesh value = mesh_of(mesh, faces);
+        run(progress, [&](const Progress& report) {
+          AtlasOptions atlas_options = options.options;
+          atlas_options.progress = report;
+          if (options.precision)
+            atlas_options.resolution = resolution_for(value, atlas_options, *options.precision);
+          new (self) PySurface(std::move(value), atlas_options);
+        });
+      },
+      nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(), SDM_LAYOUT_ARGUMENTS,
+      nb::arg("progress") = nb::none(),
+      nb::sig("def __init__(self, mesh: object, faces: object = None, *, resolution: int | tuple[int, "
+              "int] | None = "
+              "None, precision: float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, "
+              "gutter: "
+              "int = 1, "
+              "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> None"));
+}
 
-Raises Error for a mesh or options that cannot be used; Cancelled.
-
->>> surface = sdm.Surface(sphere, resolution=256)
->>> surface.texel_faces.shape
-(256, 256)
->>> surface.covering_radius() < 0.05
-True)");
-  surface_class
-      .def(
-          "__init__",
-          [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle resolution, nb::handle precision,
-             const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
-            const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
-            Mesh value = mesh_of(mesh, faces);
-            run(progress, [&](const Progress& report) {
-              AtlasOptions atlas_options = options.options;
-              atlas_options.progress = report;
-              if (options.precision)
-                atlas_options.resolution = resolution_for(value, atlas_options, *options.precision);
-              new (self) PySurface(std::move(value), atlas_options);
-            });
-          },
-          nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(), SDM_LAYOUT_ARGUMENTS,
-          nb::arg("progress") = nb::none(),
-          nb::sig("def __init__(self, mesh: object, faces: object = None, *, resolution: int | tuple[int, "
-                  "int] | None = "
-                  "None, precision: float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, "
-                  "gutter: "
-                  "int = 1, "
-                  "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> None"))
-      .def(
+void bind_measures(nb::class_<PySurface>& type) {
+  type.def(
           "refit",
           [](PySurface& self, nb::handle vertices) {
             const Points positions(vertices, "vertices");
@@ -159,8 +182,11 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
           "The fraction of texels that a face owns.")
       .def_prop_ro(
           "max_stretch", [](const PySurface& self) { return self.surface.max_stretch(); },
-          "The largest factor by which a length grows from atlas to surface, for the first shape.")
-      .def_prop_ro(
+          "The largest factor by which a length grows from atlas to surface, for the first shape.");
+}
+
+void bind_arrays(nb::class_<PySurface>& type) {
+  type.def_prop_ro(
           "vertices", [](const PySurface& self) { return positions_view(self.positions); },
           nb::sig("def vertices(self) -> numpy.ndarray"),
           "The positions, (n, 3) float64, read-only. The array does not change with a refit or an edit.")
@@ -188,50 +214,38 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
             .format(mesh.positions.size(), mesh.triangles.size(), self.surface.resolution(),
                     self.surface.rows());
       });
-  bind_edit(surface_class);
+}
 
-  // For sdm.map: both objects, built beside each other.
-  module.def(
-      "prepare",
-      [](nb::handle a, nb::handle b, nb::handle motion, nb::handle resolution, nb::handle precision,
-         const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
-        const bool has_surface = nb::isinstance<PySurface>(a), has_sites = nb::isinstance<PySites>(b);
-        if (has_surface && !(resolution.is_none() && precision.is_none()))
-          throw Error("a Surface has its resolution; give another form of the mesh for another one");
-        if (has_surface && !motion.is_none())
-          throw Error("a Surface cannot be transformed; refit() it, or give another form of the mesh");
-        const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
-        Mesh on = has_surface ? Mesh{} : mesh_of(a, nb::none());
-        Mesh to = has_sites ? Mesh{} : mesh_of(b, nb::none());
-        std::optional<Transform> matrix;
-        if (!motion.is_none()) matrix = python::transform(motion, "transform");
-        std::unique_ptr<PySurface> surface;
-        std::unique_ptr<PySites> sites;
-        run(progress, [&](const Progress& report) {
-          std::vector<std::function<void()>> tasks;
-          if (!has_surface) {
-            tasks.emplace_back([&] {
-              validate(on);
-              if (matrix) transform(on, *matrix);
-              surface = built(std::move(on), options, report);
-            });
-          }
-          if (!has_sites) tasks.emplace_back([&] { sites = std::make_unique<PySites>(std::move(to)); });
-          run_concurrently(tasks);
-        });
-        const auto object_of = [](auto& owned, nb::handle given) -> nb::object {
-          return owned ? nb::cast(owned.release(), nb::rv_policy::take_ownership) : nb::borrow(given);
-        };
-        return nb::make_tuple(object_of(surface, a), object_of(sites, b));
-      },
-      nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(), nb::arg("transform") = nb::none(),
-      SDM_LAYOUT_ARGUMENTS, nb::arg("progress") = nb::none(),
-      nb::sig(
-          "def prepare(a: object, b: object, *, transform: object = None, resolution: int | tuple[int, int] "
-          "| "
-          "None = None, precision: "
-          "float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, gutter: int = 1, progress: "
-          "collections.abc.Callable[[str, float], bool | None] | None = None) -> tuple[Surface, Sites]"));
+}  // namespace
+
+void bind_surface(nb::module_& module) {
+  nb::class_<PySurface> type(
+      module, "Surface",
+      R"(The surface on which distances are measured (O1): a mesh laid out in a texture.
+
+mesh, faces: as Mesh.
+resolution: texels per side, 16 to 32768; 1024 by default. With atlas='uv' also two integers, the texels
+per row and the rows.
+precision: instead of the resolution, the largest distance allowed from a point of the surface
+to the nearest texel's centre, in units of the mesh.
+atlas: 'charts': clusters of faces; 'triangles': single faces, without distortion; 'uv': the
+mesh's own texture coordinates.
+max_stretch: bounds the growth of lengths from atlas to surface, for charts; in (1, 100].
+gutter: free texels around each chart.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+Raises Error for a mesh or options that cannot be used; Cancelled.
+
+>>> surface = sdm.Surface(sphere, resolution=256)
+>>> surface.texel_faces.shape
+(256, 256)
+>>> surface.covering_radius() < 0.05
+True)");
+  bind_construction(type);
+  bind_measures(type);
+  bind_arrays(type);
+  bind_edit(type);
+  bind_prepare(module);
 }
 
 }  // namespace sdm::python
