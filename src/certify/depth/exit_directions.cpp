@@ -21,13 +21,15 @@ void ExitDirections::add(const Vec3& u, const std::optional<Vec3>& far) {
   direction.most = far ? shape::extreme_vertex(*solid_, u, {dot(u, *far), *far}).along
                        : shape::extreme_vertex(*solid_, u).along;
   // u·(A x + a) = (Aᵀu)·x + u·a, and x = o + y / s for y in the unit frame.
-  const Affine& map = to_solid_.map;
-  direction.in_body = u[0] * map.rows[0] + u[1] * map.rows[1] + u[2] * map.rows[2];
-  direction.most_in_body = direction.most - dot(u, map.offset);
-  for (int k = 0; k < 3; ++k)
-    direction.in_unit[k] = static_cast<float>(direction.in_body[k] / body_->frame.scale);
+  const Vec3 along = in_body(u);
+  for (int k = 0; k < 3; ++k) direction.in_unit[k] = static_cast<float>(along[k] / body_->frame.scale);
   direction.most_in_unit =
-      static_cast<float>(direction.most_in_body - dot(direction.in_body, body_->frame.origin));
+      static_cast<float>(direction.most - dot(u, to_solid_.map.offset) - dot(along, body_->frame.origin));
+}
+
+Vec3 ExitDirections::in_body(const Vec3& u) const {
+  const Affine& map = to_solid_.map;
+  return u[0] * map.rows[0] + u[1] * map.rows[1] + u[2] * map.rows[2];
 }
 
 double ExitDirections::bound(const Corners& triangle) const {
@@ -48,21 +50,10 @@ void ExitDirections::values(const Corners& triangle, std::vector<CornerValues>& 
   }
 }
 
-double ExitDirections::bound(const Vec3& centre, double radius, std::size_t first) const {
+double ExitDirections::bound(const shape::Ball& ball, std::size_t first) const {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = first; i < size_; ++i)
-    least = std::min(least, directions_[i].most - dot(directions_[i].u, centre) + radius);
-  return least;
-}
-
-double ExitDirections::bound_in_body(const Corners& triangle) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < size_; ++i) {
-    const Direction& d = directions_[i];
-    least =
-        std::min(least, d.most_in_body - std::min({dot(d.in_body, triangle[0]), dot(d.in_body, triangle[1]),
-                                                   dot(d.in_body, triangle[2])}));
-  }
+    least = std::min(least, directions_[i].most - dot(directions_[i].u, ball.centre) + ball.radius);
   return least;
 }
 
@@ -86,7 +77,7 @@ ExitDirections::OfChildren ExitDirections::bound_children(const tree::WideTree::
 }
 
 Vec3 ExitDirections::farthest_from_exit() const {
-  const Vec3 u = normalized(-directions_[size_ - 1].in_body);
+  const Vec3 u = normalized(-in_body(directions_[size_ - 1].u));
   return to_solid_.map(shape::extreme_vertex(*body_, u).point);
 }
 

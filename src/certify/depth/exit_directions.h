@@ -6,55 +6,53 @@
 #include <optional>
 #include <vector>
 
+#include "certify/depth/boundary_part.h"
 #include "geometry/triangle_pair.h"
 #include "mesh/similarity.h"
-#include "search/mixed_bound.h"
+#include "query/shape/node_ball.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {
-
-using search::CornerValues;
 
 /// A point p inside a solid S leaves it in the direction u, |u| = 1, no later than at the plane that supports
 /// S there, so its distance to the boundary is
 ///   b(p) ≤ h(u) − u·p,  h(u) = max over x in S of u·x.
 /// With the direction from the deepest point of another body to the boundary, this excludes all but a few of
-/// its faces, without a search for any of them. Lengths are in the frame of the solid.
+/// its faces, without a search for any of them. Points and lengths are in the frame of the solid; only the
+/// boxes of the body's tree are where the tree has them.
 class ExitDirections {
  public:
   static constexpr std::size_t kMost = 8;
 
   /// Forgets all directions. `to_solid`: from the frame of the body to that of the solid.
   void start(const sites::SitesData& body, const sites::SitesData& solid, const mesh::Similarity& to_solid);
-  /// Adds a direction in the frame of the solid, of length 1, and if known a point of the solid that is far
+  /// Adds a direction of length 1, and if known a point of the solid that is far
   /// in it; ignored if there are kMost already. Cost: logarithmic, as of extreme_vertex().
   void add(const Vec3& u, const std::optional<Vec3>& far = {});
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// The bound on b of a triangle in the frame of the solid.
+  /// The bound on b of a triangle.
   [[nodiscard]] double bound(const Corners& triangle) const;
-  /// The same for a triangle in the frame of the body.
-  [[nodiscard]] double bound_in_body(const Corners& triangle) const;
-  /// The same for a ball in the frame of the solid, by the directions from `first` on.
-  [[nodiscard]] double bound(const Vec3& centre, double radius, std::size_t first) const;
-  /// Appends the bounds at the corners of a triangle in the frame of the solid, one entry for each direction:
-  /// they are linear.
+  /// The same for a ball, by the directions from `first` on.
+  [[nodiscard]] double bound(const shape::Ball& ball, std::size_t first) const;
+  /// Appends the bounds at the corners of a triangle, one entry for each direction: they are linear.
   void values(const Corners& triangle, std::vector<CornerValues>& values) const;
   /// For the boxes of a node's children, in the unit frame of the body.
   using OfChildren = std::array<float, tree::WideTree::kWidth>;
   [[nodiscard]] OfChildren bound_children(const tree::WideTree::Node& node) const;
 
-  /// The point of the body, in the frame of the solid, for which the last direction gives the largest bound.
+  /// The point of the body for which the last direction gives the largest bound.
   [[nodiscard]] Vec3 farthest_from_exit() const;
-  [[nodiscard]] const Vec3& last() const { return directions_[size_ - 1].u; }
 
  private:
-  /// b(p) ≤ most − u·p, in the frames of the solid, of the body, and the unit frame of the body.
+  /// b(p) ≤ most − u·p; the same in the unit frame of the body.
   struct Direction {
-    Vec3 u, in_body;
-    double most, most_in_body;
+    Vec3 u;
+    double most;
     float in_unit[3], most_in_unit;
   };
+  [[nodiscard]] Vec3 in_body(const Vec3& u) const;
+
   const sites::SitesData *body_ = nullptr, *solid_ = nullptr;
   mesh::Similarity to_solid_;
   std::array<Direction, kMost> directions_{};

@@ -1,0 +1,166 @@
+#include "certify/depth/leaving.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "geometry/sweep.h"
+#include "geometry/vec.h"
+#include "sites/sites_data.h"
+
+namespace sdm::depth {
+namespace {
+
+constexpr std::uint64_t kFaceStep = std::uint64_t{1} << 32;  // between the places of faces
+
+// Sets where a triangle is measured.
+void measure_at(Part& part, TrianglePart& triangle, const CornerValues& weights) {
+  const auto& [a, b, c] = triangle.at;
+  triangle.weights = weights;
+  part.ball = {weights[0] * a + weights[1] * b + weights[2] * c, 0};
+  for (const Vec3& corner : triangle.at)
+    part.ball.radius = std::max(part.ball.radius, norm(corner - part.ball.centre));
+}
+
+}  // namespace
+
+void Leaving::start(const shape::PosedBody& body, const shape::PosedBody& solid,
+                    const mesh::Similarity& to_solid) {
+  body_ = &body.body(), solid_ = &solid.body(), to_solid_ = to_solid, scale_ = solid.pose().scale;
+  exits_.start(internals(body_->sites()), internals(solid_->sites()), to_solid);
+  known_.clear();
+}
+
+bool Leaving::tighten(Part& part, double enough) {
+  const std::size_t exits = exits_.size();
+  auto* triangle = std::get_if<TrianglePart>(&part.what);
+  if (triangle == nullptr) {
+    if (part.exits == exits) return false;
+    part.limit(scale_ * exits_.bound(part.ball, part.exits));
+    part.exits = exits;
+    return true;
+  }
+  if (part.exits == exits && triangle->known == known_.size() && !triangle->stale) return false;
+  const auto known = known_.nearest(part.ball.centre, triangle->near.all(), triangle->known);
+  if (known || part.exits < exits || triangle->stale) {
+    functions_.clear();
+    exits_.values(triangle->at, functions_);
+    for (const Near& n : triangle->near.all()) functions_.push_back(n.distance);
+    if (known)
+      for (const CornerValues& d : corner_distances(internals(solid_->sites()), triangle->at, *known))
+        functions_.push_back(d);
+    const search::MixedBound mixed = search::mixed_bound(functions_, enough / scale_);
+    part.limit(scale_ * mixed.value);
+    triangle->reach = mixed.value;
+    if (part.upper > enough) measure_at(part, *triangle, mixed.weights);
+  }
+  part.exits = exits, triangle->known = known_.size(), triangle->stale = false;
+  return true;
+}
+
+void Leaving::evaluate(Part& part, Value& value, const ClosestPoint& closest, bool inside,
+                       double enough) const {
+  const auto& [centre, radius] = part.ball;
+  auto* triangle = std::get_if<TrianglePart>(&part.what);
+  const auto keep = [&](const BoundaryPart& boundary) {
+    value.near.add({boundary, triangle != nullptr
+                                  ? corner_distances(internals(solid_->sites()), triangle->at, boundary)
+                                  : CornerValues{}});
+  };
+  if (triangle != nullptr) ++triangle->measured;
+  if (inside) {
+    value.b = boundary_distance(*solid_, centre, closest);
+    part.limit(scale_ * (value.b.upper + radius));
+    if (triangle != nullptr) triangle->gap = scale_ * (value.b.upper - value.b.lower);
+    if (value.b.nearest) keep(*value.b.nearest);
+    return;
+  }
+  part.limit(scale_ * (radius - closest.distance));
+  if (triangle == nullptr || part.upper <= enough) return;
+  if (const std::optional<BoundaryPart> face = boundary_face(*solid_, closest)) keep(*face);
+  keep({.point = centre, .clear = closest.distance});
+  part.limit(scale_ * bound_outside(part, *triangle, value, closest.distance, enough));
+}
+
+// Of a triangle whose centre is outside, by this distance, and not bounded by that alone.
+double Leaving::bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
+                              double distance, double enough) const {
+  std::array<CornerValues, 8> functions;
+  std::size_t count = 0;
+  for (const Near& n : triangle.near.all()) functions[count++] = n.distance;
+  for (const Near& n : value.near.all()) functions[count++] = n.distance;
+  const double mixed = search::mixed_bound(std::span(functions).first(count), enough / scale_).value;
+  if (mixed <= enough / scale_) return mixed;
+  // The way to a point inside is at least as long outside as the surface is far from the centre.
+  return bound_beyond_faces(internals(solid_->sites()), triangle.at, part.ball,
+                            std::min(mixed, part.ball.radius - distance));
+}
+
+void Leaving::divide(const Part& part, Parts& parts) const {
+  if (const auto* triangle = std::get_if<TrianglePart>(&part.what))
+    return put_quarters(part, *triangle, parts);
+  const std::uint32_t node = std::get<NodePart>(part.what).node;
+  if (tree::WideTree::is_leaf(node))
+    put_faces(part, tree::WideTree::leaf_number(node), parts);
+  else
+    put_children(part, node, parts);
+}
+
+// Unless they are beyond the box of the solid.
+void Leaving::put_children(const Part& part, std::uint32_t node, Parts& parts) const {
+  const sites::SitesData& sites = internals(body_->sites());
+  const tree::WideTree::Node& wide = sites.wide.nodes[node];
+  const ExitDirections::OfChildren by_exits = exits_.bound_children(wide);
+  for (std::uint32_t i = 0; i < wide.count; ++i) {
+    Part child{.body = part.body, .place = wide.source[i], .upper = part.upper, .exits = exits_.size()};
+    child.limit(scale_ * by_exits[i]);
+    if (child.upper <= parts.enough()) {
+      parts.settle(child.upper);
+      continue;
+    }
+    child.ball = shape::ball_of_child(sites, node, i, to_solid_);
+    child.what = NodePart{wide.child[i]};
+    if (box_distance({child.ball.centre, child.ball.centre}, solid_->box()) <= child.ball.radius)
+      parts.put(child);
+  }
+}
+
+void Leaving::put_faces(const Part& part, std::uint32_t leaf, Parts& parts) const {
+  const sites::SitesData& sites = internals(body_->sites());
+  const Affine& map = to_solid_.map;
+  for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i) {
+    const auto& [a, b, c] = sites.mesh.triangles[sites.regions.owners[i].face];
+    const auto& at = sites.mesh.positions;
+    put_triangle(part, i * kFaceStep, {.at = {map(at[a]), map(at[b]), map(at[c])}, .step = kFaceStep}, parts);
+  }
+}
+
+void Leaving::put_quarters(const Part& part, const TrianglePart& triangle, Parts& parts) const {
+  const Corners& at = triangle.at;
+  Corners middle;  // of each side
+  for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]);
+  std::array<TrianglePart, 4> quarters;
+  for (int k = 0; k < 3; ++k) quarters[k].at = {at[k], middle[k], middle[(k + 2) % 3]};
+  quarters[3].at = middle;
+  for (const Near& n : triangle.near.all()) {
+    const CornerValues m = corner_distances(internals(solid_->sites()), middle, n.boundary);
+    for (int k = 0; k < 3; ++k) quarters[k].near.add({n.boundary, {n.distance[k], m[k], m[(k + 2) % 3]}});
+    quarters[3].near.add({n.boundary, m});
+  }
+  // The quarters of a triangle follow it, up to the precision of the number.
+  for (std::uint64_t k = 0; k < 4; ++k) {
+    quarters[k].step = triangle.step / 4;
+    put_triangle(part, part.place + k * quarters[k].step, quarters[k], parts);
+  }
+}
+
+void Leaving::put_triangle(const Part& parent, std::uint64_t place, const TrianglePart& triangle,
+                           Parts& parts) const {
+  const double upper = std::min(parent.upper, scale_ * exits_.bound(triangle.at));
+  if (upper <= parts.enough()) return parts.settle(upper);
+  Part part{.body = parent.body, .place = place, .upper = upper, .what = triangle};
+  measure_at(part, std::get<TrianglePart>(part.what), {1.0 / 3, 1.0 / 3, 1.0 / 3});
+  parts.put(part);
+}
+
+}  // namespace sdm::depth

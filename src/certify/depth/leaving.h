@@ -1,0 +1,65 @@
+// Bounds on the depth of a surface inside a solid.
+#pragma once
+
+#include <vector>
+
+#include "certify/depth/exit_directions.h"
+#include "certify/depth/known_boundary.h"
+#include "certify/depth/part.h"
+#include "query/shape/posed_body.h"
+
+namespace sdm::depth {
+
+/// A body that leaves a solid: for points p of its surface inside the solid, b(p) is the distance to the
+/// boundary. A part is bounded by the value at the centre c of its ball, and the better of
+///   b(p) ≤ b(c) + |p − c|, as the distance is 1-Lipschitz, and
+///   b(p) ≤ max over the corners p of a triangle of |p − G|, for a boundary face G: the distance to a convex
+///          set is convex.
+/// The second one, with the G that is nearest to c, exceeds b(c) by the square of the size of a triangle
+/// only, and not at all above one flat face. Where several faces are nearly as close, as about the deepest
+/// points, mixed_bound() of the distances to two of them and of the ExitDirections does so, too. A triangle
+/// whose centre is outside has a similar bound. So the number of parts that must be divided hardly grows as
+/// bounds are tightened. ExitDirections exclude most parts before anything is searched for them.
+///
+/// Points and lengths are in the frame of the solid; depths, those of parts and `enough`, are in space. What
+/// is no deeper than `enough` does not matter.
+class Leaving {
+ public:
+  /// Forgets all that was learned. The bodies must not change while this is used.
+  void start(const shape::PosedBody& body, const shape::PosedBody& solid, const mesh::Similarity& to_solid);
+  [[nodiscard]] const shape::Body& body() const { return *body_; }
+  [[nodiscard]] const shape::Body& solid() const { return *solid_; }
+  [[nodiscard]] const mesh::Similarity& to_solid() const { return to_solid_; }
+  /// Of a length in space.
+  [[nodiscard]] double scale() const { return scale_; }
+  [[nodiscard]] ExitDirections& exits() { return exits_; }
+
+  void learn(const Vec3& from, const BoundaryPart& boundary) {
+    if (boundary.clear == 0) known_.add(from, boundary);
+  }
+  /// Lowers the bound of a part by what has been learned since the last time. Returns whether there was
+  /// anything.
+  bool tighten(Part& part, double enough);
+  /// Sets the value at the centre of a part, and lowers its bound by that. Thread-safe.
+  void evaluate(Part& part, Value& value, const ClosestPoint& closest, bool inside, double enough) const;
+  /// Puts the pieces of a part, or settles them.
+  void divide(const Part& part, Parts& parts) const;
+
+ private:
+  [[nodiscard]] double bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
+                                     double distance, double enough) const;
+  void put_children(const Part& part, std::uint32_t node, Parts& parts) const;
+  void put_faces(const Part& part, std::uint32_t leaf, Parts& parts) const;
+  void put_quarters(const Part& part, const TrianglePart& triangle, Parts& parts) const;
+  void put_triangle(const Part& parent, std::uint64_t place, const TrianglePart& triangle,
+                    Parts& parts) const;
+
+  const shape::Body *body_ = nullptr, *solid_ = nullptr;
+  mesh::Similarity to_solid_;
+  double scale_ = 1;
+  ExitDirections exits_;
+  KnownBoundary known_;
+  std::vector<CornerValues> functions_;  // that bound b in a triangle
+};
+
+}  // namespace sdm::depth
