@@ -146,12 +146,14 @@ template <class Part, class Found>
 template <class Policy>
 bool Parts<Part, Found>::take_batch(Policy& policy) {
   batch_.clear();
+  constexpr std::uint32_t kStride = 64;
+  Poll due(kStride);
   if (open_.size() > Policy::kMany)  // the last ones of a heap have low bounds, and its rest is a heap
     while (batch_.size() < Policy::kOfMany) batch_.push_back(take(open_.back().slot));
   else
     while (!open_.empty() && policy.within_budget() &&
            batch_.size() < std::max(Policy::kLeast, open_.size() / Policy::kFraction + 1))
-      if (!take_highest(policy)) break;
+      if (due(); !take_highest(policy)) break;
   return !batch_.empty();
 }
 

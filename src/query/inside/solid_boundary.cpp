@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "geometry/triangle_pair.h"
 #include "query/inside/solid.h"
+#include "search/branch_and_bound.h"
 #include "tree/traverse.h"
 
 namespace sdm::inside {
@@ -229,86 +230,112 @@ bool SolidBoundary::repeats_earlier_face(const Piece& piece) const {
   });
 }
 
-SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
-  constexpr std::size_t kMostPieces = 2000;
-  const Vec3 q = solid_.frame.to_unit(p);
-  const double unit = 1 / solid_.frame.scale;
-  // What may be nearest: a node of the tree, or part of a face, with a lower bound on its distance.
-  struct Open {
-    double bound = 0;
+// Finds the largest −distance from a point q to a part of the boundary, in the unit frame. Parts are nodes of
+// the tree, and pieces of faces.
+class SolidBoundary::ClosestSearch : public search::Policy {
+ public:
+  struct Part {
+    double upper = 0;  // −distance
     std::uint32_t node = kNone;
     Piece piece{};
-    Vec3 point{};
-    bool operator<(const Open& other) const { return bound > other.bound; }  // the nearest on top
+    Vec3 point{};  // the closest one of the piece
   };
-  thread_local std::vector<Open> heap;
-  std::vector<Open>& open = heap;
-  open.clear();
-  const auto push = [&](const Open& o) {
-    open.push_back(o);
-    std::push_heap(open.begin(), open.end());
+  struct Found {
+    bool boundary = false;
+    double beside = 0;  // how far from the point
   };
-  const auto push_node = [&](std::uint32_t node) {
-    push({.bound = norm(gap(solid_.tree.box(node), q)), .node = node});
-  };
-  const auto push_piece = [&](const Piece& piece) {
-    const Vec3 c = closest_in(piece.at, q);
-    push({.bound = norm(c - q), .piece = piece, .point = c});
-  };
-  // Beyond the box there is no solid, so the boundary is met on the way out.
-  Closest found{.upper = std::numeric_limits<double>::infinity()};
-  const tree::FloatBox& box = solid_.tree.box(0);
-  for (int k = 0; k < 3; ++k)
-    for (const double end : {double{box.lo[k]}, double{box.hi[k]}})
-      found.upper = std::min(found.upper, std::abs(end - q[k]) + 2 * kBeside);
-  found.lower = found.upper;
-  push_node(0);
-  bool unsure = false;  // whether what is nearer may be boundary
-  Poll due(64);
-  for (std::size_t pieces = 0; !open.empty() && open.front().bound < found.upper;) {
-    due();
-    std::pop_heap(open.begin(), open.end());
-    const Open nearest = open.back();
-    open.pop_back();
-    if (nearest.node != kNone) {
-      const tree::AabbTree::Node& node = solid_.tree.nodes[nearest.node];
-      if (node.leaf()) {
-        for (const std::uint32_t face : solid_.tree.items_of(nearest.node))
-          if (sides_[face] != Sides::buried && !solid_.sliver[face]) push_piece(whole_face(face));
-      } else {
-        push_node(nearest.node + 1), push_node(node.right);
-      }
-      continue;
-    }
-    const Piece& piece = nearest.piece;
-    if (piece.sides == Sides::unknown) {
-      if (++pieces > kMostPieces) {
-        found.lower = std::min(found.lower, nearest.bound);
-        break;
-      }
-      MixedFace& face = mixed(piece.face);
-      const std::lock_guard lock(face.mutex);
-      for (const Piece& part : divide(piece, face).pieces) push_piece(part);
-      continue;
-    }
-    double beside = 0;
-    if (piece.sides == Sides::mixed) {
-      const Vec3 outwards = normalized(nearest.point - q);
-      beside = kBeside;
-      // If nothing nearer may be boundary, this side is inside.
-      if (is_inside(nearest.point + beside * outwards) ||
-          (unsure && !is_inside(nearest.point - beside * outwards))) {
-        found.lower = std::min(found.lower, nearest.bound), unsure = true;
-        continue;
-      }
-    }
-    found.upper = nearest.bound + beside;
-    found.point = solid_.frame.origin + unit * nearest.point;
-    found.face = piece.face;
-    found.lower = std::min(found.lower, nearest.bound);
-    break;
+  using Parts = search::Parts<Part, Found>;
+
+  ClosestSearch(const SolidBoundary& boundary, const Vec3& q, Parts& parts)
+      : boundary_(boundary), solid_(boundary.solid_), q_(q), parts_(parts) {}
+
+  // Bounds in the unit frame.
+  Closest operator()() {
+    // Beyond the box there is no solid, so the boundary is met on the way out.
+    closest_.upper = std::numeric_limits<double>::infinity();
+    const tree::FloatBox& box = solid_.tree.box(0);
+    for (int k = 0; k < 3; ++k)
+      for (const double end : {double{box.lo[k]}, double{box.hi[k]}})
+        closest_.upper = std::min(closest_.upper, std::abs(end - q_[k]) + 2 * kBeside);
+    parts_.start(-closest_.upper, 0);
+    put_node(0);
+    search::branch_and_bound(*this, parts_);
+    closest_.lower = std::min(-parts_.upper(), closest_.upper);
+    return closest_;
   }
-  found.lower = std::min(found.lower, found.upper);
+
+  [[nodiscard]] bool within_budget() const { return !closest_.point && pieces_ <= kMostPieces; }
+
+  // Nodes, and pieces whose sides are unknown.
+  bool expand(const Part& part) {
+    if (part.node != kNone) {
+      const tree::AabbTree::Node& node = solid_.tree.nodes[part.node];
+      if (!node.leaf()) {
+        put_node(part.node + 1), put_node(node.right);
+      } else {
+        for (const std::uint32_t face : solid_.tree.items_of(part.node))
+          if (boundary_.sides_[face] != Sides::buried && !solid_.sliver[face])
+            put_piece(boundary_.whole_face(face));
+      }
+      return true;
+    }
+    if (part.piece.sides != Sides::unknown) return false;
+    if (++pieces_ > kMostPieces) {
+      parts_.settle(part.upper);
+      return true;
+    }
+    MixedFace& face = boundary_.mixed(part.piece.face);
+    const std::lock_guard lock(face.mutex);
+    for (const Piece& piece : boundary_.divide(part.piece, face).pieces) put_piece(piece);
+    return true;
+  }
+
+  void evaluate(std::span<const Part> run, Found& found) const {
+    const Part& part = run[0];
+    found = {.boundary = true};
+    if (part.piece.sides != Sides::mixed) return;
+    const Vec3 beside = kBeside * normalized(part.point - q_);
+    found.beside = kBeside;
+    // If nothing nearer may be boundary, this side is inside.
+    found.boundary =
+        !boundary_.is_inside(part.point + beside) && !(unsure_ && !boundary_.is_inside(part.point - beside));
+  }
+
+  static void learn(std::span<const Part> /*run*/, const Found& /*found*/) {}
+
+  void conclude(std::span<const Part> run, const Found& found) {
+    parts_.settle(run[0].upper);
+    unsure_ = unsure_ || !found.boundary;
+    if (!found.boundary) return;
+    closest_ = {.upper = found.beside - run[0].upper,
+                .point = solid_.frame.origin + (1 / solid_.frame.scale) * run[0].point,
+                .face = run[0].piece.face};
+  }
+
+ private:
+  static constexpr std::size_t kMostPieces = 2000;
+
+  void put_node(std::uint32_t node) {
+    parts_.put({.upper = -norm(gap(solid_.tree.box(node), q_)), .node = node});
+  }
+  void put_piece(const Piece& piece) {
+    const Vec3 c = closest_in(piece.at, q_);
+    parts_.put({.upper = -norm(c - q_), .piece = piece, .point = c});
+  }
+
+  const SolidBoundary& boundary_;
+  const sites::SitesData& solid_;
+  const Vec3 q_;
+  Parts& parts_;
+  Closest closest_;
+  std::size_t pieces_ = 0;
+  bool unsure_ = false;  // whether what is nearer may be boundary
+};
+
+SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
+  thread_local ClosestSearch::Parts parts;  // reuses its memory
+  const Closest found = ClosestSearch(*this, solid_.frame.to_unit(p), parts)();
+  const double unit = 1 / solid_.frame.scale;
   return {unit * found.lower, unit * found.upper, found.point, found.face};
 }
 

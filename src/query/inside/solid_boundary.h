@@ -51,6 +51,7 @@ class SolidBoundary {
     [[nodiscard]] std::array<Piece, 4> quarters() const;
   };
   struct Plane;
+  class ClosestSearch;
   /// Into pieces that have the solid on one side, some that may have (`mixed`), and unknown ones.
   struct Division {
     bool known = false;
