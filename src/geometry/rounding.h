@@ -1,4 +1,4 @@
-// The rounding errors of determinants, for predicates that compute exactly only where rounding could decide.
+// Bounds on rounding errors.
 #pragma once
 
 #include <limits>
@@ -11,6 +11,14 @@ namespace sdm::core {
 inline constexpr double kHalfUlp = std::numeric_limits<double>::epsilon() / 2;
 inline constexpr double kError3 = (7 + 56 * kHalfUlp) * kHalfUlp, kError2 = (3 + 16 * kHalfUlp) * kHalfUlp;
 inline constexpr double kUnderflow = 1e-200;
+
+// Larger than the error of some operations in single precision: relative to a number, or of coordinates in
+// the unit frame, which are at most 1.
+inline constexpr double kSingleRounding = 1e-6;
+// Larger than the error of some operations in double precision, relative to what they are computed from.
+inline constexpr double kDoubleRounding = 1e-12;
+// Distances in the unit frame that differ by less count as equal.
+inline constexpr double kUnitDistanceRounding = 1e-9;
 
 }  // namespace sdm::core
 

@@ -17,9 +17,6 @@ struct UnitFrame {
   }
 };
 
-/// Bounds the rounding of a distance in double precision between points near the frame, in its units.
-inline constexpr double kFrameRounding = 1e-9;
-
 }  // namespace sdm::core
 
 namespace sdm {

@@ -10,6 +10,7 @@
 
 #include "core/cancellation.h"
 #include "core/parallel.h"
+#include "geometry/rounding.h"
 #include "geometry/sweep.h"
 #include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
@@ -24,8 +25,6 @@ using Visit = std::function<bool(std::uint32_t, std::uint32_t)>;
 
 // A vertex or an edge of more faces is a hub. Fewer than that make at most so many pairs of each face.
 constexpr std::size_t kMany = 256;
-// Far above the rounding of a direction between two points.
-constexpr double kRounding = 1e-12;
 
 // A face, seen from nowhere, from a vertex or around an edge. Faces with a hub in common are left to the view
 // from that hub.
@@ -226,7 +225,7 @@ class Hubs {
         sum += 0.5 * direction;
         extend(box, direction);
       }
-    return widened(box, 1 - norm(sum) + kRounding);
+    return widened(box, 1 - norm(sum) + kDoubleRounding);
   }
 
   // The direction of a face from an edge, across it: from its third corner, of which little remains where the
@@ -240,7 +239,7 @@ class Hubs {
         const Vec3 across = to - dot(to, along) * along;
         Box box;
         extend(box, (1 / norm(across)) * across);
-        return widened(box, kRounding / norm(across));
+        return widened(box, kDoubleRounding / norm(across));
       }
     return everywhere();
   }

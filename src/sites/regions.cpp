@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "sites/compute_regions.h"
 
@@ -15,11 +16,10 @@ constexpr std::size_t kVertices = 4096, kLeaves = 128;  // grains
 // The slope of the bounds of a face and the sites it owns, from the smallest cosine of the angles between its
 // normal and those of the faces around it.
 float slope_of(double cosine) {
-  constexpr double kSteepest = 20;    // steeper slopes count as open
-  constexpr double kRounding = 1e-6;  // of single precision
+  constexpr double kSteepest = 20;  // steeper slopes count as open
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   if (!(sine < kSteepest * cosine)) return FaceBounds::kOpen;
-  return static_cast<float>((1 + kRounding) * (sine / cosine) + kRounding);
+  return static_cast<float>((1 + kSingleRounding) * (sine / cosine) + kSingleRounding);
 }
 
 // Computes what depends on the normals of the faces around a site: the slopes of a leaf's bounds, and the

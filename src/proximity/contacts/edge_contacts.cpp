@@ -7,8 +7,8 @@
 
 #include "core/cancellation.h"
 #include "engine/cpu/cpu_engine.h"
+#include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/unit_frame.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
@@ -140,7 +140,7 @@ void EdgeContacts::add_interval(const Edge& edge, const sites::SitesData& sites,
 
 void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, double margin) {
   const sites::SitesData& sites = internals(other.sites());
-  const double limit = margin + kFrameRounding / sites.frame.scale;
+  const double limit = margin + kUnitDistanceRounding / sites.frame.scale;
   intervals_.clear();
   for (const std::uint32_t face : faces_.find(sites, {edge.a, edge.b}, limit)) {
     poll();
@@ -222,7 +222,7 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
   found_.clear();
   find_intervals(edge, other, margin);
   find_supports(edge, other, margin, reach, tolerance);
-  const double rounding = kFrameRounding / sites.frame.scale;
+  const double rounding = kUnitDistanceRounding / sites.frame.scale;
   for (auto first = intervals_.begin(); first != intervals_.end();) {
     auto next = first;
     double end = first->to;

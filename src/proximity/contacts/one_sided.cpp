@@ -4,16 +4,16 @@
 #include <atomic>
 #include <cmath>
 
-#include "geometry/unit_frame.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 
 namespace sdm::contacts {
 
 void OneSidedVertices::start(const shape::Body& on, const shape::Body& other,
                              const mesh::Similarity& to_other, double margin) {
-  // Nearer points may be on either side.
   on_ = &on, other_ = &other, to_other_ = &to_other, margin_ = margin;
-  rounding_ = kFrameRounding / internals(other.sites()).frame.scale;
+  // Nearer points may be on either side.
+  rounding_ = kUnitDistanceRounding / internals(other.sites()).frame.scale;
   for (const std::uint32_t vertex : added_) vertices_[vertex] = {};
   added_.clear(), points_.clear();
   const std::size_t count = internals(on.sites()).regions.points.size();

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/cancellation.h"
-#include "geometry/unit_frame.h"
+#include "geometry/rounding.h"
 #include "tree/traverse.h"
 
 namespace sdm::contacts {
@@ -26,7 +26,7 @@ Clip clip_to_prism(const sites::SitesData& sites, std::uint32_t face, const Vec3
                    double margin, double reach) {
   const Triangle& corners = sites.mesh.triangles[face];
   const Vec3& normal = sites.normals.face[face];
-  const double rounding = kFrameRounding / sites.frame.scale;
+  const double rounding = kUnitDistanceRounding / sites.frame.scale;
   const auto corner = [&](std::size_t k) -> const Vec3& { return sites.mesh.positions[corners[k]]; };
   const double height = dot(normal, a - corner(0)), rise = dot(normal, along);
   Clip clip;

@@ -1,7 +1,7 @@
 #include "proximity/contacts/surface_point.h"
 
 #include "engine/cpu/cpu_engine.h"
-#include "geometry/unit_frame.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
@@ -9,7 +9,7 @@ namespace sdm::contacts {
 
 SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach) {
   const sites::SitesData& sites = internals(body.sites());
-  const double limit = (1 + kFrameRounding) * reach + kFrameRounding / sites.frame.scale;
+  const double limit = (1 + kUnitDistanceRounding) * reach + kUnitDistanceRounding / sites.frame.scale;
   ClosestPoint closest = cpu::cpu_closest(sites, at, limit);
   if (closest.type == SiteType::none)
     closest = cpu::cpu_closest(sites, at, std::numeric_limits<double>::infinity());

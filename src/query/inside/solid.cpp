@@ -5,6 +5,7 @@
 
 #include "core/cancellation.h"
 #include "geometry/predicates.h"
+#include "geometry/rounding.h"
 #include "tree/traverse.h"
 
 namespace sdm::inside {
@@ -18,11 +19,10 @@ struct Segment {
   double rounding;
 
   Segment(const UnitFrame& frame, const Affine& pose, const Vec3& p, const Vec3& q) {
-    constexpr double kRounding = 1e-12;  // far above that of double precision
     const Affine back = inverse(pose);
     start = frame.to_unit(back(p));
     along = frame.to_unit(back(q)) - start;
-    rounding = kRounding * (1 + norm(start) + norm(along));
+    rounding = kDoubleRounding * (1 + norm(start) + norm(along));
   }
 
   [[nodiscard]] bool meets(const tree::FloatBox& box) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 
 namespace sdm::shape {
@@ -12,7 +13,6 @@ namespace {
 
 // The ball about a point that contains the boxes two levels below the root of the tree.
 Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
-  constexpr double kRounding = 1e-6;  // of the boxes, in units of the frame
   const Vec3 c = sites.frame.to_unit(centre);
   double squared = 0;
   const auto include = [&](const tree::WideTree::Node& node, std::uint32_t i) {
@@ -32,7 +32,7 @@ Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
     const tree::WideTree::Node& node = sites.wide.nodes[root.child[i]];
     for (std::uint32_t j = 0; j < node.count; ++j) include(node, j);
   }
-  return {centre, (std::sqrt(squared) + kRounding) / sites.frame.scale};
+  return {centre, (std::sqrt(squared) + kSingleRounding) / sites.frame.scale};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Balls about the nodes of the tree of a body.
 #pragma once
 
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "sites/sites_data.h"
@@ -16,13 +17,12 @@ struct Ball {
 /// one is as tight in any frame.
 [[nodiscard]] inline Ball ball_of_child(const sites::SitesData& sites, std::uint32_t node, std::uint32_t i,
                                         const mesh::Similarity& map) {
-  constexpr double kRounding = 1e-6;  // of the boxes, in units of the frame
   const tree::WideTree::Node& wide = sites.wide.nodes[node];
   Vec3 centre, half;
   for (std::size_t k = 0; k < 3; ++k) {
     const double lo = wide.lo[k][i], hi = wide.hi[k][i];
     centre[k] = sites.frame.origin[k] + 0.5 * (lo + hi) / sites.frame.scale;
-    half[k] = (0.5 * (hi - lo) + kRounding) / sites.frame.scale;
+    half[k] = (0.5 * (hi - lo) + kSingleRounding) / sites.frame.scale;
   }
   return {map.map(centre), map.scale * norm(half)};
 }
