@@ -11,10 +11,12 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "geometry/lanes/vec-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::sites::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
 
 constexpr size_t kLanes = BoundingCylinders::kWidth;
 using Lanes = hn::CappedTag<float, kLanes>;
@@ -40,12 +42,6 @@ struct Faces {
   }
 };
 
-HWY_INLINE void load(const float (&rows)[3][kLanes], size_t i, Vec (&v)[3]) {
-  for (int k = 0; k < 3; ++k) v[k] = hn::Load(Lanes(), rows[k] + i);
-}
-HWY_INLINE Vec dot(const Vec (&a)[3], const Vec (&b)[3]) {
-  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
-}
 HWY_INLINE Vec sine(Vec cosine) {
   const Lanes d;
   const Vec one = hn::Set(d, 1 + kCylinderRounding);
@@ -62,7 +58,7 @@ class MeanAxis {
     const Lanes d;
     for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
       Vec corner[3][3], u[3], v[3], area[3];
-      for (int c = 0; c < 3; ++c) load(faces.corner[c], i, corner[c]);
+      for (int c = 0; c < 3; ++c) load(d, faces.corner[c], i, corner[c]);
       for (int k = 0; k < 3; ++k) u[k] = hn::Sub(corner[1][k], corner[0][k]);
       for (int k = 0; k < 3; ++k) v[k] = hn::Sub(corner[2][k], corner[0][k]);
       for (int k = 0; k < 3; ++k)
@@ -74,7 +70,7 @@ class MeanAxis {
     const Lanes d;
     for (size_t i = 0; i < cylinders.count; i += hn::Lanes(d)) {
       Vec axis[3];
-      load(cylinders.at.axis, i, axis);
+      load(d, cylinders.at.axis, i, axis);
       const Vec radius = hn::Load(d, cylinders.at.radius + i);
       add(axis, hn::IfThenElseZero(hn::FirstN(d, cylinders.count - i), hn::Mul(radius, radius)));
     }
@@ -117,7 +113,7 @@ class Extents {
     for (size_t i = 0; i < kLanes; i += hn::Lanes(d))
       for (int c = 0; c < 3; ++c) {
         Vec from[3];
-        load(faces.corner[c], i, from);
+        load(d, faces.corner[c], i, from);
         for (int k = 0; k < 3; ++k) from[k] = hn::Sub(from[k], through_[k]);
         const Vec along = dot(from, axis_);
         least_ = hn::Min(least_, along);
@@ -129,8 +125,8 @@ class Extents {
     const Lanes d;
     for (size_t i = 0; i < cylinders.count; i += hn::Lanes(d)) {
       Vec from[3], axis[3];
-      load(cylinders.at.centre, i, from);
-      load(cylinders.at.axis, i, axis);
+      load(d, cylinders.at.centre, i, from);
+      load(d, cylinders.at.axis, i, axis);
       for (int k = 0; k < 3; ++k) from[k] = hn::Sub(from[k], through_[k]);
       const Vec radius = hn::Load(d, cylinders.at.radius + i);
       const Vec half_height = hn::Load(d, cylinders.at.half_height + i);

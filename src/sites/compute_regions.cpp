@@ -11,12 +11,13 @@
 #include <cstring>
 #include <numbers>
 
-#include "geometry/vec_lanes-inl.h"
+#include "geometry/lanes/vec-inl.h"
+#include "geometry/rounding.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::sites::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace core::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
 
 // The walls of a face thinner than this, in the unit frame, would enclose nothing in single precision. Its
 // edges represent it instead: no point of it is farther from them than half of this.
@@ -138,10 +139,9 @@ void ComputeLeaf(Regions& regions, const Placement& placement, std::span<FaceSha
     const Vec3v from[3] = {centre, sub(centre, side[0]), add(centre, side[2])};
     const Vec radius_squared =
         hn::Max(hn::Max(dot(from[0], from[0]), dot(from[1], from[1])), dot(from[2], from[2]));
-    constexpr double kRounding = 1e-6;  // of single precision
     store(add(start, centre), bounds.centre, i);
     store(normal, bounds.normal, i);
-    store(hn::Mul(hn::Set(d, 1 + kRounding), hn::Sqrt(radius_squared)), bounds.radius + i);
+    store(hn::Mul(hn::Set(d, 1 + kSingleRounding), hn::Sqrt(radius_squared)), bounds.radius + i);
   }
   for (uint32_t lane = 0; lane < count; ++lane) {
     FaceRegion& region = regions.faces[first + lane];

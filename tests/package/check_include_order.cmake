@@ -5,6 +5,7 @@ cmake_minimum_required(VERSION 3.23)
 set(order
   core
   geometry
+  geometry/lanes
   tree
   search
   mesh

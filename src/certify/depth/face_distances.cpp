@@ -6,24 +6,16 @@
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
 
-#include <limits>
-
-#include "geometry/vec_lanes-inl.h"
+#include "geometry/lanes/point_triangle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::depth::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace core::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
 
 // A pair of a point and a face in each lane: the points repeat for each face.
 constexpr size_t kPerFace = 4;
 static_assert(2 * kPerFace == kLanes);
-
-HWY_INLINE Vec inverse(Vec x) {
-  const Doubles d;
-  const Vec least = hn::Set(d, std::numeric_limits<double>::min());
-  return hn::IfThenElseZero(hn::Gt(x, least), hn::Div(hn::Set(d, 1.0), hn::Max(x, least)));
-}
 
 std::array<std::array<double, 4>, 2> FaceDistances(const sites::SitesData& sites,
                                                    const std::array<Vec3, 4>& points,
@@ -42,23 +34,9 @@ std::array<std::array<double, 4>, 2> FaceDistances(const sites::SitesData& sites
   }
   alignas(64) double distance[kLanes];
   for (size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-    Vec3v at[3], side[3], from[3];
-    for (int k = 0; k < 3; ++k) at[k] = corner[k].load(i);
-    for (int k = 0; k < 3; ++k) side[k] = sub(at[(k + 1) % 3], at[k]), from[k] = sub(point.load(i), at[k]);
-    const Vec3v normal = cross(side[0], side[1]);
-    Vec squared = hn::Inf(d);
-    auto over = hn::Gt(hn::Load(d, flat + i), hn::Zero(d));
-    for (int k = 0; k < 3; ++k) {
-      const Vec t =
-          hn::Min(hn::Max(hn::Mul(dot(from[k], side[k]), inverse(dot(side[k], side[k]))), hn::Zero(d)),
-                  hn::Set(d, 1.0));
-      const Vec3v rest = sub_mul(from[k], t, side[k]);
-      squared = hn::Min(squared, dot(rest, rest));
-      over = hn::And(over, hn::Gt(dot(from[k], cross(normal, side[k])), hn::Zero(d)));
-    }
-    const Vec height = dot(normal, from[0]);
-    squared = hn::IfThenElse(over, hn::Mul(hn::Mul(height, height), inverse(dot(normal, normal))), squared);
-    hn::Store(hn::Sqrt(squared), d, distance + i);
+    const TriangleSides<Doubles> sides(corner[0].load(i), corner[1].load(i), corner[2].load(i));
+    const auto is_flat = hn::Gt(hn::Load(d, flat + i), hn::Zero(d));
+    hn::Store(hn::Sqrt(sides.squared_distance(point.load(i), is_flat)), d, distance + i);
   }
   std::array<std::array<double, 4>, 2> result;
   for (size_t f = 0; f < 2; ++f)

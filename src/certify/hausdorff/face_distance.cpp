@@ -15,7 +15,9 @@ double largest_coordinate(const Vec3& v) {
   return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
 }
 
-// A point y of a triangle that is closest to p up to rounding.
+// A point y of a triangle that is closest to p up to rounding. The kernels of geometry/point_triangle.h give
+// the closest point; this gives one that surely lies on the triangle, seen from p, and how far rounding may
+// have moved it, so that the bounds hold. Its regions are tested as there.
 struct Nearest {
   Corners r;        // corners − p
   Vec3 to;          // y − p

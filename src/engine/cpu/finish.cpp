@@ -10,14 +10,14 @@
 
 #include "engine/cpu/cpu_engine.h"
 #include "engine/engine.h"
+#include "geometry/lanes/vec-inl.h"
 #include "geometry/vec.h"
-#include "geometry/vec_lanes-inl.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace core::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
 
 constexpr size_t kPacket = sites::ClosestPacket::kSize;
 static_assert(kPacket == PointGroup::kPacket);  // winners are stored in whole packets
@@ -71,6 +71,10 @@ HWY_INLINE uint32_t for_lanes(Packet& p, uint32_t lanes, const On& on) {
   }
   return inside & lanes;
 }
+
+// A winner is a site, not a triangle: what is left to verify is that the query lies in its region, where the
+// closest point is that of a plane, a line or a vertex. This takes no other region of the faces around it, so
+// it is less than a distance from one of them (geometry/lanes/point_triangle-inl.h).
 
 // Above or below the face: on the inner side of its three walls.
 uint32_t on_face(const sites::SitesData& sites, uint32_t face, Packet& p, uint32_t lanes) {

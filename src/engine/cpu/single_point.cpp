@@ -12,26 +12,14 @@
 #include <limits>
 
 #include "engine/cpu/region_kernels-inl.h"
+#include "geometry/lanes/point_triangle-inl.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::cpu::HWY_NAMESPACE {
 
-// Three coordinates of eight things.
-struct BlockVec3 {
-  BlockVec x, y, z;
-};
-HWY_INLINE BlockVec3 sub(const BlockVec3& a, const BlockVec3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE BlockVec dot(const BlockVec3& a, const BlockVec3& b) {
-  return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
-}
-HWY_INLINE BlockVec3 cross(const BlockVec3& a, const BlockVec3& b) {
-  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
-          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
-}
+using namespace lanes::HWY_NAMESPACE;
 
 class SinglePoint {
  public:
@@ -110,14 +98,8 @@ class SinglePoint {
   // the normal may be rounding noise.
   HWY_INLINE BlockVec squared_to_discs(const sites::FaceBounds& bounds, uint32_t thin, size_t i) const {
     const Block d;
-    const auto from = [&](int k) HWY_ATTR {
-      return hn::Sub(hn::Set(d, point_.centre[k]), hn::Load(d, bounds.centre[k] + i));
-    };
-    const BlockVec3 r{from(0), from(1), from(2)};
-    const BlockVec h = hn::IfThenElseZero(
-        hn::Not(lanes_of(thin, i)),
-        dot(r, BlockVec3{hn::Load(d, bounds.normal[0] + i), hn::Load(d, bounds.normal[1] + i),
-                         hn::Load(d, bounds.normal[2] + i)}));
+    const Vec3Of<BlockVec> r = sub(splat(d, point_.centre), load(d, bounds.centre, i));
+    const BlockVec h = hn::IfThenElseZero(hn::Not(lanes_of(thin, i)), dot(r, load(d, bounds.normal, i)));
     const BlockVec squared = dot(r, r), h2 = hn::Mul(h, h);
     // Reduced by the cancellation error in the difference of squares.
     const BlockVec beside =
@@ -144,28 +126,8 @@ class SinglePoint {
   // The squared distances of the faces whose corners are loaded; if they are thin, of their sides.
   HWY_INLINE BlockVec squared_to_faces(uint32_t thin, size_t i) const {
     const Block d;
-    const auto corner = [&](int c) HWY_ATTR {
-      return BlockVec3{hn::Load(d, corner_[c][0] + i), hn::Load(d, corner_[c][1] + i),
-                       hn::Load(d, corner_[c][2] + i)};
-    };
-    const BlockVec3 p{hn::Set(d, point_.centre[0]), hn::Set(d, point_.centre[1]),
-                      hn::Set(d, point_.centre[2])};
-    const BlockVec3 a = corner(0), b = corner(1), c = corner(2);
-    const BlockVec3 side[3] = {sub(b, a), sub(c, b), sub(a, c)}, from[3] = {sub(p, a), sub(p, b), sub(p, c)};
-    const BlockVec3 normal = cross(side[0], side[1]);
-    BlockVec least = hn::Inf(d);
-    BlockMask over = hn::Not(lanes_of(thin, i));
-    for (int k = 0; k < 3; ++k) {
-      const BlockVec along = dot(from[k], side[k]), length = dot(side[k], side[k]);
-      const BlockVec t = hn::IfThenElseZero(hn::Gt(length, hn::Set(d, 1e-30f)),
-                                            hn::Div(hn::Min(hn::Max(along, hn::Zero(d)), length), length));
-      const BlockVec3 r{hn::NegMulAdd(t, side[k].x, from[k].x), hn::NegMulAdd(t, side[k].y, from[k].y),
-                        hn::NegMulAdd(t, side[k].z, from[k].z)};
-      least = hn::Min(least, dot(r, r));
-      over = hn::And(over, hn::Gt(dot(cross(normal, side[k]), from[k]), hn::Zero(d)));
-    }
-    const BlockVec height = dot(normal, from[0]), squared = dot(normal, normal);
-    return hn::IfThenElse(over, hn::Div(hn::Mul(height, height), squared), least);
+    const TriangleSides<Block> faces(load(d, corner_[0], i), load(d, corner_[1], i), load(d, corner_[2], i));
+    return faces.squared_distance(splat(d, point_.centre), hn::Not(lanes_of(thin, i)));
   }
 
   static HWY_INLINE uint32_t bits(BlockMask mask) {

@@ -9,41 +9,30 @@
 #include <algorithm>
 #include <limits>
 
-#include "geometry/vec.h"
+#include "geometry/lanes/point_triangle-inl.h"
+#include "geometry/rounding.h"
+#include "geometry/triangle.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::contacts::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
 
 using Lanes = hn::CappedTag<float, DeepestVertex::kLanes>;
 using Vec = hn::Vec<Lanes>;
-
-HWY_INLINE Vec dot(const Vec (&a)[3], const float* b) {
-  const Lanes d;
-  return hn::MulAdd(a[2], hn::Set(d, b[2]),
-                    hn::MulAdd(a[1], hn::Set(d, b[1]), hn::Mul(a[0], hn::Set(d, b[0]))));
-}
 
 // Lowers the bounds of vertices to their distances from a triangle, or from its sides if it has no reliable
 // normal.
 void BoundByTriangle(const DeepestVertex::UnitTriangle& t, DeepestVertex::Rows rows, size_t first,
                      size_t last) {
   const Lanes d;
+  const TriangleSides<Lanes> sides(splat(d, t.corner[0]), splat(d, t.corner[1]), splat(d, t.corner[2]));
+  const auto flat = hn::FirstN(d, t.flat ? kLanes : 0);
   for (size_t i = first; i < last; i += hn::Lanes(d)) {
-    Vec squared = hn::Inf(d), least = hn::Set(d, t.flat ? 1.0f : -1.0f), height = hn::Inf(d);
-    for (int k = 0; k < 3; ++k) {
-      Vec rest[3];
-      for (int j = 0; j < 3; ++j) rest[j] = hn::Sub(hn::LoadU(d, rows.at[j] + i), hn::Set(d, t.corner[k][j]));
-      if (k == 0) height = hn::Abs(dot(rest, t.normal));
-      least = hn::Min(least, dot(rest, t.wall[k]));
-      const Vec along = hn::Min(hn::Max(hn::Mul(dot(rest, t.side[k]), hn::Set(d, t.inverse[k])), hn::Zero(d)),
-                                hn::Set(d, 1.0f));
-      for (int j = 0; j < 3; ++j) rest[j] = hn::NegMulAdd(along, hn::Set(d, t.side[k][j]), rest[j]);
-      squared = hn::Min(
-          squared, hn::MulAdd(rest[2], rest[2], hn::MulAdd(rest[1], rest[1], hn::Mul(rest[0], rest[0]))));
-    }
-    const Vec distance = hn::IfThenElse(hn::Gt(least, hn::Zero(d)), height, hn::Sqrt(squared));
+    const Vec3Of<Vec> p{hn::LoadU(d, rows.at[0] + i), hn::LoadU(d, rows.at[1] + i),
+                        hn::LoadU(d, rows.at[2] + i)};
+    const Vec distance = hn::Sqrt(sides.squared_distance(p, flat));
     hn::StoreU(hn::Min(hn::LoadU(d, rows.bound + i), distance), d, rows.bound + i);
   }
 }
@@ -67,11 +56,8 @@ HWY_EXPORT(BoundByTriangle);
 HWY_EXPORT(LargestBound);
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Of distances in single precision, relative to the coordinates; of those of single faces, relative to
-// themselves.
+// Of distances in single precision, relative to the coordinates.
 constexpr float kUnitRounding = 4e-6f;
-constexpr double kRounding = 1e-12;
-constexpr double kShortest = 1e-30;  // squared side that has an inverse in single precision
 
 }  // namespace
 
@@ -118,23 +104,13 @@ void DeepestVertex::consider(std::uint32_t vertex, const SurfacePoint& point) {
 DeepestVertex::UnitTriangle DeepestVertex::unit_triangle(std::uint32_t face) {
   const sites::SitesData& sites = internals(other_->sites());
   UnitTriangle t{.flat = sites.sliver[face] == 0};
-  std::array<Vec3, 3> corner, side;
-  for (std::size_t k = 0; k < 3; ++k)
-    corner[k] = to_unit_(sites.mesh.positions[sites.mesh.triangles[face][k]]);
-  for (std::size_t k = 0; k < 3; ++k) side[k] = corner[(k + 1) % 3] - corner[k];
-  const Vec3 normal = normalized(cross(side[0], side[1]));
   double largest = 1;
+  const Corners corners = corners_of(sites.mesh, face);
   for (std::size_t k = 0; k < 3; ++k) {
-    const double squared = squared_norm(side[k]);
-    // Of length 1, so that the products below are distances.
-    const Vec3 wall = normalized(cross(normal, side[k]));
-    t.inverse[k] = static_cast<float>(squared > kShortest ? 1 / squared : 0);  // 0: by the corner
-    t.normal[k] = static_cast<float>(normal[k]);
+    const Vec3 corner = to_unit_(corners[k]);
     for (std::size_t j = 0; j < 3; ++j) {
-      t.corner[k][j] = static_cast<float>(corner[k][j]);
-      t.side[k][j] = static_cast<float>(side[k][j]);
-      t.wall[k][j] = static_cast<float>(wall[j]);
-      largest = std::max(largest, std::abs(corner[k][j]));
+      t.corner[k][j] = static_cast<float>(corner[j]);
+      largest = std::max(largest, std::abs(corner[j]));
     }
   }
   rounding_ = std::max(rounding_, kUnitRounding * static_cast<float>(largest));
@@ -173,7 +149,7 @@ DeepestVertex::Found DeepestVertex::find(double margin) {
   while (true) {
     for (; used < faces_.size(); ++used) bound(faces_[used], 0, count);
     const float largest = HWY_DYNAMIC_DISPATCH(LargestBound)(bound_.data(), padded);
-    const double enough = -best_.point.distance * (1 + kRounding);
+    const double enough = -best_.point.distance * (1 + kDoubleRounding);
     if (largest == -kInfinity || largest + rounding_ <= enough * scale_) break;
     const std::size_t deepest = std::ranges::find(bound_, largest) - bound_.begin();
     bound_[deepest] = -kInfinity;

@@ -39,9 +39,8 @@ class DeepestVertex {
 
   /// For the vector code, in single precision: a face, in the unit frame of `on`.
   struct UnitTriangle {
-    float corner[3][3] = {}, side[3][3] = {}, wall[3][3] = {};  ///< `wall`: inwards, across a side
-    float normal[3] = {}, inverse[3] = {};  ///< `inverse`: of the squared lengths of sides
-    bool flat = true;                       ///< whether its normal is reliable
+    float corner[3][3] = {};
+    bool flat = true;  ///< whether its normal is reliable
   };
   struct Rows {
     std::array<const float*, 3> at;

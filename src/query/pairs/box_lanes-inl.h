@@ -11,27 +11,18 @@
 
 #include <cmath>
 
+#include "geometry/lanes/vec-inl.h"
 #include "query/pairs/unit_maps.h"
 #include "tree/wide_tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::pairs::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
 
 constexpr size_t kWidth = tree::WideTree::kWidth;
 using Lanes = hn::CappedTag<float, kWidth>;
 using Vec = hn::Vec<Lanes>;
-
-HWY_INLINE Vec dot(Lanes d, const Vec (&a)[3], const float (&b)[3]) {
-  return hn::MulAdd(a[2], hn::Set(d, b[2]),
-                    hn::MulAdd(a[1], hn::Set(d, b[1]), hn::Mul(a[0], hn::Set(d, b[0]))));
-}
-HWY_INLINE Vec dot(const Vec (&a)[3], const Vec (&b)[3]) {
-  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
-}
-HWY_INLINE void load(Lanes d, const float (&rows)[3][kWidth], size_t i, Vec (&v)[3]) {
-  for (int k = 0; k < 3; ++k) v[k] = hn::Load(d, rows[k] + i);
-}
 
 // The distance of boxes from their gaps along three orthogonal axes; if they overlap, minus the smallest
 // overlap.

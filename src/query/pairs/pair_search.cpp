@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "core/cancellation.h"
+#include "geometry/lanes/triangle_pair-inl.h"
 #include "query/pairs/cylinder_lanes-inl.h"
 #include "query/pairs/face_lanes-inl.h"
-#include "query/pairs/triangle_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::pairs::HWY_NAMESPACE {
