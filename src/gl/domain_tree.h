@@ -8,7 +8,7 @@
 #include "gl/face_domains.h"
 #include "gl/tile_tree.h"
 #include "sites/sites_data.h"
-#include "tree/traverse.h"
+#include "tree/fold.h"
 
 namespace sdm::gl {
 

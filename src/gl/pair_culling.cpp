@@ -25,13 +25,8 @@ class Descent {
         box_(tree::FloatBox::around(region.box())),
         oriented_(oriented_box(region, reach, rules.corrections.margins ? rules.slack : 0)) {}
 
-  void run() {
-    traverse(
-        tree_.tree, {block_.node, block_.end}, [&](tree::Subtree below) { return enter(below); },
-        [&](std::uint32_t leaf) { draw(leaf); });
-  }
+  void run() { visit(tree_.tree, {block_.node, block_.end}, *this); }
 
- private:
   bool enter(tree::Subtree below) {
     if (beyond(box_, tree_, below.root, counts_)) {
       counts_.culled_by_bound += tree_.leaves.count(below);
@@ -43,12 +38,13 @@ class Descent {
     return false;
   }
 
-  void draw(std::uint32_t leaf) {
+  void leaf(std::uint32_t leaf) {
     const std::uint32_t position = tree_.leaves.count(block_.node, leaf);
     const bool drawn = add_polygon(batch_, region_, oriented_, block_.domains[position], rules_);
     ++(drawn ? counts_.polygons : counts_.clipped_away);
   }
 
+ private:
   const DomainTree& tree_;
   const DomainBlock& block_;
   const SiteRegion& region_;
@@ -83,14 +79,12 @@ PairCounts& PairCounts::operator+=(const PairCounts& other) {
 
 std::vector<DomainBlock> cut_into_blocks(const DomainTree& tree, std::uint32_t size) {
   std::vector<DomainBlock> blocks;
-  traverse(
-      tree.tree, whole(tree.tree),
-      [&](tree::Subtree below) {
-        const bool small = tree.leaves.count(below) <= size;
-        if (small) blocks.push_back({below.root, below.end, {}});
-        return !small;
-      },
-      [](std::uint32_t) {});
+  visit(tree.tree, tree::InOrder{[&](tree::Subtree below) {
+                                   const bool small = tree.leaves.count(below) <= size;
+                                   if (small) blocks.push_back({below.root, below.end, {}});
+                                   return !small;
+                                 },
+                                 [](std::uint32_t) {}});
   return blocks;
 }
 
@@ -99,16 +93,15 @@ std::vector<std::uint32_t> leaves_within_bound(const SiteIndex& index, const Dom
   std::vector<std::uint32_t> leaves;
   const tree::AabbTree& site_tree = index.sites.tree;
   const std::uint64_t domains = tree.leaves.count(block.node, block.end);
-  traverse(
-      site_tree, whole(site_tree),
-      [&](tree::Subtree below) {
-        if (!beyond(site_tree.box(below.root), tree, block.node, counts)) return true;
-        const std::uint64_t sites =
-            index.before[index.leaves.before[below.end]] - index.before[index.leaves.before[below.root]];
-        counts.culled_by_bound += sites * domains;
-        return false;
-      },
-      [&](std::uint32_t leaf) { leaves.push_back(index.leaves.before[leaf]); });
+  const auto enter = [&](tree::Subtree below) {
+    if (!beyond(site_tree.box(below.root), tree, block.node, counts)) return true;
+    const std::uint64_t sites =
+        index.before[index.leaves.before[below.end]] - index.before[index.leaves.before[below.root]];
+    counts.culled_by_bound += sites * domains;
+    return false;
+  };
+  visit(site_tree,
+        tree::InOrder{enter, [&](std::uint32_t leaf) { leaves.push_back(index.leaves.before[leaf]); }});
   return leaves;
 }
 

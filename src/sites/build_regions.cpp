@@ -5,7 +5,7 @@
 #include "core/parallel.h"
 #include "sites/cone_rays.h"
 #include "sites/regions.h"
-#include "tree/traverse.h"
+#include "tree/fold.h"
 
 namespace sdm::sites {
 namespace {
@@ -109,7 +109,9 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
       },
       [&] {
         sites.run(tree.items, regions.owners, places);
-        for (const std::uint32_t leaf : leaf_nodes(tree)) regions.leaves.push_back(tree.nodes[leaf].first);
+        for (const std::uint32_t leaf : leaf_nodes(tree))
+          regions.leaves.push_back(
+              static_cast<std::uint32_t>(tree.items_of(leaf).data() - tree.items.data()));
         regions.leaves.push_back(static_cast<std::uint32_t>(faces));
         regions.leaves.shrink_to_fit();
       });

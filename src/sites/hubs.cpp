@@ -14,6 +14,7 @@
 #include "geometry/sweep.h"
 #include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
+#include "tree/edit_tree.h"
 
 namespace sdm::sites {
 namespace {
@@ -46,7 +47,7 @@ std::vector<NodePair> divided(const AabbTree& tree, std::vector<NodePair> pairs)
     before = pairs.size();
     std::vector<NodePair> next;
     for (const NodePair& pair : pairs) {
-      if (tree.nodes[pair[0]].leaf() && tree.nodes[pair[1]].leaf())
+      if (leaves(tree, pair))
         next.push_back(pair);
       else
         for_each_child_pair(tree, pair, [&](const NodePair& below) {
@@ -63,18 +64,16 @@ void visit_overlapping(const AabbTree& tree, const std::vector<NodePair>& roots,
   const std::vector<NodePair> pairs = divided(tree, roots);
   parallel_for(pairs.size(), 1, progress, "self-intersections", [&](std::size_t begin, std::size_t end) {
     Poll due(128);
-    for (std::size_t i = begin; i < end; ++i)
-      traverse_pairs(
-          tree, pairs[i],
-          [&](const NodePair& pair) {
-            due();
-            return go_on.load(std::memory_order_relaxed) && overlap(tree, pair);
-          },
-          [&](const NodePair& leaves) {
-            for_each_face_pair(tree, leaves, [&](std::uint32_t a, std::uint32_t b) {
-              if (!visit(a, b)) go_on = false;
-            });
-          });
+    const auto enter = [&](const NodePair& pair) {
+      due();
+      return go_on.load(std::memory_order_relaxed) && overlap(tree, pair);
+    };
+    const auto visit_leaves = [&](const NodePair& leaves) {
+      for_each_face_pair(tree, leaves, [&](std::uint32_t a, std::uint32_t b) {
+        if (!visit(a, b)) go_on = false;
+      });
+    };
+    for (std::size_t i = begin; i < end; ++i) visit_pairs(tree, pairs[i], tree::InOrder{enter, visit_leaves});
   });
 }
 
@@ -115,19 +114,10 @@ struct Forest {
 
  private:
   void add(const AabbTree& more) {
-    const auto nodes = static_cast<std::uint32_t>(tree.nodes.size()),
-               first = static_cast<std::uint32_t>(tree.items.size());
-    roots.push_back(nodes);
+    roots.push_back(static_cast<std::uint32_t>(tree.nodes.size()));
     const FloatBox& box = more.box(0);
     boxes.push_back({{box.lo[0], box.lo[1], box.lo[2]}, {box.hi[0], box.hi[1], box.hi[2]}});
-    for (AabbTree::Node node : more.nodes) {
-      if (node.leaf())
-        node.first += first;
-      else
-        node.right += nodes;
-      tree.nodes.push_back(node);
-    }
-    tree.items.insert(tree.items.end(), more.items.begin(), more.items.end());
+    append(tree, more);
   }
 };
 

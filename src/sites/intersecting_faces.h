@@ -5,7 +5,7 @@
 
 #include "geometry/triangle.h"
 #include "mesh/topology.h"
-#include "tree/traverse.h"
+#include "tree/visit_pairs.h"
 
 namespace sdm::sites {
 

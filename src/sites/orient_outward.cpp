@@ -10,6 +10,7 @@
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
+#include "tree/fold.h"
 
 namespace sdm::sites {
 namespace {
@@ -66,15 +67,17 @@ using ShellNode = std::array<std::uint32_t, 2>;  // a shell, and a node of the t
 void find_nodes_of_shells(const tree::AabbTree& tree, std::span<const std::uint32_t> component,
                           std::span<const std::uint32_t> label, std::vector<ShellNode>& nodes) {
   nodes.clear();
-  for (std::uint32_t node = 0; node < tree.nodes.size(); ++node) {
-    if (label[node] != kNone) continue;
-    if (tree.nodes[node].leaf()) {
-      for (const std::uint32_t face : tree.items_of(node)) nodes.push_back({component[face], node});
-    } else {
-      for (const std::uint32_t child : {node + 1, tree.nodes[node].right})
-        if (label[child] != kNone) nodes.push_back({label[child], child});
-    }
-  }
+  for_each_bottom_up(
+      tree,
+      [&](std::uint32_t leaf) {
+        if (label[leaf] != kNone) return;
+        for (const std::uint32_t face : tree.items_of(leaf)) nodes.push_back({component[face], leaf});
+      },
+      [&](std::uint32_t node, std::uint32_t left, std::uint32_t right) {
+        if (label[node] != kNone) return;
+        for (const std::uint32_t child : {left, right})
+          if (label[child] != kNone) nodes.push_back({label[child], child});
+      });
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
@@ -120,19 +123,18 @@ void remove_intersecting(const Shell& shell, const inside::FaceTree& faces,
   Poll due(128);
   for (const auto& [unused, node] : nodes) {
     if (others.empty()) return;
-    traverse_pairs(
-        tree, {node, 0},
-        [&](const tree::NodePair& pair) {
-          due();
-          return (label[pair[1]] == kNone || wanted(label[pair[1]])) && overlap(tree, pair);
-        },
-        [&](const tree::NodePair& leaves) {
-          for (const std::uint32_t f : tree.items_of(leaves[0]))
-            for (const std::uint32_t g : tree.items_of(leaves[1]))
-              if (component[f] == shell.component && wanted(component[g]) &&
-                  triangles_intersect(mesh.corners(f), mesh.corners(g)))
-                others.erase(std::ranges::lower_bound(others, component[g]));
-        });
+    const auto enter = [&](const tree::NodePair& pair) {
+      due();
+      return (label[pair[1]] == kNone || wanted(label[pair[1]])) && overlap(tree, pair);
+    };
+    const auto visit_leaves = [&](const tree::NodePair& leaves) {
+      for (const std::uint32_t f : tree.items_of(leaves[0]))
+        for (const std::uint32_t g : tree.items_of(leaves[1]))
+          if (component[f] == shell.component && wanted(component[g]) &&
+              triangles_intersect(mesh.corners(f), mesh.corners(g)))
+            others.erase(std::ranges::lower_bound(others, component[g]));
+    };
+    visit_pairs(tree, {node, 0}, tree::InOrder{enter, visit_leaves});
   }
 }
 

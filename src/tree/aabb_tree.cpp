@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "tree/traverse.h"
+#include "tree/fold.h"
 
 namespace sdm::tree {
 namespace {

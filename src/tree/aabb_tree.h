@@ -1,4 +1,4 @@
-// A binary tree of axis-aligned boxes: building and refitting. traverse.h has its traversals.
+// A binary tree of axis-aligned boxes: building and refitting. visit.h has its searches.
 #pragma once
 
 #include <sdm/types.h>

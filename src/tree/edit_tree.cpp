@@ -3,7 +3,7 @@
 #include <numeric>
 #include <utility>
 
-#include "tree/traverse.h"
+#include "tree/fold.h"
 
 namespace sdm::tree {
 namespace {
@@ -103,6 +103,19 @@ class TreeEditor {
 
 AabbTree edit_tree(const AabbTree& tree, const TreeEdit& edit, std::uint32_t leaf_size) {
   return TreeEditor(tree, edit, leaf_size).run();
+}
+
+void append(AabbTree& forest, const AabbTree& tree) {
+  const auto nodes = static_cast<std::uint32_t>(forest.nodes.size()),
+             first = static_cast<std::uint32_t>(forest.items.size());
+  for (AabbTree::Node node : tree.nodes) {
+    if (node.leaf())
+      node.first += first;
+    else
+      node.right += nodes;
+    forest.nodes.push_back(node);
+  }
+  forest.items.insert(forest.items.end(), tree.items.begin(), tree.items.end());
 }
 
 }  // namespace sdm::tree

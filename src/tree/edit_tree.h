@@ -20,4 +20,8 @@ struct TreeEdit {
 /// Cost: a copy of the tree, plus n log n in the added items.
 [[nodiscard]] AabbTree edit_tree(const AabbTree& tree, const TreeEdit& edit, std::uint32_t leaf_size);
 
+/// Adds the nodes and items of another tree behind those of a forest. Its root is the first node added; its
+/// items keep their numbers. Cost: linear in what is added.
+void append(AabbTree& forest, const AabbTree& tree);
+
 }  // namespace sdm::tree

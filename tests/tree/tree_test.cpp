@@ -6,11 +6,13 @@
 #include <numeric>
 #include <optional>
 #include <random>
+#include <utility>
 
 #include "geometry/vec.h"
 #include "tree/aabb_tree.h"
-#include "tree/traverse.h"
-#include "tree/traverse_wide.h"
+#include "tree/fold.h"
+#include "tree/visit.h"
+#include "tree/visit_pairs.h"
 #include "tree/wide_tree.h"
 
 namespace sdm {
@@ -183,9 +185,8 @@ TEST_P(Traversal, DepthFirstVisitsTheAcceptedLeavesInOrder) {
     const Vec3 p = point();
     const auto accept = [&](const tree::FloatBox& box) { return squared_distance(box, p) < 0.1 * i; };
     std::vector<std::uint32_t> visited;
-    traverse(
-        tree, whole(tree), [&](tree::Subtree below) { return accept(tree.box(below.root)); },
-        [&](std::uint32_t leaf) { visited.push_back(leaf); });
+    visit(tree, tree::InOrder{[&](tree::Subtree below) { return accept(tree.box(below.root)); },
+                              [&](std::uint32_t leaf) { visited.push_back(leaf); }});
     EXPECT_EQ(visited, accepted_leaves(tree, accept));
   }
 }
@@ -194,26 +195,24 @@ TEST_P(Traversal, SubtreesHoldTheLeavesThatTheirNumbersName) {
   const tree::LeafOrder order(tree);
   const std::vector<std::uint32_t> leaves = leaf_nodes(tree);
   EXPECT_EQ(leaves, accepted_leaves(tree, [](const tree::FloatBox&) { return true; }));
-  traverse(
-      tree, whole(tree),
-      [&](tree::Subtree below) {
-        std::vector<std::uint32_t> inside;
-        traverse(
-            tree, below, [](tree::Subtree) { return true; },
-            [&](std::uint32_t leaf) { inside.push_back(leaf); });
-        EXPECT_EQ(inside.size(), order.count(below));
-        const std::uint32_t first = order.before[below.root];
-        EXPECT_TRUE(std::equal(inside.begin(), inside.end(), leaves.begin() + first));
-        return true;
-      },
-      [](std::uint32_t) {});
+  const auto enter = [&](tree::Subtree below) {
+    std::vector<std::uint32_t> inside;
+    visit(tree, below,
+          tree::InOrder{[](tree::Subtree) { return true; },
+                        [&](std::uint32_t leaf) { inside.push_back(leaf); }});
+    EXPECT_EQ(inside.size(), order.count(below));
+    const std::uint32_t first = order.before[below.root];
+    EXPECT_TRUE(std::equal(inside.begin(), inside.end(), leaves.begin() + first));
+    return true;
+  };
+  visit(tree, tree::InOrder{enter, [](std::uint32_t) {}});
 }
 
 // With a limit that shrinks to the nearest box found so far, each order finds the nearest.
 TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
   const tree::WideTree wide = tree::collapse(tree);
   const std::vector<std::uint32_t> leaves = leaf_nodes(tree);
-  std::vector<tree::OpenChild<float>> stack;
+  std::vector<tree::OpenNode> stack;
   for (int i = 0; i < 50; ++i) {
     const Vec3 p = point();
     const auto bound = [&](const tree::FloatBox& box) { return squared_distance(box, p); };
@@ -221,27 +220,137 @@ TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
     for (const std::uint32_t leaf : leaves) expected = std::min(expected, bound(tree.box(leaf)));
 
     double nearer_first = std::numeric_limits<double>::infinity(), wide_first = nearer_first;
-    traverse_nearer_first(
-        tree, bound, [&](double least) { return least < nearer_first; },
-        [&](std::uint32_t leaf) {
-          EXPECT_LT(bound(tree.box(leaf)), nearer_first);
-          nearer_first = bound(tree.box(leaf));
-        });
+    const auto enter = [&](double least) { return least < nearer_first; };
+    const auto visit_leaf = [&](std::uint32_t leaf) {
+      EXPECT_LT(bound(tree.box(leaf)), nearer_first);
+      nearer_first = bound(tree.box(leaf));
+    };
+    visit(tree, tree::NearestFirst{bound, enter, visit_leaf});
     EXPECT_EQ(nearer_first, expected);
     if (leaves.empty()) continue;
     const auto within = [&](float squared) { return squared < (1 + 1e-6) * wide_first; };
-    traverse_nearest_child_first(
-        wide, stack,
-        [&](const tree::WideTree::Node& node, float(&squared)[tree::WideTree::kWidth]) {
-          squared_distances(node, tree::FloatBox::around({p, p}), squared);
-          std::uint32_t near = 0;
-          for (std::uint32_t c = 0; c < node.count; ++c) near |= (within(squared[c]) ? 1u : 0u) << c;
-          return near;
-        },
-        within,
-        [&](std::uint32_t leaf) { wide_first = std::min(wide_first, bound(tree.box(leaves.at(leaf)))); });
+    const auto bound_children = [&](const tree::OpenNode&, const tree::WideTree::Node& node,
+                                    float(&squared)[tree::WideTree::kWidth]) {
+      squared_distances(node, tree::FloatBox::around({p, p}), squared);
+      std::uint32_t near = 0;
+      for (std::uint32_t c = 0; c < node.count; ++c) near |= (within(squared[c]) ? 1u : 0u) << c;
+      return near;
+    };
+    const auto enter_open = [&](const tree::OpenNode& open) { return within(open.bound); };
+    const auto visit_open = [&](const tree::OpenNode& leaf) {
+      wide_first = std::min(wide_first, bound(tree.box(leaves.at(leaf.leaf_number()))));
+    };
+    EXPECT_TRUE(visit(wide, stack, tree::NearestFirst{bound_children, enter_open, visit_open}));
     EXPECT_EQ(wide_first, expected);
   }
+}
+
+// A policy of the wide tree without an order, for the leaves whose boxes overlap one.
+struct Overlapping {
+  const tree::FloatBox& box;
+  std::vector<std::uint32_t>& leaves;
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+
+  static bool enter(const tree::OpenNode&) { return true; }
+  std::uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node) const {
+    float squared[tree::WideTree::kWidth];
+    squared_distances(node, box, squared);
+    std::uint32_t children = 0;
+    for (std::uint32_t c = 0; c < node.count; ++c) children |= (squared[c] == 0 ? 1u : 0u) << c;
+    return children;
+  }
+  [[nodiscard]] bool leaf(const tree::OpenNode& open) const {
+    leaves.push_back(open.leaf_number());
+    return leaves.size() < most;
+  }
+};
+
+TEST_P(Traversal, WideSearchesWithoutAnOrderFindTheAcceptedLeavesUntilOneEndsThem) {
+  const tree::WideTree wide = tree::collapse(tree);
+  const std::vector<std::uint32_t> leaves = leaf_nodes(tree);
+  if (leaves.empty()) return;
+  std::vector<tree::OpenNode> stack;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 p = point(), q = point();
+    Box around;
+    extend(around, p), extend(around, q);
+    const tree::FloatBox box = tree::FloatBox::around(around);
+    std::vector<std::uint32_t> found, expected;
+    EXPECT_TRUE(visit(wide, stack, Overlapping{box, found}));
+    for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf)
+      if (squared_norm(gap(tree.box(leaves[leaf]), box)) == 0) expected.push_back(leaf);
+    EXPECT_THAT(found, testing::UnorderedElementsAreArray(expected));
+    const std::vector<std::uint32_t> all_found = std::exchange(found, {});
+    if (all_found.size() < 2) continue;
+    EXPECT_FALSE(visit(wide, stack, Overlapping{box, found, 2}));
+    EXPECT_THAT(found, testing::ElementsAre(all_found[0], all_found[1]));
+  }
+}
+
+// The same pairs by looking at all of them.
+TEST_P(Traversal, PairsOfOneTreeAreVisitedOnceEach) {
+  if (tree.nodes.empty() || GetParam() > 100) return;
+  const auto overlap = [&](const tree::NodePair& pair) {
+    return squared_norm(gap(tree.box(pair[0]), tree.box(pair[1]))) == 0;
+  };
+  std::vector<tree::NodePair> visited, expected;
+  visit_pairs(tree, {0, 0}, tree::InOrder{overlap, [&](tree::NodePair pair) {
+                                            std::ranges::sort(pair);
+                                            visited.push_back(pair);
+                                          }});
+  const std::vector<std::uint32_t> leaves = leaf_nodes(tree);
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+    for (std::size_t j = i; j < leaves.size(); ++j)
+      if (overlap({leaves[i], leaves[j]})) expected.push_back({leaves[i], leaves[j]});
+  EXPECT_THAT(visited, testing::UnorderedElementsAreArray(expected));
+}
+
+// The policy of a search for the pairs of leaves of two wide trees whose boxes overlap.
+struct OverlappingPairs {
+  struct Pair {
+    std::array<tree::Place, 2> place;
+    [[nodiscard]] bool leaves() const { return place[0].leaf() && place[1].leaf(); }
+  };
+  std::array<const tree::AabbTree*, 2> binary;
+  std::array<const tree::WideTree*, 2> wide;
+  std::vector<Pair> stack{Pair{}};
+  std::vector<std::array<std::uint32_t, 2>> found{};
+
+  bool next(Pair& pair) {
+    if (stack.empty()) return false;
+    pair = stack.back();
+    stack.pop_back();
+    return true;
+  }
+  static bool enter(const Pair&) { return true; }
+  [[nodiscard]] tree::Division bound(const Pair& pair, float (&squared)[tree::WideTree::kWidth]) const {
+    const int side = pair.place[0].leaf() || (!pair.place[1].leaf() && pair.place[1].child % 2 == 0) ? 1 : 0;
+    const tree::WideTree::Node& node = wide[side]->nodes[pair.place[side].child];
+    squared_distances(node, binary[1 - side]->box(pair.place[1 - side].source), squared);
+    std::uint32_t children = 0;
+    for (std::uint32_t c = 0; c < node.count; ++c) children |= (squared[c] == 0 ? 1u : 0u) << c;
+    return {side, children};
+  }
+  void open(const Pair& pair, int /*side*/, float squared) {
+    EXPECT_EQ(squared, 0);
+    stack.push_back(pair);
+  }
+  void leaf(const Pair& pair) { found.push_back({pair.place[0].leaf_number(), pair.place[1].leaf_number()}); }
+};
+
+TEST_P(Traversal, PairsOfTwoTreesAreVisitedOnceEach) {
+  const std::vector<Box> others = random_boxes(70, 9);
+  const tree::AabbTree other = tree::build_aabb_tree(others, all(others.size()), 2);
+  if (tree.nodes.empty()) return;
+  const tree::WideTree wide = tree::collapse(tree), other_wide = tree::collapse(other);
+  OverlappingPairs search{{&tree, &other}, {&wide, &other_wide}};
+  visit_pairs(wide, other_wide, search);
+  std::vector<std::array<std::uint32_t, 2>> expected;
+  const std::vector<std::uint32_t> leaves1 = leaf_nodes(tree), leaves2 = leaf_nodes(other);
+  for (std::uint32_t i = 0; i < leaves1.size(); ++i)
+    for (std::uint32_t j = 0; j < leaves2.size(); ++j)
+      if (squared_norm(gap(tree.box(leaves1[i]), other.box(leaves2[j]))) == 0) expected.push_back({i, j});
+  EXPECT_THAT(search.found, testing::UnorderedElementsAreArray(expected));
 }
 
 TEST_P(Traversal, BottomUpSeesChildrenBeforeTheirParents) {
@@ -260,13 +369,11 @@ TEST_P(Traversal, ReduceTakesSummariesInPlaceOfSubtrees) {
   if (tree.nodes.empty()) return;
   const tree::LeafOrder order(tree);
   std::vector<std::uint32_t> end(tree.nodes.size());
-  traverse(
-      tree, whole(tree),
-      [&](tree::Subtree below) {
-        end[below.root] = below.end;
-        return true;
-      },
-      [](std::uint32_t) {});
+  const auto set_end = [&](tree::Subtree below) {
+    end[below.root] = below.end;
+    return true;
+  };
+  visit(tree, tree::InOrder{set_end, [](std::uint32_t) {}});
   for (const std::uint32_t largest : {0u, 1u, 5u, 100u, 100000u}) {
     std::size_t summaries = 0, leaves = 0;
     const std::uint32_t counted = reduce(

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "geometry/vec.h"
-#include "tree/traverse.h"
+#include "tree/visit.h"
 
 namespace sdm::depth {
 
@@ -41,7 +41,7 @@ double bound_beyond_faces(const sites::SitesData& solid, const Corners& triangle
   const auto near = [&](tree::Subtree subtree) {
     return bound < most && squared_norm(gap(solid.tree.box(subtree.root), around)) == 0;
   };
-  tree::traverse(solid.tree, tree::whole(solid.tree), near, [&](std::uint32_t leaf) {
+  const auto add = [&](std::uint32_t leaf) {
     for (const std::uint32_t face : solid.tree.items_of(leaf)) {
       const auto& [i, j, k] = solid.mesh.triangles[face];
       const Corners corners{solid.mesh.positions[i], solid.mesh.positions[j], solid.mesh.positions[k]};
@@ -54,7 +54,8 @@ double bound_beyond_faces(const sites::SitesData& solid, const Corners& triangle
       if (beyond > rounding)
         bound = std::max(bound, ball.radius * beyond / (beyond + side * height) + rounding);
     }
-  });
+  };
+  tree::visit(solid.tree, tree::InOrder{near, add});
   return std::min(most, bound);
 }
 

@@ -5,7 +5,7 @@
 
 #include "certify/hausdorff/face_distance.h"
 #include "geometry/vec.h"
-#include "tree/traverse.h"
+#include "tree/visit.h"
 
 namespace sdm::hausdorff {
 
@@ -42,12 +42,12 @@ NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint
   const auto lower_bound = [&](const tree::FloatBox& box) {
     return (1 - 1e-12) * norm(gap(box, unit)) - rounding;
   };
-  tree::traverse_nearer_first(
-      sites.tree, lower_bound, [&](double bound) { return bound < best.upper * sites.frame.scale; },
-      [&](std::uint32_t leaf) {
-        for (const std::uint32_t face : sites.tree.items_of(leaf))
-          if (face != start) offer(face);
-      });
+  const auto enter = [&](double bound) { return bound < best.upper * sites.frame.scale; };
+  const auto visit_leaf = [&](std::uint32_t leaf) {
+    for (const std::uint32_t face : sites.tree.items_of(leaf))
+      if (face != start) offer(face);
+  };
+  tree::visit(sites.tree, tree::NearestFirst{lower_bound, enter, visit_leaf});
   best.lower = std::min(lower, best.upper);  // what was excluded is no closer than `upper`
   return best;
 }

@@ -7,7 +7,7 @@
 #include "engine/cpu/point_group.h"
 #include "engine/cpu/site_lists.h"
 #include "sites/sites_data.h"
-#include "tree/traverse_wide.h"
+#include "tree/visit.h"
 
 namespace sdm::cpu {
 
@@ -16,7 +16,7 @@ struct Descent {
   PointGroup points;
   std::uint32_t winners[PointGroup::kMostPoints];  ///< SiteId::packed of each point's closest site
 
-  std::vector<tree::OpenChild<float>> stack;
+  std::vector<tree::OpenNode> stack;
   std::vector<std::uint32_t> open, leaves, owners, edges, vertices;
   SiteLists gathered, lists[PointGroup::kLevels];
 };

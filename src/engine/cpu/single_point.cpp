@@ -21,6 +21,9 @@ namespace sdm::cpu::HWY_NAMESPACE {
 
 using namespace lanes::HWY_NAMESPACE;
 
+namespace {
+
+// Finds the faces that may be closest; the policy of its search of the tree.
 class SinglePoint {
  public:
   SinglePoint(const sites::SitesData& sites, const Vec3& query, double max_distance,
@@ -34,21 +37,16 @@ class SinglePoint {
     squared_limit_ = limit * limit;
   }
 
-  // Finds the faces that may be closest.
   void collect() {
     m_.candidates.clear();
-    tree::traverse_nearest_child_first(
-        sites_.wide, m_.stack,
-        [&](const tree::WideTree::Node& node, float* squared)
-            HWY_ATTR { return near_children(node, squared); },
-        [&](float squared) { return squared <= squared_limit_; },
-        [&](uint32_t leaf) HWY_ATTR { visit(leaf); });
+    tree::visit(sites_.wide, m_.stack, *this);
   }
 
   [[nodiscard]] float squared_limit() const { return squared_limit_; }
 
- private:
-  uint32_t near_children(const tree::WideTree::Node& node, float* squared) const {
+  static bool before(float first, float second) { return first < second; }
+  bool enter(const tree::OpenNode& open) const { return open.bound <= squared_limit_; }
+  uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node, float* squared) const {
     const Block d;
     uint32_t near = 0;
     for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d)) {
@@ -63,8 +61,9 @@ class SinglePoint {
     return near & ((1u << node.count) - 1);
   }
 
-  void visit(uint32_t leaf) {
+  void leaf(const tree::OpenNode& open_leaf) {
     const Block d;
+    const uint32_t leaf = open_leaf.leaf_number();
     const sites::Regions& regions = sites_.regions;
     const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
     const uint32_t thin = regions.thin[leaf];
@@ -94,6 +93,7 @@ class SinglePoint {
     }
   }
 
+ private:
   // Lower bounds on the squared distances of the faces, from the discs that contain them; from balls where
   // the normal may be rounding noise.
   HWY_INLINE BlockVec squared_to_discs(const sites::FaceBounds& bounds, uint32_t thin, size_t i) const {
@@ -143,6 +143,8 @@ class SinglePoint {
   float squared_limit_;                                // nothing beyond this in the unit frame is closest
   alignas(64) float corner_[3][3][SiteBlock::kWidth];  // of the faces of a leaf, by corner and axis
 };
+
+}  // namespace
 
 // Sets memory.candidates, and returns the bound that those must be within.
 float CollectCandidates(const sites::SitesData& sites, const Vec3& query, double max_distance,

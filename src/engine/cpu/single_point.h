@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sites/sites_data.h"
-#include "tree/traverse_wide.h"
+#include "tree/visit.h"
 
 namespace sdm::cpu {
 
@@ -17,7 +17,7 @@ struct SinglePointMemory {
     float squared;
     std::uint32_t face;
   };
-  std::vector<tree::OpenChild<float>> stack;
+  std::vector<tree::OpenNode> stack;
   std::vector<Candidate> candidates;
 };
 

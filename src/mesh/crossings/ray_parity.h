@@ -6,7 +6,7 @@
 #include <span>
 
 #include "mesh/topology.h"
-#include "tree/traverse.h"
+#include "tree/visit.h"
 
 namespace sdm::inside {
 
@@ -28,13 +28,12 @@ struct FaceTree {
 /// shells that contain the point. Allocates nothing. Cost: O(log n), plus linear in the faces met.
 template <class Visit>
 void for_each_crossing(const FaceTree& faces, const Vec3& origin, const Visit& visit) {
-  traverse(
-      faces.tree, whole(faces.tree),
-      [&](tree::Subtree below) { return ray_meets(faces.tree.box(below.root), origin); },
-      [&](std::uint32_t leaf) {
-        for (const std::uint32_t face : faces.tree.items_of(leaf))
-          if (ray_meets(faces.triangles[face], faces.positions, faces.frame, origin)) visit(face);
-      });
+  const auto enter = [&](tree::Subtree below) { return ray_meets(faces.tree.box(below.root), origin); };
+  const auto visit_leaf = [&](std::uint32_t leaf) {
+    for (const std::uint32_t face : faces.tree.items_of(leaf))
+      if (ray_meets(faces.triangles[face], faces.positions, faces.frame, origin)) visit(face);
+  };
+  tree::visit(faces.tree, tree::InOrder{enter, visit_leaf});
 }
 
 }  // namespace sdm::inside

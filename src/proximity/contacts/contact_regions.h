@@ -9,6 +9,7 @@
 #include "proximity/contacts/surface_point.h"
 #include "query/pairs/near_faces.h"
 #include "query/shape/posed_body.h"
+#include "tree/visit.h"
 
 namespace sdm::contacts {
 
@@ -48,16 +49,22 @@ class ContactRegions {
     double radius = -std::numeric_limits<double>::infinity();  ///< unknown
     bool inside = false;
   };
-  /// A node of the wide tree, or a leaf; a ball that contains it, in the frame of the other body.
-  struct Node {
-    std::uint32_t child = 0, source = 0;
-    shape::Ball ball{};
+  /// What is known of a node of the wide tree, or a leaf.
+  struct Node : tree::Place {
     std::uint32_t face = kNone;  ///< of the other body, close to this node or to one above it
     OneSided known{};            ///< about the centre of this node or of one above it
+
+    static Node of(const Node& parent, const tree::WideTree::Node& node, std::uint32_t i) {
+      return {Place::of(node, parent.child, i), parent.face, parent.known};
+    }
   };
+  /// The policy of the search for regions.
+  struct Search;
   enum class Position : std::uint8_t { free, inside, undecided };
-  [[nodiscard]] Position find_position(Node& node, double depth) const;
-  void open(const Node& parent);
+  /// `ball` contains the node, in the frame of the other body.
+  [[nodiscard]] Position find_position(Node& node, const shape::Ball& ball, double depth) const;
+  /// Adds the node to the regions, or excludes it; returns whether neither can be said of it as a whole.
+  bool divides(Node& node);
   [[nodiscard]] std::uint32_t find_near_face(const shape::ContactPart& node) const;
 
   const shape::Body *on_ = nullptr, *other_ = nullptr;

@@ -194,41 +194,45 @@ class SupportingFaces {
   const Supporting& supporting_;
 };
 
+namespace {
+
+// The policy of a search for the faces of which `faces` is true, in the boxes passed.
 template <class Faces>
-void Collect(const sites::SitesData& sites, const Boxes& boxes, const Faces& faces,
-             std::vector<uint32_t>& stack, std::vector<uint32_t>& found) {
-  const sites::Regions& regions = sites.regions;
-  stack.assign(1, 0);
-  while (!stack.empty()) {
-    const tree::WideTree::Node& node = sites.wide.nodes[stack.back()];
-    stack.pop_back();
-    for (uint32_t open = boxes.passed(node); open != 0; open &= open - 1) {
-      const uint32_t child = node.child[std::countr_zero(open)];
-      if (!tree::WideTree::is_leaf(child)) {
-        stack.push_back(child);
-        continue;
-      }
-      const uint32_t leaf = tree::WideTree::leaf_number(child), first = regions.leaves[leaf];
-      uint32_t near = regions.thin[leaf];  // their normals are unreliable
-      for (size_t i = 0; i < kWidth; i += hn::Lanes(Lanes())) near |= faces(regions.bounds[leaf], i);
-      near &= (1u << (regions.leaves[leaf + 1] - first)) - 1;
-      for (; near != 0; near &= near - 1)
-        found.push_back(regions.owners[first + std::countr_zero(near)].face);
-    }
+struct Collect {
+  const sites::Regions& regions;
+  const Boxes& boxes;
+  const Faces& faces;
+  std::vector<uint32_t>& found;
+
+  bool enter(const tree::OpenNode&) const { return true; }
+  uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node) const { return boxes.passed(node); }
+  void leaf(const tree::OpenNode& open) const {
+    const uint32_t leaf = open.leaf_number(), first = regions.leaves[leaf];
+    uint32_t near = regions.thin[leaf];  // their normals are unreliable
+    for (size_t i = 0; i < kWidth; i += hn::Lanes(Lanes())) near |= faces(regions.bounds[leaf], i);
+    near &= (1u << (regions.leaves[leaf + 1] - first)) - 1;
+    for (; near != 0; near &= near - 1) found.push_back(regions.owners[first + std::countr_zero(near)].face);
   }
-}
+};
+template <class Faces>
+Collect(const sites::Regions&, const Boxes&, const Faces&, std::vector<uint32_t>&) -> Collect<Faces>;
+
+}  // namespace
 
 void CollectNear(const sites::SitesData& sites, const UnitSegment& segment, float reach,
-                 std::vector<uint32_t>& stack, std::vector<uint32_t>& found) {
-  Collect(sites, Boxes(segment, reach), NearFaces(segment, reach), stack, found);
+                 std::vector<tree::OpenNode>& stack, std::vector<uint32_t>& found) {
+  const Boxes boxes(segment, reach);
+  const NearFaces faces(segment, reach);
+  tree::visit(sites.wide, stack, Collect{sites.regions, boxes, faces, found});
 }
 
 void CollectSupporting(const sites::SitesData& sites, const UnitSegment& segment,
-                       const Supporting& supporting, std::vector<uint32_t>& stack,
+                       const Supporting& supporting, std::vector<tree::OpenNode>& stack,
                        std::vector<uint32_t>& found) {
   Boxes boxes(segment, std::max(supporting.margin, supporting.reach));
   for (const std::array<float, 3>& side : supporting.sides) boxes.add_half_space(side, supporting);
-  Collect(sites, boxes, SupportingFaces(segment, supporting), stack, found);
+  const SupportingFaces faces(segment, supporting);
+  tree::visit(sites.wide, stack, Collect{sites.regions, boxes, faces, found});
 }
 
 }  // namespace sdm::contacts::HWY_NAMESPACE

@@ -8,6 +8,7 @@
 
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
+#include "tree/visit.h"
 
 namespace sdm::contacts {
 
@@ -48,7 +49,8 @@ class FacesNearEdge {
   };
 
  private:
-  std::vector<std::uint32_t> stack_, faces_;
+  std::vector<tree::OpenNode> stack_;
+  std::vector<std::uint32_t> faces_;
 };
 
 }  // namespace sdm::contacts

@@ -5,7 +5,7 @@
 
 #include "core/cancellation.h"
 #include "geometry/rounding.h"
-#include "tree/traverse.h"
+#include "tree/visit.h"
 
 namespace sdm::contacts {
 namespace {
@@ -61,7 +61,7 @@ Support support_of_vertex(const shape::Body& body, const Vec3& vertex, std::span
   const auto enter = [&](tree::Subtree subtree) {
     return squared_norm(gap(sites.tree.box(subtree.root), near)) == 0;
   };
-  tree::traverse(sites.tree, tree::whole(sites.tree), enter, [&](std::uint32_t leaf) {
+  const auto compare = [&](std::uint32_t leaf) {
     for (const std::uint32_t face : sites.tree.items_of(leaf)) {
       const Vec3& normal = sites.normals.face[face];
       if (!can_push(normal, spokes) || !is_support(body, face)) continue;
@@ -72,7 +72,8 @@ Support support_of_vertex(const shape::Body& body, const Vec3& vertex, std::span
           (std::abs(height) == std::abs(best.height) && face < best.face))
         best = {face, height};
     }
-  });
+  };
+  tree::visit(sites.tree, tree::InOrder{enter, compare});
   return best;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "registration/eigen.h"
+#include "tree/fold.h"
 
 namespace sdm::motion {
 namespace {
@@ -35,7 +36,7 @@ const Part& Parts::at(const Place& place) {
   const auto [known, added] = boxes_.try_emplace(place.source);
   if (added) {
     known->second = box_of_tree(place.source);
-    if (const std::span faces = faces_below(place.source); faces.size() <= kMostFaces)
+    if (const std::span faces = items_below(sites_.tree, place.source); faces.size() <= kMostFaces)
       known->second = fitted(faces, known->second);
   }
   return known->second;
@@ -67,16 +68,6 @@ Part Parts::box_of_tree(std::uint32_t node) const {
   part.radius[0] = from_axis(part.point[0]) + motion_.scale() * norm(part.half);
   part.reach = motion_.scale() * (norm(part.point[0]) + norm(part.half));
   return part;
-}
-
-// The leaves of a subtree are consecutive.
-std::span<const std::uint32_t> Parts::faces_below(std::uint32_t node) const {
-  const auto& nodes = sites_.tree.nodes;
-  std::uint32_t first = node, last = node;
-  while (!nodes[first].leaf()) ++first;
-  while (!nodes[last].leaf()) last = nodes[last].right;
-  return std::span(sites_.tree.items)
-      .subspan(nodes[first].first, nodes[last].first + nodes[last].count - nodes[first].first);
 }
 
 // Around a flat or thin patch in any direction, a box along the principal axes of its corners is as thin as

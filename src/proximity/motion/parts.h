@@ -62,7 +62,6 @@ class Parts {
   [[nodiscard]] Part face(std::uint32_t index) const;
   [[nodiscard]] Part box_of_tree(std::uint32_t node) const;
   [[nodiscard]] Part fitted(std::span<const std::uint32_t> faces, const Part& box) const;
-  [[nodiscard]] std::span<const std::uint32_t> faces_below(std::uint32_t node) const;
   [[nodiscard]] Vec3 corner(std::uint32_t face, int i) const {
     return sites_.mesh.positions[sites_.mesh.triangles[face][i]] - motion_.middle();
   }

@@ -8,14 +8,14 @@
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
-#include "tree/traverse_wide.h"
+#include "tree/visit.h"
 
 namespace sdm::self {
 
 using tree::WideTree;
 
 struct SelfSearch::Scratch {
-  std::vector<tree::OpenChild<float>> stack;
+  std::vector<tree::OpenNode> stack;
   std::vector<std::pair<double, std::uint32_t>> candidates;  ///< with their distance from the ball's centre
   // All 0 between searches.
   std::vector<std::uint8_t> excluded;  ///< for each patch
@@ -162,22 +162,21 @@ void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) c
     const double most = (1 + 1e-6) * frame.scale * limit + 1e-15;
     return !(squared > most * most);
   };
-  tree::traverse_nearest_child_first(
-      sites_.wide, scratch_.stack,
-      [&](const WideTree::Node& node, float(&squared)[WideTree::kWidth]) {
-        squared_distances(node, unit, squared);
-        std::uint32_t near = 0;
-        for (std::uint32_t i = 0; i < node.count; ++i) near |= (within(squared[i]) ? 1u : 0u) << i;
-        return near &
-               ~std::uint32_t{scratch_.closed[static_cast<std::size_t>(&node - sites_.wide.nodes.data())]};
-      },
-      within,
-      [&](std::uint32_t leaf) {
-        for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
-          if (const std::uint32_t face = sites_.tree.items[i];
-              scratch_.excluded[exclusion_.patch_of(face)] == 0)
-            visit(face);
-      });
+  const auto bound = [&](const tree::OpenNode& open, const WideTree::Node& node,
+                         float(&squared)[WideTree::kWidth]) {
+    squared_distances(node, unit, squared);
+    std::uint32_t near = 0;
+    for (std::uint32_t i = 0; i < node.count; ++i) near |= (within(squared[i]) ? 1u : 0u) << i;
+    return near & ~std::uint32_t{scratch_.closed[open.child]};
+  };
+  const auto enter = [&](const tree::OpenNode& open) { return within(open.bound); };
+  const auto faces = [&](const tree::OpenNode& open) {
+    const std::uint32_t leaf = open.leaf_number();
+    for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
+      if (const std::uint32_t face = sites_.tree.items[i]; scratch_.excluded[exclusion_.patch_of(face)] == 0)
+        visit(face);
+  };
+  tree::visit(sites_.wide, scratch_.stack, tree::NearestFirst{bound, enter, faces});
 }
 
 bool SelfSearch::beyond(std::uint32_t face, const Vec3& q, double limit) const {

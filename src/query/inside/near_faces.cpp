@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tree/traverse.h"
+#include "tree/visit.h"
 
 namespace sdm::inside {
 namespace {
@@ -138,19 +138,18 @@ void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vec
   const Box box = box_of(face);
   const Box reach{box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
   const auto unit = tree::FloatBox::around({sites.frame.to_unit(reach.lo), sites.frame.to_unit(reach.hi)});
-  traverse(
-      sites.tree, whole(sites.tree),
-      [&](tree::Subtree below) {
-        const tree::FloatBox& of = sites.tree.box(below.root);
-        bool apart = false;
-        for (int k = 0; k < 3; ++k) apart = apart || of.hi[k] < unit.lo[k] || unit.hi[k] < of.lo[k];
-        return !apart;
-      },
-      [&](std::uint32_t leaf) {
-        for (const std::uint32_t other : sites.tree.items_of(leaf))
-          if (other != face && overlap(reach, box_of(other)) && !clear_of(sites, face, other))
-            near.push_back(other);
-      });
+  const auto enter = [&](tree::Subtree below) {
+    const tree::FloatBox& of = sites.tree.box(below.root);
+    bool apart = false;
+    for (int k = 0; k < 3; ++k) apart = apart || of.hi[k] < unit.lo[k] || unit.hi[k] < of.lo[k];
+    return !apart;
+  };
+  const auto visit_leaf = [&](std::uint32_t leaf) {
+    for (const std::uint32_t other : sites.tree.items_of(leaf))
+      if (other != face && overlap(reach, box_of(other)) && !clear_of(sites, face, other))
+        near.push_back(other);
+  };
+  visit(sites.tree, tree::InOrder{enter, visit_leaf});
 }
 
 }  // namespace sdm::inside

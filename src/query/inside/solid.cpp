@@ -6,7 +6,7 @@
 #include "core/cancellation.h"
 #include "geometry/predicates.h"
 #include "geometry/rounding.h"
-#include "tree/traverse.h"
+#include "tree/visit.h"
 
 namespace sdm::inside {
 namespace {
@@ -61,18 +61,17 @@ std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, co
   const Segment segment(sites.frame, pose, p, q);
   poll();
   std::optional<int> turns = 0;
-  traverse(
-      sites.tree, whole(sites.tree),
-      [&](tree::Subtree below) { return turns && segment.meets(sites.tree.box(below.root)); },
-      [&](std::uint32_t leaf) {
-        for (const std::uint32_t face : sites.tree.items_of(leaf)) {
-          const auto [a, b, c] = sites.mesh.triangles[face];
-          const auto& at = sites.mesh.positions;
-          const std::optional<int> sign = crossing(p, q, {pose(at[a]), pose(at[b]), pose(at[c])});
-          if (!sign) return turns.reset();
-          *turns += sites.inverted[face] ? -*sign : *sign;
-        }
-      });
+  const auto enter = [&](tree::Subtree below) { return turns && segment.meets(sites.tree.box(below.root)); };
+  const auto visit_leaf = [&](std::uint32_t leaf) {
+    for (const std::uint32_t face : sites.tree.items_of(leaf)) {
+      const auto [a, b, c] = sites.mesh.triangles[face];
+      const auto& at = sites.mesh.positions;
+      const std::optional<int> sign = crossing(p, q, {pose(at[a]), pose(at[b]), pose(at[c])});
+      if (!sign) return turns.reset();
+      *turns += sites.inverted[face] ? -*sign : *sign;
+    }
+  };
+  visit(sites.tree, tree::InOrder{enter, visit_leaf});
   return turns;
 }
 

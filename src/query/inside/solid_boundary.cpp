@@ -8,7 +8,6 @@
 #include "geometry/triangle_pair.h"
 #include "query/inside/solid.h"
 #include "search/branch_and_bound.h"
-#include "tree/traverse.h"
 
 namespace sdm::inside {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/cancellation.h"
 #include "geometry/vec.h"
 #include "query/inside/solid_angle.h"
-#include "tree/traverse.h"
+#include "tree/fold.h"
 
 namespace sdm::inside {
 namespace {

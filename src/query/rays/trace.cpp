@@ -106,17 +106,18 @@ template <class Visit>
 HWY_INLINE void for_each_face(const sites::SitesData& sites, const UnitRay& ray, Scratch& scratch,
                               const Visit& visit) {
   const sites::Regions& regions = sites.regions;
-  bool done = false;
-  tree::traverse_nearest_child_first(
-      sites.wide, scratch.stack,
-      [&](const tree::WideTree::Node& node, float* enter) HWY_ATTR { return boxes_met(node, ray, enter); },
-      [&](float enter) { return !done && enter <= ray.end; },
-      [&](uint32_t leaf) HWY_ATTR {
-        const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
-        uint32_t met = discs_met(regions.bounds[leaf], count, ray) | regions.thin[leaf];
-        for (; met != 0 && !done; met &= met - 1)
-          done = visit(regions.owners[first + static_cast<uint32_t>(std::countr_zero(met))].face);
-      });
+  const auto bound = [&](const tree::OpenNode&, const tree::WideTree::Node& node, float* from)
+                         HWY_ATTR { return boxes_met(node, ray, from); };
+  const auto enter = [&](const tree::OpenNode& open) { return open.bound <= ray.end; };
+  const auto faces = [&](const tree::OpenNode& open) HWY_ATTR {
+    const uint32_t leaf = open.leaf_number(), first = regions.leaves[leaf];
+    uint32_t met =
+        discs_met(regions.bounds[leaf], regions.leaves[leaf + 1] - first, ray) | regions.thin[leaf];
+    for (; met != 0; met &= met - 1)
+      if (visit(regions.owners[first + static_cast<uint32_t>(std::countr_zero(met))].face)) return false;
+    return true;
+  };
+  tree::visit(sites.wide, scratch.stack, tree::NearestFirst{bound, enter, faces});
 }
 
 void FirstHits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits) {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "sites/sites_data.h"
-#include "tree/traverse_wide.h"
+#include "tree/visit.h"
 
 namespace sdm::rays {
 
 /// Per-thread memory, reused between rays.
 struct Scratch {
-  std::vector<tree::OpenChild<float>> stack;
+  std::vector<tree::OpenNode> stack;
 };
 
 /// As sdm::first_hits, into `hits`, on the calling thread. Dispatches at run time to the best vector

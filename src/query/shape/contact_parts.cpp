@@ -1,7 +1,7 @@
 #include "query/shape/contact_parts.h"
 
 #include "geometry/vec.h"
-#include "tree/traverse.h"
+#include "tree/fold.h"
 
 namespace sdm::shape {
 
@@ -22,7 +22,7 @@ std::vector<ContactPart> contact_parts(const tree::AabbTree& tree) {
                            leaves.before[subtree.end]};
     return true;
   };
-  tree::traverse(tree, tree::whole(tree), enter, [](std::uint32_t) {});
+  tree::visit(tree, tree::InOrder{enter, [](std::uint32_t) {}});
   return parts;
 }
 

@@ -1,12 +1,16 @@
 #include "query/shape/extreme_vertex.h"
 
+#include <vector>
+
 #include "geometry/vec.h"
+#include "tree/visit.h"
 
 namespace sdm::shape {
 namespace {
 
 constexpr int kWidth = tree::WideTree::kWidth;
 
+// Finds the vertex; the policy of its search of the tree.
 class Search {
  public:
   Search(const sites::SitesData& sites, const Vec3& u, const ExtremeVertex& known)
@@ -16,33 +20,26 @@ class Search {
   }
 
   ExtremeVertex find() {
-    open(0);
+    thread_local std::vector<tree::OpenNode> stack;
+    tree::visit(sites_.wide, stack, *this);
     return best_;
   }
 
- private:
-  // The child with the largest bound first.
-  void open(std::uint32_t index) {
-    const tree::WideTree::Node& node = sites_.wide.nodes[index];
-    float most[kWidth] = {};
+  // The farthest first; of equal ones, that in the first slot.
+  static bool before(float first, float second) { return first >= second; }
+  [[nodiscard]] bool enter(const tree::OpenNode& open) const {
+    return open.child == 0 || open.bound >= limit_;
+  }
+  std::uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node, float (&most)[kWidth]) const {
+    for (float& x : most) x = 0;
     for (int k = 0; k < 3; ++k) {
       const float* far = unit_u_[k] > 0 ? node.hi[k] : node.lo[k];
       for (int i = 0; i < kWidth; ++i) most[i] += unit_u_[k] * far[i];
     }
-    for (std::uint32_t left = (1u << node.count) - 1; left != 0;) {
-      std::uint32_t largest = kWidth;
-      for (std::uint32_t i = 0; i < node.count; ++i)
-        if ((left >> i & 1) != 0 && (largest == kWidth || most[i] > most[largest])) largest = i;
-      if (!(most[largest] >= limit_)) return;
-      left &= ~(1u << largest);
-      if (tree::WideTree::is_leaf(node.child[largest]))
-        compare(tree::WideTree::leaf_number(node.child[largest]));
-      else
-        open(node.child[largest]);
-    }
+    return (1u << node.count) - 1;
   }
-
-  void compare(std::uint32_t leaf) {
+  void leaf(const tree::OpenNode& open) {
+    const std::uint32_t leaf = open.leaf_number();
     for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
       for (const std::uint32_t vertex : sites_.mesh.triangles[sites_.regions.owners[i].face]) {
         const Vec3& x = sites_.mesh.positions[vertex];
@@ -51,6 +48,7 @@ class Search {
     limit();
   }
 
+ private:
   void limit() {
     constexpr float kRounding = 4e-6F;  // of the bounds, in the unit frame
     limit_ =

@@ -5,6 +5,7 @@
 #include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "sites/sites_data.h"
+#include "tree/visit.h"
 
 namespace sdm::shape {
 
@@ -17,10 +18,11 @@ struct Ball {
 /// one is as tight in any frame.
 [[nodiscard]] inline Ball ball_of_child(const sites::SitesData& sites, std::uint32_t node, std::uint32_t i,
                                         const mesh::Similarity& map) {
-  const tree::WideTree::Node& wide = sites.wide.nodes[node];
+  const tree::FloatBox box =
+      tree::box_of(sites.tree, sites.wide, {.slot = tree::WideTree::kWidth * node + i});
   Vec3 centre, half;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double lo = wide.lo[k][i], hi = wide.hi[k][i];
+    const double lo = box.lo[k], hi = box.hi[k];
     centre[k] = sites.frame.origin[k] + 0.5 * (lo + hi) / sites.frame.scale;
     half[k] = (0.5 * (hi - lo) + kSingleRounding) / sites.frame.scale;
   }

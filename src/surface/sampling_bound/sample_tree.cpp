@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "tree/traverse.h"
+#include "tree/visit.h"
 
 namespace sdm::surface {
 
@@ -54,20 +54,19 @@ std::uint32_t SampleTree::nearest(const Vec3& query) const {
   const Vec3 unit_query = frame_.to_unit(query);
   std::uint32_t sample = 0;
   double least = std::numeric_limits<double>::infinity();  // squared
-  tree::traverse_nearer_first(
-      tree_,
-      [&](const tree::FloatBox& box) {
-        return squared_norm((1 / frame_.scale) * gap(box, unit_query));  // exact: the scale is a power of two
-      },
-      [&](double squared_distance) { return squared_distance < least; },
-      [&](std::uint32_t leaf) {
-        const std::uint32_t run = tree_.items_of(leaf)[0];
-        for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
-          const Vec3 p = surface_.texel_point(surface_.sample_faces[i], surface_.samples[i]);
-          if (const double d = squared_norm(p - query); d < least)
-            sample = static_cast<std::uint32_t>(i), least = d;
-        }
-      });
+  const auto bound = [&](const tree::FloatBox& box) {
+    return squared_norm((1 / frame_.scale) * gap(box, unit_query));  // exact: the scale is a power of two
+  };
+  const auto enter = [&](double squared_distance) { return squared_distance < least; };
+  const auto visit_leaf = [&](std::uint32_t leaf) {
+    const std::uint32_t run = tree_.items_of(leaf)[0];
+    for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
+      const Vec3 p = surface_.texel_point(surface_.sample_faces[i], surface_.samples[i]);
+      if (const double d = squared_norm(p - query); d < least)
+        sample = static_cast<std::uint32_t>(i), least = d;
+    }
+  };
+  tree::visit(tree_, tree::NearestFirst{bound, enter, visit_leaf});
   return sample;
 }
 
