@@ -73,7 +73,7 @@ class LargestValue {
   [[nodiscard]] std::array<std::uint32_t, 3> mixed() const {
     std::array<std::uint32_t, 3> mixed{kNone, kNone, kNone};
     for (int n = 0; n < 3; ++n)
-      if (active_[n].function != nullptr && inverse_[n][2] > kRounding)
+      if (active_[n].function != nullptr && inverse_[n][2] > kWeightRounding)
         mixed[n] = static_cast<std::uint32_t>(active_[n].function - functions_.data());
     return mixed;
   }

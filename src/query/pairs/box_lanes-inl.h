@@ -106,6 +106,19 @@ class BoxDistances {
   CentredBox other_, seen_;  // the other box in its own frame, and its bounding box in this one
 };
 
+// The children of a node whose bounds are not above the limit, as bits.
+HWY_INLINE uint32_t children_within(const tree::WideTree::Node& node, const float (&least)[kWidth],
+                                    float limit) {
+  const Lanes d;
+  uint32_t beyond = 0;
+  for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, hn::Gt(hn::Load(d, least + i), hn::Set(d, limit)), bytes);
+    beyond |= uint32_t{bytes[0]} << i;
+  }
+  return ~beyond & ((1u << node.count) - 1);
+}
+
 }  // namespace sdm::pairs::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

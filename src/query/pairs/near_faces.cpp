@@ -6,23 +6,21 @@
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <bit>
-#include <utility>
-
-#include "core/cancellation.h"
 #include "core/parallel.h"
 #include "query/pairs/face_lanes-inl.h"
+#include "tree/visit_pairs.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::pairs::HWY_NAMESPACE {
 
-using Entry = PairWorkspace::Entry;
-using Place = PairWorkspace::Place;
+using tree::Place;
 
-// Finds what pairs of nodes contain.
+namespace {
+
+// The policy of a search of both trees.
 class NearFacesSearch {
  public:
+  using Pair = PairWorkspace::Entry;
   using Half = NearFacesWorkspace::Half;
 
   NearFacesSearch(const MeshPair& pair, double reach, Half& half, NearFaces& near)
@@ -41,53 +39,41 @@ class NearFacesSearch {
 
   // Replaces the first of the open pairs by those below it.
   void open_first() {
-    visit(Entry(half_.open.front()));
+    tree::visit_pair(sites_[0]->wide, sites_[1]->wide, Pair(half_.open.front()), *this);
     half_.open.erase(half_.open.begin());
   }
-  void open_all() {
-    Poll due(256);
-    while (!half_.open.empty()) {
-      due();
-      const Entry entry = half_.open.back();
-      half_.open.pop_back();
-      visit(entry);
-    }
-  }
+  void open_all() { tree::visit_pairs(sites_[0]->wide, sites_[1]->wide, *this); }
 
- private:
-  HWY_INLINE void visit(const Entry& entry) {
-    if (is_whole(0, entry.place[0]) && is_whole(1, entry.place[1])) return;
-    if (entry.leaves())
-      compare_leaves(entry.place[0].leaf_number(), entry.place[1].leaf_number());
-    else
-      open(entry);
+  bool next(Pair& pair) {
+    if (half_.open.empty()) return false;
+    pair = half_.open.back();
+    half_.open.pop_back();
+    return true;
   }
+  bool enter(const Pair& pair) const { return !(is_whole(0, pair.place[0]) && is_whole(1, pair.place[1])); }
+  void leaf(const Pair& pair) { compare_leaves(pair.place[0].leaf_number(), pair.place[1].leaf_number()); }
 
-  // Pairs the children of the larger node with the other node.
-  void open(const Entry& entry) {
-    const CentredBox box[2] = {CentredBox(sites_[0]->tree.box(entry.place[0].source)),
-                               CentredBox(sites_[1]->tree.box(entry.place[1].source))};
+  // Divides the larger node, unless it is a leaf.
+  tree::Division bound(const Pair& pair, float (&least)[kWidth]) {
+    const CentredBox box[2] = {CentredBox(sites_[0]->tree.box(pair.place[0].source)),
+                               CentredBox(sites_[1]->tree.box(pair.place[1].source))};
     if (all_near(box[0], box[1])) {
-      const uint32_t faces[2] = {first_face(0, entry.place[0]), first_face(1, entry.place[1])};
-      for (int side = 0; side < 2; ++side) mark_all(side, entry.place[side].child, faces[1 - side]);
-      return;
+      const uint32_t faces[2] = {first_face(0, pair.place[0]), first_face(1, pair.place[1])};
+      for (int side = 0; side < 2; ++side) mark_all(side, pair.place[side].child, faces[1 - side]);
+      return {};
     }
     const int larger = box[0].size() * maps_.unit[0] < box[1].size() * maps_.unit[1];
-    const int side = entry.place[larger].leaf() ? 1 - larger : larger;
-    if (side != larger && faces_beyond(larger, entry.place[larger].leaf_number(), box[side])) return;
-    const tree::WideTree::Node& node = sites_[side]->wide.nodes[entry.place[side].child];
+    const int side = pair.place[larger].leaf() ? 1 - larger : larger;
+    if (side != larger && faces_beyond(larger, pair.place[larger].leaf_number(), box[side])) return {};
+    const tree::WideTree::Node& node = sites_[side]->wide.nodes[pair.place[side].child];
     const BoxDistances distances(maps_, none_, side, box[1 - side]);
-    alignas(64) float least[kWidth];
     const Lanes d;
     for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) hn::Store(distances(node, i), d, least + i);
-    for (uint32_t i = 0; i < node.count; ++i) {
-      if (least[i] > limit_) continue;
-      Entry child = entry;
-      child.place[side] = {node.child[i], node.source[i]};
-      half_.open.push_back(child);
-    }
+    return {side, children_within(node, least, limit_)};
   }
+  void open(const Pair& pair, int /*side*/, float /*least*/) { half_.open.push_back(pair); }
 
+ private:
   // Whether no two points of the boxes are farther apart than the reach, in the frame of O1.
   bool all_near(const CentredBox& box1, const CentredBox& box2) const {
     const FrameMap& map = maps_.to[0];
@@ -194,6 +180,8 @@ class NearFacesSearch {
   LeafFaces faces_[2];
 };
 
+}  // namespace
+
 // Adds the faces that the second half has found.
 void Merge(const NearFaces& second, NearFaces& near) {
   for (int side = 0; side < 2; ++side)
@@ -208,14 +196,14 @@ void Merge(const NearFaces& second, NearFaces& near) {
 
 void FindNearFaces(const MeshPair& pair, double reach, NearFacesWorkspace& workspace, NearFaces& near) {
   constexpr size_t kEnough = 64;  // pairs that make halves about equal
-  std::vector<Entry>& all = workspace.halves[0].open;
+  std::vector<PairWorkspace::Entry>& all = workspace.halves[0].open;
   NearFacesSearch first(pair, reach, workspace.halves[0], near);
   all.assign(1, {});
   // One core goes through the pairs in the same order as two, so that opposite faces are the same.
   while (!all.empty() && all.size() < kEnough) first.open_first();
   if (all.empty()) return;
   // Neighbours in turn, as most near faces are below a few of the pairs.
-  std::vector<Entry>& others = workspace.halves[1].open;
+  std::vector<PairWorkspace::Entry>& others = workspace.halves[1].open;
   others.clear();
   size_t kept = 0;
   for (size_t i = 0; i < all.size(); ++i) {

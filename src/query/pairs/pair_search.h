@@ -4,29 +4,18 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "query/pairs/mesh_pair.h"
+#include "tree/visit.h"
 
 namespace sdm::pairs {
 
 /// Per-thread memory, reused between searches; results do not depend on it.
 struct PairWorkspace {
-  /// A node or leaf of the wide tree, the binary node that it stands for, and which child of which wide node
-  /// it is, where its box and its cylinder are; kNone for the root.
-  struct Place {
-    std::uint32_t child = 0, source = 0, slot = kNone;
-
-    /// Child `i` of the node with this index.
-    static Place of(const tree::WideTree::Node& node, std::uint32_t index, std::uint32_t i) {
-      return {node.child[i], node.source[i], tree::WideTree::kWidth * index + i};
-    }
-
-    [[nodiscard]] bool leaf() const { return tree::WideTree::is_leaf(child); }
-    [[nodiscard]] std::uint32_t leaf_number() const { return tree::WideTree::leaf_number(child); }
-  };
   struct Entry {
-    std::array<Place, 2> place;  ///< in the trees of O1 and O2; initially both roots
+    std::array<tree::Place, 2> place;  ///< in the trees of O1 and O2; initially both roots
     float least = 0;  ///< lower bound on the distance; if the boxes overlap, minus the depth of the overlap
 
     [[nodiscard]] bool leaves() const { return place[0].leaf() && place[1].leaf(); }
@@ -64,9 +53,12 @@ struct PairWorkspace {
   };
 
   /// A node, and a lower bound on its extent in a direction.
-  struct Ahead {
-    Place place;
-    float along = 0;
+  struct Ahead : tree::Place {
+    float bound = -std::numeric_limits<float>::infinity();
+
+    static Ahead of(const Ahead& parent, const tree::WideTree::Node& node, std::uint32_t i, float bound) {
+      return {Place::of(node, parent.child, i), bound};
+    }
   };
 
   std::vector<Entry> overlapping;  ///< a stack
