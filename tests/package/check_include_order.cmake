@@ -102,6 +102,26 @@ foreach(folder ${order})
   endif()
 endforeach()
 
+# Searches are policies of tree/visit.h and tree/visit_pairs.h. Only these files outside of tree/ read the nodes of
+# a tree by themselves.
+set(readers_of_nodes
+  certify/depth/depth_search.cpp       # the children of a node are parts of its branch and bound
+  engine/cpu/descent.cpp               # appends all leaves within reach to a list, by vector instructions
+  proximity/motion/parts.h             # nodes are divided into faces too, by time
+  proximity/self/self_search.cpp       # marks the nodes whose faces are all excluded
+  query/inside/solid_boundary.cpp      # faces are divided further, nearest first
+  query/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node
+  query/pairs/pair_search.cpp          # bounds the children of a pair
+  query/pairs/separating_axis.cpp      # the boxes below the root
+  query/shape/body.cpp                 # the boxes below the root
+  sites/bounding_cylinders.cpp)        # computes a cylinder for each node
+foreach(file ${files})
+  file(STRINGS ${SOURCE_DIR}/src/${file} reads REGEX "(tree|wide)_?(\\.|->)nodes\\[")
+  if(reads AND NOT file MATCHES "^tree/" AND NOT file IN_LIST readers_of_nodes)
+    message(SEND_ERROR "src/${file} reads the nodes of a tree: ${reads}. Make its search a policy of tree/visit.h")
+  endif()
+endforeach()
+
 foreach(folder ${order})
   string(MAKE_C_IDENTIFIER "${folder}" key)
   list(REMOVE_DUPLICATES arrows_${key})
