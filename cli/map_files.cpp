@@ -29,18 +29,6 @@ const std::vector<Kind>& kinds() {
   return kinds;
 }
 
-struct Layer {
-  const char* name;
-  bool sdm::ExrLayers::*chosen;
-};
-
-constexpr Layer kLayers[] = {
-    {"distance", &sdm::ExrLayers::distance}, {"vector", &sdm::ExrLayers::vector},
-    {"site", &sdm::ExrLayers::site},         {"face", &sdm::ExrLayers::face},
-    {"position", &sdm::ExrLayers::position}, {"normal", &sdm::ExrLayers::normal},
-    {"closest", &sdm::ExrLayers::closest},
-};
-
 /// Words of a list that must be among `choices`.
 CLI::Validator one_of(const std::vector<std::string>& choices) {
   return CLI::Validator(
@@ -121,26 +109,19 @@ void add_write_option(CLI::App& app, std::vector<std::string> choices,
       ->default_str(fmt::format("{}", fmt::join(by_default, ",")));
 }
 
-void add_channels_option(CLI::App& app, sdm::ExrLayers& layers) {
-  std::vector<std::string> choices, by_default;
-  for (const Layer& layer : kLayers) {
-    choices.emplace_back(layer.name);
-    if (layers.*layer.chosen) by_default.emplace_back(layer.name);
-  }
-  app.add_option_function<std::vector<std::string>>(
-         "--channels",
-         [&layers](const std::vector<std::string>& chosen) {
-           for (const Layer& layer : kLayers)
-             layers.*layer.chosen = std::ranges::count(chosen, layer.name) > 0;
-         },
-         "The layers of map.exr: distance, vector, site and face, and on request position, normal and "
-         "closest (the "
-         "face of O2 with the closest point, and where on it)")
+void add_channels_option(CLI::App& app, std::vector<std::string>& layers) {
+  std::vector<std::string> on_request;
+  for (const sdm::Channel& channel : sdm::channels())
+    if (channel.on_request && (on_request.empty() || !on_request.back().starts_with(channel.layer)))
+      on_request.push_back(fmt::format("{} ({})", channel.layer, channel.description));
+  app.add_option("--channels", layers,
+                 fmt::format("The layers of map.exr: {}, and on request {}", fmt::join(layers, ", "),
+                             fmt::join(on_request, ", ")))
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(one_of(choices))
+      ->check(one_of(sdm::channel_layers()))
       ->type_name("LIST")
-      ->default_str(fmt::format("{}", fmt::join(by_default, ",")));
+      ->default_str(fmt::format("{}", fmt::join(layers, ",")));
 }
 
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,

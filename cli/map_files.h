@@ -43,8 +43,8 @@ void add_write_option(CLI::App& app, std::vector<std::string> choices,
                       const std::vector<std::string>& by_default, const std::string& help,
                       const std::function<void(const std::vector<std::string>&)>& set);
 
-/// --channels, which sets `layers`.
-void add_channels_option(CLI::App& app, sdm::ExrLayers& layers);
+/// --channels, which sets `layers`; its default is what they are.
+void add_channels_option(CLI::App& app, std::vector<std::string>& layers);
 
 /// Writes the files but report.html concurrently. `at_vertices`: the distance at each vertex of the surface's
 /// mesh. `other`: the other mesh of the views, or null. `picture`: as given, of the texture; `fixed`: the

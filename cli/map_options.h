@@ -23,7 +23,7 @@ struct MapCommand {
   sdm::GlOptions gl;
   sdm::PictureOptions picture;
   MapFiles files;
-  sdm::ExrLayers layers;
+  std::vector<std::string> layers = sdm::default_channel_layers();
   std::vector<double> bands;
   std::optional<double> precision;
   unsigned threads = 0;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/channels.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/statistics.h>
@@ -133,37 +134,24 @@ SDM_API void write_vertices_npy(const std::filesystem::path& file, const FileVer
 SDM_API void write_vertices_vtp(const std::filesystem::path& file, const FileVertices& vertices,
                                 std::span<const float> vertex_distances);
 
-/// The layers of map.exr.
-struct ExrLayers {
-  bool distance = true;   ///< distance.D
-  bool vector = true;     ///< vector.X/Y/Z
-  bool site = true;       ///< site.id, site.type
-  bool face = true;       ///< face.id
-  bool position = false;  ///< position.X/Y/Z: the surface point of the texel's centre
-  bool normal = false;    ///< normal.X/Y/Z: the unit normal of its face, by the order of the corners
-  /// closest.face, closest.U, closest.V: a face of O2 with the closest point, and that point's weights of the
-  /// second and third corner; needs ExrOptions::sites.
-  bool closest = false;
-};
-
 /// Options of write_exr().
 struct ExrOptions {
-  ExrLayers layers{};
+  std::vector<std::string> layers = default_channel_layers();  ///< of channel_layers()
   std::span<const std::uint8_t> boundary{};  ///< of boundary_mask(), or empty: channel boundary.M (0 or 1)
-  const Sites* sites = nullptr;              ///< the sites of the map, for ExrLayers::closest
+  const Sites* sites = nullptr;              ///< the sites of the map, for layers that need them
   /// Names, of at most 31 bytes, and values of string attributes of the file, such as the units.
   std::vector<std::pair<std::string, std::string>> attributes{};
 };
 
-/// map.exr: channels distance.D, vector.X/Y/Z (FLOAT), site.id, site.type, face.id (UINT), coverage.A. Values
-/// are dilated into the gutters, by four texels or AtlasOptions::gutter, if that is more; coverage.A is the
+/// map.exr: the planes of the channels() whose layer is in the file by default, and coverage.A. Values are
+/// dilated into the gutters, by four texels or AtlasOptions::gutter, if that is more; coverage.A is the
 /// coverage before dilation. Texels without a value hold NaN and 0xFFFFFFFF; in self maps, texels with
 /// nothing in range hold +∞, 0 and 0xFFFFFFFF. `boundary`, of boundary_mask() or empty: written as a channel
 /// boundary.M (FLOAT, 0 or 1).
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        std::span<const std::uint8_t> boundary = {});
-/// The same with other layers and attributes. Also throws sdm::Error if `sites` are missing or those of
-/// another map.
+/// The same with other layers and attributes. Also throws sdm::Error for an unknown layer, and if `sites` are
+/// missing or those of another map.
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        const ExrOptions& options);
 /// The same for statistics over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.

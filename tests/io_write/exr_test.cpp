@@ -187,7 +187,7 @@ TEST(Exr, HasFurtherLayersAndAttributesOnRequest) {
   const DistanceMap map = compute_map(surface, sites, {.max_distance = 1});
   ASSERT_GT(map.beyond_max_distance, 0u);
   const TemporaryFolder folder;
-  ExrOptions options{.layers = {.site = false, .position = true, .normal = true, .closest = true},
+  ExrOptions options{.layers = {"distance", "vector", "face", "position", "normal", "closest"},
                      .sites = &sites,
                      .attributes = {{"units", "mm"}, {"sign", ""}}};
   write_exr(folder / "map.exr", surface, map, options);
@@ -228,6 +228,9 @@ TEST(Exr, HasFurtherLayersAndAttributesOnRequest) {
   const Imf::InputFile exr((folder / "map.exr").c_str());
   EXPECT_EQ(exr.header().typedAttribute<Imf::StringAttribute>("units").value(), "mm");
   EXPECT_EQ(exr.header().typedAttribute<Imf::StringAttribute>("sign").value(), "");
+  options.layers = {"depth"};
+  EXPECT_THROW(write_exr(folder / "other.exr", surface, map, options), Error);
+  options.layers = {"closest"};
   options.sites = nullptr;
   EXPECT_THROW(write_exr(folder / "other.exr", surface, map, options), Error);
   EXPECT_EQ(point_on_face(sites, SiteType::none, kNone, {}).face, kNone);

@@ -1,13 +1,12 @@
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "io/write/atomic_file.h"
 #include "io/write/compression/deflate.h"
 #include "io/write/gutter.h"
 
 #include <OpenEXR/openexr.h>
 #include <fmt/format.h>
-#include <sdm/closest_points.h>
+#include <sdm/channels.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/version.h>
@@ -18,9 +17,11 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <new>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -30,12 +31,10 @@ using namespace io;
 
 namespace {
 
-// A channel of the texels, which are structures whose members all have four bytes and which therefore have no
-// padding. Files store channels in the order of their names.
-struct Channel {
-  const char* name;
+// A channel of the file. Files store them in the order of their names.
+struct Plane {
+  std::string name;
   exr_pixel_type_t type;
-  std::size_t offset;
 };
 
 using Attributes = std::vector<std::pair<std::string, std::string>>;
@@ -48,7 +47,7 @@ constexpr std::uint32_t kRowsPerChunk = 16;
 class ExrFile {
  public:
   ExrFile(const std::filesystem::path& file, std::uint32_t columns, std::uint32_t rows,
-          std::span<const Channel> channels, const Attributes& attributes)
+          std::span<const Plane> planes, const Attributes& attributes)
       : file_(file), name_(file.string()) {
     exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
     settings.user_data = this;
@@ -56,7 +55,7 @@ class ExrFile {
     settings.write_fn = write;
     check(exr_start_write(&context_, name_.c_str(), EXR_WRITE_FILE_DIRECTLY, &settings));
     try {
-      write_header(static_cast<std::int32_t>(columns), static_cast<std::int32_t>(rows), channels, attributes);
+      write_header(static_cast<std::int32_t>(columns), static_cast<std::int32_t>(rows), planes, attributes);
     } catch (...) {
       exr_finish(&context_);
       throw;
@@ -76,13 +75,14 @@ class ExrFile {
   }
 
  private:
-  void write_header(std::int32_t columns, std::int32_t rows, std::span<const Channel> channels,
+  void write_header(std::int32_t columns, std::int32_t rows, std::span<const Plane> planes,
                     const Attributes& attributes) {
     int part = 0;
     check(exr_add_part(context_, nullptr, EXR_STORAGE_SCANLINE, &part));
     check(exr_initialize_required_attr_simple(context_, part, columns, rows, EXR_COMPRESSION_ZIP));
-    for (const Channel& channel : channels)
-      check(exr_add_channel(context_, part, channel.name, channel.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    for (const Plane& plane : planes)
+      check(exr_add_channel(context_, part, plane.name.c_str(), plane.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1,
+                            1));
     const std::string comment = fmt::format("surface distance map, sdm {}", kVersion);
     check(exr_attr_set_string(context_, part, "comments", comment.c_str()));
     for (const auto& [name, value] : attributes)
@@ -120,36 +120,16 @@ class ExrFile {
   exr_context_t context_ = nullptr;
 };
 
-// A chunk's bytes: for each row, the values of each channel.
-template <class Texel>
-std::vector<std::uint8_t> interleaved(std::span<const Texel> texels, std::uint32_t n,
-                                      std::span<const Channel> channels) {
-  std::vector<std::uint8_t> bytes(texels.size() * channels.size() * 4);
-  std::uint8_t* to = bytes.data();
-  for (std::size_t row = 0; row < texels.size(); row += n)
-    for (const Channel& channel : channels)
-      for (std::size_t x = 0; x < n; ++x, to += 4)
-        std::memcpy(to, reinterpret_cast<const std::uint8_t*>(&texels[row + x]) + channel.offset, 4);
-  return bytes;
-}
-
-// What OpenEXR's ZIP compresses: all even bytes of those above, then all odd ones, each as its difference
-// from the byte before, plus 128.
-template <class Texel>
-std::vector<std::uint8_t> differences(std::span<const Texel> texels, std::uint32_t n,
-                                      std::span<const Channel> channels) {
-  const std::size_t half = texels.size() * channels.size() * 2;
+// What OpenEXR's ZIP compresses: all even bytes of the values, then all odd ones, each as its difference from
+// the byte before, plus 128.
+std::vector<std::uint8_t> differences(std::span<const std::uint32_t> values) {
+  const std::size_t half = 2 * values.size();
   std::vector<std::uint8_t> split(2 * half), result(2 * half);
-  std::uint8_t *even = split.data(), *odd = even + half;
-  for (std::size_t row = 0; row < texels.size(); row += n)
-    for (const Channel& channel : channels)
-      for (std::size_t x = 0; x < n; ++x, even += 2, odd += 2) {
-        std::array<std::uint8_t, 4> value;
-        std::memcpy(value.data(), reinterpret_cast<const std::uint8_t*>(&texels[row + x]) + channel.offset,
-                    4);
-        even[0] = value[0], even[1] = value[2];
-        odd[0] = value[1], odd[1] = value[3];
-      }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto value = std::bit_cast<std::array<std::uint8_t, 4>>(values[i]);
+    split[2 * i] = value[0], split[2 * i + 1] = value[2];
+    split[half + 2 * i] = value[1], split[half + 2 * i + 1] = value[3];
+  }
   result[0] = split[0];
   for (std::size_t i = 1; i < split.size(); ++i)
     result[i] = static_cast<std::uint8_t>(split[i] - split[i - 1] + 128);
@@ -157,31 +137,35 @@ std::vector<std::uint8_t> differences(std::span<const Texel> texels, std::uint32
 }
 
 // A chunk as it is stored: compressed, or as it is if it would not get smaller.
-template <class Texel>
-std::vector<std::uint8_t> packed(std::span<const Texel> texels, std::uint32_t n,
-                                 std::span<const Channel> channels) {
-  std::vector<std::uint8_t> bytes = zlib_compressed(differences(texels, n, channels));
-  return bytes.empty() ? interleaved(texels, n, channels) : bytes;
+std::vector<std::uint8_t> packed(std::span<const std::uint32_t> values) {
+  std::vector<std::uint8_t> bytes = zlib_compressed(differences(values));
+  if (bytes.empty()) {
+    bytes.resize(values.size_bytes());
+    std::memcpy(bytes.data(), values.data(), bytes.size());
+  }
+  return bytes;
 }
 
-// Writes the texels that texel(source, covered) returns. `source` is the owned texel whose values are used, a
-// neighbour's in gutters; kNone if there is none.
-template <class Texel, class Get>
-void write_texels(const std::filesystem::path& file, const Surface& surface,
-                  std::span<const Channel> channels, const Attributes& attributes, const Get& texel) {
+// Writes the values that read(sources, first, row) puts into each row of texels, one plane after another.
+// `sources`: the owned texels whose values the texels from `first` on have, a neighbour's in gutters; kNone
+// where there is none.
+template <class Read>
+void write_planes(const std::filesystem::path& file, const Surface& surface, std::span<const Plane> planes,
+                  const Attributes& attributes, const Read& read) {
   static_assert(std::endian::native == std::endian::little, "the order of bytes in the file");
   const std::uint32_t n = surface.resolution();
   const Gutter gutter(n, surface.texel_faces(), std::max(kGutter, surface.gutter()));
-  ExrFile exr(file, n, surface.rows(), channels, attributes);
+  ExrFile exr(file, n, surface.rows(), planes, attributes);
   const auto chunk = [&](std::uint32_t first_row) {
     const std::uint32_t rows = std::min(kRowsPerChunk, surface.rows() - first_row);
-    std::vector<Texel> texels(std::size_t{n} * rows);
-    for (std::uint32_t y = 0; y < rows; ++y)
-      for (std::uint32_t x = 0; x < n; ++x) {
-        const std::uint32_t source = gutter.source(x, first_row + y);
-        texels[std::size_t{y} * n + x] = texel(source, source == (first_row + y) * n + x);
-      }
-    return packed<Texel>(texels, n, channels);
+    const std::size_t of_row = planes.size() * n;
+    std::vector<std::uint32_t> values(of_row * rows), sources(n);
+    for (std::uint32_t y = 0; y < rows; ++y) {
+      for (std::uint32_t x = 0; x < n; ++x) sources[x] = gutter.source(x, first_row + y);
+      read(std::span<const std::uint32_t>(sources), (first_row + y) * n,
+           std::span(values).subspan(y * of_row, of_row));
+    }
+    return packed(values);
   };
   // Groups of chunks, so that memory does not grow with the number of rows.
   constexpr std::uint32_t kGroup = 16;
@@ -198,65 +182,84 @@ void write_texels(const std::filesystem::path& file, const Surface& surface,
   exr.commit();
 }
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-struct MapTexel {
-  float distance = kNaN;
-  Vec3f vector{kNaN, kNaN, kNaN};
-  std::uint32_t site = kNone, site_type = kNone, face = kNone;
-  float coverage = 0, boundary = 0;
+// Where a plane of the file comes from.
+struct Component {
+  std::size_t channel;  // of those that are read
+  std::size_t index;    // of the value's components
 };
 
-// With the layers that are written on request.
-struct FullTexel {
-  MapTexel map;
-  Vec3f position{kNaN, kNaN, kNaN}, normal{kNaN, kNaN, kNaN};
-  std::uint32_t closest_face = kNone;
-  float u = kNaN, v = kNaN;
-};
-
-struct TemporalTexel {
-  float least = kNaN, mean = kNaN, largest = kNaN, coverage = 0;
-};
-
-}  // namespace
-
-namespace {
-
-// The channels of the layers, in the order of their names. Offsets are those in FullTexel, which begins with
-// MapTexel.
-std::vector<Channel> channels_of(const ExrLayers& layers, bool with_boundary) {
+// What a file contains: the channels that are read, and the components of these, in the order of their names.
+struct Contents {
   std::vector<Channel> channels;
-  const auto add = [&](bool wanted, const char* name, exr_pixel_type_t type, std::size_t offset) {
-    if (wanted) channels.push_back({name, type, offset});
-  };
-  const auto add_vector = [&](bool wanted, std::array<const char*, 3> names, std::size_t offset) {
-    for (std::size_t k = 0; k < 3; ++k) add(wanted, names[k], EXR_PIXEL_FLOAT, offset + k * sizeof(float));
-  };
-  add(with_boundary, "boundary.M", EXR_PIXEL_FLOAT, offsetof(MapTexel, boundary));
-  add(layers.closest, "closest.U", EXR_PIXEL_FLOAT, offsetof(FullTexel, u));
-  add(layers.closest, "closest.V", EXR_PIXEL_FLOAT, offsetof(FullTexel, v));
-  add(layers.closest, "closest.face", EXR_PIXEL_UINT, offsetof(FullTexel, closest_face));
-  add(true, "coverage.A", EXR_PIXEL_FLOAT, offsetof(MapTexel, coverage));
-  add(layers.distance, "distance.D", EXR_PIXEL_FLOAT, offsetof(MapTexel, distance));
-  add(layers.face, "face.id", EXR_PIXEL_UINT, offsetof(MapTexel, face));
-  add_vector(layers.normal, {"normal.X", "normal.Y", "normal.Z"}, offsetof(FullTexel, normal));
-  add_vector(layers.position, {"position.X", "position.Y", "position.Z"}, offsetof(FullTexel, position));
-  add(layers.site, "site.id", EXR_PIXEL_UINT, offsetof(MapTexel, site));
-  add(layers.site, "site.type", EXR_PIXEL_UINT, offsetof(MapTexel, site_type));
-  add_vector(layers.vector, {"vector.X", "vector.Y", "vector.Z"}, offsetof(MapTexel, vector));
-  return channels;
+  std::vector<Plane> planes;
+  std::vector<Component> components;  // of each plane
+};
+
+exr_pixel_type_t pixel_type(ChannelType type) {
+  return type == ChannelType::float32 || type == ChannelType::float64 ? EXR_PIXEL_FLOAT : EXR_PIXEL_UINT;
 }
 
-Vec3f to_float(const Vec3& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+Contents contents_of(const ExrOptions& options) {
+  Contents contents;
+  std::map<std::string, Component> by_name;
+  for (const Channel& channel : channels()) {
+    const bool chosen = *channel.layer == '\0' || std::ranges::count(options.layers, channel.layer) > 0;
+    if (!chosen || (channel.needs_boundary && options.boundary.empty())) continue;
+    for (std::size_t k = 0; k < channel.components(); ++k)
+      by_name[channel.planes[k]] = {contents.channels.size(), k};
+    contents.channels.push_back(channel);
+  }
+  for (const auto& [name, component] : by_name) {
+    contents.planes.push_back({name, pixel_type(contents.channels[component.channel].type)});
+    contents.components.push_back(component);
+  }
+  return contents;
 }
 
-Vec3f unit_normal(const Mesh& mesh, std::uint32_t face) {
-  const auto& [a, b, c] = mesh.triangles[face];
-  const Vec3 first = mesh.positions[b] - mesh.positions[a], second = mesh.positions[c] - mesh.positions[a];
-  const Vec3 normal = cross(first, second);
-  return to_float((1 / norm(normal)) * normal);
+// The bits of the number at `from` as the file has them.
+template <class T>
+std::uint32_t bits_of(const std::byte* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  if constexpr (std::is_same_v<T, double>) return std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  if constexpr (std::is_same_v<T, std::uint8_t>) return value == 0xFF ? kNone : value;
+  if constexpr (sizeof(T) == 4) return std::bit_cast<std::uint32_t>(value);
+}
+
+template <class T>
+void put(std::span<std::uint32_t> plane, const std::byte* values, std::size_t components, std::size_t k) {
+  for (std::size_t i = 0; i < plane.size(); ++i)
+    plane[i] = bits_of<T>(values + (i * components + k) * sizeof(T));
+}
+
+// Puts component k of a channel into a plane.
+void put(std::span<std::uint32_t> plane, const Channel& channel, std::span<const std::byte> values,
+         std::size_t k) {
+  const auto put_as = [&]<class T>(T) { put<T>(plane, values.data(), channel.components(), k); };
+  switch (channel.type) {
+    case ChannelType::float64:
+      return put_as(double{});
+    case ChannelType::uint8:
+      return put_as(std::uint8_t{});
+    case ChannelType::float32:
+    case ChannelType::uint32:
+      return put_as(std::uint32_t{});
+  }
+}
+
+void check(const ExrOptions& options, const DistanceMap& map, const Contents& contents,
+           const std::filesystem::path& file) {
+  const auto fail = [&](const std::string& why) {
+    throw Error("cannot write " + file.string() + ": " + why);
+  };
+  if (!options.boundary.empty() && options.boundary.size() != map.distance.size())
+    fail("the mask of the boundary belongs to another map");
+  const std::vector<std::string> layers = channel_layers();
+  for (const std::string& layer : options.layers)
+    if (std::ranges::count(layers, layer) == 0) fail("there is no layer `" + layer + "`");
+  for (const Channel& channel : contents.channels)
+    if (channel.needs_sites && options.sites == nullptr)
+      fail(std::string("the layer `") + channel.layer + "` needs the sites of the map");
 }
 
 }  // namespace
@@ -268,43 +271,18 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
 
 void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                const ExrOptions& options) try {
-  const std::span<const std::uint8_t> boundary = options.boundary;
-  if (!boundary.empty() && boundary.size() != map.distance.size())
-    throw Error("cannot write " + file.string() + ": the mask of the boundary belongs to another map");
-  const ExrLayers& layers = options.layers;
-  if (layers.closest && options.sites == nullptr)
-    throw Error("cannot write " + file.string() + ": the layer `closest` needs the sites of the map");
-  const std::vector<Channel> channels = channels_of(layers, !boundary.empty());
-  const auto owners = surface.texel_faces();
-  const auto map_texel = [&](std::uint32_t source, bool covered) -> MapTexel {
-    if (source == kNone) return {};
-    const SiteType type = map.site_type[source];
-    return {map.distance[source],
-            map.vector[source],
-            map.site[source],
-            type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
-            owners[source],
-            covered ? 1.f : 0.f,
-            !boundary.empty() && boundary[source] ? 1.f : 0.f};
-  };
-  if (!layers.position && !layers.normal && !layers.closest) {
-    write_texels<MapTexel>(file, surface, channels, options.attributes, map_texel);
-    return;
-  }
-  write_texels<FullTexel>(
-      file, surface, channels, options.attributes, [&](std::uint32_t source, bool covered) {
-        FullTexel texel{.map = map_texel(source, covered)};
-        if (source == kNone) return texel;
-        const Vec3 point = surface.texel_point(source);
-        texel.position = to_float(point);
-        if (layers.normal) texel.normal = unit_normal(surface.mesh(), owners[source]);
-        if (layers.closest && map.site_type[source] != SiteType::none) {
-          const FacePoint closest =
-              point_on_face(*options.sites, map.site_type[source], map.site[source], point);
-          texel.closest_face = closest.face;
-          texel.u = static_cast<float>(closest.u), texel.v = static_cast<float>(closest.v);
+  const Contents contents = contents_of(options);
+  check(options, map, contents, file);
+  const ChannelSource source{&map, &surface, options.sites, options.boundary};
+  const std::uint32_t n = surface.resolution();
+  write_planes(
+      file, surface, contents.planes, options.attributes,
+      [&](std::span<const std::uint32_t> sources, std::uint32_t first, std::span<std::uint32_t> row) {
+        const auto values = read_channels(contents.channels, source, sources, first);
+        for (std::size_t p = 0; p < contents.planes.size(); ++p) {
+          const auto [channel, index] = contents.components[p];
+          put(row.subspan(p * n, n), contents.channels[channel], values[channel], index);
         }
-        return texel;
       });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
@@ -313,15 +291,24 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
 void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps) try {
   if (maps.resolution() != surface.resolution() || maps.least().size() != surface.texel_faces().size())
     throw Error("cannot write " + file.string() + ": the maps belong to another surface");
-  const Channel channels[] = {{"coverage.A", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, coverage)},
-                              {"max.D", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, largest)},
-                              {"mean.D", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, mean)},
-                              {"min.D", EXR_PIXEL_FLOAT, offsetof(TemporalTexel, least)}};
+  constexpr std::size_t kPlanes = 4;
+  const std::array<Plane, kPlanes> planes{{{"coverage.A", EXR_PIXEL_FLOAT},
+                                           {"max.D", EXR_PIXEL_FLOAT},
+                                           {"mean.D", EXR_PIXEL_FLOAT},
+                                           {"min.D", EXR_PIXEL_FLOAT}}};
   const std::vector<float> mean = maps.mean();
-  write_texels<TemporalTexel>(
-      file, surface, channels, {}, [&](std::uint32_t source, bool covered) -> TemporalTexel {
-        if (source == kNone) return {};
-        return {maps.least()[source], mean[source], maps.largest()[source], covered ? 1.f : 0.f};
+  const std::array<std::span<const float>, kPlanes> values{{{}, maps.largest(), mean, maps.least()}};
+  const std::uint32_t n = surface.resolution();
+  write_planes(
+      file, surface, planes, {},
+      [&](std::span<const std::uint32_t> sources, std::uint32_t first, std::span<std::uint32_t> row) {
+        for (std::uint32_t x = 0; x < n; ++x) {
+          const bool is_own = sources[x] == first + x;
+          row[x] = std::bit_cast<std::uint32_t>(is_own ? 1.f : 0.f);
+          for (std::size_t p = 1; p < kPlanes; ++p)
+            row[p * n + x] = std::bit_cast<std::uint32_t>(
+                sources[x] == kNone ? std::numeric_limits<float>::quiet_NaN() : values[p][sources[x]]);
+        }
       });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
