@@ -4,6 +4,7 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
 
+#include <algorithm>
 #include <array>
 #include <new>
 
@@ -14,14 +15,16 @@
 namespace sdm {
 
 std::string io::npy_header(std::string_view type, std::span<const std::uint64_t> shape, NpyOrder order) {
-  constexpr std::size_t kHeaderSize = 128;
-  std::string dictionary = fmt::format("{{'descr': '{}', 'fortran_order': {}, 'shape': ({}{}), }}", type,
-                                       order == NpyOrder::first_fastest ? "True" : "False",
+  const char* quote = type.starts_with('[') ? "" : "'";
+  std::string dictionary = fmt::format("{{'descr': {0}{1}{0}, 'fortran_order': {2}, 'shape': ({3}{4}), }}",
+                                       quote, type, order == NpyOrder::first_fastest ? "True" : "False",
                                        fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
   std::string header = "\x93NUMPY";
   header += {'\1', '\0'};
-  append_little_endian(header, static_cast<std::uint16_t>(kHeaderSize - header.size() - 2));
-  dictionary.resize(kHeaderSize - header.size() - 1, ' ');
+  constexpr std::size_t kStep = 64, kLeast = 128;
+  const std::size_t size = std::max(kLeast, (header.size() + 2 + dictionary.size() + kStep) / kStep * kStep);
+  append_little_endian(header, static_cast<std::uint16_t>(size - header.size() - 2));
+  dictionary.resize(size - header.size() - 1, ' ');
   return header + dictionary + '\n';
 }
 

@@ -2,15 +2,16 @@
 #include <fmt/format.h>
 #include <sdm/io.h>
 
-#include <array>
 #include <cstdint>
 #include <new>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/memory.h"
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
-#include "io/write/vertices/vertex_values.h"
+#include "io/write/vertices/vertex_columns.h"
 
 namespace sdm {
 
@@ -52,27 +53,40 @@ class Base64 {
 
 // A block of the appended data: the number of its bytes, and the bytes.
 struct Block {
-  const char* attributes;  ///< of its DataArray
+  std::string attributes;  ///< of its DataArray
   std::uint64_t bytes;
 };
+
+std::string attributes_of(const VertexColumn& column) {
+  const char* type = column.type == ChannelType::float32   ? "Float32"
+                     : column.type == ChannelType::float64 ? "Float64"
+                     : column.type == ChannelType::uint32  ? "UInt32"
+                                                           : "UInt8";
+  std::string text = fmt::format(R"(type="{}" Name="{}")", type, column.name);
+  if (column.components > 1) text += fmt::format(R"( NumberOfComponents="{}")", column.components);
+  return text;
+}
 
 }  // namespace
 
 void write_vertices_vtp(const std::filesystem::path& file, const FileVertices& vertices,
                         std::span<const float> vertex_distances) try {
-  const VertexValues values(file, vertices, vertex_distances);
+  const std::vector<VertexColumn> columns = vertex_columns(file, vertices, vertex_distances);
   const std::uint64_t points = vertices.positions.size();
-  const std::array<Block, 4> blocks{{{R"(type="Float32" Name="distance")", 4 * points},
-                                     {R"(type="Float64" Name="Points" NumberOfComponents="3")", 24 * points},
-                                     {R"(type="Int64" Name="connectivity")", 8 * vertices.corners.size()},
-                                     {R"(type="Int64" Name="offsets")", 8 * vertices.ends.size()}}};
-  std::array<std::string, 4> arrays;
+  std::vector<Block> blocks;
+  for (const VertexColumn& column : columns)
+    blocks.push_back({attributes_of(column), column.size() * points});
+  blocks.push_back({R"(type="Float64" Name="Points" NumberOfComponents="3")", 24 * points});
+  blocks.push_back({R"(type="Int64" Name="connectivity")", 8 * vertices.corners.size()});
+  blocks.push_back({R"(type="Int64" Name="offsets")", 8 * vertices.ends.size()});
+  std::vector<std::string> arrays;
   std::uint64_t offset = 0;  // in characters of base64
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    arrays[i] =
-        fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>", blocks[i].attributes, offset);
-    offset += (sizeof(std::uint64_t) + blocks[i].bytes + 2) / 3 * 4;
+  for (const Block& block : blocks) {
+    arrays.push_back(
+        fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>", block.attributes, offset));
+    offset += (sizeof(std::uint64_t) + block.bytes + 2) / 3 * 4;
   }
+  const std::size_t of_points = columns.size();  // the blocks after those of the columns
 
   AtomicFile out(file);
   out.stream() << fmt::format(R"(<?xml version="1.0"?>
@@ -86,19 +100,22 @@ void write_vertices_vtp(const std::filesystem::path& file, const FileVertices& v
 </PolyData>
 <AppendedData encoding="base64">
 _)",
-                              points, vertices.ends.size(), arrays[0], arrays[1], arrays[2], arrays[3]);
+                              points, vertices.ends.size(), fmt::join(std::span(arrays).first(of_points), ""),
+                              arrays[of_points], arrays[of_points + 1], arrays[of_points + 2]);
   Base64 data(out.stream());
-  data.append(blocks[0].bytes);
-  for (std::size_t v = 0; v < points; ++v) data.append(values[v]);
-  data.end();
-  data.append(blocks[1].bytes);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    data.append(blocks[i].bytes);
+    for (const std::byte byte : columns[i].values) data.append(static_cast<std::uint8_t>(byte));
+    data.end();
+  }
+  data.append(blocks[of_points].bytes);
   for (const Vec3& p : vertices.positions)
     for (const double x : p) data.append(x);
   data.end();
-  data.append(blocks[2].bytes);
+  data.append(blocks[of_points + 1].bytes);
   for (const std::uint32_t v : vertices.corners) data.append(std::int64_t{v});
   data.end();
-  data.append(blocks[3].bytes);
+  data.append(blocks[of_points + 2].bytes);
   for (const std::uint32_t end : vertices.ends) data.append(std::int64_t{end});
   data.end();
   out.stream() << "\n</AppendedData>\n</VTKFile>\n";
