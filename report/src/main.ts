@@ -49,7 +49,7 @@ class Page {
     const { page, surface, cloud, ghost } = data;
     const { measured } = inputsOf(report);
     this.cloud = cloud && new Cloud(cloud, page.colors);
-    this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false);
+    this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false, this.unit);
     this.view = new View(byId('view'), this.subject, ghost, page.up, () => this.callouts?.update());
     this.callouts = new Callouts(this.view, this.unit, this.signs, this.subject.size, (at) => this.lookAt(at));
     const ghostShown = this.apart();

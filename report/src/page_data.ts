@@ -73,11 +73,19 @@ interface Placement {
   step: number;
 }
 
+/// A channel beside the distance and the site: of src/io/write/report/page_channels.h.
+interface ChannelJson {
+  name: string;
+  components: number;
+  whole: boolean; ///< whole numbers, 0xFFFFFFFF without one; otherwise floats
+  length: boolean; ///< in the units of the files
+}
+
 interface PageJson {
   version: string;
   up: 'y' | 'z';
   colors: Record<'viridis' | 'diverging' | 'paper2006' | 'within' | 'above' | 'below' | 'no_value', Color[]>;
-  map?: { width: number; height: number; step: number };
+  map?: { width: number; height: number; step: number; channels?: ChannelJson[] };
   model?: Placement & { triangles_of_mesh: number };
   cloud?: Placement & { points: number; picked: number; normals: boolean }; ///< in place of map and model
   ghost?: Placement & { box: { lo: Vec; hi: Vec }; triangles_of_mesh: number };
@@ -94,6 +102,12 @@ export interface TexelMap {
   chart: Uint32Array; ///< of each texel, 0 without an owner
   distance: Float32Array; ///< of each texel; NaN without a value or an owner
   site: Uint32Array | null; ///< 4 · number + type of each texel, 0xFFFFFFFF without one
+  channels: Channel[]; ///< the others
+}
+
+/// A channel that the page shows as numbers, for the texel under the cursor.
+export interface Channel extends ChannelJson {
+  values: (Float32Array | Uint32Array)[]; ///< of each component, for each texel
 }
 
 /// The triangles of the part. Positions are relative to `centre` in units of `size`, so that they fit single
@@ -153,31 +167,50 @@ export function readPage(): PageJson {
   return JSON.parse(textOf('page')) as PageJson;
 }
 
-function texelMap(page: PageJson, arrays: Arrays): TexelMap {
-  const { width, height, step } = page.map!;
-  const chart = summed(arrays.get('chart')!);
-  const ordered = new Uint32Array(width * height).fill(0xffffffff);
-  const differences = arrays.get('distance')!;
-  const packedSites = arrays.get('site');
-  const sites = packedSites ? summed(packedSites) : null;
-  const site = sites ? new Uint32Array(width * height).fill(0xffffffff) : null;
+// The numbers of all texels, 0xFFFFFFFF without an owner, from what is left of them after a guess from the texels
+// to the left and above.
+function guessed(chart: Uint32Array, width: number, differences: Uint32Array): Uint32Array {
+  const numbers = new Uint32Array(chart.length).fill(0xffffffff);
   let last = 0;
-  for (let y = 0, i = 0, owned = 0; y < height; ++y)
-    for (let x = 0; x < width; ++x, ++i) {
-      if (chart[i] === 0) continue;
-      const left = x > 0 && chart[i - 1] !== 0;
-      const above = y > 0 && chart[i - width] !== 0;
-      let guess = last;
-      if (left && above && chart[i - width - 1] !== 0)
-        guess = ordered[i - 1] + ordered[i - width] - ordered[i - width - 1];
-      else if (left) guess = ordered[i - 1];
-      else if (above) guess = ordered[i - width];
-      ordered[i] = unzigzag(differences[owned]) + guess;
-      last = ordered[i];
-      if (site) site[i] = sites![owned];
-      ++owned;
-    }
-  return { width, height, step, chart, distance: floatsOfOrdered(ordered), site };
+  for (let i = 0, owned = 0; i < chart.length; ++i) {
+    if (chart[i] === 0) continue;
+    const left = i % width > 0 && chart[i - 1] !== 0;
+    const above = i >= width && chart[i - width] !== 0;
+    let guess = last;
+    if (left && above && chart[i - width - 1] !== 0) guess = numbers[i - 1] + numbers[i - width] - numbers[i - width - 1];
+    else if (left) guess = numbers[i - 1];
+    else if (above) guess = numbers[i - width];
+    last = numbers[i] = unzigzag(differences[owned++]) + guess;
+  }
+  return numbers;
+}
+
+// One number for each texel with an owner, for all texels.
+function spread(chart: Uint32Array, ofOwned: Uint32Array): Uint32Array {
+  let owned = 0;
+  return chart.map((c) => (c === 0 ? 0xffffffff : ofOwned[owned++]));
+}
+
+function texelMap(page: PageJson, arrays: Arrays): TexelMap {
+  const { width, height, step, channels = [] } = page.map!;
+  const chart = summed(arrays.get('chart')!);
+  const numbers = (name: string) => guessed(chart, width, arrays.get(name)!);
+  const sites = arrays.get('site');
+  return {
+    width,
+    height,
+    step,
+    chart,
+    distance: floatsOfOrdered(numbers('distance')),
+    site: sites ? spread(chart, summed(sites)) : null,
+    channels: channels.map((channel) => ({
+      ...channel,
+      values: Array.from({ length: channel.components }, (_, k) => {
+        const values = numbers(`texel_${channel.name}_${k}`);
+        return channel.whole ? values : floatsOfOrdered(values);
+      }),
+    })),
+  };
 }
 
 function toCentre(steps: Uint32Array, from: Placement, centre: Vec, size: number): Float32Array {

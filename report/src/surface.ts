@@ -3,7 +3,8 @@ import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, Me
 import { kColorShader } from './color_scale';
 import { colorUniforms, Uniforms } from './color_uniforms';
 import type { Colors } from './color_scale';
-import type { Model, TexelMap, Vec } from './page_data';
+import { exactText } from './numbers';
+import type { Channel, Model, TexelMap, Vec } from './page_data';
 import { firstHit, Hit, pointOf, valueAt } from './pick';
 import { boxOf, Found, HalfSpace, nearest, Subject } from './subject';
 import { filledValues, kNoValue } from './value_texture';
@@ -76,6 +77,14 @@ function siteText(site: number): string {
   return site === 0xffffffff ? '' : `${kSites[site & 3]} ${site >>> 2} of the reference`;
 }
 
+/// The row of a channel below the distance, such as "Closest face: 12".
+function channelRow({ name, whole, length, values }: Channel, texel: number, unit: string): Found['rows'][number] {
+  const numbers = values.map((ofComponent) => ofComponent[texel]);
+  const isNone = numbers.some((x) => (whole ? x === 0xffffffff : Number.isNaN(x)));
+  const label = name[0].toUpperCase() + name.slice(1).replace(/_/g, ' ');
+  return [label, isNone ? 'none' : numbers.map(exactText).join(', ') + (length ? unit : ''), `probe-${name}`];
+}
+
 export class Surface implements Subject {
   readonly centre: Vec;
   readonly size: number;
@@ -89,6 +98,7 @@ export class Surface implements Subject {
     private readonly map: TexelMap,
     colors: Colors,
     isClosed: boolean,
+    private readonly unit: string,
   ) {
     ({ centre: this.centre, size: this.size } = model);
     ({ lo: this.lo, hi: this.hi } = boxOf(model.position));
@@ -135,6 +145,10 @@ export class Surface implements Subject {
     if (detail) rows.push(['Nearest', detail, 'probe-site']);
     if (value.texel) rows.push([map.step > 1 ? `Texels (${map.step}² each)` : 'Texel', value.texel.join(', '), 'probe-texel']);
     else rows.push(['Of', 'the nearest vertex', 'probe-texel']);
+    if (value.texel) {
+      const texel = value.texel[1] * map.width + value.texel[0];
+      rows.push(...map.channels.map((channel) => channelRow(channel, texel, this.unit)));
+    }
     return { at: pointOf(model, hit), normal: this.normalOf(hit), distance: value.distance, detail, rows, value };
   }
 

@@ -347,6 +347,15 @@ const checks = {
     pictures.forEach((picture, i) => pictures.slice(i + 1).forEach((other) => assert(!picture.equals(other), 'frames differ')));
   },
 
+  // Rows beside the cursor, an id and its text each.
+  async probes(page, ...rows) {
+    const [hit] = await hitsFrom(page, 'top', 13);
+    const canvas = await page.locator('#canvas').boundingBox();
+    await page.mouse.move(canvas.x + hit.x, canvas.y + hit.y);
+    await page.waitForSelector('#probe-distance');
+    for (let i = 0; i < rows.length; i += 2) assert.strictEqual(plain(await page.textContent(`#${rows[i]}`)), rows[i + 1]);
+  },
+
   // Opens, and says these words; any words if none are given.
   async says(page, ...words) {
     const text = plain(await page.innerText('body'));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/channels.h>
 #include <sdm/error.h>
 #include <sdm/player.h>
 #include <sdm/points.h>
@@ -17,6 +18,7 @@
 #include <random>
 
 #include "cli/samples.h"
+#include "io/write/report/page_channels.h"
 #include "support/made_up_maps.h"
 #include "support/run_sdm.h"
 
@@ -84,6 +86,36 @@ TEST_F(Page, ShowsTheValuesOfTheMap) {
                         std::to_string(bound)}))
         << atlas;
   }
+}
+
+/// Adds channels to the data of a page whose numbers are all 0.
+void add_channels_of_zeros(const std::string& file, const nlohmann::ordered_json& channels) {
+  std::string text = contents(file);
+  const std::string before = R"(<script type="application/json" id="page">)";
+  const std::size_t begin = text.find(before) + before.size(), end = text.find("</script>", begin);
+  auto page = nlohmann::ordered_json::parse(text.substr(begin, end - begin));
+  EXPECT_FALSE(page["map"].contains("channels"));
+  page["map"]["channels"] = channels;
+  const auto owned = page["arrays"]["distance"]["count"];
+  for (const auto& channel : channels)
+    for (int k = 0; k < channel["components"]; ++k)
+      page["arrays"][fmt::format("texel_{}_{}", channel["name"].get<std::string>(), k)] = {
+          {"count", owned}, {"bytes", {0, 0, 0, 0}}};
+  std::ofstream(file) << text.replace(begin, end - begin, page.dump());
+}
+
+// A row of the table of channels that is on the page needs nothing else there.
+TEST_F(Page, ShowsFurtherChannelsAsNumbers) {
+  map({"--resolution", "128", "--units", "mm"});
+  Channel row = channels()[0];
+  row.name = "wall_thickness";
+  Channel pair = row;
+  pair.name = "pair", pair.planes = {"pair.A", "pair.B"}, pair.type = ChannelType::uint32;
+  pair.is_length = false;
+  EXPECT_EQ(io::array_name(pair, 1), "texel_pair_1");
+  add_channels_of_zeros(page(), {io::described(row), io::described(pair)});
+  // All bits 0 are the least of all floats, which is none.
+  EXPECT_TRUE(passes("probes", page(), {"probe-wall_thickness", "none", "probe-pair", "0, 0"}));
 }
 
 TEST_F(Page, RecoloursAtOnce) {

@@ -14,6 +14,7 @@
 #include "io/write/model/shading_normals.h"
 #include "io/write/pictures/atlas_picture.h"
 #include "io/write/report/fewer_vertices.h"
+#include "io/write/report/page_channels.h"
 #include "io/write/report/page_numbers.h"
 
 namespace sdm::io {
@@ -95,31 +96,43 @@ Json add_map(PackedArrays& arrays, const Surface& surface, const DistanceMap& ma
   const AtlasPicture picture(surface, largest);
   const std::size_t width = picture.width(), height = picture.height();
   const auto owners = surface.texel_faces(), face_charts = surface.face_charts();
-  std::vector<std::uint32_t> charts(width * height), distance(charts.size()), sites(charts.size());
+  const PageChannels shown;
+  std::vector<std::uint32_t> charts(width * height), sites(charts.size());
+  std::vector<std::vector<std::uint32_t>> values(shown.planes(), std::vector<std::uint32_t>(charts.size()));
   std::atomic<bool> sites_fit = true;
   constexpr std::size_t kGrain = 16;  // rows
   parallel_for(height, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * width; i < end * width; ++i) {
-      const std::uint32_t texel =
-          picture.texel(static_cast<std::uint32_t>(i % width), static_cast<std::uint32_t>(i / width));
-      if (texel == kNone) continue;
-      charts[i] = face_charts[owners[texel]] + 1;
-      distance[i] = ordered(map.distance[texel]);
-      const SiteType type = map.site_type[texel];
-      const std::uint32_t site = map.site[texel];
-      if (type != SiteType::none && site >= (1u << 30) - 1) sites_fit = false;
-      sites[i] = type == SiteType::none ? kNone : site << 2 | static_cast<std::uint32_t>(type);
+    std::vector<std::uint32_t> texels(width);
+    for (std::size_t y = begin; y < end; ++y) {
+      for (std::size_t x = 0; x < width; ++x)
+        texels[x] = picture.texel(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+      shown.read({.map = &map, .surface = &surface}, texels, y * width, values);
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::uint32_t texel = texels[x];
+        if (texel == kNone) continue;
+        charts[y * width + x] = face_charts[owners[texel]] + 1;
+        const SiteType type = map.site_type[texel];
+        const std::uint32_t site = map.site[texel];
+        if (type != SiteType::none && site >= (1u << 30) - 1) sites_fit = false;
+        sites[y * width + x] = type == SiteType::none ? kNone : site << 2 | static_cast<std::uint32_t>(type);
+      }
     }
   });
   arrays.add_differences("chart", charts);
-  arrays.add("distance", differences_of_map(charts, distance, width));
+  Json json{{"width", width}, {"height", height}, {"step", picture.step()}};
+  std::size_t plane = 0;
+  for (const Channel& channel : shown.channels()) {
+    for (std::size_t k = 0; k < channel.components(); ++k)
+      arrays.add(array_name(channel, k), differences_of_map(charts, values[plane++], width));
+    if (!is_drawn(channel)) json["channels"].push_back(described(channel));
+  }
   if (sites_fit) {
     std::size_t owned = 0;
     for (std::size_t i = 0; i < sites.size(); ++i)
       if (charts[i] != 0) sites[owned++] = sites[i];
     arrays.add_differences("site", std::span(sites).first(owned));
   }
-  return {{"width", width}, {"height", height}, {"step", picture.step()}};
+  return json;
 }
 
 Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const float> vertex_distances,

@@ -14,7 +14,7 @@ namespace sdm::io {
 /// Adds the map: texel by texel, or if it has more than `largest` a side, a texel of each square, as pictures
 /// show it. Arrays:
 /// `chart` (of all texels of the page: 1 + the chart of the owner, 0 without one), and of the owned texels in
-/// order `distance` (see below) and `site` (4 · number + type, 0xFFFFFFFF without one; missing if a number
+/// order those of page_channels.h and `site` (4 · number + type, 0xFFFFFFFF without one; missing if a number
 /// does not fit). Returns its measures.
 [[nodiscard]] nlohmann::ordered_json add_map(PackedArrays& arrays, const Surface& surface,
                                              const DistanceMap& map, std::uint32_t largest);
