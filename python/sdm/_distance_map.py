@@ -28,16 +28,18 @@ class MapBounds:
     """Upper bound on the error of the distance at a texel, of the engine and of rounding to float32."""
 
 
-class DistanceMap:
+class DistanceMap(_core.MapChannels):
     """The distance from every texel of a surface (O1) to sites (O2). Returned by map() and self_map().
 
-    Arrays have a row for each row of texels, row 0 at the top, and are read-only. Texels without a value, because no face
-    owns them or nothing is within the maximum distance, hold NaN or NONE. Lengths are in the units of the meshes.
+    Its arrays are the channels of the map, with a row for each row of texels, row 0 at the top, and read-only. Texels without
+    a value, because no face owns them or nothing is within the maximum distance, hold NaN or NONE. Lengths are in the units
+    of the meshes. What ``site_type`` holds is a SiteType.
 
     Notebooks show the surface in 3D, its picture and its numbers.
     """
 
     def __init__(self, core: "_core.Map") -> None:
+        super().__init__(core)
         self._core = core
 
     @property
@@ -49,41 +51,6 @@ class DistanceMap:
     def sites(self) -> Sites:
         """The sites that they are measured to."""
         return self._core.sites
-
-    @functools.cached_property
-    def distance(self) -> np.ndarray:
-        """The length of ``vector``, (H, W) float32; negative inside O2 if the map is signed."""
-        return self._core.distance
-
-    @functools.cached_property
-    def vector(self) -> np.ndarray:
-        """From the texel's point to the closest point of O2, (H, W, 3) float32."""
-        return self._core.vector
-
-    @functools.cached_property
-    def position(self) -> np.ndarray:
-        """The surface point of each texel's centre, (H, W, 3) float64; NaN where no face owns the texel."""
-        return _frozen(self._core.position())
-
-    @functools.cached_property
-    def normal(self) -> np.ndarray:
-        """The unit normal of the face that owns each texel, (H, W, 3) float32; NaN where none does."""
-        return _frozen(self._core.normal())
-
-    @functools.cached_property
-    def face(self) -> np.ndarray:
-        """The face of O1 that owns each texel, (H, W) uint32, or NONE."""
-        return self._core.face()
-
-    @functools.cached_property
-    def site(self) -> np.ndarray:
-        """The closest vertex, edge or face of O2, (H, W) uint32, by ``site_type``; or NONE."""
-        return self._core.site
-
-    @functools.cached_property
-    def site_type(self) -> np.ndarray:
-        """The SiteType of each site, (H, W) uint8."""
-        return self._core.site_type
 
     @functools.cached_property
     def valid(self) -> np.ndarray:
@@ -213,7 +180,7 @@ class DistanceMap:
         """Writes the map, in the format of the file's extension.
 
         ===================  ======================================================================================
-        .exr                 all values: distance.D, vector.X/Y/Z, site.id, site.type, face.id, coverage.A
+        .exr                 distance, vector, site, site_type and face of all texels, a channel for each component
         .png                 the distances in colours, with a legend
         .glb                 the surface with the distances as a texture, and as ``_DISTANCE`` for each vertex
         .html                a page that shows the surface in 3D, the numbers of report() and a histogram, without a network

@@ -3,7 +3,6 @@
 
 #include <nanobind/stl/optional.h>
 
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -12,8 +11,6 @@
 
 namespace sdm::python {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 std::unique_ptr<PyMap> map_between(nb::handle surface, nb::handle sites) {
   auto result = std::make_unique<PyMap>();
@@ -58,49 +55,6 @@ std::unique_ptr<PyMap> compute_self(nb::handle surface, nb::handle sites, nb::ha
   return result;
 }
 
-nb::object positions(const PyMap& self) {
-  const auto lock = self.use_surface();
-  auto values = run_short([&] {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Vec3> result(self.texels(), Vec3{nan, nan, nan});
-    const std::vector<Vec3> points = self.on->surface.sample_points();
-    const auto texels = self.on->surface.sample_texels();
-    for (std::size_t i = 0; i < points.size(); ++i) result[texels[i]] = points[i];
-    return result;
-  });
-  return array_of<double>(std::move(values), {self.rows(), self.map.resolution, 3});
-}
-
-// The unit normals of all faces.
-std::vector<Vec3f> face_normals(const Mesh& mesh) {
-  std::vector<Vec3f> normals(mesh.triangles.size());
-  for (std::size_t f = 0; f < normals.size(); ++f) {
-    const Triangle& corners = mesh.triangles[f];
-    const auto edge = [&](int to) {
-      const Vec3 &p = mesh.positions[corners[0]], &q = mesh.positions[corners[to]];
-      return Vec3{q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-    };
-    const Vec3 u = edge(1), v = edge(2);
-    const Vec3 n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    const double length = std::hypot(n[0], n[1], n[2]);
-    for (int k = 0; k < 3; ++k) normals[f][k] = static_cast<float>(n[k] / length);
-  }
-  return normals;
-}
-
-nb::object normals(const PyMap& self) {
-  const auto lock = self.use_surface();
-  auto values = run_short([&] {
-    const std::vector<Vec3f> of_faces = face_normals(self.on->surface.mesh());
-    std::vector<Vec3f> result(self.texels(), Vec3f{kNan, kNan, kNan});
-    const auto owners = self.on->surface.texel_faces();
-    for (std::size_t t = 0; t < result.size(); ++t)
-      if (owners[t] != kNone) result[t] = of_faces[owners[t]];
-    return result;
-  });
-  return array_of<float>(std::move(values), {self.rows(), self.map.resolution, 3});
-}
-
 }  // namespace
 
 std::vector<float> PyMap::vertex_distances(const Progress& progress) const {
@@ -120,44 +74,6 @@ void bind_map(nb::module_& module) {
           nb::sig("def surface(self) -> Surface"))
       .def_prop_ro(
           "sites", [](const PyMap& self) { return self.sites_object; }, nb::sig("def sites(self) -> Sites"))
-      .def_prop_ro(
-          "distance",
-          [](nb::handle self) {
-            const DistanceMap& map = nb::cast<const PyMap&>(self).map;
-            return texels_of<float>(map.distance, map, self);
-          },
-          nb::sig("def distance(self) -> numpy.ndarray"))
-      .def_prop_ro(
-          "vector",
-          [](nb::handle self) {
-            const DistanceMap& map = nb::cast<const PyMap&>(self).map;
-            return texels_of<float>(map.vector, map, self);
-          },
-          nb::sig("def vector(self) -> numpy.ndarray"))
-      .def_prop_ro(
-          "site",
-          [](nb::handle self) {
-            const DistanceMap& map = nb::cast<const PyMap&>(self).map;
-            return texels_of<std::uint32_t>(map.site, map, self);
-          },
-          nb::sig("def site(self) -> numpy.ndarray"))
-      .def_prop_ro(
-          "site_type",
-          [](nb::handle self) {
-            const DistanceMap& map = nb::cast<const PyMap&>(self).map;
-            return texels_of<std::uint8_t>(map.site_type, map, self);
-          },
-          nb::sig("def site_type(self) -> numpy.ndarray"))
-      .def(
-          "face",
-          [](const PyMap& self) {
-            if (self.on->edits != self.surface_edits)
-              throw Error("the surface has been edited since the map was computed; compute the map again");
-            return self.surface_object.attr("texel_faces");
-          },
-          nb::sig("def face(self) -> numpy.ndarray"))
-      .def("position", &positions, nb::sig("def position(self) -> numpy.ndarray"))
-      .def("normal", &normals, nb::sig("def normal(self) -> numpy.ndarray"))
       .def_prop_ro("beyond_max_distance", [](const PyMap& self) { return self.map.beyond_max_distance; })
       .def_prop_ro("sign", [](const PyMap& self) { return name_of(self.map.sign.method); })
       .def_prop_ro("sign_reason", [](const PyMap& self) { return self.map.sign.reason; })
@@ -176,6 +92,7 @@ void bind_map(nb::module_& module) {
   bind_map_numbers(module, map_class);
   bind_map_files(module, map_class);
   bind_map_rays(map_class);
+  bind_channels(module);
 
   module.def(
       "compute_map",

@@ -42,6 +42,13 @@ struct PyMap {
           "the surface has been refitted or edited since the map was computed; compute the map again");
     return lock;
   }
+  /// Locks the surface, and throws if its texels have other owners than those of the map.
+  [[nodiscard]] auto use_texels() const {
+    auto lock = on->access.use();
+    if (on->edits != surface_edits)
+      throw Error("the surface has been edited since the map was computed; compute the map again");
+    return lock;
+  }
   [[nodiscard]] auto use_sites() const {
     auto lock = to->access.use();
     if (to->shape != sites_shape)
@@ -71,6 +78,7 @@ struct PyMap {
 [[nodiscard]] std::optional<std::array<double, 2>> range_of(
     const std::optional<std::pair<double, double>>& range);
 
+void bind_channels(nb::module_& module);
 void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map);
 void bind_map_files(nb::module_& module, nb::class_<PyMap>& map);
 

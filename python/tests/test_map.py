@@ -26,6 +26,23 @@ def rotation_and_shift():
     return np.array([[c, -s, 0, 0.5], [s, c, 0, -1], [0, 0, 1, 2], [0, 0, 0, 1]])
 
 
+def test_closest_points_on_faces(distance_map):
+    m = distance_map
+    vertices, faces = meshes.box()
+    face, (u, v) = m.closest_face[m.valid], m.closest_uv[m.valid].T
+    corners = np.asarray(vertices)[np.asarray(faces)[face]]
+    weights = np.stack((1 - u - v, u, v), axis=1)
+    assert weights.min() > -1e-6
+    closest = (weights[:, :, None] * corners).sum(axis=1)
+    np.testing.assert_allclose(closest, m.position[m.valid] + m.vector[m.valid], atol=1e-5)
+    assert (m.closest_face[~m.valid] == sdm.NONE).all() and np.isnan(m.closest_uv[~m.valid]).all()
+
+
+def test_arrays_are_documented():
+    for name in ("distance", "vector", "site", "site_type", "face", "position", "normal", "closest_face", "closest_uv"):
+        assert "(H, W" in getattr(sdm.DistanceMap, name).__doc__, name
+
+
 def test_arrays(distance_map):
     m = distance_map
     assert m.distance.shape == m.face.shape == m.site.shape == m.site_type.shape == m.valid.shape == (256, 256)
