@@ -131,6 +131,35 @@ TEST_P(HardCases, Slivers) {
   }
 }
 
+// Regression: in single precision, the height over a thin face with a flat angle had an error of that of the
+// normal times the distance from a corner, so that single points missed the nearest face.
+TEST_P(HardCases, StackedCaps) {
+  constexpr double kApart = 1e-6;
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  for (const double width : {1e-3, 1e-4, 1e-5})
+    for (int trial = 0; trial < 100; ++trial) {
+      const Vec3 up = normalized({normal(random), normal(random), normal(random)});
+      Mesh mesh;
+      Vec3 top{};
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        const Vec3 along = normalized(cross(up, {normal(random), normal(random), normal(random)})),
+                   across = width * cross(up, along);
+        top = i * kApart * up;
+        for (const Vec3& p :
+             {top - along - 0.3 * across, top + along - 0.3 * across, top + 0.1 * along + across})
+          mesh.positions.push_back(p);
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+      }
+      const Sites sites(mesh);
+      for (const double height : {0.0, 0.01, 0.5}) {
+        const std::vector<Vec3> query{top + height * up};
+        const auto closest = closest_points(sites, query, {.engine = make_engine(GetParam().name)});
+        EXPECT_NEAR(closest[0].distance, height, 1e-9) << width;
+      }
+    }
+}
+
 // Regression: in single precision, points on the extension of a flat triangle passed its walls.
 TEST_P(HardCases, CapsAlmostWithoutHeight) {
   for (const double height : {1e-5, 1e-7, 1e-9, 1e-12, 0.0}) {

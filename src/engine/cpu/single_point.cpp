@@ -66,7 +66,7 @@ class SinglePoint {
     const uint32_t leaf = open_leaf.leaf_number();
     const sites::Regions& regions = sites_.regions;
     const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
-    const uint32_t thin = regions.thin[leaf];
+    uint32_t thin = regions.thin[leaf];
     // Most leaves end here.
     uint32_t open = 0;
     alignas(64) float bound[SiteBlock::kWidth];
@@ -123,10 +123,16 @@ class SinglePoint {
     }
   }
 
-  // The squared distances of the faces whose corners are loaded; if they are thin, of their sides.
-  HWY_INLINE BlockVec squared_to_faces(uint32_t thin, size_t i) const {
+  // The squared distances of the faces whose corners are loaded; if they are thin, of their sides. Adds to
+  // `thin` those whose smallest height is so small a part of their longest side that their normals are too
+  // inaccurate in single precision.
+  HWY_INLINE BlockVec squared_to_faces(uint32_t& thin, size_t i) const {
+    constexpr float kThin = 3e-5f;
     const Block d;
     const TriangleSides<Block> faces(load(d, corner_[0], i), load(d, corner_[1], i), load(d, corner_[2], i));
+    const auto squared = [&](int k) HWY_ATTR { return dot(faces.side[k], faces.side[k]); };
+    const BlockVec least = hn::Mul(hn::Set(d, kThin), hn::Max(hn::Max(squared(0), squared(1)), squared(2)));
+    thin |= bits(hn::Le(dot(faces.normal, faces.normal), hn::Mul(least, least))) << i;
     return faces.squared_distance(splat(d, point_.centre), hn::Not(lanes_of(thin, i)));
   }
 
