@@ -1,4 +1,4 @@
-// Bundles the pages into one HTML file each, page.html and player.html: node build.cjs FOLDER. Packages are found by NODE_PATH or in node_modules.
+// Bundles the pages, page.html and player.html in shell.html, into one HTML file each: node build.cjs FOLDER. Packages are found by NODE_PATH or in node_modules.
 const { buildSync } = require('esbuild');
 const { readFileSync, writeFileSync } = require('fs');
 const { delimiter, join } = require('path');
@@ -19,10 +19,15 @@ function bundle(file) {
 }
 
 // Functions as the replacements: in a string, $& and the like have a meaning.
-for (const [page, program] of [['page', 'main.ts'], ['player', 'player.ts']])
+const read = (file) => readFileSync(join(__dirname, 'src', file), 'utf8');
+const pages = { page: ['Distance report', 'main.ts'], player: ['Distances over time', 'player.ts'] };
+for (const [name, [title, program]] of Object.entries(pages))
   writeFileSync(
-    join(process.argv[2], `${page}.html`),
-    readFileSync(join(__dirname, 'src', `${page}.html`), 'utf8')
+    join(process.argv[2], `${name}.html`),
+    read('shell.html')
+      .replace('<!-- name -->', name)
+      .replace('<!-- title -->', title)
+      .replace('<!-- content -->\n', () => read(`${name}.html`))
       .replace('/* style */', () => bundle('page.css'))
       .replace('/* program */', () => bundle(program)),
   );

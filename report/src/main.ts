@@ -6,6 +6,7 @@ import { byId, make, table } from './dom';
 import { drawHistogram } from './histogram';
 import { drawLegend } from './legend';
 import { count, exactText, percent, place, signedText } from './numbers';
+import { openPage } from './open_page';
 import { PageData, readData, readReport, Report, Vec, Worst } from './page_data';
 import { boxOf, Subject, toFile, toScene } from './subject';
 import { Surface } from './surface';
@@ -234,32 +235,11 @@ class Page {
   }
 }
 
-async function main(): Promise<void> {
-  const report = readReport();
-  nameSubject(report);
-  showVerdict(report);
-  showNumbers(report);
-  showInputs(report);
-  showMethod(report);
-  showMore(report);
-  const message = byId('message');
-  const fail = (text: string) => {
-    message.textContent = text;
-    byId('view').classList.add('failed');
-  };
-  if (typeof DecompressionStream === 'undefined') {
-    fail('This browser is too old to show the part: it cannot unpack the map. Chrome 103, Firefox 113 and Safari 16.4 can. The numbers are complete.');
-    return;
-  }
-  try {
-    const data = await readData();
-    const page = new Page(report, data);
-    message.remove();
-    Object.assign(window, { sdmPage: page });
-    document.documentElement.dataset.ready = 'yes';
-  } catch (error) {
-    fail(`The part cannot be shown (${error instanceof Error ? error.message : String(error)}). The numbers are complete.`);
-  }
-}
-
-void main();
+const report = readReport();
+nameSubject(report);
+showVerdict(report);
+showNumbers(report);
+showInputs(report);
+showMethod(report);
+showMore(report);
+void openPage('sdmPage', 'part', 'The numbers are complete.', async () => new Page(report, await readData()));

@@ -3,6 +3,7 @@ import type { Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { drawLegend } from './legend';
 import { count } from './numbers';
+import { openPage } from './open_page';
 import { Chart } from './player_charts';
 import { distancesOf, placeFrame, PlayerData, readPlayer } from './player_data';
 import { encloses, PlayerView } from './player_view';
@@ -175,19 +176,8 @@ function describe(data: PlayerData): void {
     'Colours are those of vertices, between which they are interpolated.';
 }
 
-async function start(): Promise<void> {
-  const message = byId('message');
-  try {
-    const data = await readPlayer();
-    describe(data);
-    const player = new Player(data, new PlayerView(byId('view'), data));
-    (window as unknown as { sdmPlayer: Player }).sdmPlayer = player;
-    message.hidden = true;
-    document.documentElement.dataset.ready = '';
-  } catch (error) {
-    document.body.classList.add('failed');
-    message.textContent = `The bodies cannot be shown: ${error instanceof Error ? error.message : error}. Is WebGL 2 on in this browser?`;
-  }
-}
-
-void start();
+void openPage('sdmPlayer', 'bodies', 'Is WebGL 2 on in this browser?', async () => {
+  const data = await readPlayer();
+  describe(data);
+  return new Player(data, new PlayerView(byId('view'), data));
+});

@@ -1,6 +1,5 @@
 #include <sdm/error.h>
 #include <sdm/points.h>
-#include <sdm/version.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +14,6 @@
 #include "io/points/measured_rows.h"
 #include "io/write/atomic_file.h"
 #include "io/write/report/embedded_page.h"
-#include "io/write/report/page_colors.h"
 #include "io/write/report/page_file.h"
 #include "io/write/report/page_model.h"
 #include "io/write/report/page_numbers.h"
@@ -171,10 +169,7 @@ void write_points_html(const std::filesystem::path& file, const std::filesystem:
   MeasuredRows rows(ply, found.points, found.has_normals);
   const Contents contents = contents_of(rows, found);
   PackedArrays arrays;
-  Json page;
-  page["version"] = kVersion;
-  page["up"] = options.up == UpAxis::z ? "z" : "y";
-  page["colors"] = colors_json();
+  Json page = common_json(options.up);
   Box box = found.bounds;
   if (contents.shown.empty()) box = {{0, 0, 0}, {1, 1, 1}};
   page["cloud"] = add_cloud(arrays, contents.shown, box, options.other);

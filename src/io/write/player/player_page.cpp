@@ -1,7 +1,6 @@
 #include "io/write/player/player_page.h"
 
 #include <sdm/error.h>
-#include <sdm/version.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +11,6 @@
 #include "io/write/pictures/color_scale.h"
 #include "io/write/report/embedded_page.h"
 #include "io/write/report/packed_arrays.h"
-#include "io/write/report/page_colors.h"
 #include "io/write/report/page_file.h"
 
 namespace sdm::io {
@@ -101,9 +99,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   if (!(reach > 0)) reach = 1;
 
   PackedArrays arrays;
-  Json page;
-  page["version"] = kVersion;
-  page["up"] = options.up == UpAxis::z ? "z" : "y";
+  Json page = common_json(options.up);
   page["units"] = options.units;
   page["names"] = options.names;
   page["origin"] = box.lo, page["step"] = step;
@@ -115,7 +111,6 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   page["bodies"] = Json::array();
   for (int b = 0; b < 2; ++b) page["bodies"].push_back(add_body(arrays, content, b, box.lo, step, reach));
   page["panels"] = panels_json(content.panels);
-  page["colors"] = colors_json();
   page["scale"] = scale_json(color_scale(fixed));
   put_page(out.stream(), kPlayerHtml.bytes, page, nullptr, arrays);
   out.commit();

@@ -1,5 +1,7 @@
 #include "io/write/report/page_file.h"
 
+#include <sdm/version.h>
+
 #include <bit>
 #include <span>
 #include <vector>
@@ -26,6 +28,10 @@ Json add_area(PackedArrays& arrays, const AreaByValue& area) {
   arrays.add("area_of_key", bits_of(area.area_of_key));
   arrays.add("area_of_bin", bits_of(area.area));
   return {{"lo", area.lo}, {"hi", area.hi}};
+}
+
+Json common_json(UpAxis up) {
+  return {{"version", kVersion}, {"up", up == UpAxis::z ? "z" : "y"}, {"colors", colors_json()}};
 }
 
 void put_page(std::ostream& out, std::string_view html, Json& page, const std::string* report,

@@ -1,6 +1,8 @@
 // A page with its data in it.
 #pragma once
 
+#include <sdm/io.h>
+
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
@@ -13,6 +15,9 @@ namespace sdm::io {
 
 /// Adds the arrays `area_key`, `area_of_key` and `area_of_bin`. Returns their range.
 [[nodiscard]] nlohmann::ordered_json add_area(PackedArrays& arrays, const AreaByValue& area);
+
+/// What all pages have: version, axis and colours.
+[[nodiscard]] nlohmann::ordered_json common_json(UpAxis up);
 
 /// Compresses the arrays, adds their index to `page`, and writes `html` with these and, unless null, the JSON
 /// text of a report in the place that it has for data.

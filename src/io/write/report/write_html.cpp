@@ -1,7 +1,6 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/threads.h>
-#include <sdm/version.h>
 
 #include <new>
 #include <string>
@@ -12,7 +11,6 @@
 #include "io/write/atomic_file.h"
 #include "io/write/report/area_by_value.h"
 #include "io/write/report/embedded_page.h"
-#include "io/write/report/page_colors.h"
 #include "io/write/report/page_file.h"
 #include "io/write/report/page_model.h"
 #include "io/write/report/worst_places.h"
@@ -67,10 +65,8 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
                     [&] { worst = worst_places(surface, map, vertex_distances); },
                     [&] { area = area_by_value(surface, map); }});
   arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
+  page = common_json(options.up);
   page["area"] = add_area(arrays, area);
-  page["version"] = kVersion;
-  page["up"] = options.up == UpAxis::z ? "z" : "y";
-  page["colors"] = colors_json();
   page["map"] = map_json;
   page["model"] = model;
   if (options.other) page["ghost"] = ghost;
