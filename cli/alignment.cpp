@@ -47,7 +47,7 @@ AlignOutcome timed(const sdm::Sites& o2, const AlignCommand& command, const sdm:
 // The rotation angle in degrees, and how far the centre of O1 moves.
 std::pair<double, double> sizes(const sdm::Alignment& a) {
   const auto& r = a.transform.rows;
-  // By the antisymmetric part as well, which is accurate for small angles.
+  // The antisymmetric part is accurate for small angles, unlike the trace alone.
   const double sine = 0.5 * std::hypot(r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]);
   const double angle = std::atan2(sine, 0.5 * (r[0][0] + r[1][1] + r[2][2] - 1));
   sdm::Vec3 before{};  // the inverse of a rotation is its transpose

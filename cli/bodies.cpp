@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 
@@ -18,24 +17,23 @@
 #include "option_checks.h"
 #include "output_folder.h"
 #include "poses_file.h"
+#include "print.h"
 #include "progress_line.h"
 #include "report.h"
 #include "stopwatch.h"
 
 namespace {
 
-struct BodiesCommand {
+struct BodiesCommand : RunOptions {
   std::vector<std::string> files;
   std::string units;
   std::filesystem::path out, poses;
   sdm::MultiBodyOptions options;
   sdm::AtlasOptions atlas{.resolution = 128};
   MapFiles map_files;
-  unsigned threads = 0;
-  bool json = false, quiet = false;
 };
 
-/// Of any number of bodies.
+/// The files of a run with any number of bodies.
 std::vector<std::filesystem::path> earlier_files(const std::filesystem::path& out) {
   std::vector<std::filesystem::path> files{"report.json"};
   std::error_code ignored;
@@ -163,11 +161,8 @@ void run(BodiesCommand command) {
       report["time_ms"]["maps"] = watch.lap();
       write_text(out->staging() / "report.json", to_text(report));
     });
-  if (command.json) {
-    std::cout << to_text(report);
-  } else if (!command.quiet) {
-    std::cout << bodies_summary(command, bodies, notes);
-  }
+  print(
+      command, [&] { return report; }, [&] { return bodies_summary(command, bodies, notes); });
 }
 
 void add_options(CLI::App& app, BodiesCommand& c) {
@@ -179,7 +174,7 @@ void add_options(CLI::App& app, BodiesCommand& c) {
       ->required(false)
       ->description("Output folder for the map of each body to all others, created if missing");
   app.add_option("--max-distance", c.options.max_distance, "Omit pairs, and texels, farther apart than D")
-      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->check(positive_number())
       ->type_name("D");
   add_proximity_options(app, c.units, c.options.contact_margin, c.options.depth_precision);
   app.add_option("--poses", c.poses,
@@ -188,7 +183,7 @@ void add_options(CLI::App& app, BodiesCommand& c) {
       ->type_name("FILE");
   add_write_option(app, c.map_files, false);
   add_side_option(app, c.atlas, "all bodies' maps, which -o writes");
-  add_run_options(app, c.threads, c.json, c.quiet, "JSON instead of a table");
+  add_run_options(app, c, "JSON instead of a table");
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ void add_color_options(CLI::App& app, sdm::PictureOptions& picture) {
          "The distances at the ends of the colour scale; by default up to the 99th percentile of "
          "|distance|, to both sides of 0 if distances have both signs")
       ->expected(2)
-      ->check(number("a number", [](double) { return true; }))
+      ->check(any_number())
       ->type_name("LO HI");
 }
 
@@ -163,12 +163,12 @@ void add_proximity_options(CLI::App& app, std::string& units, double& contact_ma
                            double& depth_precision) {
   app.add_option("--margin", contact_margin,
                  "Also report contacts up to a distance of D, not only of penetrating parts")
-      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
+      ->check(no_negative_number())
       ->type_name("D");
   app.add_option("--precision", depth_precision,
                  "Bounds on the penetration depth at most EPS apart; by default 1/1000 of the smaller body's "
                  "diagonal")
-      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->check(positive_number())
       ->type_name("EPS");
   app.add_option("--units", units, "Units of the meshes, for printed and drawn values")->type_name("NAME");
 }

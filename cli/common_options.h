@@ -46,9 +46,18 @@ void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& toleranc
 /// Adds --units, --margin and --precision, for commands that print proximity.
 void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
                            double& depth_precision);
+/// How a command runs and what it prints.
+struct RunOptions {
+  unsigned threads = 0;  ///< 0: all cores
+  bool json = false, quiet = false;
+};
+
 /// Adds --threads, --json and --quiet; `json_prints` describes the JSON in the help text.
 void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
                      const std::string& json_prints);
+inline void add_run_options(CLI::App& app, RunOptions& run, const std::string& json_prints) {
+  add_run_options(app, run.threads, run.json, run.quiet, json_prints);
+}
 
 /// Limits the threads of this process to `count`, 0: all cores. Never lifted: oneTBB would start threads
 /// then, which fails if memory is short, although the results are complete.

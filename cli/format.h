@@ -36,7 +36,15 @@
   return fmt::format("({} {} {})", coordinate(p[0], size), coordinate(p[1], size), coordinate(p[2], size));
 }
 
-/// For example " mm" for the units "mm"; empty without units.
+/// The units after a number, such as " mm"; empty without units.
 [[nodiscard]] inline std::string unit_suffix(std::string_view units) {
   return units.empty() ? std::string() : fmt::format(" {}", units);
+}
+
+/// How long a command took, and the files of its report; the texts begin in the given column.
+[[nodiscard]] inline std::string result_lines(std::size_t column, double ms, const std::string& folder,
+                                              const std::string& files) {
+  const std::size_t width = column - 2;
+  return fmt::format("  {:<{}}{} s\n  {:<{}}{}/: {}report.json\n", "time", width,
+                     number(std::round(ms) / 1000, 6), "results", width, folder, files);
 }

@@ -5,30 +5,29 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <iostream>
 #include <memory>
 #include <optional>
 
 #include "common_options.h"
+#include "exit_codes.h"
 #include "format.h"
+#include "input_pair.h"
 #include "notes.h"
 #include "option_checks.h"
+#include "print.h"
 #include "progress_line.h"
 #include "proximity_report.h"
-#include "report.h"
 #include "stopwatch.h"
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct HausdorffCommand {
-  std::string o1, o2, transform_o1, transform_o2, units;
+struct HausdorffCommand : PairFiles, RunOptions {
+  std::string units;
   sdm::HausdorffOptions options;
   bool both = false;
   std::optional<double> tolerance;
-  unsigned threads = 0;
-  bool json = false, quiet = false;
 };
 
 /// The distance that was asked for, and those in single directions as far as they were computed.
@@ -116,53 +115,44 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
   return text;
 }
 
-void run(const HausdorffCommand& command) {
+Json report_of(const HausdorffCommand& command, const InputPair& pair, const HausdorffAnswer& answer) {
+  Json json = report_on(pair, command.units);
+  json["hausdorff"] = hausdorff_json(answer.distance);
+  json["from"] = answer.from == 0 ? "o1" : "o2";
+  json["o1_to_o2"] = hausdorff_json(answer.directions[0]);
+  json["o2_to_o1"] = command.both ? hausdorff_json(answer.directions[1]) : Json(nullptr);
+  if (command.tolerance) {
+    const HausdorffVerdict v = verdict(answer.distance.distance, *command.tolerance);
+    json["tolerance"] = {{"value", *command.tolerance}, {"within", v.within}, {"certified", v.certified}};
+  }
+  json["notes"] = answer.notes;
+  return json;
+}
+
+/// Returns the exit code.
+int run(const HausdorffCommand& command) {
   limit_threads(command.threads);
   ProgressLine progress(command.quiet);
-
   progress.step("import");
+  const InputPair pair = load_pair(command, {.inspects = command.json});
   Stopwatch watch;
-  Input o1, o2;
-  const auto load = [&](Input& input, const char* role, const std::string& file,
-                        const std::string& transform) {
-    input = load_input(role, file, transform);
-    if (command.json) inspect(input);
-  };
-  sdm::run_concurrently({[&] { load(o1, "o1", command.o1, command.transform_o1); },
-                         [&] { load(o2, "o2", command.o2, command.transform_o2); }});
-  const double import_ms = watch.lap();
   std::vector<sdm::Sites> sites;  // of the meshes that distances are measured to: O2, or both
-  if (command.both) sites.emplace_back(o1.mesh);
-  sites.emplace_back(o2.mesh);
+  if (command.both) sites.emplace_back(pair.o1.mesh);
+  sites.emplace_back(pair.o2.mesh);
   const double build_ms = watch.lap();
-  HausdorffAnswer answer = decide(sites, o1.mesh, command, progress.callback());
-  answer.size = std::min(size_of(sdm::bounds(o1.mesh)), size_of(sdm::bounds(o2.mesh)));
-  answer.notes = notes_on(o1, o2);
+  HausdorffAnswer answer = decide(sites, pair.o1.mesh, command, progress.callback());
+  answer.size = smaller_size(pair);
+  answer.notes = notes_on(pair.o1, pair.o2);
   const double query_ms = watch.lap();
 
-  if (command.json) {
-    Json json;
-    json["version"] = sdm::kVersion;
-    json["o1"] = to_json(o1);
-    json["o2"] = to_json(o2);
-    json["units"] = command.units;
-    json["hausdorff"] = hausdorff_json(answer.distance);
-    json["from"] = answer.from == 0 ? "o1" : "o2";
-    json["o1_to_o2"] = hausdorff_json(answer.directions[0]);
-    json["o2_to_o1"] = command.both ? hausdorff_json(answer.directions[1]) : Json(nullptr);
-    if (command.tolerance) {
-      const HausdorffVerdict v = verdict(answer.distance.distance, *command.tolerance);
-      json["tolerance"] = {{"value", *command.tolerance}, {"within", v.within}, {"certified", v.certified}};
-    }
-    json["notes"] = answer.notes;
-    json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
-    std::cout << to_text(json);
-  } else if (!command.quiet) {
-    std::cout << hausdorff_summary(command, answer) << note_lines(answer.notes, 13);
-  }
-  constexpr int kExceeded = 3;
-  if (command.tolerance && !verdict(answer.distance.distance, *command.tolerance).within)
-    throw CLI::RuntimeError(kExceeded);
+  const auto report = [&] {
+    Json json = report_of(command, pair, answer);
+    json["time_ms"] = {{"import", pair.import_ms}, {"build", build_ms}, {"query", query_ms}};
+    return json;
+  };
+  print(command, report, [&] { return hausdorff_summary(command, answer) + note_lines(answer.notes, 13); });
+  const auto& tolerance = command.tolerance;
+  return !tolerance || verdict(answer.distance.distance, *tolerance).within ? kSuccess : kToleranceExceeded;
 }
 
 }  // namespace
@@ -170,36 +160,35 @@ void run(const HausdorffCommand& command) {
 void add_hausdorff_command(CLI::App& app) {
   CLI::App* hausdorff =
       app.add_subcommand("hausdorff", "Compute the Hausdorff distance of two meshes, with certified bounds");
-  hausdorff->footer(
+  hausdorff->footer(fmt::format(
       "The largest distance from a point of the surface of O1 to the surface of O2, or with --both the "
-      "larger "
-      "one of both directions. Nothing is sampled: the bounds hold for all points.\n"
-      "Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.\n\n"
+      "larger one of both directions. Nothing is sampled: the bounds hold for all points.\n"
+      "{}\n\n"
       "Example:\n"
-      "  sdm hausdorff simplified.ply original.ply --both --tolerance 0.1");
+      "  sdm hausdorff simplified.ply original.ply --both --tolerance 0.1",
+      kExitCodes));
   const auto command = std::make_shared<HausdorffCommand>();
   HausdorffCommand& c = *command;
-  hausdorff
-      ->add_option("O1", c.o1,
-                   fmt::format("The mesh whose points are measured ({})", sdm::mesh_format_names()))
-      ->required();
-  hausdorff->add_option("O2", c.o2, "The mesh that distances are measured to")->required();
-  add_transform_option(*hausdorff, "--transform-o1", "O1", c.transform_o1);
-  add_transform_option(*hausdorff, "--transform-o2", "O2", c.transform_o2);
+  add_pair_arguments(*hausdorff, c,
+                     {fmt::format("The mesh whose points are measured ({})", sdm::mesh_format_names()),
+                      "The mesh that distances are measured to"});
+  add_pair_transforms(*hausdorff, c);
   hausdorff
       ->add_option(
           "--precision", c.options.precision,
           "Bounds at most EPS apart, in units of the meshes; by default 1e-6 of the diagonal of both")
-      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->check(positive_number())
       ->type_name("EPS");
   hausdorff->add_flag("--both", c.both, "Measure in both directions");
   hausdorff
       ->add_option(
           "--tolerance", c.tolerance,
           "Exit with code 3 if the distance exceeds T; closer bounds are computed if T is between them")
-      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
+      ->check(no_negative_number())
       ->type_name("T");
   hausdorff->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
-  add_run_options(*hausdorff, c.threads, c.json, c.quiet, "JSON instead of a summary");
-  hausdorff->callback([command] { run(*command); });
+  add_run_options(*hausdorff, c, "JSON instead of a summary");
+  hausdorff->callback([command] {
+    if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
+  });
 }

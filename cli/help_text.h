@@ -17,5 +17,5 @@
 /// 80. At least 40 and at most 120.
 [[nodiscard]] std::size_t help_width();
 
-/// For CLI::App::formatter of the command, before subcommands are added.
+/// The formatter of the command, to be set before subcommands are added.
 [[nodiscard]] std::shared_ptr<CLI::FormatterBase> help_formatter(std::size_t width);

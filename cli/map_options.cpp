@@ -11,31 +11,28 @@
 #include <functional>
 
 void add_options(CLI::App& app, MapCommand& c) {
-  const auto positive = number("a positive number", [](double x) { return x > 0; });
-  app.add_option("O1", c.o1,
-                 fmt::format("The mesh that distances are measured from ({})", sdm::mesh_format_names()))
-      ->required();
-  app.add_option("O2", c.o2, "The mesh that distances are measured to")->required();
-  add_output_option(app, c.out);
+  add_pair_arguments(app, c,
+                     {fmt::format("The mesh that distances are measured from ({})", sdm::mesh_format_names()),
+                      "The mesh that distances are measured to"});
+  add_output_option(app, c.output.folder);
   CLI::Option* both =
       app.add_flag("--both", c.both, "Also compute the map of O2; results in DIR/o1 and DIR/o2");
 
-  add_transform_option(app, "--transform-o1", "O1", c.transform_o1);
-  add_transform_option(app, "--transform-o2", "O2", c.transform_o2);
+  add_pair_transforms(app, c);
   add_align_options(app, c.align);
 
-  CLI::Option* resolution = add_resolution_option(app, c.atlas);
+  CLI::Option* resolution = add_resolution_option(app, c.layout.atlas);
   CLI::Option* precision =
       app.add_option(
-             "--precision", c.precision,
+             "--precision", c.layout.precision,
              "Instead: choose the resolution so that every surface point is within EPS of a sample, and "
              "distances between samples are known to within EPS (error_bound)")
-          ->check(positive)
+          ->check(positive_number())
           ->type_name("EPS")
           ->excludes(resolution);
-  add_layout_options(app, c.atlas, "O1");
+  add_layout_options(app, c.layout.atlas, "O1");
   app.add_option(
-         "--atlas-cache", c.atlas_cache,
+         "--atlas-cache", c.layout.cache,
          "Take the atlas of O1 from this file, or write it there if the file does not exist; it must be "
          "of the same mesh, transform and layout")
       ->type_name("FILE")
@@ -43,7 +40,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->excludes(both);
 
   app.add_option("--max-distance", c.map.max_distance, "Texels farther than this have no value")
-      ->check(positive)
+      ->check(positive_number())
       ->type_name("D");
   add_sign_option(app, c.map.sign);
   add_engine_option(app, c.engine);
@@ -71,17 +68,17 @@ void add_options(CLI::App& app, MapCommand& c) {
          "each; by default multiples of the tolerance")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(number("a number", [](double) { return true; }))
+      ->check(any_number())
       ->type_name("LIST");
 
-  add_write_option(app, c.files, true);
-  add_channels_option(app, c.layers);
+  add_write_option(app, c.output.files, true);
+  add_channels_option(app, c.output.layers);
   add_picture_options(app, c.picture);
-  add_run_options(app, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
+  add_run_options(app, c, "the report (report.json) instead of a summary");
 }
 
 void check_combination(const CLI::App& app, const MapCommand& c) {
-  check_layout(c.atlas);
+  check_layout(c.layout.atlas);
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");
   if (const auto& t = c.picture.tolerance;

@@ -7,27 +7,36 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "alignment.h"
+#include "common_options.h"
+#include "input_pair.h"
 #include "map_files.h"
 
-struct MapCommand {
-  std::string o1, o2, transform_o1, transform_o2;
-  std::filesystem::path out, atlas_cache;
-  AlignCommand align;
+/// How O1 is laid out.
+struct MapLayout {
   sdm::AtlasOptions atlas;
+  std::filesystem::path cache;
+  std::optional<double> precision;  ///< the largest error bound, from which the resolution follows
+};
+
+struct MapOutput {
+  std::filesystem::path folder;
+  MapFiles files;
+  std::vector<std::string> layers = sdm::default_channel_layers();
+};
+
+struct MapCommand : PairFiles, RunOptions {
+  bool both = false;
+  AlignCommand align;
+  MapLayout layout;
   sdm::MapOptions map;  ///< its engine is created from the next two members
   sdm::EngineInfo engine = sdm::engines().front();
   sdm::GlOptions gl;
   sdm::PictureOptions picture;
-  MapFiles files;
-  std::vector<std::string> layers = sdm::default_channel_layers();
   std::vector<double> bands;
-  std::optional<double> precision;
-  unsigned threads = 0;
-  bool both = false, json = false, quiet = false;
+  MapOutput output;
 };
 
 /// The options set `command`, which must outlive the parsing.

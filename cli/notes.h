@@ -14,9 +14,9 @@
 
 using Notes = std::vector<std::string>;
 
-/// Of two boxes: one is about as many times as large as the other as a unit of length is (10, 25.4, 100,
-/// 304.8 or 1000, to 5 %), or more than 1000 times; or they are more than 100 times their size apart. By the
-/// diagonals of the boxes. None for a box that is empty.
+/// Notes on two boxes whose diagonals differ by about the ratio of two units of length (10, 25.4, 100, 304.8
+/// or 1000, to 5 %) or by more than 1000 times, or that are more than 100 times their size apart. None for a
+/// box that is empty.
 [[nodiscard]] Notes notes_on(const sdm::Box& a, const sdm::Box& b);
 
 /// The positions in a file are in single precision, and so far from the origin that neighbouring numbers are
@@ -24,11 +24,11 @@ using Notes = std::vector<std::string>;
 [[nodiscard]] std::optional<std::string> note_on_precision(const std::string& file,
                                                            std::span<const sdm::Vec3> positions, double size);
 
-/// Of the files of both inputs, and of their boxes.
+/// Notes on the files of both inputs, and on their boxes.
 [[nodiscard]] Notes notes_on(const Input& o1, const Input& o2);
 
-/// Of the files of bodies, of the largest of them and the others, and of bodies that are far from all others.
-/// `poses`: one of each body.
+/// Notes on the files of bodies, on the largest of them and the others, and on bodies that are far from all
+/// others. `poses`: one of each body.
 [[nodiscard]] Notes notes_on(std::span<const Input> bodies, std::span<const sdm::Transform> poses);
 
 /// One line each; the text begins in the given column.

@@ -47,6 +47,16 @@ CLI::Validator number(const std::string& description, bool (*accepts)(double)) {
       "");
 }
 
+CLI::Validator positive_number() {
+  return number("a positive number", [](double x) { return x > 0; });
+}
+CLI::Validator no_negative_number() {
+  return number("a number, 0 or more", [](double x) { return x >= 0; });
+}
+CLI::Validator any_number() {
+  return number("a number", [](double) { return true; });
+}
+
 CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest) {
   return CLI::Validator(
       [=](std::string& text) {

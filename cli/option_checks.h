@@ -15,6 +15,10 @@
 
 /// Requires a finite number in base 10 for which `accepts` holds.
 [[nodiscard]] CLI::Validator number(const std::string& description, bool (*accepts)(double));
+/// Requires a finite number, above 0, not below 0, or any.
+[[nodiscard]] CLI::Validator positive_number();
+[[nodiscard]] CLI::Validator no_negative_number();
+[[nodiscard]] CLI::Validator any_number();
 /// Requires a whole number in base 10, and removes its leading zeros: CLI11 would read 010 in base 8. To be
 /// passed to CLI::Option::transform().
 [[nodiscard]] CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest);

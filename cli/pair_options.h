@@ -7,11 +7,12 @@
 #include <array>
 #include <string>
 
-struct PairCommand {
-  std::string o1, o2, transform_o1, transform_o2, units;
+#include "common_options.h"
+#include "input_pair.h"
+
+struct PairCommand : PairFiles, RunOptions {
+  std::string units;
   sdm::ProximityOptions options;
-  unsigned threads = 0;
-  bool json = false, quiet = false;
 };
 
 /// The options set `command`, which must outlive the parsing. `bodies` describes O1 and O2 in the help text.

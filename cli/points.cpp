@@ -13,6 +13,7 @@
 
 #include "alignment.h"
 #include "common_options.h"
+#include "exit_codes.h"
 #include "format.h"
 #include "map_files.h"
 #include "map_numbers.h"
@@ -70,7 +71,7 @@ Json extreme_json(const sdm::PointExtreme& extreme) {
       {"distance", extreme.distance}, {"point", extreme.point}, {"at", "point"}, {"index", extreme.index}};
 }
 
-// Of a cloud that is not text: null.
+// How text was read; null for a cloud that is not text.
 Json text_json(const std::optional<sdm::TextDialect>& text) {
   if (!text) return nullptr;
   return {{"separator", sdm::name_of(text->separator)},
@@ -187,7 +188,7 @@ AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& pl
   return align_points(sample.points, sample.normals, sites, command.align, progress);
 }
 
-// By the first points of the file; `box`: of all of them. A placement may have changed their size.
+// The first points of the file decide; `box` is that of all. A placement may have changed their size.
 std::optional<std::string> precision_note(const PointsCommand& command, const sdm::Box& box) {
   if (!command.transform_o1.empty()) return std::nullopt;
   constexpr std::size_t kFirst = 1 << 16;
@@ -299,13 +300,14 @@ void add_text_options(CLI::App& app, sdm::TextDialect& text) {
 void add_points_command(CLI::App& app) {
   CLI::App* points =
       app.add_subcommand("points", "Compute the distance from every point of a cloud to a mesh");
-  points->footer(
+  points->footer(fmt::format(
       "Writes points.ply (the points in their order, with distance, closest face and colours), report.html "
       "(a page that shows the cloud) and report.json.\n"
       "Clouds of any size are read in parts.\n"
-      "Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.\n\n"
+      "{}\n\n"
       "Example:\n"
-      "  sdm points scan.ply part.stl -o out --align --tolerance 0.1 --units mm");
+      "  sdm points scan.ply part.stl -o out --align --tolerance 0.1 --units mm",
+      kExitCodes));
   const auto command = std::make_shared<PointsCommand>();
   PointsCommand& c = *command;
   points->add_option("CLOUD", c.cloud, fmt::format("The point cloud ({})", sdm::point_format_names()))

@@ -5,65 +5,53 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <iostream>
 #include <iterator>
 #include <memory>
+#include <optional>
 
 #include "alignment.h"
 #include "common_options.h"
-#include "format.h"
+#include "input_pair.h"
 #include "notes.h"
 #include "pair_options.h"
+#include "print.h"
 #include "progress_line.h"
 #include "proximity_report.h"
-#include "report.h"
 #include "stopwatch.h"
 
 namespace {
 
-void run(PairCommand command, const AlignCommand& align) {
+using Json = nlohmann::ordered_json;
+
+void run(const PairCommand& command, const AlignCommand& align) {
   limit_threads(command.threads);
   ProgressLine progress(command.quiet);
-
   progress.step("import");
-  Stopwatch watch;
-  Input o1, o2;
-  const auto load = [](Input& input, const char* role, const std::string& file,
-                       const std::string& transform) {
-    input = load_input(role, file, transform);
-    inspect(input);
-  };
-  sdm::run_concurrently({[&] { load(o1, "o1", command.o1, command.transform_o1); },
-                         [&] { load(o2, "o2", command.o2, command.transform_o2); }});
-  const double import_ms = watch.lap();
+  InputPair pair = load_pair(command, {.inspects = true});
   std::optional<AlignOutcome> aligned;
-  if (align.on) aligned = align_mesh(o1.mesh, sdm::Sites(o2.mesh), align, progress.callback());
-  Notes all_notes = notes_on(o1, o2);
+  if (align.on) aligned = align_mesh(pair.o1.mesh, sdm::Sites(pair.o2.mesh), align, progress.callback());
+  Notes all_notes = notes_on(pair.o1, pair.o2);
   if (aligned) std::ranges::copy(notes(*aligned), std::back_inserter(all_notes));
-  const double size = std::min(size_of(sdm::bounds(o1.mesh)), size_of(sdm::bounds(o2.mesh)));
-  watch.lap();
-  sdm::ProximityQuery query(o1.mesh, o2.mesh, command.options);
+  Stopwatch watch;
+  sdm::ProximityQuery query(pair.o1.mesh, pair.o2.mesh, command.options);
   const double build_ms = watch.lap();
   progress.step("queries");
-  nlohmann::ordered_json answers = to_json(query);
+  const Json answers = to_json(query);
   const double query_ms = watch.lap();
 
-  if (command.json) {
-    nlohmann::ordered_json json;
-    json["version"] = sdm::kVersion;
-    json["o1"] = to_json(o1);
-    json["o2"] = to_json(o2);
-    json["units"] = command.units;
+  const auto report = [&] {
+    Json json = report_on(pair, command.units);
     if (aligned) json["alignment"] = to_json(*aligned);
     json["notes"] = all_notes;
     json.update(answers);
-    json["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", query_ms}};
-    std::cout << to_text(json);
-  } else if (!command.quiet) {
-    std::cout << o1.file << ", " << o2.file << "\n" << summary(query, command.units, size);
-    if (aligned) std::cout << summary(*aligned, command.units);
-    std::cout << note_lines(all_notes, 13);
-  }
+    json["time_ms"] = {{"import", pair.import_ms}, {"build", build_ms}, {"query", query_ms}};
+    return json;
+  };
+  print(command, report, [&] {
+    return fmt::format("{}, {}\n{}{}{}", command.o1, command.o2,
+                       summary(query, command.units, smaller_size(pair)),
+                       aligned ? summary(*aligned, command.units) : "", note_lines(all_notes, 13));
+  });
 }
 
 }  // namespace

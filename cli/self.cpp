@@ -9,28 +9,25 @@
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
+#include "print.h"
 #include "progress_line.h"
 #include "proximity_report.h"
 #include "report.h"
 #include "stopwatch.h"
 
-#include <cmath>
-#include <iostream>
 #include <memory>
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct SelfCommand {
+struct SelfCommand : RunOptions {
   std::string file, transform;
   std::filesystem::path out;
   sdm::AtlasOptions atlas;
   sdm::SelfProximityOptions self;
   sdm::PictureOptions picture;
   MapFiles files;
-  unsigned threads = 0;
-  bool json = false, quiet = false;
 };
 
 /// Writes all files into `folder`, and returns the report.
@@ -125,13 +122,12 @@ void run(SelfCommand command) {
   Json report;
   out.fill([&] { report = measure(command, input, import_ms, out.staging(), progress); });
 
-  if (command.json)
-    std::cout << to_text(report);
-  else if (!command.quiet)
-    std::cout << self_summary(command, report)
-              << fmt::format("  time        {} s\n  results     {}/: {}report.json\n",
-                             number(std::round(total.lap()) / 1000, 6), command.out.string(),
-                             listed(command.files));
+  print(
+      command, [&] { return report; },
+      [&] {
+        return self_summary(command, report) +
+               result_lines(14, total.lap(), command.out.string(), listed(command.files));
+      });
 }
 
 }  // namespace
@@ -147,7 +143,6 @@ void add_self_command(CLI::App& app) {
       "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
   const auto command = std::make_shared<SelfCommand>();
   SelfCommand& c = *command;
-  const auto positive = number("a positive number", [](double x) { return x > 0; });
   self->add_option("MESH", c.file, fmt::format("The mesh ({})", sdm::mesh_format_names()))->required();
   add_output_option(*self, c.out);
   add_transform_option(*self, "--transform", "The mesh", c.transform);
@@ -159,17 +154,17 @@ void add_self_command(CLI::App& app) {
           ->capture_default_str();
   self->add_option("--geodesic", c.self.exclusion.geodesic,
                    "Instead: each face excludes what is closer than L along the surface (conservatively)")
-      ->check(positive)
+      ->check(positive_number())
       ->type_name("L")
       ->excludes(rings);
   self->add_option("--max-distance", c.self.max_distance, "Texels without a surface within D have no value")
-      ->check(positive)
+      ->check(positive_number())
       ->type_name("D");
   add_resolution_option(*self, c.atlas);
   add_layout_options(*self, c.atlas, "the mesh");
   add_write_option(*self, c.files, true);
   add_picture_options(*self, c.picture);
-  add_run_options(*self, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
+  add_run_options(*self, c, "the report (report.json) instead of a summary");
   self->callback([command] {
     check_layout(command->atlas);
     run(*command);

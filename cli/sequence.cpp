@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "common_options.h"
+#include "exit_codes.h"
 #include "format.h"
 #include "interrupts.h"
 #include "notes.h"
@@ -140,7 +141,7 @@ int run(SequenceCommand command) {
       });
   if (!command.pair.json && !command.pair.quiet) std::cout << sequence_summary(command, loop, files, notes);
   check_end(end, loop, checkpoint.finished(), count, command.out.string());
-  return std::ranges::all_of(loop.frames(), &Frame::within) ? 0 : 3;
+  return std::ranges::all_of(loop.frames(), &Frame::within) ? kSuccess : kToleranceExceeded;
 }
 
 }  // namespace

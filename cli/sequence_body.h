@@ -22,7 +22,7 @@ class Body {
 
   /// Reads a frame of a moving body. Throws sdm::Error.
   void read(std::size_t frame);
-  /// Of the frame that was read last, initially the first.
+  /// The mesh of the frame that was read last, initially the first.
   [[nodiscard]] sdm::Mesh mesh() const;
   /// The positions of the frame. Requires a call of read().
   [[nodiscard]] std::span<const sdm::Vec3> positions() const { return placed_; }
@@ -30,7 +30,7 @@ class Body {
   /// placed positions.
   [[nodiscard]] sdm::TopologyChange change() const;
   void followed() { behind_ = false; }
-  /// Of the frame, to recognise it.
+  /// Identifies the positions of the frame.
   [[nodiscard]] std::uint64_t hash() const;
 
  private:

@@ -16,8 +16,8 @@ struct FrameDistances {
   [[nodiscard]] bool within() const { return !verdict || *verdict != sdm::Verdict::fail; }
 };
 
-/// Of the map on `surface` to `sites`. `error_bound`: of the map. Throws sdm::Error if the tolerance needs
-/// signs and there are none. Cost: closest points of the vertices, and linear.
+/// Summarises the map on `surface` to `sites`, which has this error bound. Throws sdm::Error if the tolerance
+/// needs signs and there are none. Cost: closest points of the vertices, and linear.
 [[nodiscard]] FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
                                              const sdm::DistanceMap& map, double error_bound,
                                              const std::optional<sdm::Tolerance>& tolerance);

@@ -29,7 +29,7 @@ void add_output_options(CLI::App& app, SequenceCommand& c) {
 
 void add_reading_options(CLI::App& app, SequenceCommand& c) {
   app.add_option("--rate", c.reading.rate, "glTF animations: frames per second; 0: one frame per key")
-      ->check(number("a number, 0 or more", [](double x) { return x >= 0; }))
+      ->check(no_negative_number())
       ->type_name("FPS");
   app.add_flag("--allow-topology", c.reading.allow_topology,
                "Numbered files may add and remove vertices and faces between frames; what stays keeps "
@@ -51,7 +51,7 @@ void add_options(CLI::App& app, SequenceCommand& c) {
   app.add_option("--map-precision", c.map_precision,
                  "A resolution of O1's map for which its error bound is at most EPS in every frame, instead "
                  "of --resolution; reads all frames beforehand")
-      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->check(positive_number())
       ->type_name("EPS");
   add_layout_options(app, c.atlas, "each body");
   add_output_options(app, c);

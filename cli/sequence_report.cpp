@@ -19,7 +19,7 @@ constexpr const char* kBodies[] = {"o1", "o2"};
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// With the precision of a float; empty for NaN.
+// A number with the precision of a float; empty for NaN.
 std::string cell(double value) {
   return std::isnan(value) ? std::string() : number(value, 9);
 }
@@ -52,7 +52,7 @@ sdm::Certainty certainty(const std::string& text) {
   return sdm::Certainty::estimate;
 }
 
-// Without the witness, which only lines of JSON have.
+// Leaves out the witness, which only lines of JSON have.
 sdm::BoundedLength length_from(const Json& json) {
   sdm::BoundedLength length;
   length.value = number_from(json.at("value"));

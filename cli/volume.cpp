@@ -57,7 +57,7 @@ void extend(sdm::Box& box, const sdm::Box& other) {
   }
 }
 
-// By default the grid extends around O2 by the band, or by a tenth of O2's diagonal, and around O1.
+// The default grid extends around O2 by the band, or by a tenth of O2's diagonal, and around O1.
 sdm::Grid grid_of(const VolumeCommand& command, const sdm::Mesh& o2, const sdm::Mesh& o1) {
   sdm::Box box;
   if (!command.bounds.empty()) {

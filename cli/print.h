@@ -1,0 +1,16 @@
+// The end of a command: JSON or text.
+#pragma once
+
+#include <iostream>
+
+#include "common_options.h"
+#include "report.h"
+
+/// Prints what `report` returns, as JSON, or else, unless quiet, what `text` returns.
+template <class Report, class Text>
+void print(const RunOptions& run, const Report& report, const Text& text) {
+  if (run.json)
+    std::cout << to_text(report());
+  else if (!run.quiet)
+    std::cout << text();
+}
