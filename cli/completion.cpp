@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "option_words.h"
+
 namespace {
 
 // What completions offer for an option.
@@ -33,11 +35,9 @@ std::vector<std::string> split(std::string_view text, char at) {
 
 OptionWords words_of(const CLI::Option& option) {
   OptionWords words;
-  for (const std::string& name : option.get_snames()) words.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) words.names.push_back("--" + name);
+  words.names = names_of(option);
   words.summary = option.get_description().substr(0, option.get_description().find_first_of(";\n"));
-  if (option.get_items_expected_max() == 0) return words;
-  words.value = option.get_type_name();
+  words.value = value_of(option);
   words.is_folder = words.value == "DIR";
   words.is_file = words.value == "FILE";
   const auto is_word = [](const std::string& word) {
@@ -52,8 +52,7 @@ OptionWords words_of(const CLI::Option& option) {
 
 std::vector<CommandWords> commands_of(const CLI::App& app) {
   std::vector<CommandWords> commands;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->get_group().empty()) continue;  // hidden
+  for (const CLI::App* command : visible_commands(app)) {
     CommandWords& words =
         commands.emplace_back(CommandWords{command->get_name(), command->get_description(), {}});
     for (const CLI::Option* option : command->get_options())

@@ -1,7 +1,8 @@
-// The sdm command. Exit codes: 0 success, 1 failure, 2 invalid usage, 3 tolerance exceeded.
+// The sdm command.
 #include "bodies.h"
 #include "completion.h"
 #include "devices.h"
+#include "exit_codes.h"
 #include "hausdorff.h"
 #include "help_text.h"
 #include "info.h"
@@ -85,20 +86,20 @@ int run(int argc, char** argv) {
     if (argc == 3 && std::string_view(argv[1]) == "help" && std::string_view(argv[2]) == "--man") {
       std::cout << manual_page(app);
       flush_output();
-      return 0;
+      return kSuccess;
     }
     app.parse(arguments(app, argc, argv));
     if (app.get_subcommands().empty()) std::cout << app.help();
     flush_output();
-    return 0;
+    return kSuccess;
   } catch (const CLI::RuntimeError& outcome) {
     return outcome.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;  // 0: --help and --version
+    return app.exit(error) == 0 ? kSuccess : kInvalidUsage;  // 0: --help and --version
   } catch (const UnknownCommand& error) {
     std::cerr << "sdm: error: " << printable_lines(error.what())
               << "\nRun sdm --help for the list of commands.\n";
-    return 2;
+    return kInvalidUsage;
   }
 }
 
@@ -120,5 +121,5 @@ int main(int argc, char** argv) {
     std::cerr << "sdm: error: " << printable_lines(error.what()) << '\n';
   }
   Interrupts::end();
-  return 1;
+  return kFailure;
 }

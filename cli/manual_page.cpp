@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "completion.h"
+#include "option_words.h"
 
 namespace {
 
@@ -47,12 +48,11 @@ std::string option_entry(const CLI::Option& option) {
   const auto add = [&](const std::string& name) {
     names += fmt::format("{}\\fB{}\\fP", names.empty() ? "" : ", ", plain(name));
   };
-  for (const std::string& name : option.get_snames()) add("-" + name);
-  for (const std::string& name : option.get_lnames()) add("--" + name);
+  for (const std::string& name : names_of(option)) add(name);
   if (option.get_positional()) add(option.get_name(true, false));
   std::string value, remarks;
-  if (option.get_items_expected_max() > 0 && !option.get_positional())
-    value = fmt::format(" \\fI{}\\fP", plain(option.get_type_name()));
+  if (const std::string name = value_of(option); !name.empty() && !option.get_positional())
+    value = fmt::format(" \\fI{}\\fP", plain(name));
   if (!option.get_default_str().empty())
     remarks += fmt::format(" Default: {}.", plain(option.get_default_str()));
   if (option.get_required() && option.nonpositional()) remarks += " Required.";
@@ -86,8 +86,7 @@ std::string manual_page(const CLI::App& app) {
       ".SH SYNOPSIS\n.B sdm\n.I command\n[\\fIoptions\\fP] [\\fIfiles\\fP]\n"
       ".SH DESCRIPTION\n{}\n.SH COMMANDS\n",
       sdm::kVersion, plain(app.get_description()));
-  for (const CLI::App* command : app.get_subcommands({}))
-    if (!command->get_group().empty()) text += command_section(*command);
+  for (const CLI::App* command : visible_commands(app)) text += command_section(*command);
   text +=
       ".SH EXIT STATUS\n.TP\n0\nSuccess.\n.TP\n1\nFailure.\n.TP\n2\nInvalid usage.\n.TP\n3\n"
       "A tolerance is exceeded.\n";
