@@ -10,6 +10,31 @@
 #include <cmath>
 #include <functional>
 
+namespace {
+
+/// Adds the options of the layout; `both`: the option that a stored atlas excludes.
+void add_map_layout(CLI::App& app, MapLayout& layout, CLI::Option* both) {
+  CLI::Option* resolution = add_resolution_option(app, layout.atlas);
+  CLI::Option* precision =
+      app.add_option(
+             "--precision", layout.precision,
+             "Instead: choose the resolution so that every surface point is within EPS of a sample, and "
+             "distances between samples are known to within EPS (error_bound)")
+          ->check(positive_number())
+          ->type_name("EPS")
+          ->excludes(resolution);
+  add_layout_options(app, layout.atlas, "O1");
+  app.add_option(
+         "--atlas-cache", layout.cache,
+         "Take the atlas of O1 from this file, or write it there if the file does not exist; it must be "
+         "of the same mesh, transform and layout")
+      ->type_name("FILE")
+      ->excludes(precision)
+      ->excludes(both);
+}
+
+}  // namespace
+
 void add_options(CLI::App& app, MapCommand& c) {
   add_pair_arguments(app, c,
                      {fmt::format("The mesh that distances are measured from ({})", sdm::mesh_format_names()),
@@ -20,24 +45,7 @@ void add_options(CLI::App& app, MapCommand& c) {
 
   add_pair_transforms(app, c);
   add_align_options(app, c.align);
-
-  CLI::Option* resolution = add_resolution_option(app, c.layout.atlas);
-  CLI::Option* precision =
-      app.add_option(
-             "--precision", c.layout.precision,
-             "Instead: choose the resolution so that every surface point is within EPS of a sample, and "
-             "distances between samples are known to within EPS (error_bound)")
-          ->check(positive_number())
-          ->type_name("EPS")
-          ->excludes(resolution);
-  add_layout_options(app, c.layout.atlas, "O1");
-  app.add_option(
-         "--atlas-cache", c.layout.cache,
-         "Take the atlas of O1 from this file, or write it there if the file does not exist; it must be "
-         "of the same mesh, transform and layout")
-      ->type_name("FILE")
-      ->excludes(precision)
-      ->excludes(both);
+  add_map_layout(app, c.layout, both);
 
   app.add_option("--max-distance", c.map.max_distance, "Texels farther than this have no value")
       ->check(positive_number())
