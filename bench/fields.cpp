@@ -10,10 +10,12 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/vec.h"
 #include "harness.h"
+#include "research/fields/fields.h"
 #include "scenes.h"
 #include "scenes/scene.h"
 #include "timing.h"
@@ -26,14 +28,13 @@ Box enlarged(Box box, double by) {
   return box;
 }
 
-bool agree(const DistanceField& field, const DistanceField& reference) {
+bool agree(std::string_view method, const DistanceField& field, const DistanceField& reference) {
   const double tolerance = field.accuracy + reference.accuracy;
   for (std::size_t i = 0; i < field.distance.size(); ++i) {
     const double d = field.distance[i], e = reference.distance[i];
     const bool border = std::abs(std::abs(std::isnan(d) ? e : d) - field.band) <= tolerance;
     if (std::isnan(d) != std::isnan(e) ? !border : std::abs(std::abs(d) - std::abs(e)) > tolerance) {
-      std::fprintf(stderr, "%s is wrong at point %zu: %g, not %g\n",
-                   std::string(field_method(field.report.method).name).c_str(), i, d, e);
+      std::fprintf(stderr, "%s is wrong at point %zu: %g, not %g\n", std::string(method).c_str(), i, d, e);
       return false;
     }
   }
@@ -68,7 +69,8 @@ Outcome against_openvdb(const Trial& trial, const std::string& file, double cell
   const Sites sites(mesh);
   DistanceField ours = compute_field(sites, grid, options);
   outcome.verified =
-      agree(ours, compute_field(sites, grid, {.method = FieldMethod::reference, .band = options.band}));
+      agree("best", ours,
+            fields::compute_field(sites, grid, {.method = fields::Method::reference, .band = options.band}));
   const auto transform = openvdb::math::Transform::createLinearTransform(spacing);
   const Race signed_race = race({[&] { ours = compute_field(Sites(mesh), grid, options); }, trial.threads},
                                 {[&] {
@@ -88,25 +90,25 @@ Outcome methods(const Trial& trial, double band_in_cells) {
   const Mesh& mesh = scene.bodies()[0].mesh;
   const Grid grid = make_grid(enlarged(bounds(mesh), 0.1), {180, 150, 256});
   const Sites sites(mesh);
-  FieldOptions options{.sign = SignMethod::none};
+  fields::Options options{.sign = SignMethod::none};
   if (band_in_cells > 0) options.band = band_in_cells * std::ranges::max(grid.spacing);
-  const auto compute = [&](FieldMethod method) {
-    FieldOptions with = options;
+  const auto compute = [&](fields::Method method) {
+    fields::Options with = options;
     with.method = method;
-    return compute_field(sites, grid, with);
+    return fields::compute_field(sites, grid, with);
   };
   Outcome outcome{.verified = true};
-  const DistanceField reference = compute(FieldMethod::reference);
-  for (const FieldMethodInfo& method : field_methods()) {
-    if (method.method == FieldMethod::reference || (method.needs_band && band_in_cells == 0)) continue;
-    const DistanceField field = compute(method.method);
-    outcome.verified &= agree(field, reference);
-    if (method.method == FieldMethod::best) continue;
-    const Race r = race({[&] { (void)compute(FieldMethod::best); }, trial.threads},
+  const DistanceField reference = compute(fields::Method::reference);
+  for (const fields::MethodInfo& method : fields::methods()) {
+    if (method.method == fields::Method::reference || (method.needs_band && band_in_cells == 0)) continue;
+    const fields::Field field = compute(method.method);
+    outcome.verified &= agree(method.name, field, reference);
+    if (method.method == fields::Method::best) continue;
+    const Race r = race({[&] { (void)compute(fields::Method::best); }, trial.threads},
                         {[&] { (void)compute(method.method); }, trial.threads}, trial.repetitions);
     Row row{std::string(method.name), r.figures()};
     row.figures.push_back({"evaluations_per_point",
-                           static_cast<double>(field.report.evaluations) / static_cast<double>(grid.size())});
+                           static_cast<double>(field.work.evaluations) / static_cast<double>(grid.size())});
     outcome.rows.push_back(std::move(row));
   }
   return outcome;

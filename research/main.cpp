@@ -9,6 +9,7 @@
 #include "cli/interrupts.h"
 #include "cli/terminal_text.h"
 #include "cli/usage_error.h"
+#include "research/field_command.h"
 #include "research/figures_command.h"
 
 namespace {
@@ -21,6 +22,7 @@ int run(int argc, char** argv) {
   app.formatter(help_formatter(help_width()));
   try {
     add_figures_command(app);
+    add_field_command(app);
     app.failure_message(usage_error);
     app.parse(arguments(app, argc, argv));
     return 0;

@@ -1,5 +1,4 @@
-/// Distance fields: the distance to O2 at the points of a regular grid, by our own method and by those of the
-/// literature, which run on the processor with the data flow that they were published with.
+/// Distance fields: the distance to O2 at the points of a regular grid.
 ///
 /// Threads: the functions may be called concurrently, also with the same Sites and the same field.
 #pragma once
@@ -7,7 +6,6 @@
 #include <sdm/api.h>
 #include <sdm/mesh.h>
 #include <sdm/progress.h>
-#include <sdm/proximity_query.h>
 #include <sdm/sign.h>
 #include <sdm/sites.h>
 
@@ -15,9 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace sdm {
@@ -51,70 +47,20 @@ struct Grid {
 /// sdm::Error as above, and for a spacing that is not positive.
 [[nodiscard]] SDM_API Grid make_grid(const Box& bounds, double spacing);
 
-/// How the distances of a field are computed.
-enum class FieldMethod {
-  best,         ///< the cpu engine, on blocks of points; near O2 only, if there is a band
-  reference,    ///< the reference engine: each point by itself, in double precision; the oracle
-  brute_force,  ///< HCK99: the distance function of every site, drawn in every slice
-  /// SOM04 (DiFi): slices are swept; the largest distance of a slice bounds that of the next, which bounds
-  /// the disc in which a site is drawn. Sites that no longer influence a slice are culled from later ones.
-  difi,
-  /// SGGM06: as DiFi, but a site is drawn as the polygon in which its region of influence intersects the
-  /// slice, with a distance vector that is linear over the polygon.
-  linear_factorization,
-  /// Mauch 2003, Sigg et al. 2003: the polyhedron that contains a site's region within the band is scan
-  /// converted, site by site. Requires a band.
-  csc,
-};
-
-/// What there is to know about a method.
-struct FieldMethodInfo {
-  FieldMethod method;
-  std::string_view name;  ///< as on the command line: "best", "linear_factorization", ...
-  std::string_view summary;
-  /// Upper bound on the error of a distance, rounding to float included, as a fraction of the diagonal of the
-  /// bounding box of O2 and the grid.
-  double relative_error;
-  bool needs_band;
-};
-
-/// All methods, the default one (best) first.
-[[nodiscard]] SDM_API std::span<const FieldMethodInfo> field_methods();
-/// Throws sdm::Error for an unknown name.
-[[nodiscard]] SDM_API const FieldMethodInfo& field_method(std::string_view name);
-/// The entry of field_methods() for a method.
-[[nodiscard]] SDM_API const FieldMethodInfo& field_method(FieldMethod method);
-
 /// Options of compute_field().
 struct FieldOptions {
-  FieldMethod method = FieldMethod::best;
   SignMethod sign = SignMethod::automatic;
   /// Greater than 0, in units of the mesh. Points farther than this have no value (NaN).
   double band = std::numeric_limits<double>::infinity();
   bool sites = false;  ///< also store the closest sites
-  /// brute_force: distance functions of edges and vertices are drawn as meshes, as HCK99 and HZLM01 did,
-  /// whose distances exceed the true ones by at most this, in units of the mesh, and are never less. The
-  /// field is then unsigned, and points from the band less this on may have no value. 0: they are evaluated
-  /// at each point.
-  double tessellation = 0;
   Progress progress{};
 };
 
-/// What a field cost. Counts do not depend on the number of threads, except those of working memory.
+/// What a field cost.
 struct FieldReport {
-  FieldMethod method = FieldMethod::best;
-  double milliseconds = 0;  ///< of the whole computation but for the sign, if that is a pass of its own
-  double sign_milliseconds =
-      0;                        ///< of the pass that decides signs; 0 for best and reference, which need none
-  std::size_t field_bytes = 0;  ///< of the arrays of the field
-  std::size_t working_bytes = 0;  ///< allocated besides, at the end; an estimate for best and reference
-
-  // Of the methods of the literature; 0 for best and reference. A pair is a site and a slice.
-  std::uint64_t sites = 0;         ///< whose region of influence has an interior
-  std::uint64_t pairs = 0;         ///< sites × slices
-  std::uint64_t pairs_culled = 0;  ///< not even clipped: too far from the slice, or culled by an earlier one
-  std::uint64_t pairs_empty = 0;   ///< clipped, and nothing remained
-  std::uint64_t evaluations = 0;   ///< of a site's distance function at a grid point
+  double milliseconds = 0;
+  std::size_t field_bytes = 0;    ///< of the arrays of the field
+  std::size_t working_bytes = 0;  ///< allocated besides; an estimate
 };
 
 /// One value per grid point. Points without a value, farther than the band, hold NaN, kNone and
@@ -125,8 +71,8 @@ struct DistanceField {
   std::vector<std::uint32_t> site;  ///< index of the closest site among those of its type; empty unless asked
   std::vector<SiteType> site_type;  ///< empty unless asked for
   double band = std::numeric_limits<double>::infinity();
-  /// Upper bound on the error of a distance, rounding to float included: FieldMethodInfo::relative_error
-  /// times the diagonal of the box of O2 and the grid, and FieldOptions::tessellation.
+  /// Upper bound on the error of a distance, rounding to float included: 1e-6 of the diagonal of the box of
+  /// O2 and the grid.
   double accuracy = 0;
   Box o2_bounds{};  ///< no point outside of it is inside O2
   SignUsed sign;
@@ -134,15 +80,11 @@ struct DistanceField {
   FieldReport report;
 };
 
-/// Computes the field. Every method finds the closest sites at every point of the grid, to within
-/// DistanceField::accuracy. Throws sdm::Error for a grid out of range, with a coordinate beyond 1e37
-/// or with spacings that vanish by rounding, for a sign method that O2 does not allow, for a band that is not
-/// positive, or infinite where the method needs one, for a tessellation that is negative, too fine for single
-/// precision, with another method than brute_force or with signs, or if there is not enough memory, which is
-/// checked before anything is allocated; Cancelled. All cores. Cost, for m sites and n points a side: best
-/// and reference, a search per point, or per point near O2 if there is a band; brute_force O(m n³); difi and
-/// linear_factorization O(m n) for clipping, and what culling leaves of O(m n³); csc O(m) and the points in
-/// the polyhedra.
+/// Computes the field, whose sites and distances are the closest ones to within DistanceField::accuracy.
+/// Throws sdm::Error for a grid out of range, with a coordinate beyond 1e37 or with spacings that vanish by
+/// rounding, for a sign method that O2 does not allow, for a band that is not positive, or if there is not
+/// enough memory, which is checked before anything is allocated; Cancelled. All cores. Cost: a search per
+/// point, or per point near O2 if there is a band.
 [[nodiscard]] SDM_API DistanceField compute_field(const Sites& sites, const Grid& grid,
                                                   const FieldOptions& options = {});
 
@@ -166,38 +108,5 @@ struct FieldSample {
 /// cell, with weights w, each of which differs from that at the point p by at most |c − p|; and
 /// Σ w |c − p| ≤ √(Σ w |c − p|²) = √(Σ h² t (1 − t)), over the axes with spacing h and place t in the cell.
 [[nodiscard]] SDM_API double interpolation_error(const Grid& grid);
-
-/// Options of field_proximity().
-struct FieldProximityOptions {
-  /// O1 is sampled at the corners of the triangles that its faces are divided into, with sides of at most
-  /// this length; 0: the smallest spacing of the grid.
-  double sample_spacing = 0;
-  Progress progress{};
-};
-
-/// Proximity of the surface of O1 and O2 from the field of O2, as volumetric methods determine it: for
-/// comparison, since ProximityQuery has exact results. Values are estimates, between bounds that hold for all
-/// points of O1's surface, not only for the samples.
-struct FieldProximity {
-  /// Between the surfaces: the smallest |value| of a sample; `upper` if none has a value.
-  BoundedLength separation;
-  /// How far the surface of O1 reaches into O2: the largest −value of a sample, 0 if none is inside. Empty
-  /// for an unsigned field.
-  std::optional<BoundedLength> depth;
-  /// As those methods decide it: the value of a sample is not positive, or for an unsigned field not above
-  /// error_bound. `exact` where the bounds imply it: a sample is inside O2, or no point of O1's surface is
-  /// inside or on it; otherwise an estimate.
-  BoundedBool colliding;
-  std::size_t samples = 0;
-  std::size_t without_value = 0;  ///< samples outside the grid or beside points beyond the band
-  double covering_radius = 0;     ///< no point of O1's surface is farther from all samples
-  /// Of the values, as far as samples have one: interpolation_error, field.accuracy and covering_radius.
-  double error_bound = 0;
-};
-
-/// Throws sdm::Error as sample_field does, if O1 is unusable (see validate), for a spacing that is negative
-/// or NaN, or if there would be more than 10^10 samples; Cancelled. Cost: linear in the samples, all cores.
-[[nodiscard]] SDM_API FieldProximity field_proximity(const DistanceField& field, const Mesh& o1,
-                                                     const FieldProximityOptions& options = {});
 
 }  // namespace sdm

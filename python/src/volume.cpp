@@ -155,9 +155,6 @@ Arrays are read-only and have the shape (nz, ny, nx): the value of the point wit
           "beyond_band", [](const F& self) { return self.field.beyond_band; },
           "The number of points without a value.")
       .def_prop_ro(
-          "method", [](const F& self) { return std::string(field_method(self.field.report.method).name); },
-          "How it was computed.")
-      .def_prop_ro(
           "sign", [](const F& self) { return name_of(self.field.sign.method); },
           "How inside and outside are distinguished: 'none' (unsigned distances), 'exact' or 'winding'.")
       .def_prop_ro(
@@ -198,12 +195,10 @@ void bind_volume(nb::module_& module) {
   module.def(
       "distance_field",
       [](nb::handle mesh, std::optional<double> spacing, nb::handle shape, nb::handle bounds,
-         std::optional<double> margin, const std::string& method, const char* sign, double band, bool sites,
-         nb::handle progress) {
+         std::optional<double> margin, const char* sign, double band, bool sites, nb::handle progress) {
         SitesInUse to(mesh);
         validate(to.mesh());
-        FieldOptions options{
-            .method = field_method(method).method, .sign = sign_of(sign), .band = band, .sites = sites};
+        FieldOptions options{.sign = sign_of(sign), .band = band, .sites = sites};
         const Grid grid = grid_of(to.mesh(), spacing, shape, bounds, margin, band);
         auto result = std::make_unique<PyField>();
         run(progress, [&](const Progress& report) {
@@ -214,13 +209,12 @@ void bind_volume(nb::module_& module) {
       },
       nb::rv_policy::take_ownership, nb::arg("mesh").none(), nb::kw_only(), nb::arg("spacing") = nb::none(),
       nb::arg("shape") = nb::none(), nb::arg("bounds") = nb::none(), nb::arg("margin") = nb::none(),
-      nb::arg("method") = "best", nb::arg("sign") = "automatic", nb::arg("band") = kInfinity,
-      nb::arg("sites") = false, nb::arg("progress") = nb::none(),
-      nb::sig(
-          "def distance_field(mesh: object, *, spacing: float | None = None, shape: tuple[int, int, int] "
-          "| None = None, bounds: object = None, margin: float | None = None, method: str = 'best', sign: "
-          "str = 'automatic', band: float = ..., sites: bool = False, progress: "
-          "collections.abc.Callable[[str, float], bool | None] | None = None) -> DistanceField"),
+      nb::arg("sign") = "automatic", nb::arg("band") = kInfinity, nb::arg("sites") = false,
+      nb::arg("progress") = nb::none(),
+      nb::sig("def distance_field(mesh: object, *, spacing: float | None = None, shape: tuple[int, int, int] "
+              "| None = None, bounds: object = None, margin: float | None = None, sign: "
+              "str = 'automatic', band: float = ..., sites: bool = False, progress: "
+              "collections.abc.Callable[[str, float], bool | None] | None = None) -> DistanceField"),
       R"(Computes the distances from the points of a regular grid to a mesh.
 
 mesh: any form of a mesh (see Mesh); Sites are used as they are.
@@ -228,8 +222,6 @@ spacing: > 0: cubic cells of this size, the fewest that cover the box.
 shape: instead, the numbers of points (nz, ny, nx), whose outermost ones are on the sides of the box.
 bounds: the lowest and the highest corner of the box, (2, 3) numbers. By default the box of the mesh and
 ``margin`` around it, which is the band, or a tenth of the diagonal without a band.
-method: 'best'; 'reference', in double precision and slow; or a method of the literature, for comparison:
-'brute_force', 'difi', 'linear_factorization', 'csc'.
 sign: as of map(). band: > 0; points farther away have no value. Lengths are in units of the mesh.
 sites: whether to keep the closest sites.
 progress: called as progress(step, fraction), on this thread; False cancels.

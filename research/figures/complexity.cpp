@@ -26,10 +26,11 @@ std::vector<Method> methods_of(Run& run, const Study& study) {
     methods.push_back(
         study_maps(run, study, run.gl, run.choose(Sizes{128, 256, 512, 1024}, Sizes{128, 256, 512})));
   const Sizes volumes = run.choose(Sizes{16, 32, 64, 128, 192}, Sizes{16, 24, 32});
-  for (const FieldMethod kind : {FieldMethod::best, FieldMethod::linear_factorization, FieldMethod::difi})
+  for (const fields::Method kind :
+       {fields::Method::best, fields::Method::linear_factorization, fields::Method::difi})
     methods.push_back(study_volumes(run, study, kind, volumes));
   methods.push_back(
-      study_volumes(run, study, FieldMethod::brute_force, run.choose(Sizes{16, 32, 64}, Sizes{12, 16})));
+      study_volumes(run, study, fields::Method::brute_force, run.choose(Sizes{16, 32, 64}, Sizes{12, 16})));
   return methods;
 }
 

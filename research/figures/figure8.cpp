@@ -70,18 +70,19 @@ Grid paper_grid(const Box& box, double share) {
 
 Contender measure_volume(Run& run, const Recording& recording, const std::vector<std::size_t>& frames,
                          const Frame& closest, const std::array<SurfacePoints, 2>& points, std::size_t shown,
-                         FieldMethod method, double share, double band) {
-  const std::string name(field_method(method).name);
-  Contender contender{.key = name + (share < 1 && method == FieldMethod::brute_force ? "_coarse" : ""),
+                         fields::Method method, double share, double band) {
+  const std::string name(fields::info(method).name);
+  Contender contender{.key = name + (share < 1 && method == fields::Method::brute_force ? "_coarse" : ""),
                       .name = "volume, " + name,
                       .ms = std::vector<double>(recording.frames.size(), std::nan(""))};
   if (band < std::numeric_limits<double>::infinity())
     contender.name += fmt::format(", band of {:.3g} m", band);
   const auto fields_of = [&](const std::array<Sites, 2>& sites, const Grid& grid) {
-    std::array<DistanceField, 2> fields;
+    std::array<fields::Field, 2> result;
     for (int b = 0; b < 2; ++b)
-      fields[b] = compute_field(sites[b], grid, {.method = method, .sign = SignMethod::none, .band = band});
-    return fields;
+      result[b] =
+          fields::compute_field(sites[b], grid, {.method = method, .sign = SignMethod::none, .band = band});
+    return result;
   };
   const auto grid_of = [&](std::size_t frame) {
     return paper_grid(with_room(recording.bounds_of(frame)), share);
@@ -102,7 +103,7 @@ Contender measure_volume(Run& run, const Recording& recording, const std::vector
     const SurfaceErrors e = errors_of_field(fields[1 - b], points[b]);
     contender.nearest = std::max(contender.nearest, e.nearest);
     contender.linear = std::max(contender.linear, e.linear);
-    const FieldProximity proximity = field_proximity(fields[1 - b], closest.meshes[b]);
+    const fields::Proximity proximity = fields::proximity(fields[1 - b], closest.meshes[b]);
     if (std::isfinite(proximity.separation.value))
       least = std::min(least, std::abs(proximity.separation.value));
   }
@@ -168,18 +169,18 @@ Figure figure8(Run& run) {
   const auto add_map = [&](const std::shared_ptr<const Engine>& engine) {
     contenders.push_back(measure_map(run, letters, many, closest, points, shown, engine, resolution));
   };
-  const auto add_volume = [&](FieldMethod method, const std::vector<std::size_t>& frames, double of_points,
+  const auto add_volume = [&](fields::Method method, const std::vector<std::size_t>& frames, double of_points,
                               double within) {
     contenders.push_back(
         measure_volume(run, letters, frames, closest, points, shown, method, of_points, within));
   };
   add_map(nullptr);
   if (run.gl) add_map(run.gl);
-  add_volume(FieldMethod::best, some, share, infinite);
-  add_volume(FieldMethod::linear_factorization, some, share, infinite);
-  add_volume(FieldMethod::difi, few, share, infinite);
-  add_volume(FieldMethod::csc, few, share, band);
-  add_volume(FieldMethod::brute_force, few, share / 4, infinite);
+  add_volume(fields::Method::best, some, share, infinite);
+  add_volume(fields::Method::linear_factorization, some, share, infinite);
+  add_volume(fields::Method::difi, few, share, infinite);
+  add_volume(fields::Method::csc, few, share, band);
+  add_volume(fields::Method::brute_force, few, share / 4, infinite);
   contenders.back().name += ", a quarter of the points a side";
 
   const auto find = [&](const std::string& key) -> const Contender& {

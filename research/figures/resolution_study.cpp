@@ -100,17 +100,17 @@ Method study_maps(Run& run, const Study& study, const std::shared_ptr<const Engi
   return method;
 }
 
-Method study_volumes(Run& run, const Study& study, FieldMethod kind,
+Method study_volumes(Run& run, const Study& study, fields::Method kind,
                      const std::vector<std::uint32_t>& resolutions) {
-  const std::string name(field_method(kind).name);
+  const std::string name(fields::info(kind).name);
   Method method{.key = "volume_" + name, .name = "volume, " + name};
   for (const std::uint32_t n : resolutions) {
     run.step("table_complexity");
     const Grid grid = make_grid(with_room(bounds(study.o1)), {n, n, n});
-    DistanceField field;
-    Times times =
-        repeat([&] { field = compute_field(study.sites, grid, {.method = kind, .sign = SignMethod::none}); },
-               run.choose(3, 1), n <= 32);
+    fields::Field field;
+    Times times = repeat(
+        [&] { field = fields::compute_field(study.sites, grid, {.method = kind, .sign = SignMethod::none}); },
+        run.choose(3, 1), n <= 32);
     add_row(method, n, static_cast<double>(field.report.field_bytes), interpolation_error(grid),
             errors_of_field(field, study.points), study.unit, std::move(times));
   }

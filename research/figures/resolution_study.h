@@ -2,12 +2,12 @@
 #pragma once
 
 #include <sdm/map.h>
-#include <sdm/volume.h>
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "research/fields/fields.h"
 #include "research/figures/run.h"
 #include "research/figures/surface_points.h"
 #include "research/figures/timing.h"
@@ -51,7 +51,7 @@ struct Study {
 [[nodiscard]] Method study_maps(Run& run, const Study& study, const std::shared_ptr<const Engine>& engine,
                                 const std::vector<std::uint32_t>& resolutions);
 /// Volumes of n³ points around O1, which is the most favourable region: distances are asked on O1 only.
-[[nodiscard]] Method study_volumes(Run& run, const Study& study, FieldMethod method,
+[[nodiscard]] Method study_volumes(Run& run, const Study& study, fields::Method method,
                                    const std::vector<std::uint32_t>& resolutions);
 
 /// A box that is larger by a hundredth of its diagonal on each side.

@@ -131,9 +131,8 @@ const std::vector<LongCall> kCalls{
     {"volume", [] { return [sites = std::make_shared<Sites>(spheres(50))] { (void)solid_volume(*sites); }; }},
     {"field",
      [] {
-       return [sites = std::make_shared<Sites>(spheres(5))] {
-         (void)compute_field(*sites, make_grid(bounds(sites->mesh()), {200, 200, 200}),
-                             {.method = FieldMethod::brute_force});
+       return [sites = std::make_shared<Sites>(spheres(20))] {
+         (void)compute_field(*sites, make_grid(bounds(sites->mesh()), {300, 300, 300}));
        };
      }},
     {"covering_radius",

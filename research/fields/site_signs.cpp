@@ -1,13 +1,14 @@
-#include "volume/site_signs.h"
+#include "research/fields/site_signs.h"
 
 #include <algorithm>
 #include <bit>
 
 #include "core/parallel.h"
+#include "research/fields/drawn_sites.h"
 #include "sites/closest_on_face.h"
-#include "volume/drawn_sites.h"
+#include "volume/field_writer.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 namespace {
 
 constexpr std::size_t kPacket = sites::ClosestPacket::kSize;
@@ -15,7 +16,7 @@ constexpr std::size_t kPacket = sites::ClosestPacket::kSize;
 // Decides the signs of the points of a row, a packet at a time.
 class RowSigns {
  public:
-  RowSigns(const FieldTask& task, DistanceField& field)
+  RowSigns(const DrawingTask& task, DistanceField& field)
       : task_(task), field_(field), box_(bounds(task.sites.mesh)) {}
 
   /// Points outside O2's box are outside O2.
@@ -45,7 +46,7 @@ class RowSigns {
     packet_.count = 0;
   }
 
-  const FieldTask& task_;
+  const DrawingTask& task_;
   DistanceField& field_;
   Box box_;
   sites::ClosestPacket packet_{};
@@ -55,9 +56,9 @@ class RowSigns {
 
 }  // namespace
 
-void store_sites(const FieldTask& task, std::span<const std::uint32_t> winners, DistanceField& field) {
+void store_sites(const DrawingTask& task, std::span<const std::uint32_t> winners, DistanceField& field) {
   const Grid& grid = task.grid;
-  const FieldWriter writer(field);
+  const volume::FieldWriter writer(field);
   const std::size_t rows = std::size_t{grid.dims[1]} * grid.dims[2];
   parallel_for(rows, 32, task.options.progress, "sign", [&](std::size_t begin, std::size_t end) {
     RowSigns signs(task, field);
@@ -75,4 +76,4 @@ void store_sites(const FieldTask& task, std::span<const std::uint32_t> winners, 
   });
 }
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

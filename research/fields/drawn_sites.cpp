@@ -1,4 +1,4 @@
-#include "volume/drawn_sites.h"
+#include "research/fields/drawn_sites.h"
 
 #include <sdm/error.h>
 
@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 namespace {
 
 // As of the gl engine: relative to the largest coordinate, so that the distances of a face, which are too
@@ -49,7 +49,7 @@ std::vector<DrawnSite> drawn_sites(const sites::SitesData& sites) {
   return drawn;
 }
 
-SliceRules::SliceRules(const FieldTask& task, const UnitGrid& grid) {
+SliceRules::SliceRules(const DrawingTask& task, const UnitGrid& grid) {
   const tree::FloatBox& o2 = task.sites.tree.box(0);
   double size = 0, reach = 0;
   for (int k = 0; k < 3; ++k) {
@@ -61,10 +61,10 @@ SliceRules::SliceRules(const FieldTask& task, const UnitGrid& grid) {
   }
   if (!(size < kFarAway))
     throw Error("the grid reaches beyond 10^15 times the size of O2, too far for the method " +
-                std::string(field_method(task.options.method).name) + "; use best");
+                std::string(info(task.options.method).name) + "; use best");
   slack = kRegionSlack * size;
   margin = kBoundSlack * size;
   limit = std::min(std::sqrt(reach), task.sites.frame.scale * task.options.band) + margin;
 }
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

@@ -1,16 +1,16 @@
 // The sites of O2 as the slice methods draw them.
 #pragma once
 
-#include <sdm/volume.h>
-
 #include <vector>
 
 #include "gl/polygons/raster_polygon.h"
 #include "gl/polygons/site_region.h"
-#include "volume/field_writer.h"
+#include "research/fields/drawing_task.h"
 #include "volume/grid.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
+
+using volume::UnitGrid;
 
 using gl::HalfPlane;
 using gl::HalfSpace;
@@ -35,7 +35,7 @@ struct SliceRules {
   double limit;   ///< no larger distance is needed: the band, or more than any distance
 
   /// Throws sdm::Error if the grid is too far from O2 for single precision.
-  SliceRules(const FieldTask& task, const UnitGrid& grid);
+  SliceRules(const DrawingTask& task, const UnitGrid& grid);
 };
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

@@ -4,12 +4,13 @@
 #include <atomic>
 #include <cmath>
 
-#include "volume/draw_span.h"
-#include "volume/drawn_sites.h"
+#include "research/fields/draw_span.h"
+#include "research/fields/drawing_task.h"
+#include "research/fields/drawn_sites.h"
+#include "research/fields/slice_polygon.h"
 #include "volume/field_writer.h"
-#include "volume/slice_polygon.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 
 /// The distance vector of a site, linear along a row (Lemma 1), from point (i, j) of a slice on.
 inline SpanVector span_vector(const Slice& slice, const DrawnSite& site, std::uint32_t i, std::uint32_t j) {
@@ -22,7 +23,7 @@ inline SpanVector span_vector(const Slice& slice, const DrawnSite& site, std::ui
 class SliceStore {
  public:
   /// `winners`: one per point of the grid, or none.
-  SliceStore(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners)
+  SliceStore(const DrawingTask& task, DistanceField& field, std::span<std::uint32_t> winners)
       : grid_(task.grid),
         band_(task.options.band),
         unit_(1 / task.sites.frame.scale),
@@ -53,8 +54,8 @@ class SliceStore {
  private:
   const Grid& grid_;
   double band_, unit_;  // unit_: of the unit frame
-  FieldWriter writer_;
+  volume::FieldWriter writer_;
   std::span<std::uint32_t> winners_;
 };
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

@@ -1,4 +1,4 @@
-#include "volume/tessellated_distance.h"
+#include "research/fields/tessellated_distance.h"
 
 #include <sdm/error.h>
 
@@ -8,7 +8,7 @@
 
 #include "geometry/vec.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 namespace {
 
 // Of the largest distance.
@@ -87,4 +87,4 @@ void TessellatedDistance::draw_span(float* squared, std::uint32_t* winner, std::
   }
 }
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

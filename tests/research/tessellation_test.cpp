@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
+#include "research/fields/fields.h"
 #include "support/error_of.h"
 #include "support/oracle.h"
 #include "volume/scenes.h"
@@ -14,10 +15,11 @@ using ::testing::HasSubstr;
 
 constexpr double kRounding = 2e-6;  // of the diagonal
 
-DistanceField drawn(const Sites& sites, const Grid& grid, double error,
+fields::Field drawn(const Sites& sites, const Grid& grid, double error,
                     double band = std::numeric_limits<double>::infinity()) {
-  return compute_field(
-      sites, grid, {.method = FieldMethod::brute_force, .band = band, .sites = true, .tessellation = error});
+  return fields::compute_field(
+      sites, grid,
+      {.method = fields::Method::brute_force, .band = band, .sites = true, .tessellation = error});
 }
 
 TEST(Tessellation, NeverFallsBelowTheDistanceNorExceedsItsError) {
@@ -27,9 +29,9 @@ TEST(Tessellation, NeverFallsBelowTheDistanceNorExceedsItsError) {
       if (scene.mesh.triangles.size() * scene.grid.size() > 5'000'000) continue;  // seconds each
       const double size = diagonal_of(scene), error = part * size;
       const Sites sites(scene.mesh);
-      const DistanceField field = drawn(sites, scene.grid, error);
-      const DistanceField exact =
-          compute_field(sites, scene.grid, {.method = FieldMethod::reference, .sign = SignMethod::none});
+      const fields::Field field = drawn(sites, scene.grid, error);
+      const fields::Field exact = fields::compute_field(
+          sites, scene.grid, {.method = fields::Method::reference, .sign = SignMethod::none});
       EXPECT_EQ(field.sign.method, SignMethod::none);
       EXPECT_GE(field.accuracy, error);
       EXPECT_LE(field.accuracy, error + 1.0001 * kRounding * size);
@@ -49,11 +51,11 @@ TEST(Tessellation, HasAnErrorThatFollowsItsBound) {
   const Mesh mesh = sphere(2);
   const Grid grid = make_grid(around(mesh, 0.5), {24, 25, 26});
   const Sites sites(mesh);
-  const DistanceField exact =
-      compute_field(sites, grid, {.method = FieldMethod::brute_force, .sign = SignMethod::none});
+  const fields::Field exact =
+      fields::compute_field(sites, grid, {.method = fields::Method::brute_force, .sign = SignMethod::none});
   double before = std::numeric_limits<double>::infinity();
   for (const double error : {0.2, 0.02, 0.002}) {
-    const DistanceField field = drawn(sites, grid, error);
+    const fields::Field field = drawn(sites, grid, error);
     double worst = 0;
     for (std::size_t i = 0; i < grid.size(); ++i)
       worst = std::max(worst, double{field.distance[i]} - exact.distance[i]);
@@ -67,9 +69,9 @@ TEST(Tessellation, WithinABandMissesOnlyPointsNearItsEnd) {
   const FieldScene scene = field_scenes()[0];
   const double size = diagonal_of(scene), band = 0.1 * size, error = 0.01 * size;
   const Sites sites(scene.mesh);
-  const DistanceField field = drawn(sites, scene.grid, error, band);
-  const DistanceField exact =
-      compute_field(sites, scene.grid, {.method = FieldMethod::reference, .sign = SignMethod::none});
+  const fields::Field field = drawn(sites, scene.grid, error, band);
+  const fields::Field exact = fields::compute_field(
+      sites, scene.grid, {.method = fields::Method::reference, .sign = SignMethod::none});
   std::size_t values = 0;
   for (std::size_t i = 0; i < field.distance.size(); ++i) {
     if (exact.distance[i] < band - field.accuracy) {
@@ -87,11 +89,11 @@ TEST(Tessellation, WithinABandMissesOnlyPointsNearItsEnd) {
 TEST(Tessellation, NeedsBruteForceAndNoSign) {
   const Sites sites(cube());
   const Grid grid = make_grid({{0, 0, 0}, {1, 1, 1}}, {3, 3, 3});
-  const auto error = [&](const FieldOptions& options) {
-    return error_of([&] { return compute_field(sites, grid, options); });
+  const auto error = [&](const fields::Options& options) {
+    return error_of([&] { return fields::compute_field(sites, grid, options); });
   };
-  const FieldMethod brute_force = FieldMethod::brute_force;
-  EXPECT_THAT(error({.method = FieldMethod::difi, .tessellation = 0.1}), HasSubstr("not by difi"));
+  const fields::Method brute_force = fields::Method::brute_force;
+  EXPECT_THAT(error({.method = fields::Method::difi, .tessellation = 0.1}), HasSubstr("not by difi"));
   EXPECT_THAT(error({.method = brute_force, .tessellation = -1}), HasSubstr("negative"));
   EXPECT_THAT(error({.method = brute_force, .tessellation = std::nan("")}), HasSubstr("negative"));
   EXPECT_THAT(error({.method = brute_force, .sign = SignMethod::exact, .tessellation = 0.1}),

@@ -3,12 +3,12 @@
 
 #include <span>
 
-#include "volume/field_writer.h"
+#include "research/fields/drawing_task.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 
 /// Computes the distances of the field by the method of the task, unsigned, and their sites if `winners` has
 /// one entry per point of the grid. Fills the counters and the working memory of the report.
-void sweep_slices(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners);
+void sweep_slices(const DrawingTask& task, Field& field, std::span<std::uint32_t> winners);
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

@@ -7,7 +7,7 @@
 
 #include "geometry/vec.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 
 /// The squared distance of each point of some rows, and the site that has it. Rows are padded, since vector
 /// instructions read and write whole vectors.
@@ -44,4 +44,4 @@ void draw_span(float* squared, std::uint32_t* winner, std::size_t count, const S
 [[nodiscard]] bool comes_within(const float* squared, std::size_t count, const SpanVector& vector,
                                 float reach);
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

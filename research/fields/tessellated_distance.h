@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "volume/draw_span.h"
-#include "volume/drawn_sites.h"
+#include "research/fields/draw_span.h"
+#include "research/fields/drawn_sites.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 
 /// Over a slice, the distance to the plane of a face is linear. That to the line of an edge is a cone over
 /// the plane normal to it, and that to a vertex a hyperboloid over the slice. Both are drawn as meshes:
@@ -36,4 +36,4 @@ class TessellatedDistance {
   std::vector<double> rings_;     ///< radii
 };
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

@@ -1,4 +1,4 @@
-#include "volume/scan_convert.h"
+#include "research/fields/scan_convert.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,12 +6,12 @@
 
 #include "core/parallel.h"
 #include "core/rows.h"
-#include "volume/draw_span.h"
-#include "volume/drawn_sites.h"
-#include "volume/slice_polygon.h"
-#include "volume/slice_store.h"
+#include "research/fields/draw_span.h"
+#include "research/fields/drawn_sites.h"
+#include "research/fields/slice_polygon.h"
+#include "research/fields/slice_store.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 namespace {
 
 constexpr std::uint32_t kSlab = 8;  // slices scan converted by one thread, site by site
@@ -23,9 +23,9 @@ struct SliceRange {
 
 class ScanConversion {
  public:
-  ScanConversion(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners)
+  ScanConversion(const DrawingTask& task, Field& field, std::span<std::uint32_t> winners)
       : task_(task),
-        report_(field.report),
+        field_(field),
         grid_(task.grid, task.sites.frame),
         rules_(task, grid_),
         sites_(drawn_sites(task.sites)),
@@ -49,14 +49,15 @@ class ScanConversion {
            seen < rows.bytes() && !largest.compare_exchange_weak(seen, rows.bytes());) {
       }
     });
-    report_.sites = sites_.size();
-    report_.pairs = std::uint64_t{sites_.size()} * grid_.dims[2];
-    report_.pairs_culled = report_.pairs - drawn;
-    report_.pairs_empty = empty;
-    report_.evaluations = evaluations;
-    report_.working_bytes = sites_.capacity() * sizeof(DrawnSite) +
-                            slab_sites_.capacity() * sizeof(std::uint32_t) +
-                            slab_starts_.capacity() * sizeof(std::size_t) + thread_count() * largest;
+    Work& work = field_.work;
+    work.sites = sites_.size();
+    work.pairs = std::uint64_t{sites_.size()} * grid_.dims[2];
+    work.pairs_culled = work.pairs - drawn;
+    work.pairs_empty = empty;
+    work.evaluations = evaluations;
+    field_.report.working_bytes = sites_.capacity() * sizeof(DrawnSite) +
+                                  slab_sites_.capacity() * sizeof(std::uint32_t) +
+                                  slab_starts_.capacity() * sizeof(std::size_t) + thread_count() * largest;
   }
 
  private:
@@ -132,8 +133,8 @@ class ScanConversion {
     }
   }
 
-  const FieldTask& task_;
-  FieldReport& report_;
+  const DrawingTask& task_;
+  Field& field_;
   const UnitGrid grid_;
   const SliceRules rules_;
   const std::vector<DrawnSite> sites_;
@@ -144,8 +145,8 @@ class ScanConversion {
 
 }  // namespace
 
-void scan_convert(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners) {
+void scan_convert(const DrawingTask& task, Field& field, std::span<std::uint32_t> winners) {
   ScanConversion(task, field, winners).run();
 }
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

@@ -1,7 +1,7 @@
-#include "volume/draw_span.h"
+#include "research/fields/draw_span.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "volume/draw_span.cpp"
+#define HWY_TARGET_INCLUDE "research/fields/draw_span.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -9,7 +9,7 @@
 #include <sdm/types.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::volume::HWY_NAMESPACE {
+namespace sdm::fields::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, 16>;
@@ -47,11 +47,11 @@ bool ComesWithin(const float* squared, size_t count, const SpanVector& vector, f
   return false;
 }
 
-}  // namespace sdm::volume::HWY_NAMESPACE
+}  // namespace sdm::fields::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm::volume {
+namespace sdm::fields {
 
 HWY_EXPORT(DrawSpan);
 HWY_EXPORT(ComesWithin);
@@ -71,5 +71,5 @@ bool comes_within(const float* squared, std::size_t count, const SpanVector& vec
   return HWY_DYNAMIC_DISPATCH(ComesWithin)(squared, count, vector, reach);
 }
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields
 #endif

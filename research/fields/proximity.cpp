@@ -1,6 +1,5 @@
 // Proximity from a distance field: the distances at samples of O1's surface, interpolated.
 #include <sdm/error.h>
-#include <sdm/volume.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +10,11 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/triangle.h"
-#include "volume/grid.h"
+#include "geometry/vec.h"
+#include "research/fields/fields.h"
 #include "volume/interpolation.h"
 
-namespace sdm {
+namespace sdm::fields {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -76,7 +76,7 @@ struct FaceSamples {
   }
 };
 
-double spacing_of(const FieldProximityOptions& options, const Grid& grid) {
+double spacing_of(const ProximityOptions& options, const Grid& grid) {
   if (!(options.sample_spacing >= 0)) throw Error("the spacing of samples must not be negative");
   if (options.sample_spacing > 0) return options.sample_spacing;
   double least = kInfinity;
@@ -96,14 +96,13 @@ BoundedLength length(double value, double lower, double upper) {
 
 }  // namespace
 
-FieldProximity field_proximity(const DistanceField& field, const Mesh& o1,
-                               const FieldProximityOptions& options) try {
+Proximity proximity(const DistanceField& field, const Mesh& o1, const ProximityOptions& options) try {
   validate(o1);
   const volume::Interpolation at(field);
   const double spacing = spacing_of(options, field.grid);
   constexpr double kMostSamples = 1e10;
   double count = 0;
-  FieldProximity result;
+  Proximity result;
   for (const Triangle& t : o1.triangles) {
     const FaceSamples face(o1, t, spacing);
     count += face.count();
@@ -145,4 +144,4 @@ FieldProximity field_proximity(const DistanceField& field, const Mesh& o1,
   throw out_of_memory("proximity from a distance field");
 }
 
-}  // namespace sdm
+}  // namespace sdm::fields

@@ -1,4 +1,4 @@
-#include "volume/sweep_slices.h"
+#include "research/fields/sweep_slices.h"
 
 #include <sdm/error.h>
 
@@ -8,13 +8,13 @@
 #include <optional>
 
 #include "core/parallel.h"
-#include "volume/draw_span.h"
-#include "volume/drawn_sites.h"
-#include "volume/slice_polygon.h"
-#include "volume/slice_store.h"
-#include "volume/tessellated_distance.h"
+#include "research/fields/draw_span.h"
+#include "research/fields/drawn_sites.h"
+#include "research/fields/slice_polygon.h"
+#include "research/fields/slice_store.h"
+#include "research/fields/tessellated_distance.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 namespace {
 
 // What distinguishes the methods.
@@ -23,10 +23,10 @@ struct SweepRules {
   bool bounds;   // the largest distance of a slice bounds that of the next
   bool retires;  // sites without influence on a slice are culled from later ones
 
-  explicit SweepRules(FieldMethod method)
-      : regions(method == FieldMethod::linear_factorization),
-        bounds(method != FieldMethod::brute_force),
-        retires(method != FieldMethod::brute_force) {}
+  explicit SweepRules(Method method)
+      : regions(method == Method::linear_factorization),
+        bounds(method != Method::brute_force),
+        retires(method != Method::brute_force) {}
 };
 
 // The part of a slice in which a site is drawn.
@@ -59,15 +59,14 @@ struct Chunk {
 // extends are retired.
 class SliceSweep {
  public:
-  SliceSweep(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners)
+  SliceSweep(const DrawingTask& task, Field& field, std::span<std::uint32_t> winners)
       : task_(task),
-        report_(field.report),
+        field_(field),
         grid_(task.grid, task.sites.frame),
         method_(task.options.method),
         rules_(task, grid_),
         sites_(drawn_sites(task.sites)),
-        store_(task, field, winners),
-        radius_(0.5 * std::hypot(grid_.step[0], grid_.step[1])) {
+        store_(task, field, winners) {
     if (task.options.tessellation > 0)
       (void)TessellatedDistance(tessellation(), limit());  // throws before anything is drawn
     active_.resize(sites_.size());
@@ -87,12 +86,15 @@ class SliceSweep {
       if (method_.bounds) reach = std::min(rules_.limit, largest + grid_.step[2] + rules_.margin);
     }
     if (task_.options.progress && !task_.options.progress("field", 1)) throw Cancelled();
-    report_.sites = sites_.size();
-    report_.pairs = std::uint64_t{sites_.size()} * grid_.dims[2];
-    report_.working_bytes = working_bytes();
+    field_.work.sites = sites_.size();
+    field_.work.pairs = std::uint64_t{sites_.size()} * grid_.dims[2];
+    field_.report.working_bytes = working_bytes();
   }
 
  private:
+  // No point of a slice is farther from all points of the grid.
+  [[nodiscard]] double radius() const { return 0.5 * std::hypot(grid_.step[0], grid_.step[1]); }
+
   static constexpr std::size_t kChunk = 256;  // sites
   static constexpr std::uint32_t kBand = 16;  // rows drawn by one thread
 
@@ -124,10 +126,10 @@ class SliceSweep {
       }
     });
     keep_.assign(active_.size(), 1);
-    report_.pairs_culled += sites_.size() - active_.size();
+    field_.work.pairs_culled += sites_.size() - active_.size();
     for (const Chunk& chunk : chunks_) {
-      report_.pairs_culled += chunk.culled;
-      report_.pairs_empty += chunk.empty;
+      field_.work.pairs_culled += chunk.culled;
+      field_.work.pairs_empty += chunk.empty;
       for (const SlicePolygon& p : chunk.polygons) keep_[p.site] = p.may_retire ? 0 : 1;
     }
   }
@@ -146,7 +148,7 @@ class SliceSweep {
                         slack);
     };
     SlicePolygon polygon{active, within(reach, rules_.slack), method_.retires && may_retire(slice, site), {}};
-    if (polygon.may_retire) polygon.tested = within(reach + radius_, rules_.slack + radius_);
+    if (polygon.may_retire) polygon.tested = within(reach + radius(), rules_.slack + radius());
     if (polygon.drawn.empty()) ++chunk.empty;
     if (!polygon.drawn.empty() || polygon.may_retire) chunk.polygons.push_back(polygon);
   }
@@ -185,7 +187,7 @@ class SliceSweep {
         evaluations += count;
       }
     });
-    report_.evaluations += evaluations;
+    field_.work.evaluations += evaluations;
   }
 
   // The error of distance functions drawn as meshes, in the unit frame; 0: they are evaluated.
@@ -217,7 +219,7 @@ class SliceSweep {
 
   [[nodiscard]] bool influences(const Slice& slice, const DrawnSite& site, const PolygonRows& rows,
                                 std::uint32_t first_row, const DepthRows& band) const {
-    const auto reach = static_cast<float>(2 * radius_ + rules_.margin);
+    const auto reach = static_cast<float>(2 * radius() + rules_.margin);
     for (std::uint32_t r = 0; r < rows.count(); ++r) {
       const auto [begin, end] = rows.points(r);
       const std::size_t at = (rows.first() + r - first_row) * band.stride + begin;
@@ -262,14 +264,13 @@ class SliceSweep {
     return bytes;
   }
 
-  const FieldTask& task_;
-  FieldReport& report_;
+  const DrawingTask& task_;
+  Field& field_;
   const UnitGrid grid_;
   const SweepRules method_;
   const SliceRules rules_;
   const std::vector<DrawnSite> sites_;
   const SliceStore store_;
-  const double radius_;                // no point of a slice is farther from all points of the grid
   std::vector<std::uint32_t> active_;  // sites that are not retired, in order
   std::vector<std::uint8_t> keep_;     // of each of them: it may influence slices above
   std::vector<Chunk> chunks_;
@@ -279,8 +280,8 @@ class SliceSweep {
 
 }  // namespace
 
-void sweep_slices(const FieldTask& task, DistanceField& field, std::span<std::uint32_t> winners) {
+void sweep_slices(const DrawingTask& task, Field& field, std::span<std::uint32_t> winners) {
   SliceSweep(task, field, winners).run();
 }
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "gl/polygons/convex_polygon.h"
-#include "volume/drawn_sites.h"
+#include "research/fields/drawn_sites.h"
 
-namespace sdm::volume {
+namespace sdm::fields {
 
 /// A rectangle of a slice; coordinates in a slice are those of its points, (i, j).
 struct SliceRect {
@@ -136,4 +136,4 @@ class PolygonRows {
   std::vector<double> left_, right_;
 };
 
-}  // namespace sdm::volume
+}  // namespace sdm::fields

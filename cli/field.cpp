@@ -1,0 +1,135 @@
+#include "field.h"
+
+#include <fmt/format.h>
+#include <sdm/error.h>
+#include <sdm/field_files.h>
+#include <sdm/io.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common_options.h"
+#include "format.h"
+#include "option_checks.h"
+#include "report.h"
+
+namespace {
+
+void extend(sdm::Box& box, const sdm::Box& other) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(box.lo[k], other.lo[k]);
+    box.hi[k] = std::max(box.hi[k], other.hi[k]);
+  }
+}
+
+struct Range {
+  double min = std::numeric_limits<double>::quiet_NaN(), max = min;
+};
+
+// Of the points with a value.
+Range range_of(const sdm::DistanceField& field) {
+  Range range;
+  for (const float d : field.distance) {
+    if (std::isnan(d)) continue;
+    range.min = std::isnan(range.min) ? double{d} : std::min(range.min, double{d});
+    range.max = std::isnan(range.max) ? double{d} : std::max(range.max, double{d});
+  }
+  return range;
+}
+
+}  // namespace
+
+sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::Box& more) {
+  sdm::Box box;
+  if (!command.bounds.empty()) {
+    for (std::size_t k = 0; k < 3; ++k) box.lo[k] = command.bounds[k], box.hi[k] = command.bounds[k + 3];
+  } else {
+    box = sdm::bounds(o2);
+    const double diagonal = std::hypot(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]);
+    const double band = command.options.band;
+    const double margin = band < std::numeric_limits<double>::infinity() ? band : 0.1 * diagonal;
+    for (std::size_t k = 0; k < 3; ++k) box.lo[k] -= margin, box.hi[k] += margin;
+    extend(box, more);
+  }
+  if (command.points.empty()) return sdm::make_grid(box, command.spacing);
+  return sdm::make_grid(box, {command.points[0], command.points[1], command.points[2]});
+}
+
+nlohmann::ordered_json field_json(const sdm::DistanceField& field) {
+  const Range range = range_of(field);
+  nlohmann::ordered_json json;
+  json["grid"] = {
+      {"points", field.grid.dims}, {"origin", field.grid.origin}, {"spacing", field.grid.spacing}};
+  json["band"] = field.band;  // null: no limit
+  json["sign"] = {{"method", sign_name(field.sign.method)}, {"reason", field.sign.reason}};
+  json["distance"] = {{"min", range.min}, {"max", range.max}};  // null: no point has a value
+  json["beyond_band"] = field.beyond_band;
+  json["accuracy"] = field.accuracy;
+  json["accuracy_kind"] = "bounded";
+  return json;
+}
+
+std::string field_lines(const FieldCommand& command, const sdm::DistanceField& field) {
+  const std::string unit = unit_suffix(command.units);
+  const sdm::Grid& grid = field.grid;
+  std::string text = fmt::format("{}\n  grid       {} x {} x {} points, {} {} {}{} apart\n", command.o2,
+                                 grid.dims[0], grid.dims[1], grid.dims[2], number(grid.spacing[0]),
+                                 number(grid.spacing[1]), number(grid.spacing[2]), unit);
+  const Range range = range_of(field);
+  if (field.beyond_band == field.distance.size())
+    text += "  distance   no point is within the band\n";
+  else
+    text += fmt::format("  distance   min {}   max {}{}, to {}\n", number(range.min), number(range.max), unit,
+                        number(field.accuracy, 2));
+  if (field.sign.method == sdm::SignMethod::none)
+    text += fmt::format("             unsigned: {}\n", field.sign.reason);
+  if (field.beyond_band > 0)
+    text += fmt::format("             {} points are beyond the band\n", field.beyond_band);
+  return text;
+}
+
+void check_field_options(const FieldCommand& command) {
+  if (command.points.empty() == (command.spacing == 0))
+    throw CLI::ValidationError("--grid", "give either --grid or --spacing");
+  for (std::size_t k = 0; k < 3 && !command.bounds.empty(); ++k)
+    if (!(command.bounds[k] <= command.bounds[k + 3]))
+      throw CLI::ValidationError("--bounds", "the first three numbers are the lowest coordinates");
+  if (command.out.empty()) return;
+  try {
+    sdm::check_field_format(command.out);
+  } catch (const sdm::Error& error) {
+    throw CLI::ValidationError("--output", error.what());
+  }
+}
+
+void add_field_options(CLI::App& app, FieldCommand& command, const std::string& box) {
+  app.add_option("O2", command.o2,
+                 fmt::format("The mesh that distances are measured to ({})", sdm::mesh_format_names()))
+      ->required();
+  app.add_option("-o,--output", command.out, "The file: " + sdm::field_format_names())->type_name("FILE");
+  app.add_option("--grid", command.points, "Points along x, y and z")
+      ->expected(3)
+      ->transform(whole_number(1, sdm::Grid::kMostPoints))
+      ->type_name("NX NY NZ");
+  const auto positive = [] { return number("a positive number", [](double x) { return x > 0; }); };
+  app.add_option("--spacing", command.spacing,
+                 "The distance of neighbouring points along each axis, in place of --grid")
+      ->check(positive())
+      ->type_name("H");
+  app.add_option("--bounds", command.bounds,
+                 "The lowest and the highest corner of the grid; by default the box of O2, extended by the "
+                 "band, or by a tenth of its diagonal" +
+                     box)
+      ->expected(6)
+      ->check(number("a number", [](double) { return true; }))
+      ->type_name("X0 Y0 Z0 X1 Y1 Z1");
+  app.add_option("--band", command.options.band, "Points farther from O2 than D have no value")
+      ->check(positive())
+      ->type_name("D");
+  add_sign_option(app, command.options.sign);
+  app.add_flag("--sites", command.options.sites, "Also find the closest sites (in .vti)");
+  add_transform_option(app, "--transform-o2", "O2", command.transform_o2);
+  app.add_option("--units", command.units, "Units of the meshes, for printed values")->type_name("NAME");
+  add_run_options(app, command.threads, command.json, command.quiet, "JSON instead of a summary");
+}

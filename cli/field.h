@@ -1,0 +1,37 @@
+// What the commands that compute a distance field have in common.
+#pragma once
+
+#include <sdm/volume.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+struct FieldCommand {
+  std::string o2, transform_o2, units;
+  std::vector<std::uint32_t> points;  // along x, y and z
+  double spacing = 0;
+  std::vector<double> bounds;  // low and high corner
+  sdm::FieldOptions options;
+  std::filesystem::path out;
+  unsigned threads = 0;
+  bool json = false, quiet = false;
+};
+
+/// Adds the options, whose parsing sets the command, which must outlive `app`. `box` describes what else the
+/// grid extends around, in the help text.
+void add_field_options(CLI::App& app, FieldCommand& command, const std::string& box);
+/// Throws CLI::ValidationError for options that do not fit together, or a file of no known format.
+void check_field_options(const FieldCommand& command);
+
+/// By default, the grid extends around O2 by the band, or by a tenth of O2's diagonal, and around `more`,
+/// whose boxes may be empty.
+[[nodiscard]] sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::Box& more);
+
+/// Keys that describe the field, without `work`.
+[[nodiscard]] nlohmann::ordered_json field_json(const sdm::DistanceField& field);
+/// The first lines of the text, up to the points beyond the band.
+[[nodiscard]] std::string field_lines(const FieldCommand& command, const sdm::DistanceField& field);
