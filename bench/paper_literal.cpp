@@ -1,5 +1,5 @@
 // The paper's Algorithm 1 as it is printed, and each correction of the gl engine
-// (gl/polygons/corrections.h) added to it alone, and removed alone from the engine. Errors are those
+// (research/literal/corrections.h) added to it alone, and removed alone from the engine. Errors are those
 // of |distance|, in millionths of the diagonal of the bounding box of both meshes, over texels with a value;
 // "wrong" is the percentage of texels whose distance, site or vector is wrong by more than the accuracy of
 // the engine, or that have no value; "none" that of the latter; "repaired" that of texels that the cpu engine
@@ -19,9 +19,9 @@
 #include <utility>
 #include <vector>
 
-#include "gl/gl_engine.h"
 #include "harness.h"
 #include "research/figures/corrections.h"
+#include "research/literal/literal_engine.h"
 #include "scenes.h"
 #include "scenes/reduce_mesh.h"
 #include "scenes/scene.h"
@@ -47,9 +47,9 @@ Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, std::uint32_
   Outcome outcome{.verified = true};
   std::vector<Contender> contenders;
   for (const figures::Variant& variant : variants()) {
-    const auto engine = gl::make_gl_engine({.device = device, .clip = GlClip::stencil}, variant.corrections);
+    const auto engine = literal::make_engine({.device = device}, variant.corrections);
     const figures::MapErrors e = figures::errors_of(map_by(engine), reference, surface, sites);
-    const GlReport report = gl_report(*engine).value();
+    const GlReport report = literal::report(*engine).value();
     const auto texels = static_cast<double>(report.texels);
     if (outcome.rows.empty() && e.wrong > 0) {
       std::fprintf(stderr, "the map with all corrections is wrong\n");

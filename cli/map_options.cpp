@@ -66,9 +66,6 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_flag_callback(
       "--no-bound-culling", [&c] { c.gl.bound_culling = false; },
       "gl: do not cull sites by upper bounds on the distance; the map is unchanged");
-  app.add_flag("--paper-literal", c.gl.paper_literal,
-               "gl: run the algorithm of the paper as it is printed, without corrections; the map is an "
-               "estimate of unknown accuracy");
   add_tolerance_option(app, c.picture.tolerance);
   app.add_option(
          "--bands", c.bands,
@@ -93,14 +90,9 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
       t && std::max(std::abs(t->lo), std::abs(t->hi)) > c.map.max_distance)
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which texels have no value");
-  for (const char* option :
-       {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling", "--paper-literal"})
+  for (const char* option : {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling"})
     if (app.count(option) > 0 && c.engine.name != "gl")
       throw CLI::ValidationError(option, "needs --engine gl");
-  if (c.gl.paper_literal && app.count("--clip") > 0 && c.gl.clip != sdm::GlClip::stencil)
-    throw CLI::ValidationError("--paper-literal", "clips by the stencil: omit --clip planes");
-  if (c.gl.paper_literal && c.picture.tolerance)
-    throw CLI::ValidationError("--tolerance", "needs a known accuracy: omit --paper-literal");
-  if (app.count("--stencil-values") > 0 && !c.gl.paper_literal && c.gl.clip != sdm::GlClip::stencil)
+  if (app.count("--stencil-values") > 0 && c.gl.clip != sdm::GlClip::stencil)
     throw CLI::ValidationError("--stencil-values", "needs --clip stencil");
 }

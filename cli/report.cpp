@@ -42,7 +42,6 @@ Json gl_json(const sdm::GlReport& r) {
   const sdm::GlReport::Times& t = r.time_ms;
   return {{"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
           {"clip", clip_name(r.clip)},
-          {"paper_literal", r.paper_literal},
           {"sites", r.sites},
           {"sites_dropped", r.sites_dropped},
           {"faces", r.faces},

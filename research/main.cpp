@@ -11,6 +11,7 @@
 #include "cli/usage_error.h"
 #include "research/field_command.h"
 #include "research/figures_command.h"
+#include "research/literal_command.h"
 
 namespace {
 
@@ -23,6 +24,7 @@ int run(int argc, char** argv) {
   try {
     add_figures_command(app);
     add_field_command(app);
+    add_literal_command(app);
     app.failure_message(usage_error);
     app.parse(arguments(app, argc, argv));
     return 0;

@@ -1,23 +1,19 @@
 #version 450 core
 // The distance from a texel's surface point to a site: the norm of the distance vector, which is affine in
 // the texel (Lemma 1). It is evaluated here rather than interpolated from the polygon's corners, because
-// rasterisers snap corners to a grid of 1/256 texel and interpolate between the snapped positions. As the
-// paper has it, if `interpolate` is set.
+// rasterisers snap corners to a grid of 1/256 texel and interpolate between the snapped positions.
 
 uniform bool by_owner;  // whether fragments test the owner of their texel
-uniform bool interpolate;  // use the vectors of the corners
 uniform usampler2D owner;  // the domain that owns each texel
 
 flat in vec2 origin;  // texel coordinates at which the affine functions have their base values
 flat in vec3 distance_vector, vector_du, vector_dv;
 flat in vec3 walls[5];  // (value, d/du, d/dv): the region is where none is negative
 flat in uint winner, domain;  // the value that stands for the site, and the domain being drawn
-noperspective in vec3 interpolated_vector;
 
 layout(binding = 0, offset = 0) uniform atomic_uint fragments;
 
 layout(location = 0) out uint closest;
-layout(location = 1) out vec4 vector_drawn;  // stored only if it is not recomputed
 
 void main() {
   if (by_owner && texelFetch(owner, ivec2(gl_FragCoord.xy), 0).r != domain) discard;
@@ -26,7 +22,5 @@ void main() {
     if (walls[i].x + dot(walls[i].yz, o) < 0.0) discard;
   atomicCounterIncrement(fragments);
   closest = winner;
-  const vec3 vector = interpolate ? interpolated_vector : distance_vector + o.x * vector_du + o.y * vector_dv;
-  vector_drawn = vec4(vector, 0.0);
-  gl_FragDepth = length(vector);
+  gl_FragDepth = length(distance_vector + o.x * vector_du + o.y * vector_dv);
 }

@@ -7,13 +7,11 @@ uniform usamplerBuffer polygons;  // seven texels per polygon (RasterPolygon), a
 
 layout(location = 0) in vec2 corner;
 layout(location = 1) in uint polygon;
-layout(location = 2) in vec3 corner_vector;  // if vectors are interpolated
 
 flat out vec2 origin;
 flat out vec3 distance_vector, vector_du, vector_dv;
 flat out vec3 walls[5];
 flat out uint winner, domain;
-noperspective out vec3 interpolated_vector;
 
 void main() {
   const int first = 7 * int(polygon - first_polygon);
@@ -35,6 +33,5 @@ void main() {
   origin = uintBitsToFloat(uvec2(a.w, b.w));
   winner = c.w;
   domain = g.w;
-  interpolated_vector = corner_vector;
   gl_Position = vec4(2.0 * corner / size - 1.0, 0.0, 1.0);
 }

@@ -31,8 +31,7 @@ struct EngineInfo {
 /// engine that this build does not contain.
 [[nodiscard]] SDM_API std::shared_ptr<const Engine> make_engine(std::string_view name);
 
-/// Returns the entry of engines() for this engine; for one of GlOptions::paper_literal, with an infinite
-/// relative_error.
+/// Returns the entry of engines() for this engine.
 [[nodiscard]] SDM_API const EngineInfo& engine_info(const Engine& engine);
 
 }  // namespace sdm

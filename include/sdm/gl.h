@@ -41,10 +41,6 @@ struct GlOptions {
   /// Skip sites that are farther from a face than an upper bound on its distances (4.2). Does not affect the
   /// distances.
   bool bound_culling = true;
-  /// Run the paper's Algorithm 1 as it is printed, without the corrections of docs/theory.md, for comparison
-  /// with the paper. Distances and vectors are estimates of unknown accuracy: the engine's relative_error is
-  /// infinite, and texels may have no value. Implies GlClip::stencil.
-  bool paper_literal = false;
 };
 
 /// Returns the device that `options` selects for maps whose longer side has `resolution` texels. Throws
@@ -53,13 +49,12 @@ struct GlOptions {
 [[nodiscard]] SDM_API GlDevice gl_device(const GlOptions& options, std::uint32_t resolution);
 
 /// Counters and times of the gl engine. Counts do not depend on the number of threads. A pair is a site of O2
-/// and a tile of O1 (the texels of one face in a square of 16 × 16 texels; with paper_literal all of its
-/// texels). Each pair has exactly one outcome:
+/// and a tile of O1 (the texels of one face in a square of 16 × 16 texels). Each pair has exactly one
+/// outcome:
 ///   pairs = culled_by_bound + culled_by_obb + clipped_away + polygons.
 struct GlReport {
   GlDevice device;
   GlClip clip = GlClip::planes;
-  bool paper_literal = false;  ///< as requested: the map is an estimate
 
   std::uint64_t sites = 0;          ///< of O2
   std::uint64_t sites_dropped = 0;  ///< sites whose region of influence has no interior; in no pair
@@ -78,7 +73,7 @@ struct GlReport {
   std::uint64_t texels = 0;        ///< owned by a face: fragments / texels is the overdraw
   std::uint64_t batches = 0;       ///< of polygons sent to the device
   /// Texels whose site is farther than the distance drawn; their closest site is recomputed by the cpu
-  /// engine. 0 unless the driver is faulty, or with paper_literal, which confirms nothing.
+  /// engine. 0 unless the driver is faulty.
   std::uint64_t unconfirmed = 0;
 
   // GlClip::stencil only, otherwise 0. lookups = hits + misses; misses − evictions is the number of values in

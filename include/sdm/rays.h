@@ -58,7 +58,7 @@ struct RayHit {
 /// Returns, for each texel, a radius within which there is no point of O2: the distance of the map less the
 /// largest error that an engine may make (EngineInfo::relative_error), at least 0; 0 where the map has no
 /// value. The t_min of rays of unit direction that start at the texel's surface point. The map must be one of
-/// this surface to these sites in their present shapes, and not an estimate (GlOptions::paper_literal).
+/// this surface to these sites in their present shapes.
 /// Throws sdm::Error if its resolution is not that of the surface. Cost: linear.
 [[nodiscard]] SDM_API std::vector<double> free_distances(const Surface& surface, const DistanceMap& map,
                                                          const Sites& sites);

@@ -3,9 +3,10 @@
 
 #include <vector>
 
-#include "gl/polygons/raster_polygon.h"
+#include "gl/polygons/convex_polygon.h"
 #include "gl/polygons/site_region.h"
 #include "research/fields/drawing_task.h"
+#include "research/site_code.h"
 #include "volume/grid.h"
 
 namespace sdm::fields {
@@ -14,9 +15,9 @@ using volume::UnitGrid;
 
 using gl::HalfPlane;
 using gl::HalfSpace;
-using gl::site_code;
-using gl::site_of;
 using gl::SiteRegion;
+using research::site_code;
+using research::site_of;
 
 struct DrawnSite {
   SiteRegion region;

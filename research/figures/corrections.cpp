@@ -10,7 +10,7 @@
 namespace sdm::figures {
 namespace {
 
-using gl::Corrections;
+using literal::Corrections;
 
 /// A correction, and what else must change with it.
 struct Switch {

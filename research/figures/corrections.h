@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "gl/polygons/corrections.h"
+#include "research/literal/corrections.h"
 
 namespace sdm::figures {
 
 /// A set of corrections with a name.
 struct Variant {
   std::string name;
-  gl::Corrections corrections;
+  literal::Corrections corrections;
 };
 
 /// All corrections, the algorithm as printed, each correction added alone to the latter, and tiles with each

@@ -5,13 +5,13 @@
 #include <span>
 
 #include "geometry/vec.h"
-#include "gl/gl_engine.h"
 #include "research/figures/charts/bars.h"
 #include "research/figures/corrections.h"
 #include "research/figures/figures.h"
 #include "research/figures/maps.h"
 #include "research/figures/pieces.h"
 #include "research/figures/timing.h"
+#include "research/literal/literal_engine.h"
 
 namespace sdm::figures {
 namespace {
@@ -60,9 +60,9 @@ std::vector<Result> measure(Run& run, const Surface& surface, const Sites& sites
   std::vector<std::function<void()>> work;
   for (const Variant& variant : added_corrections()) {
     run.step("literal_algorithm");
-    const auto engine = gl::make_gl_engine({.clip = GlClip::stencil}, variant.corrections);
+    const auto engine = literal::make_engine({}, variant.corrections);
     const MapErrors errors = errors_of(map_by(engine), reference, surface, sites);
-    const GlReport report = gl_report(*engine).value();
+    const GlReport report = literal::report(*engine).value();
     results.push_back({variant.name, errors,
                        100 * static_cast<double>(report.unconfirmed) / static_cast<double>(report.texels)});
     work.emplace_back([&map_by, engine] { (void)map_by(engine); });

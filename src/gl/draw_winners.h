@@ -3,26 +3,22 @@
 
 #include <sdm/gl.h>
 
-#include <array>
 #include <vector>
 
-#include "engine/engine.h"
+#include "gl/map_drawing.h"
 #include "gl/rasteriser.h"
-#include "gl/tile_tree.h"
-#include "sites/sites_data.h"
 
 namespace sdm::gl {
 
 /// The result of drawing at each texel of a surface, in single precision.
 struct RasterWinners {
-  /// A face of O2 to which the closest site belongs, or site_code() without confirmation; kNone where no face
-  /// of O1 owns the texel, or nothing lies within the maximum distance.
+  /// A face of O2 to which the closest site belongs; kNone where no face of O1 owns the texel, or nothing
+  /// lies within the maximum distance.
   std::vector<std::uint32_t> winners;
   /// The distance drawn, in units of `depth_unit`. All sites that are closest to some texel were drawn there,
   /// so no site is nearer than this: a face whose distance is at most this, up to the tolerance, is
   /// confirmed.
   std::vector<float> depths;
-  std::vector<std::array<float, 4>> vectors;  ///< the distance vectors drawn; empty with confirmation
   bool complete = true;  ///< nothing was drawn only where nothing lies within the maximum distance
   double depth_unit = 1;
   double tolerance = 0;  ///< error of depths from single precision and from enlarging the regions
@@ -30,16 +26,6 @@ struct RasterWinners {
   [[nodiscard]] bool confirms(std::uint32_t texel, double distance) const {
     return distance <= depth_unit * static_cast<double>(depths[texel]) + tolerance;
   }
-};
-
-/// What to draw.
-struct DrawTask {
-  const Surface& surface;
-  const TileTree& tile_tree;  ///< of the surface
-  const sites::SitesData& sites;
-  const GlOptions& gl;
-  const Corrections& corrections;
-  const engine::EngineOptions& options;
 };
 
 /// Draws the map on a device whose context is current, and fills the report's counts and times up to

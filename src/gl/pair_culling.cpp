@@ -1,61 +1,12 @@
 #include "gl/pair_culling.h"
 
-#include "gl/polygons/oriented_box.h"
-
 namespace sdm::gl {
-namespace {
 
 bool beyond(const tree::FloatBox& site, const DomainTree& tree, std::uint32_t node, PairCounts& counts) {
   ++counts.bound_tests;
   const double bound = tree.bound[node];
   return squared_norm(gap(site, tree.tree.box(node))) > bound * bound;
 }
-
-// Descends the block's subtree with one site.
-class Descent {
- public:
-  Descent(const DomainTree& tree, const DomainBlock& block, const SiteRegion& region, double reach,
-          const RasterRules& rules, RasterBatch& batch, PairCounts& counts)
-      : tree_(tree),
-        block_(block),
-        region_(region),
-        rules_(rules),
-        batch_(batch),
-        counts_(counts),
-        box_(tree::FloatBox::around(region.box())),
-        oriented_(oriented_box(region, reach, rules.corrections.margins ? rules.slack : 0)) {}
-
-  void run() { visit(tree_.tree, {block_.node, block_.end}, *this); }
-
-  bool enter(tree::Subtree below) {
-    if (beyond(box_, tree_, below.root, counts_)) {
-      counts_.culled_by_bound += tree_.leaves.count(below);
-      return false;
-    }
-    ++counts_.obb_tests;
-    if (may_meet(oriented_, tree_.tree.box(below.root))) return true;
-    counts_.culled_by_obb += tree_.leaves.count(below);
-    return false;
-  }
-
-  void leaf(std::uint32_t leaf) {
-    const std::uint32_t position = tree_.leaves.count(block_.node, leaf);
-    const bool drawn = add_polygon(batch_, region_, oriented_, block_.domains[position], rules_);
-    ++(drawn ? counts_.polygons : counts_.clipped_away);
-  }
-
- private:
-  const DomainTree& tree_;
-  const DomainBlock& block_;
-  const SiteRegion& region_;
-  const RasterRules& rules_;
-  RasterBatch& batch_;
-  PairCounts& counts_;
-  tree::FloatBox box_;
-  OrientedBox oriented_;
-};
-
-}  // namespace
 
 SiteIndex::SiteIndex(const sites::SitesData& s) : sites(s), leaves(s.tree), before{0} {
   const std::size_t leaf_count = s.regions.bounds.size();
@@ -103,15 +54,6 @@ std::vector<std::uint32_t> leaves_within_bound(const SiteIndex& index, const Dom
   visit(site_tree,
         tree::InOrder{enter, [&](std::uint32_t leaf) { leaves.push_back(index.leaves.before[leaf]); }});
   return leaves;
-}
-
-void draw_leaf(const SiteIndex& index, std::uint32_t leaf, const DomainTree& tree, const DomainBlock& block,
-               double reach, const RasterRules& rules, RasterBatch& batch, PairCounts& counts) {
-  for_each_site(index.sites.regions, leaf, [&](const auto& site, std::size_t at) {
-    if (!has_interior(site)) return;
-    const SiteRegion region = region_of(index.sites, site, at);
-    Descent(tree, block, region, reach, rules, batch, counts).run();
-  });
 }
 
 }  // namespace sdm::gl

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "gl/domain_tree.h"
-#include "gl/polygons/raster_polygon.h"
+#include "gl/polygons/oriented_box.h"
+#include "gl/polygons/planar_domain.h"
+#include "gl/polygons/site_region.h"
+#include "tree/visit.h"
 
 namespace sdm::gl {
 
@@ -43,9 +46,67 @@ struct DomainBlock {
 [[nodiscard]] std::vector<std::uint32_t> leaves_within_bound(const SiteIndex& index, const DomainTree& tree,
                                                              const DomainBlock& block, PairCounts& counts);
 
-/// Adds the polygons of all sites of a leaf of O2's tree on the block's domains. `reach`: the largest
-/// distance of interest.
+/// Whether a site with this box is farther from the node than its bound.
+[[nodiscard]] bool beyond(const tree::FloatBox& site, const DomainTree& tree, std::uint32_t node,
+                          PairCounts& counts);
+
+/// Descends the block's subtree with one site. `Polygons` says what is drawn: box(region) contains it, and
+/// add(batch, region, box, domain) adds it, unless it is empty, and returns whether it did.
+template <class Polygons>
+class SiteDescent {
+ public:
+  using Batch = typename Polygons::Batch;
+
+  SiteDescent(const DomainTree& tree, const DomainBlock& block, const SiteRegion& region,
+              const Polygons& polygons, Batch& batch, PairCounts& counts)
+      : tree_(tree),
+        block_(block),
+        region_(region),
+        polygons_(polygons),
+        batch_(batch),
+        counts_(counts),
+        box_(tree::FloatBox::around(region.box())),
+        oriented_(polygons.box(region)) {}
+
+  void run() { visit(tree_.tree, {block_.node, block_.end}, *this); }
+
+  bool enter(tree::Subtree below) {
+    if (beyond(box_, tree_, below.root, counts_)) {
+      counts_.culled_by_bound += tree_.leaves.count(below);
+      return false;
+    }
+    ++counts_.obb_tests;
+    if (may_meet(oriented_, tree_.tree.box(below.root))) return true;
+    counts_.culled_by_obb += tree_.leaves.count(below);
+    return false;
+  }
+
+  void leaf(std::uint32_t leaf) {
+    const std::uint32_t position = tree_.leaves.count(block_.node, leaf);
+    const bool drawn = polygons_.add(batch_, region_, oriented_, block_.domains[position]);
+    ++(drawn ? counts_.polygons : counts_.clipped_away);
+  }
+
+ private:
+  const DomainTree& tree_;
+  const DomainBlock& block_;
+  const SiteRegion& region_;
+  const Polygons& polygons_;
+  Batch& batch_;
+  PairCounts& counts_;
+  tree::FloatBox box_;
+  OrientedBox oriented_;
+};
+
+/// Adds the polygons of all sites of a leaf of O2's tree on the block's domains.
+template <class Polygons>
 void draw_leaf(const SiteIndex& index, std::uint32_t leaf, const DomainTree& tree, const DomainBlock& block,
-               double reach, const RasterRules& rules, RasterBatch& batch, PairCounts& counts);
+               const Polygons& polygons, typename Polygons::Batch& batch, PairCounts& counts) {
+  for_each_site(index.sites.regions, leaf, [&](const auto& site, std::size_t at) {
+    if (!has_interior(site)) return;
+    const SiteRegion region = region_of(index.sites, site, at);
+    SiteDescent(tree, block, region, polygons, batch, counts).run();
+  });
+}
 
 }  // namespace sdm::gl

@@ -71,7 +71,6 @@ void read(GLuint texture, const ImageSize& size, GLenum format, GLenum type, std
 struct RasterDevice::Programs {
   Program polygons{kSitePolygonVert, kSitePolygonFrag};
   Program points{kTexelPointsVert, kTexelPointsFrag};
-  Program triangles{kFaceTriangleVert, kFaceTriangleFrag};
 };
 
 RasterDevice::RasterDevice(std::string_view wanted) : context_(wanted) {
@@ -86,14 +85,12 @@ RasterDevice::~RasterDevice() {
   } catch (const Error&) {
     programs_->polygons.forget();
     programs_->points.forget();
-    programs_->triangles.forget();
   }
 }
 
 struct Rasteriser::Impl {
   const RasterDevice& device;
   ImageSize size;
-  Corrections corrections;
   bool by_owner;
   std::optional<StencilValues> stencil;
   std::optional<StencilCache> cache;
@@ -101,21 +98,19 @@ struct Rasteriser::Impl {
   std::uint64_t batches = 0, fragments = 0;
   std::size_t counters_used = 0;
 
-  Texture<GL_TEXTURE_2D> winners, vectors, depth, owners;
+  Texture<GL_TEXTURE_2D> winners, depth, owners;
   Framebuffer target;
-  Buffer polygons, corners, corner_vectors, indices, counters, stencil_texels, stencil_corners;
+  Buffer polygons, corners, indices, counters, stencil_texels;
   Texture<GL_TEXTURE_BUFFER> polygon_table;
-  VertexArray polygon_corners, texel_points, face_triangles;
-  std::vector<std::array<GLint, 4>> scissors;  // of each domain, if polygons extend beyond them
+  VertexArray polygon_corners, texel_points;
   std::vector<std::uint32_t> index_data;
   std::vector<std::uint32_t> order;
   Fence last;  // after the previous draw()
 
-  Impl(const RasterDevice& d, const ImageSize& s, const Ownership& owned, const Corrections& c);
+  Impl(const RasterDevice& d, const ImageSize& s, const Ownership& owned);
 
   void make_target();
   void make_inputs(const Ownership& owned);
-  void make_scissors();
   void clear();
   void begin();
   void end();
@@ -127,13 +122,11 @@ struct Rasteriser::Impl {
   void collect_counters();
 };
 
-Rasteriser::Impl::Impl(const RasterDevice& d, const ImageSize& s, const Ownership& owned,
-                       const Corrections& c)
-    : device(d), size(s), corrections(c), by_owner(std::holds_alternative<OwnerTable>(owned)) {
+Rasteriser::Impl::Impl(const RasterDevice& d, const ImageSize& s, const Ownership& owned)
+    : device(d), size(s), by_owner(std::holds_alternative<OwnerTable>(owned)) {
   if (const StencilValues* values = std::get_if<StencilValues>(&owned)) {
     stencil = *values;
     cache.emplace(values->values);
-    if (!corrections.tiles) make_scissors();
   }
   piece_limit = std::min<std::size_t>(
       kPiece, static_cast<std::size_t>(device.context().max_texture_buffer_size()) / kTexelsPerPolygon);
@@ -149,12 +142,6 @@ void Rasteriser::Impl::make_target() {
   glTextureStorage2D(winners, 1, GL_R32UI, columns, rows);
   glTextureStorage2D(depth, 1, GL_DEPTH32F_STENCIL8, columns, rows);
   glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT0, winners, 0);
-  if (!corrections.confirmation) {
-    glTextureStorage2D(vectors, 1, GL_RGBA32F, columns, rows);
-    glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT1, vectors, 0);
-    const std::array<GLenum, 2> both{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    glNamedFramebufferDrawBuffers(target, 2, both.data());
-  }
   glNamedFramebufferTexture(target, GL_DEPTH_STENCIL_ATTACHMENT, depth, 0);
   device.context().check("allocating a map of " + atlas::size_text(size.columns, size.rows) + " texels");
   if (glCheckNamedFramebufferStatus(target, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -171,10 +158,7 @@ void Rasteriser::Impl::make_inputs(const Ownership& owned) {
     glTextureSubImage2D(owners, 0, 0, 0, columns, rows, GL_RED_INTEGER, GL_UNSIGNED_INT,
                         table->owners.data());
   }
-  if (stencil) {
-    upload(stencil_texels, stencil->texels);
-    upload(stencil_corners, stencil->corners);
-  }
+  if (stencil) upload(stencil_texels, stencil->texels);
 
   glVertexArrayVertexBuffer(polygon_corners, 0, corners, 0, sizeof(RasterCorner));
   glVertexArrayElementBuffer(polygon_corners, indices);
@@ -184,42 +168,12 @@ void Rasteriser::Impl::make_inputs(const Ownership& owned) {
   glVertexArrayAttribIFormat(polygon_corners, 1, 1, GL_UNSIGNED_INT, offsetof(RasterCorner, polygon));
   for (const GLuint attribute : {0u, 1u}) glVertexArrayAttribBinding(polygon_corners, attribute, 0);
 
-  if (!corrections.fragment_vectors) {
-    glVertexArrayVertexBuffer(polygon_corners, 1, corner_vectors, 0, sizeof(float[3]));
-    glEnableVertexArrayAttrib(polygon_corners, 2);
-    glVertexArrayAttribFormat(polygon_corners, 2, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(polygon_corners, 2, 1);
-  }
-
-  glVertexArrayVertexBuffer(face_triangles, 0, stencil_corners, 0, sizeof(float[2]));
-  glEnableVertexArrayAttrib(face_triangles, 0);
-  glVertexArrayAttribFormat(face_triangles, 0, 2, GL_FLOAT, GL_FALSE, 0);
-  glVertexArrayAttribBinding(face_triangles, 0, 0);
-
   glVertexArrayVertexBuffer(texel_points, 0, stencil_texels, 0, sizeof(std::uint32_t));
   glEnableVertexArrayAttrib(texel_points, 0);
   glVertexArrayAttribIFormat(texel_points, 0, 1, GL_UNSIGNED_INT, 0);
   glVertexArrayAttribBinding(texel_points, 0, 0);
 
   glNamedBufferStorage(counters, kCounters * sizeof(GLuint), nullptr, 0);
-}
-
-// The bounding rectangles of the domains, one texel larger: a rasterised triangle may differ from its texels.
-void Rasteriser::Impl::make_scissors() {
-  for (std::size_t d = 0; d + 1 < stencil->offsets.size(); ++d) {
-    GLint lo[2] = {0, 0}, hi[2] = {-1, -1};
-    for (std::uint32_t i = stencil->offsets[d]; i < stencil->offsets[d + 1]; ++i) {
-      const std::uint32_t texel = stencil->texels[i];
-      const GLint at[2] = {static_cast<GLint>(texel % size.columns),
-                           static_cast<GLint>(texel / size.columns)};
-      const bool first = i == stencil->offsets[d];
-      for (int k = 0; k < 2; ++k) {
-        lo[k] = first ? at[k] : std::min(lo[k], at[k]);
-        hi[k] = first ? at[k] : std::max(hi[k], at[k]);
-      }
-    }
-    scissors.push_back({lo[0] - 1, lo[1] - 1, hi[0] - lo[0] + 3, hi[1] - lo[1] + 3});
-  }
 }
 
 // Sets the state that no draw changes. The context and the programs are shared with other rasterisers.
@@ -230,9 +184,8 @@ void Rasteriser::Impl::begin() {
   glProgramUniform1i(program.id(), program.uniform("polygons"), 0);
   glProgramUniform1i(program.id(), program.uniform("owner"), 1);
   glProgramUniform1i(program.id(), program.uniform("by_owner"), by_owner);
-  glProgramUniform1i(program.id(), program.uniform("interpolate"), !corrections.fragment_vectors);
-  for (const Program* stencils : {&device.programs_->points, &device.programs_->triangles})
-    glProgramUniform2f(stencils->id(), stencils->uniform("size"), columns, rows);
+  const Program& points = device.programs_->points;
+  glProgramUniform2f(points.id(), points.uniform("size"), columns, rows);
   glBindFramebuffer(GL_FRAMEBUFFER, target);
   glViewport(0, 0, static_cast<GLsizei>(size.columns), static_cast<GLsizei>(size.rows));
   glDisable(GL_SCISSOR_TEST);
@@ -257,10 +210,6 @@ void Rasteriser::Impl::clear() {
   glStencilMask(0xFF);
   const std::array<GLuint, 4> nothing{kNone, 0, 0, 0};
   glClearNamedFramebufferuiv(target, GL_COLOR, 0, nothing.data());
-  if (!corrections.confirmation) {
-    const std::array<GLfloat, 4> zeros{};
-    glClearNamedFramebufferfv(target, GL_COLOR, 1, zeros.data());
-  }
   glClearNamedFramebufferfi(target, GL_DEPTH_STENCIL, 0, 1.0f, 0);
   const GLuint zero = 0;
   glClearNamedBufferData(counters, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
@@ -279,8 +228,6 @@ void Rasteriser::Impl::draw_piece(const RasterBatch& batch, std::size_t begin, s
   upload(polygons, std::span(batch.polygons).subspan(begin, end - begin));
   const std::size_t first = batch.first_corner[begin];
   upload(corners, std::span(batch.corners).subspan(first, batch.first_corner[end] - first));
-  if (!corrections.fragment_vectors)
-    upload(corner_vectors, std::span(batch.corner_vectors).subspan(first, batch.first_corner[end] - first));
 
   order.resize(end - begin);
   std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(begin));
@@ -325,26 +272,18 @@ void Rasteriser::Impl::draw_by_domain(const RasterBatch& batch) {
     for (; i < order.size() && batch.polygons[order[i]].domain == domain; ++i)
       count += 3 * (corners_of(batch, order[i]).size() - 2);
     set_stencil(domain);
-    if (!scissors.empty()) {
-      const auto& [x, y, width, height] = scissors[domain];
-      glEnable(GL_SCISSOR_TEST);
-      glScissor(x, y, width, height);
-    }
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT,
                    offset(first_index * sizeof(std::uint32_t)));
     first_index += count;
   }
-  glDisable(GL_SCISSOR_TEST);
 }
 
 // Restricts drawing to texels of the domain.
 void Rasteriser::Impl::set_stencil(std::uint32_t domain) {
   const StencilCache::Use use = cache->use(domain);
   if (!use.hit) {
-    const bool triangles = !stencil->corners.empty();
-    glUseProgram(triangles ? device.programs_->triangles.id() : device.programs_->points.id());
-    glBindVertexArray(triangles ? face_triangles : texel_points);
-    glDisable(GL_SCISSOR_TEST);
+    glUseProgram(device.programs_->points.id());
+    glBindVertexArray(texel_points);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glDisable(GL_DEPTH_TEST);
     glStencilMask(0xFF);
@@ -358,11 +297,8 @@ void Rasteriser::Impl::set_stencil(std::uint32_t domain) {
 
 void Rasteriser::Impl::fill_stencil(std::uint32_t domain, int value) {
   glStencilFunc(GL_ALWAYS, value, 0xFF);
-  if (!stencil->corners.empty())
-    glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * domain), 3);
-  else
-    glDrawArrays(GL_POINTS, static_cast<GLint>(stencil->offsets[domain]),
-                 static_cast<GLsizei>(stencil->offsets[domain + 1] - stencil->offsets[domain]));
+  glDrawArrays(GL_POINTS, static_cast<GLint>(stencil->offsets[domain]),
+               static_cast<GLsizei>(stencil->offsets[domain + 1] - stencil->offsets[domain]));
 }
 
 void Rasteriser::Impl::collect_counters() {
@@ -375,13 +311,11 @@ void Rasteriser::Impl::collect_counters() {
   counters_used = 0;
 }
 
-Rasteriser::Rasteriser(const RasterDevice& device, const ImageSize& size, const Ownership& owned,
-                       const Corrections& corrections) {
+Rasteriser::Rasteriser(const RasterDevice& device, const ImageSize& size, const Ownership& owned) {
   // The copy that is read back; on a software device, also the image and its owners.
   const std::size_t copies = device.context().device().software ? 24 : 8;
-  require_memory((corrections.confirmation ? copies : 3 * copies) * size.texels(),
-                 "a map of " + atlas::size_text(size.columns, size.rows) + " texels");
-  impl_ = std::make_unique<Impl>(device, size, owned, corrections);
+  require_memory(copies * size.texels(), "a map of " + atlas::size_text(size.columns, size.rows) + " texels");
+  impl_ = std::make_unique<Impl>(device, size, owned);
 }
 
 Rasteriser::~Rasteriser() = default;
@@ -416,7 +350,6 @@ void Rasteriser::draw(const RasterBatch& batch) {
 RasterImage Rasteriser::read_back() {
   RasterImage image;
   read(impl_->winners, impl_->size, GL_RED_INTEGER, GL_UNSIGNED_INT, image.winners);
-  if (!impl_->corrections.confirmation) read(impl_->vectors, impl_->size, GL_RGBA, GL_FLOAT, image.vectors);
   read(impl_->depth, impl_->size, GL_DEPTH_COMPONENT, GL_FLOAT, image.depths);
   impl_->device.context().check("reading the map back");
   return image;

@@ -3,7 +3,6 @@
 
 #include <sdm/gl.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -30,8 +29,6 @@ struct OwnerTable {
 struct StencilValues {
   std::span<const std::uint32_t> offsets, texels;  ///< texels of each domain, in compressed rows
   int values;                                      ///< stencil values that domains share, in [1, 255] (4.1)
-  /// Three of each domain's triangle, which is drawn in place of its texels, as in the paper; may be empty.
-  std::span<const std::array<float, 2>> corners{};
 };
 using Ownership = std::variant<WholeImage, OwnerTable, StencilValues>;
 
@@ -39,7 +36,6 @@ using Ownership = std::variant<WholeImage, OwnerTable, StencilValues>;
 struct RasterImage {
   std::vector<std::uint32_t> winners;  ///< RasterPolygon::winner of the closest site, or kNone
   std::vector<float> depths;  ///< the distance drawn, in units of RasterRules; 1 where nothing was drawn
-  std::vector<std::array<float, 4>> vectors;  ///< the distance vector drawn; empty with confirmation
 };
 
 /// Per-device state: the context and the programs.
@@ -64,8 +60,7 @@ class Rasteriser {
  public:
   /// Clears all texels to infinite distance. `owned` must outlive it. Throws sdm::Error if the device cannot
   /// allocate the image.
-  Rasteriser(const RasterDevice& device, const ImageSize& size, const Ownership& owned,
-             const Corrections& corrections = {});
+  Rasteriser(const RasterDevice& device, const ImageSize& size, const Ownership& owned);
   ~Rasteriser();
 
   /// Throws sdm::Error if a side exceeds that of the device's largest image.

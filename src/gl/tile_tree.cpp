@@ -32,9 +32,7 @@ TileTree::TileTree(const Surface& surface, std::uint32_t side)
 
 const TileTree& TileTreeCache::of(const Surface& surface) {
   std::erase_if(trees_, [](const auto& entry) { return entry.first.expired(); });
-  const std::uint32_t side =
-      whole_faces_ ? std::max(surface.resolution(), surface.rows()) : surface::Tiles::kSide;
-  return trees_.try_emplace(internals(surface).identity, surface, side).first->second;
+  return trees_.try_emplace(internals(surface).identity, surface, side_).first->second;
 }
 
 }  // namespace sdm::gl

@@ -22,14 +22,14 @@ struct TileTree {
 /// a map of a small mesh. Entries of surfaces that no longer exist are dropped at the next call.
 class TileTreeCache {
  public:
-  /// `whole_faces`: every face is one tile.
-  explicit TileTreeCache(bool whole_faces = false) : whole_faces_(whole_faces) {}
+  /// `side` of the tiles, in texels.
+  explicit TileTreeCache(std::uint32_t side = surface::Tiles::kSide) : side_(side) {}
 
   /// Returns the tree of a surface, built on the first call. Valid until the next call.
   [[nodiscard]] const TileTree& of(const Surface& surface);
 
  private:
-  bool whole_faces_;
+  std::uint32_t side_;
   std::map<std::weak_ptr<const surface::Identity>, TileTree, std::owner_less<>> trees_;
 };
 

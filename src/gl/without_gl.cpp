@@ -2,8 +2,6 @@
 #include <sdm/error.h>
 #include <sdm/gl.h>
 
-#include "gl/gl_engine.h"
-
 namespace sdm {
 namespace {
 
@@ -23,10 +21,6 @@ GlDevice gl_device(const GlOptions&, std::uint32_t) {
 }
 
 std::shared_ptr<const Engine> make_gl_engine(const GlOptions&) {
-  refuse();
-}
-
-std::shared_ptr<const Engine> gl::make_gl_engine(const GlOptions&, const Corrections&) {
   refuse();
 }
 

@@ -73,24 +73,6 @@ TEST_F(GlCommand, OptionsReachTheEngine) {
   EXPECT_EQ(count(stencil, "stencil_misses") - count(stencil, "stencil_evictions"), 3u);
 }
 
-TEST_F(GlCommand, PaperLiteralIsReportedAsAnEstimate) {
-  const Json exact = report({"--engine", "gl"});
-  EXPECT_EQ(exact["raster"]["paper_literal"], false);
-  EXPECT_EQ(exact["accuracy_kind"], "bounded");
-  EXPECT_GT(exact["accuracy"], 0);
-  EXPECT_EQ(exact["error_bound_kind"], "bounded");
-  const Json literal = report({"--engine", "gl", "--paper-literal", "--stencil-values", "7"});
-  EXPECT_EQ(literal["raster"]["paper_literal"], true);
-  EXPECT_EQ(literal["raster"]["clip"], "stencil");
-  EXPECT_EQ(literal["accuracy_kind"], "unknown");
-  EXPECT_TRUE(literal["accuracy"].is_null());
-  EXPECT_EQ(literal["error_bound_kind"], "unknown");
-  EXPECT_TRUE(literal["error_bound"].is_null());
-  EXPECT_EQ(count(literal, "unconfirmed"), 0u);
-  EXPECT_NE(literal["distance"]["mean"], exact["distance"]["mean"]);
-  EXPECT_NE(run_sdm(map({"--engine", "gl", "--paper-literal"})).out.find("estimate"), std::string::npos);
-}
-
 TEST_F(GlCommand, InvalidOptionsAreUsageErrorsAndUnknownDevicesFail) {
   EXPECT_EQ(run_sdm(map({"--engine", "gl", "--stencil-values", "0"})).code, 2);
   EXPECT_EQ(run_sdm(map({"--engine", "gl", "--stencil-values", "256"})).code, 2);

@@ -43,8 +43,7 @@ TEST_F(GlCommandOptions, RequireTheGlEngine) {
                                                  {"--clip", "planes"},
                                                  {"--clip", "stencil"},
                                                  {"--stencil-values", "255"},
-                                                 {"--no-bound-culling"},
-                                                 {"--paper-literal"}})
+                                                 {"--no-bound-culling"}})
     for (const std::vector<std::string>& engine :
          {std::vector<std::string>{}, {"--engine", "cpu"}, {"--engine", "reference"}}) {
       auto more = option;
@@ -65,14 +64,6 @@ TEST_F(GlCommandOptions, StencilValuesRequireStencilAndRangeFrom1To255) {
     EXPECT_EQ(run.code, 2) << values;
     EXPECT_THAT(run.err, HasSubstr("from 1 to 255"));
   }
-}
-
-TEST_F(GlCommandOptions, PaperLiteralRequiresTheStencilAndHasNoTolerance) {
-  EXPECT_THAT(run_sdm(map({"--engine", "gl", "--paper-literal", "--clip", "planes"})).err,
-              StartsWith("sdm: error: --paper-literal: clips by the stencil"));
-  EXPECT_THAT(run_sdm(map({"--engine", "gl", "--paper-literal", "--tolerance", "0.1"})).err,
-              StartsWith("sdm: error: --tolerance: needs a known accuracy"));
-  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 struct WithoutDevice : ::testing::Test, TwoTori {

@@ -36,7 +36,7 @@ TEST(GridSlice, ContainsTheClosestFaces) {
       for_each_site(impl.regions, leaf, [&](const auto& site, std::size_t index) {
         if (!has_interior(site)) return;
         const SiteRegion region = region_of(impl, site, index);
-        add_polygon(batch, region, oriented_box(region, 4, 1e-5), domain, {1e-5, 0.125});
+        add_polygon(batch, region, domain, {1e-5, 0.125});
       });
     ASSERT_GT(batch.size(), 100u);
     Rasteriser rasteriser(device, {kSide, kSide}, WholeImage{});

@@ -1,7 +1,8 @@
 cmake_minimum_required(VERSION 3.23)
 
 # A folder of src/ includes only itself and the folders before it, so that the graph of includes has neither a
-# circle nor an arrow that points up. Prints the graph: for each folder the folders that it includes.
+# circle nor an arrow that points up; and only the table of engines includes the gl engine. Prints the graph: for
+# each folder the folders that it includes.
 set(order
   core
   geometry
@@ -83,6 +84,9 @@ foreach(file ${files})
     list(FIND order "${included}" included_place)
     if(included_place EQUAL -1 OR included_place GREATER place)
       message(SEND_ERROR "src/${file} may not have ${include}: ${included} is not before ${folder}")
+    endif()
+    if("${included}" MATCHES "^gl(/|$)" AND NOT "${folder}" MATCHES "^(gl(/|$)|engines$)")
+      message(SEND_ERROR "src/${file} may not have ${include}: only the table of engines includes the gl engine")
     endif()
     if(NOT included STREQUAL folder)
       string(MAKE_C_IDENTIFIER "${folder}" key)

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <array>
-#include <utility>
+#include <span>
 #include <vector>
 
-#include "gl/polygons/corrections.h"
-#include "gl/polygons/oriented_box.h"
+#include "gl/polygons/convex_polygon.h"
 #include "gl/polygons/planar_domain.h"
 #include "gl/polygons/site_region.h"
 
@@ -19,7 +18,7 @@ struct RasterPolygon {
   float vector[3], origin_u;
   float vector_du[3], origin_v;
   float vector_dv[3];
-  std::uint32_t winner;                    ///< a face of O2; without Corrections::confirmation, site_code()
+  std::uint32_t winner;                    ///< a face of O2
   float walls[SiteRegion::kMostWalls][3];  ///< negative beyond them
   std::uint32_t domain;
 };
@@ -36,15 +35,12 @@ struct RasterBatch {
   std::vector<RasterPolygon> polygons;
   std::vector<RasterCorner> corners;  ///< of polygon i: first_corner[i] ... first_corner[i + 1]
   std::vector<std::uint32_t> first_corner{0};
-  /// The distance vector at each corner; empty if fragments evaluate it.
-  std::vector<std::array<float, 3>> corner_vectors;
 
   [[nodiscard]] std::size_t size() const { return polygons.size(); }
   void clear() {
     polygons.clear();
     corners.clear();
     first_corner.assign(1, 0);
-    corner_vectors.clear();
   }
   void append(const RasterBatch& other);
 };
@@ -52,20 +48,25 @@ struct RasterBatch {
 struct RasterRules {
   double slack;     ///< walls are moved outwards by this, so that rounding opens no cracks
   double to_depth;  ///< a power of two that scales all distances of the map below 1
-  Corrections corrections{};
 };
 
-/// A site as one number, not kNone. Indices of sites are below 2³⁰, for lack of memory.
-[[nodiscard]] inline std::uint32_t site_code(SiteType type, std::uint32_t site) {
-  return static_cast<std::uint32_t>(type) << 30 | site;
-}
-[[nodiscard]] inline std::pair<SiteType, std::uint32_t> site_of(std::uint32_t code) {
-  return {static_cast<SiteType>(code >> 30), code & ~(3u << 30)};
-}
+/// The wall restricted to the domain's plane.
+[[nodiscard]] HalfPlane restrict(const HalfSpace& wall, const PlanarDomain& domain);
+
+/// The centre of the texel at which the affine functions of a polygon with these corners have their values.
+[[nodiscard]] Vec2 base_point(std::span<const Vec2> corners);
+
+/// Appends a polygon with the distance vector to the site, without walls, whose winner is the region's face.
+RasterPolygon& append_polygon(RasterBatch& batch, std::span<const Vec2> corners, const SiteRegion& region,
+                              const PlanarDomain& domain, double to_depth);
+
+/// Sets wall k of a polygon, moved outwards by the slack.
+void set_wall(RasterPolygon& polygon, int k, const HalfPlane& wall, const Vec2& base,
+              const RasterRules& rules);
 
 /// Clips the domain's outline by the walls of the region and adds the result to the batch, unless it is
-/// empty. `box` is that of the region. Returns whether it was added.
-bool add_polygon(RasterBatch& batch, const SiteRegion& region, const OrientedBox& box,
-                 const PlanarDomain& domain, const RasterRules& rules);
+/// empty. Returns whether it was added.
+bool add_polygon(RasterBatch& batch, const SiteRegion& region, const PlanarDomain& domain,
+                 const RasterRules& rules);
 
 }  // namespace sdm::gl

@@ -1,8 +1,8 @@
 // What the gl engine does differently from the paper's Algorithm 1 as it is printed. Each correction can be
-// left out, so that its effect can be measured (bench/paper_literal).
+// left out here, so that its effect can be measured (bench/paper_literal).
 #pragma once
 
-namespace sdm::gl {
+namespace sdm::literal {
 
 struct Corrections {
   /// Line 8: sites are clipped by the walls of their region, not by the sides of its oriented box.
@@ -30,4 +30,4 @@ struct Corrections {
   }
 };
 
-}  // namespace sdm::gl
+}  // namespace sdm::literal

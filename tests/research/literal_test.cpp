@@ -2,18 +2,22 @@
 // the geometry: interpolated vectors to a site end in its convex hull, which is the site, so the distance is
 // never too small; those to its plane or line are exact within its region, and too short beyond.
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "cli/samples.h"
 #include "geometry/vec.h"
-#include "gl/gl_engine.h"
 #include "gl/support.h"
+#include "research/literal/literal_engine.h"
+#include "research/run_sdm_paper.h"
 #include "support/error_of.h"
 #include "support/map_checks.h"
 #include "support/points.h"
+#include "support/temporary_folder.h"
 
 namespace sdm {
 namespace {
 
-using gl::Corrections;
+using literal::Corrections;
 
 struct Differences {
   std::size_t texels = 0, above = 0, below = 0, without = 0;
@@ -30,7 +34,7 @@ Corrections printed() {
 class PaperLiteral : public testing::TestWithParam<const char*> {
  protected:
   [[nodiscard]] DistanceMap map(const Corrections& corrections) const {
-    const auto engine = gl::make_gl_engine({.clip = GlClip::stencil}, corrections);
+    const auto engine = literal::make_engine({}, corrections);
     return compute_map(surface_, sites_, {.engine = engine, .sign = SignMethod::none});
   }
   [[nodiscard]] Differences against_exact(const DistanceMap& found, double relative_tolerance = 2e-6) const {
@@ -78,11 +82,11 @@ TEST_P(PaperLiteral, ClippedByRegionsItIsAlmostExact) {
 TEST_P(PaperLiteral, ConfirmationRepairsVectorsThatAreTooShort) {
   Corrections without_walls;
   without_walls.region_walls = false;
-  const auto engine = gl::make_gl_engine({}, without_walls);
+  const auto engine = literal::make_engine({}, without_walls);
   const Differences d =
       against_exact(compute_map(surface_, sites_, {.engine = engine, .sign = SignMethod::none}));
   EXPECT_EQ(d.above + d.below + d.without, 0u);
-  EXPECT_GT(gl_report(*engine).value().unconfirmed, 0u);
+  EXPECT_GT(literal::report(*engine).value().unconfirmed, 0u);
 }
 
 // The other corrections leave a map exact if they are removed alone.
@@ -106,29 +110,48 @@ TEST_P(PaperLiteral, VectorsHaveTheLengthOfTheDistance) {
   EXPECT_TRUE(lengths.none());
 }
 
-// The public option selects all of this, and claims no accuracy.
-TEST_P(PaperLiteral, OptionLeavesOutAllCorrections) {
-  const auto literal = make_gl_engine({.paper_literal = true});
-  const DistanceMap found = compute_map(surface_, sites_, {.engine = literal, .sign = SignMethod::none});
-  EXPECT_TRUE(test::identical(found, map(Corrections::none())));
-  EXPECT_TRUE(std::isinf(engine_info(*literal).relative_error));
-  EXPECT_EQ(engine_info(*literal).name, "gl");
-  const GlReport report = gl_report(*literal).value();
-  EXPECT_TRUE(report.paper_literal);
+TEST_P(PaperLiteral, AsPrintedClaimsNoAccuracy) {
+  const auto printed = literal::make_engine({}, Corrections::none());
+  (void)compute_map(surface_, sites_, {.engine = printed, .sign = SignMethod::none});
+  EXPECT_TRUE(std::isinf(engine_info(*printed).relative_error));
+  const GlReport report = literal::report(*printed).value();
   EXPECT_EQ(report.clip, GlClip::stencil);
   EXPECT_EQ(report.unconfirmed, 0u);
   EXPECT_EQ(report.tiles, report.faces);
+  EXPECT_EQ(report.pairs,
+            report.culled_by_bound + report.culled_by_obb + report.clipped_away + report.polygons);
+}
 
+TEST_P(PaperLiteral, WithAllCorrectionsItIsTheEngine) {
   const auto exact = make_gl_engine({.clip = GlClip::stencil});
   EXPECT_TRUE(test::identical(map(Corrections{}),
                               compute_map(surface_, sites_, {.engine = exact, .sign = SignMethod::none})));
-  EXPECT_FALSE(gl_report(*exact).value().paper_literal);
+}
+
+TEST(LiteralCommand, ReportsItsErrors) {
+  const test::TemporaryFolder folder;
+  const std::string o1 = test::write_obj(folder / "o1.obj", test::scene("Penetrating").o1()),
+                    o2 = test::write_obj(folder / "o2.obj", test::scene("Penetrating").o2()),
+                    out = folder / "out";
+  const auto wrong = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"literal", o1, o2, "-o", out, "--resolution", "64", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const test::Outcome run = test::run_sdm_paper(arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(test::names_in(out), (std::vector<std::string>{"map.exr", "report.json"}));
+    return nlohmann::json::parse(run.out)["errors"]["wrong_percent"].get<double>();
+  };
+  EXPECT_GT(wrong({}), 0);
+  EXPECT_EQ(wrong({"--with",
+                   "region-walls,affine-vectors,fragment-vectors,margins,tiles,stencil-points,confirmation"}),
+            0);
+  EXPECT_EQ(test::run_sdm_paper({"literal", o1, o2, "-o", out, "--with", "luck"}).code, 2);
 }
 
 TEST(Corrections, FragmentsEvaluateAffineVectorsOnly) {
   Corrections corrections;
   corrections.affine_vectors = false;
-  EXPECT_NE(test::error_of([&] { return gl::make_gl_engine({}, corrections); }), "");
+  EXPECT_NE(test::error_of([&] { return literal::make_engine({}, corrections); }), "");
 }
 
 }  // namespace

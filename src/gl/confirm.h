@@ -1,0 +1,17 @@
+// The closest points of texels in double precision, from what was drawn in single precision.
+#pragma once
+
+#include <span>
+
+#include "engine/engine.h"
+#include "gl/draw_winners.h"
+
+namespace sdm::gl {
+
+/// Passes on the closest points of texels, from their winners. Returns the number of texels whose winner was
+/// not confirmed; for these, the cpu engine found the closest site.
+std::size_t confirm(const sites::SitesData& sites, const RasterWinners& winners,
+                    std::span<const std::uint32_t> texels, std::span<const Vec3> points, double max_distance,
+                    const engine::ClosestSink& sink);
+
+}  // namespace sdm::gl
