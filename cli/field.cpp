@@ -62,7 +62,7 @@ nlohmann::ordered_json field_json(const sdm::DistanceField& field) {
   json["grid"] = {
       {"points", field.grid.dims}, {"origin", field.grid.origin}, {"spacing", field.grid.spacing}};
   json["band"] = field.band;  // null: no limit
-  json["sign"] = {{"method", sign_name(field.sign.method)}, {"reason", field.sign.reason}};
+  json["sign"] = {{"method", sdm::name_of(field.sign.method)}, {"reason", field.sign.reason}};
   json["distance"] = {{"min", range.min}, {"max", range.max}};  // null: no point has a value
   json["beyond_band"] = field.beyond_band;
   json["accuracy"] = field.accuracy;

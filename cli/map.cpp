@@ -64,7 +64,7 @@ std::string text_of(const MapCommand& command, const std::vector<MeshMaps>& mesh
   std::string text;
   for (const MeshMaps& mesh : meshes) {
     const bool o1 = mesh.role == "o1";
-    text += summary(mesh, o1 ? pair.o1 : pair.o2, o1 ? pair.o2 : pair.o1, command.picture.units);
+    text += summary(mesh, o1 ? pair.o1 : pair.o2, o1 ? pair.o2 : pair.o1);
   }
   if (aligned) text += summary(*aligned, command.picture.units);
   std::vector<int> tiles;
@@ -110,7 +110,7 @@ int run(MapCommand command) {
       command, [&] { return report_of(meshes); },
       [&] { return text_of(command, meshes, pair, aligned, total.lap()); });
   const bool all_within = std::ranges::all_of(meshes, [](const MeshMaps& mesh) {
-    const auto& tolerance = mesh.whole().outcome.tolerance;
+    const auto& tolerance = mesh.whole().outcome.summary.tolerance;
     return !tolerance || tolerance->within;
   });
   return all_within ? kSuccess : kToleranceExceeded;

@@ -45,7 +45,7 @@ std::vector<std::pair<std::string, std::string>> exr_attributes(const MapTask& t
   const Input &on = task.on, &to = task.to;
   std::vector<std::pair<std::string, std::string>> attributes{{"measuredOn", on.file},
                                                               {"distanceTo", to.file},
-                                                              {"sign", sign_name(sign.method)},
+                                                              {"sign", sdm::name_of(sign.method)},
                                                               {"signReason", sign.reason}};
   if (!on.transform.empty()) attributes.emplace_back("measuredOnTransform", on.transform);
   if (!to.transform.empty()) attributes.emplace_back("distanceToTransform", to.transform);
@@ -54,18 +54,34 @@ std::vector<std::pair<std::string, std::string>> exr_attributes(const MapTask& t
   return attributes;
 }
 
-/// Writes all files but the report, and computes the numbers meanwhile.
+sdm::SummaryOptions summary_options(const MapTask& task, const AtlasPart& part, double accuracy) {
+  const MapCommand& command = task.command;
+  return {.units = command.picture.units,
+          .max_distance = command.map.max_distance,
+          .accuracy = accuracy,
+          .tolerance = command.picture.tolerance,
+          .colormap = command.picture.colormap,
+          .range = command.picture.range,
+          .bands = command.bands,
+          .names = task.on.names,
+          .whole = &task.on.mesh,
+          .whole_face = part.source_face};
+}
+
+/// Writes all files but the report, and sums up the map meanwhile.
 void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& computed,
-                 const sdm::PictureOptions& picture, const sdm::PictureOptions& fixed,
                  const std::filesystem::path& folder, Outcome& outcome) {
   const MapCommand& command = task.command;
   const sdm::Surface& surface = *computed.surface;
   const sdm::DistanceMap& map = computed.map;
   std::vector<std::uint8_t> boundary;
-  if (!task.sites->closed()) {
-    boundary = sdm::boundary_mask(*task.sites, map);
-    outcome.boundary_texels = static_cast<std::size_t>(std::ranges::count(boundary, 1));
-  }
+  if (!task.sites->closed()) boundary = sdm::boundary_mask(*task.sites, map);
+  sdm::PictureOptions picture = command.picture;
+  if (std::isfinite(computed.accuracy)) picture.accuracy = computed.accuracy;
+  const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
+  sdm::SummaryOptions options = summary_options(task, part, computed.accuracy);
+  options.distance = &distance, options.boundary = boundary;
+  options.colors = task.shared ? task.shared->colors : sdm::color_range(sdm::color_choice(picture), distance);
   const sdm::ExrOptions exr{.layers = command.output.layers,
                             .boundary = boundary,
                             .sites = task.sites.get(),
@@ -73,57 +89,41 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   sdm::run_concurrently({
       [&] {
         write_map_files(folder, command.output.files, surface, map, computed.at_vertices, &task.to.mesh,
-                        picture, fixed, exr);
+                        task.shared ? task.shared->texture : picture,
+                        sdm::fixed_colors(picture, *options.colors), exr);
       },
       [&] {
         if (task.on.vertices)
           write_vertex_files(folder, command.output.files, *task.on.vertices, computed.at_vertices);
       },
-      [&] {
-        outcome.numbers =
-            map_numbers(surface, map, outcome.distance,
-                        {task.on.mesh, task.on.info->components, task.on.names, part.source_face},
-                        command.bands, command.picture.tolerance, outcome.accuracy);
-        outcome.error_bound = sdm::covering_radius(surface);
-      },
+      [&] { outcome.summary = sdm::summarize(surface, *task.sites, map, computed.at_vertices, options); },
   });
 }
 
-Notes map_notes(const MapTask& task, const AtlasPart& part, const ComputedMap& computed,
-                const Outcome& outcome) {
-  Notes all = notes_on(task.on, task.to);
-  if (outcome.distance.texels == 0) all.push_back("no texel is within --max-distance; the map is empty");
-  all.insert(all.end(), part.notes.begin(), part.notes.end());
-  if (const std::size_t texels = computed.surface->overlapping_texels(); texels > 0)
-    all.push_back(
-        fmt::format("{} texels are covered by several faces, and have the value of one of them; --strict-uv "
-                    "refuses that",
-                    texels));
+/// What users probably did not intend, and what a summary does not know of.
+Notes all_notes(const MapTask& task, const AtlasPart& part, const Notes& of_summary) {
+  Notes all = file_notes(task.on, task.to);
+  std::ranges::copy(of_summary, std::back_inserter(all));
+  std::ranges::copy(part.notes, std::back_inserter(all));
   if (task.aligned) std::ranges::copy(notes(*task.aligned), std::back_inserter(all));
   return all;
 }
 
 Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& computed,
-               const sdm::PictureOptions& fixed, const Outcome& outcome) {
+               const Outcome& outcome) {
   const MapCommand& command = task.command;
-  const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
-  const bool o1 = task.on.role == "o1";
-  Json report;
-  report["version"] = sdm::kVersion;
-  report["o1"] = to_json(o1 ? task.on : task.to);
-  report["o2"] = to_json(o1 ? task.to : task.on);
-  report[task.to.role]["embedded"] = or_null(outcome.embedded);
-  report["measured_on"] = task.on.role;
-  report["units"] = command.picture.units;
+  Json report = Json::parse(sdm::report_json({.on = reported(task.on),
+                                              .to = reported(task.to),
+                                              .on_o1 = task.on.role == "o1",
+                                              .embedded = outcome.embedded,
+                                              .engine = std::string(command.engine.name),
+                                              .precision = command.layout.precision,
+                                              .udim = part.udim,
+                                              .cut_faces = part.cut_faces,
+                                              .time_ms = outcome.time},
+                                             *computed.surface, outcome.summary));
   if (task.aligned) report["alignment"] = to_json(*task.aligned);
-  report["atlas"] = to_json(*computed.surface);
-  report["atlas"]["udim"] = or_null(part.udim);
-  report["atlas"]["cut_faces"] = part.cut_faces;
-  report["precision"] = or_null(command.layout.precision);
-  report["engine"] = command.engine.name;
-  report["max_distance"] = command.map.max_distance;  // null: no limit
-  report["colors"] = colors_json(fixed, command.picture);
-  report.update(to_json(outcome));
+  if (outcome.raster) report["raster"] = to_json(*outcome.raster);
   return report;
 }
 
@@ -163,12 +163,8 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
   Stopwatch watch;
   sdm::DistanceMap& map = computed.map = sdm::compute_map(*surface, *task.sites, command.map);
   outcome.time.map = watch.lap();
-  outcome.sign = map.sign;
-  outcome.beyond_max_distance = map.beyond_max_distance;
-  outcome.max_distance = command.map.max_distance;
   outcome.resolution = map.resolution, outcome.rows = map.rows();
-  outcome.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), task.on.mesh, task.to.mesh);
-  outcome.extremes = sdm::extremes(*surface, map, computed.at_vertices);
+  computed.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), task.on.mesh, task.to.mesh);
   outcome.raster = sdm::gl_report(*command.map.engine);
   computed.ms = total.lap();
   return computed;
@@ -177,28 +173,19 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
 MapResult write_part(const MapTask& task, const AtlasPart& part, const ComputedMap& computed,
                      const std::filesystem::path& folder) {
   const MapCommand& command = task.command;
-  const sdm::Surface& surface = *computed.surface;
-  const sdm::DistanceMap& map = computed.map;
   Stopwatch watch;
   MapResult result{.outcome = computed.outcome};
   Outcome& outcome = result.outcome;
-  sdm::PictureOptions picture = command.picture;
-  if (std::isfinite(outcome.accuracy)) picture.accuracy = outcome.accuracy;
-  outcome.distance = sdm::statistics(surface, map);
-  const sdm::PictureOptions fixed = sdm::fixed_colors(picture, outcome.distance);
-  write_files(task, part, computed, picture, fixed, folder, outcome);
-  if (command.picture.tolerance)
-    outcome.tolerance = sdm::check_tolerance(surface, map, computed.at_vertices, outcome.error_bound,
-                                             outcome.accuracy, *command.picture.tolerance);
+  write_files(task, part, computed, folder, outcome);
   outcome.size = size_of(sdm::bounds(task.on.mesh));
-  outcome.notes = map_notes(task, part, computed, outcome);
+  outcome.summary.notes = all_notes(task, part, outcome.summary.notes);
   outcome.time.output = watch.lap();
-  outcome.time.total = outcome.time.import + computed.ms + outcome.time.output;
+  outcome.time.total = task.import_ms + computed.ms + *outcome.time.output;
 
-  result.report = report_of(task, part, computed, fixed, outcome);
+  result.report = report_of(task, part, computed, outcome);
   const std::string text = to_text(result.report);
   if (command.output.files.html)
-    sdm::write_html(folder / "report.html", surface, map, computed.at_vertices, text,
+    sdm::write_html(folder / "report.html", *computed.surface, computed.map, computed.at_vertices, text,
                     {.other = &task.to.mesh, .up = command.picture.up});
   write_text(folder / "report.json", text);
   return result;

@@ -14,6 +14,12 @@
 #include "map_options.h"
 #include "report.h"
 
+/// What the tiles of a mesh share.
+struct SharedScale {
+  sdm::ColorRange colors;
+  sdm::PictureOptions texture;
+};
+
 /// The measurement of one mesh to the other, which all maps of the mesh share.
 struct MapTask {
   MapCommand command;
@@ -21,6 +27,7 @@ struct MapTask {
   const std::optional<AlignOutcome>& aligned;  ///< how O1 was, if it was
   double import_ms;
   std::unique_ptr<sdm::Sites> sites{};  ///< of `to`; null: the first map builds them
+  std::optional<SharedScale> shared{};
 };
 
 // NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw
@@ -34,7 +41,8 @@ struct ComputedMap {
   std::unique_ptr<sdm::Surface> surface{};
   std::vector<float> at_vertices{};
   sdm::DistanceMap map{};
-  Outcome outcome{};  ///< as far as it is known before anything is written
+  Outcome outcome{};    ///< as far as it is known before anything is written
+  double accuracy = 0;  ///< of the engine; infinite if unknown
   double ms = 0;
 };
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "shared_scale.h"
 #include "tile_totals.h"
 
 using Json = nlohmann::ordered_json;
@@ -22,15 +21,15 @@ using KeptMaps = std::vector<std::optional<ComputedMap>>;
 KeptMaps share_scale(MapTask& task, const std::vector<AtlasPart>& parts) {
   KeptMaps kept(parts.size());
   if (parts.size() == 1 || task.command.picture.range) return kept;
-  SharedScale scale;
+  TileScale scale;
   std::size_t texels = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     ComputedMap computed = compute_part(task, parts[i]);
-    scale.add(computed.map);
+    scale.add(*computed.surface, computed.map, computed.accuracy);
     texels += computed.map.distance.size();
     if (texels <= kKeptTexels) kept[i] = std::move(computed);
   }
-  scale.set(task.command.picture);
+  task.shared = {scale.colors(task.command.picture), scale.texture(task.command.picture)};
   return kept;
 }
 
@@ -81,13 +80,13 @@ MeshMaps measure_mesh(MapTask task, OutputFolder& out, ProgressLine& progress) {
   return all;
 }
 
-std::string summary(const MeshMaps& maps, const Input& on, const Input& to, const std::string& units) {
+std::string summary(const MeshMaps& maps, const Input& on, const Input& to) {
   std::string text;
   for (std::size_t i = 0; i < maps.parts.size(); ++i) {
     if (maps.parts[i].udim) text += fmt::format("tile {}: ", *maps.parts[i].udim);
-    text += summary(on, to, maps.results[i].outcome, units);
+    text += summary(on, to, maps.results[i].outcome);
   }
   if (maps.total)
-    text += fmt::format("all {} tiles: ", maps.parts.size()) + summary(on, to, maps.total->outcome, units);
+    text += fmt::format("all {} tiles: ", maps.parts.size()) + summary(on, to, maps.total->outcome);
   return text;
 }

@@ -31,5 +31,4 @@ struct MeshMaps {
 [[nodiscard]] MeshMaps measure_mesh(MapTask task, OutputFolder& out, ProgressLine& progress);
 
 /// The lines that are printed of the maps of a mesh.
-[[nodiscard]] std::string summary(const MeshMaps& maps, const Input& on, const Input& to,
-                                  const std::string& units);
+[[nodiscard]] std::string summary(const MeshMaps& maps, const Input& on, const Input& to);

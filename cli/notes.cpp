@@ -10,39 +10,6 @@
 
 namespace {
 
-bool is_empty(const sdm::Box& box) {
-  return !(box.lo[0] <= box.hi[0]);
-}
-
-double gap(const sdm::Box& a, const sdm::Box& b) {
-  sdm::Vec3 d;
-  for (int k = 0; k < 3; ++k) d[k] = std::max({0.0, a.lo[k] - b.hi[k], b.lo[k] - a.hi[k]});
-  return std::hypot(d[0], d[1], d[2]);
-}
-
-struct Unit {
-  double times;
-  const char* question;
-};
-
-std::optional<std::string> note_on_sizes(const sdm::Box& a, const sdm::Box& b) {
-  constexpr double kTolerance = 0.05;
-  constexpr std::array kUnits{Unit{10, "millimetres and centimetres"}, Unit{25.4, "millimetres and inches"},
-                              Unit{100, "centimetres and metres"}, Unit{304.8, "millimetres and feet"},
-                              Unit{1000, "millimetres and metres"}};
-  const double sizes[] = {size_of(a), size_of(b)};
-  const double times = std::max(sizes[0], sizes[1]) / std::min(sizes[0], sizes[1]);
-  if (!std::isfinite(times)) return std::nullopt;
-  for (const Unit& unit : kUnits)
-    if (std::abs(times / unit.times - 1) <= kTolerance)
-      return fmt::format("one mesh is about {} times the other; {}?", unit.times, unit.question);
-  if (times > kUnits.back().times)
-    return fmt::format("one mesh is about {} times the other; are both in the same units?", number(times, 2));
-  return std::nullopt;
-}
-
-constexpr double kFar = 100;
-
 sdm::Box posed(const sdm::Box& box, const sdm::Transform& pose) {
   sdm::Box result;
   for (int corner = 0; corner < 8; ++corner) {
@@ -61,17 +28,6 @@ void append(Notes& notes, const Notes& more) {
 }
 
 }  // namespace
-
-Notes notes_on(const sdm::Box& a, const sdm::Box& b) {
-  if (is_empty(a) || is_empty(b)) return {};
-  Notes notes;
-  if (const auto note = note_on_sizes(a, b)) notes.push_back(*note);
-  const double size = std::max(size_of(a), size_of(b)), apart = gap(a, b);
-  if (apart > kFar * size)
-    notes.push_back(fmt::format("the meshes are {} times their size apart; are both in the same place?",
-                                number(apart / size, 2)));
-  return notes;
-}
 
 std::optional<std::string> note_on_precision(const std::string& file, std::span<const sdm::Vec3> positions,
                                              double size) {
@@ -99,11 +55,16 @@ std::optional<std::string> note_on_precision(const std::string& file, std::span<
       file, number(step, 2), number(step / size, 2));
 }
 
-Notes notes_on(const Input& o1, const Input& o2) {
+Notes file_notes(const Input& o1, const Input& o2) {
   Notes notes;
   append(notes, o1.notes);
   append(notes, o2.notes);
-  append(notes, notes_on(sdm::bounds(o1.mesh), sdm::bounds(o2.mesh)));
+  return notes;
+}
+
+Notes notes_on(const Input& o1, const Input& o2) {
+  Notes notes = file_notes(o1, o2);
+  append(notes, sdm::notes_on(sdm::bounds(o1.mesh), sdm::bounds(o2.mesh)));
   return notes;
 }
 
@@ -117,21 +78,18 @@ Notes notes_on(std::span<const Input> bodies, std::span<const sdm::Transform> po
   }
   const auto largest = std::ranges::max_element(boxes, {}, size_of);
   for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (const auto note = note_on_sizes(*largest, boxes[i]))
+    if (const auto note = sdm::note_on_sizes(*largest, boxes[i]))
       append(notes,
              {fmt::format("{} and {}: {}", bodies[static_cast<std::size_t>(largest - boxes.begin())].file,
                           bodies[i].file, *note)});
   if (boxes.size() > kMost) return notes;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const auto is_near = [&](const sdm::Box& other) {
-      return &other != &boxes[i] &&
-             gap(boxes[i], other) <= kFar * std::max(size_of(boxes[i]), size_of(other));
+      return &other != &boxes[i] && !sdm::note_on_places(boxes[i], other);
     };
     if (std::ranges::none_of(boxes, is_near))
-      notes.push_back(
-          fmt::format("body {} is more than {} times its size from all others; are they in the same "
-                      "place?",
-                      i, kFar));
+      notes.push_back(fmt::format(
+          "body {} is more than 100 times its size from all others; are they in the same place?", i));
   }
   return notes;
 }

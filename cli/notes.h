@@ -14,17 +14,15 @@
 
 using Notes = std::vector<std::string>;
 
-/// Notes on two boxes whose diagonals differ by about the ratio of two units of length (10, 25.4, 100, 304.8
-/// or 1000, to 5 %) or by more than 1000 times, or that are more than 100 times their size apart. None for a
-/// box that is empty.
-[[nodiscard]] Notes notes_on(const sdm::Box& a, const sdm::Box& b);
-
 /// The positions in a file are in single precision, and so far from the origin that neighbouring numbers are
 /// more than 1e-5 of `size`, that of the mesh or cloud, apart.
 [[nodiscard]] std::optional<std::string> note_on_precision(const std::string& file,
                                                            std::span<const sdm::Vec3> positions, double size);
 
-/// Notes on the files of both inputs, and on their boxes.
+/// Notes on the files of both inputs.
+[[nodiscard]] Notes file_notes(const Input& o1, const Input& o2);
+
+/// Notes on the files of both inputs, and those of sdm::notes_on() on their boxes.
 [[nodiscard]] Notes notes_on(const Input& o1, const Input& o2);
 
 /// Notes on the files of bodies, on the largest of them and the others, and on bodies that are far from all

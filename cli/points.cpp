@@ -16,7 +16,6 @@
 #include "exit_codes.h"
 #include "format.h"
 #include "map_files.h"
-#include "map_numbers.h"
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
@@ -43,33 +42,12 @@ struct PointsCommand {
 
 struct PointsOutcome {
   sdm::PointDistances found;
+  sdm::Summary summary;
   std::optional<AlignOutcome> aligned;
-  double accuracy = 0;
-  Notes notes;
   double import_ms = 0, align_ms = 0, points_ms = 0;
 
-  [[nodiscard]] bool within(const PointsCommand& command) const {
-    return !command.picture.tolerance || found.beyond_tolerance == 0;
-  }
-  /// Why a verdict on points that are all within the tolerance may be wrong; empty: it is not.
-  [[nodiscard]] std::string doubt(const sdm::Tolerance& tolerance) const {
-    if (found.distance.texels == 0) return "no point has coordinates";
-    if (found.sign.method == sdm::SignMethod::winding && tolerance.needs_sign())
-      return "all points are within it, but their signs are estimates";
-    if (found.min.distance < tolerance.lo + accuracy || found.max.distance > tolerance.hi - accuracy)
-      return "all points are within it, but one is within rounding of a limit";
-    return {};
-  }
-  [[nodiscard]] const char* verdict(const sdm::Tolerance& tolerance) const {
-    return found.beyond_tolerance > 0 ? "FAIL" : doubt(tolerance).empty() ? "PASS" : "NOT DECIDED";
-  }
+  [[nodiscard]] bool within() const { return !summary.tolerance || summary.tolerance->within; }
 };
-
-Json extreme_json(const sdm::PointExtreme& extreme) {
-  if (std::isnan(extreme.distance)) return nullptr;
-  return {
-      {"distance", extreme.distance}, {"point", extreme.point}, {"at", "point"}, {"index", extreme.index}};
-}
 
 // How text was read; null for a cloud that is not text.
 Json text_json(const std::optional<sdm::TextDialect>& text) {
@@ -106,41 +84,47 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
   report["o1"]["text"] = text_json(found.text);
   report["o2"] = to_json(o2);
   report["measured_on"] = "o1";
-  report["units"] = command.picture.units;
   if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned);
   report["engine"] = "cpu";
-  report["max_distance"] = command.map.max_distance;  // null: no limit
-  report["colors"] = colors_json(sdm::fixed_colors(command.picture, found.distance), command.picture);
-  report["sign"] = {{"method", sign_name(found.sign.method)}, {"reason", found.sign.reason}};
-  report["distance"] = to_json(found.distance);
-  report["distance"]["kind"] = "bounded";
-  report["distance"]["weights"] = "points";
-  report["extremes"] = {{"min", extreme_json(found.min)}, {"max", extreme_json(found.max)}};
-  report["points_with_value"] = found.distance.texels;
-  report["negative_points"] = found.distance.negative_texels;
-  report["beyond_max_distance"] = found.beyond_max_distance;
-  report["accuracy"] = outcome.accuracy;
-  report["accuracy_kind"] = "bounded";
-  if (command.picture.tolerance)
-    report["tolerance"] = {{"verdict", outcome.verdict(*command.picture.tolerance)},
-                           {"lower", command.picture.tolerance->lo},
-                           {"upper", command.picture.tolerance->hi},
-                           {"exceeded_points", found.beyond_tolerance},
-                           {"exceeded_point_fraction",
-                            static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points)},
-                           {"within", outcome.within(command)}};
-  report["notes"] = outcome.notes;
+  report.update(Json::parse(sdm::summary_json(outcome.summary)));
   report["time_ms"] = {
       {"import", outcome.import_ms}, {"align", outcome.align_ms}, {"points", outcome.points_ms}};
   return report;
 }
 
+std::string tolerance_line(const PointsOutcome& outcome, const std::string& unit) {
+  const sdm::Summary& summary = outcome.summary;
+  const sdm::ToleranceVerdict& verdict = *summary.tolerance;
+  const std::string word = sdm::name_of(verdict.verdict);
+  switch (verdict.reason) {
+    case sdm::VerdictReason::all_within:
+      return word + ": all points are within it";
+    case sdm::VerdictReason::nothing_measured:
+      return word + ": no point has coordinates";
+    case sdm::VerdictReason::estimated_signs:
+      return word + ": all points are within it, but their signs are estimates";
+    case sdm::VerdictReason::exceeded:
+    case sdm::VerdictReason::beyond_max_distance:
+      break;
+    default:
+      return word + ": all points are within it, but one is within rounding of a limit";
+  }
+  const std::string share = fmt::format("{}: {} % of the points are out of it", word,
+                                        number(100 * summary.exceeding_point_fraction));
+  const sdm::Extreme& most = decisive_extreme(summary);
+  if (std::isnan(most.distance)) return share + "; no point has a value";
+  return fmt::format("{}; {}{} at point {} {}", share, number(most.distance), unit,
+                     summary.extreme_points[verdict.nearest_is_lower ? 0 : 1],
+                     place(most.point, size_of(outcome.found.bounds)));
+}
+
 std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) {
   const sdm::PointDistances& found = outcome.found;
-  const sdm::DistanceStatistics& d = found.distance;
-  const std::string unit = unit_suffix(command.picture.units);
+  const sdm::Summary& s = outcome.summary;
+  const sdm::DistanceStatistics& d = s.distance;
+  const std::string unit = unit_suffix(s.units);
   std::string text = fmt::format("{} -> {}\n", command.cloud, command.o2);
-  if (outcome.aligned) text += summary(*outcome.aligned, command.picture.units);
+  if (outcome.aligned) text += summary(*outcome.aligned, s.units);
   if (found.text) text += text_summary(*found.text);
   text += fmt::format("  points    {}\n", found.points);
   if (found.invalid > 0) text += fmt::format("            {} have no coordinates\n", found.invalid);
@@ -149,32 +133,16 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   } else {
     text += fmt::format("  distance  min {}   mean {}   max {}{}\n", number(d.min), number(d.mean),
                         number(d.max), unit);
-    if (found.sign.method != sdm::SignMethod::none)
-      text +=
-          fmt::format("            {} % of the points are inside (negative)\n",
-                      number(100.0 * static_cast<double>(d.negative_texels) / static_cast<double>(d.texels)));
+    if (s.sign.method != sdm::SignMethod::none)
+      text += fmt::format("            {} % of the points are inside (negative)\n",
+                          number(100 * d.negative_area_fraction));
   }
-  if (found.sign.method == sdm::SignMethod::none)
-    text += fmt::format("            unsigned: {}\n", found.sign.reason);
-  if (found.beyond_max_distance > 0)
-    text += fmt::format("            {} points are farther than --max-distance\n", found.beyond_max_distance);
-  if (command.picture.tolerance) {
-    const std::string verdict = outcome.verdict(*command.picture.tolerance);
-    if (verdict == "PASS") {
-      text += "  tolerance PASS: all points are within it\n";
-    } else if (verdict == "NOT DECIDED") {
-      text += fmt::format("  tolerance NOT DECIDED: {}\n", outcome.doubt(*command.picture.tolerance));
-    } else {
-      const bool below = command.picture.tolerance->lo - found.min.distance >
-                         found.max.distance - command.picture.tolerance->hi;
-      const sdm::PointExtreme& most = below ? found.min : found.max;
-      text += fmt::format(
-          "  tolerance FAIL: {} % of the points are out of it; {}{} at point {} {}\n",
-          number(100.0 * static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points)),
-          number(most.distance), unit, most.index, place(most.point, size_of(found.bounds)));
-    }
-  }
-  return text + note_lines(outcome.notes, 12);
+  if (s.sign.method == sdm::SignMethod::none)
+    text += fmt::format("            unsigned: {}\n", s.sign.reason);
+  if (s.beyond_max_distance > 0)
+    text += fmt::format("            {} points are farther than --max-distance\n", s.beyond_max_distance);
+  if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
+  return text + note_lines(s.notes, 12);
 }
 
 // The alignment of a sample of the points, after their placement.
@@ -228,19 +196,16 @@ int run(PointsCommand command) {
       write_text(out.staging() / "alignment.json", to_text(to_json(*outcome.aligned)));
     }
     outcome.align_ms = watch.lap();
-    // The accuracy is relative to the size of both; O2 has it at least.
-    options.picture.accuracy = sdm::engine_accuracy(sdm::engines().front(), o2.mesh, o2.mesh);
     const std::filesystem::path ply = out.staging() / "points.ply";
     outcome.found = sdm::measure_points(command.cloud, sites, ply, options);
     const sdm::Box& box = outcome.found.bounds;
-    outcome.accuracy =
-        sdm::engine_accuracy(sdm::engines().front(), o2.mesh, {{box.lo, box.hi}, {{0, 1, 1}}, {}});
-    if (const auto note = precision_note(command, box)) outcome.notes.push_back(*note);
-    std::ranges::copy(o2.notes, std::back_inserter(outcome.notes));
-    std::ranges::copy(notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(outcome.notes));
-    if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(outcome.notes));
+    outcome.summary = sdm::summarize(outcome.found, options);
+    Notes& all = outcome.summary.notes;
+    if (const auto note = precision_note(command, box)) all.push_back(*note);
+    std::ranges::copy(o2.notes, std::back_inserter(all));
+    std::ranges::copy(sdm::notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(all));
+    if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
     outcome.points_ms = watch.lap();
-    command.picture.accuracy = options.picture.accuracy;
     report = report_of(command, o2, outcome);
     if (command.html) {
       progress.step("page");
@@ -258,7 +223,7 @@ int run(PointsCommand command) {
               << fmt::format("  time      {} s\n  results   {}/: {}{}report.json\n",
                              number(std::round(total.lap()) / 1000, 6), command.out.string(),
                              outcome.aligned ? "alignment.json " : "", files(command));
-  return outcome.within(command) ? 0 : 3;
+  return outcome.within() ? 0 : 3;
 }
 
 void add_files_option(CLI::App& app, PointsCommand& command) {

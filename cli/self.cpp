@@ -47,8 +47,13 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   const double map_ms = watch.lap();
 
   progress.step("export");
-  const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
-  const sdm::PictureOptions fixed = sdm::fixed_colors(command.picture, distance);
+  sdm::Summary summary = sdm::summarize_self(surface, map,
+                                             {.units = command.picture.units,
+                                              .max_distance = command.self.max_distance,
+                                              .colormap = command.picture.colormap,
+                                              .range = command.picture.range});
+  summary.notes = input.notes;
+  const sdm::PictureOptions fixed = sdm::fixed_colors(command.picture, *summary.colors);
   sdm::run_concurrently({[&] {
                            write_map_files(folder, command.files, surface, map, at_vertices, nullptr,
                                            command.picture, fixed);
@@ -59,23 +64,18 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
                          }});
   const double export_ms = watch.lap();
 
-  Json report;
-  report["version"] = sdm::kVersion;
-  report["mesh"] = to_json(input);
-  report["units"] = command.picture.units;
-  report["atlas"] = to_json(surface);
+  const sdm::ReportTimes times{.import = import_ms,
+                               .atlas = atlas_ms,
+                               .sites = sites_ms,
+                               .map = map_ms,
+                               .output = export_ms,
+                               .total = import_ms + total.lap()};
+  Json report = Json::parse(
+      sdm::report_json({.on = reported(input), .engine = "cpu", .time_ms = times}, surface, summary));
   const sdm::ExclusionRule& rule = command.self.exclusion;
   report["exclusion"] = {{"rings", rule.geodesic ? Json(nullptr) : Json(rule.rings)},
                          {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
-  report["max_distance"] = command.self.max_distance;  // null: no limit
-  report["colors"] = colors_json(fixed, command.picture);
   report["separation"] = separation ? to_json(*separation) : Json(nullptr);
-  report["distance"] = to_json(distance);
-  report["texels_with_value"] = distance.texels;
-  report["texels_without_value"] = map.beyond_max_distance;
-  report["notes"] = input.notes;
-  report["time_ms"] = {{"import", import_ms}, {"atlas", atlas_ms},   {"sites", sites_ms},
-                       {"map", map_ms},       {"export", export_ms}, {"total", import_ms + total.lap()}};
   const std::string text = to_text(report);
   if (command.files.html)
     sdm::write_html(folder / "report.html", surface, map, at_vertices, text, {.up = command.picture.up});

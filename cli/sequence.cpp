@@ -54,7 +54,7 @@ Notes notes_on_bodies(const std::array<Body, 2>& bodies, const std::array<sdm::M
     if (const auto note =
             note_on_precision(bodies[b].input(), first[b].positions, size_of(sdm::bounds(first[b]))))
       notes.push_back(*note);
-  std::ranges::copy(notes_on(sdm::bounds(first[0]), sdm::bounds(first[1])), std::back_inserter(notes));
+  std::ranges::copy(sdm::notes_on(sdm::bounds(first[0]), sdm::bounds(first[1])), std::back_inserter(notes));
   return notes;
 }
 

@@ -1,12 +1,12 @@
 #include "sequence_distances.h"
 
 #include <fmt/format.h>
+#include <sdm/summary.h>
 
 #include <cmath>
 #include <limits>
 
 #include "format.h"
-#include "map_numbers.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -29,7 +29,7 @@ FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& si
 Json to_json(const FrameDistances& d) {
   Json json{{"kind", "estimate"}, {"min", d.min}, {"mean", d.mean}, {"max", d.max}};
   if (d.verdict) {
-    json["verdict"] = verdict_name(*d.verdict);
+    json["verdict"] = sdm::name_of(*d.verdict);
     json["exceeded_area_fraction"] = d.exceeded_area_fraction;
   }
   return json;
@@ -42,7 +42,7 @@ FrameDistances distances_from(const Json& json) {
   FrameDistances d{.min = number("min"), .mean = number("mean"), .max = number("max")};
   if (!json.contains("verdict")) return d;
   for (const sdm::Verdict verdict : {sdm::Verdict::pass, sdm::Verdict::fail, sdm::Verdict::not_decided})
-    if (json.at("verdict") == verdict_name(verdict)) d.verdict = verdict;
+    if (json.at("verdict") == sdm::name_of(verdict)) d.verdict = verdict;
   d.exceeded_area_fraction = json.at("exceeded_area_fraction");
   return d;
 }
@@ -57,6 +57,6 @@ std::vector<std::string> cells(const std::optional<FrameDistances>& distances) {
   const double values[] = {distances->min, distances->mean, distances->max};
   for (std::size_t i = 0; i < 3; ++i)
     if (!std::isnan(values[i])) result[i] = number(values[i], 9);
-  if (distances->verdict) result[3] = verdict_name(*distances->verdict);
+  if (distances->verdict) result[3] = sdm::name_of(*distances->verdict);
   return result;
 }

@@ -8,27 +8,36 @@
 
 #include "report.h"
 
+/// The colours and grey values that all tiles share: those of their distances together.
+class TileScale {
+ public:
+  void add(const sdm::Surface& surface, const sdm::DistanceMap& map, double accuracy);
+  [[nodiscard]] sdm::ColorRange colors(const sdm::PictureOptions& picture) const;
+  /// `picture` with the range of distance_texture.png.
+  [[nodiscard]] sdm::PictureOptions texture(const sdm::PictureOptions& picture) const;
+
+ private:
+  sdm::CombinedStatistics statistics_;
+  double accuracy_ = 0;
+};
+
 class TileTotals {
  public:
   /// Adds the numbers of a tile and its map, which need not be kept.
   void add(int udim, const Outcome& outcome, const sdm::Surface& surface, const sdm::DistanceMap& map);
-  /// Statistics weighted by area over all tiles, the extremes, the largest error bound, and the verdict: FAIL
-  /// if that of a tile is, PASS if that of all is.
-  [[nodiscard]] const Outcome& finish();
+  /// As sdm::CombinedSummary has it.
+  [[nodiscard]] Outcome finish() const;
   /// These as keys of report.json, `tiles`, and `worst`: of each tile its largest |distance|, the largest
-  /// first. After finish().
+  /// first.
   [[nodiscard]] nlohmann::ordered_json report() const;
 
  private:
   struct Tile {
     int udim;
-    double area;  ///< of its texels
     sdm::Extremes extremes;
-    std::optional<sdm::ToleranceVerdict> tolerance;
   };
-  void add_verdicts();
 
   std::vector<Tile> tiles_;
-  sdm::CombinedStatistics statistics_;
-  Outcome total_;
+  sdm::CombinedSummary combined_;
+  Outcome first_;
 };

@@ -8,6 +8,7 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/statistics.h>
+#include <sdm/summary.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 #include <sdm/tolerance.h>
@@ -29,14 +30,6 @@ namespace sdm {
 /// bit-identical positions are welded. The result is valid in the sense of validate(). It has texture
 /// coordinates if every corner of the file has; what else was left out is in MeshFile::notes.
 [[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
-
-/// Names that a file gives to faces: those of objects (OBJ o, glTF meshes, solids of STL text, 3DS), of
-/// groups (OBJ g; several of one face, as in "g a b", are one name) or of materials (OBJ usemtl, glTF).
-struct FaceNames {
-  std::string kind;                    ///< "object", "group" or "material"
-  std::vector<std::string> names;      ///< each once, in the order of the file
-  std::vector<std::uint32_t> of_face;  ///< for each triangle of the mesh, an index into names or kNone
-};
 
 /// The vertices and polygons of a file as they are stored, before welding and triangulation. Those of the
 /// nodes of glTF are transformed and concatenated; every corner of a triangle of STL is a vertex.
@@ -79,14 +72,6 @@ struct MeshFileOptions {
 /// bit-identical.
 SDM_API void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 
-/// Colour scales for images of maps.
-enum class Colormap {
-  automatic,  ///< diverging if the map has both signs, otherwise viridis over its whole range
-  viridis,
-  diverging,  ///< blue (negative) – white – red (positive), centred on zero
-  paper2006,  ///< red (near) to green (far), as in the paper's figures
-};
-
 /// The axis of the mesh that points up in model.glb, whose own vertical axis is y.
 enum class UpAxis { y, z };
 
@@ -106,14 +91,14 @@ struct PictureOptions {
   bool unlit = false;     ///< model.glb: without shading, so that a pixel has exactly the colour of its value
 };
 
-/// Returns `options` with the colormap and the range that they stand for on a map with these statistics, for
-/// pictures that share a scale. The range ends at the 99th percentile of |distance| (of the area), so that a
-/// few outliers do not take the colours from the rest: −p99 to p99 if the colormap is diverging, otherwise
-/// the range of the map cut at ±p99; with a tolerance, well beyond its limits. If the percentile is within
-/// the accuracy, it ends at the largest |distance|. Throws sdm::Error unless a range is finite and increasing
-/// and a tolerance too. Cost: O(1).
+/// Returns `options` with the colormap and the range that color_range() chooses for them on a map with these
+/// statistics, for pictures that share a scale. Errors and cost as of color_range().
 [[nodiscard]] SDM_API PictureOptions fixed_colors(const PictureOptions& options,
                                                   const DistanceStatistics& distances);
+/// Returns `options` with these colours.
+[[nodiscard]] SDM_API PictureOptions fixed_colors(const PictureOptions& options, const ColorRange& colors);
+/// Returns what the options choose of the colours.
+[[nodiscard]] SDM_API ColorChoice color_choice(const PictureOptions& options);
 
 /// The distances of the vertices of a file, in its order and count, to join them to it. `vertex_distances`:
 /// one per vertex of the mesh that the file was read as. Vertices of no face, and those whose distance is
@@ -188,6 +173,10 @@ struct TextureRange {
   double lower = 0, upper = 1;
 };
 
+/// Returns `options` with the range that write_distance_texture() chooses on a map with these statistics, for
+/// textures that share a scale: that of all distances. Errors and cost as of color_range().
+[[nodiscard]] SDM_API PictureOptions texture_range(const PictureOptions& options,
+                                                   const DistanceStatistics& distances);
 /// distance_texture.png: the distance of every texel as 16-bit grey, without legend or colours, at the size
 /// of the atlas: lower + value / 65535 · (upper − lower). The range is that of options.range, by default that
 /// of all distances, symmetric about 0 if the colormap is diverging; distances beyond it are clamped. Gutters

@@ -14,9 +14,18 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace sdm {
+
+/// Names that a file gives to faces: those of objects (OBJ o, glTF meshes, solids of STL text, 3DS), of
+/// groups (OBJ g; several of one face, as in "g a b", are one name) or of materials (OBJ usemtl, glTF).
+struct FaceNames {
+  std::string kind;                    ///< "object", "group" or "material"
+  std::vector<std::string> names;      ///< each once, in the order of the file
+  std::vector<std::uint32_t> of_face;  ///< for each triangle of the mesh, an index into names or kNone
+};
 
 /// Returns, for each face, the number of its component: the faces that are connected by shared vertices.
 /// Components are numbered from 0 in the order of their first faces; removed faces (see MeshEdit) have kNone.

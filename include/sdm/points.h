@@ -10,6 +10,7 @@
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
+#include <sdm/summary.h>
 #include <sdm/transform.h>
 
 #include <cstdint>
@@ -112,7 +113,7 @@ struct PointSample {
 struct PointDistancesOptions {
   MapOptions map{};
   Transform placement{};        ///< of the points, before they are measured and written; not singular
-  PictureOptions picture{};     ///< colours; `units`, `accuracy` and `largest` have no meaning here
+  PictureOptions picture{};     ///< colours; `accuracy` and `largest` have no meaning here
   std::size_t chunk = 1 << 18;  ///< points in memory at a time, greater than 0
   TextDialect text{};           ///< of a cloud in text, as of PointReader
 };
@@ -136,8 +137,11 @@ struct PointDistances {
   DistanceStatistics
       distance;  ///< of the points with a value, each with the same weight; `texels`: their number
   PointExtreme min, max;
-  std::uint64_t beyond_tolerance = 0;  ///< points whose |distance| exceeds picture.tolerance, or is unknown
-  Box bounds;                          ///< of the finite points
+  /// Points whose distance is out of picture.tolerance by more than the accuracy, or that are beyond the
+  /// maximum distance.
+  std::uint64_t beyond_tolerance = 0;
+  double accuracy = 0;  ///< of a distance: that of the engine for the box of O2 and the points
+  Box bounds;           ///< of the finite points
 };
 
 /// Computes the distance of each point of a file to O2, and writes the points in their order as binary PLY:
@@ -148,6 +152,9 @@ struct PointDistances {
 [[nodiscard]] SDM_API PointDistances measure_points(const std::filesystem::path& cloud, const Sites& sites,
                                                     const std::filesystem::path& ply,
                                                     const PointDistancesOptions& options = {});
+
+/// Sums up what measure_points() returned with these options. Errors as of color_range(). Cost: O(1).
+[[nodiscard]] SDM_API Summary summarize(const PointDistances& found, const PointDistancesOptions& options);
 
 /// report.html of a cloud, as write_html() makes it of a map: verdict and numbers of `report`, the JSON text
 /// of the report of `sdm points`, and the points in 3D. `ply` and `found`: what measure_points() wrote and

@@ -30,6 +30,7 @@
 #include <sdm/sites.h>
 #include <sdm/solid.h>
 #include <sdm/statistics.h>
+#include <sdm/summary.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 #include <sdm/threads.h>

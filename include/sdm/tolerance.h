@@ -1,4 +1,4 @@
-/// Checks of a map against a tolerance, and the bounds that certify them.
+/// Checks of a map against a tolerance: the one rule by which everything is judged.
 ///
 /// Threads: the functions may be called concurrently, also with the same map.
 #pragma once
@@ -9,6 +9,7 @@
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
 
+#include <limits>
 #include <span>
 
 namespace sdm {
@@ -41,15 +42,65 @@ struct ToleranceShares {
 [[nodiscard]] SDM_API ToleranceShares tolerance_shares(const Surface& surface, const DistanceMap& map,
                                                        const Tolerance& tolerance, double accuracy);
 
-/// What a map proves about a tolerance.
+/// What measured distances prove about a tolerance.
 enum class Verdict {
-  pass,         ///< every point of the surface is within the tolerance
-  fail,         ///< some sample or vertex is not
-  not_decided,  ///< all samples and vertices are, but points between them may not be
+  pass,         ///< every point is within the tolerance
+  fail,         ///< some sample is not, or has no value
+  not_decided,  ///< all samples are, but that does not prove it for every point
 };
 
+/// Why a verdict is what it is.
+enum class VerdictReason {
+  all_within,           ///< pass: no point can be out of the tolerance
+  exceeded,             ///< fail: a sample is out of the tolerance by more than the accuracy
+  beyond_max_distance,  ///< fail: a sample has no value, as it is farther than the maximum distance
+  between_samples,      ///< not decided: the error bound exceeds the margin
+  within_rounding,      ///< not decided: a distance is closer to a limit than the accuracy
+  estimated_signs,      ///< not decided: with the other sign, which is an estimate, a distance might be out
+  unknown_accuracy,     ///< not decided: the accuracy of the distances is unknown
+  nothing_measured,     ///< not decided: there are no samples
+};
+
+/// All that a verdict depends on besides the tolerance. Samples are the texels of a map and the vertices of
+/// its faces, or the points of a cloud.
+struct Evidence {
+  /// The smallest and the largest distance of all samples with a value; lowest > highest if there are none.
+  double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
+  bool complete = true;          ///< every sample has a value: none is farther than the maximum distance
+  bool estimated_signs = false;  ///< SignMethod::winding: between samples a distance may have the other sign
+  double accuracy = 0;           ///< the error of a distance, as of engine_accuracy(); infinite if unknown
+  /// Upper bound on how much a distance at any point can differ from those of the samples, without that
+  /// error, as of SamplingBound::value(); 0 where there is nothing between samples.
+  double error_bound = 0;
+};
+
+/// What some evidence proves about a tolerance.
+struct Judgement {
+  Verdict verdict = Verdict::pass;
+  VerdictReason reason = VerdictReason::all_within;
+  /// All samples have a value, and none is out of the tolerance by more than the accuracy: verdict is not
+  /// Verdict::fail.
+  bool within = true;
+  /// The verdict holds for every point: not of Verdict::not_decided, nor of a failure that depends on the
+  /// sign of an estimate.
+  bool certified = true;
+  /// How far `lowest` and `highest` stay from the limits, less the accuracy, whatever their signs if these
+  /// are estimates. Verdict::pass needs at least the error bound. −∞ if a sample has no value, infinite
+  /// without any sample.
+  double margin = 0;
+  bool nearest_is_lower = false;  ///< the limit that is exceeded most, or approached most closely
+  /// If not decided: an error bound that leads to Verdict::pass if no sample of a finer map comes closer to a
+  /// limit than half of the present margin. 0 if no error bound does.
+  double deciding_bound = 0;
+};
+
+/// Judges by the rule for all verdicts. The accuracy benefits the part: rounding exceeds no tolerance, and a
+/// distance within it has no certain sign. It also counts against a proof: Verdict::pass needs
+/// margin ≥ error_bound. Cost: O(1).
+[[nodiscard]] SDM_API Judgement judge(const Evidence& evidence, const Tolerance& tolerance);
+
 /// Whether all distances of a surface are within a tolerance, in units of the mesh.
-struct ToleranceVerdict {
+struct ToleranceVerdict : Judgement {
   Tolerance tolerance{};
   /// Of |distance|, over all samples and all vertices of faces; infinite if one of them has no value.
   double largest = 0;
@@ -57,25 +108,18 @@ struct ToleranceVerdict {
   /// of the engine, or that have no value.
   double exceeded_area_fraction = 0;
   ToleranceShares shares{};
-  bool within = true;  ///< all samples and vertices are within the tolerance, but for the error of the engine
-  /// The verdict holds for the whole surface. If within: no distance comes closer to a limit than
-  /// error_bound, since distances are 1-Lipschitz; where signs are estimates (SignMethod::winding), whatever
-  /// the signs. Otherwise true, as one sample or vertex is enough to exceed a tolerance, unless it depends on
-  /// the sign of an estimate.
-  bool certified = true;
-  Verdict verdict = Verdict::pass;
-  /// If not decided: an error bound that leads to Verdict::pass if no sample of the finer map comes closer to
-  /// a limit than half of the present margin. 0 if no error bound does, as the margin is within the error of
-  /// the engine.
-  double deciding_bound = 0;
 };
 
-/// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value. `accuracy`:
-/// the error of a distance, as of engine_accuracy(): rounding exceeds no tolerance. `error_bound`: upper
-/// bound on how much a distance at any point of the surface can differ from those at samples and vertices,
-/// as of SamplingBound::value(), without that error. Throws sdm::Error if the map or the distances belong to
-/// another surface, or if the tolerance needs a sign and the map is unsigned. Cost: linear in texels and
-/// faces.
+/// What a map shows of its surface. `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if
+/// it has no value. Throws sdm::Error if the map or the distances belong to another surface. Cost: linear in
+/// texels and faces.
+[[nodiscard]] SDM_API Evidence evidence_of(const Surface& surface, const DistanceMap& map,
+                                           std::span<const float> vertex_distances, double error_bound,
+                                           double accuracy);
+
+/// judge() of evidence_of() these, and the shares of the area. Throws sdm::Error if the map or the distances
+/// belong to another surface, or if the tolerance needs a sign and the map is unsigned. Cost: linear in
+/// texels and faces.
 [[nodiscard]] SDM_API ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
                                                        std::span<const float> vertex_distances,
                                                        double error_bound, double accuracy,

@@ -146,16 +146,16 @@ class DistanceMap(_core.MapChannels):
     ) -> "dict[str, Any]":
         """Returns the numbers of the map with the keys of the command's report.json, for json.dump().
 
-        The options are those of save(). None stands for what has no value. Raises Error if the surface or the sites have been
+        The options are those of save(). None stands for what has no value, such as the times of what other calls did. Raises Error if the surface or the sites have been
         refitted; Cancelled. Cost: one search per vertex.
 
         >>> report = sdm.map(sphere, box, resolution=64).report(tolerance=2)
         >>> report["tolerance"]["verdict"], report["atlas"]["resolution"]
         ('PASS', 64)
         """
-        return self._core.report(
-            self.at_vertices(progress=progress), tolerance=tolerance, units=units, colormap=colormap, range=range
-        )
+        at_vertices = self.at_vertices(progress=progress)
+        text = self._core.report(at_vertices, tolerance=tolerance, units=units, colormap=colormap, range=range)
+        return json.loads(text)
 
     def at_vertices(self, *, progress: "Progress | None" = None) -> np.ndarray:
         """Returns the distance at each vertex of the surface, (n,) float32, signed as the map; NaN where nothing is within
@@ -200,7 +200,7 @@ class DistanceMap(_core.MapChannels):
         if suffix == ".html":
             at_vertices = self.at_vertices(progress=progress)
             report = self._core.report(at_vertices, tolerance=tolerance, units=units, colormap=colormap, range=range)
-            self._core.write_page(name, at_vertices, json.dumps(report), up=up)
+            self._core.write_page(name, at_vertices, report, up=up)
             return
         self._core.write(
             suffix[1:],

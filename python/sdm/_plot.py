@@ -7,18 +7,13 @@ import numpy as np
 from ._core import Error
 
 
-def _colours(values: np.ndarray, cmap: "str | None") -> tuple:
-    """A colour map and its range: diverging and symmetric if there are both signs."""
+def _colours(distance_map: Any, cmap: "str | None") -> tuple:
+    """A colour map and its range, which is that of all pictures of the map."""
     from matplotlib import colormaps
     from matplotlib.colors import Normalize
 
-    finite = values[np.isfinite(values)]
-    low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
-    diverging = low < 0 < high
-    if diverging:
-        high = max(-low, high)
-        low = -high
-    return colormaps[cmap or ("RdBu_r" if diverging else "viridis")], Normalize(low, high)
+    name, low, high = distance_map._core.colors()
+    return colormaps[cmap or ("RdBu_r" if name == "diverging" else "viridis")], Normalize(low, high)
 
 
 def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) -> Any:
@@ -33,7 +28,7 @@ def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) 
     label = f"distance [{units}]" if units else "distance"
     if kind == "atlas":
         ax = ax or plt.figure().add_subplot()
-        colours, norm = _colours(distance_map.distance, cmap)
+        colours, norm = _colours(distance_map, cmap)
         picture = ax.imshow(distance_map.distance, cmap=colours, norm=norm)
         ax.figure.colorbar(picture, ax=ax, label=label)
         ax.set_axis_off()
@@ -44,7 +39,7 @@ def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) 
     ax = ax or plt.figure().add_subplot(projection="3d")
     corners = distance_map.surface.vertices[distance_map.surface.faces]
     values = distance_map.at_vertices()[distance_map.surface.faces].mean(axis=1)
-    colours, norm = _colours(values, cmap)
+    colours, norm = _colours(distance_map, cmap)
     # Lambertian shading from above the viewer's left; faces without a value are grey.
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)

@@ -30,11 +30,6 @@ Value value_of(const Names<Value, n>& names, const std::string& argument, const 
   throw Error(argument + " must be one of " + all + ", not '" + name + "'");
 }
 
-template <class Value, std::size_t n>
-const char* name_in(const Names<Value, n>& names, Value value) {
-  return std::ranges::find(names, value, &std::pair<const char*, Value>::second)->first;
-}
-
 // with thread_limit(4): ...
 struct PyThreadLimit {
   unsigned count;
@@ -49,14 +44,8 @@ std::shared_ptr<const Engine> engine_of(const char* name) {
 SignMethod sign_of(const char* name) {
   return value_of(kSigns, "sign", name);
 }
-const char* name_of(SignMethod method) {
-  return name_in(kSigns, method);
-}
 AtlasKind atlas_of(const char* name) {
   return value_of(kAtlases, "atlas", name);
-}
-const char* name_of(AtlasKind kind) {
-  return name_in(kAtlases, kind);
 }
 
 void bind_errors(nb::module_& module) {

@@ -3,6 +3,7 @@
 
 #include <nanobind/stl/optional.h>
 
+#include <chrono>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -11,6 +12,10 @@
 
 namespace sdm::python {
 namespace {
+
+double milliseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
 
 std::unique_ptr<PyMap> map_between(nb::handle surface, nb::handle sites) {
   auto result = std::make_unique<PyMap>();
@@ -32,9 +37,11 @@ std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char*
   result->options = {.engine = engine_of(engine), .sign = sign_of(sign), .max_distance = max_distance};
   result->engine = engine;
   run(progress, [&](const Progress& report) {
+    const auto begin = std::chrono::steady_clock::now();
     MapOptions options = result->options;
     options.progress = report;
     compute_map(result->on->surface, result->to->sites, options, result->map);
+    result->ms = milliseconds_since(begin);
   });
   return result;
 }
@@ -48,9 +55,11 @@ std::unique_ptr<PyMap> compute_self(nb::handle surface, nb::handle sites, nb::ha
   result->engine = "self";
   const Mesh at_rest = mesh_of(rest, nb::none());
   run(progress, [&](const Progress& report) {
+    const auto begin = std::chrono::steady_clock::now();
     result->exclusion = std::make_shared<Exclusion>(at_rest, rule, report);
     result->map = compute_self_map(result->on->surface, result->to->sites, *result->exclusion,
                                    {.max_distance = max_distance, .progress = report});
+    result->ms = milliseconds_since(begin);
   });
   return result;
 }

@@ -30,6 +30,7 @@ struct PyMap {
   /// Of a map of a surface to itself: what each face excludes; otherwise null.
   std::shared_ptr<const Exclusion> exclusion;
   DistanceMap map;
+  double ms = 0;  ///< that it took
 
   [[nodiscard]] std::size_t texels() const { return map.distance.size(); }
   [[nodiscard]] std::size_t rows() const { return map.rows(); }

@@ -1,9 +1,12 @@
 // The numbers of a map: statistics, bounds, and whether it is within a tolerance.
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
 #include <sdm/hausdorff.h>
 #include <sdm/sampling_bound.h>
+#include <sdm/summary.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -105,8 +108,11 @@ BoundedLength hausdorff(const PyMap& self, std::optional<double> precision, nb::
   return result;
 }
 
-const char* name_of(Verdict verdict) {
-  return verdict == Verdict::pass ? "pass" : verdict == Verdict::fail ? "fail" : "not decided";
+// As of the command, in small letters.
+std::string word_of(Verdict verdict) {
+  std::string word = sdm::name_of(verdict);
+  for (char& c : word) c = static_cast<char>(std::tolower(c));
+  return word;
 }
 
 ToleranceVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progress) {
@@ -158,9 +164,17 @@ void bind_verdict(nb::module_& module) {
   nb::class_<V>(module, "ToleranceVerdict",
                 "Whether the distances of all points of a surface are within a tolerance.")
       .def_prop_ro(
-          "verdict", [](const V& self) { return name_of(self.verdict); },
+          "verdict", [](const V& self) { return word_of(self.verdict); },
           "'pass': every point of the surface is within the tolerance; 'fail': some texel or vertex is not; "
           "'not decided': all texels and vertices are, but points between them may not be.")
+      .def_prop_ro(
+          "reason", [](const V& self) { return sdm::name_of(self.reason); },
+          "Why, in words: 'all within', 'exceeded', 'beyond max distance', 'between samples', 'within "
+          "rounding' or 'estimated signs'.")
+      .def_ro(
+          "margin", &V::margin,
+          "How far the distances of texels and vertices stay from the limits, less the accuracy; negative "
+          "if they do not.")
       .def_prop_ro(
           "tolerance", [](const V& self) { return nb::make_tuple(self.tolerance.lo, self.tolerance.hi); },
           nb::sig("def tolerance(self) -> tuple[float, float]"), "The least and the most accepted distance.")
@@ -182,7 +196,7 @@ void bind_verdict(nb::module_& module) {
           "if none does.")
       .def("__repr__", [](const V& self) {
         return nb::str("sdm.ToleranceVerdict({!r}, largest={:.6g})")
-            .format(name_of(self.verdict), self.largest);
+            .format(word_of(self.verdict), self.largest);
       });
 }
 

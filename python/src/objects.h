@@ -70,9 +70,7 @@ struct PySurface {
 // Options by their names in Python. All throw sdm::Error for an unknown one.
 [[nodiscard]] std::shared_ptr<const Engine> engine_of(const char* name);
 [[nodiscard]] SignMethod sign_of(const char* name);
-[[nodiscard]] const char* name_of(SignMethod method);
 [[nodiscard]] AtlasKind atlas_of(const char* name);
-[[nodiscard]] const char* name_of(AtlasKind kind);
 
 /// Adds the method edit().
 void bind_edit(nb::class_<PySites>& sites);

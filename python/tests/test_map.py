@@ -299,13 +299,19 @@ def test_the_report_is_that_of_the_command(distance_map, map_in_file, tmp_path):
     assert subprocess.run(command).returncode == 3
     theirs = json.loads((tmp_path / "out" / "report.json").read_text())
     ours = json.loads(json.dumps(sdm.map(o1, o2, resolution=256).report(tolerance=0.5)))
+    assert set(ours) == set(theirs) and set(ours["time_ms"]) == set(theirs["time_ms"])
     for key, value in ours.items():
         if key in ("o1", "o2"):
             value["file"] = theirs[key]["file"]
-        expected = theirs[key]
-        if isinstance(value, dict):
-            expected = {k: v for k, v in expected.items() if k in value}
-        assert value == expected, key
+        assert key == "time_ms" or value == theirs[key], key
+    # The page and the plots, too, have these numbers, this verdict and these colours.
+    assert page_data((tmp_path / "out" / "report.html").read_text(encoding="utf-8"), "report") == theirs
+    plain = sdm.map(o1, o2, resolution=256)
+    assert list(plain._core.colors()) == [plain.report()["colors"]["map"], *plain.report()["colors"]["range"]]
+    verdict = plain.check(0.5)
+    assert (verdict.verdict.upper(), verdict.reason, verdict.margin) == tuple(
+        theirs["tolerance"][k] for k in ("verdict", "reason", "margin")
+    )
 
 
 def test_notebooks(distance_map):

@@ -1,9 +1,13 @@
 // Answers of different commands to the same question.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/io.h>
+#include <sdm/report.h>
+#include <sdm/sdm.h>
 
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
@@ -101,6 +105,55 @@ TEST_F(Consistency, TheVerdictIsThatOfTheExtremesShown) {
   EXPECT_THAT(run.out, HasSubstr("at vertex ("));
 }
 
+// Regression: files of one run judged and coloured by different rules.
+TEST_F(Consistency, EverythingStatesTheSummaryOfTheLibrary) {
+  const std::string o1 = folder / "o1.ply", points = folder / "points.xyz";
+  const Mesh mesh = moved(sphere(2), {4, 0, 0});
+  write_ply(o1, mesh);
+  std::string text;
+  for (const Vec3& p : mesh.positions) text += fmt::format("{} {} {}\n", p[0], p[1], p[2]);
+  std::ofstream(points) << text;
+
+  const Surface surface(read_mesh(o1), {.resolution = 32});
+  const Sites sites(read_mesh(small));
+  const DistanceMap map = compute_map(surface, sites);
+  const std::vector<float> at_vertices = distances_at_vertices(surface.mesh(), sites);
+  const double accuracy = engine_accuracy(engines().front(), surface.mesh(), sites.mesh());
+  for (const Tolerance tolerance : {Tolerance(10), Tolerance(4), Tolerance(4.55), Tolerance(1, 5)}) {
+    const Summary expected = summarize(surface, sites, map, at_vertices,
+                                       {.units = "mm", .accuracy = accuracy, .tolerance = tolerance});
+    const std::string limits = fmt::format("{}:{}", tolerance.lo, tolerance.hi);
+    const std::vector<std::string> options{"-o", out, "--units", "mm", "--tolerance=" + limits};
+    std::vector<std::string> arguments{"map", o1, small, "--resolution", "32"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome run = run_sdm(arguments);
+    EXPECT_THAT(run.out, HasSubstr(fmt::format("tolerance {}: ", name_of(expected.tolerance->verdict))));
+    EXPECT_THAT(run.out, HasSubstr(fmt::format("mean {:.5g} ", expected.distance.mean)));
+    const Json report = Json::parse(contents(out + "/report.json"));
+    const Json summary = Json::parse(summary_json(expected));
+    for (const auto& [key, value] : summary.items()) EXPECT_EQ(report[key], value) << key << " " << limits;
+
+    // The vertices as a cloud: judged by the same rule, without anything between them.
+    arguments = {"points", points, small};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome cloud_run = run_sdm(arguments);
+    const Json cloud = Json::parse(contents(out + "/report.json"));
+    const Json& found = cloud["evidence"];
+    const Judgement judgement = judge({.lowest = found["lowest"],
+                                       .highest = found["highest"],
+                                       .complete = found["complete"],
+                                       .estimated_signs = found["estimated_signs"],
+                                       .accuracy = found["accuracy"],
+                                       .error_bound = found["error_bound"]},
+                                      tolerance);
+    EXPECT_EQ(found["error_bound"], 0);
+    EXPECT_EQ(cloud["tolerance"]["verdict"], name_of(judgement.verdict));
+    EXPECT_EQ(cloud["tolerance"]["reason"], name_of(judgement.reason));
+    EXPECT_EQ(cloud["tolerance"]["margin"], judgement.margin);
+    EXPECT_THAT(cloud_run.out, HasSubstr(fmt::format("tolerance {}: ", name_of(judgement.verdict))));
+  }
+}
+
 // Regression: rounding errors exceeded a tolerance of 0.
 TEST_F(Consistency, AMeshIsWithinAnyToleranceOfItself) {
   const std::string ball = folder / "ball.ply";
@@ -135,7 +188,7 @@ TEST_F(Consistency, NotesSuggestWrongUnits) {
   EXPECT_EQ(notes({}), "[]");
   EXPECT_THAT(notes({"--transform-o2", "scale:1000"}), HasSubstr("times the other"));
   EXPECT_THAT(notes({"--transform-o2", "translate:1000:0:0"}), HasSubstr("same place"));
-  EXPECT_THAT(notes({"--max-distance", "1e-5"}), HasSubstr("no texel is within --max-distance"));
+  EXPECT_THAT(notes({"--max-distance", "1e-5"}), HasSubstr("no texel is within the maximum distance"));
 }
 
 TEST(Usage, UnknownNamesAreAnsweredWithTheNearest) {

@@ -40,6 +40,7 @@ set(order
   proximity/bodies
   proximity/self
   proximity
+  summary
   io/read/polygons
   io/read
   io/read/frames
@@ -51,6 +52,7 @@ set(order
   io/write
   io/write/fields
   io/write/report
+  io/write/summary
   io/write/player
   io/write/vertices
   io/points/text
@@ -93,6 +95,17 @@ foreach(file ${files})
       list(APPEND arrows_${key} "${included}")
     endif()
   endforeach()
+endforeach()
+
+# A verdict is formed in one place, and named there.
+file(GLOB_RECURSE sources RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/src/*.cpp ${SOURCE_DIR}/src/*.h ${SOURCE_DIR}/cli/*.cpp
+     ${SOURCE_DIR}/cli/*.h ${SOURCE_DIR}/python/src/*.cpp)
+list(FILTER sources EXCLUDE REGEX "^src/summary/")
+foreach(file ${sources})
+  file(STRINGS ${SOURCE_DIR}/${file} formed REGEX "[.>]verdict = |\"NOT DECIDED\"")
+  if(formed AND NOT file STREQUAL "cli/sequence_distances.cpp")  # copies it
+    message(SEND_ERROR "${file}: a verdict is formed in src/summary only: ${formed}")
+  endif()
 endforeach()
 
 # A folder stays small: at most 15 units, a source with its header, beside its subfolders.

@@ -231,25 +231,7 @@ def _computed(names: tuple, meshes: tuple, digests: tuple, transform: Any, key: 
     return {
         **{name: getattr(statistics, name) for name in (*_NUMBERS, "texels", "negative_texels")},
         **{name: getattr(bounds, name) for name in _BOUNDS},
-        "verdict": "" if work["tolerance"] is None else _verdict(distance_map, bounds, *work["tolerance"]),
+        "verdict": "" if work["tolerance"] is None else distance_map.check(work["tolerance"]).verdict.upper(),
         "sign": distance_map.sign, "sign_reason": distance_map.sign_reason, "resolution": surface.resolution,
         **files, "seconds": time.perf_counter() - began,
     }  # fmt: skip
-
-
-def _verdict(distance_map: sdm.DistanceMap, bounds: sdm.MapBounds, low: float, high: float) -> str:
-    """As `sdm map --tolerance`: FAIL if a texel or vertex is out of the tolerance by more than the accuracy, PASS if no point
-    between them can be."""
-    if low < 0 and -low != high and distance_map.sign == "none":
-        raise sdm.Error("a tolerance that differs by the sign needs signed distances, but the map is unsigned")
-    used = np.unique(distance_map.surface.faces)
-    owned = distance_map.face != sdm.NONE
-    distances = np.concatenate([distance_map.distance[owned], distance_map.at_vertices()[used]]).astype(np.float64)
-    lowest, highest = distances.min(), distances.max()  # NaN if something is beyond the maximum distance
-    if not (low - lowest <= bounds.accuracy and highest - high <= bounds.accuracy):
-        return "FAIL"
-    if distance_map.sign == "winding":  # an estimate: between samples a distance may have the other sign
-        highest = max(highest, -lowest)
-        lowest = -highest
-    margin = min(high - highest, lowest - low) - bounds.accuracy
-    return "PASS" if bounds.covering_radius <= margin else "NOT DECIDED"

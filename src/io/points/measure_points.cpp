@@ -18,6 +18,7 @@
 #include "io/write/atomic_file.h"
 #include "io/write/little_endian.h"
 #include "io/write/pictures/color_scale.h"
+#include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_percentiles.h"
 
 namespace sdm {
@@ -64,7 +65,8 @@ class Measurement {
     file.stream().flush();
     file.check();
     find_percentiles(file.temporary(), rows_begin);
-    colour(file.temporary(), rows_begin);
+    result_.accuracy = accuracy();
+    finish(file.temporary(), rows_begin);
     file.commit();
     return result_;
   }
@@ -150,10 +152,6 @@ class Measurement {
     if (valid) extend(result_.bounds, point);
     result_.invalid += !valid;
     result_.beyond_max_distance += valid && !has_value;
-    const PictureOptions& picture = options_.picture;
-    result_.beyond_tolerance +=
-        picture.tolerance && valid &&
-        !(d >= picture.tolerance->lo - picture.accuracy && d <= picture.tolerance->hi + picture.accuracy);
     if (!has_value) return;
     DistanceStatistics& s = result_.distance;
     ++s.texels, s.negative_texels += d < 0;
@@ -213,12 +211,26 @@ class Measurement {
     s.p50_abs = magnitudes[2], s.p95_abs = magnitudes[3], s.p99_abs = magnitudes[4];
   }
 
-  void colour(const std::filesystem::path& written, std::uint64_t rows_begin) const {
-    const ColorScale scale = color_scale(fixed_colors(options_.picture, result_.distance));
+  // Relative to the box of both, which is known once all points are read.
+  [[nodiscard]] double accuracy() const {
+    const EngineInfo& engine = options_.map.engine ? engine_info(*options_.map.engine) : engines().front();
+    Box box = sdm::bounds(sites_.mesh());
+    if (result_.invalid < result_.points) extend(box, result_.bounds);
+    return engine.relative_error * diagonal(box);
+  }
+
+  // Colours the rows, and counts those out of the tolerance.
+  void finish(const std::filesystem::path& written, std::uint64_t rows_begin) {
+    PictureOptions picture = options_.picture;
+    picture.accuracy = result_.accuracy;
+    const ColorScale scale = color_scale(fixed_colors(picture, result_.distance));
+    const map::ToleranceLimits limits(picture.tolerance.value_or(Tolerance()), result_.accuracy);
+    if (picture.tolerance) result_.beyond_tolerance = result_.beyond_max_distance;
     std::fstream file(written, std::ios::binary | std::ios::in | std::ios::out);
     for_each_row(file, rows_begin, 0, result_.points, [&](char* row) {
       const auto d = load<float>(row + row_.distance_at());
       const Rgb rgb = std::isnan(d) ? kNoValue : scale(d);
+      result_.beyond_tolerance += picture.tolerance && (limits.below(d) || limits.above(d));
       row[row_.colour_at()] = static_cast<char>(rgb.r);
       row[row_.colour_at() + 1] = static_cast<char>(rgb.g);
       row[row_.colour_at() + 2] = static_cast<char>(rgb.b);
@@ -244,6 +256,32 @@ PointDistances measure_points(const std::filesystem::path& cloud, const Sites& s
   return Measurement(cloud, sites, options).write(ply);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the points of " + cloud.string());
+}
+
+Summary summarize(const PointDistances& found, const PointDistancesOptions& options) {
+  PictureOptions picture = options.picture;
+  picture.accuracy = found.accuracy;
+  Summary summary{.units = picture.units,
+                  .of_points = true,
+                  .sign = found.sign,
+                  .distance = found.distance,
+                  .extremes = {{found.min.distance, found.min.point}, {found.max.distance, found.max.point}},
+                  .extreme_points = {found.min.index, found.max.index},
+                  .beyond_max_distance = found.beyond_max_distance,
+                  .max_distance = options.map.max_distance,
+                  .evidence = {.complete = found.beyond_max_distance == 0,
+                               .estimated_signs = found.sign.method == SignMethod::winding,
+                               .accuracy = found.accuracy},
+                  .colors = color_range(color_choice(picture), found.distance)};
+  if (found.distance.texels > 0)
+    summary.evidence.lowest = found.min.distance, summary.evidence.highest = found.max.distance;
+  if (!picture.tolerance) return summary;
+  const Judgement judgement = judge(summary.evidence, *picture.tolerance);
+  summary.tolerance = ToleranceVerdict{judgement, *picture.tolerance, found.distance.max_abs, 0, {}};
+  summary.exceeding_points = found.beyond_tolerance;
+  summary.exceeding_point_fraction =
+      static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points);
+  return summary;
 }
 
 }  // namespace sdm

@@ -16,14 +16,19 @@ namespace sdm {
 
 using namespace io;
 
-TextureRange write_distance_texture(const std::filesystem::path& file, const Surface& surface,
-                                    const DistanceMap& map, const PictureOptions& options) try {
+PictureOptions texture_range(const PictureOptions& options, const DistanceStatistics& distances) {
   PictureOptions plain = options;
   plain.tolerance = {};
-  // All distances: a texture is data.
-  DistanceStatistics distances = statistics(surface, map);
-  if (distances.texels > 0) distances.p99_abs = std::max(std::abs(distances.min), std::abs(distances.max));
-  const ColorScale scale = color_scale(fixed_colors(plain, distances));
+  DistanceStatistics all = distances;  // a texture is data: no outlier is cut off
+  if (all.texels > 0) all.p99_abs = std::max(std::abs(all.min), std::abs(all.max));
+  return fixed_colors(plain, all);
+}
+
+TextureRange write_distance_texture(const std::filesystem::path& file, const Surface& surface,
+                                    const DistanceMap& map, const PictureOptions& options) try {
+  const bool open = !options.range || options.colormap == Colormap::automatic;
+  const ColorScale scale =
+      color_scale(texture_range(options, open ? statistics(surface, map) : DistanceStatistics{}));
   const std::uint32_t n = surface.resolution();
   const Gutter gutter(n, surface.texel_faces(), std::max(kGutter, surface.gutter()));
   constexpr double kWhite = 0xFFFF;

@@ -1,7 +1,5 @@
 #include "io/write/pictures/color_scale.h"
 
-#include <sdm/error.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -132,39 +130,18 @@ Rgb direction_color(const Vec3f& vector) {
 
 namespace sdm {
 
-PictureOptions fixed_colors(const PictureOptions& options, const DistanceStatistics& distances) {
-  if (const auto& t = options.tolerance;
-      t && !(std::isfinite(t->lo) && std::isfinite(t->hi) && t->lo <= t->hi))
-    throw Error("the tolerance of the picture must be two finite numbers, the smaller one first");
-  if (options.range && !(std::isfinite((*options.range)[0]) && std::isfinite((*options.range)[1]) &&
-                         (*options.range)[0] < (*options.range)[1]))
-    throw Error("the range of the colours must be two finite numbers, the smaller one first");
+ColorChoice color_choice(const PictureOptions& options) {
+  return {options.colormap, options.range, options.tolerance, options.accuracy};
+}
 
-  const bool empty = distances.texels == 0;
-  double lo = empty ? 0 : distances.min, hi = empty ? 0 : distances.max;
-  if (std::max(std::abs(lo), std::abs(hi)) <= options.accuracy) lo = 0, hi = options.accuracy;  // rounding
-
+PictureOptions fixed_colors(const PictureOptions& options, const ColorRange& colors) {
   PictureOptions fixed = options;
-  const bool bands = options.colormap == Colormap::automatic && options.tolerance;
-  if (options.colormap == Colormap::automatic && !bands)
-    fixed.colormap = lo < 0 && hi > 0 ? Colormap::diverging : Colormap::viridis;
-  if (options.range) return fixed;
-
-  const double least = lo, most = hi;
-  const double reach = !empty && distances.p99_abs > options.accuracy ? distances.p99_abs
-                                                                      : std::max(std::abs(lo), std::abs(hi));
-  lo = std::clamp(lo, -reach, reach), hi = std::clamp(hi, -reach, reach);
-  if (bands) {
-    const double margin = std::max(std::abs(options.tolerance->lo), std::abs(options.tolerance->hi));
-    hi = std::max(hi, options.tolerance->hi + margin);
-    lo = least < 0 ? std::min(lo, options.tolerance->lo - margin) : 0;
-  } else if (fixed.colormap == Colormap::diverging) {
-    hi = reach, lo = -reach;
-  }
-  if (!(lo < hi)) lo = least, hi = most;  // nearly all of the area has one distance
-  if (!(lo < hi)) hi = lo + (lo != 0 ? std::abs(lo) : 1);
-  fixed.range = {{lo, hi}};
+  fixed.colormap = colors.colormap, fixed.range = colors.range;
   return fixed;
+}
+
+PictureOptions fixed_colors(const PictureOptions& options, const DistanceStatistics& distances) {
+  return fixed_colors(options, color_range(color_choice(options), distances));
 }
 
 }  // namespace sdm

@@ -1,0 +1,188 @@
+/// What a map or a measured cloud is summed up to: numbers, verdict, range of colours and notes. Everything
+/// that states results shows these: the command, report.json, the pages and Python.
+///
+/// Threads: the functions may be called concurrently, also with the same map; an object is used by one thread
+/// at a time.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/atlas.h>
+#include <sdm/combined_statistics.h>
+#include <sdm/map.h>
+#include <sdm/mesh.h>
+#include <sdm/part_statistics.h>
+#include <sdm/sites.h>
+#include <sdm/statistics.h>
+#include <sdm/surface.h>
+#include <sdm/tolerance.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sdm {
+
+/// Colour scales for distances.
+enum class Colormap {
+  automatic,  ///< diverging if there are both signs, otherwise viridis; with a tolerance, bands
+  viridis,
+  diverging,  ///< blue (negative) – white – red (positive), centred on zero
+  paper2006,  ///< red (near) to green (far), as in the paper's figures
+};
+
+/// What a user chose of the colours, and what they depend on.
+struct ColorChoice {
+  Colormap colormap = Colormap::automatic;
+  std::optional<std::array<double, 2>> range{};  ///< the distances at the ends
+  std::optional<Tolerance> tolerance{};
+  double accuracy = 0;  ///< of the distances; a range from the distances is at least as long
+};
+
+/// The colours of distances.
+struct ColorRange {
+  Colormap colormap = Colormap::viridis;  ///< automatic: bands of the tolerance
+  std::array<double, 2> range{0, 1};      ///< the distances at the ends; the first one is smaller
+  bool chosen = false;                    ///< whether a user chose the range
+};
+
+/// Returns the colours of a map with these statistics, by the rule for all files. The range ends at the 99th
+/// percentile of |distance| (of the area, or of the points), so that a few outliers do not take the colours
+/// from the rest: −p99 to p99 if the colormap is diverging, otherwise the range of the distances cut at ±p99;
+/// with a tolerance, well beyond its limits. If the percentile is within the accuracy, it ends at the largest
+/// |distance|. Throws sdm::Error unless a range is finite and increasing and a tolerance too. Cost: O(1).
+[[nodiscard]] SDM_API ColorRange color_range(const ColorChoice& choice, const DistanceStatistics& distances);
+
+/// Returns colours that suit two maps: the union of their ranges, diverging if one of them is.
+[[nodiscard]] SDM_API ColorRange widest(const ColorRange& a, const ColorRange& b);
+
+/// The parts of a surface of one kind: components, or the groups that its file names.
+struct PartTable {
+  /// A part.
+  struct Row {
+    std::string name;  ///< empty for components, and for the faces without a name
+    PartStatistics part;
+    std::uint32_t first_face = 0;
+  };
+
+  std::string kind;       ///< "component", or as FaceNames::kind
+  std::size_t count = 0;  ///< of all parts
+  std::vector<Row> rows;  ///< the largest by area, the largest first; none if there is only one part
+};
+
+/// How the area is distributed over distances and parts.
+struct Distribution {
+  std::optional<DistanceHistogram> histogram;  ///< nothing without a value
+  std::vector<DistanceBand> bands;             ///< none without edges
+  std::vector<PartTable> parts;                ///< components first
+};
+
+/// Returns the edges of the bands around a tolerance: the limits and their halves and doubles on either side
+/// of zero; for a tolerance that does not contain zero, the limits, their middle, and as far again beyond
+/// them. Those below zero are omitted if distances are unsigned.
+[[nodiscard]] SDM_API std::vector<double> default_bands(const Tolerance& tolerance, bool is_signed);
+
+/// Returns the extreme with the larger |distance|.
+[[nodiscard]] SDM_API const Extreme& farthest(const Extremes& extremes);
+
+/// Bounds on the largest |distance| of all points of a surface, not only of its samples.
+struct LargestDistance {
+  std::optional<double> lower;  ///< nothing if the accuracy is unknown
+  std::optional<double> upper;  ///< nothing, too, if a texel is farther than the maximum distance
+  std::optional<Vec3> point;    ///< where it is `lower`, but for twice the accuracy
+};
+
+/// What a map, or a measured cloud, is summed up to.
+struct Summary {
+  std::string units{};     ///< of all lengths, as the user names them
+  bool of_points = false;  ///< of a cloud: each point counts the same, and there is nothing between points
+  bool of_itself = false;  ///< a map of a surface to itself, whose texels say nothing about other points
+  SignUsed sign{};
+  DistanceStatistics distance{};  ///< an estimate for the surface; exact for a cloud, but for the accuracy
+  Extremes extremes{};
+  std::array<std::uint64_t, 2> extreme_points{};  ///< of a cloud: their places in the file, from 0
+  std::size_t beyond_max_distance = 0;
+  std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh
+  double max_distance = std::numeric_limits<double>::infinity();  ///< infinite if there is no limit
+  Evidence evidence{};                                            ///< with the accuracy and the error bound
+  LargestDistance hausdorff{};  ///< of a map: the one-sided Hausdorff distance
+  std::optional<ToleranceVerdict> tolerance{};
+  std::uint64_t exceeding_points = 0;          ///< of a cloud: out of the tolerance, or without a value
+  double exceeding_point_fraction = 0;         ///< their fraction of all points
+  std::optional<ColorRange> colors{};          ///< nothing of several maps together
+  std::optional<Distribution> distribution{};  ///< nothing of clouds, self maps, and several maps together
+  std::vector<std::string> notes{};            ///< what the user probably did not intend, a sentence each
+};
+
+/// Options of summarize().
+struct SummaryOptions {
+  std::string units{};
+  double max_distance = std::numeric_limits<double>::infinity();  ///< that of the map
+  double accuracy = 0;  ///< of the engine: engine_accuracy(); infinite if unknown
+  std::optional<Tolerance> tolerance{};
+  Colormap colormap = Colormap::automatic;
+  std::optional<std::array<double, 2>> range{};  ///< of the colours
+  std::optional<ColorRange> colors{};            ///< shared with other maps; in place of the two above
+  std::vector<double> bands{};                   ///< edges; empty: default_bands(), if there is a tolerance
+  std::span<const FaceNames> names{};            ///< of the faces of `whole`
+  const Mesh* whole = nullptr;                   ///< the mesh of which the surface is a part; null: its own
+  std::span<const std::uint32_t>
+      whole_face{};  ///< the face of `whole` of each of the surface; empty: the same
+  const DistanceStatistics* distance = nullptr;  ///< statistics() of the map, if they are known
+  std::span<const std::uint8_t> boundary{};      ///< boundary_mask() of the map, if it is known
+};
+
+/// Sums up a map on `surface` of the distances to `sites`. `vertex_distances`: the distance at each vertex of
+/// surface.mesh(), NaN if it has no value. Throws sdm::Error if the map or the distances belong to another
+/// surface, as color_range() and check_tolerance() do, and for bands that do not increase. Cost: linear in
+/// texels and faces, all cores.
+[[nodiscard]] SDM_API Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap& map,
+                                        std::span<const float> vertex_distances,
+                                        const SummaryOptions& options = {});
+
+/// Sums up a map of a surface to itself: statistics and colours. Errors and cost as of summarize().
+[[nodiscard]] SDM_API Summary summarize_self(const Surface& surface, const DistanceMap& map,
+                                             const SummaryOptions& options = {});
+
+/// The summary of several maps, such as those of the UDIM tiles of a mesh, as of one: statistics weighted by
+/// area over all of them, the extremes, the largest error bound, and the verdict: Verdict::fail if that of
+/// one is, Verdict::pass if that of all is.
+class SDM_API CombinedSummary {
+ public:
+  /// Adds a map, which need not be kept, and its summary. Throws sdm::Error as CombinedStatistics::add()
+  /// does. Cost: linear in texels.
+  void add(const Surface& surface, const DistanceMap& map, const Summary& summary);
+  /// Returns the summary of all, without distribution, colours and notes. At least one map was added.
+  [[nodiscard]] Summary summary() const;
+
+ private:
+  CombinedStatistics statistics_;
+  Summary total_;
+  std::vector<double> areas_;
+  std::vector<ToleranceVerdict> verdicts_;
+};
+
+/// Returns a sentence if one box is about as many times as large as the other as a unit of length is (10,
+/// 25.4, 100, 304.8 or 1000, to 5 %), or more than 1000 times; by the diagonals of the boxes.
+[[nodiscard]] SDM_API std::optional<std::string> note_on_sizes(const Box& a, const Box& b);
+/// Returns a sentence if the boxes are more than 100 times the size of the larger one apart.
+[[nodiscard]] SDM_API std::optional<std::string> note_on_places(const Box& a, const Box& b);
+/// Returns both notes, if there are; none for a box that is empty.
+[[nodiscard]] SDM_API std::vector<std::string> notes_on(const Box& a, const Box& b);
+
+/// "PASS", "FAIL" or "NOT DECIDED".
+[[nodiscard]] SDM_API const char* name_of(Verdict verdict);
+/// The enumerator in words, such as "all within" or "between samples".
+[[nodiscard]] SDM_API const char* name_of(VerdictReason reason);
+/// "automatic", "viridis", "diverging" or "paper2006".
+[[nodiscard]] SDM_API const char* name_of(Colormap colormap);
+/// "none", "exact" or "winding"; "automatic" before the choice.
+[[nodiscard]] SDM_API const char* name_of(SignMethod method);
+/// "charts", "triangles" or "uv".
+[[nodiscard]] SDM_API const char* name_of(AtlasKind kind);
+
+}  // namespace sdm

@@ -1,0 +1,242 @@
+#include <sdm/report.h>
+#include <sdm/version.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace sdm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::ignore);
+}
+
+template <class Value>
+Json optional(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json to_json(const ReportedMesh& mesh) {
+  return {{"file", mesh.file},
+          {"transform", mesh.transform},
+          {"vertices", mesh.info.vertices},
+          {"triangles", mesh.info.triangles},
+          {"closed", mesh.info.closed},
+          {"degenerate_faces", mesh.info.degenerate_faces},
+          {"duplicate_faces", mesh.info.duplicate_faces}};
+}
+
+Json to_json(const Surface& surface) {
+  return {{"kind", name_of(surface.atlas_kind())},
+          {"resolution", surface.resolution()},
+          {"rows", surface.rows()},
+          {"charts", surface.chart_count()},
+          {"texels", surface.sample_texels().size()},
+          {"utilisation", surface.utilisation()},
+          {"max_stretch", surface.max_stretch()},
+          {"gutter", surface.gutter()},
+          {"overlapping_texels", surface.overlapping_texels()}};
+}
+
+Json to_json(const DistanceStatistics& d) {
+  return {{"kind", "estimate"},
+          {"min", d.min},
+          {"max", d.max},
+          {"mean", d.mean},
+          {"rms", d.rms},
+          {"stddev", d.stddev},
+          {"p01", d.p01},
+          {"p05", d.p05},
+          {"p50", d.p50},
+          {"p95", d.p95},
+          {"p99", d.p99},
+          {"mean_abs", d.mean_abs},
+          {"max_abs", d.max_abs},
+          {"p50_abs", d.p50_abs},
+          {"p95_abs", d.p95_abs},
+          {"p99_abs", d.p99_abs},
+          {"negative_area_fraction", d.negative_area_fraction}};
+}
+
+Json to_json(const ColorRange& colors) {
+  return {{"map", colors.colormap == Colormap::automatic ? "tolerance" : name_of(colors.colormap)},
+          {"range", colors.range},
+          {"range_from", colors.chosen ? "option" : "p99_abs"}};
+}
+
+Json to_json(const Extreme& extreme) {
+  if (std::isnan(extreme.distance)) return nullptr;
+  return {{"distance", extreme.distance},
+          {"point", extreme.point},
+          {"at", extreme.at_vertex ? "vertex" : "texel"}};
+}
+
+Json extremes_json(const Summary& summary) {
+  Json json{{"min", to_json(summary.extremes.min)}, {"max", to_json(summary.extremes.max)}};
+  if (!summary.of_points) return json;
+  for (const auto& [key, index] :
+       {std::pair("min", summary.extreme_points[0]), std::pair("max", summary.extreme_points[1])})
+    if (!json[key].is_null()) json[key]["at"] = "point", json[key]["index"] = index;
+  return json;
+}
+
+Json to_json(const Evidence& evidence) {
+  return {{"lowest", evidence.lowest},     {"highest", evidence.highest},
+          {"complete", evidence.complete}, {"estimated_signs", evidence.estimated_signs},
+          {"accuracy", evidence.accuracy}, {"error_bound", evidence.error_bound}};
+}
+
+Json to_json(const ToleranceShares& shares) {
+  return {{"below", shares.below},
+          {"within", shares.within},
+          {"above", shares.above},
+          {"without_value", shares.without_value}};
+}
+
+Json tolerance_json(const Summary& summary) {
+  const ToleranceVerdict& verdict = *summary.tolerance;
+  const auto [lo, hi] = verdict.tolerance;
+  Json json;
+  json["value"] = lo == -hi ? Json(hi) : Json();
+  json["lower"] = lo;
+  json["upper"] = hi;
+  json["verdict"] = name_of(verdict.verdict);
+  json["reason"] = name_of(verdict.reason);
+  if (summary.of_points) {
+    json["exceeded_points"] = summary.exceeding_points;
+    json["exceeded_point_fraction"] = summary.exceeding_point_fraction;
+  } else {
+    json["exceeded_area_fraction"] = verdict.exceeded_area_fraction;
+    json["area_fractions"] = to_json(verdict.shares);
+  }
+  json["within"] = verdict.within;
+  json["certified"] = verdict.certified;
+  json["margin"] = verdict.margin;
+  json["nearest_limit"] = verdict.nearest_is_lower ? "lower" : "upper";
+  json["deciding_precision"] =
+      verdict.deciding_bound > 0 && !summary.of_points ? Json(verdict.deciding_bound) : Json();
+  return json;
+}
+
+Json to_json(const PartTable& table, bool with_tolerance) {
+  Json rows = Json::array();
+  for (const auto& [name, part, first_face] : table.rows) {
+    Json row;
+    if (table.kind != "component") row["name"] = name.empty() ? Json() : Json(name);
+    row["triangles"] = part.faces;
+    row["first_triangle"] = first_face;
+    row["bounds"] = {{"lo", part.box.lo}, {"hi", part.box.hi}};
+    row["area_fraction"] = part.area_fraction;
+    row["distance"] = to_json(part.distance);
+    row["texels_with_value"] = part.distance.texels;
+    if (with_tolerance) row["tolerance"] = to_json(part.tolerance);
+    rows.push_back(std::move(row));
+  }
+  return {{"kind", table.kind}, {"count", table.count}, {"largest", std::move(rows)}};
+}
+
+void add(Json& json, const Distribution& distribution, bool with_tolerance) {
+  json["histogram"] = nullptr;
+  if (const auto& h = distribution.histogram)
+    json["histogram"] = {{"lower", h->lo},    {"upper", h->hi},    {"area_fractions", h->area_fractions},
+                         {"below", h->below}, {"above", h->above}, {"without_value", h->without_value}};
+  json["bands"] = Json::array();
+  for (const DistanceBand& band : distribution.bands)  // null: no limit
+    json["bands"].push_back({{"lower", band.lo}, {"upper", band.hi}, {"area_fraction", band.area_fraction}});
+  json["components"] = to_json(distribution.parts.front(), with_tolerance);
+  json["groups"] = Json::array();
+  for (std::size_t i = 1; i < distribution.parts.size(); ++i)
+    json["groups"].push_back(to_json(distribution.parts[i], with_tolerance));
+}
+
+Json largest_json(const Summary& summary) {
+  const LargestDistance& d = summary.hausdorff;
+  return {{"lower", optional(d.lower)},
+          {"upper", optional(d.upper)},
+          {"kind", d.lower ? "bounded" : "unknown"},
+          {"point", optional(d.point)}};
+}
+
+/// What is measured of a surface and not of points.
+void add_surface(Json& json, const Summary& summary) {
+  const Evidence& evidence = summary.evidence;
+  const bool known = std::isfinite(evidence.accuracy);
+  json["boundary_texels"] = summary.boundary_texels;
+  json["error_bound"] = known ? Json(evidence.error_bound) : Json();
+  json["error_bound_kind"] = known ? "bounded" : "unknown";
+  json["hausdorff"] = {{"one_sided", largest_json(summary)}};
+}
+
+Json to_json(const Summary& summary) {
+  const DistanceStatistics& d = summary.distance;
+  Json json;
+  json["units"] = summary.units;
+  json["max_distance"] = summary.max_distance;  // null: no limit
+  if (summary.colors) json["colors"] = to_json(*summary.colors);
+  if (summary.of_itself) {
+    json["distance"] = to_json(d);
+    json["texels_with_value"] = d.texels;
+    json["texels_without_value"] = summary.beyond_max_distance;
+    json["notes"] = summary.notes;
+    return json;
+  }
+  json["sign"] = {{"method", name_of(summary.sign.method)}, {"reason", summary.sign.reason}};
+  json["distance"] = to_json(d);
+  if (summary.of_points) json["distance"]["kind"] = "bounded", json["distance"]["weights"] = "points";
+  json["extremes"] = extremes_json(summary);
+  json[summary.of_points ? "points_with_value" : "texels_with_value"] = d.texels;
+  json[summary.of_points ? "negative_points" : "negative_texels"] = d.negative_texels;
+  json["beyond_max_distance"] = summary.beyond_max_distance;
+  json["accuracy"] = summary.evidence.accuracy;  // null: unknown
+  json["accuracy_kind"] = std::isfinite(summary.evidence.accuracy) ? "bounded" : "unknown";
+  if (!summary.of_points) add_surface(json, summary);
+  json["evidence"] = to_json(summary.evidence);
+  if (summary.tolerance) json["tolerance"] = tolerance_json(summary);
+  if (summary.distribution) add(json, *summary.distribution, summary.tolerance.has_value());
+  if (summary.colors) json["notes"] = summary.notes;
+  return json;
+}
+
+Json to_json(const ReportTimes& t) {
+  return {{"import", optional(t.import)}, {"atlas", optional(t.atlas)},   {"sites", optional(t.sites)},
+          {"map", optional(t.map)},       {"export", optional(t.output)}, {"total", optional(t.total)}};
+}
+
+}  // namespace
+
+std::string mesh_json(const ReportedMesh& mesh) {
+  return text_of(to_json(mesh));
+}
+
+std::string summary_json(const Summary& summary) {
+  return text_of(to_json(summary));
+}
+
+std::string report_json(const MapReport& report, const Surface& surface, const Summary& summary) {
+  Json json;
+  json["version"] = kVersion;
+  if (summary.of_itself) {
+    json["mesh"] = to_json(report.on);
+  } else {
+    json["o1"] = to_json(report.on_o1 ? report.on : report.to);
+    json["o2"] = to_json(report.on_o1 ? report.to : report.on);
+    json[report.on_o1 ? "o2" : "o1"]["embedded"] = optional(report.embedded);
+    json["measured_on"] = report.on_o1 ? "o1" : "o2";
+  }
+  json["units"] = summary.units;
+  json["atlas"] = to_json(surface);
+  if (!summary.of_itself) {
+    json["atlas"]["udim"] = optional(report.udim);
+    json["atlas"]["cut_faces"] = report.cut_faces;
+    json["precision"] = optional(report.precision);
+  }
+  if (!report.engine.empty()) json["engine"] = report.engine;
+  json.update(to_json(summary));
+  json["time_ms"] = to_json(report.time_ms);
+  return text_of(json);
+}
+
+}  // namespace sdm

@@ -1,0 +1,11 @@
+// Bounds on the largest distance of all points of a surface, from those of its samples.
+#pragma once
+
+#include <sdm/summary.h>
+
+namespace sdm::summary {
+
+/// From the extremes and the evidence of the summary.
+[[nodiscard]] LargestDistance largest_distance(const Summary& summary);
+
+}  // namespace sdm::summary

@@ -1,0 +1,79 @@
+#include <sdm/summary.h>
+
+namespace sdm {
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "PASS";
+    case Verdict::fail:
+      return "FAIL";
+    case Verdict::not_decided:
+      return "NOT DECIDED";
+  }
+  return "";
+}
+
+const char* name_of(VerdictReason reason) {
+  switch (reason) {
+    case VerdictReason::all_within:
+      return "all within";
+    case VerdictReason::exceeded:
+      return "exceeded";
+    case VerdictReason::beyond_max_distance:
+      return "beyond max distance";
+    case VerdictReason::between_samples:
+      return "between samples";
+    case VerdictReason::within_rounding:
+      return "within rounding";
+    case VerdictReason::estimated_signs:
+      return "estimated signs";
+    case VerdictReason::unknown_accuracy:
+      return "unknown accuracy";
+    case VerdictReason::nothing_measured:
+      return "nothing measured";
+  }
+  return "";
+}
+
+const char* name_of(Colormap colormap) {
+  switch (colormap) {
+    case Colormap::automatic:
+      return "automatic";
+    case Colormap::viridis:
+      return "viridis";
+    case Colormap::diverging:
+      return "diverging";
+    case Colormap::paper2006:
+      return "paper2006";
+  }
+  return "";
+}
+
+const char* name_of(SignMethod method) {
+  switch (method) {
+    case SignMethod::automatic:
+      return "automatic";
+    case SignMethod::none:
+      return "none";
+    case SignMethod::exact:
+      return "exact";
+    case SignMethod::winding:
+      return "winding";
+  }
+  return "";
+}
+
+const char* name_of(AtlasKind kind) {
+  switch (kind) {
+    case AtlasKind::charts:
+      return "charts";
+    case AtlasKind::triangles:
+      return "triangles";
+    case AtlasKind::uv:
+      return "uv";
+  }
+  return "";
+}
+
+}  // namespace sdm

@@ -1,0 +1,62 @@
+#include <sdm/summary.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "geometry/vec.h"
+
+namespace sdm {
+namespace {
+
+std::string text_of(double number, int digits) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
+  return text.data();
+}
+
+bool is_empty(const Box& box) {
+  return !(box.lo[0] <= box.hi[0]);
+}
+
+struct Unit {
+  double times;
+  const char* question;
+};
+
+}  // namespace
+
+std::optional<std::string> note_on_sizes(const Box& a, const Box& b) {
+  constexpr double kTolerance = 0.05;
+  constexpr std::array kUnits{Unit{10, "millimetres and centimetres"}, Unit{25.4, "millimetres and inches"},
+                              Unit{100, "centimetres and metres"}, Unit{304.8, "millimetres and feet"},
+                              Unit{1000, "millimetres and metres"}};
+  const double sizes[] = {diagonal(a), diagonal(b)};
+  const double times = std::max(sizes[0], sizes[1]) / std::min(sizes[0], sizes[1]);
+  if (!std::isfinite(times)) return std::nullopt;
+  for (const Unit& unit : kUnits)
+    if (std::abs(times / unit.times - 1) <= kTolerance)
+      return "one mesh is about " + text_of(unit.times, 6) + " times the other; " + unit.question + "?";
+  if (times > kUnits.back().times)
+    return "one mesh is about " + text_of(times, 2) + " times the other; are both in the same units?";
+  return std::nullopt;
+}
+
+std::optional<std::string> note_on_places(const Box& a, const Box& b) {
+  constexpr double kFar = 100;
+  const double size = std::max(diagonal(a), diagonal(b)), apart = norm(gap(a, b));
+  if (!(apart > kFar * size)) return std::nullopt;
+  return "the meshes are " + text_of(apart / size, 2) +
+         " times their size apart; are both in the same place?";
+}
+
+std::vector<std::string> notes_on(const Box& a, const Box& b) {
+  std::vector<std::string> notes;
+  if (is_empty(a) || is_empty(b)) return notes;
+  if (auto note = note_on_sizes(a, b)) notes.push_back(std::move(*note));
+  if (auto note = note_on_places(a, b)) notes.push_back(std::move(*note));
+  return notes;
+}
+
+}  // namespace sdm

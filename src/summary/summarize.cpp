@@ -1,0 +1,109 @@
+#include <sdm/error.h>
+#include <sdm/sampling_bound.h>
+#include <sdm/summary.h>
+#include <sdm/threads.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "summary/distribution.h"
+#include "summary/largest_distance.h"
+
+namespace sdm {
+namespace {
+
+DistanceStatistics statistics_of(const Surface& surface, const DistanceMap& map,
+                                 const SummaryOptions& options) {
+  return options.distance ? *options.distance : statistics(surface, map);
+}
+
+ColorRange colors_of(const SummaryOptions& options, const DistanceStatistics& distance) {
+  if (options.colors) return *options.colors;
+  return color_range({.colormap = options.colormap,
+                      .range = options.range,
+                      .tolerance = options.tolerance,
+                      .accuracy = std::isfinite(options.accuracy) ? options.accuracy : 0},
+                     distance);
+}
+
+std::size_t boundary_texels(const Sites& sites, const DistanceMap& map, std::span<const std::uint8_t> known) {
+  if (sites.closed()) return 0;
+  const auto count = [](std::span<const std::uint8_t> mask) {
+    return static_cast<std::size_t>(std::ranges::count(mask, 1));
+  };
+  return known.empty() ? count(boundary_mask(sites, map)) : count(known);
+}
+
+std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, const Summary& summary,
+                                  const SummaryOptions& options) {
+  const Mesh& whole = options.whole ? *options.whole : surface.mesh();
+  std::vector<std::string> notes = notes_on(bounds(whole), bounds(sites.mesh()));
+  if (summary.distance.texels == 0)
+    notes.emplace_back("no texel is within the maximum distance; the map is empty");
+  if (const std::size_t texels = surface.overlapping_texels(); texels > 0)
+    notes.push_back(std::to_string(texels) +
+                    " texels are covered by several faces, and have the value of one of them");
+  return notes;
+}
+
+}  // namespace
+
+const Extreme& farthest(const Extremes& extremes) {
+  return -extremes.min.distance > extremes.max.distance ? extremes.min : extremes.max;
+}
+
+namespace summary {
+
+LargestDistance largest_distance(const Summary& summary) {
+  const Evidence& evidence = summary.evidence;
+  LargestDistance result;
+  if (!std::isfinite(evidence.accuracy)) return result;
+  if (summary.beyond_max_distance > 0) {  // somewhere, and not known by how much
+    result.lower = std::max(0.0, summary.max_distance - evidence.accuracy);
+    return result;
+  }
+  const Extreme& most = farthest(summary.extremes);
+  const double largest = std::isnan(most.distance) ? 0 : std::abs(most.distance);
+  result.lower = std::max(0.0, largest - evidence.accuracy);
+  result.upper = largest + evidence.error_bound + evidence.accuracy;
+  result.point = most.point;
+  return result;
+}
+
+}  // namespace summary
+
+Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap& map,
+                  std::span<const float> vertex_distances, const SummaryOptions& options) {
+  Summary result{.units = options.units,
+                 .sign = map.sign,
+                 .distance = statistics_of(surface, map, options),
+                 .extremes = extremes(surface, map, vertex_distances),
+                 .beyond_max_distance = map.beyond_max_distance,
+                 .max_distance = options.max_distance};
+  result.colors = colors_of(options, result.distance);
+  double error_bound = 0;
+  run_concurrently(
+      {[&] { error_bound = covering_radius(surface); },
+       [&] { result.boundary_texels = boundary_texels(sites, map, options.boundary); },
+       [&] { result.distribution = summary::distribution_of(surface, map, result.distance, options); }});
+  result.evidence = evidence_of(surface, map, vertex_distances, error_bound, options.accuracy);
+  result.hausdorff = summary::largest_distance(result);
+  if (options.tolerance)
+    result.tolerance =
+        check_tolerance(surface, map, vertex_distances, error_bound, options.accuracy, *options.tolerance);
+  result.notes = notes_of(surface, sites, result, options);
+  return result;
+}
+
+Summary summarize_self(const Surface& surface, const DistanceMap& map, const SummaryOptions& options) {
+  Summary result{.units = options.units,
+                 .of_itself = true,
+                 .sign = map.sign,
+                 .distance = statistics_of(surface, map, options),
+                 .beyond_max_distance = map.beyond_max_distance,
+                 .max_distance = options.max_distance};
+  result.colors = colors_of(options, result.distance);
+  return result;
+}
+
+}  // namespace sdm

@@ -1,0 +1,105 @@
+#include <sdm/error.h>
+#include <sdm/tolerance.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/vec.h"
+#include "map/statistics/tolerance_limits.h"
+
+namespace sdm {
+
+Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
+                     double error_bound, double accuracy) {
+  if (map.distance.size() != surface.texel_faces().size()) throw Error("the map belongs to another surface");
+  if (vertex_distances.size() != surface.mesh().positions.size())
+    throw Error("a verdict needs one distance for each vertex of the surface's mesh");
+  Evidence evidence{.complete = map.beyond_max_distance == 0,
+                    .estimated_signs = map.sign.method == SignMethod::winding,
+                    .accuracy = accuracy,
+                    .error_bound = error_bound};
+  const auto add = [&](double d) {
+    evidence.lowest = std::fmin(evidence.lowest, d), evidence.highest = std::fmax(evidence.highest, d);
+  };
+  for (const std::uint32_t texel : surface.sample_texels())
+    if (std::isfinite(map.distance[texel])) add(map.distance[texel]);
+  for (const Triangle& triangle : surface.mesh().triangles) {
+    if (is_removed(triangle)) continue;
+    for (const std::uint32_t vertex : triangle) {
+      const double d = vertex_distances[vertex];
+      if (std::isfinite(d))
+        add(d);
+      else
+        evidence.complete = false;
+    }
+  }
+  return evidence;
+}
+
+namespace {
+
+/// How far the distances stay from the limits.
+double margin_of(double lowest, double highest, const Tolerance& tolerance, double accuracy) {
+  return std::min(tolerance.hi - highest, lowest - tolerance.lo) - accuracy;
+}
+
+/// What is not decided of evidence that is within the tolerance: `measured` is its margin with the signs as
+/// they were found.
+VerdictReason open_question(const Evidence& evidence, double margin, double measured) {
+  if (!(evidence.lowest <= evidence.highest)) return VerdictReason::nothing_measured;
+  if (!std::isfinite(evidence.accuracy)) return VerdictReason::unknown_accuracy;
+  if (evidence.error_bound <= measured || (margin <= 0 && measured > 0))
+    return VerdictReason::estimated_signs;
+  return margin > 0 ? VerdictReason::between_samples : VerdictReason::within_rounding;
+}
+
+}  // namespace
+
+Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
+  const auto& [lowest, highest, complete, estimated_signs, accuracy, error_bound] = evidence;
+  const double farthest = std::max(-lowest, highest);
+  const double measured = margin_of(lowest, highest, tolerance, accuracy);
+  Judgement result{.margin = estimated_signs ? margin_of(-farthest, farthest, tolerance, accuracy) : measured,
+                   .nearest_is_lower = tolerance.lo - lowest > highest - tolerance.hi};
+  const map::ToleranceLimits limits(tolerance, accuracy);
+  result.within = complete && !limits.below(lowest) && !limits.above(highest);
+  if (!result.within) {
+    result.verdict = Verdict::fail;
+    result.reason = complete ? VerdictReason::exceeded : VerdictReason::beyond_max_distance;
+    result.certified =
+        !estimated_signs || !complete || farthest - accuracy > std::max(-tolerance.lo, tolerance.hi);
+    if (!complete) result.margin = -std::numeric_limits<double>::infinity();
+    return result;
+  }
+  result.certified = lowest <= highest && error_bound <= result.margin;
+  if (result.certified) return result;
+  result.verdict = Verdict::not_decided;
+  result.reason = open_question(evidence, result.margin, measured);
+  if (result.reason != VerdictReason::nothing_measured)
+    result.deciding_bound = std::max(0.0, result.margin / 2);
+  return result;
+}
+
+ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
+                                 std::span<const float> vertex_distances, double error_bound, double accuracy,
+                                 const Tolerance& tolerance) {
+  if (tolerance.needs_sign() && map.sign.method == SignMethod::none)
+    throw Error("a tolerance that differs by sign needs signed distances, but these are unsigned: " +
+                    map.sign.reason + "; choose another sign method or a symmetric tolerance",
+                Remedy::sign_method);
+  const Evidence evidence = evidence_of(surface, map, vertex_distances, error_bound, accuracy);
+  ToleranceVerdict verdict{judge(evidence, tolerance), tolerance, 0, 0, {}};
+  verdict.shares = tolerance_shares(surface, map, tolerance, accuracy);
+  verdict.exceeded_area_fraction = verdict.shares.below + verdict.shares.above + verdict.shares.without_value;
+  verdict.largest = evidence.complete ? std::max({0.0, -evidence.lowest, evidence.highest})
+                                      : std::numeric_limits<double>::infinity();
+  return verdict;
+}
+
+double engine_accuracy(const EngineInfo& engine, const Mesh& on, const Mesh& to) {
+  Box box = bounds(on);
+  extend(box, bounds(to));
+  return engine.relative_error * diagonal(box);
+}
+
+}  // namespace sdm
