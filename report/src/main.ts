@@ -106,11 +106,12 @@ class Page {
 
   private showWhatIf({ scale }: State): void {
     const outside = 1 - this.data.area.within(scale.lower - scale.accuracy, scale.upper + scale.accuracy);
-    const { verdict, sentence } = judge(this.report, scale, outside);
+    const { evidence } = this.report;
+    const open = !evidence || evidence.accuracy === null;
     byId('what-if').replaceChildren(
       `With ${limitsText(scale, this.report)}: `,
-      make('b', {}, verdict === 'MEASURED' ? sentence : verdict),
-      verdict === 'MEASURED' ? '' : isCloud(this.report) ? `. ${percent(outside)} of the points are out of it.` : `. About ${percent(outside)} of the area is out of it.`,
+      make('b', {}, open ? 'The accuracy of this map is unknown, so no tolerance can be checked.' : judge(evidence, scale).verdict),
+      open ? '' : isCloud(this.report) ? `. ${percent(outside)} of the points are out of it.` : `. About ${percent(outside)} of the area is out of it.`,
     );
   }
 

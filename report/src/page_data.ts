@@ -9,6 +9,15 @@ export interface Extreme {
   point: Vec;
   at: 'texel' | 'vertex' | 'point';
 }
+/// All that a verdict depends on besides the tolerance.
+export interface Evidence {
+  lowest: number | null; ///< null: nothing has a distance
+  highest: number | null;
+  complete: boolean;
+  estimated_signs: boolean;
+  accuracy: number | null; ///< null: unknown
+  error_bound: number | null;
+}
 /// A mesh, or a cloud, which has points.
 export interface Input {
   file: string;
@@ -45,6 +54,7 @@ export interface Report {
   accuracy?: number | null;
   error_bound?: number | null;
   precision?: number | null;
+  evidence?: Evidence;
   tolerance?: {
     value?: number | null;
     lower?: number;
@@ -52,12 +62,14 @@ export interface Report {
     verdict?: string;
     within: boolean;
     certified?: boolean;
+    reason?: string;
+    nearest_limit?: 'lower' | 'upper';
     deciding_precision?: number | null;
     exceeded_area_fraction?: number;
     exceeded_point_fraction?: number;
   };
   notes?: string[];
-  time_ms?: Record<string, number>;
+  time_ms?: Record<string, number | null>;
   [key: string]: unknown;
 }
 

@@ -191,7 +191,7 @@ function omittedPoints(shown: number, { points, picked, normals }: NonNullable<P
 const kShown = new Set([
   'version', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'sign',
   'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance',
-  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'tolerance', 'notes', 'time_ms', 'histogram',
+  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'notes', 'time_ms', 'histogram',
 ]);
 
 function isScalar(value: unknown): boolean {

@@ -1,5 +1,6 @@
-// Whether a part is within a tolerance, by the rule of check_tolerance() in include/sdm/tolerance.h.
-import type { Report } from './page_data';
+// Whether a part is within a tolerance: as the report says, and for other limits by the rule of judge() in
+// include/sdm/tolerance.h, on the same evidence.
+import type { Evidence, Report } from './page_data';
 import { text } from './numbers';
 
 export type Verdict = 'PASS' | 'FAIL' | 'NOT DECIDED' | 'MEASURED';
@@ -11,7 +12,9 @@ export interface Limits {
 
 export interface Judgement {
   verdict: Verdict;
-  sentence: string;
+  reason: string; ///< as name_of(VerdictReason) in include/sdm/summary.h
+  nearestIsLower: boolean; ///< the limit that is exceeded most, or approached most closely
+  decidingPrecision: number; ///< 0: none decides
 }
 
 export function isCloud(report: Report): boolean {
@@ -44,73 +47,81 @@ export function limitsText({ lower, upper }: Limits, report: Report): string {
   return `${text(lower)} to ${text(upper)}${unit}`;
 }
 
-/// How far the limits are from the extremes: negative if one is exceeded. Null if nothing has a value.
-function margin(report: Report, { lower, upper }: Limits): number | null {
-  const extremes = report.extremes;
-  if (!extremes?.min || !extremes.max) return null;
-  return Math.min(upper - extremes.max.distance, extremes.min.distance - lower);
+/// The judgement of judge(), number by number.
+export function judge(evidence: Evidence, { lower, upper }: Limits): Judgement {
+  const { complete, estimated_signs: estimated } = evidence;
+  const lowest = evidence.lowest ?? Infinity;
+  const highest = evidence.highest ?? -Infinity;
+  const accuracy = evidence.accuracy ?? Infinity;
+  const bound = evidence.error_bound ?? Infinity;
+  const marginOf = (least: number, most: number) => Math.min(upper - most, least - lower) - accuracy;
+  const farthest = Math.max(-lowest, highest);
+  const measured = marginOf(lowest, highest);
+  const margin = estimated ? marginOf(-farthest, farthest) : measured;
+  const result = { nearestIsLower: lower - lowest > highest - upper, decidingPrecision: 0 };
+  // Of a distance that rounding does not tell from zero, the sign is not certain either.
+  const isZero = (d: number) => Math.abs(d) <= accuracy;
+  const below = (isZero(lowest) ? Math.abs(lowest) : lowest) < lower - accuracy;
+  const above = (isZero(highest) ? -Math.abs(highest) : highest) > upper + accuracy;
+  if (!complete) return { ...result, verdict: 'FAIL', reason: 'beyond max distance' };
+  if (below || above) return { ...result, verdict: 'FAIL', reason: 'exceeded' };
+  if (!(lowest <= highest)) return { ...result, verdict: 'NOT DECIDED', reason: 'nothing measured' };
+  if (bound <= margin) return { ...result, verdict: 'PASS', reason: 'all within' };
+  const decidingPrecision = Math.max(0, margin / 2);
+  const reason = !Number.isFinite(accuracy)
+    ? 'unknown accuracy'
+    : bound <= measured || (margin <= 0 && measured > 0)
+      ? 'estimated signs'
+      : margin > 0
+        ? 'between samples'
+        : 'within rounding';
+  return { verdict: 'NOT DECIDED', reason, nearestIsLower: result.nearestIsLower, decidingPrecision };
 }
 
-/// The verdict for any limits. `outside`: the fraction of the area, or of the points, that is out of them.
-export function judge(report: Report, limits: Limits, outside: number | null): Judgement {
-  const unit = unitOf(report);
-  const within = limitsText(limits, report);
-  const { accuracy } = report;
-  const cloud = isCloud(report);
-  const bound = cloud ? 0 : report.error_bound;
-  if (accuracy === null || accuracy === undefined || bound === null || bound === undefined)
-    return { verdict: 'MEASURED', sentence: 'The accuracy of this map is unknown, so no tolerance can be checked.' };
-  if ((report.beyond_max_distance ?? 0) > 0)
-    return {
-      verdict: 'FAIL',
-      sentence: `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
-        report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
-      }.`,
-    };
-  const room = margin(report, limits);
-  if (room === null) return { verdict: 'MEASURED', sentence: `No point of the ${cloud ? 'cloud' : 'surface'} has a distance.` };
-  if (room < -accuracy) {
-    const { min, max } = report.extremes!;
-    const most = limits.upper - max!.distance < min!.distance - limits.lower ? max! : min!;
-    const share =
-      outside === null
-        ? ''
-        : cloud
-          ? `, and ${text(100 * outside, 3)}\u00a0% of the points are out of tolerance`
-          : `, and about ${text(100 * outside, 3)}\u00a0% of the area is out of tolerance`;
-    return {
-      verdict: 'FAIL',
-      sentence: `A distance of ${text(most.distance)}${unit} was found, which is out of the tolerance of ${within}${share}.`,
-    };
-  }
-  const needsSign = limits.lower < 0 && limits.lower !== -limits.upper;
-  if (room >= bound + accuracy && !(needsSign && report.sign?.method === 'winding'))
-    return { verdict: 'PASS', sentence: `Every point of the ${cloud ? 'cloud' : 'surface'} is within the tolerance of ${within}.` };
-  if (cloud)
-    return {
-      verdict: 'NOT DECIDED',
-      sentence:
-        `All points are within the tolerance of ${within}, but ` +
-        (room >= accuracy
-          ? 'whether they are inside or outside of the reference, which has holes, is an estimate.'
-          : 'the largest distance is as close to the limit as numbers can be told apart.'),
-    };
-  const decides = report.tolerance && sameLimits(limits, limitsOf(report)!) ? report.tolerance.deciding_precision : undefined;
-  const precision = decides ?? room - accuracy;
+/// The judgement of the report, for the limits in it.
+export function judgementOf({ tolerance: t, evidence }: Report): Judgement | null {
+  if (!t || !evidence) return null;
   return {
-    verdict: 'NOT DECIDED',
-    sentence:
-      `All measured points are within the tolerance of ${within}, but points between them may not be: ` +
-      (precision > 0
-        ? `the distance there is known to ±${text(bound, 3)}${unit}. Measured again with --precision ${roundedDown(
-            precision,
-          )}, it will be decided, unless a larger distance turns up.`
-        : 'the largest distance is as close to the limit as numbers can be told apart, so no precision will decide.'),
+    verdict: t.verdict as Verdict,
+    reason: t.reason ?? '',
+    nearestIsLower: t.nearest_limit === 'lower',
+    decidingPrecision: t.deciding_precision ?? 0,
   };
 }
 
-function sameLimits(a: Limits, b: Limits): boolean {
-  return a.lower === b.lower && a.upper === b.upper;
+/// A judgement in words. `outside`: the fraction of the area, or of the points, that is out of the limits.
+export function sentenceOf(report: Report, limits: Limits, judgement: Judgement, outside: number | null): string {
+  const unit = unitOf(report);
+  const within = limitsText(limits, report);
+  const cloud = isCloud(report);
+  switch (judgement.reason) {
+    case 'all within':
+      return `Every point of the ${cloud ? 'cloud' : 'surface'} is within the tolerance of ${within}.`;
+    case 'beyond max distance':
+      return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
+        report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
+      }.`;
+    case 'exceeded': {
+      const most = judgement.nearestIsLower ? report.evidence!.lowest : report.evidence!.highest;
+      const share = outside === null ? '' : `, and ${cloud ? '' : 'about '}${text(100 * outside, 3)}\u00a0% of the ${cloud ? 'points are' : 'area is'} out of tolerance`;
+      return `A distance of ${text(most)}${unit} was found, which is out of the tolerance of ${within}${share}.`;
+    }
+    case 'nothing measured':
+      return `No point of the ${cloud ? 'cloud' : 'surface'} has a distance.`;
+    case 'unknown accuracy':
+      return 'The accuracy of this map is unknown, so no tolerance can be checked.';
+    case 'estimated signs':
+      return `All ${cloud ? '' : 'measured '}points are within the tolerance of ${within}, but whether they are inside or outside of the reference, which has holes, is an estimate.`;
+    case 'between samples':
+      return (
+        `All measured points are within the tolerance of ${within}, but points between them may not be: ` +
+        `the distance there is known to ±${text(report.error_bound, 3)}${unit}. Measured again with --precision ${roundedDown(
+          judgement.decidingPrecision,
+        )}, it will be decided, unless a larger distance turns up.`
+      );
+    default:
+      return `All ${cloud ? '' : 'measured '}points are within the tolerance of ${within}, but the largest distance is as close to the limit as numbers can be told apart${cloud ? '' : ', so no precision will decide'}.`;
+  }
 }
 
 /// To two digits, never up: a precision that is still fine enough, to type into a command line.
@@ -119,16 +130,16 @@ function roundedDown(value: number): string {
   return String(Number((Math.floor(value / unit) * unit).toPrecision(2)));
 }
 
-/// The verdict of report.json.
-export function verdictOf(report: Report): Judgement {
+/// The verdict of the report, in words.
+export function verdictOf(report: Report): { verdict: Verdict; sentence: string } {
   const limits = limitsOf(report);
-  const t = report.tolerance;
-  if (!limits || !t)
+  const judgement = judgementOf(report);
+  if (!limits || !judgement)
     return {
       verdict: 'MEASURED',
       sentence: 'No tolerance was given (--tolerance), so nothing was judged. The slider below shows what would be.',
     };
-  const judgement = judge(report, limits, t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null);
-  const verdict = (t.verdict as Verdict | undefined) ?? (!t.within ? 'FAIL' : t.certified ? 'PASS' : 'NOT DECIDED');
-  return { ...judgement, verdict };
+  const t = report.tolerance!;
+  const outside = t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null;
+  return { verdict: judgement.verdict, sentence: sentenceOf(report, limits, judgement, outside) };
 }

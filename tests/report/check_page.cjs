@@ -356,6 +356,27 @@ const checks = {
     for (let i = 0; i < rows.length; i += 2) assert.strictEqual(plain(await page.textContent(`#${rows[i]}`)), rows[i + 1]);
   },
 
+  // Other limits are judged in the page as by the library: what judge() in include/sdm/tolerance.h says in `cases`.
+  async judges(page, cases) {
+    const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
+    const entry = join(__dirname, '../../report/src/verdict.ts');
+    const { outputFiles } = buildSync({ entryPoints: [entry], bundle: true, write: false, format: 'cjs' });
+    const built = { exports: {} };
+    new Function('module', 'exports', outputFiles[0].text)(built, built.exports);
+    for (const { evidence, lower, upper, ...expected } of JSON.parse(readFileSync(cases, 'utf8'))) {
+      const found = built.exports.judge(evidence, { lower, upper });
+      assert.deepStrictEqual(found, expected, JSON.stringify({ evidence, lower, upper }));
+    }
+  },
+
+  // The verdict, its reason and the colours shown first are those of the report in the page.
+  async shows(page, verdict, colours, lo, hi) {
+    assert.strictEqual((await page.textContent('#verdict')).trim().split(' ').slice(1).join(' '), verdict);
+    const scale = await page.evaluate(() => window.sdmPage.state.scale);
+    assert.deepStrictEqual([scale.mode, scale.lo, scale.hi], [colours, Number(lo), Number(hi)]);
+    assert.ok((await page.textContent('#what-if')).includes(verdict));
+  },
+
   // Opens, and says these words; any words if none are given.
   async says(page, ...words) {
     const text = plain(await page.innerText('body'));

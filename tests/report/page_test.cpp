@@ -10,9 +10,11 @@
 #include <sdm/player.h>
 #include <sdm/points.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
@@ -155,6 +157,66 @@ TEST_F(Page, StatesTheVerdict) {
   EXPECT_TRUE(passes("says", page(), {"PASS"}));
 }
 
+/// The report in a page.
+Json report_in(const std::string& page) {
+  const std::string text = contents(page), begin = R"(<script type="application/json" id="report">)";
+  const std::size_t from = text.find(begin) + begin.size();
+  return Json::parse(text.substr(from, text.find("</script>", from) - from));
+}
+
+TEST_F(Page, ShowsTheVerdictAndTheColoursOfTheReport) {
+  for (const char* tolerance : {"3", "2.41", "2", "0.5:2.4", "2:3"}) {
+    const Json report = map({"--resolution", "64", "--tolerance", tolerance});
+    EXPECT_EQ(report_in(page()), report);
+    const Json& colors = report["colors"];
+    EXPECT_TRUE(passes("shows", page(),
+                       {report["tolerance"]["verdict"], colors["map"], colors["range"][0].dump(),
+                        colors["range"][1].dump()}))
+        << tolerance;
+  }
+}
+
+TEST_F(Page, JudgesAsTheLibrary) {
+  map({"--resolution", "64"});
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::mt19937 random(5);
+  const auto any_of = [&](std::initializer_list<double> values) {
+    return values.begin()[random() % values.size()];
+  };
+  Json cases = Json::array();
+  std::array<int, 8> reasons{};
+  for (int i = 0; i < 4000; ++i) {
+    Evidence evidence{.lowest = any_of({-2, -1, -0.5, -0.01, -0.001, 0, 0.5, kInfinity}),
+                      .highest = any_of({-0.001, 0, 0.01, 0.5, 1, 2}),
+                      .complete = random() % 10 != 0,
+                      .estimated_signs = random() % 3 == 0,
+                      .accuracy = any_of({0, 1e-6, 0.001, 0.02, kInfinity}),
+                      .error_bound = any_of({0, 0.01, 0.1, 0.5})};
+    if (evidence.lowest == kInfinity) evidence.highest = -kInfinity;
+    if (evidence.lowest > evidence.highest && evidence.lowest < kInfinity) continue;
+    const double lower = any_of({-2.1, -1, -0.5, 0, 0.001, 0.5}),
+                 upper = lower + any_of({0, 0.5, 1, 2.2, 4.2});
+    const Judgement j = judge(evidence, {lower, upper});
+    ++reasons[static_cast<std::size_t>(j.reason)];
+    cases.push_back({{"evidence",
+                      {{"lowest", evidence.lowest},
+                       {"highest", evidence.highest},
+                       {"complete", evidence.complete},
+                       {"estimated_signs", evidence.estimated_signs},
+                       {"accuracy", evidence.accuracy},
+                       {"error_bound", evidence.error_bound}}},
+                     {"lower", lower},
+                     {"upper", upper},
+                     {"verdict", name_of(j.verdict)},
+                     {"reason", name_of(j.reason)},
+                     {"nearestIsLower", j.nearest_is_lower},
+                     {"decidingPrecision", j.deciding_bound}});
+  }
+  for (const int count : reasons) EXPECT_GT(count, 0);
+  std::ofstream(folder / "cases.json") << cases.dump();
+  EXPECT_TRUE(passes("judges", page(), {folder / "cases.json"}));
+}
+
 TEST_F(Page, ShowsHostileAndUnusualReports) {
   const std::string script = folder / "<!--<script>alert(1)";
   o1 = write_obj(script, ring(8));
@@ -247,6 +309,19 @@ TEST_F(CloudPage, ShowsTheValuesOfThePoints) {
   EXPECT_TRUE(passes("points", page(), {out + "/points.ply"}));
   EXPECT_TRUE(passes("recolours", page()));
   EXPECT_TRUE(passes("callouts", page()));
+}
+
+TEST_F(CloudPage, ShowsTheVerdictAndTheColoursOfTheReport) {
+  write_cloud(2000, 0.01);
+  for (const char* tolerance : {"3", "2", "0.5:2.4"}) {
+    const Json report = measure({"--tolerance", tolerance});
+    EXPECT_EQ(report_in(page()), report);
+    const Json& colors = report["colors"];
+    EXPECT_TRUE(passes("shows", page(),
+                       {report["tolerance"]["verdict"], colors["map"], colors["range"][0].dump(),
+                        colors["range"][1].dump()}))
+        << tolerance;
+  }
 }
 
 TEST_F(CloudPage, IsUsableByAllAndPrints) {
