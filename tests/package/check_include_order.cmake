@@ -122,7 +122,7 @@ endforeach()
 # Searches are policies of tree/visit.h and tree/visit_pairs.h. Only these files outside of tree/ read the nodes of
 # a tree by themselves.
 set(readers_of_nodes
-  certify/depth/depth_search.cpp       # the children of a node are parts of its branch and bound
+  certify/depth/leaving.cpp            # the children of a node are parts of its branch and bound
   engine/cpu/descent.cpp               # appends all leaves within reach to a list, by vector instructions
   proximity/motion/parts.h             # nodes are divided into faces too, by time
   proximity/self/self_search.cpp       # marks the nodes whose faces are all excluded
