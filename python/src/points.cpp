@@ -116,10 +116,7 @@ void bind_distances(nb::module_& module) {
       });
 }
 
-}  // namespace
-
-void bind_points(nb::module_& module) {
-  bind_distances(module);
+void bind_read_points(nb::module_& module) {
   module.def(
       "read_points", &read_points, nb::arg("file").none(), nb::kw_only(), nb::arg("columns") = nb::none(),
       nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
@@ -142,7 +139,13 @@ Traceback (most recent call last):
     ...
 sdm.Error: ...
 )");
+}
 
+}  // namespace
+
+void bind_points(nb::module_& module) {
+  bind_distances(module);
+  bind_read_points(module);
   module.def(
       "measure_points",
       [](nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion, const char* engine,

@@ -43,10 +43,9 @@ constexpr const char* kOfRays =
     "origins: object, directions: object, *, t_min: object = 0.0, t_max: object = ..., progress: "
     "collections.abc.Callable[[str, float], bool | None] | None = None) -> ";
 
-}  // namespace
+using H = PyRayHits;
 
-void bind_rays(nb::module_& module, nb::class_<PySites>& sites) {
-  using H = PyRayHits;
+void bind_hits(nb::module_& module) {
   const auto hit_column = [](LazyArray H::*array, auto get) {
     return [array, get](H& self) { return (self.*array).get([&] { return column(self.hits, get); }); };
   };
@@ -71,7 +70,12 @@ void bind_rays(nb::module_& module, nb::class_<PySites>& sites) {
                    "hits nothing.")
       .def("__len__", [](const H& self) { return self.hits.size(); })
       .def("__repr__", [](const H& self) { return nb::str("sdm.RayHits({})").format(self.hits.size()); });
+}
 
+}  // namespace
+
+void bind_rays(nb::module_& module, nb::class_<PySites>& sites) {
+  bind_hits(module);
   static const std::string first_hits_signature = std::string("def first_hits(self, ") + kOfRays + "RayHits";
   static const std::string occluded_signature =
       std::string("def occluded(self, ") + kOfRays + "numpy.ndarray";

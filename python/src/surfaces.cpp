@@ -36,7 +36,7 @@ AlignOptions align_options(const char* start, nb::handle pose, std::size_t sampl
   return options;
 }
 
-void bind_alignment(nb::module_& module) {
+void bind_freedom(nb::module_& module) {
   using F = DegreeOfFreedom;
   nb::class_<F>(
       module, "DegreeOfFreedom",
@@ -62,6 +62,9 @@ divided by its radius of gyration, in radians.)")
         return nb::str("sdm.DegreeOfFreedom(determined={:.3g}{})")
             .format(self.determined, self.free ? ", free" : "");
       });
+}
+
+void bind_alignment(nb::module_& module) {
   using A = Alignment;
   nb::class_<A>(module, "Alignment", "A rigid motion that aligns O1 to O2, and how good it is.")
       .def_prop_ro(
@@ -88,7 +91,7 @@ divided by its radius of gyration, in radians.)")
           "freedoms",
           [](const A& self) {
             nb::list freedoms;
-            for (const F& freedom : self.freedoms) freedoms.append(nb::cast(freedom));
+            for (const DegreeOfFreedom& freedom : self.freedoms) freedoms.append(nb::cast(freedom));
             return freedoms;
           },
           nb::sig("def freedoms(self) -> list[DegreeOfFreedom]"),
@@ -102,10 +105,7 @@ divided by its radius of gyration, in radians.)")
 constexpr const char* kProgress =
     "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> ";
 
-}  // namespace
-
-void bind_surfaces(nb::module_& module) {
-  bind_alignment(module);
+void bind_hausdorff(nb::module_& module) {
   static const std::string hausdorff_signature =
       std::string(
           "def hausdorff(a: object, b: object, *, precision: float = 0.0, one_sided: bool = False, ") +
@@ -130,7 +130,9 @@ upper, rounding included. Raises Error for an unusable mesh, or a precision that
 True
 >>> sdm.hausdorff(box, box).value
 0.0)");
+}
 
+void bind_align(nb::module_& module) {
   static const std::string align_signature =
       std::string(
           "def align(o1: object, o2: object, *, start: str = 'pose', pose: object = None, "
@@ -170,7 +172,9 @@ range.
 >>> alignment = sdm.align(moved, box)
 >>> bool(np.abs(alignment.transform[:3, 3] + [0.03, 0.02, -0.01]).max() < 1e-9)
 True)");
+}
 
+void bind_align_points(nb::module_& module) {
   static const std::string align_points_signature =
       std::string(
           "def align_points(points: object, o2: object, *, normals: object = None, start: str = "
@@ -205,6 +209,16 @@ have no weight.
 >>> points = sphere.vertices + [0.01, 0, 0]
 >>> sdm.align_points(points, sphere).rms < 1e-6
 True)");
+}
+
+}  // namespace
+
+void bind_surfaces(nb::module_& module) {
+  bind_freedom(module);
+  bind_alignment(module);
+  bind_hausdorff(module);
+  bind_align(module);
+  bind_align_points(module);
 }
 
 }  // namespace sdm::python

@@ -16,9 +16,7 @@ Motion motion_of(nb::handle poses, const char* name) {
   return {from, to};
 }
 
-}  // namespace
-
-void bind_time_of_contact(nb::module_& module) {
+void bind_result(nb::module_& module) {
   using T = PyTimeOfContact;
   nb::class_<T>(module, "TimeOfContact", "When two moving bodies first come into contact, if they do.")
       .def_prop_ro(
@@ -67,7 +65,12 @@ float64.)")
         return nb::str("sdm.TimeOfContact({}, time={:.9g}, separation={:.6g})")
             .format(self.found.contact ? "contact" : "no contact", self.found.time, self.found.separation);
       });
+}
 
+}  // namespace
+
+void bind_time_of_contact(nb::module_& module) {
+  bind_result(module);
   module.def(
       "time_of_contact",
       [](nb::handle o1, nb::handle motion1, nb::handle o2, nb::handle motion2, double tolerance) {

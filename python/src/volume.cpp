@@ -101,13 +101,10 @@ void bind_samples(nb::module_& module) {
            [](const S& self) { return nb::str("sdm.FieldSamples({})").format(self.samples.size()); });
 }
 
-void bind_field(nb::module_& module) {
-  using F = PyField;
-  nb::class_<F>(module, "DistanceField",
-                R"(The distances from the points of a regular grid to a mesh. Returned by distance_field().
+using F = PyField;
 
-Arrays are read-only and have the shape (nz, ny, nx): the value of the point with the coordinates
-``origin + (i, j, k) * spacing`` is at [k, j, i]. Points farther than the band hold NaN or NONE.)")
+void bind_arrays(nb::class_<PyField>& field) {
+  field
       .def_prop_ro(
           "distance",
           [](nb::handle self) {
@@ -131,7 +128,11 @@ Arrays are read-only and have the shape (nz, ny, nx): the value of the point wit
             return points_of<std::uint8_t>(f.site_type, f.grid, self);
           },
           nb::sig("def site_type(self) -> numpy.ndarray | None"),
-          "The SiteType of each site, (nz, ny, nx) uint8; None unless requested.")
+          "The SiteType of each site, (nz, ny, nx) uint8; None unless requested.");
+}
+
+void bind_grid(nb::class_<PyField>& field) {
+  field
       .def_prop_ro(
           "transform", [](const F& self) { return matrix(index_transform(self.field.grid)); },
           nb::sig("def transform(self) -> numpy.ndarray"),
@@ -158,7 +159,11 @@ Arrays are read-only and have the shape (nz, ny, nx): the value of the point wit
           "sign", [](const F& self) { return name_of(self.field.sign.method); },
           "How inside and outside are distinguished: 'none' (unsigned distances), 'exact' or 'winding'.")
       .def_prop_ro(
-          "sign_reason", [](const F& self) { return self.field.sign.reason; }, "Why, in words.")
+          "sign_reason", [](const F& self) { return self.field.sign.reason; }, "Why, in words.");
+}
+
+void bind_uses(nb::class_<PyField>& field) {
+  field
       .def(
           "sample",
           [](const F& self, nb::handle points) {
@@ -185,6 +190,18 @@ because a distance changes no faster than the point moves. Raises Error for coor
         return nb::str("sdm.DistanceField({} × {} × {} points, {})")
             .format(nz, ny, nx, name_of(self.field.sign.method));
       });
+}
+
+void bind_field(nb::module_& module) {
+  nb::class_<PyField> field(
+      module, "DistanceField",
+      R"(The distances from the points of a regular grid to a mesh. Returned by distance_field().
+
+Arrays are read-only and have the shape (nz, ny, nx): the value of the point with the coordinates
+``origin + (i, j, k) * spacing`` is at [k, j, i]. Points farther than the band hold NaN or NONE.)");
+  bind_arrays(field);
+  bind_grid(field);
+  bind_uses(field);
 }
 
 }  // namespace
