@@ -95,7 +95,7 @@ array([2., 1., 1.]))")
 }
 
 void bind_meshes(nb::module_& module) {
-  nb::class_<PyMesh> mesh(
+  nb::class_<PyMesh> type(
       module, "Mesh",
       R"(A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.
 
@@ -114,7 +114,7 @@ an index out of range, for coordinates that are NaN or beyond 1e37, and if no fa
 >>> mesh.vertices.shape, mesh.faces.dtype
 ((3, 3), dtype('uint32'))
 >>> vertices, faces = mesh)");
-  bind_arrays(mesh);
+  bind_arrays(type);
 
   module.def(
       "fit_to_unit", [](nb::handle mesh) { return matrix(fit_to_unit(mesh_of(mesh, nb::none()))); },

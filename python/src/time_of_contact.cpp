@@ -79,7 +79,7 @@ void bind_time_of_contact(nb::module_& module) {
         const std::size_t faces =
             first.sites().mesh().triangles.size() + second.sites().mesh().triangles.size();
         return run_sized(faces, [&] {
-          T result{time_of_contact(first, m1, second, m2, tolerance), {}};
+          PyTimeOfContact result{time_of_contact(first, m1, second, m2, tolerance), {}};
           result.poses = {m1.at(result.found.time, first), m2.at(result.found.time, second)};
           return result;
         });

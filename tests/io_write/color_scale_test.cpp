@@ -96,7 +96,7 @@ TEST(ColorScale, ShowsWhatDiffersWhereNearlyAllIsEqual) {
 TEST(ColorScale, FixedOptionsStayAsTheyAre) {
   const DistanceStatistics d = statistics_of(with_outlier(0.5f, -40));
   for (const PictureOptions& options : {PictureOptions{}, PictureOptions{.tolerance = 0.3}}) {
-    const PictureOptions once = fixed_colors(options, d), twice = fixed_colors(once, {});
+    const PictureOptions once = fixed_colors(options, d), twice = fixed_colors(once, DistanceStatistics{});
     EXPECT_EQ(once.range, twice.range);
     EXPECT_EQ(once.colormap, twice.colormap);
   }

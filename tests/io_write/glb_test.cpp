@@ -258,7 +258,7 @@ TEST(Glb, AnimationsHaveTheFramesAsMorphTargets) {
   const std::size_t vertices = model.accessors[primitive.attributes.at("POSITION")].count;
   ASSERT_GE(vertices, mesh.positions.size());  // coarse bodies are drawn with more
   const auto linear = [](double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); };
-  const io::ColorScale scale = io::color_scale(fixed_colors(options.colors, {}));
+  const io::ColorScale scale = io::color_scale(fixed_colors(options.colors, DistanceStatistics{}));
   for (std::size_t f = 0; f < frames.size(); ++f)
     for (std::size_t v = 0; v < vertices; ++v) {
       const auto value = [&](const char* name, int k) {
