@@ -39,8 +39,8 @@ Mesh mesh_of(nb::handle mesh, nb::handle faces) {
   return result;
 }
 
-void bind_arrays(nb::class_<PyMesh>& mesh) {
-  mesh.def(
+void bind_arrays(nb::class_<PyMesh>& type) {
+  type.def(
           "__init__",
           [](PyMesh* self, nb::handle mesh, nb::handle faces) {
             Mesh value = mesh_of(mesh, faces);
