@@ -12,11 +12,11 @@ PLAIN = re.compile(r"\(variable\)|\w+\((\w+ ?&&|const \w+ ?&)\)|operator=|operat
 # Headers by subject, in the order of the reference.
 SUBJECTS = {
     "Meshes": ["types", "mesh", "mesh_edit", "transform", "self_intersections", "solid"],
-    "Files": ["io", "points", "sequence", "field_files", "player"],
+    "Files": ["io", "report", "points", "sequence", "field_files", "player"],
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "sign", "engine", "gl", "closest_points",
                       "closest_in_parts", "vertex_distances"],
-    "Results of maps": ["statistics", "sampling_bound", "tolerance", "part_statistics", "combined_statistics",
-                         "temporal_maps"],
+    "Results of maps": ["channels", "summary", "statistics", "sampling_bound", "tolerance", "part_statistics",
+                         "combined_statistics", "temporal_maps"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "self_proximity_query", "time_of_contact",
                   "hausdorff"],
     "Other queries": ["align", "rays", "volume"],
