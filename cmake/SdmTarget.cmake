@@ -1,12 +1,15 @@
-# sdm_unite_folders(<target> <file>...): where CMAKE_UNITY_BUILD is on, compiles the sources of a folder as one, which
-# takes about half the time, as they share most of their headers. Names in unnamed namespaces are unique in a folder.
+# sdm_unite_folders(<target> <file>...): with SDM_UNITE_FOLDERS, compiles the sources of a folder as one, which takes
+# about half the time, as they share most of their headers. Names in unnamed namespaces are unique in a folder.
 function(sdm_unite_folders target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  if(NOT SDM_UNITE_FOLDERS)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source ${ARGN})
-    file(STRINGS ${source} includes_itself REGEX "^#define HWY_TARGET_INCLUDE")
+    file(STRINGS ${source} includes_itself REGEX "^#define HWY_TARGET_INCLUDE")  # once for each set of instructions
     get_filename_component(folder ${source} DIRECTORY)
-    string(MAKE_C_IDENTIFIER "${folder}" group)
-    if(includes_itself OR group STREQUAL "_")
+    string(MAKE_C_IDENTIFIER "folder_${folder}" group)
+    if(includes_itself)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     else()
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
