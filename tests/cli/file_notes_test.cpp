@@ -35,7 +35,7 @@ TEST_F(FileNotes, ArePrintedByAllCommands) {
       {"hausdorff", good, faulty},
       {"bodies", good, faulty, faulty},
       {"self", faulty, "-o", out, "--resolution", "32", "--write", "none"},
-      {"volume", good, "--grid", "4", "4", "4", "--proximity", faulty},
+      {"volume", faulty, "--grid", "4", "4", "4", "-o", folder / "field.npy"},
       {"info", faulty}};
   for (const auto& command : commands) {
     const Outcome text = run_sdm(command);

@@ -47,9 +47,7 @@ struct Notes : ::testing::Test {
             {"hausdorff", o1, o2},
             {"proximity", o1, o2},
             {"bodies", o1, o2},
-            {"sequence", o1, o2, "--resolution", "32", "-o", out},
-            {"volume", o2, "--grid", "8", "8", "8", "--bounds", "-1", "-1", "-1", "1", "1", "1",
-             "--proximity", o1}};
+            {"sequence", o1, o2, "--resolution", "32", "-o", out}};
   }
   /// The text and the notes of the JSON of a command. Of a sequence, the first line of JSON has them.
   static void expect_notes(std::vector<std::string> command,
@@ -104,7 +102,7 @@ TEST_F(Notes, EveryUnitHasItsTolerance) {
 TEST_F(Notes, TellOfMeshesThatAreFarApart) {
   const std::string here = box("here.obj", 1), there = box("there.obj", 1, {5e5, 4.5e6, 0});
   for (const auto& command : commands(here, there))
-    if (command[0] != "volume" && command[0] != "bodies") expect_notes(command, HasSubstr(kApart));
+    if (command[0] != "bodies") expect_notes(command, HasSubstr(kApart));
   expect_notes({"bodies", here, there}, HasSubstr("body 0 is more than 100 times its size from all others"));
   expect_notes({"points", cloud(1), there, "--write", "none", "-o", out}, HasSubstr(kApart));
 }
