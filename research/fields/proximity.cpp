@@ -59,8 +59,7 @@ struct FaceSamples {
 
   // Discs around the corners of a triangle with the radius L / √3, for its longest side L, cover it: that is
   // at least the radius of the smallest disc that contains it (Jung 1901).
-  FaceSamples(const Mesh& mesh, const Triangle& t, double spacing)
-      : corners(corners_of(mesh.positions, t)) {
+  FaceSamples(const Mesh& mesh, const Triangle& t, double spacing) : corners(corners_of(mesh.positions, t)) {
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, norm(corners[(k + 1) % 3] - corners[k]));
     parts = std::max(1.0, std::ceil(longest / spacing));
