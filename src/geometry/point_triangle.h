@@ -1,8 +1,7 @@
 // The point of a triangle that is closest to a point p: in the interior if p is above or below the triangle,
 // otherwise on a side or at a corner. The interior has two forms, which are exact in different respects:
-//   closest_feature()      seen from p, along the normal: a point in the plane of the triangle has distance
-//   0.
-//                          An error of the normal moves the result off the triangle.
+//   closest_feature()      seen from p, along the normal: a point in the plane of the triangle has
+//                          distance 0. An error of the normal moves the result off the triangle.
 //   closest_on_triangle()  a mean of the corners: on the triangle to rounding, so the distance is never too
 //                          small, and the shape may be any.
 // lanes/point_triangle-inl.h has the second form for several points or triangles at once.

@@ -5,7 +5,7 @@
 
 #include "core/cancellation.h"
 #include "core/parallel.h"
-#include "geometry/triangle_pair.h"
+#include "geometry/point_triangle.h"
 #include "query/inside/solid.h"
 #include "search/branch_and_bound.h"
 
@@ -42,10 +42,6 @@ bool covers(const Corners& t, const Corners& piece) {
 bool finest(const Corners& t) {
   return squared_norm(t[1] - t[0]) < kFinest * kFinest && squared_norm(t[2] - t[1]) < kFinest * kFinest &&
          squared_norm(t[0] - t[2]) < kFinest * kFinest;
-}
-
-Vec3 closest_in(const Corners& t, const Vec3& p) {
-  return closest_points(t, {p, p, p}).point1;
 }
 
 // Convex, in a plane.
@@ -318,7 +314,7 @@ class SolidBoundary::ClosestSearch : public search::Policy {
     parts_.put({.upper = -norm(gap(solid_.tree.box(node), q_)), .node = node});
   }
   void put_piece(const Piece& piece) {
-    const Vec3 c = closest_in(piece.at, q_);
+    const Vec3 c = closest_on_triangle(q_, piece.at);
     parts_.put({.upper = -norm(c - q_), .piece = piece, .point = c});
   }
 
