@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/cpu/point_group.h"
 #include "geometry/vec.h"
+#include "query/closest/point_group.h"
 
 namespace sdm::bench {
 
@@ -80,12 +80,12 @@ std::vector<Figure> work_figures(const Tasks& tasks) {
   std::size_t texels = 0;
   for (const MapTask* task : tasks) texels += task->texels();
   std::vector<Figure> figures{{"texels", static_cast<double>(texels)}};
-  if constexpr (cpu::kCountWork) {
+  if constexpr (closest::kCountWork) {
     const ThreadLimit this_one(1);  // the counts are those of the calling thread
-    cpu::work_counts() = {};
+    closest::work_counts() = {};
     for (MapTask* task : tasks) task->compute();
-    const cpu::WorkCounts& counts = cpu::work_counts();
-    const double packets = static_cast<double>(texels) / cpu::PointGroup::kPacket;
+    const closest::WorkCounts& counts = closest::work_counts();
+    const double packets = static_cast<double>(texels) / closest::PointGroup::kPacket;
     for (const auto& [key, count] :
          {std::pair("groups_per_packet", counts.groups), std::pair("nodes_per_packet", counts.nodes),
           std::pair("leaves_per_packet", counts.leaves), std::pair("gathered_per_packet", counts.gathered),

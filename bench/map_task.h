@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "embree_map.h"
-#include "engine/cpu/work_counts.h"
+#include "query/closest/work_counts.h"
 #include "timing.h"
 
 namespace sdm::bench {

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "core/stopwatch.h"
-#include "engine/blocks.h"
 #include "gl/confirm.h"
 #include "gl/device/device_pool.h"
 #include "gl/gl_engine.h"
 #include "gl/map_drawing.h"
+#include "query/closest/blocks.h"
 #include "research/literal/rasteriser.h"
 #include "research/site_code.h"
 
@@ -86,7 +86,7 @@ Drawn draw(const Device& device, const gl::DrawTask& task, const Corrections& co
 
 // Passes on the distances and vectors that were drawn, as the paper does.
 void pass_on(const Drawn& winners, std::span<const std::uint32_t> texels, std::span<const Vec3> points,
-             double max_distance, const engine::ClosestSink& sink) {
+             double max_distance, const sites::ClosestSink& sink) {
   sites::ClosestPacket packet;
   for (std::size_t first = 0; first < texels.size(); first += packet.count) {
     packet.count = std::min(sites::ClosestPacket::kSize, texels.size() - first);
@@ -118,8 +118,7 @@ class LiteralEngine final : public Engine {
   }
   void map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
            const engine::SampleSink& sink) const override;
-  void closest_points(const Sites&, std::span<const Vec3>, double,
-                      const engine::ClosestSink&) const override {
+  void closest_points(const Sites&, std::span<const Vec3>, double, const sites::ClosestSink&) const override {
     throw Error("the paper's algorithm computes maps only");
   }
 
@@ -150,7 +149,7 @@ void LiteralEngine::map(const Surface& surface, const Sites& sites, const engine
 
   Stopwatch watch;
   std::atomic<std::size_t> unconfirmed{0};
-  engine::for_each_sample_block(
+  closest::for_each_sample_block(
       surface, options.progress, "finish", [&](std::size_t begin, std::span<const Vec3> points) {
         const std::span<const std::uint32_t> texels = surface.sample_texels().subspan(begin, points.size());
         const auto pass = [&](std::size_t first, const sites::ClosestPacket& closest) {

@@ -1,6 +1,6 @@
 #include "engine/engine.h"
 
-#include "engine/blocks.h"
+#include "query/closest/blocks.h"
 
 namespace sdm {
 
@@ -10,7 +10,7 @@ const EngineInfo& engine_info(const Engine& engine) {
 
 void Engine::map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
                  const engine::SampleSink& sink) const {
-  engine::for_each_sample_block(
+  closest::for_each_sample_block(
       surface, options.progress, "map", [&](std::size_t begin, std::span<const Vec3> points) {
         closest_points(sites, points, options.max_distance,
                        [&](std::size_t first, const sites::ClosestPacket& closest) {

@@ -15,9 +15,6 @@
 namespace sdm {
 namespace engine {
 
-/// Receives closest points as they are found, for the points from index `first` on.
-using ClosestSink = std::function<void(std::size_t first, const sites::ClosestPacket& closest)>;
-
 /// Receives the closest points of the samples from index `first` on; `points` are the samples' positions.
 using SampleSink =
     std::function<void(std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest)>;
@@ -45,10 +42,10 @@ class Engine {
                    const engine::SampleSink& sink) const;
 
   /// Passes the closest point of every point to the sink, in order and on the calling thread. Called for
-  /// blocks of neighbouring points (see engine/blocks.h) from several threads. Throws sdm::Error if the
-  /// engine computes maps only.
+  /// blocks of neighbouring points (see query/closest/blocks.h) from several threads. Throws sdm::Error if
+  /// the engine computes maps only.
   virtual void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
-                              const engine::ClosestSink& sink) const = 0;
+                              const sites::ClosestSink& sink) const = 0;
 };
 
 }  // namespace sdm

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "engine/cpu/cpu_engine.h"
+#include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::gl {
 
 std::size_t confirm(const sites::SitesData& sites, const RasterWinners& winners,
                     std::span<const std::uint32_t> texels, std::span<const Vec3> points, double max_distance,
-                    const engine::ClosestSink& sink) {
+                    const sites::ClosestSink& sink) {
   std::size_t unconfirmed = 0;
   sites::ClosestPacket packet;
   for (std::size_t first = 0; first < texels.size(); first += packet.count) {
@@ -22,10 +22,10 @@ std::size_t confirm(const sites::SitesData& sites, const RasterWinners& winners,
       packet.set(i, points[first + i], closest.distance <= max_distance ? closest : ClosestPoint{});
       if (confirmed) continue;
       ++unconfirmed;
-      cpu::cpu_search(sites, points.subspan(first + i, 1), max_distance,
-                      [&](std::size_t, const sites::ClosestPacket& found) {
-                        packet.set(i, points[first + i], found.get(0, points[first + i]));
-                      });
+      closest::closest_points(sites, points.subspan(first + i, 1), max_distance,
+                              [&](std::size_t, const sites::ClosestPacket& found) {
+                                packet.set(i, points[first + i], found.get(0, points[first + i]));
+                              });
     }
     sink(first, packet);
   }

@@ -12,6 +12,6 @@ namespace sdm::gl {
 /// not confirmed; for these, the cpu engine found the closest site.
 std::size_t confirm(const sites::SitesData& sites, const RasterWinners& winners,
                     std::span<const std::uint32_t> texels, std::span<const Vec3> points, double max_distance,
-                    const engine::ClosestSink& sink);
+                    const sites::ClosestSink& sink);
 
 }  // namespace sdm::gl

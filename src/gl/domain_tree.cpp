@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "engine/cpu/cpu_engine.h"
+#include "query/closest/closest_points.h"
 
 namespace sdm::gl {
 namespace {
@@ -66,7 +66,7 @@ void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, d
         tree.bound[node] = std::min(largest, norm(farthest) + slack);
       }
     };
-    cpu::cpu_search(sites, middles, std::numeric_limits<double>::infinity(), bound);
+    closest::closest_points(sites, middles, std::numeric_limits<double>::infinity(), bound);
   });
   raise_to_root(tree);
 }

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "core/stopwatch.h"
-#include "engine/blocks.h"
 #include "gl/confirm.h"
 #include "gl/device/device_pool.h"
 #include "gl/draw_winners.h"
+#include "query/closest/blocks.h"
 
 namespace sdm {
 namespace gl {
@@ -42,8 +42,7 @@ class GlEngine final : public Engine {
   [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
   void map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
            const engine::SampleSink& sink) const override;
-  void closest_points(const Sites&, std::span<const Vec3>, double,
-                      const engine::ClosestSink&) const override {
+  void closest_points(const Sites&, std::span<const Vec3>, double, const sites::ClosestSink&) const override {
     throw Error("the gl engine computes maps only: for closest points choose cpu or reference");
   }
 
@@ -73,7 +72,7 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
 
   Stopwatch watch;
   std::atomic<std::size_t> unconfirmed{0};
-  engine::for_each_sample_block(
+  closest::for_each_sample_block(
       surface, options.progress, "finish", [&](std::size_t begin, std::span<const Vec3> points) {
         const std::span<const std::uint32_t> texels = surface.sample_texels().subspan(begin, points.size());
         const auto pass = [&](std::size_t first, const sites::ClosestPacket& closest) {

@@ -9,7 +9,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "engine/reference/reference_engine.h"
+#include "query/closest/reference.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
@@ -54,7 +54,7 @@ void merge_closest(const Sites& part, const PartNumbers& numbers, std::span<cons
   // The cpu engine's distance, within its error, bounds the search in double precision. Four times the slack,
   // because it also has to find a site wherever there is one within the limit.
   const auto widened = [&](double distance) {
-    return (1 + 4 * reference::kSlack) * distance + 4 * reference::kSlack / data.frame.scale;
+    return (1 + 4 * closest::kSlack) * distance + 4 * closest::kSlack / data.frame.scale;
   };
   const std::vector<ClosestPoint> near =
       closest_points(part, queries, {.max_distance = widened(farthest), .progress = progress});
@@ -63,9 +63,8 @@ void merge_closest(const Sites& part, const PartNumbers& numbers, std::span<cons
     for (std::size_t i = begin; i < end; ++i) {
       if (near[i].type == SiteType::none) continue;
       const double limit = best[i].distance, within = widened(near[i].distance);
-      ClosestPoint c = reference::reference_closest(data, queries[i], std::min(limit, within));
-      if (c.type == SiteType::none && within < limit)
-        c = reference::reference_closest(data, queries[i], limit);
+      ClosestPoint c = closest::reference_closest(data, queries[i], std::min(limit, within));
+      if (c.type == SiteType::none && within < limit) c = closest::reference_closest(data, queries[i], limit);
       if (c.type == SiteType::none) continue;
       const ClosestInParts found = in_whole(c, numbers, queries[i]);
       if (best[i].type == SiteType::none || order(found) < order(best[i])) best[i] = found;

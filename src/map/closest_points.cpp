@@ -6,11 +6,11 @@
 #include <string>
 
 #include "core/memory.h"
-#include "engine/blocks.h"
 #include "geometry/barycentric.h"
 #include "geometry/spatial_order.h"
 #include "map/engine_of.h"
 #include "mesh/validate.h"
+#include "query/closest/blocks.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 
@@ -26,7 +26,7 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
         throw Error("query point " + std::to_string(i) + " has a coordinate that is NaN or beyond 1e37");
   const std::vector<std::uint32_t> order = spatial_order(points);
   std::vector<ClosestPoint> result(points.size());
-  engine::for_each_block(
+  closest::for_each_block(
       points.size(), options.progress, "closest points", [&](std::size_t begin, std::size_t end) {
         std::vector<Vec3> batch(end - begin);
         for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];

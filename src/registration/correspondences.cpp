@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "engine/blocks.h"
-#include "engine/cpu/cpu_engine.h"
 #include "geometry/vec.h"
+#include "query/closest/blocks.h"
+#include "query/closest/closest_points.h"
 #include "sites/sites_data.h"
 
 namespace sdm::registration {
@@ -84,15 +84,15 @@ Correspondences find_correspondences(const Samples& samples, const Affine& pose,
     pairs.normals[i] = tangent_normal(c, pairs.faces[i], pairs.points[i], target);
     pairs.usable[i] = !on_boundary(c, target);
   };
-  engine::for_each_block(count, {}, "align", [&](std::size_t begin, std::size_t end) {
+  closest::for_each_block(count, {}, "align", [&](std::size_t begin, std::size_t end) {
     const std::span<const Vec3> block = std::span(pairs.points).subspan(begin, end - begin);
-    cpu::cpu_search(data, block, std::numeric_limits<double>::infinity(),
-                    [&](std::size_t first, const sites::ClosestPacket& packet) {
-                      for (std::size_t k = 0; k < packet.count; ++k) {
-                        const std::size_t i = begin + first + k;
-                        store(i, packet.get(k, pairs.points[i]));
-                      }
-                    });
+    closest::closest_points(data, block, std::numeric_limits<double>::infinity(),
+                            [&](std::size_t first, const sites::ClosestPacket& packet) {
+                              for (std::size_t k = 0; k < packet.count; ++k) {
+                                const std::size_t i = begin + first + k;
+                                store(i, packet.get(k, pairs.points[i]));
+                              }
+                            });
   });
   // Where O1 is far from its place, or O2 is a soup, most of the samples may be beside it.
   if (4 * static_cast<std::size_t>(std::ranges::count(pairs.usable, 1)) < count)

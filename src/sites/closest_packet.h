@@ -3,6 +3,8 @@
 
 #include <sdm/sites.h>
 
+#include <functional>
+
 #include "geometry/vec.h"
 
 namespace sdm::sites {
@@ -33,5 +35,8 @@ struct ClosestPacket {
             .face = type[i] == SiteType::face ? site[i] : kNone};
   }
 };
+
+/// Receives closest points as they are found, for the points from index `first` on.
+using ClosestSink = std::function<void(std::size_t first, const ClosestPacket& closest)>;
 
 }  // namespace sdm::sites

@@ -4,8 +4,8 @@
 #include <bit>
 
 #include "core/parallel.h"
-#include "engine/blocks.h"
 #include "geometry/spatial_order.h"
+#include "query/closest/blocks.h"
 #include "volume/grid.h"
 
 namespace sdm::volume {
@@ -119,7 +119,7 @@ std::vector<std::size_t> near_bricks(const Bricks& bricks, const Grid& grid, con
   }
   const std::vector<std::uint32_t> order = spatial_order(centres);
   std::vector<std::uint8_t> is_near(bricks.total());
-  engine::for_each_block(order.size(), {}, {}, [&](std::size_t begin, std::size_t end) {
+  closest::for_each_block(order.size(), {}, {}, [&](std::size_t begin, std::size_t end) {
     std::vector<Ball> block;
     for (std::size_t i = begin; i < end; ++i) block.push_back(balls[order[i]]);
     std::vector<std::uint8_t> near;

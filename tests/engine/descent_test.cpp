@@ -7,16 +7,16 @@
 #include <random>
 #include <vector>
 
-#include "engine/cpu/finish.h"
-#include "engine/reference/reference_engine.h"
 #include "geometry/vec.h"
+#include "query/closest/finish.h"
+#include "query/closest/reference.h"
 #include "sites/sites_data.h"
 #include "support/map_checks.h"
 #include "support/points.h"
 #include "support/shapes.h"
 #include "support/simd_targets.h"
 
-namespace sdm::cpu {
+namespace sdm::closest {
 namespace {
 
 double distance(const float (&a)[3], const Vec3& b) {
@@ -25,7 +25,7 @@ double distance(const float (&a)[3], const Vec3& b) {
 
 TEST(PointGroup, BallsContainTheirPointsAndChildren) {
   std::mt19937 random(4);
-  const auto group = std::make_unique<cpu::PointGroup>();
+  const auto group = std::make_unique<closest::PointGroup>();
   for (const std::size_t count : {1u, 15u, 16u, 17u, 64u, 65u, 1000u, 4097u, 65536u}) {
     SCOPED_TRACE(count);
     std::vector<Vec3> points(count);
@@ -33,7 +33,7 @@ TEST(PointGroup, BallsContainTheirPointsAndChildren) {
     ASSERT_FALSE(group->place(points, {}));
     ASSERT_EQ(group->balls[group->top].size(), 1u);
     for (int level = 0; level <= group->top; ++level) {
-      const std::size_t size = cpu::PointGroup::points_at(level);
+      const std::size_t size = closest::PointGroup::points_at(level);
       ASSERT_EQ(group->balls[level].size(), (count + size - 1) / size);
       for (std::size_t i = 0; i < count; ++i) {
         const Ball& ball = group->balls[level][i / size];
@@ -41,7 +41,7 @@ TEST(PointGroup, BallsContainTheirPointsAndChildren) {
       }
       for (std::size_t i = 0; level > 0 && i < group->balls[level - 1].size(); ++i) {
         const Ball &inner = group->balls[level - 1][i],
-                   &outer = group->balls[level][i / cpu::PointGroup::kFan];
+                   &outer = group->balls[level][i / closest::PointGroup::kFan];
         const Vec3 centre{inner.centre[0], inner.centre[1], inner.centre[2]};
         ASSERT_LE(distance(outer.centre, centre) + inner.radius, 1.00001 * outer.radius + 1e-6);
       }
@@ -67,10 +67,10 @@ TEST(Finish, VerifiesEveryWinner) {
            });
   };
   const double limit = 0.4;
-  finish_all(cpu::SiteId::kUnsettled, limit);
+  finish_all(closest::SiteId::kUnsettled, limit);
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const ClosestPoint expected = reference::reference_closest(internals(sites), queries[i], limit);
+    const ClosestPoint expected = closest::reference_closest(internals(sites), queries[i], limit);
     EXPECT_EQ(found[i].distance, expected.distance);
     EXPECT_EQ(found[i].type, expected.type);
     beyond += expected.type == SiteType::none;
@@ -80,7 +80,7 @@ TEST(Finish, VerifiesEveryWinner) {
 
   // Wrong winners: results are points of these sites' faces or of closer neighbours.
   for (const SiteType type : {SiteType::vertex, SiteType::edge, SiteType::face}) {
-    finish_all(cpu::SiteId::of(type, 7).packed, 1e300);
+    finish_all(closest::SiteId::of(type, 7).packed, 1e300);
     for (std::size_t i = 0; i < queries.size(); ++i) {
       ASSERT_NE(found[i].type, SiteType::none);
       EXPECT_NEAR(norm(found[i].point - queries[i]), found[i].distance, 1e-12);
@@ -181,8 +181,8 @@ TEST(Descent, AgreesWithTheReferenceOnScatteredPoints) {
       for (Vec3& q : queries) q = test::random_point({2 * box.lo - box.hi, 2 * box.hi - box.lo}, random);
       const auto found = closest_points(sites, queries);
       for (std::size_t i = 0; i < queries.size(); ++i) {
-        const ClosestPoint expected = reference::reference_closest(internals(sites), queries[i],
-                                                                   std::numeric_limits<double>::infinity());
+        const ClosestPoint expected =
+            closest::reference_closest(internals(sites), queries[i], std::numeric_limits<double>::infinity());
         ASSERT_NEAR(found[i].distance, expected.distance, tolerance);
         ASSERT_NEAR(test::distance_to_site(sites, found[i].type, found[i].site, queries[i]),
                     found[i].distance, tolerance);
@@ -192,4 +192,4 @@ TEST(Descent, AgreesWithTheReferenceOnScatteredPoints) {
 }
 
 }  // namespace
-}  // namespace sdm::cpu
+}  // namespace sdm::closest

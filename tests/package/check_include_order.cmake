@@ -17,6 +17,7 @@ set(order
   surface
   surface/sampling_bound
   sites
+  query/closest
   query/inside
   query/rays
   query/pairs
@@ -123,7 +124,7 @@ endforeach()
 # a tree by themselves.
 set(readers_of_nodes
   certify/depth/leaving.cpp            # the children of a node are parts of its branch and bound
-  engine/cpu/descent.cpp               # appends all leaves within reach to a list, by vector instructions
+  query/closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
   proximity/motion/parts.h             # nodes are divided into faces too, by time
   proximity/self/self_search.cpp       # marks the nodes whose faces are all excluded
   query/inside/solid_boundary.cpp      # faces are divided further, nearest first

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "engine/cpu/cpu_engine.h"
 #include "geometry/vec.h"
+#include "query/closest/closest_points.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {
@@ -64,7 +64,7 @@ void DepthSearch::find_exits(int body) {
   for (int i = 0; i < kFirstDirections; ++i) {
     leaving.exits().add(direction, far);
     const Vec3 p = leaving.exits().farthest_from_exit();
-    const ClosestPoint closest = cpu::cpu_closest(internals(solid.sites()), p, kAnywhere);
+    const ClosestPoint closest = closest::closest_point(internals(solid.sites()), p, kAnywhere);
     if (!solid.inside()(p, closest)) return;
     const BoundaryDistance b = boundary_distance(solid, p, closest);
     if (b.nearest) leaving.learn(p, *b.nearest);
@@ -118,7 +118,7 @@ void DepthSearch::evaluate(std::span<Part> run, std::vector<Value>& values) cons
         leaving.evaluate(run[begin + first + k], values[begin + first + k], closest.get(k, points[first + k]),
                          (inside >> k & 1) != 0, parts_.enough());
     };
-    cpu::cpu_search(internals(leaving.solid().sites()), points, kAnywhere, std::ref(take));
+    closest::closest_points(internals(leaving.solid().sites()), points, kAnywhere, std::ref(take));
   }
 }
 
@@ -129,9 +129,10 @@ void DepthSearch::evaluate_one(Part& part, Value& value) const {
   ClosestPoint closest;
   // If the centre is inside, its bound is one on the search, but for rounding far from the origin.
   if (const auto* triangle = std::get_if<TrianglePart>(&part.what))
-    closest =
-        cpu::cpu_closest(internals(solid.sites()), p, triangle->reach + kRounding * diagonal(solid.box()));
-  if (closest.type == SiteType::none) closest = cpu::cpu_closest(internals(solid.sites()), p, kAnywhere);
+    closest = closest::closest_point(internals(solid.sites()), p,
+                                     triangle->reach + kRounding * diagonal(solid.box()));
+  if (closest.type == SiteType::none)
+    closest = closest::closest_point(internals(solid.sites()), p, kAnywhere);
   leaving.evaluate(part, value, closest, solid.inside()(p, closest), parts_.enough());
 }
 

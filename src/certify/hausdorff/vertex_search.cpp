@@ -5,10 +5,10 @@
 
 #include "certify/hausdorff/face_distance.h"
 #include "core/parallel.h"
-#include "engine/blocks.h"
-#include "engine/cpu/cpu_engine.h"
 #include "geometry/spatial_order.h"
 #include "geometry/vec.h"
+#include "query/closest/blocks.h"
+#include "query/closest/closest_points.h"
 
 namespace sdm::hausdorff {
 namespace {
@@ -99,8 +99,8 @@ class VertexSearch {
     points_.clear(), measured_.clear();
     for (const Group& group : groups)
       points_.push_back(vertices_[group.begin].at), measured_.push_back(group.begin);
-    engine::for_each_block(points_.size(), progress_, "vertices", [&](std::size_t begin, std::size_t end) {
-      cpu::cpu_search(
+    closest::for_each_block(points_.size(), progress_, "vertices", [&](std::size_t begin, std::size_t end) {
+      closest::closest_points(
           b_, std::span(points_).subspan(begin, end - begin), std::numeric_limits<double>::infinity(),
           [&](std::size_t first, const sites::ClosestPacket& closest) {
             for (std::size_t i = 0; i < closest.count; ++i) {

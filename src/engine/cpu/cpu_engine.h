@@ -1,21 +1,11 @@
-// The cpu engine.
+// The cpu engine: candidate lists for groups of neighbouring samples, and vector instructions.
 #pragma once
 
 #include "engine/engine.h"
+#include "query/closest/closest_points.h"
 #include "sites/sites_data.h"
 
 namespace sdm::cpu {
-
-using engine::ClosestSink;
-
-/// Groups of neighbouring `points` descend through the wide tree and through candidate lists in single
-/// precision; the winner is evaluated in double. A winner can differ from the closest site only where the two
-/// distances are equal up to rounding, about 10⁻⁷ of the scene's extent.
-void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
-                const ClosestSink& sink);
-
-/// The same for one point. Without a site within max_distance, the result has the type none.
-[[nodiscard]] ClosestPoint cpu_closest(const sites::SitesData& sites, const Vec3& point, double max_distance);
 
 class CpuEngine final : public Engine {
  public:
@@ -23,8 +13,8 @@ class CpuEngine final : public Engine {
 
   [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
   void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
-                      const ClosestSink& sink) const override {
-    cpu_search(internals(sites), points, max_distance, sink);
+                      const sites::ClosestSink& sink) const override {
+    closest::closest_points(internals(sites), points, max_distance, sink);
   }
 };
 

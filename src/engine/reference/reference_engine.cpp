@@ -1,54 +1,19 @@
-// The reference engine: one query at a time, in plain code that is easy to verify.
-#include <algorithm>
-#include <tuple>
-
 #include "engine/reference/reference_engine.h"
-#include "geometry/vec.h"
-#include "sites/closest_on_face.h"
-#include "tree/visit.h"
+
+#include <algorithm>
+
+#include "query/closest/reference.h"
 
 namespace sdm::reference {
-namespace {
-
-// A lower bound on the computed distance of a point of the unit frame to the faces in a box.
-double lower_bound(const tree::FloatBox& box, const Vec3& p) {
-  return (1 - kSlack) * norm(gap(box, p)) - kSlack;
-}
-
-auto order(const ClosestPoint& c) {
-  return std::tuple(c.distance, c.type, c.site, c.face);
-}
-
-}  // namespace
-
-ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q, double max_distance) {
-  const Vec3 unit = sites.frame.to_unit(q);
-  ClosestPoint best;
-  best.distance = max_distance;
-  const auto bound = [&](const tree::FloatBox& box) { return lower_bound(box, unit); };
-  // A node is visited even if its bound equals the best distance: the first of equally close sites is
-  // returned, and O2 may lie at exactly max_distance.
-  const auto enter = [&](double least) { return least <= best.distance * sites.frame.scale; };
-  const auto visit_leaf = [&](std::uint32_t leaf) {
-    for (const std::uint32_t face : sites.tree.items_of(leaf)) {
-      const ClosestPoint c = sites::closest_on_face(sites, face, q);
-      // Without a best one yet, the type is none, which follows all others: max_distance itself is near
-      // enough.
-      if (order(c) < order(best)) best = c;
-    }
-  };
-  tree::visit(sites.tree, tree::NearestFirst{bound, enter, visit_leaf});
-  if (best.type == SiteType::none) best.distance = std::numeric_limits<double>::infinity();
-  return best;
-}
 
 void ReferenceEngine::closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
-                                     const ClosestSink& sink) const {
+                                     const sites::ClosestSink& sink) const {
   sites::ClosestPacket closest;
   for (std::size_t first = 0; first < points.size(); first += sites::ClosestPacket::kSize) {
     closest.count = std::min(sites::ClosestPacket::kSize, points.size() - first);
     for (std::size_t i = 0; i < closest.count; ++i)
-      closest.set(i, points[first + i], reference_closest(internals(sites), points[first + i], max_distance));
+      closest.set(i, points[first + i],
+                  closest::reference_closest(internals(sites), points[first + i], max_distance));
     sink(first, closest);
   }
 }

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "engine/cpu/cpu_engine.h"
 #include "geometry/sweep.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
+#include "query/closest/closest_points.h"
 #include "surface/sample_blocks.h"
 #include "surface/surface_data.h"
 
@@ -88,8 +88,8 @@ class BlockSearch {
           closest_[i] = c, local_[i] = at_[first + k], distance_[i] = distance, body_[i] = body;
       }
     };
-    cpu::cpu_search(internals(bodies_[body].body().sites()), std::span(at_).first(count), reach / pose.scale,
-                    std::ref(keep_nearer));
+    closest::closest_points(internals(bodies_[body].body().sites()), std::span(at_).first(count),
+                            reach / pose.scale, std::ref(keep_nearer));
   }
 
   std::span<const shape::PosedBody> bodies_;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/cpu/cpu_engine.h"
 #include "geometry/sweep.h"
 #include "geometry/vec.h"
+#include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
@@ -77,7 +77,7 @@ ContactRegions::Position ContactRegions::find_position(Node& node, const shape::
   if (known <= std::min(free, inside)) return Position::undecided;
   // Sets node.known, or returns false if the surface is farther away.
   const auto is_within = [&](double reach) {
-    const ClosestPoint closest = cpu::cpu_closest(sites, centre, reach);
+    const ClosestPoint closest = closest::closest_point(sites, centre, reach);
     if (closest.type == SiteType::none) return false;
     node.face = sites.face_of(closest.type, closest.site);
     node.known = {centre, closest.distance, other_->inside()(centre, closest)};

@@ -6,10 +6,10 @@
 #include <tuple>
 
 #include "core/cancellation.h"
-#include "engine/cpu/cpu_engine.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
+#include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
@@ -23,7 +23,7 @@ constexpr double kSameHeight = 0.1;
 bool is_inside(const shape::Body& body, const Vec3& point) {
   if (!body.solid()) return false;
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  return body.inside()(point, cpu::cpu_closest(internals(body.sites()), point, kAnywhere));
+  return body.inside()(point, closest::closest_point(internals(body.sites()), point, kAnywhere));
 }
 
 // Where a convex function that is at most `limit` at `in` first exceeds it on the way to `out`, to 1e-8;

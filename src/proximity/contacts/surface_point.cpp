@@ -1,8 +1,8 @@
 #include "proximity/contacts/surface_point.h"
 
-#include "engine/cpu/cpu_engine.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
+#include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {
@@ -10,9 +10,9 @@ namespace sdm::contacts {
 SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach) {
   const sites::SitesData& sites = internals(body.sites());
   const double limit = (1 + kUnitDistanceRounding) * reach + kUnitDistanceRounding / sites.frame.scale;
-  ClosestPoint closest = cpu::cpu_closest(sites, at, limit);
+  ClosestPoint closest = closest::closest_point(sites, at, limit);
   if (closest.type == SiteType::none)
-    closest = cpu::cpu_closest(sites, at, std::numeric_limits<double>::infinity());
+    closest = closest::closest_point(sites, at, std::numeric_limits<double>::infinity());
   return {.at = at,
           .distance = body.inside()(at, closest) ? -closest.distance : closest.distance,
           .vector = closest.point - at,

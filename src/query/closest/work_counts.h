@@ -1,10 +1,10 @@
-// Work counters of the cpu engine's search, which do not depend on the machine's speed. Only builds with
-// -DSDM_COUNT_WORK=ON have them, for bench/compare; in others they cost nothing.
+// Work counters of the search for groups of points, which do not depend on the machine's speed. Only builds
+// with -DSDM_COUNT_WORK=ON have them, for bench/compare; in others they cost nothing.
 #pragma once
 
 #include <cstddef>
 
-namespace sdm::cpu {
+namespace sdm::closest {
 
 struct WorkCounts {
   std::size_t groups = 0;       ///< groups of points for which the tree was traversed
@@ -32,4 +32,4 @@ inline void count_work(std::size_t WorkCounts::*counter, std::size_t amount = 1)
   if constexpr (kCountWork) work_counts().*counter += amount;
 }
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest

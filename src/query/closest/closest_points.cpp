@@ -1,16 +1,15 @@
-// The cpu engine: groups of points descend through candidate lists in single precision, in the unit frame of
-// O2; the winners are then evaluated in double.
+#include "query/closest/closest_points.h"
+
 #include <algorithm>
 #include <memory>
 
-#include "engine/blocks.h"
-#include "engine/cpu/cpu_engine.h"
-#include "engine/cpu/descent.h"
-#include "engine/cpu/finish.h"
-#include "engine/cpu/single_point.h"
-#include "engine/reference/reference_engine.h"
+#include "query/closest/blocks.h"
+#include "query/closest/descent.h"
+#include "query/closest/finish.h"
+#include "query/closest/reference.h"
+#include "query/closest/single_point.h"
 
-namespace sdm::cpu {
+namespace sdm::closest {
 namespace {
 
 // So few points are searched one at a time: a packet would consist mostly of padding.
@@ -23,9 +22,9 @@ float unit_limit(const UnitFrame& frame, double max_distance) {
 
 }  // namespace
 
-void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
-                const ClosestSink& sink) {
-  static_assert(PointGroup::kMostPoints >= engine::kLargestBlock, "each block is one group");
+void closest_points(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
+                    const sites::ClosestSink& sink) {
+  static_assert(PointGroup::kMostPoints >= kLargestBlock, "each block is one group");
   thread_local const auto descent = std::make_unique<Descent>();
   const float limit = unit_limit(sites.frame, max_distance);
   for (std::size_t begin = 0; begin < points.size(); begin += PointGroup::kMostPoints) {
@@ -46,10 +45,10 @@ void cpu_search(const sites::SitesData& sites, std::span<const Vec3> points, dou
   }
 }
 
-ClosestPoint cpu_closest(const sites::SitesData& sites, const Vec3& point, double max_distance) {
+ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& point, double max_distance) {
   thread_local SinglePointMemory memory;
   return is_near(sites, point) ? closest_to_point(sites, point, max_distance, memory)
-                               : reference::reference_closest(sites, point, max_distance);
+                               : reference_closest(sites, point, max_distance);
 }
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest

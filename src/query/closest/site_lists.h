@@ -8,7 +8,7 @@
 
 #include "sites/regions.h"
 
-namespace sdm::cpu {
+namespace sdm::closest {
 
 /// A site of O2, or none: nothing within the limit, or (unsettled) nothing that single precision could
 /// determine.
@@ -87,4 +87,4 @@ struct SiteLists {
   void clear() { faces.used = edges.used = vertices.used = 0; }
 };
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest

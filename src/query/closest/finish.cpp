@@ -1,21 +1,20 @@
-#include "engine/cpu/finish.h"
+#include "query/closest/finish.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "engine/cpu/finish.cpp"
+#define HWY_TARGET_INCLUDE "query/closest/finish.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
 
 #include <bit>
 
-#include "engine/cpu/cpu_engine.h"
-#include "engine/engine.h"
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/vec.h"
+#include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::cpu::HWY_NAMESPACE {
+namespace sdm::closest::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace lanes::HWY_NAMESPACE;
 
@@ -194,7 +193,7 @@ void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const
       const auto i = static_cast<size_t>(std::countr_zero(open));
       found.set(i, queries[i],
                 site.packed == SiteId::kUnsettled
-                    ? cpu_closest(sites, queries[i], max_distance)
+                    ? closest_point(sites, queries[i], max_distance)
                     : sites::closest_around_face(sites, sites.face_of(site.type(), site.site()), queries[i]));
     }
   }
@@ -205,7 +204,7 @@ void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const
 
 // `winners` has room for whole packets.
 void Finish(const sites::SitesData& sites, std::span<const uint32_t> winners, std::span<const Vec3> queries,
-            double max_distance, const engine::ClosestSink& deliver) {
+            double max_distance, const sites::ClosestSink& deliver) {
   sites::ClosestPacket closest{};
   const size_t whole = queries.size() / kPacket * kPacket;
   for (size_t i = 0; i < whole; i += kPacket) {
@@ -219,18 +218,18 @@ void Finish(const sites::SitesData& sites, std::span<const uint32_t> winners, st
   deliver(whole, closest);
 }
 
-}  // namespace sdm::cpu::HWY_NAMESPACE
+}  // namespace sdm::closest::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm::cpu {
+namespace sdm::closest {
 
 HWY_EXPORT(Finish);
 
 void finish(const sites::SitesData& sites, std::span<const std::uint32_t> winners,
-            std::span<const Vec3> queries, double max_distance, const engine::ClosestSink& deliver) {
+            std::span<const Vec3> queries, double max_distance, const sites::ClosestSink& deliver) {
   HWY_DYNAMIC_DISPATCH(Finish)(sites, winners, queries, max_distance, deliver);
 }
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest
 #endif

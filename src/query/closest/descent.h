@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "engine/cpu/point_group.h"
-#include "engine/cpu/site_lists.h"
+#include "query/closest/point_group.h"
+#include "query/closest/site_lists.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
 
-namespace sdm::cpu {
+namespace sdm::closest {
 
 /// Per-thread memory, reused between groups.
 struct Descent {
@@ -26,4 +26,4 @@ struct Descent {
 /// distances are equal up to rounding. Dispatches at run time to the best vector instructions of the machine.
 void find_winners(const tree::WideTree& tree, const sites::Regions& regions, float limit, Descent& descent);
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest

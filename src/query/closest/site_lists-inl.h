@@ -16,12 +16,12 @@
 #include <cstring>
 #include <span>
 
-#include "engine/cpu/region_kernels-inl.h"
-#include "engine/cpu/site_lists.h"
+#include "query/closest/region_kernels-inl.h"
+#include "query/closest/site_lists.h"
 
 #ifndef SDM_SITE_LISTS_ONCE
 #define SDM_SITE_LISTS_ONCE
-namespace sdm::cpu {
+namespace sdm::closest {
 namespace {
 
 // For each mask of eight bits, the positions of the set bits, one byte each.
@@ -34,11 +34,11 @@ constexpr std::array<std::uint64_t, 256> kPositions = [] {
 }();
 
 }  // namespace
-}  // namespace sdm::cpu
+}  // namespace sdm::closest
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::cpu::HWY_NAMESPACE {
+namespace sdm::closest::HWY_NAMESPACE {
 
 // Evaluates test(i) → mask over the lanes of a block and returns the first `count` results as a bit mask.
 template <class Test>
@@ -181,7 +181,7 @@ void keep(const SiteList<TypedBlock>& from, const CandidateBound& reach, SiteLis
   for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], reach, to);
 }
 
-}  // namespace sdm::cpu::HWY_NAMESPACE
+}  // namespace sdm::closest::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

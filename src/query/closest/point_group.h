@@ -10,7 +10,7 @@
 
 #include "tree/aabb_tree.h"
 
-namespace sdm::cpu {
+namespace sdm::closest {
 
 /// In the unit frame of O2, in single precision.
 struct Ball {
@@ -33,7 +33,7 @@ struct PointGroup {
   std::vector<tree::FloatBox> boxes;  ///< bounding boxes of the points of a level's balls, for place()
 
   /// Sets the group to 1 to kMostPoints points, mapped into the frame. Balls are small if the points are in
-  /// an order like that of core/spatial_order.h. Up to rounding, they contain their points and the balls
+  /// an order like that of geometry/spatial_order.h. Up to rounding, they contain their points and the balls
   /// below them. Points that are far away are moved to the frame's origin; returns whether there are any.
   bool place(std::span<const Vec3> points, const UnitFrame& frame);
 
@@ -45,4 +45,4 @@ struct PointGroup {
   static constexpr double kFarAway = 1e15;
 };
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest

@@ -1,4 +1,4 @@
-#include "engine/blocks.h"
+#include "query/closest/blocks.h"
 
 #include <algorithm>
 #include <vector>
@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "surface/surface_data.h"
 
-namespace sdm::engine {
+namespace sdm::closest {
 
 void for_each_block(std::size_t count, const Progress& progress, std::string_view step,
                     const std::function<void(std::size_t, std::size_t)>& body) {
@@ -29,4 +29,4 @@ void for_each_sample_block(const Surface& surface, const Progress& progress, std
   });
 }
 
-}  // namespace sdm::engine
+}  // namespace sdm::closest

@@ -8,7 +8,7 @@
 #include "sites/sites_data.h"
 #include "tree/visit.h"
 
-namespace sdm::cpu {
+namespace sdm::closest {
 
 /// Per-thread memory, reused between points.
 struct SinglePointMemory {
@@ -32,4 +32,4 @@ struct SinglePointMemory {
 [[nodiscard]] ClosestPoint closest_to_point(const sites::SitesData& sites, const Vec3& query,
                                             double max_distance, SinglePointMemory& memory);
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest

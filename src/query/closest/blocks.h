@@ -1,4 +1,4 @@
-// Splits points into the blocks that engines process.
+// Splits points into the blocks that are searched together.
 #pragma once
 
 #include <sdm/progress.h>
@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-namespace sdm::engine {
+namespace sdm::closest {
 
 /// The largest block. Blocks have a power-of-four size and are aligned, so the points of a block are
 /// neighbours where all points are in an order like that of geometry/spatial_order.h.
@@ -23,4 +23,4 @@ void for_each_block(std::size_t count, const Progress& progress, std::string_vie
 void for_each_sample_block(const Surface& surface, const Progress& progress, std::string_view step,
                            const std::function<void(std::size_t begin, std::span<const Vec3> points)>& body);
 
-}  // namespace sdm::engine
+}  // namespace sdm::closest

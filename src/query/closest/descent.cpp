@@ -1,7 +1,7 @@
-#include "engine/cpu/descent.h"
+#include "query/closest/descent.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "engine/cpu/descent.cpp"
+#define HWY_TARGET_INCLUDE "query/closest/descent.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -10,12 +10,12 @@
 #include <bit>
 #include <limits>
 
-#include "engine/cpu/site_lists-inl.h"
-#include "engine/cpu/work_counts.h"
+#include "query/closest/site_lists-inl.h"
+#include "query/closest/work_counts.h"
 
 #ifndef SDM_DESCENT_ONCE
 #define SDM_DESCENT_ONCE
-namespace sdm::cpu {
+namespace sdm::closest {
 namespace {
 
 // A shared candidate list pays off where the group has at least this many points for each leaf of O2's tree
@@ -31,11 +31,11 @@ constexpr std::size_t few_sites(int level) {
 }
 
 }  // namespace
-}  // namespace sdm::cpu
+}  // namespace sdm::closest
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::cpu::HWY_NAMESPACE {
+namespace sdm::closest::HWY_NAMESPACE {
 
 // The closest point of O2 to c found so far, with its squared distance; until one is found, a bound and c
 // itself.
@@ -307,11 +307,11 @@ void FindWinners(const tree::WideTree& tree, const sites::Regions& regions, floa
   Search(tree, regions, limit, descent).start(descent.points.top, 0);
 }
 
-}  // namespace sdm::cpu::HWY_NAMESPACE
+}  // namespace sdm::closest::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm::cpu {
+namespace sdm::closest {
 
 HWY_EXPORT(FindWinners);
 
@@ -319,5 +319,5 @@ void find_winners(const tree::WideTree& tree, const sites::Regions& regions, flo
   HWY_DYNAMIC_DISPATCH(FindWinners)(tree, regions, limit, descent);
 }
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest
 #endif

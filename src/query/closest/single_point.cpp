@@ -1,7 +1,7 @@
-#include "engine/cpu/single_point.h"
+#include "query/closest/single_point.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "engine/cpu/single_point.cpp"
+#define HWY_TARGET_INCLUDE "query/closest/single_point.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -11,13 +11,13 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/cpu/region_kernels-inl.h"
 #include "geometry/lanes/point_triangle-inl.h"
 #include "geometry/vec.h"
+#include "query/closest/region_kernels-inl.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::cpu::HWY_NAMESPACE {
+namespace sdm::closest::HWY_NAMESPACE {
 
 using namespace lanes::HWY_NAMESPACE;
 
@@ -160,11 +160,11 @@ float CollectCandidates(const sites::SitesData& sites, const Vec3& query, double
   return search.squared_limit();
 }
 
-}  // namespace sdm::cpu::HWY_NAMESPACE
+}  // namespace sdm::closest::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm::cpu {
+namespace sdm::closest {
 
 HWY_EXPORT(CollectCandidates);
 
@@ -186,5 +186,5 @@ ClosestPoint closest_to_point(const sites::SitesData& sites, const Vec3& query, 
   return best;
 }
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest
 #endif

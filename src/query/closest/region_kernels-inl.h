@@ -12,11 +12,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/cpu/point_group.h"
-#include "engine/cpu/site_lists.h"
+#include "query/closest/point_group.h"
+#include "query/closest/site_lists.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::cpu::HWY_NAMESPACE {
+namespace sdm::closest::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Lanes over the points of a packet, and over the sites or boxes of a block.
@@ -247,7 +247,7 @@ inline void closest(const VertexBlock& block, size_t lane, const float*, float (
   for (int k = 0; k < 3; ++k) out[k] = block.row[VertexBlock::kPoint + k][lane];
 }
 
-}  // namespace sdm::cpu::HWY_NAMESPACE
+}  // namespace sdm::closest::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

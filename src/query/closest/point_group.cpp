@@ -1,7 +1,7 @@
-#include "engine/cpu/point_group.h"
+#include "query/closest/point_group.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "engine/cpu/point_group.cpp"
+#define HWY_TARGET_INCLUDE "query/closest/point_group.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -10,7 +10,7 @@
 #include <cmath>
 
 HWY_BEFORE_NAMESPACE();
-namespace sdm::cpu::HWY_NAMESPACE {
+namespace sdm::closest::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The ball around a packet's points, centred on their bounding box.
@@ -71,11 +71,11 @@ void AroundPackets(PointGroup& group, tree::FloatBox* boxes) {
   for (size_t i = 0; i < group.packets; ++i) AroundPacket(group, i, group.balls[0][i], boxes[i]);
 }
 
-}  // namespace sdm::cpu::HWY_NAMESPACE
+}  // namespace sdm::closest::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sdm::cpu {
+namespace sdm::closest {
 namespace {
 
 HWY_EXPORT(AroundPackets);
@@ -121,5 +121,5 @@ bool PointGroup::place(std::span<const Vec3> points, const UnitFrame& frame) {
   return some_far_away;
 }
 
-}  // namespace sdm::cpu
+}  // namespace sdm::closest
 #endif

@@ -1,0 +1,22 @@
+// The closest points of O2, for groups of points and for single ones.
+#pragma once
+
+#include <span>
+
+#include "sites/closest_packet.h"
+#include "sites/sites_data.h"
+
+namespace sdm::closest {
+
+/// Groups of neighbouring `points` descend through the wide tree and through candidate lists in single
+/// precision; the winner is evaluated in double. A winner can differ from the closest site only where the two
+/// distances are equal up to rounding, about 10⁻⁷ of the scene's extent. Passes the closest points to the
+/// sink in order, on the calling thread; type none where nothing is within max_distance.
+void closest_points(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
+                    const sites::ClosestSink& sink);
+
+/// The same for one point. Without a site within max_distance, the result has the type none.
+[[nodiscard]] ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& point,
+                                         double max_distance);
+
+}  // namespace sdm::closest
