@@ -10,8 +10,8 @@
 
 #include "core/cancellation.h"
 #include "core/parallel.h"
+#include "geometry/boxes/sweep.h"
 #include "geometry/rounding.h"
-#include "geometry/sweep.h"
 #include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
 #include "tree/edit_tree.h"

@@ -17,9 +17,9 @@
 #include "core/platform.h"
 #include "core/rows.h"
 #include "geometry/barycentric.h"
-#include "geometry/box_groups.h"
+#include "geometry/boxes/box_groups.h"
+#include "geometry/boxes/sweep.h"
 #include "geometry/spatial_order.h"
-#include "geometry/sweep.h"
 #include "geometry/vec.h"
 
 namespace sdm {

@@ -7,6 +7,7 @@ set(order
   core
   geometry
   geometry/lanes
+  geometry/boxes
   tree
   search
   mesh

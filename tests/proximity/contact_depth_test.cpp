@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/sweep.h"
+#include "geometry/boxes/sweep.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "support/oracle.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fcl_pair.h"
-#include "geometry/sweep.h"
+#include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "query/pairs/mesh_pair.h"
 #include "support/allocations.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "geometry/sweep.h"
+#include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 

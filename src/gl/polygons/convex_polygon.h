@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 
+#include "geometry/clip.h"
 #include "geometry/vec.h"
 
 namespace sdm::gl {
@@ -36,8 +37,8 @@ class ConvexPolygon {
   [[nodiscard]] std::span<const Vec2> corners() const { return {corners_.data(), count_}; }
   [[nodiscard]] bool empty() const { return count_ == 0; }
 
-  /// Keeps the part in the half-plane (Sutherland & Hodgman 1974). Corners beyond kMaxCorners, which only
-  /// rounding could produce, are dropped.
+  /// Keeps the part in the half-plane. Corners beyond kMaxCorners, which only rounding could produce, are
+  /// dropped.
   void cut(const HalfPlane& keep) {
     std::array<double, kMaxCorners> height;
     bool all = true;
@@ -45,12 +46,12 @@ class ConvexPolygon {
     if (all) return;
     std::array<Vec2, kMaxCorners> kept;
     std::size_t n = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::size_t j = i + 1 < count_ ? i + 1 : 0;
-      if (height[i] >= 0 && n < kMaxCorners) kept[n++] = corners_[i];
-      if ((height[i] >= 0) != (height[j] >= 0) && n < kMaxCorners)
-        kept[n++] = corners_[i] + height[i] / (height[i] - height[j]) * (corners_[j] - corners_[i]);
-    }
+    const auto add = [&](const Vec2& corner) {
+      if (n < kMaxCorners) kept[n++] = corner;
+    };
+    clip_convex(
+        {height.data(), count_}, [&](std::size_t i) { add(corners_[i]); },
+        [&](std::size_t i, std::size_t j, double t) { add(corners_[i] + t * (corners_[j] - corners_[i])); });
     corners_ = kept;
     count_ = n < 3 ? 0 : n;
   }

@@ -13,7 +13,7 @@
 #include "core/intact.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/sweep.h"
+#include "geometry/boxes/sweep.h"
 #include "proximity/bodies/nearest_body.h"
 #include "proximity/pair/pair_answers.h"
 #include "query/shape/posed_body.h"

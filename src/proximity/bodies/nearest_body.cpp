@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "geometry/sweep.h"
+#include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
 #include "query/closest/closest_points.h"

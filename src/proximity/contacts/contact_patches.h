@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
-#include "geometry/box_groups.h"
+#include "geometry/boxes/box_groups.h"
 
 namespace sdm::contacts {
 

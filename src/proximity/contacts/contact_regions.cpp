@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "geometry/sweep.h"
+#include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "geometry/sweep.h"
+#include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "query/pairs/collision.h"
 

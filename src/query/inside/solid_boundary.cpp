@@ -5,6 +5,7 @@
 
 #include "core/cancellation.h"
 #include "core/parallel.h"
+#include "geometry/clip.h"
 #include "geometry/point_triangle.h"
 #include "query/inside/solid.h"
 #include "search/branch_and_bound.h"
@@ -74,19 +75,19 @@ Polygon cut(Polygon& polygon, const Plane& plane) {
     height.push_back(std::abs(h) <= kThinnest ? 0 : h);
     least = std::min(least, height.back()), most = std::max(most, height.back());
   }
-  Polygon above, below;
-  if (least == 0 || most == 0) return above;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const std::size_t next = (i + 1) % polygon.size();
-    if (height[i] >= 0) above.push_back(polygon[i]);
-    if (height[i] <= 0) below.push_back(polygon[i]);
-    if (height[i] * height[next] < 0) {
-      const double t = height[i] / (height[i] - height[next]);
-      const Vec3 between = polygon[i] + t * (polygon[next] - polygon[i]);
-      above.push_back(between), below.push_back(between);
-    }
-  }
-  polygon = std::move(below);
+  if (least == 0 || most == 0) return {};
+  const auto side = [&] {
+    Polygon part;
+    clip_convex(
+        height, [&](std::size_t i) { part.push_back(polygon[i]); },
+        [&](std::size_t i, std::size_t j, double t) {
+          part.push_back(polygon[i] + t * (polygon[j] - polygon[i]));
+        });
+    return part;
+  };
+  Polygon above = side();
+  for (double& h : height) h = -h;
+  polygon = side();
   return above;
 }
 

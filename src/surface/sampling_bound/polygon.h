@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "geometry/clip.h"
 #include "geometry/vec.h"
 
 namespace sdm::surface {
@@ -35,18 +36,17 @@ class Polygon {
   /// The part where side · (at[axis] − line) ≥ 0; side is 1 or −1. The coordinate of new corners along the
   /// axis is that of the line, bit-identical.
   [[nodiscard]] Polygon clipped(int axis, double line, double side) const {
+    std::array<double, kMostCorners> height;
+    for (std::size_t i = 0; i < count_; ++i) height[i] = side * (corners_[i].at[axis] - line);
     Polygon part;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Corner &a = corners_[i], &b = corners_[i + 1 < count_ ? i + 1 : 0];
-      const double da = side * (a.at[axis] - line), db = side * (b.at[axis] - line);
-      if (da >= 0) part.add(a);
-      if ((da > 0 && db < 0) || (da < 0 && db > 0)) {
-        const double t = da / (da - db);
-        Corner cut{a.at + t * (b.at - a.at), a.weights + t * (b.weights - a.weights)};
-        cut.at[axis] = line;
-        part.add(cut);
-      }
-    }
+    clip_convex(
+        {height.data(), count_}, [&](std::size_t i) { part.add(corners_[i]); },
+        [&](std::size_t i, std::size_t j, double t) {
+          const Corner &a = corners_[i], &b = corners_[j];
+          Corner cut{a.at + t * (b.at - a.at), a.weights + t * (b.weights - a.weights)};
+          cut.at[axis] = line;
+          part.add(cut);
+        });
     return part;
   }
   [[nodiscard]] Polygon between(int axis, double lo, double hi) const {

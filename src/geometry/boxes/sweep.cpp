@@ -1,4 +1,4 @@
-#include "geometry/sweep.h"
+#include "geometry/boxes/sweep.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "geometry/box_groups.h"
+#include "geometry/boxes/box_groups.h"
 
 #include <algorithm>
 #include <numeric>
