@@ -1,6 +1,6 @@
 #include "scenes/letters.h"
 
-#include "io/read/formats.h"
+#include "io/mesh/formats.h"
 #include "scenes/mesh_files.h"
 
 namespace sdm::scenes {

@@ -1,4 +1,4 @@
-// Unpacks the arrays of src/io/write/report/packed_arrays.h.
+// Unpacks the arrays of src/io/page/report/packed_arrays.h.
 
 export interface ArrayIndex {
   [name: string]: { count: number; bytes: number[] };

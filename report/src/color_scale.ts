@@ -1,4 +1,4 @@
-// Colours for distances: the scale of src/io/write/pictures/color_scale.h.
+// Colours for distances: the scale of src/io/image/pictures/color_scale.h.
 import type { Vec } from './page_data';
 
 export type MapName = 'viridis' | 'diverging' | 'paper2006';

@@ -85,7 +85,7 @@ interface Placement {
   step: number;
 }
 
-/// A channel beside the distance and the site: of src/io/write/report/page_channels.h.
+/// A channel beside the distance and the site: of src/io/page/report/page_channels.h.
 interface ChannelJson {
   name: string;
   components: number;
@@ -341,7 +341,7 @@ function readGhost(page: PageJson, arrays: Arrays, { centre, size }: { centre: V
   return { position, triangle: Uint32Array.from(triangle), trianglesOfMesh: ghost.triangles_of_mesh, isBox: true };
 }
 
-/// The fraction of the area up to a distance: of src/io/write/report/area_by_value.h.
+/// The fraction of the area up to a distance: of src/io/page/report/area_by_value.h.
 export class AreaByValue {
   private readonly edges: number[] = []; ///< of the bins of floats: [from, to) of each
   private readonly sums = [0];

@@ -1,4 +1,4 @@
-// The data of player.html: that of src/io/write/player/player_page.cpp.
+// The data of player.html: that of src/io/page/player/player_page.cpp.
 import { ArrayIndex, Arrays, summed, unpacked } from './arrays';
 import type { Colors, Scale } from './color_scale';
 import type { Vec } from './page_data';

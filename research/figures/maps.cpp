@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "geometry/vec.h"
-#include "io/write/pictures/legend.h"
+#include "io/image/pictures/legend.h"
 
 namespace sdm::figures {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <sstream>
 
-#include "io/write/pictures/png.h"
+#include "io/image/pictures/png.h"
 #include "research/figures/charts/svg.h"
 
 namespace sdm::figures {

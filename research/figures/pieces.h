@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/write/pictures/picture.h"
+#include "io/image/pictures/picture.h"
 #include "research/figures/machine.h"
 #include "research/figures/timing.h"
 

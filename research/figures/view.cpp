@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "io/write/gutter.h"
+#include "io/image/pictures/gutter.h"
 
 namespace sdm::figures {
 namespace {

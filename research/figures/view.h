@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "io/write/pictures/picture.h"
+#include "io/image/pictures/picture.h"
 
 namespace sdm::figures {
 

@@ -1,4 +1,4 @@
-#include "io/read/polygons/triangulate.h"
+#include "io/mesh/polygons/triangulate.h"
 
 #include <gtest/gtest.h>
 

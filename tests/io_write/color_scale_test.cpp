@@ -1,4 +1,4 @@
-#include "io/write/pictures/color_scale.h"
+#include "io/image/pictures/color_scale.h"
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>

@@ -1,4 +1,4 @@
-#include "io/write/pictures/color_scale.h"
+#include "io/image/pictures/color_scale.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

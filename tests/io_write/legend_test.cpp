@@ -1,6 +1,6 @@
-#include "io/write/pictures/legend.h"
+#include "io/image/pictures/legend.h"
 
-#include "io/write/pictures/ticks.h"
+#include "io/image/pictures/ticks.h"
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>

@@ -1,7 +1,7 @@
 // Reads the pixels of PNG files.
 #pragma once
 
-#include "io/write/pictures/color_scale.h"
+#include "io/image/pictures/color_scale.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "io/write/views/render_view.h"
-#include "io/write/views/view_layout.h"
+#include "io/image/views/render_view.h"
+#include "io/image/views/view_layout.h"
 #include "io_write/read_png.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"

@@ -43,22 +43,22 @@ set(order
   proximity/self
   proximity
   summary
-  io/read/polygons
-  io/read
-  io/read/frames
-  io/read/gltf
-  io/write/compression
-  io/write/pictures
-  io/write/model
-  io/write/views
-  io/write
-  io/write/fields
-  io/write/report
-  io/write/summary
-  io/write/player
-  io/write/vertices
+  io/file
+  io/mesh/polygons
+  io/mesh
+  io/mesh/frames
+  io/mesh/gltf
+  io/image/pictures
+  io/mesh/model
+  io/image/views
+  io/image
+  io/mesh/vertices
+  io/fields
   io/points/text
-  io/points)
+  io/points
+  io/page/report
+  io/page/player
+  io/page)
 
 # Another engine is before the table of engines.
 file(GLOB engines LIST_DIRECTORIES true RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/engine/*)

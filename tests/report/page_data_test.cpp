@@ -8,10 +8,10 @@
 #include <map>
 
 #include "geometry/vec.h"
-#include "io/write/report/area_by_value.h"
-#include "io/write/report/fewer_vertices.h"
-#include "io/write/report/packed_arrays.h"
-#include "io/write/report/worst_places.h"
+#include "io/page/report/area_by_value.h"
+#include "io/page/report/fewer_vertices.h"
+#include "io/page/report/packed_arrays.h"
+#include "io/page/report/worst_places.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
 

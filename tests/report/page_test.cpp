@@ -20,7 +20,7 @@
 #include <random>
 
 #include "cli/samples.h"
-#include "io/write/report/page_channels.h"
+#include "io/page/report/page_channels.h"
 #include "support/made_up_maps.h"
 #include "support/run_sdm.h"
 

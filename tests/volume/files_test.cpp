@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "io/write/fields/far_signs.h"
+#include "io/fields/far_signs.h"
 #include "support/error_of.h"
 #include "support/oracle.h"
 #include "support/temporary_folder.h"

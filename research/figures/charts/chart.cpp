@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/write/pictures/ticks.h"
+#include "io/image/pictures/ticks.h"
 #include "research/figures/charts/svg.h"
 
 namespace sdm::figures {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/write/pictures/color_scale.h"
+#include "io/image/pictures/color_scale.h"
 
 namespace sdm::figures {
 

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <array>
 
+#include "io/file/byte_scanner.h"
 #include "io/points/cloud_file.h"
 #include "io/points/text/column_names.h"
-#include "io/read/byte_scanner.h"
 
 namespace sdm::io {
 namespace {

@@ -9,13 +9,13 @@
 #include <filesystem>
 #include <string_view>
 
+#include "io/file/utf16.h"
+#include "io/mesh/read_polygons.h"
 #include "io/points/binary_rows.h"
 #include "io/points/cloud_layout.h"
 #include "io/points/text/ptx_scans.h"
 #include "io/points/text/text_dialect.h"
 #include "io/points/text/text_rows.h"
-#include "io/read/read_polygons.h"
-#include "io/read/utf16.h"
 
 namespace sdm::io {
 namespace {

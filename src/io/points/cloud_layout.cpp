@@ -8,10 +8,10 @@
 #include <cmath>
 #include <vector>
 
+#include "io/file/byte_scanner.h"
+#include "io/mesh/ply_header.h"
 #include "io/points/text/column_names.h"
 #include "io/points/text/text_lines.h"
-#include "io/read/byte_scanner.h"
-#include "io/read/ply_header.h"
 
 namespace sdm::io {
 namespace {

@@ -13,11 +13,11 @@
 
 #include "core/memory.h"
 #include "geometry/vec.h"
+#include "io/file/atomic_file.h"
+#include "io/file/byte_scanner.h"
+#include "io/file/little_endian.h"
+#include "io/image/pictures/color_scale.h"
 #include "io/points/measured_rows.h"
-#include "io/read/byte_scanner.h"
-#include "io/write/atomic_file.h"
-#include "io/write/little_endian.h"
-#include "io/write/pictures/color_scale.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_percentiles.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "io/read/byte_scanner.h"
+#include "io/file/byte_scanner.h"
 
 namespace sdm::io {
 namespace {

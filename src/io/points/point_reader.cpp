@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/intact.h"
+#include "io/mesh/read_polygons.h"
 #include "io/points/cloud_file.h"
-#include "io/read/read_polygons.h"
 
 namespace sdm {
 

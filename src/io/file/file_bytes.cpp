@@ -1,0 +1,45 @@
+#include "io/file/file_bytes.h"
+
+#include <fmt/format.h>
+#include <sdm/error.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "core/memory.h"
+
+namespace sdm::io {
+namespace {
+
+// The mesh and the data it is built from take, in every format, at most five times the memory of the file.
+constexpr std::size_t kMemoryPerByte = 5;
+
+}  // namespace
+
+FileBytes read_bytes(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto type = std::filesystem::status(file, error).type();
+  if (type == std::filesystem::file_type::not_found) throw Error("there is no such file");
+  if (type == std::filesystem::file_type::directory) throw Error("this is a folder, not a mesh file");
+  if (error) throw Error(fmt::format("cannot be read: {}", error.message()));
+  if (type != std::filesystem::file_type::regular) throw Error("this is not a regular file");
+
+  const auto close = [](std::FILE* stream) { std::fclose(stream); };
+  const std::unique_ptr<std::FILE, decltype(close)> stream(std::fopen(file.c_str(), "rb"), close);
+  if (!stream) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
+
+  FileBytes bytes;
+  bytes.size = std::filesystem::file_size(file);
+  if (bytes.size == 0) throw Error("the file is empty");
+  require_memory(bytes.size > SIZE_MAX / kMemoryPerByte ? SIZE_MAX : bytes.size * kMemoryPerByte,
+                 "reading it");
+  bytes.data = std::make_unique_for_overwrite<char[]>(bytes.size);
+  if (std::fread(bytes.data.get(), 1, bytes.size, stream.get()) != bytes.size)
+    throw Error(fmt::format("cannot be read: {}", std::ferror(stream.get())
+                                                      ? std::strerror(errno)
+                                                      : "it became shorter while it was being read"));
+  return bytes;
+}
+
+}  // namespace sdm::io

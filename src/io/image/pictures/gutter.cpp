@@ -1,0 +1,63 @@
+#include "io/image/pictures/gutter.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "core/parallel.h"
+
+namespace sdm::io {
+namespace {
+
+// All offsets within a disc, shortest first; of equal lengths, those along rows first.
+std::vector<std::array<int, 2>> disc(int radius) {
+  std::vector<std::array<int, 2>> steps;
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx)
+      if (dx * dx + dy * dy <= radius * radius) steps.push_back({dx, dy});
+  std::stable_sort(steps.begin(), steps.end(), [](const auto& a, const auto& b) {
+    return a[0] * a[0] + a[1] * a[1] < b[0] * b[0] + b[1] * b[1];
+  });
+  return steps;
+}
+
+}  // namespace
+
+Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners, std::uint32_t width)
+    : resolution_(resolution),
+      rows_(static_cast<std::uint32_t>(owners.size() / resolution)),
+      shift_(static_cast<unsigned>(std::bit_width(std::bit_ceil(width)) - 1)),
+      blocks_(((resolution - 1) >> shift_) + 1),
+      steps_(disc(static_cast<int>(width))),
+      owners_(owners) {
+  const std::uint32_t side = 1u << shift_, block_rows = ((rows_ - 1) >> shift_) + 1;
+  std::vector<std::uint8_t> owned(std::size_t{block_rows} * blocks_);
+  close_.resize(owned.size());
+  constexpr std::size_t kGrain = 16;  // rows of blocks
+  parallel_for(block_rows, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin * side; y < std::min<std::size_t>(end * side, rows_); ++y)
+      for (std::size_t x = 0; x < resolution_; ++x)
+        owned[(y >> shift_) * blocks_ + (x >> shift_)] |= owners_[y * resolution_ + x] != kNone;
+  });
+  parallel_for(block_rows, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      for (std::size_t column = 0; column < blocks_; ++column)
+        for (std::size_t y = row - (row > 0); y <= std::min<std::size_t>(row + 1, block_rows - 1); ++y)
+          for (std::size_t x = column - (column > 0); x <= std::min<std::size_t>(column + 1, blocks_ - 1);
+               ++x)
+            close_[row * blocks_ + column] |= owned[y * blocks_ + x];
+  });
+}
+
+std::uint32_t Gutter::search(std::uint32_t x, std::uint32_t y) const {
+  for (const auto& [dx, dy] : steps_) {
+    // Offsets out of the image wrap around to large numbers.
+    const std::uint32_t sx = x + static_cast<std::uint32_t>(dx), sy = y + static_cast<std::uint32_t>(dy);
+    if (sx >= resolution_ || sy >= rows_) continue;
+    const std::size_t source = std::size_t{sy} * resolution_ + sx;
+    if (owners_[source] != kNone) return static_cast<std::uint32_t>(source);
+  }
+  return kNone;
+}
+
+}  // namespace sdm::io

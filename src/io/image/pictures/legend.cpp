@@ -1,0 +1,103 @@
+#include "io/image/pictures/legend.h"
+
+#include "io/image/pictures/canvas.h"
+#include "io/image/pictures/ticks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sdm::io {
+namespace {
+
+// Lengths for a resolution of 1024; the drawing is scaled as a whole.
+constexpr double kWidth = 232, kMargin = 24, kBarWidth = 30, kBarTop = 84, kMaxHeight = 1024;
+constexpr double kMinHeight = 460;
+constexpr double kTitleSize = 19, kTextSize = 15, kLine = 23;
+
+// Shrinks long text to fit the picture.
+void write_text(Canvas& canvas, double x, double baseline, const std::string& text, double size,
+                bool bold = false) {
+  canvas.text(x, baseline, text, size, kWidth - x - kMargin / 2, bold);
+}
+
+void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom) {
+  cairo_t* cairo = canvas.cairo();
+  const auto height_of = [&](double d) {
+    return bottom - (d - scale.lo) / (scale.hi - scale.lo) * (bottom - top);
+  };
+  constexpr int kSteps = 4096;  // finer than any pixel of the bar
+  // Without antialiasing, every pixel has the colour of one step, unblended with the background. Each step
+  // extends below the next one, which covers it, so rounding leaves no seams.
+  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
+  for (int i = 0; i < kSteps; ++i) {
+    const double foot = bottom - i * (bottom - top) / kSteps, head = std::max(top, foot - 3);
+    canvas.set_color(scale(scale.lo + (i + 0.5) / kSteps * (scale.hi - scale.lo)));
+    cairo_rectangle(cairo, kMargin, head, kBarWidth, foot - head);
+    cairo_fill(cairo);
+  }
+  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_DEFAULT);
+  canvas.set_color(kLineColor);
+  cairo_set_line_width(cairo, 1);
+  cairo_rectangle(cairo, kMargin, top, kBarWidth, bottom - top);
+  cairo_stroke(cairo);
+
+  const auto values = ticks(scale.lo, scale.hi, 10);
+  const double step = values.size() > 1 ? values[1] - values[0] : scale.hi - scale.lo;
+  for (const double value : values) {
+    const double y = height_of(value);
+    canvas.set_color(kLineColor);
+    cairo_move_to(cairo, kMargin + kBarWidth, y);
+    cairo_line_to(cairo, kMargin + kBarWidth + 7, y);
+    cairo_stroke(cairo);
+    canvas.set_color(kInk);
+    write_text(canvas, kMargin + kBarWidth + 13, y + 0.36 * kTextSize, tick_label(value, step), kTextSize);
+  }
+}
+
+}  // namespace
+
+LegendText legend_text(const DistanceMap& map, double least, double most, const ColorScale& scale,
+                       const std::string& units) {
+  LegendText text{"Distance", units, {}, map.beyond_max_distance > 0};
+  if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
+  if (const auto& t = scale.tolerance)
+    text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
+                                         : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
+  text.notes.push_back(map.sign.method == SignMethod::none ? "unsigned" : "negative: inside");
+  // An empty line otherwise: pictures of a sequence have bars of one length.
+  text.notes.emplace_back(least < scale.lo || most > scale.hi ? "beyond: as the ends" : "");
+  return text;
+}
+
+Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32_t resolution) {
+  const double zoom = std::clamp(resolution / 1024.0, 0.6, 4.0);
+  const double height = std::clamp(resolution / zoom, kMinHeight, kMaxHeight);
+  Canvas canvas(kWidth, height, zoom);
+  cairo_t* cairo = canvas.cairo();
+
+  canvas.set_color(kInk);
+  write_text(canvas, kMargin, 40, text.title, kTitleSize, true);
+  write_text(canvas, kMargin, 40 + kLine, text.units.empty() ? "in units of the mesh" : "in " + text.units,
+             kTextSize);
+
+  const double foot = kLine * (static_cast<double>(text.notes.size()) + (text.has_missing ? 1 : 0)) + kMargin;
+  const double bottom = height - foot - kMargin;
+  draw_bar(canvas, scale, kBarTop, bottom);
+
+  double baseline = bottom + kMargin + 0.7 * kLine;
+  canvas.set_color(kInk);
+  for (const std::string& note : text.notes) {
+    write_text(canvas, kMargin, baseline, note, kTextSize);
+    baseline += kLine;
+  }
+  if (text.has_missing) {
+    canvas.set_color(kNoValue);
+    cairo_rectangle(cairo, kMargin, baseline - kTextSize + 2, kTextSize, kTextSize);
+    cairo_fill(cairo);
+    canvas.set_color(kInk);
+    write_text(canvas, kMargin + kTextSize + 8, baseline, "nothing in range", kTextSize);
+  }
+  return canvas.picture("the legend");
+}
+
+}  // namespace sdm::io

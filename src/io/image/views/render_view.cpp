@@ -1,0 +1,195 @@
+#include "io/image/views/render_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include "geometry/vec.h"
+#include "io/image/pictures/canvas.h"
+
+namespace sdm::io {
+namespace {
+
+constexpr double kVeil = 0.3;        // how much of O2 is seen in front of O1
+constexpr double kOutline = 0.55;    // how dark outlines are
+constexpr double kStep = 5;          // pixels of depth between neighbours that make an outline
+constexpr double kVeilFrom = 8;      // pixels of depth by which O2 has to be in front
+constexpr double kHiddenBelow = 12;  // pixels of depth by which a place has to be behind O1's surface
+
+using Color = Vec3;  // red, green and blue, from 0 to 255
+
+Color mix(const Color& a, const Color& b, double part) {
+  return (1 - part) * a + part * b;
+}
+Color color(Rgb c) {
+  return {double(c.r), double(c.g), double(c.b)};
+}
+Rgb rgb(const Color& c) {
+  const auto byte = [](double x) { return static_cast<std::uint8_t>(std::clamp(x + 0.5, 0.0, 255.0)); };
+  return {byte(c[0]), byte(c[1]), byte(c[2])};
+}
+
+/// The brightness of a face, from 0 to 1: lit from the viewer's upper left, the inside of an open body
+/// darker.
+class Light {
+ public:
+  explicit Light(const Projection& p)
+      : towards_(p.towards), from_(normalized(-0.35 * p.right + 0.5 * p.up + 0.8 * p.towards)) {}
+
+  [[nodiscard]] double operator()(const Mesh& mesh, const ShadingNormals& normals, std::uint32_t face,
+                                  const Vec3& weights) const {
+    const Triangle& t = mesh.triangles[face];
+    const Vec3 flat =
+        cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
+    Vec3 normal{};
+    for (int k = 0; k < 3; ++k) {
+      const Vec3f& n = normals.normals[normals.corner[face][k]];
+      normal += weights[k] * Vec3{n[0], n[1], n[2]};
+    }
+    const bool back = dot(flat, towards_) < 0;
+    const double lit = std::max(0.0, (back ? -1 : 1) * dot(normalized(normal), from_));
+    return (back ? 0.42 : 0.5) + 0.5 * lit;
+  }
+
+ private:
+  Vec3 towards_, from_;
+};
+
+/// The colour of a point of a face: that of the texel there or, at the border of a chart, of a neighbouring
+/// texel of the same chart.
+Rgb color_at(const ViewScene& scene, std::uint32_t face, const Vec3& weights) {
+  const Surface& surface = *scene.surface;
+  const auto charts = surface.face_charts(), owners = surface.texel_faces();
+  if (charts[face] != kNone) {
+    const auto corners = surface.atlas_corners(face);
+    Vec2 place{};
+    for (int k = 0; k < 3; ++k) place = place + weights[k] * corners[k];
+    const auto width = static_cast<int>(surface.resolution()), height = static_cast<int>(surface.rows());
+    const int x = static_cast<int>(place[0]), y = static_cast<int>(place[1]);
+    double nearest = std::numeric_limits<double>::infinity();
+    std::optional<std::size_t> found;
+    for (int row = std::max(0, y - 1); row <= std::min(height - 1, y + 1); ++row)
+      for (int column = std::max(0, x - 1); column <= std::min(width - 1, x + 1); ++column) {
+        const std::size_t texel = std::size_t(row) * std::size_t(width) + std::size_t(column);
+        if (owners[texel] == kNone || charts[owners[texel]] != charts[face]) continue;
+        const double away = std::max(std::abs(column + 0.5 - place[0]), std::abs(row + 0.5 - place[1]));
+        if (away < nearest) nearest = away, found = texel;
+      }
+    if (found) return scene.colors[*found];
+  }
+  double distance = 0;
+  for (int k = 0; k < 3; ++k)
+    distance += weights[k] * scene.vertex_distances[surface.mesh().triangles[face][k]];
+  return scene.scale(distance);
+}
+
+class Renderer {
+ public:
+  Renderer(const ViewScene& scene, const Projection& projection)
+      : scene_(scene), projection_(projection), light_(projection), part_(mesh(), projection) {
+    if (scene.other != nullptr) ghost_.emplace(*scene.other, projection);
+  }
+
+  [[nodiscard]] Picture picture() const {
+    Picture picture{projection_.width, projection_.height, {}};
+    picture.pixels.reserve(std::size_t{picture.width} * picture.height);
+    for (std::uint32_t y = 0; y < picture.height; ++y)
+      for (std::uint32_t x = 0; x < picture.width; ++x) picture.pixels.push_back(pixel(x, y));
+    return picture;
+  }
+
+  /// How far O1 is in front of a place; negative if it is not.
+  [[nodiscard]] double in_front_of(const Vec3& place) const {
+    const Vec3 at = projection_(place);
+    if (!(at[0] >= 0 && at[0] < projection_.width && at[1] >= 0 && at[1] < projection_.height))
+      return std::numeric_limits<double>::infinity();
+    const std::size_t sample =
+        sample_at(static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]));
+    return part_.depth(sample) - at[2];
+  }
+  [[nodiscard]] bool hides(double in_front) const { return !(in_front < kHiddenBelow / projection_.scale); }
+
+ private:
+  static constexpr std::uint32_t kSamples = DepthBuffer::kSamples;
+
+  [[nodiscard]] const Mesh& mesh() const { return scene_.surface->mesh(); }
+  /// The first sample of a pixel.
+  [[nodiscard]] std::size_t sample_at(std::uint32_t x, std::uint32_t y) const {
+    return std::size_t{kSamples} * y * part_.width() + std::size_t{kSamples} * x;
+  }
+
+  [[nodiscard]] Rgb pixel(std::uint32_t x, std::uint32_t y) const {
+    Color sum{}, last{};
+    std::size_t last_sample = 0;
+    bool any = false;
+    for (std::uint32_t row = 0; row < kSamples; ++row)
+      for (std::uint32_t column = 0; column < kSamples; ++column) {
+        const std::size_t sample = sample_at(x, y) + std::size_t{row} * part_.width() + column;
+        // Samples of a pixel in the same face have almost the same colour.
+        if (!any || part_.face(sample) != part_.face(last_sample) ||
+            (ghost_ && ghost_->face(sample) != ghost_->face(last_sample)))
+          last = sample_color(sample);
+        last_sample = sample, any = true;
+        sum = sum + last;
+      }
+    sum = (1.0 / (kSamples * kSamples)) * sum;
+    return rgb(is_outline(x, y) ? mix(sum, color(kInk), kOutline) : sum);
+  }
+
+  [[nodiscard]] Color sample_color(std::size_t sample) const {
+    const std::uint32_t face = part_.face(sample);
+    const std::uint32_t ghost_face = ghost_ ? ghost_->face(sample) : kNone;
+    Color ghost{};
+    if (ghost_face != kNone) {
+      const Vec3 weights = ghost_->weights(sample, scene_.other->triangles[ghost_face]);
+      ghost = light_(*scene_.other, scene_.other_normals, ghost_face, weights) * color(kGhost);
+    }
+    if (face == kNone)
+      return ghost_face == kNone ? color(kViewBackground) : mix(color(kViewBackground), ghost, 0.75);
+    const Vec3 weights = part_.weights(sample, mesh().triangles[face]);
+    const Color part = light_(mesh(), scene_.normals, face, weights) * color(color_at(scene_, face, weights));
+    const bool veiled =
+        ghost_face != kNone && ghost_->depth(sample) > part_.depth(sample) + kVeilFrom / projection_.scale;
+    return veiled ? mix(part, ghost, kVeil) : part;
+  }
+
+  /// Whether O1 ends at a pixel, or steps back behind it.
+  [[nodiscard]] bool is_outline(std::uint32_t x, std::uint32_t y) const {
+    const auto depth = [&](std::uint32_t column, std::uint32_t row) {
+      return projection_.scale * part_.depth(sample_at(column, row));
+    };
+    const double here = depth(x, y);
+    if (!std::isfinite(here)) return false;
+    // Beyond what the slope of the surface explains: a rough plane seen at a small angle has no outlines. A
+    // step of s between neighbours is 2 here − before − after = s, of a slope of s/2.
+    const auto steps = [&](double before, double after) {
+      if (!std::isfinite(before) || !std::isfinite(after)) return true;
+      return 2 * here - before - after > kStep + 0.6 * std::abs(after - before);
+    };
+    const bool inner = x > 0 && y > 0 && x + 1 < projection_.width && y + 1 < projection_.height;
+    return inner && (steps(depth(x - 1, y), depth(x + 1, y)) || steps(depth(x, y - 1), depth(x, y + 1)));
+  }
+
+  const ViewScene& scene_;
+  const Projection& projection_;
+  Light light_;
+  DepthBuffer part_;
+  std::optional<DepthBuffer> ghost_;
+};
+
+}  // namespace
+
+View render_view(const ViewScene& scene, const Projection& projection, std::span<const Vec3> places) {
+  const Renderer renderer(scene, projection);
+  View view{.picture = renderer.picture(), .visible = {}, .in_front = {}};
+  for (const Vec3& place : places) {
+    view.in_front.push_back(renderer.in_front_of(place));
+    view.visible.push_back(!renderer.hides(view.in_front.back()));
+  }
+  return view;
+}
+
+}  // namespace sdm::io

@@ -1,0 +1,15 @@
+#include "io/mesh/formats.h"
+#include "io/mesh/gltf/gltf_scene.h"
+
+namespace sdm::io {
+
+PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file) {
+  try {
+    const GltfDocument document(bytes, file.parent_path());
+    return read_gltf_scene(document, gltf_instances(document));
+  } catch (const nlohmann::json::exception& fault) {
+    throw_gltf_fault(fault);
+  }
+}
+
+}  // namespace sdm::io

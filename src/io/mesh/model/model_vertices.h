@@ -1,0 +1,27 @@
+// The vertices of a drawn model of a surface.
+#pragma once
+
+#include <sdm/surface.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "io/mesh/model/shading_normals.h"
+
+namespace sdm::io {
+
+/// One vertex for each normal and each position in the atlas of each vertex of the mesh, since renderers have
+/// one index for all attributes.
+struct ModelVertices {
+  std::vector<std::uint32_t> normal;  ///< into ShadingNormals, which also has the vertex of the mesh
+  std::vector<Vec2> place;            ///< atlas coordinates, in texels
+  std::vector<Triangle> triangles;    ///< of these vertices, in the order of the faces
+};
+
+/// The vertices of some faces of the surface, in the order of their first use. Cost: linear.
+[[nodiscard]] ModelVertices model_vertices(const Surface& surface, const ShadingNormals& normals,
+                                           std::span<const std::uint32_t> faces);
+
+}  // namespace sdm::io

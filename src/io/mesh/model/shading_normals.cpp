@@ -1,0 +1,97 @@
+#include "io/mesh/model/shading_normals.h"
+
+#include <sdm/mesh_edit.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/parallel.h"
+#include "geometry/vec.h"
+
+namespace sdm::io {
+namespace {
+
+constexpr double kCrease = 0.766;  // the cosine of 40°
+// The most sheets searched for each corner: the tip of a cone of a million faces must not take 10^12 steps.
+constexpr int kMostSheets = 64;
+
+struct FaceShape {
+  Vec3f normal{};                 ///< zero without area
+  std::array<float, 3> angles{};  ///< at the corners
+};
+
+FaceShape shape_of(const Mesh& mesh, const Triangle& triangle) {
+  FaceShape shape;
+  std::array<Vec3, 3> edges;  // edges[k] from corner k to the next one
+  for (int k = 0; k < 3; ++k) edges[k] = mesh.positions[triangle[(k + 1) % 3]] - mesh.positions[triangle[k]];
+  const Vec3 normal = normalized(cross(edges[0], edges[1]));
+  if (normal == Vec3{} || !finite(normal)) return shape;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 &a = edges[k], b = -edges[(k + 2) % 3];
+    shape.normal[k] = static_cast<float>(normal[k]);
+    // Relative to their size, as squares of lengths may underflow in single precision.
+    const double sine = norm(cross(a, b)), cosine = dot(a, b), scale = 1 / std::max(sine, std::abs(cosine));
+    shape.angles[k] = std::atan2(static_cast<float>(scale * sine), static_cast<float>(scale * cosine));
+  }
+  return shape;
+}
+
+double cosine(const Vec3f& a, const Vec3f& b) {
+  return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
+}
+
+}  // namespace
+
+ShadingNormals shading_normals(const Mesh& mesh) {
+  std::vector<FaceShape> shapes(mesh.triangles.size());
+  constexpr std::size_t kGrain = 1024;
+  parallel_for(mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t face = begin; face < end; ++face)
+      if (!is_removed(mesh.triangles[face])) shapes[face] = shape_of(mesh, mesh.triangles[face]);
+  });
+
+  ShadingNormals result;
+  result.corner.resize(mesh.triangles.size(), {kNone, kNone, kNone});
+  std::vector<Vec3f> first_face;  // of each sheet; zero while it has only faces without area
+  std::vector<Vec3> sums;
+  // The sheets of each vertex are a linked list: first[vertex], next[sheet], ...
+  std::vector<std::uint32_t> first(mesh.positions.size(), kNone), next;
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    if (is_removed(mesh.triangles[face])) continue;
+    const Vec3f& normal = shapes[face].normal;
+    const auto fits = [&](std::uint32_t sheet) {
+      return normal == Vec3f{} || first_face[sheet] == Vec3f{} ||
+             cosine(first_face[sheet], normal) >= kCrease;
+    };
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh.triangles[face][k];
+      std::uint32_t sheet = first[vertex];
+      for (int looked_at = 1; sheet != kNone && !fits(sheet) && looked_at < kMostSheets; ++looked_at)
+        sheet = next[sheet];
+      if (sheet == kNone) {
+        sheet = static_cast<std::uint32_t>(result.vertex.size());
+        result.vertex.push_back(vertex);
+        first_face.push_back(normal);
+        sums.emplace_back();
+        next.push_back(std::exchange(first[vertex], sheet));
+      }
+      if (first_face[sheet] == Vec3f{}) first_face[sheet] = normal;
+      for (int c = 0; c < 3; ++c) sums[sheet][c] += double{shapes[face].angles[k]} * normal[c];
+      result.corner[face][k] = sheet;
+    }
+  }
+  result.normals.resize(sums.size());
+  parallel_for(sums.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t sheet = begin; sheet < end; ++sheet) {
+      const Vec3 n = normalized(sums[sheet]);
+      if (n == Vec3{})
+        result.normals[sheet] = {0, 0, 1};
+      else
+        for (int c = 0; c < 3; ++c) result.normals[sheet][c] = static_cast<float>(n[c]);
+    }
+  });
+  return result;
+}
+
+}  // namespace sdm::io

@@ -1,0 +1,67 @@
+#include <sdm/io.h>
+
+#include <algorithm>
+#include <new>
+
+#include "core/memory.h"
+#include "io/file/file_bytes.h"
+#include "io/mesh/read_polygons.h"
+
+namespace sdm {
+namespace {
+
+// Adds the names of a kind, unless the file has none.
+void add_names(const char* kind, const io::PolygonNames& polygons,
+               const std::vector<std::uint32_t>& triangle_ends, std::vector<FaceNames>& all) {
+  if (polygons.names().empty()) return;
+  FaceNames result{.kind = kind, .names = polygons.names(), .of_face = {}};
+  const std::size_t triangles = triangle_ends.empty() ? 0 : triangle_ends.back();
+  const auto first_triangle = [&](std::size_t polygon) {
+    return polygon == 0 ? 0 : triangle_ends[std::min(polygon, triangle_ends.size()) - 1];
+  };
+  result.of_face.assign(triangles, kNone);
+  const auto& runs = polygons.runs();
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::size_t end = i + 1 < runs.size() ? first_triangle(runs[i + 1].first_polygon) : triangles;
+    for (std::size_t f = first_triangle(runs[i].first_polygon); f < end; ++f)
+      result.of_face[f] = runs[i].name;
+  }
+  all.push_back(std::move(result));
+}
+
+}  // namespace
+
+Mesh read_mesh(const std::filesystem::path& file) try {
+  return io::with_error_prefix(file.string(), [&] {
+    Mesh mesh = io::to_mesh(io::read_polygons(io::read_bytes(file).view(), file));
+    validate(mesh);
+    return mesh;
+  });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the name of a mesh file");
+}
+
+MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions& options) try {
+  return io::with_error_prefix(file.string(), [&] {
+    io::PolygonMesh polygons = io::read_polygons(io::read_bytes(file).view(), file);
+    std::vector<std::uint32_t> renumbered, triangle_ends;
+    MeshFile result{.mesh = io::to_mesh(polygons, renumbered, triangle_ends),
+                    .names = {},
+                    .notes = std::move(polygons.notes)};
+    if (std::string fault = io::uv_fault(polygons); !fault.empty()) result.notes.push_back(std::move(fault));
+    validate(result.mesh);
+    add_names("object", polygons.objects, triangle_ends, result.names);
+    add_names("group", polygons.groups, triangle_ends, result.names);
+    add_names("material", polygons.materials, triangle_ends, result.names);
+    if (options.vertices)
+      result.vertices = FileVertices{.positions = std::move(polygons.positions),
+                                     .mesh_vertex = std::move(renumbered),
+                                     .corners = std::move(polygons.corners),
+                                     .ends = std::move(polygons.ends)};
+    return result;
+  });
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the name of a mesh file");
+}
+
+}  // namespace sdm

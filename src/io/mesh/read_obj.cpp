@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+#include <sdm/error.h>
+
+#include <optional>
+#include <utility>
+
+#include "io/file/text_scanner.h"
+#include "io/mesh/formats.h"
+
+namespace sdm::io {
+namespace {
+
+// The highest index in any face, and its position. Faces may precede the items that they refer to, so it is
+// checked at the end.
+struct HighestIndex {
+  std::uint32_t index = 0;
+  const char* at = nullptr;
+
+  void add(std::uint32_t other, const char* place) {
+    if (!at || other > index) index = other, at = place;
+  }
+};
+
+// The index that a file means: positive ones count from 1, negative ones backwards from the last of the
+// `count` items so far. The result counts from 0; kNone if it cannot exist.
+std::uint32_t index_of(std::int64_t i, std::size_t count) {
+  const std::int64_t index = i > 0 ? i - 1 : static_cast<std::int64_t>(count) + i;
+  return i == 0 || index < 0 || index >= kNone ? kNone : static_cast<std::uint32_t>(index);
+}
+
+class ObjReader {
+ public:
+  explicit ObjReader(std::string_view text) : in_(text) {}
+
+  PolygonMesh read() {
+    for (; !in_.at_end(); in_.skip_line()) {
+      if (!in_.more_on_line()) continue;
+      if (in_.accept("v"))
+        read_position();
+      else if (in_.accept("vt"))
+        read_uv();
+      else if (in_.accept("f"))
+        read_face();
+      else if (in_.accept("usemtl"))
+        read_name(mesh_.materials);
+      else if (in_.accept("g"))
+        read_name(mesh_.groups);
+      else if (in_.accept("o"))
+        read_name(mesh_.objects);
+      else if (in_.accept("l"))
+        ++lines_;
+      else if (in_.accept("curv") || in_.accept("curv2"))
+        ++curves_;
+      else if (in_.accept("surf"))
+        ++surfaces_;
+    }
+    if (highest_vertex_.at && highest_vertex_.index >= mesh_.positions.size())
+      in_.fail_at(highest_vertex_.at,
+                  fmt::format("index out of range: a face refers to vertex {} of {}",
+                              std::size_t{highest_vertex_.index} + 1, mesh_.positions.size()));
+    check_uvs();
+    check_other_statements();
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_position() {
+    const double x = in_.number(), y = in_.number(), z = in_.number();
+    mesh_.positions.push_back({x, y, z});
+  }
+  void read_uv() {
+    const double u = in_.number();
+    mesh_.uvs.push_back({u, in_.more_on_line() ? in_.number() : 0});
+  }
+  // Corners are v, v/vt, v//vn or v/vt/vn.
+  void read_face() {
+    while (in_.more_on_line()) {
+      mesh_.corners.push_back(read_vertex_index());
+      std::uint32_t uv = kNone;
+      if (in_.accept('/')) {
+        if (in_.in_word() && !in_.accept('/')) {
+          uv = read_uv_index();
+          in_.accept('/');
+        }
+        if (in_.in_word()) in_.integer();
+      }
+      mesh_.corner_uvs.push_back(uv);
+    }
+    mesh_.end_polygon();
+  }
+  std::uint32_t read_vertex_index() {
+    const char* at = in_.position();
+    const std::int64_t i = in_.integer();
+    const std::uint32_t index = index_of(i, mesh_.positions.size());
+    if (index == kNone)
+      in_.fail_at(
+          at, fmt::format("index out of range: a face refers to vertex {} of {}", i, mesh_.positions.size()));
+    highest_vertex_.add(index, at);
+    return index;
+  }
+  std::uint32_t read_uv_index() {
+    const char* at = in_.position();
+    const std::int64_t i = in_.integer();
+    const std::uint32_t index = index_of(i, mesh_.uvs.size());
+    if (index != kNone)
+      highest_uv_.add(index, at);
+    else if (!impossible_uv_)
+      impossible_uv_ = {i, at};
+    return index;
+  }
+  // Faces without valid texture coordinates are still faces: programs write vt that they then leave out.
+  void check_uvs() {
+    if (!impossible_uv_ && highest_uv_.at && highest_uv_.index >= mesh_.uvs.size())
+      impossible_uv_ = {std::int64_t{highest_uv_.index} + 1, highest_uv_.at};
+    if (!impossible_uv_) return;
+    mesh_.notes.push_back(
+        fmt::format("the texture coordinates are left out: in line {}, a face refers to number {} of {}",
+                    in_.line_of(impossible_uv_->second), impossible_uv_->first, mesh_.uvs.size()));
+    mesh_.uvs.clear(), mesh_.corner_uvs.clear();
+  }
+  void check_other_statements() {
+    if (mesh_.ends.empty()) {
+      if (curves_ + surfaces_ > 0)
+        throw Error(
+            "there are no triangles, only free-form curves and surfaces (statements curv and surf); export "
+            "the faces of a mesh instead");
+      if (lines_ > 0)
+        throw Error("there are no triangles, only lines (statement l); export the faces of a mesh instead");
+    } else if (surfaces_ > 0) {
+      mesh_.notes.push_back(fmt::format(
+          "{} free-form surfaces (statement surf) are left out; only the faces are read", surfaces_));
+    }
+  }
+  // The rest of the line: names may contain blanks, and a face may be in several groups.
+  void read_name(PolygonNames& names) {
+    std::string name;
+    while (in_.more_on_line()) name.append(name.empty() ? "" : " ").append(in_.word());
+    names.begin(mesh_.ends.size(), name);
+  }
+
+  TextScanner in_;
+  PolygonMesh mesh_;
+  HighestIndex highest_vertex_, highest_uv_;
+  std::optional<std::pair<std::int64_t, const char*>> impossible_uv_;  // the first one and its position
+  std::size_t lines_ = 0, curves_ = 0, surfaces_ = 0;                  // statements
+};
+
+}  // namespace
+
+PolygonMesh read_obj(std::string_view text) {
+  return ObjReader(text).read();
+}
+
+}  // namespace sdm::io

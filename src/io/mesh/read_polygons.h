@@ -1,0 +1,45 @@
+// The polygons of a mesh file of any format.
+#pragma once
+
+#include <sdm/error.h>
+#include <sdm/printable.h>
+
+#include <filesystem>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include "io/mesh/polygons/polygon_mesh.h"
+
+namespace sdm::io {
+
+/// Returns whether files with this extension, such as ".obj", in any case, are mesh files.
+[[nodiscard]] bool is_mesh_extension(std::string_view extension);
+
+/// Returns whether a mesh file is glTF, from the contents, or else from the file name's extension.
+[[nodiscard]] bool is_gltf(std::string_view bytes, const std::filesystem::path& file);
+
+/// Returns the names of the format of a mesh file that begins with these bytes; empty if the content shows
+/// none. Binary STL is recognised by all of its bytes only.
+[[nodiscard]] std::string_view mesh_format_of(std::string_view begin);
+
+/// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.
+[[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file);
+
+/// Calls `read`. If it throws sdm::Error or runs out of memory, throws an sdm::Error whose message begins
+/// with `name`, unless that is empty. It is printable(), whatever the file contains.
+template <typename Read>
+auto with_error_prefix(const std::string& name, const Read& read) {
+  const auto prefix = [&] { return name.empty() ? "" : name + ": "; };
+  try {
+    return read();
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& fault) {
+    throw Error(printable(prefix() + fault.what()));
+  } catch (const std::bad_alloc&) {
+    throw Error(printable(prefix()) + "there is not enough memory to read it");
+  }
+}
+
+}  // namespace sdm::io

@@ -1,0 +1,78 @@
+#include "io/page/report/packed_arrays.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "core/parallel.h"
+#include "io/file/deflate.h"
+
+namespace sdm::io {
+namespace {
+
+constexpr std::size_t kPlanes = 4;
+
+std::vector<std::uint8_t> plane(std::span<const std::uint32_t> numbers, std::size_t which) {
+  std::vector<std::uint8_t> bytes(numbers.size());
+  std::uint8_t any = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    any |= bytes[i] = static_cast<std::uint8_t>(numbers[i] >> (8 * which));
+  if (any == 0) bytes.clear();
+  return bytes;
+}
+
+}  // namespace
+
+void PackedArrays::add(std::string_view name, std::vector<std::uint32_t> numbers) {
+  arrays_.push_back({std::string(name), std::move(numbers)});
+}
+
+void PackedArrays::add_differences(std::string_view name, std::span<const std::uint32_t> numbers,
+                                   std::size_t stride) {
+  std::vector<std::uint32_t> differences(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    differences[i] = zigzag(numbers[i] - (i < stride ? 0 : numbers[i - stride]));
+  add(name, std::move(differences));
+}
+
+void PackedArrays::add(PackedArrays&& other) {
+  std::ranges::move(other.arrays_, std::back_inserter(arrays_));
+}
+
+void PackedArrays::compress() {
+  std::vector<std::vector<std::uint8_t>> planes(kPlanes * arrays_.size());
+  parallel_for(planes.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::vector<std::uint8_t> bytes = plane(arrays_[i / kPlanes].numbers, i % kPlanes);
+      if (!bytes.empty()) planes[i] = deflate_part(bytes, true);
+    }
+  });
+  std::vector<std::uint8_t> all;
+  for (std::size_t a = 0; a < arrays_.size(); ++a) {
+    nlohmann::ordered_json& entry = index_[arrays_[a].name];
+    entry["count"] = arrays_[a].numbers.size();
+    for (std::size_t k = 0; k < kPlanes; ++k) {
+      const std::vector<std::uint8_t>& bytes = planes[a * kPlanes + k];
+      entry["bytes"].push_back(bytes.size());
+      all.insert(all.end(), bytes.begin(), bytes.end());
+    }
+  }
+  text_ = base64(all);
+}
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  char* to = text.data();
+  for (std::size_t i = 0; i < bytes.size(); i += 3, to += 4) {
+    const auto at = [&](std::size_t k) { return k < bytes.size() ? std::uint32_t{bytes[k]} : 0u; };
+    const std::uint32_t group = at(i) << 16 | at(i + 1) << 8 | at(i + 2);
+    to[0] = kDigits[group >> 18];
+    to[1] = kDigits[group >> 12 & 63];
+    if (i + 1 < bytes.size()) to[2] = kDigits[group >> 6 & 63];
+    if (i + 2 < bytes.size()) to[3] = kDigits[group & 63];
+  }
+  return text;
+}
+
+}  // namespace sdm::io

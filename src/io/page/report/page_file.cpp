@@ -1,0 +1,50 @@
+#include "io/page/report/page_file.h"
+
+#include <sdm/version.h>
+
+#include <bit>
+#include <span>
+#include <vector>
+
+#include "io/page/report/page_colors.h"
+
+namespace sdm::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kDataPlace = "<!-- data -->";  // in the page
+
+std::vector<std::uint32_t> bits_of(std::span<const float> values) {
+  std::vector<std::uint32_t> bits;
+  for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value));
+  return bits;
+}
+
+}  // namespace
+
+Json add_area(PackedArrays& arrays, const AreaByValue& area) {
+  arrays.add("area_key", area.keys);
+  arrays.add("area_of_key", bits_of(area.area_of_key));
+  arrays.add("area_of_bin", bits_of(area.area));
+  return {{"lo", area.lo}, {"hi", area.hi}};
+}
+
+Json common_json(UpAxis up) {
+  return {{"version", kVersion}, {"up", up == UpAxis::z ? "z" : "y"}, {"colors", colors_json()}};
+}
+
+void put_page(std::ostream& out, std::string_view html, Json& page, const std::string* report,
+              PackedArrays& arrays) {
+  arrays.compress();
+  page["arrays"] = arrays.index();
+  const std::size_t middle = html.find(kDataPlace);
+  out << html.substr(0, middle);
+  if (report) out << R"(<script type="application/json" id="report">)" << as_script(*report) << "</script>\n";
+  out << R"(<script type="application/json" id="page">)"
+      << as_script(page.dump(-1, ' ', false, Json::error_handler_t::ignore)) << "</script>\n"
+      << R"(<script type="text/plain" id="arrays">)" << arrays.text() << "</script>"
+      << html.substr(middle + kDataPlace.size());
+}
+
+}  // namespace sdm::io

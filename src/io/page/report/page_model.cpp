@@ -1,0 +1,196 @@
+#include "io/page/report/page_model.h"
+
+#include <sdm/mesh_edit.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "geometry/vec.h"
+#include "io/image/pictures/atlas_picture.h"
+#include "io/mesh/model/model_vertices.h"
+#include "io/mesh/model/shading_normals.h"
+#include "io/page/report/fewer_vertices.h"
+#include "io/page/report/page_channels.h"
+#include "io/page/report/page_numbers.h"
+
+namespace sdm::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kStepsPerTexel = 64;  // of `place`
+
+// What is left of each value after a guess from the texels to its left, above it, and between these: the
+// field is nearly linear. Of the others the guess is one neighbour, or the value before.
+std::vector<std::uint32_t> differences_of_map(std::span<const std::uint32_t> charts,
+                                              std::span<const std::uint32_t> values, std::size_t width) {
+  std::vector<std::uint32_t> result;
+  std::uint32_t last = 0;
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    if (charts[i] == 0) continue;
+    const bool left = i % width > 0 && charts[i - 1] != 0, above = i >= width && charts[i - width] != 0;
+    std::uint32_t guess = last;
+    if (left && above && charts[i - width - 1] != 0)
+      guess = values[i - 1] + values[i - width] - values[i - width - 1];
+    else if (left)
+      guess = values[i - 1];
+    else if (above)
+      guess = values[i - width];
+    result.push_back(zigzag(values[i] - guess));
+    last = values[i];
+  }
+  return result;
+}
+
+// For each corner, how many vertices its vertex was before the first one that has not occurred yet: 0 for
+// that one. Vertices must be numbered in the order of their first use.
+std::vector<std::uint32_t> corner_codes(std::span<const Triangle> triangles) {
+  std::vector<std::uint32_t> codes;
+  std::uint32_t next = 0;
+  for (const Triangle& triangle : triangles)
+    for (const std::uint32_t vertex : triangle) {
+      codes.push_back(next - vertex);
+      if (vertex == next) ++next;
+    }
+  return codes;
+}
+
+bool is_visible(const Triangle& t) {
+  return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+}
+
+// The visible faces, those of a chart together: neighbours in the atlas are neighbours in the file.
+std::vector<std::uint32_t> faces_by_chart(const Surface& surface) {
+  const auto charts = surface.face_charts();
+  std::vector<std::uint32_t> faces(charts.size());
+  std::iota(faces.begin(), faces.end(), 0u);
+  std::erase_if(faces, [&](std::uint32_t face) {
+    return charts[face] == kNone || !is_visible(surface.mesh().triangles[face]);
+  });
+  std::ranges::stable_sort(faces, {}, [&](std::uint32_t face) { return charts[face]; });
+  return faces;
+}
+
+void add_vertices(PackedArrays& arrays, const Mesh& mesh, const ShadingNormals& normals,
+                  std::span<const std::uint32_t> vertices, const Steps& steps,
+                  std::span<const float> vertex_distances) {
+  std::vector<std::uint32_t> position, normal, distance;
+  for (const std::uint32_t n : vertices) {
+    const std::uint32_t vertex = normals.vertex[n];
+    for (int k = 0; k < 3; ++k) position.push_back(steps(mesh.positions[vertex], k));
+    normal.push_back(octahedral(normals.normals[n]));
+    distance.push_back(ordered(vertex_distances[vertex]));
+  }
+  arrays.add_differences("position", position, 3);
+  arrays.add("normal", std::move(normal));
+  arrays.add_differences("vertex_distance", distance);
+}
+
+}  // namespace
+
+Json add_map(PackedArrays& arrays, const Surface& surface, const DistanceMap& map, std::uint32_t largest) {
+  const AtlasPicture picture(surface, largest);
+  const std::size_t width = picture.width(), height = picture.height();
+  const auto owners = surface.texel_faces(), face_charts = surface.face_charts();
+  const PageChannels shown;
+  std::vector<std::uint32_t> charts(width * height), sites(charts.size());
+  std::vector<std::vector<std::uint32_t>> values(shown.planes(), std::vector<std::uint32_t>(charts.size()));
+  std::atomic<bool> sites_fit = true;
+  constexpr std::size_t kGrain = 16;  // rows
+  parallel_for(height, kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> texels(width);
+    for (std::size_t y = begin; y < end; ++y) {
+      for (std::size_t x = 0; x < width; ++x)
+        texels[x] = picture.texel(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+      shown.read({.map = &map, .surface = &surface}, texels, y * width, values);
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::uint32_t texel = texels[x];
+        if (texel == kNone) continue;
+        charts[y * width + x] = face_charts[owners[texel]] + 1;
+        const SiteType type = map.site_type[texel];
+        const std::uint32_t site = map.site[texel];
+        if (type != SiteType::none && site >= (1u << 30) - 1) sites_fit = false;
+        sites[y * width + x] = type == SiteType::none ? kNone : site << 2 | static_cast<std::uint32_t>(type);
+      }
+    }
+  });
+  arrays.add_differences("chart", charts);
+  Json json{{"width", width}, {"height", height}, {"step", picture.step()}};
+  std::size_t plane = 0;
+  for (const Channel& channel : shown.channels()) {
+    for (std::size_t k = 0; k < channel.components(); ++k)
+      arrays.add(array_name(channel, k), differences_of_map(charts, values[plane++], width));
+    if (!is_drawn(channel)) json["channels"].push_back(described(channel));
+  }
+  if (sites_fit) {
+    std::size_t owned = 0;
+    for (std::size_t i = 0; i < sites.size(); ++i)
+      if (charts[i] != 0) sites[owned++] = sites[i];
+    arrays.add_differences("site", std::span(sites).first(owned));
+  }
+  return json;
+}
+
+Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const float> vertex_distances,
+               std::uint32_t largest, std::size_t most) {
+  const Mesh& mesh = surface.mesh();
+  const Steps steps(bounds(mesh));
+  Json json = steps.json();
+  const std::vector<std::uint32_t> faces = faces_by_chart(surface);
+  json["triangles_of_mesh"] = faces.size();
+  if (faces.size() > most) {
+    const FewerVertices fewer = fewer_vertices(mesh, vertex_distances, most);
+    const ShadingNormals normals = shading_normals(fewer.mesh);
+    // Every vertex once: with the first of its normals.
+    std::vector<std::uint32_t> normal_of(fewer.mesh.positions.size(), kNone);
+    for (std::uint32_t n = 0; n < normals.vertex.size(); ++n)
+      if (normal_of[normals.vertex[n]] == kNone) normal_of[normals.vertex[n]] = n;
+    add_vertices(arrays, fewer.mesh, normals, normal_of, steps, fewer.distances);
+    arrays.add("triangle", corner_codes(fewer.mesh.triangles));
+    return json;
+  }
+  const ShadingNormals normals = shading_normals(mesh);
+  const ModelVertices vertices = model_vertices(surface, normals, faces);
+  add_vertices(arrays, mesh, normals, vertices.normal, steps, vertex_distances);
+  const double scale = kStepsPerTexel / AtlasPicture(surface, largest).step();
+  std::vector<std::uint32_t> place;
+  for (const Vec2& p : vertices.place)
+    for (const double x : p) place.push_back(static_cast<std::uint32_t>(std::max(0.0, scale * x + 0.5)));
+  arrays.add_differences("place", place, 2);
+  arrays.add("triangle", corner_codes(vertices.triangles));
+  std::vector<std::uint32_t> charts;
+  for (const std::uint32_t face : faces) charts.push_back(surface.face_charts()[face] + 1);
+  arrays.add_differences("triangle_chart", charts);
+  return json;
+}
+
+Json add_ghost(PackedArrays& arrays, const Mesh& mesh, std::size_t most) {
+  const Box box = bounds(mesh);
+  const Steps steps(box);
+  Json json = steps.json();
+  json["box"] = {{"lo", box.lo}, {"hi", box.hi}};
+  std::vector<Triangle> triangles;
+  for (const Triangle& triangle : mesh.triangles)
+    if (is_visible(triangle)) triangles.push_back(triangle);
+  json["triangles_of_mesh"] = triangles.size();
+  if (triangles.size() > most) return json;
+  std::vector<std::uint32_t> number(mesh.positions.size(), kNone), position;
+  std::uint32_t count = 0;
+  for (Triangle& triangle : triangles)
+    for (std::uint32_t& vertex : triangle) {
+      if (number[vertex] == kNone) {
+        number[vertex] = count++;
+        for (int k = 0; k < 3; ++k) position.push_back(steps(mesh.positions[vertex], k));
+      }
+      vertex = number[vertex];
+    }
+  arrays.add_differences("ghost_position", position, 3);
+  arrays.add("ghost_triangle", corner_codes(triangles));
+  return json;
+}
+
+}  // namespace sdm::io

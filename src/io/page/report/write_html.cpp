@@ -1,0 +1,80 @@
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/threads.h>
+
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/memory.h"
+#include "io/file/atomic_file.h"
+#include "io/page/report/area_by_value.h"
+#include "io/page/report/embedded_page.h"
+#include "io/page/report/page_file.h"
+#include "io/page/report/page_model.h"
+#include "io/page/report/worst_places.h"
+
+namespace sdm {
+
+using namespace io;
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json worst_json(const Surface& surface, std::span<const Place> places) {
+  Json json = Json::array();
+  for (const Place& place : places) {
+    Json& entry = json.emplace_back();
+    entry["distance"] = place.distance;
+    entry["point"] = place.point;
+    if (place.sample != kNone)
+      entry["texel"] = {place.sample % surface.resolution(), place.sample / surface.resolution()};
+  }
+  return json;
+}
+
+}  // namespace
+
+bool can_write_html() {
+  return true;
+}
+
+void write_html(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                std::span<const float> vertex_distances, const std::string& report,
+                const HtmlOptions& options) try {
+  if (map.distance.size() != surface.texel_faces().size() ||
+      vertex_distances.size() != surface.mesh().positions.size())
+    throw Error("cannot write " + file.string() + ": the map or the distances belong to another surface");
+  AtomicFile out(file);
+
+  Json page, map_json, model, ghost;
+  PackedArrays arrays, model_arrays, ghost_arrays;
+  std::vector<Place> worst;
+  AreaByValue area;
+  run_concurrently({[&] { map_json = add_map(arrays, surface, map, options.largest); },
+                    [&] {
+                      model = add_model(model_arrays, surface, vertex_distances, options.largest,
+                                        options.triangles);
+                    },
+                    [&] {
+                      if (options.other)
+                        ghost = add_ghost(ghost_arrays, *options.other, options.triangles_of_other);
+                    },
+                    [&] { worst = worst_places(surface, map, vertex_distances); },
+                    [&] { area = area_by_value(surface, map); }});
+  arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
+  page = common_json(options.up);
+  page["area"] = add_area(arrays, area);
+  page["map"] = map_json;
+  page["model"] = model;
+  if (options.other) page["ghost"] = ghost;
+  page["worst"] = worst_json(surface, worst);
+  put_page(out.stream(), kPageHtml.bytes, page, &report, arrays);
+  out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
+}
+
+}  // namespace sdm
