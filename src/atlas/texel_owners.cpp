@@ -39,12 +39,12 @@ std::size_t claim_centroid(const Corners& corners, const std::vector<std::uint32
 
 // Whether the centre of a texel is farther inside the triangle than rounding takes it: by 1/1024 of a texel.
 bool is_well_inside(const std::array<Vec2, 3>& t, std::uint32_t x, std::uint32_t y) {
-  constexpr double kRounding = 1.0 / 1024;
+  constexpr double kTexelRounding = 1.0 / 1024;
   const Vec2 centre{x + 0.5, y + 0.5};
   const double turn = cross(t[1] - t[0], t[2] - t[0]) < 0 ? -1 : 1;
   for (int k = 0; k < 3; ++k) {
     const Vec2 edge = t[(k + 1) % 3] - t[k];
-    if (!(turn * cross(edge, centre - t[k]) > kRounding * std::hypot(edge[0], edge[1]))) return false;
+    if (!(turn * cross(edge, centre - t[k]) > kTexelRounding * std::hypot(edge[0], edge[1]))) return false;
   }
   return true;
 }

@@ -15,8 +15,10 @@ inline constexpr double kUnderflow = 1e-200;
 // Larger than the error of some operations in single precision: relative to a number, or of coordinates in
 // the unit frame, which are at most 1.
 inline constexpr double kSingleRounding = 1e-6;
-// Larger than the error of some operations in double precision, relative to what they are computed from.
-inline constexpr double kDoubleRounding = 1e-12;
+// Larger than the error of so many operations in double precision, relative to what they are computed from: a
+// product, a sum and a root; differences and a product of vectors; a position that was moved, and what
+// follows from it.
+inline constexpr double kFewRoundings = 1e-15, kProductRounding = 1e-14, kDoubleRounding = 1e-12;
 // Distances in the unit frame that differ by less count as equal.
 inline constexpr double kUnitDistanceRounding = 1e-9;
 

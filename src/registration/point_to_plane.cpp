@@ -36,13 +36,13 @@ Matrix6 information(const Correspondences& pairs, std::span<const Vec3> normals,
 
 double trimming_cut(const Correspondences& pairs, const Pivot& pivot, const Motions& motions) {
   // The median magnitude of a normal distribution is 0.6745 standard deviations.
-  constexpr double kCut = 3 * 1.4826, kRounding = 1e-9, kLeast = 0.25;
+  constexpr double kCut = 3 * 1.4826, kLeastCut = 1e-9, kLeast = 0.25;
   std::vector<double> distances;
   for (std::size_t i = 0; i < pairs.points.size(); ++i)
     if (pairs.usable[i]) distances.push_back(pairs.distances[i]);
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::ranges::nth_element(distances, middle);
-  double cut = std::max(kCut * *middle, kRounding * pivot.radius);
+  double cut = std::max(kCut * *middle, kLeastCut * pivot.radius);
   const double largest = *std::ranges::max_element(middle, distances.end());
   if (cut >= largest || motions.cols() == 0) return cut;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/predicates.h"
+#include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 
@@ -58,11 +59,10 @@ bool folded(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
 // Whether a plane through the common corner 0 surely separates two triangles, which then share nothing else.
 // Any plane would do; the one tried lies between the directions of the triangles.
 bool separated(const Corners& p, const Corners& q) {
-  constexpr double kRounding = 1e-14;  // more than that of a difference and a dot product
   const Vec3 to_p[] = {p[1] - p[0], p[2] - p[0]}, to_q[] = {q[1] - q[0], q[2] - q[0]};
   const Vec3 normal = normalized(to_p[0] + to_p[1]) - normalized(to_q[0] + to_q[1]);
   const auto size = [](const Vec3& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); };
-  const double error = kRounding * size(normal);
+  const double error = kProductRounding * size(normal);
   const auto above = [&](const Vec3& v) { return dot(normal, v) > error * size(v); };
   const auto below = [&](const Vec3& v) { return dot(normal, v) < -error * size(v); };
   return above(to_p[0]) && above(to_p[1]) && below(to_q[0]) && below(to_q[1]);

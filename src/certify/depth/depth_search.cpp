@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "query/closest/closest_points.h"
 #include "sites/sites_data.h"
@@ -21,7 +22,6 @@ constexpr double kSameDirection = 0.9999;
 constexpr int kFirstDirections = 3;
 // So many parts of the boundary are found for a triangle before it is divided.
 constexpr std::uint32_t kMostCuts = 4;
-constexpr double kRounding = 1e-9;  // of distances, relative to the size of a body
 
 // Whether the part of the boundary that was found excludes the point for which it was found, even though its
 // distance is taken to be linear in the triangle. If not, the triangle is too large for that. `enough` is in
@@ -130,7 +130,7 @@ void DepthSearch::evaluate_one(Part& part, Value& value) const {
   // If the centre is inside, its bound is one on the search, but for rounding far from the origin.
   if (const auto* triangle = std::get_if<TrianglePart>(&part.what))
     closest = closest::closest_point(internals(solid.sites()), p,
-                                     triangle->reach + kRounding * diagonal(solid.box()));
+                                     triangle->reach + kUnitDistanceRounding * diagonal(solid.box()));
   if (closest.type == SiteType::none)
     closest = closest::closest_point(internals(solid.sites()), p, kAnywhere);
   leaving.evaluate(part, value, closest, solid.inside()(p, closest), parts_.enough());

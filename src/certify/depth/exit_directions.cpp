@@ -58,7 +58,8 @@ double ExitDirections::bound(const shape::Ball& ball, std::size_t first) const {
 }
 
 ExitDirections::OfChildren ExitDirections::bound_children(const tree::WideTree::Node& node) const {
-  constexpr float kRounding = 8e-6F;  // in the unit frame, in which the boxes are at most 1 from the origin
+  constexpr float kExitRounding =
+      8e-6F;  // in the unit frame, in which the boxes are at most 1 from the origin
   OfChildren least;
   least.fill(std::numeric_limits<float>::infinity());
   for (std::size_t n = 0; n < size_; ++n) {
@@ -66,7 +67,7 @@ ExitDirections::OfChildren ExitDirections::bound_children(const tree::WideTree::
     OfChildren most;
     float size = std::abs(d.most_in_unit);
     for (const float x : d.in_unit) size += std::abs(x);
-    most.fill(d.most_in_unit + kRounding * size);
+    most.fill(d.most_in_unit + kExitRounding * size);
     for (int k = 0; k < 3; ++k) {
       const float* near = d.in_unit[k] > 0 ? node.lo[k] : node.hi[k];
       for (std::size_t i = 0; i < most.size(); ++i) most[i] -= d.in_unit[k] * near[i];

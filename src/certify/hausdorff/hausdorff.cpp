@@ -8,6 +8,7 @@
 #include "certify/hausdorff/part_search.h"
 #include "certify/hausdorff/vertex_search.h"
 #include "core/memory.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 
@@ -25,13 +26,12 @@ void check(const HausdorffOptions& options) {
 }
 
 HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const HausdorffOptions& options) {
-  constexpr double kRounding = 1e-12;
   const Box box = bounds(a);
   Box both = bounds(b.mesh);
   extend(both, box);
   const double size = diagonal(both), coordinate = largest_coordinate(box);
   const double asked = options.precision > 0 ? options.precision : HausdorffOptions::kPrecision * size;
-  const double precision = std::max(asked, kRounding * std::max(size, largest_coordinate(both)));
+  const double precision = std::max(asked, kDoubleRounding * std::max(size, largest_coordinate(both)));
 
   hausdorff::LowerBound lower;
   const auto vertices = hausdorff::search_vertices(a, b, options.progress, lower);
@@ -44,7 +44,7 @@ HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const
   distance.lower = std::min(lower.value, distance.value);
   distance.upper = std::max(upper, distance.value);
   distance.certainty =
-      distance.upper - distance.lower <= kRounding * size ? Certainty::exact : Certainty::bounded;
+      distance.upper - distance.lower <= kDoubleRounding * size ? Certainty::exact : Certainty::bounded;
   distance.witness = std::array{lower.point, lower.closest};
   return result;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "certify/hausdorff/face_distance.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "tree/visit.h"
 
@@ -17,14 +18,13 @@ NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint
   // are excluded by that alone.
   Vec3 towards{};
   const auto beyond = [&](const Corners& face) {
-    constexpr double kRounding = 1e-14;
     double least = std::numeric_limits<double>::infinity(), size = 0;
     for (const Vec3& corner : face) {
       const Vec3 r = corner - p;
       least = std::min(least, dot(towards, r));
       size = std::max(size, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
     }
-    return least - kRounding * size >= best.upper;
+    return least - kProductRounding * size >= best.upper;
   };
   const auto offer = [&](std::uint32_t face) {
     const Corners corners = corners_of(sites.mesh, face);

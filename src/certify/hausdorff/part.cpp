@@ -8,6 +8,7 @@
 
 #include "certify/hausdorff/face_distance.h"
 #include "certify/hausdorff/nearest_face.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "search/mixed_bound.h"
 
@@ -74,10 +75,9 @@ bool Part::add(const sites::SitesData& b, std::uint32_t near_face, double tolera
 }
 
 void Part::bound() {
-  constexpr double kRounding = 1e-15;
   const search::MixedBound best =
       search::mixed_bound(std::span(distances).first(count), -std::numeric_limits<double>::infinity());
-  upper = (1 + kRounding) * best.value, weights = best.weights;
+  upper = (1 + kFewRoundings) * best.value, weights = best.weights;
   mixed = 0;
   for (const std::uint32_t k : best.mixed)
     if (k != kNone) mixed |= 1u << k;

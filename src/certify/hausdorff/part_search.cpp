@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "certify/hausdorff/first_parts.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 
 namespace sdm::hausdorff {
@@ -67,8 +68,7 @@ void PartSearch::evaluate(const Part& part, Found& found) const {
   Part better = part;
   double reach = 0;  // of the part, from the point
   for (const Vec3& corner : part.at) reach = std::max(reach, norm(corner - highest));
-  constexpr double kRounding = 1e-15;
-  better.upper = std::min(part.upper, (1 + kRounding) * (nearest.upper + reach));  // as d is 1-Lipschitz
+  better.upper = std::min(part.upper, (1 + kFewRoundings) * (nearest.upper + reach));  // as d is 1-Lipschitz
   // Where B has needles, the bounds on a distance may be farther apart than the precision: no division helps.
   constexpr double kFinest = 1.0 / 8;  // of the precision
   const bool finest = reach <= std::max(kFinest * precision_, nearest.upper - nearest.lower);

@@ -5,6 +5,7 @@
 
 #include "certify/hausdorff/face_distance.h"
 #include "core/parallel.h"
+#include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
 #include "geometry/vec.h"
 #include "query/closest/blocks.h"
@@ -52,7 +53,6 @@ class VertexSearch {
 
   // The vertices of faces, in spatial order.
   void find_vertices() {
-    constexpr double kRounding = 1e-15;
     std::vector<double> squared_reach(a_.positions.size(), -1);
     std::vector<std::uint32_t> face_of(a_.positions.size(), kNone);
     for (std::size_t f = 0; f < a_.triangles.size(); ++f) {
@@ -72,7 +72,7 @@ class VertexSearch {
     vertices_.reserve(points.size());
     for (const std::uint32_t i : spatial_order(points)) {
       const std::uint32_t v = index[i];
-      vertices_.push_back({points[i], (1 + kRounding) * std::sqrt(squared_reach[v]), v, face_of[v]});
+      vertices_.push_back({points[i], (1 + kFewRoundings) * std::sqrt(squared_reach[v]), v, face_of[v]});
     }
   }
 
@@ -122,8 +122,7 @@ class VertexSearch {
       const auto highest = std::ranges::max_element(measured_, {}, upper);
       const Vertex& vertex = vertices_[*highest];
       VertexDistance& distance = distances_[vertex.index];
-      constexpr double kRounding = 1e-14;
-      if (distance.upper <= (1 + kRounding) * lower_.value) return;
+      if (distance.upper <= (1 + kProductRounding) * lower_.value) return;
       const NearestFace nearest = nearest_face(b_, vertex.at, distance.face);
       lower_.raise(vertex.at, 0, vertex.face, nearest);
       if (nearest.upper < distance.upper)
@@ -136,7 +135,6 @@ class VertexSearch {
   // The parts of groups, of this size, with a vertex v whose faces may exceed the lower bound: d(p) ≤ d(v) +
   // |p − v|, and d(v) is at most d(middle) + |v − middle|, and at most the distance to the face found there.
   [[nodiscard]] std::vector<Group> divide(const std::vector<Group>& groups, std::size_t size) const {
-    constexpr double kRounding = 1e-14;
     std::vector<Group> parts;
     for (const Group& group : groups) {
       const Vertex& middle = vertices_[group.middle()];
@@ -146,8 +144,9 @@ class VertexSearch {
         const Group part{begin, std::min(begin + size, group.end), distances_[middle.index].face};
         for (std::size_t i = part.begin; i < part.end; ++i) {
           const Vertex& v = vertices_[i];
-          if ((1 + kRounding) * (distance + norm(v.at - middle.at) + v.reach) <= lower_.value) continue;
-          if ((1 + kRounding) * (upper_face_distance(v.at, near) + v.reach) <= lower_.value) continue;
+          if ((1 + kProductRounding) * (distance + norm(v.at - middle.at) + v.reach) <= lower_.value)
+            continue;
+          if ((1 + kProductRounding) * (upper_face_distance(v.at, near) + v.reach) <= lower_.value) continue;
           parts.push_back(part);
           break;
         }

@@ -24,7 +24,7 @@ using Vec = hn::Vec<Lanes>;
 using UnitSegment = FacesNearEdge::UnitSegment;
 using Supporting = FacesNearEdge::Supporting;
 
-constexpr float kRounding = FacesNearEdge::kRounding;
+constexpr float kSegmentRounding = FacesNearEdge::kSegmentRounding;
 // A little more than the sine of the angles that can_push() allows for, between the plane of a face and the
 // edge that it supports, and between the plane and what is beside the edge.
 constexpr float kSupportSine = static_cast<float>(kPushSine) + 1e-3f;
@@ -141,7 +141,8 @@ class NearFaces {
     const auto by_plane = hn::And(hn::Le(hn::Min(discs.height, end), reach),
                                   hn::Ge(hn::Max(discs.height, end), hn::Neg(reach)));
     const Vec squared = dot(discs.to_centre, discs.to_centre);
-    const Vec aside = hn::NegMulAdd(discs.along, discs.along, hn::Mul(squared, hn::Set(d, 1 - kRounding)));
+    const Vec aside =
+        hn::NegMulAdd(discs.along, discs.along, hn::Mul(squared, hn::Set(d, 1 - kSegmentRounding)));
     const Vec beyond = hn::Sub(hn::Min(hn::Max(discs.along, hn::Zero(d)), length), discs.along);
     const Vec radius = hn::Add(discs.radius, reach);
     return bits(hn::And(by_plane, hn::Le(hn::MulAdd(beyond, beyond, aside), hn::Mul(radius, radius))), i);
@@ -256,8 +257,8 @@ std::optional<FacesNearEdge::UnitSegment> to_unit(const sites::SitesData& sites,
   const UnitFrame& frame = sites.frame;
   const Vec3 a = frame.to_unit(segment.a), along = frame.to_unit(segment.b) - a;
   const tree::FloatBox& box = sites.tree.box(0);
-  constexpr double kRounding = FacesNearEdge::kRounding;
-  const double around = (1 + kRounding) * frame.scale * reach + kRounding;
+  constexpr double kSegmentRounding = FacesNearEdge::kSegmentRounding;
+  const double around = (1 + kSegmentRounding) * frame.scale * reach + kSegmentRounding;
   double from = 0, to = 1, most = 0;
   for (int k = 0; k < 3; ++k) {
     const double lo = box.lo[k] - around - a[k], hi = box.hi[k] + around - a[k];
@@ -275,7 +276,7 @@ std::optional<FacesNearEdge::UnitSegment> to_unit(const sites::SitesData& sites,
                                     .end = to_float(a + to * along),
                                     .direction = to_float(normalized(along)),
                                     .length = static_cast<float>(norm(part)),
-                                    .rounding = static_cast<float>(kRounding * std::max(1.0, most))};
+                                    .rounding = static_cast<float>(kSegmentRounding * std::max(1.0, most))};
 }
 
 }  // namespace

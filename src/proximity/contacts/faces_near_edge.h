@@ -33,7 +33,7 @@ class FacesNearEdge {
                                                                double reach);
 
   /// In single precision: of distances, relative to coordinates, and of squares, relative to their sum.
-  static constexpr float kRounding = 2e-6f;
+  static constexpr float kSegmentRounding = 2e-6f;
 
   /// The part of the segment near the mesh, in the unit frame and in single precision.
   struct UnitSegment {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "geometry/barycentric.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 
@@ -114,14 +115,14 @@ void FeatureContacts::find_deepest(Regions part) {
 Box FeatureContacts::box_of(Regions part) {
   const OneSidedVertices& vertices = candidates_->vertices();
   const sites::SitesData& sites = internals(on().sites());
-  constexpr float kRounding = 1e-6f;
+  constexpr auto kBoxRounding = static_cast<float>(kSingleRounding);
   tree::FloatBox unit;
   unit.lo.fill(std::numeric_limits<float>::infinity());
   unit.hi.fill(-std::numeric_limits<float>::infinity());
   const auto extend_by = [&](std::span<const float, 3> lo, std::span<const float, 3> hi) {
     for (int k = 0; k < 3; ++k)
-      unit.lo[k] = std::min(unit.lo[k], lo[k] - kRounding),
-      unit.hi[k] = std::max(unit.hi[k], hi[k] + kRounding);
+      unit.lo[k] = std::min(unit.lo[k], lo[k] - kBoxRounding),
+      unit.hi[k] = std::max(unit.hi[k], hi[k] + kBoxRounding);
   };
   for (const ContactRegion& region : part) {
     if (region.is_inside()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/rounding.h"
 #include "tree/visit.h"
 
 namespace sdm::inside {
@@ -22,14 +23,13 @@ std::pair<double, double> extent(const std::array<Vec3, N>& points, const Vec3& 
 // Triangles that share a corner, as vectors from there to the others: whether a plane through the corner
 // separates them by kClearAngle.
 bool apart_at_corner(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) {
-  constexpr double kRounding = 1e-12;
   const std::array<double, 4> length{norm(a[0]), norm(a[1]), norm(b[0]), norm(b[1])};
   const auto separates = [&](const Vec3& axis) {
     const double size = norm(axis);
     // Sines of the angles between the plane and the vectors, times size.
     const double a0 = dot(a[0], axis) / length[0], a1 = dot(a[1], axis) / length[1],
                  b0 = dot(b[0], axis) / length[2], b1 = dot(b[1], axis) / length[3];
-    const double far = kClearAngle * size, none = kRounding * size;
+    const double far = kClearAngle * size, none = kDoubleRounding * size;
     const double a_least = std::min(a0, a1), a_most = std::max(a0, a1), b_least = std::min(b0, b1),
                  b_most = std::max(b0, b1);
     return (a_least > -none && b_most < -far) || (a_least > far && b_most < none) ||

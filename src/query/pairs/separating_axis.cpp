@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 
 namespace sdm::pairs {
@@ -14,7 +15,6 @@ namespace {
 class SeparatingAxis {
  public:
   explicit SeparatingAxis(const MeshPair& pair) : pair_(pair) {
-    constexpr double kRounding = 1e-12;  // more than that of a posed point
     const tree::FloatBox &box1 = pair.o1.tree.box(0), &box2 = pair.o2.tree.box(0);
     const UnitFrame &frame1 = pair.o1.frame, &frame2 = pair.o2.frame;
     const double unit1 = 1 / frame1.scale, unit2 = 1 / frame2.scale;
@@ -32,7 +32,7 @@ class SeparatingAxis {
         edge_[j][k] = row[j] * unit2 * half(box2, j);
       }
       between_[k] = at - frame1.origin[k] - unit1 * middle(box1, k);
-      rounding_[k] = kRounding * size;
+      rounding_[k] = kDoubleRounding * size;
     }
   }
 

@@ -50,9 +50,9 @@ class Search {
 
  private:
   void limit() {
-    constexpr float kRounding = 4e-6F;  // of the bounds, in the unit frame
-    limit_ =
-        static_cast<float>(sites_.frame.scale * (best_.along - dot(u_, sites_.frame.origin))) - kRounding;
+    constexpr float kAlongRounding = 4e-6F;  // in the unit frame
+    limit_ = static_cast<float>(sites_.frame.scale * (best_.along - dot(u_, sites_.frame.origin))) -
+             kAlongRounding;
   }
 
   const sites::SitesData& sites_;

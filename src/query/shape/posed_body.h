@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "geometry/rounding.h"
 #include "mesh/similarity.h"
 #include "query/shape/body.h"
 
@@ -69,11 +70,10 @@ class PosedBody {
  private:
   void check_edit(const MeshEdit& edit) const;
   void follow() {
-    constexpr double kRounding = 1e-15;  // of mapped points
     box_ = image(pose_.map, body().box());
     const auto& [centre, radius] = body().ball();
     ball_ = {pose_.map(centre), pose_.scale * radius};
-    ball_.radius += kRounding * (norm(pose_.map.offset) + pose_.scale * (norm(centre) + radius));
+    ball_.radius += kFewRoundings * (norm(pose_.map.offset) + pose_.scale * (norm(centre) + radius));
   }
 
   Shape shape_;

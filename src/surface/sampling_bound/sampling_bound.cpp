@@ -5,6 +5,7 @@
 #include "core/cancellation.h"
 #include "core/intact.h"
 #include "core/memory.h"
+#include "geometry/rounding.h"
 #include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm {
@@ -38,8 +39,7 @@ double SamplingBound::value() const {
   return impl_->radii.largest;
 }
 double SamplingBound::value_after(double motion) const {
-  constexpr double kRounding = 1e-12;
-  return (1 + kRounding) * (value() + 2 * motion);
+  return (1 + kDoubleRounding) * (value() + 2 * motion);
 }
 std::span<const float> SamplingBound::sample_radii() const {
   impl_->intact.require();

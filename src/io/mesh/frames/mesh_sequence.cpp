@@ -80,8 +80,8 @@ void MeshSequence::Impl::open(const SequenceOptions& options) {
     return;
   }
   mesh = io::with_error_prefix(source->polygons_name(), [&] { return io::to_mesh(polygons, renumbered); });
-  constexpr double kRounding = 1e-6;
-  weld_tolerance = kRounding * diagonal(bounds(mesh));
+  constexpr double kWeld = 1e-6;
+  weld_tolerance = kWeld * diagonal(bounds(mesh));
   io::with_error_prefix(source->count() > 1 ? source->name(0) : "", [&] {
     read(0);
     mesh.positions = positions;

@@ -136,8 +136,8 @@ class GltfFrames : public FrameSource {
     count_ = key_times_.size();
     if (rate == 0) return;
     interval_ = 1 / rate;
-    constexpr double kRounding = 1e-6;  // as a fraction of a step
-    const double steps = std::floor((key_times_.back() - key_times_.front()) * rate + kRounding);
+    constexpr double kStepRounding = 1e-6;  // as a fraction of a step
+    const double steps = std::floor((key_times_.back() - key_times_.front()) * rate + kStepRounding);
     if (!(steps < 1e9)) throw Error("has more than a billion frames at this rate; choose a lower one");
     count_ = static_cast<std::size_t>(steps) + 1;
   }

@@ -24,9 +24,9 @@ GltfTransform gltf_transform(const Vec3& translation, const std::array<double, 4
 }
 
 GltfTransform gltf_matrix_transform(const std::array<double, 16>& m) {
-  constexpr double kRounding = 1e-5;
-  if (std::abs(m[3]) > kRounding || std::abs(m[7]) > kRounding || std::abs(m[11]) > kRounding ||
-      std::abs(m[15] - 1) > kRounding)
+  constexpr double kAffine = 1e-5;
+  if (std::abs(m[3]) > kAffine || std::abs(m[7]) > kAffine || std::abs(m[11]) > kAffine ||
+      std::abs(m[15] - 1) > kAffine)
     throw Error("a matrix is not affine: its last row is not 0 0 0 1");
   GltfTransform t;
   for (std::size_t c = 0; c < 3; ++c) t.linear[c] = {m[4 * c], m[4 * c + 1], m[4 * c + 2]};

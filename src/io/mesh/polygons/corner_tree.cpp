@@ -68,8 +68,8 @@ bool CornerTree::may_overlap(const Box& box, const std::array<Vec2, 3>& triangle
     const double size =
         std::abs(x) * std::max(std::abs(box.low[1] - from[1]), std::abs(box.high[1] - from[1])) +
         std::abs(y) * std::max(std::abs(box.low[0] - from[0]), std::abs(box.high[0] - from[0]));
-    constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
-    if (!(greatest >= -kRounding * size)) return false;
+    constexpr double kCrossRounding = 8 * std::numeric_limits<double>::epsilon();
+    if (!(greatest >= -kCrossRounding * size)) return false;
   }
   return true;
 }
