@@ -173,14 +173,14 @@ void add_proximity_options(CLI::App& app, std::string& units, double& contact_ma
   app.add_option("--units", units, "Units of the meshes, for printed and drawn values")->type_name("NAME");
 }
 
-void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
-                     const std::string& json_prints) {
-  app.add_option("--threads", threads, "Threads to use, 0 for all cores")
+void add_run_options(CLI::App& app, RunOptions& run, const std::string& json_prints) {
+  app.add_option("--threads", run.threads, "Threads to use, 0 for all cores")
       ->transform(whole_number(0, 1024))
       ->type_name("N")
       ->capture_default_str();
-  app.add_flag("--json", json, "Print " + json_prints);
-  app.add_flag("--quiet", quiet, "Print only errors, and the JSON if requested");
+  if (!json_prints.empty()) app.add_flag("--json", run.json, "Print " + json_prints);
+  app.add_flag("--quiet", run.quiet,
+               json_prints.empty() ? "Print only errors" : "Print only errors, and the JSON if requested");
 }
 
 // Has external linkage, so that the compiler keeps it, and the limit is not a leak.

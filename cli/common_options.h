@@ -52,12 +52,9 @@ struct RunOptions {
   bool json = false, quiet = false;
 };
 
-/// Adds --threads, --json and --quiet; `json_prints` describes the JSON in the help text.
-void add_run_options(CLI::App& app, unsigned& threads, bool& json, bool& quiet,
-                     const std::string& json_prints);
-inline void add_run_options(CLI::App& app, RunOptions& run, const std::string& json_prints) {
-  add_run_options(app, run.threads, run.json, run.quiet, json_prints);
-}
+/// Adds --threads, --quiet and --json; `json_prints` describes the JSON in the help text. Without a
+/// description, there is no --json.
+void add_run_options(CLI::App& app, RunOptions& run, const std::string& json_prints = {});
 
 /// Limits the threads of this process to `count`, 0: all cores. Never lifted: oneTBB would start threads
 /// then, which fails if memory is short, although the results are complete.

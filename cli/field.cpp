@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 
-#include "common_options.h"
 #include "format.h"
 #include "option_checks.h"
 #include "report.h"
@@ -112,24 +111,23 @@ void add_field_options(CLI::App& app, FieldCommand& command, const std::string& 
       ->expected(3)
       ->transform(whole_number(1, sdm::Grid::kMostPoints))
       ->type_name("NX NY NZ");
-  const auto positive = [] { return number("a positive number", [](double x) { return x > 0; }); };
   app.add_option("--spacing", command.spacing,
                  "The distance of neighbouring points along each axis, in place of --grid")
-      ->check(positive())
+      ->check(positive_number())
       ->type_name("H");
   app.add_option("--bounds", command.bounds,
                  "The lowest and the highest corner of the grid; by default the box of O2, extended by the "
                  "band, or by a tenth of its diagonal" +
                      box)
       ->expected(6)
-      ->check(number("a number", [](double) { return true; }))
+      ->check(any_number())
       ->type_name("X0 Y0 Z0 X1 Y1 Z1");
   app.add_option("--band", command.options.band, "Points farther from O2 than D have no value")
-      ->check(positive())
+      ->check(positive_number())
       ->type_name("D");
   add_sign_option(app, command.options.sign);
   app.add_flag("--sites", command.options.sites, "Also find the closest sites (in .vti)");
   add_transform_option(app, "--transform-o2", "O2", command.transform_o2);
   app.add_option("--units", command.units, "Units of the meshes, for printed values")->type_name("NAME");
-  add_run_options(app, command.threads, command.json, command.quiet, "JSON instead of a summary");
+  add_run_options(app, command, "JSON instead of a summary");
 }

@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-struct FieldCommand {
+#include "common_options.h"
+
+struct FieldCommand : RunOptions {
   std::string o2, transform_o2, units;
   std::vector<std::uint32_t> points;  // along x, y and z
   double spacing = 0;
   std::vector<double> bounds;  // low and high corner
   sdm::FieldOptions options;
   std::filesystem::path out;
-  unsigned threads = 0;
-  bool json = false, quiet = false;
 };
 
 /// Adds the options, whose parsing sets the command, which must outlive `app`. `box` describes what else the

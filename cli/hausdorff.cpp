@@ -166,7 +166,7 @@ void add_hausdorff_command(CLI::App& app) {
       "{}\n\n"
       "Example:\n"
       "  sdm hausdorff simplified.ply original.ply --both --tolerance 0.1",
-      kExitCodes));
+      exit_codes()));
   const auto command = std::make_shared<HausdorffCommand>();
   HausdorffCommand& c = *command;
   add_pair_arguments(*hausdorff, c,

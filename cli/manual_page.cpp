@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "completion.h"
+#include "exit_codes.h"
 #include "option_words.h"
 
 namespace {
@@ -87,8 +88,8 @@ std::string manual_page(const CLI::App& app) {
       ".SH DESCRIPTION\n{}\n.SH COMMANDS\n",
       sdm::kVersion, plain(app.get_description()));
   for (const CLI::App* command : visible_commands(app)) text += command_section(*command);
-  text +=
-      ".SH EXIT STATUS\n.TP\n0\nSuccess.\n.TP\n1\nFailure.\n.TP\n2\nInvalid usage.\n.TP\n3\n"
-      "A tolerance is exceeded.\n";
+  text += ".SH EXIT STATUS\n";
+  for (const auto& [code, meaning] : kExitMeanings)
+    text += fmt::format(".TP\n{}\n{}\n", static_cast<int>(code), meaning);
   return text;
 }

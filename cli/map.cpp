@@ -126,7 +126,7 @@ void add_map_command(CLI::App& app) {
       "{} An interrupt terminates sdm with its signal.\n\n"
       "Example, two meshes side by side:\n"
       "  sdm map bunny.obj armadillo.off -o out --transform-o1 fit --transform-o2 fit,translate:0.8:0:0",
-      kExitCodes));
+      exit_codes()));
   const auto command = std::make_shared<MapCommand>();
   add_options(*map, *command);
   map->callback([map, command] {

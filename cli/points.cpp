@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
+#include "print.h"
 #include "progress_line.h"
 #include "report.h"
 #include "scenes/placement.h"
@@ -28,7 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct PointsCommand {
+struct PointsCommand : RunOptions {
   std::string cloud, o2, transform_o1, transform_o2;
   std::filesystem::path out;
   AlignCommand align;
@@ -36,8 +36,6 @@ struct PointsCommand {
   sdm::PictureOptions picture;
   sdm::TextDialect text;
   bool ply = true, html = sdm::can_write_html();
-  unsigned threads = 0;
-  bool json = false, quiet = false;
 };
 
 struct PointsOutcome {
@@ -166,7 +164,8 @@ std::optional<std::string> precision_note(const PointsCommand& command, const sd
 }
 
 std::string files(const PointsCommand& command) {
-  return fmt::format("{}{}", command.ply ? "points.ply " : "", command.html ? "report.html " : "");
+  return fmt::format("{}{}{}", command.align.on ? "alignment.json " : "", command.ply ? "points.ply " : "",
+                     command.html ? "report.html " : "");
 }
 
 /// Returns the exit code.
@@ -216,14 +215,13 @@ int run(PointsCommand command) {
     write_text(out.staging() / "report.json", to_text(report));
   });
 
-  if (command.json)
-    std::cout << to_text(report);
-  else if (!command.quiet)
-    std::cout << text_of(command, outcome)
-              << fmt::format("  time      {} s\n  results   {}/: {}{}report.json\n",
-                             number(std::round(total.lap()) / 1000, 6), command.out.string(),
-                             outcome.aligned ? "alignment.json " : "", files(command));
-  return outcome.within() ? 0 : 3;
+  print(
+      command, [&] { return report; },
+      [&] {
+        return text_of(command, outcome) +
+               result_lines(12, total.lap(), command.out.string(), files(command));
+      });
+  return outcome.within() ? kSuccess : kToleranceExceeded;
 }
 
 void add_files_option(CLI::App& app, PointsCommand& command) {
@@ -272,7 +270,7 @@ void add_points_command(CLI::App& app) {
       "{}\n\n"
       "Example:\n"
       "  sdm points scan.ply part.stl -o out --align --tolerance 0.1 --units mm",
-      kExitCodes));
+      exit_codes()));
   const auto command = std::make_shared<PointsCommand>();
   PointsCommand& c = *command;
   points->add_option("CLOUD", c.cloud, fmt::format("The point cloud ({})", sdm::point_format_names()))
@@ -287,7 +285,7 @@ void add_points_command(CLI::App& app) {
   add_transform_option(*points, "--transform-o2", "O2", c.transform_o2);
   add_align_options(*points, c.align);
   points->add_option("--max-distance", c.map.max_distance, "Points farther than this have no value")
-      ->check(number("a positive number", [](double x) { return x > 0; }))
+      ->check(positive_number())
       ->type_name("D");
   add_sign_option(*points, c.map.sign);
   add_tolerance_option(*points, c.picture.tolerance);
@@ -296,7 +294,7 @@ void add_points_command(CLI::App& app) {
       ->type_name("NAME");
   add_files_option(*points, c);
   add_up_option(*points, c.picture.up, "report.html");
-  add_run_options(*points, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
+  add_run_options(*points, c, "the report (report.json) instead of a summary");
   points->callback([command] {
     try {
       sdm::validate(command->text);

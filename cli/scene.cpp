@@ -35,13 +35,11 @@ const std::map<std::string, SceneKind> kKinds{
 
 constexpr const char* kScan = "scan";  // no sequence
 
-struct SceneCommand {
+struct SceneCommand : RunOptions {
   std::string kind, format = "npy";
   fs::path out, mesh;
   int frames = 150;
   std::size_t triangles = 80000;
-  unsigned threads = 0;
-  bool quiet = false;
 };
 
 /// Writes the frames of a body.
@@ -189,11 +187,7 @@ void add_scene_command(CLI::App& app) {
       ->transform(whole_number(100, 100000000))
       ->type_name("N")
       ->capture_default_str();
-  scene->add_option("--threads", command->threads, "Threads to use, 0 for all cores")
-      ->transform(whole_number(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
-  scene->add_flag("--quiet", command->quiet, "Print only errors");
+  add_run_options(*scene, *command);
   scene->footer(
       "The files are sequences for `sdm sequence`; scan writes part.ply, scan.ply and scan.xyz. They are "
       "bit-identical on every run.\n\n"

@@ -5,15 +5,14 @@
 #include <sdm/sdm.h>
 
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
 
-#include "common_options.h"
 #include "field.h"
 #include "format.h"
 #include "notes.h"
 #include "output_folder.h"
+#include "print.h"
 #include "progress_line.h"
 #include "report.h"
 #include "stopwatch.h"
@@ -78,10 +77,9 @@ void run(const FieldCommand& command) {
     sdm::write_field(out.staging() / command.out.filename(), outcome.field);
     outcome.output_ms = watch.lap();
   });
-  if (command.json)
-    std::cout << to_text(report_of(command, o2, outcome));
-  else if (!command.quiet)
-    std::cout << summary(command, o2, outcome.field);
+  print(
+      command, [&] { return report_of(command, o2, outcome); },
+      [&] { return summary(command, o2, outcome.field); });
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <sdm/sdm.h>
 
 #include <filesystem>
-#include <iostream>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "cli/notes.h"
 #include "cli/option_checks.h"
 #include "cli/output_folder.h"
+#include "cli/print.h"
 #include "cli/progress_line.h"
 #include "cli/proximity_report.h"
 #include "cli/report.h"
@@ -159,10 +159,8 @@ void run(const Command& command) {
     out->fill(work);
   else
     work();
-  if (command.json)
-    std::cout << to_text(report_of(command, o2, outcome));
-  else if (!command.quiet)
-    std::cout << summary(command, outcome);
+  print(
+      command, [&] { return report_of(command, o2, outcome); }, [&] { return summary(command, outcome); });
 }
 
 void check(const Command& command, const CLI::App& app) {
@@ -196,12 +194,11 @@ void add_field_command(CLI::App& app) {
   for (const fields::MethodInfo& method : fields::methods()) methods.emplace_back(method.name, method.method);
   add_choice<fields::Method>(*field, "--method", c.method,
                              "How distances are computed, with the same result by all", methods);
-  const auto positive = [] { return number("a positive number", [](double x) { return x > 0; }); };
   field
       ->add_option("--tessellation", c.tessellation,
                    "brute_force: draw distance functions as meshes with an error of at most E, as in the "
                    "literature, instead of evaluating them at each point; unsigned")
-      ->check(positive())
+      ->check(positive_number())
       ->type_name("E");
   field
       ->add_option(
@@ -211,7 +208,7 @@ void add_field_command(CLI::App& app) {
   field
       ->add_option("--sample-spacing", c.proximity.sample_spacing,
                    "The most that samples of O1 are apart; by default the smallest spacing of the grid")
-      ->check(positive())
+      ->check(positive_number())
       ->type_name("S");
   add_transform_option(*field, "--transform-o1", "O1", c.transform_o1);
   field->callback([command, field] {

@@ -16,11 +16,9 @@
 
 namespace {
 
-struct FiguresCommand {
+struct FiguresCommand : RunOptions {
   std::filesystem::path out;
   sdm::figures::Options options;
-  unsigned threads = 0;
-  bool quiet = false;
 };
 
 void run(FiguresCommand command) {
@@ -60,11 +58,7 @@ void add_figures_command(CLI::App& app) {
       ->add_option("--mesh", command->options.mesh,
                    "The mesh that stands for the bunny, instead of the one of Debian's glmark2-data")
       ->type_name("FILE");
-  figures->add_option("--threads", command->threads, "Threads to use, 0 for all cores")
-      ->transform(whole_number(0, 1024))
-      ->type_name("N")
-      ->capture_default_str();
-  figures->add_flag("--quiet", command->quiet, "Print only errors");
+  add_run_options(*figures, *command);
   figures->footer(
       "Writes report.html, a page that loads nothing, and report.json, with a key for each "
       "figure.\n\nExample:\n  sdm-paper figures -o figures --quick");

@@ -5,7 +5,6 @@
 #include <sdm/sdm.h>
 
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "cli/common_options.h"
 #include "cli/option_checks.h"
 #include "cli/output_folder.h"
+#include "cli/print.h"
 #include "cli/progress_line.h"
 #include "cli/report.h"
 #include "research/figures/corrections.h"
@@ -33,14 +33,12 @@ constexpr std::pair<const char*, bool Corrections::*> kNames[] = {
     {"stencil-points", &Corrections::stencil_points},
     {"confirmation", &Corrections::confirmation}};
 
-struct Command {
+struct Command : RunOptions {
   std::string o1, o2, transform_o1, transform_o2;
   std::filesystem::path out;
   sdm::AtlasOptions atlas;
   sdm::GlOptions gl;
   std::vector<std::string> with;
-  unsigned threads = 0;
-  bool json = false, quiet = false;
 };
 
 std::vector<std::string> correction_names() {
@@ -106,17 +104,16 @@ void run(const Command& command) {
     sdm::write_exr(out.staging() / "map.exr", surface, map);
     write_text(out.staging() / "report.json", to_text(report));
   });
-  if (command.json) {
-    std::cout << to_text(report);
-  } else if (!command.quiet) {
-    const Json& errors = report["errors"];
-    std::cout << fmt::format(
-        "{:.3g} % of {} texels are wrong, {:.3g} % have no value; the largest error is {:.3g} of the "
-        "diagonal of "
-        "both meshes\nin {}/map.exr and report.json\n",
-        errors["wrong_percent"].get<double>(), report["texels"].get<std::uint64_t>(),
-        errors["none_percent"].get<double>(), errors["largest"].get<double>(), command.out.string());
-  }
+  print(
+      command, [&] { return report; },
+      [&] {
+        const Json& errors = report["errors"];
+        return fmt::format(
+            "{:.3g} % of {} texels are wrong, {:.3g} % have no value; the largest error is {:.3g} of the "
+            "diagonal of both meshes\nin {}/map.exr and report.json\n",
+            errors["wrong_percent"].get<double>(), report["texels"].get<std::uint64_t>(),
+            errors["none_percent"].get<double>(), errors["largest"].get<double>(), command.out.string());
+      });
 }
 
 }  // namespace
@@ -151,6 +148,6 @@ void add_literal_command(CLI::App& app) {
   literal->add_flag_callback(
       "--no-bound-culling", [&c] { c.gl.bound_culling = false; },
       "Do not cull sites by upper bounds on the distance");
-  add_run_options(*literal, c.threads, c.json, c.quiet, "the report (report.json) instead of a summary");
+  add_run_options(*literal, c, "the report (report.json) instead of a summary");
   literal->callback([command] { run(*command); });
 }

@@ -52,7 +52,8 @@ def pages(manual: str) -> dict[str, str]:
     index = ["Commands", "========", "", "What ``sdm COMMAND --help`` and the manual page say.", ""]
     for name, summary in summaries:
         index += [f":doc:`sdm {name} <sdm-{name}>`", f"   {prose(summary)}", ""]
-    index += ["Exit codes: 0 success, 1 failure, 2 invalid usage, 3 a tolerance is exceeded.", ""]
+    statuses = re.findall(r"^\.TP\n(\d+)\n(.+)$", manual.partition(".SH EXIT STATUS\n")[2], flags=re.MULTILINE)
+    index += ["Exit codes: " + ", ".join(f"{code} {meaning}" for code, meaning in statuses) + ".", ""]
     index += [".. toctree::", "   :hidden:", "", *(f"   sdm-{name}" for name, _ in summaries), ""]
     result["commands/index.rst"] = "\n".join(index)
     return result
