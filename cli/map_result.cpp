@@ -77,7 +77,7 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   std::vector<std::uint8_t> boundary;
   if (!task.sites->closed()) boundary = sdm::boundary_mask(*task.sites, map);
   sdm::PictureOptions picture = command.picture;
-  if (std::isfinite(computed.accuracy)) picture.accuracy = computed.accuracy;
+  picture.accuracy = computed.accuracy;
   const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
   sdm::SummaryOptions options = summary_options(task, part, computed.accuracy);
   options.distance = &distance, options.boundary = boundary;

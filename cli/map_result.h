@@ -42,7 +42,7 @@ struct ComputedMap {
   std::vector<float> at_vertices{};
   sdm::DistanceMap map{};
   Outcome outcome{};    ///< as far as it is known before anything is written
-  double accuracy = 0;  ///< of the engine; infinite if unknown
+  double accuracy = 0;  ///< of the engine
   double ms = 0;
 };
 

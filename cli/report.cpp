@@ -181,11 +181,8 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   if (s.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", s.sign.reason);
   if (s.beyond_max_distance > 0)
     add("            {} texels are farther than --max-distance\n", s.beyond_max_distance);
-  if (std::isfinite(s.evidence.accuracy))
-    add("  error     at most {}{} between the texels, whose values are exact\n",
-        number(s.evidence.error_bound), unit);
-  else
-    add("  error     unknown: the paper's algorithm as printed gives an estimate\n");
+  add("  error     at most {}{} between the texels, whose values are exact\n", number(s.evidence.error_bound),
+      unit);
   if (s.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
   text += note_lines(s.notes, 12);
   if (outcome.raster)

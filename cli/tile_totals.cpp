@@ -1,13 +1,12 @@
 #include "tile_totals.h"
 
 #include <algorithm>
-#include <cmath>
 
 using Json = nlohmann::ordered_json;
 
 void TileScale::add(const sdm::Surface& surface, const sdm::DistanceMap& map, double accuracy) {
   statistics_.add(surface, map);
-  if (std::isfinite(accuracy)) accuracy_ = std::max(accuracy_, accuracy);
+  accuracy_ = std::max(accuracy_, accuracy);
 }
 
 sdm::ColorRange TileScale::colors(const sdm::PictureOptions& picture) const {

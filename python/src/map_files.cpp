@@ -37,8 +37,7 @@ PictureOptions picture_of(const PyMap& self, const Colours& colours, std::uint32
   if (!colours.tolerance.is_none()) picture.tolerance = tolerance_of(colours.tolerance, self.map.sign.method);
   picture.range = range_of(colours.range);
   // Self maps are exact but for rounding to float.
-  if (const double accuracy = self.accuracy(); !self.exclusion && std::isfinite(accuracy))
-    picture.accuracy = accuracy;
+  if (!self.exclusion) picture.accuracy = self.accuracy();
   return picture;
 }
 
