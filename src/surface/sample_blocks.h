@@ -16,15 +16,6 @@ struct SampleBlock {
   [[nodiscard]] std::size_t size() const { return end - first; }
 };
 
-/// Consecutive blocks: [first, end).
-struct BlockRange {
-  std::size_t first, end;
-  /// The sample in their middle.
-  [[nodiscard]] std::size_t middle(std::size_t samples) const {
-    return (SampleBlock(first, samples).first + SampleBlock(end - 1, samples).end) / 2;
-  }
-};
-
 [[nodiscard]] inline std::size_t block_count(std::size_t samples) {
   return (samples + kBlockSize - 1) / kBlockSize;
 }

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 #include <random>
 #include <vector>
 
@@ -17,7 +16,6 @@
 #include "support/meshes.h"
 #include "support/shapes.h"
 #include "surface/sample_blocks.h"
-#include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/sample_tree.h"
 
 namespace sdm {
@@ -122,21 +120,6 @@ class SampleBalls {
   std::vector<Ball> blocks_;
 };
 
-/// The balls of all ranges of so many blocks, around the sample in their middle.
-std::vector<Ball> block_balls(const Surface& surface, const surface::PieceAssignment& pieces,
-                              std::size_t blocks) {
-  const std::vector<Vec3> points = surface.sample_points();
-  const std::size_t count = surface::block_count(points.size());
-  std::vector<Ball> balls;
-  for (std::size_t first = 0; first < count; first += blocks) {
-    const surface::BlockRange range{first, std::min(count, first + blocks)};
-    const Vec3& p = points[range.middle(points.size())];
-    balls.push_back({p, blocks == 1 ? pieces.radius_about(surface, first, p)
-                                    : pieces.face_radius_about(surface, range, p)});
-  }
-  return balls;
-}
-
 /// Fails unless all points have a sample within its radius, and within the radius of their face. The largest
 /// distance of a point from its nearest sample.
 double expect_covered(const Surface& surface, const SamplingBound& bound) {
@@ -195,37 +178,6 @@ TEST(PieceAssignment, IsValidAndTightInMotion) {
        expect_covered_in_motion(test::height_field(40), {.kind = AtlasKind::uv, .resolution = 256}))
     ratios.push_back(ratio);
   EXPECT_LE(median(ratios), 1.5);
-}
-
-// The ball of each range of blocks has its samples, all balls together have all points, and none is
-// needlessly large.
-TEST(PieceAssignment, BlockBallsAreValidInMotion) {
-  for (const char* name : {"head.off", "elephant-with-holes.off", "pig.off", "degtri_sliding.off"}) {
-    SCOPED_TRACE(name);
-    const Mesh mesh = test::load(name);
-    Surface surface(mesh, {.resolution = 256});
-    std::optional<surface::PieceAssignment> pieces;
-    for (const Motion& motion : kMotions) {
-      surface.refit(moved(mesh, motion));
-      if (!pieces) pieces.emplace(surface);
-      const std::vector<Vec3> samples = surface.sample_points();
-      for (const std::size_t blocks : {1, 8}) {
-        const std::vector<Ball> balls = block_balls(surface, *pieces, blocks);
-        std::vector<double> slack;
-        for (std::size_t b = 0; b < balls.size(); ++b) {
-          double farthest = 0;
-          for (std::size_t i = b * blocks * surface::kBlockSize;
-               i < std::min(samples.size(), (b + 1) * blocks * surface::kBlockSize); ++i)
-            farthest = std::max(farthest, norm(samples[i] - balls[b].centre));
-          ASSERT_LE(farthest, balls[b].radius);
-          slack.push_back(balls[b].radius / farthest);
-        }
-        EXPECT_LE(median(slack), blocks == 1 ? 2 : 5);  // faces may be larger than eight blocks
-        for (const FacePoint& p : points_of_faces(surface.mesh(), 1))
-          ASSERT_TRUE(std::ranges::any_of(balls, [&](const Ball& ball) { return ball.contains(p.point); }));
-      }
-    }
-  }
 }
 
 // Every chart is smaller than a texel: a sample's square is far larger than what its face has of it.

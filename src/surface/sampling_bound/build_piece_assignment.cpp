@@ -82,33 +82,14 @@ class PieceAssignmentBuilder {
       FaceInBlock part;
       part.face =
           std::min(s < samples.size() ? samples[s].first : kNone, p < pieces.size() ? pieces[p].face : kNone);
-      for (; s < samples.size() && samples[s].first == part.face; ++s) {
-        const std::size_t sample = block.first + samples[s].second;
-        extend(part, surface_.sample_texels()[sample]);
-        if (whole_square_[sample]) found.squares.push_back(samples[s].second);
-      }
-      for (; p < pieces.size() && pieces[p].face == part.face; ++p) extend(part, pieces[p].piece);
+      for (; s < samples.size() && samples[s].first == part.face; ++s)
+        if (whole_square_[block.first + samples[s].second]) found.squares.push_back(samples[s].second);
+      while (p < pieces.size() && pieces[p].face == part.face) ++p;
       part.square_end = static_cast<std::uint32_t>(found.squares.size());
       part.piece_end = static_cast<std::uint32_t>(p);
       found.faces.push_back(part);
     }
     return found;
-  }
-
-  void extend(FaceInBlock& part, std::uint32_t texel) const {
-    const std::uint32_t n = surface_.resolution();
-    const std::array at{static_cast<std::uint16_t>(texel % n), static_cast<std::uint16_t>(texel / n)};
-    for (int i = 0; i < 2; ++i) {
-      part.low_texel[i] = std::min(part.low_texel[i], at[i]);
-      part.high_texel[i] = std::max(part.high_texel[i], at[i]);
-    }
-  }
-
-  static void extend(FaceInBlock& part, const Piece& piece) {
-    for (int i = 0; i < 2; ++i) {
-      part.low_weights[i] = std::min(part.low_weights[i], std::ranges::min(piece.weights[i]));
-      part.high_weights[i] = std::max(part.high_weights[i], std::ranges::max(piece.weights[i]));
-    }
   }
 
   void append(const BlockFaces& block, std::span<const FacePiece> pieces) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/atomic_extremes.h"
 #include "core/parallel.h"
@@ -12,6 +11,7 @@
 #include "surface/surface_data.h"
 
 namespace sdm::surface {
+
 float rounded_up(double x) {
   return static_cast<float>(x * (1 + 0x1p-23));
 }
@@ -60,11 +60,6 @@ void PieceAssignment::measure_block(const Surface& surface, std::size_t block, s
   });
 }
 
-void PieceAssignment::measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
-                                    std::span<float> radii) const {
-  measure_block(surface, block, points, radii, [](std::uint32_t, float) {});
-}
-
 void PieceAssignment::measure(const Surface& surface, Radii& radii) const {
   const std::size_t samples = surface.sample_texels().size();
   radii.faces.assign(surface.mesh().triangles.size(), 0);
@@ -81,55 +76,6 @@ void PieceAssignment::measure(const Surface& surface, Radii& radii) const {
     }
   });
   radii.largest = *std::ranges::max_element(radii.faces);
-}
-
-// A face maps the bounding rectangle of its texels, and that of its weights, to parallelograms, whose
-// farthest point from p is a corner.
-double PieceAssignment::radius_about(const Surface& surface, std::size_t block, const Vec3& p) const {
-  double farthest = 0;
-  for_each_face(block, [&](const FaceInBlock& part, auto squares, std::span<const Piece> pieces) {
-    const FaceFrame frame(surface.mesh(), part.face);
-    const auto reach = [&](const auto& low, const auto& high, const auto& point_at) {
-      double squared = 0;
-      for (const auto a : {low[0], high[0]})
-        for (const auto b : {low[1], high[1]}) squared = std::max(squared, squared_norm(point_at(a, b) - p));
-      return std::sqrt(squared);
-    };
-    if (part.low_texel[0] <= part.high_texel[0]) {
-      const double square = squares.empty() ? 0 : square_radius(surface, part.face, frame);
-      farthest = std::max(farthest, square + reach(part.low_texel, part.high_texel, [&](auto x, auto y) {
-                                      return surface.to_surface(part.face, {x + 0.5, y + 0.5});
-                                    }));
-    }
-    if (!pieces.empty())
-      farthest = std::max(farthest, frame.rounding() + reach(part.low_weights, part.high_weights,
-                                                             [&](auto a, auto b) { return frame.at(a, b); }));
-  });
-  return farthest;
-}
-
-// Pieces lie within their face, and samples within the image under M⁻¹ of its triangle in the atlas, which
-// differs from the face by rounding.
-double PieceAssignment::face_radius_about(const Surface& surface, BlockRange blocks, const Vec3& p) const {
-  const SurfaceData& s = internals(surface);
-  double squared = 0;
-  std::uint32_t last = kNone;
-  const std::size_t first = blocks.first == 0 ? 0 : block_ends_[blocks.first - 1];
-  for (std::size_t i = first; i < block_ends_[blocks.end - 1]; ++i) {
-    const std::uint32_t face = faces_in_blocks_[i].face;
-    if (std::exchange(last, face) == face) continue;
-    const Triangle& corners = s.mesh.triangles[face];
-    for (const std::uint32_t v : corners) squared = std::max(squared, squared_norm(s.mesh.positions[v] - p));
-    const auto& [origin, edges] = s.maps[face];
-    const Vec3 from = s.mesh.positions[corners[0]] - p;
-    for (int k = 1; k < 3; ++k) {
-      const Vec2 d = s.corners[face][k] - origin;
-      squared = std::max(squared, squared_norm(from + d[0] * edges[0] + d[1] * edges[1]));
-    }
-  }
-  // Edges are at most twice as long as `farthest`: see FaceFrame::rounding.
-  const double farthest = std::sqrt(squared), largest = std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
-  return farthest + 0x1p-22 * farthest + 1e-13 * (farthest + largest);
 }
 
 }  // namespace sdm::surface

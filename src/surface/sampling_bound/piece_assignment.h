@@ -24,12 +24,12 @@ struct Identity;
 [[nodiscard]] float rounded_up(double x);
 
 /// A cover of the surface by convex pieces, each assigned to a sample. Samples and pieces move affinely with
-/// their faces, so it is valid for any positions of the vertices. Only the radii depend on the positions;
-/// they are computed for all samples, or block by block. See docs/theory.md, "The error bound".
+/// their faces, so it is valid for any positions of the vertices. Only the radii depend on the positions. See
+/// docs/theory.md, "The error bound".
 ///
 /// All functions take the surface that this was built for, not edited since, with any positions.
 ///
-/// Memory: 1 byte per sample, 36 bytes per face and block in which it has samples or pieces, and 36 bytes per
+/// Memory: 1 byte per sample, 12 bytes per face and block in which it has samples or pieces, and 36 bytes per
 /// piece. There is about one piece for every two squares crossed by an edge of a face, and one for every
 /// square along chart borders.
 class PieceAssignment {
@@ -49,16 +49,6 @@ class PieceAssignment {
   /// does not depend on the number of threads. Cost: linear in faces, samples and pieces, all cores.
   void measure(const Surface& surface, Radii& radii) const;
 
-  /// The same for the samples of one block, whose points are given.
-  void measure_block(const Surface& surface, std::size_t block, std::span<const Vec3> points,
-                     std::span<float> radii) const;
-  /// The radius of a ball around p that contains all samples of the block and their pieces. Cost: linear in
-  /// the faces that these lie on.
-  [[nodiscard]] double radius_about(const Surface& surface, std::size_t block, const Vec3& p) const;
-  /// The same for many blocks, larger but cheaper: of a ball that contains those faces, which may lie partly
-  /// in other blocks.
-  [[nodiscard]] double face_radius_about(const Surface& surface, BlockRange blocks, const Vec3& p) const;
-
   /// Returns for each face the largest distance from some of its points to the nearest sample, rounded
   /// downwards: a lower bound on its radius. `bound` is the largest of the present radii. Cost: a few
   /// nearest-sample searches per face, all cores.
@@ -72,9 +62,6 @@ class PieceAssignment {
     std::uint32_t face = kNone;
     std::uint32_t square_end = 0,
                   piece_end = 0;  ///< its squares and pieces start at the end of the previous entry
-    /// Its samples are the centres of texels in this rectangle, which is empty if low > high.
-    std::array<std::uint16_t, 2> low_texel{0xFFFF, 0xFFFF}, high_texel{};
-    std::array<float, 2> low_weights{1, 1}, high_weights{};  ///< of the corners of its pieces
   };
   /// Calls take(part, its squares, its pieces).
   template <class Take>
