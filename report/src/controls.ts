@@ -2,7 +2,8 @@
 import type { Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { text } from './numbers';
-import type { AreaByValue, Report } from './page_data';
+import type { AreaByValue } from './area_by_value';
+import type { Report } from './page_data';
 import { isSigned, limitsOf } from './verdict';
 
 export interface State {

@@ -3,7 +3,7 @@ import { Colors, colorOf, css, Scale } from './color_scale';
 import { byId, make, makeSvg } from './dom';
 import { ends } from './legend';
 import { percent, text, ticks, tickText } from './numbers';
-import type { AreaByValue } from './page_data';
+import type { AreaByValue } from './area_by_value';
 import type { Limits } from './verdict';
 
 const kBins = 48;

@@ -1,5 +1,6 @@
 // What the page contains: the text of report.json, and the part with its values.
-import { Arrays, ArrayIndex, cornersOfCodes, floatOfKey, floatsOfOrdered, summed, unpacked, unzigzag } from './arrays';
+import { AreaByValue } from './area_by_value';
+import { Arrays, ArrayIndex, cornersOfCodes, floatsOfOrdered, summed, unpacked, unzigzag } from './arrays';
 
 export type Vec = [number, number, number];
 type Color = Vec;
@@ -339,55 +340,6 @@ function readGhost(page: PageJson, arrays: Arrays, { centre, size }: { centre: V
   for (let s = 0; s < sides.length; s += 4)
     triangle.push(sides[s], sides[s + 1], sides[s + 2], sides[s], sides[s + 2], sides[s + 3]);
   return { position, triangle: Uint32Array.from(triangle), trianglesOfMesh: ghost.triangles_of_mesh, isBox: true };
-}
-
-/// The fraction of the area up to a distance: of src/io/page/report/area_by_value.h.
-export class AreaByValue {
-  private readonly edges: number[] = []; ///< of the bins of floats: [from, to) of each
-  private readonly sums = [0];
-  private readonly binSums = [0];
-
-  constructor(
-    readonly lo: number,
-    readonly hi: number,
-    keys: Uint32Array,
-    areaOfKey: Float32Array,
-    areaOfBin: Float32Array,
-  ) {
-    keys.forEach((key, i) => {
-      this.edges.push(floatOfKey(key), floatOfKey(key + 1));
-      this.sums.push(this.sums[i] + areaOfKey[i]);
-    });
-    areaOfBin.forEach((area, i) => this.binSums.push(this.binSums[i] + area));
-  }
-
-  /// The fraction of the area with a value whose distance is at most d.
-  upTo(d: number): number {
-    if (this.edges.length === 0 || d < this.lo) return 0;
-    if (d >= this.hi) return 1;
-    const bins = this.binSums.length - 1;
-    const width = (this.hi - this.lo) / bins;
-    // The bin of floats with d, or the one before it.
-    let first = 0;
-    let last = this.edges.length / 2 - 1;
-    while (first < last) {
-      const middle = (first + last + 1) >> 1;
-      if (this.edges[2 * middle] <= d) first = middle;
-      else last = middle - 1;
-    }
-    const from = Math.max(this.edges[2 * first], this.lo);
-    const to = Math.min(this.edges[2 * first + 1], this.hi);
-    const part = to > from ? Math.min(1, Math.max(0, (d - from) / (to - from))) : 1;
-    const byFloat = this.sums[first] + part * (this.sums[first + 1] - this.sums[first]);
-    if (to - from <= width) return byFloat;
-    const at = Math.min((d - this.lo) / width, bins - 1e-9);
-    const bin = Math.floor(at);
-    return this.binSums[bin] + (at - bin) * (this.binSums[bin + 1] - this.binSums[bin]);
-  }
-
-  within(lower: number, upper: number): number {
-    return Math.max(0, this.upTo(upper) - this.upTo(lower));
-  }
 }
 
 function floats(numbers: Uint32Array): Float32Array {

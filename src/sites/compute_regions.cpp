@@ -95,6 +95,12 @@ HWY_INLINE Vec3v enclosing_centre(const Vec3v (&side)[3], const Vec (&squared)[3
   return mul(hn::Div(hn::Set(d, 1.0), total), sub_mul(mul(weight[1], side[0]), weight[2], side[2]));
 }
 
+// The largest squared distance from this centre, relative to corner 0, to a corner.
+HWY_INLINE Vec squared_radius(const Vec3v& centre, const Vec3v (&side)[3]) {
+  const Vec3v from[3] = {centre, sub(centre, side[0]), add(centre, side[2])};
+  return hn::Max(hn::Max(dot(from[0], from[0]), dot(from[1], from[1])), dot(from[2], from[2]));
+}
+
 void ComputeLeaf(Regions& regions, const Placement& placement, std::span<FaceShape> shapes, size_t leaf) {
   const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
   Vec3Lanes corners[3], normals, angles;
@@ -136,12 +142,10 @@ void ComputeLeaf(Regions& regions, const Placement& placement, std::span<FaceSha
     angles.store({a, b, hn::Sub(hn::Sub(hn::Set(d, std::numbers::pi), a), b)}, i);
 
     const Vec3v centre = enclosing_centre(side, squared, longest_squared);
-    const Vec3v from[3] = {centre, sub(centre, side[0]), add(centre, side[2])};
-    const Vec radius_squared =
-        hn::Max(hn::Max(dot(from[0], from[0]), dot(from[1], from[1])), dot(from[2], from[2]));
     store(add(start, centre), bounds.centre, i);
     store(normal, bounds.normal, i);
-    store(hn::Mul(hn::Set(d, 1 + kSingleRounding), hn::Sqrt(radius_squared)), bounds.radius + i);
+    store(hn::Mul(hn::Set(d, 1 + kSingleRounding), hn::Sqrt(squared_radius(centre, side))),
+          bounds.radius + i);
   }
   for (uint32_t lane = 0; lane < count; ++lane) {
     FaceRegion& region = regions.faces[first + lane];

@@ -55,22 +55,14 @@ class Fitter {
     Fitted fitted{std::vector<Placement>(footprints_.size()), room_.rows()};
     for (const std::uint32_t s : order_) {
       const Footprint& footprint = footprints_[s];
-      std::optional<BitmapBin::Spot> best;
-      unsigned best_turn = 0;
-      std::uint32_t bottom = room_.rows() + more_rows + 1;  // an upper bound
-      for (unsigned turn = 0; turn < 4; ++turn) {
-        const Stamp& stamp = footprint.stamps[turn];
-        if (stamp.height >= bottom) continue;
-        const auto spot = bin.first_fit(stamp, 0, bottom - stamp.height);
-        if (!spot) continue;
-        best = spot;
-        best_turn = turn;
-        bottom = spot->y + stamp.height;
-      }
+      const auto best = lowest_turn(
+          footprint, room_.rows() + more_rows,
+          [&](const Stamp& stamp, std::uint32_t end_y) { return bin.first_fit(stamp, 0, end_y); });
       if (!best) return std::nullopt;
-      bin.place(footprint.stamps[best_turn], *best);
-      fitted.placements[s] = placement_of(footprint, best_turn, scale_, {1.0 * best->x, 1.0 * best->y});
-      fitted.rows = std::max(fitted.rows, bottom);
+      bin.place(footprint.stamps[best->turn], best->spot);
+      fitted.placements[s] =
+          placement_of(footprint, best->turn, scale_, {1.0 * best->spot.x, 1.0 * best->spot.y});
+      fitted.rows = std::max(fitted.rows, best->bottom);
     }
     return fitted;
   }

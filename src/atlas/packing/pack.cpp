@@ -109,26 +109,17 @@ class Packer {
       const Vec2& size = shapes_[s].size;
       if (scale * std::max(size[0], size[1]) + 2.0 * gutter_ > resolution_) return std::nullopt;
       const Footprint footprint = make_footprint(shapes_[s], {scale, gutter_, cell_});
-      std::optional<BitmapBin::Spot> best;
-      unsigned best_turn = 0;
-      std::uint32_t bottom = rows() + 1;  // an upper bound
-      for (unsigned turn = 0; turn < 4; ++turn) {
-        const Stamp& stamp = footprint.stamps[turn];
-        if (stamp.height >= bottom) continue;
+      const auto best = lowest_turn(footprint, rows(), [&](const Stamp& stamp, std::uint32_t end_y) {
         std::uint32_t& first_row = first_rows[size_class(stamp.width) << 32 | size_class(stamp.height)];
-        const std::uint32_t end_y = bottom - stamp.height;
         const auto spot = bin.first_fit(stamp, first_row, end_y);
         if (many) first_row = std::max(first_row, spot ? spot->y : end_y);
-        if (!spot) continue;
-        best = spot;
-        best_turn = turn;
-        bottom = spot->y + stamp.height;
-      }
+        return spot;
+      });
       if (!best) return std::nullopt;
-      bin.place(footprint.stamps[best_turn], *best);
-      packing.placements[s] =
-          placement_of(footprint, best_turn, scale, {1.0 * best->x * cell_, 1.0 * best->y * cell_});
-      packing.rows = std::max(packing.rows, bottom);
+      bin.place(footprint.stamps[best->turn], best->spot);
+      packing.placements[s] = placement_of(footprint, best->turn, scale,
+                                           {1.0 * best->spot.x * cell_, 1.0 * best->spot.y * cell_});
+      packing.rows = std::max(packing.rows, best->bottom);
     }
     return packing;
   }
@@ -139,6 +130,20 @@ class Packer {
   double longest_ = 0;                // side of a shape's rectangle
   std::vector<std::uint32_t> order_;  // of placement
 };
+
+// The shares that a round tries: those that divide the gap between `low` and `high`, or the two around the
+// guess of what just fits, 0 if there is none. If it fits just below the guess and not just above it, the
+// search ends.
+std::array<double, kTrials> shares_of(int round, double low, double high, double guess, double precision) {
+  if (round == 0) return kFirstShares;
+  if (guess > 0 && round <= kGuesses && high - low > 3 * precision) {
+    const double half = 0.49 * precision, centre = std::clamp(guess, low + precision, high - precision);
+    return {centre - half, centre + half};
+  }
+  std::array<double, kTrials> shares{};
+  for (int k = 0; k < kTrials; ++k) shares[k] = low + (high - low) * (k + 1) / (kTrials + 1);
+  return shares;
+}
 
 [[noreturn]] void throw_too_small(std::size_t charts, std::uint32_t resolution, std::uint32_t gutter) {
   // Assumes charts of one or two texels, packed to four fifths.
@@ -188,15 +193,7 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
   double guess = 0;  // what should just fit; 0: unknown
   for (int round = 0; !best || high - low > precision; ++round) {
     if (high - low < kPrecision) throw_too_small(shapes.size(), resolution, gutter);
-    std::array<double, kTrials> shares{};
-    for (int k = 0; k < kTrials; ++k) shares[k] = low + (high - low) * (k + 1) / (kTrials + 1);
-    if (round == 0) {
-      shares = kFirstShares;
-    } else if (guess > 0 && round <= kGuesses && high - low > 3 * precision) {
-      // If it fits just below the guess and not just above it, the search ends.
-      const double half = 0.49 * precision, centre = std::clamp(guess, low + precision, high - precision);
-      shares = {centre - half, centre + half};
-    }
+    const std::array<double, kTrials> shares = shares_of(round, low, high, guess, precision);
     std::array<std::optional<double>, kTrials> scales;
     std::array<std::optional<Packing>, kTrials> packings;
     parallel_for(kTrials, 1, progress ? Progress(report) : Progress(), "packing",
