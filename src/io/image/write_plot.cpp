@@ -8,9 +8,8 @@
 #include <new>
 
 #include "core/memory.h"
-#include "io/file/atomic_file.h"
 #include "io/image/pictures/canvas.h"
-#include "io/image/pictures/png.h"
+#include "io/image/pictures/picture.h"
 #include "io/image/pictures/ticks.h"
 
 namespace sdm {
@@ -134,13 +133,7 @@ void write_plot_png(const std::filesystem::path& file, const std::string& axis,
     draw_panel(canvas, kPanel * static_cast<double>(i), places, panels[i]);
   canvas.set_color(kInk);
   canvas.text((kLeft + kWidth - kRight) / 2, height - 16, axis, kTextSize, kWidth / 2, false, 0.5);
-  const Picture picture = canvas.picture("the plot");
-
-  AtomicFile out(file);
-  write_png(out.stream(), picture.width, picture.height, [&](std::uint32_t y, std::span<Rgb> pixels) {
-    std::copy_n(&picture.pixels[std::size_t{y} * picture.width], picture.width, pixels.begin());
-  });
-  out.commit();
+  write_picture(file, canvas.picture("the plot"));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }

@@ -14,10 +14,9 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "io/file/atomic_file.h"
 #include "io/image/pictures/canvas.h"
 #include "io/image/pictures/legend.h"
-#include "io/image/pictures/png.h"
+#include "io/image/pictures/picture.h"
 #include "io/image/pictures/ticks.h"
 #include "io/image/views/render_view.h"
 #include "io/image/views/view_layout.h"
@@ -206,13 +205,7 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
         draw_mark(canvas, view, marks[k], hidden, texts);
   }
   draw_scale_bar(canvas, layout, options.units);
-  const Picture picture = canvas.picture("the views");
-
-  AtomicFile out(file);
-  write_png(out.stream(), picture.width, picture.height, [&](std::uint32_t y, std::span<Rgb> pixels) {
-    std::copy_n(&picture.pixels[std::size_t{y} * picture.width], picture.width, pixels.begin());
-  });
-  out.commit();
+  write_picture(file, canvas.picture("the views"));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }

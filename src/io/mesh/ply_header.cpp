@@ -8,7 +8,7 @@
 namespace sdm::io {
 namespace {
 
-using Type = PlyHeader::Type;
+using Type = NumberType;
 
 std::string parse_word(TextScanner& in) {
   if (!in.more_on_line()) in.fail("a word is missing in the PLY header");
@@ -66,24 +66,6 @@ std::optional<std::size_t> PlyHeader::Element::find(std::initializer_list<std::s
       for (std::size_t p = 0; p < properties.size(); ++p)
         if (exact ? properties[p].name == wanted : same_word(properties[p].name, wanted)) return p;
   return std::nullopt;
-}
-
-std::size_t size_of(Type type) {
-  switch (type) {
-    case Type::int8:
-    case Type::uint8:
-      return 1;
-    case Type::int16:
-    case Type::uint16:
-      return 2;
-    case Type::int32:
-    case Type::uint32:
-    case Type::float32:
-      return 4;
-    case Type::float64:
-      return 8;
-  }
-  return 0;
 }
 
 PlyHeader parse_ply_header(std::string_view bytes) {

@@ -7,15 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file/number_type.h"
+
 namespace sdm::io {
 
 struct PlyHeader {
   enum class Encoding { text, little_endian, big_endian };
-  enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
   struct Property {
     std::string name;
-    Type type;
-    std::optional<Type> count_type;  ///< of a list: the type of its length
+    NumberType type;
+    std::optional<NumberType> count_type;  ///< of a list: the type of its length
   };
   struct Element {
     std::string name;
@@ -30,9 +31,6 @@ struct PlyHeader {
   std::vector<Element> elements;
   std::size_t size = 0;  ///< in bytes; the data follow
 };
-
-/// Returns the size of a number in a binary file, in bytes.
-[[nodiscard]] std::size_t size_of(PlyHeader::Type type);
 
 /// Parses the header at the start of a file. Throws sdm::Error if it is invalid.
 [[nodiscard]] PlyHeader parse_ply_header(std::string_view bytes);

@@ -13,7 +13,7 @@
 namespace sdm::io {
 namespace {
 
-using Type = PlyHeader::Type;
+using Type = NumberType;
 using Element = PlyHeader::Element;
 using Property = PlyHeader::Property;
 
@@ -38,28 +38,8 @@ class TextSource {
 
 class BinarySource {
  public:
-  BinarySource(std::string_view bytes, std::endian order) : in_(bytes, order) {}
-  double number(Type type) {
-    switch (type) {
-      case Type::int8:
-        return in_.number<std::int8_t>();
-      case Type::uint8:
-        return in_.number<std::uint8_t>();
-      case Type::int16:
-        return in_.number<std::int16_t>();
-      case Type::uint16:
-        return in_.number<std::uint16_t>();
-      case Type::int32:
-        return in_.number<std::int32_t>();
-      case Type::uint32:
-        return in_.number<std::uint32_t>();
-      case Type::float32:
-        return in_.number<float>();
-      case Type::float64:
-        return in_.number<double>();
-    }
-    return 0;
-  }
+  BinarySource(std::string_view bytes, std::endian order) : in_(bytes, order), order_(order) {}
+  double number(Type type) { return load_number(in_.take(size_of(type)).data(), type, order_); }
   void begin_row() {}
   void end_row(const Element&, std::size_t) {}
   [[nodiscard]] std::size_t remaining() const { return in_.remaining(); }
@@ -72,6 +52,7 @@ class BinarySource {
 
  private:
   ByteScanner in_;
+  std::endian order_;
 };
 
 template <typename Source>

@@ -42,28 +42,6 @@ CloudLayout layout_of(const std::vector<Field>& fields, bool text, std::string_v
   return layout;
 }
 
-Type type_of(PlyHeader::Type type) {
-  switch (type) {
-    case PlyHeader::Type::int8:
-      return Type::int8;
-    case PlyHeader::Type::uint8:
-      return Type::uint8;
-    case PlyHeader::Type::int16:
-      return Type::int16;
-    case PlyHeader::Type::uint16:
-      return Type::uint16;
-    case PlyHeader::Type::int32:
-      return Type::int32;
-    case PlyHeader::Type::uint32:
-      return Type::uint32;
-    case PlyHeader::Type::float32:
-      return Type::float32;
-    case PlyHeader::Type::float64:
-      break;
-  }
-  return Type::float64;
-}
-
 CloudLayout ply_layout(std::string_view bytes) {
   const PlyHeader header = parse_ply_header(bytes);
   const auto element = std::ranges::find_if(header.elements, [](const auto& e) { return e.count > 0; });
@@ -76,7 +54,7 @@ CloudLayout ply_layout(std::string_view bytes) {
   std::vector<Field> fields;
   for (const PlyHeader::Property& property : element->properties) {
     if (property.count_type) throw Error("the vertices of the PLY file have a list; save them without it");
-    fields.push_back({property.name, type_of(property.type)});
+    fields.push_back({property.name, property.type});
   }
   CloudLayout layout = layout_of(fields, header.encoding == PlyHeader::Encoding::text, "PLY");
   if (header.encoding == PlyHeader::Encoding::big_endian) layout.order = std::endian::big;
@@ -199,52 +177,6 @@ bool is_pcd(std::string_view bytes) {
 }
 
 }  // namespace
-
-std::size_t size_of(NumberType type) {
-  switch (type) {
-    case Type::int8:
-    case Type::uint8:
-      return 1;
-    case Type::int16:
-    case Type::uint16:
-      return 2;
-    case Type::int32:
-    case Type::uint32:
-    case Type::float32:
-      return 4;
-    case Type::int64:
-    case Type::uint64:
-    case Type::float64:
-      break;
-  }
-  return 8;
-}
-
-double load_number(const char* bytes, NumberType type, std::endian order) {
-  switch (type) {
-    case Type::int8:
-      return load<std::int8_t>(bytes, order);
-    case Type::uint8:
-      return load<std::uint8_t>(bytes, order);
-    case Type::int16:
-      return load<std::int16_t>(bytes, order);
-    case Type::uint16:
-      return load<std::uint16_t>(bytes, order);
-    case Type::int32:
-      return load<std::int32_t>(bytes, order);
-    case Type::uint32:
-      return load<std::uint32_t>(bytes, order);
-    case Type::int64:
-      return static_cast<double>(load<std::int64_t>(bytes, order));
-    case Type::uint64:
-      return static_cast<double>(load<std::uint64_t>(bytes, order));
-    case Type::float32:
-      return load<float>(bytes, order);
-    case Type::float64:
-      break;
-  }
-  return load<double>(bytes, order);
-}
 
 std::optional<CloudLayout> cloud_layout(std::string_view bytes) {
   if (bytes.starts_with("LASF")) return las_layout(bytes);

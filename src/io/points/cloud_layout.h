@@ -9,14 +9,9 @@
 #include <optional>
 #include <string_view>
 
+#include "io/file/number_type.h"
+
 namespace sdm::io {
-
-enum class NumberType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
-
-/// Returns the size of a number in bytes.
-[[nodiscard]] std::size_t size_of(NumberType type);
-/// Returns the number stored at `bytes`.
-[[nodiscard]] double load_number(const char* bytes, NumberType type, std::endian order);
 
 /// Where a row has one of x, y, z and the three components of the normal.
 struct CloudColumn {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "io/image/pictures/color_scale.h"
@@ -12,5 +13,8 @@ struct Picture {
   std::uint32_t width = 0, height = 0;
   std::vector<Rgb> pixels;
 };
+
+/// Writes it as a PNG. Throws sdm::Error.
+void write_picture(const std::filesystem::path& file, const Picture& picture);
 
 }  // namespace sdm::io
