@@ -26,7 +26,7 @@ struct Range {
   double min = std::numeric_limits<double>::quiet_NaN(), max = min;
 };
 
-// Of the points with a value.
+// The least and the largest distance of the points with a value.
 Range range_of(const sdm::DistanceField& field) {
   Range range;
   for (const float d : field.distance) {

@@ -45,7 +45,7 @@ struct Outcome {
 /// The counters of the gl engine.
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::GlReport& raster);
 
-/// Of two reports, the larger one of either direction; added to both.
+/// Adds the symmetric Hausdorff distance, the larger one of both directions, to the reports on both meshes.
 void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json& o2);
 
 /// JSON text; drops invalid bytes of file names that are not UTF-8.

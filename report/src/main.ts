@@ -229,7 +229,7 @@ class Page {
     );
   }
 
-  /// For tests: what is under a place of the canvas.
+  /// What is under a place of the canvas; for tests.
   inspect(x: number, y: number) {
     const found = this.view.find(x, y);
     return found && { ...found.value, point: toFile(this.subject, found.at), place: this.view.place(found.at) };

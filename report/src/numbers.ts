@@ -32,7 +32,7 @@ export function exactText(value: number): string {
   return String(Number(value.toPrecision(9))).replace(/-/g, kMinus);
 }
 
-/// With a plus sign, for distances that have signs.
+/// A number with its sign, plus included, where distances have signs.
 export function signedText(value: number, isSigned: boolean, digits = 4): string {
   return (isSigned && value > 0 ? '+' : '') + text(value, digits);
 }

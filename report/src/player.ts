@@ -147,7 +147,7 @@ class Player {
     byId('form').addEventListener('submit', (event) => event.preventDefault());
   }
 
-  /// For tests: the distances and the positions of a body that are shown.
+  /// The distances of a body that are shown; for tests.
   distances(which: number): number[] {
     const values = new Float32Array(this.data.bodies[which].vertices);
     distancesOf(this.data, which, this.frame, values);

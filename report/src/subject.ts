@@ -57,7 +57,7 @@ export function nearest(position: Float32Array, at: Vec): number {
   return best / 3;
 }
 
-/// From units of the scene to those of the files, and back.
+/// A point of the scene in the units of the files, and back.
 export function toFile({ centre, size }: Subject, point: Vec): Vec {
   return point.map((x, k) => x * size + centre[k]) as Vec;
 }

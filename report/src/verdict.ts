@@ -59,7 +59,7 @@ export function judge(evidence: Evidence, { lower, upper }: Limits): Judgement {
   const measured = marginOf(lowest, highest);
   const margin = estimated ? marginOf(-farthest, farthest) : measured;
   const result = { nearestIsLower: lower - lowest > highest - upper, decidingPrecision: 0 };
-  // Of a distance that rounding does not tell from zero, the sign is not certain either.
+  // The sign of a distance that rounding does not tell from zero is not certain.
   const isZero = (d: number) => Math.abs(d) <= accuracy;
   const below = (isZero(lowest) ? Math.abs(lowest) : lowest) < lower - accuracy;
   const above = (isZero(highest) ? -Math.abs(highest) : highest) > upper + accuracy;
@@ -124,7 +124,7 @@ export function sentenceOf(report: Report, limits: Limits, judgement: Judgement,
   }
 }
 
-/// To two digits, never up: a precision that is still fine enough, to type into a command line.
+/// Rounds to two digits, never up: a precision that is still fine enough, to type into a command line.
 function roundedDown(value: number): string {
   const unit = 10 ** (Math.floor(Math.log10(value)) - 1);
   return String(Number((Math.floor(value / unit) * unit).toPrecision(2)));

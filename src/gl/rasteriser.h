@@ -14,7 +14,7 @@
 
 namespace sdm::gl {
 
-/// Of an image, in texels.
+/// The size of an image in texels.
 struct ImageSize {
   std::uint32_t columns, rows;
 

@@ -46,7 +46,7 @@ class Parts {
   [[nodiscard]] double lower() const { return lower_; }
   /// The largest value matters only where it may exceed this.
   [[nodiscard]] double enough() const { return lower_ + precision_; }
-  /// On the values in all parts.
+  /// An upper bound on the values in all parts.
   [[nodiscard]] double upper() const {
     return std::max({lower_, settled_, open_.empty() ? lower_ : open_.front().upper});
   }
@@ -86,8 +86,8 @@ struct Policy {
   /// Together are evaluated: kLeast parts or, of more, one more than a fraction of those that stay open.
   static constexpr std::size_t kLeast = 1, kFraction = std::numeric_limits<std::size_t>::max();
   static constexpr std::size_t kRun = 1;  ///< of the parts that are evaluated one after another
-  /// Of more open parts than kMany, those with low bounds are evaluated, kOfMany of them: depth first, so
-  /// that there are hardly more.
+  /// If more parts than kMany are open, kOfMany of those with low bounds are evaluated: depth first, so that
+  /// there are hardly more.
   static constexpr std::size_t kMany = std::size_t{1} << 20, kOfMany = std::size_t{1} << 12;
 
   /// Lowers the bound of an open part by what has been learned since it was put. Returns whether there was

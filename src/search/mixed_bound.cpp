@@ -21,7 +21,7 @@ double largest(const CornerValues& values) {
 class LargestValue {
  public:
   LargestValue(std::span<const CornerValues> functions, const CornerValues& first) : functions_(functions) {
-    // At its largest corner, two weights are 0.
+    // Two weights are 0 at the largest corner.
     const int at = first[0] >= first[1] && first[0] >= first[2] ? 0 : first[1] >= first[2] ? 1 : 2;
     int zero = 1;
     for (int k = 0; k < 3; ++k)
@@ -60,7 +60,7 @@ class LargestValue {
     if (!(sum > 0.5)) return {};
     return largest(mean) / sum;
   }
-  // Of the point, with sum 1. Those whose constraints are active are 0, without rounding.
+  // The weights of the point, with sum 1. Those whose constraints are active are 0, without rounding.
   [[nodiscard]] CornerValues weights() const {
     CornerValues weights;
     for (int k = 0; k < 3; ++k) weights[k] = std::max(0.0, weights_[k]);

@@ -5,8 +5,8 @@
 
 namespace sdm::summary {
 
-/// By the tolerance, the accuracy, the bands and the names of the options. Throws sdm::Error for bands that
-/// do not increase.
+/// Divides the area by the tolerance, the accuracy, the bands and the names of the options. Throws sdm::Error
+/// for bands that do not increase.
 [[nodiscard]] Distribution distribution_of(const Surface& surface, const DistanceMap& map,
                                            const DistanceStatistics& distance, const SummaryOptions& options);
 

@@ -5,7 +5,7 @@
 
 namespace sdm::summary {
 
-/// From the extremes and the evidence of the summary.
+/// Bounds the largest distance by the extremes and the evidence of the summary.
 [[nodiscard]] LargestDistance largest_distance(const Summary& summary);
 
 }  // namespace sdm::summary

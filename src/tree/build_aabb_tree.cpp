@@ -147,8 +147,8 @@ class Builder {
     const Bounds* items = items_[level % 2].get();
     const auto [axis, bin] = level < kLastCut ? best_cut(items + begin, end - begin, binning) : Cut{-1, 0};
     const uint32_t half = begin + (end - begin) / 2;
-    // Without branches, which would be mispredicted every other time: each item is written to both ends of
-    // the gap between the two sides, and the gap shrinks at the end where the item belongs.
+    // Branches would be mispredicted every other time. So each item is written to both ends of the gap
+    // between the two sides, and the gap shrinks at the end where the item belongs.
     Bounds* moved = items_[1 - level % 2].get();
     uint32_t left = begin, right = end;
     for (uint32_t i = begin; i < end; ++i) {

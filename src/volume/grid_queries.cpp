@@ -109,7 +109,7 @@ class NearBalls {
   double slack_;
 };
 
-// In an order in which neighbours are near each other.
+// The bricks that may be near, in an order in which neighbours are near each other.
 std::vector<std::size_t> near_bricks(const Bricks& bricks, const Grid& grid, const NearBalls& near_balls) {
   std::vector<Ball> balls(bricks.total());
   std::vector<Vec3> centres(bricks.total());

@@ -17,7 +17,7 @@ struct BoundaryDistance {
   std::optional<BoundaryPart> nearest{};
 };
 
-/// Of a point inside, whose closest point on the surface of the solid is known.
+/// The distance to the boundary of a point inside, given its closest point on the surface of the solid.
 [[nodiscard]] BoundaryDistance boundary_distance(const shape::Body& solid, const Vec3& p,
                                                  const ClosestPoint& closest);
 /// A face with that closest point which is boundary on one side everywhere, if there is one.

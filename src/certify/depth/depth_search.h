@@ -33,7 +33,8 @@ class DepthSearch : public search::Policy {
   [[nodiscard]] Depth find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other,
                            double precision);
 
-  // Of many open parts, a fraction is evaluated together: neighbours are then among them, and share searches.
+  // The fraction of many open parts that is evaluated together: neighbours are among them, and share
+  // searches.
   static constexpr std::size_t kFraction = 64, kRun = 256;
   bool tighten(Part& part) { return leaving_[part.body].tighten(part, parts_.enough()); }
   bool expand(const Part& part);

@@ -37,7 +37,7 @@ class ExitDirections {
   [[nodiscard]] double bound(const shape::Ball& ball, std::size_t first) const;
   /// Appends the bounds at the corners of a triangle, one entry for each direction: they are linear.
   void values(const Corners& triangle, std::vector<CornerValues>& values) const;
-  /// For the boxes of a node's children, in the unit frame of the body.
+  /// Bounds for the boxes of a node's children, in the unit frame of the body.
   using OfChildren = std::array<float, tree::WideTree::kWidth>;
   [[nodiscard]] OfChildren bound_children(const tree::WideTree::Node& node) const;
 

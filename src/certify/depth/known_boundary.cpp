@@ -9,7 +9,7 @@
 namespace sdm::depth {
 namespace {
 
-// Of so many parts of the boundary that were found last, those that bound a triangle are chosen.
+// Those that bound a triangle are chosen among so many parts of the boundary that were found last.
 constexpr std::size_t kRecent = 32;
 
 }  // namespace

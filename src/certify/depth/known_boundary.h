@@ -16,8 +16,8 @@ class KnownBoundary {
   void clear() { known_.clear(); }
   void add(const Vec3& from, const BoundaryPart& boundary) { known_.push_back({from, boundary}); }
   [[nodiscard]] std::size_t size() const { return known_.size(); }
-  /// Of the last ones, those found for the two points nearest to `centre`, other than the faces of `besides`.
-  /// None if both are among the first `seen`.
+  /// The recent ones that were found for the two points nearest to `centre`, other than the faces of
+  /// `besides`. None if both are among the first `seen`.
   [[nodiscard]] std::optional<std::array<BoundaryPart, 2>> nearest(const Vec3& centre,
                                                                    std::span<const Near> besides,
                                                                    std::size_t seen) const;

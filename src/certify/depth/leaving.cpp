@@ -82,7 +82,7 @@ void Leaving::evaluate(Part& part, Value& value, const ClosestPoint& closest, bo
   part.limit(scale_ * bound_outside(part, *triangle, value, closest.distance, enough));
 }
 
-// Of a triangle whose centre is outside, by this distance, and not bounded by that alone.
+// The bound of a triangle whose centre is outside, by this distance, where that alone is not enough.
 double Leaving::bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
                               double distance, double enough) const {
   std::array<CornerValues, 8> functions;

@@ -30,7 +30,7 @@ class Leaving {
   [[nodiscard]] const shape::Body& body() const { return *body_; }
   [[nodiscard]] const shape::Body& solid() const { return *solid_; }
   [[nodiscard]] const mesh::Similarity& to_solid() const { return to_solid_; }
-  /// Of a length in space.
+  /// The factor from lengths in the frame of the solid to those in space.
   [[nodiscard]] double scale() const { return scale_; }
   [[nodiscard]] ExitDirections& exits() { return exits_; }
 

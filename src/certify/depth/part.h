@@ -29,7 +29,7 @@ struct TrianglePart {
   bool stale = true;           ///< whether it is still to be bounded by all of `near`
 };
 
-/// In the frame of the solid.
+/// A node or a triangle of the surface of a body, in the frame of the solid.
 struct Part {
   int body = 0;             ///< whose surface it is part of
   std::uint64_t place = 0;  ///< in the order of the tree

@@ -14,7 +14,7 @@ struct FaceDistance {
   Vec3 point{};  ///< of the triangle, to rounding, at most `upper` from the query
 };
 
-/// For triangles of any shape, also segments and points.
+/// Bounds on the distance from p to a triangle of any shape, also a segment or a point.
 [[nodiscard]] FaceDistance face_distance(const Vec3& p, const Corners& face);
 
 /// The upper bound only: 0 if p is a corner.

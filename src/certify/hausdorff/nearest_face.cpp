@@ -14,8 +14,8 @@ NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint
   NearestFace best;
   double lower = std::numeric_limits<double>::infinity();
   best.upper = lower;
-  // For the unit vector u towards the best point, all points s of a face have |s − p| ≥ u·(s − p): most faces
-  // are excluded by that alone.
+  // All points s of a face have |s − p| ≥ u·(s − p), with u the unit vector towards the best point: most
+  // faces are excluded by that alone.
   Vec3 towards{};
   const auto beyond = [&](const Corners& face) {
     double least = std::numeric_limits<double>::infinity(), size = 0;

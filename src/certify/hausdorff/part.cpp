@@ -108,7 +108,7 @@ Vec3 coordinates(const Corners& t, const Vec3& p) {
   return {1 - v - w, v, w};
 }
 
-// Of a vertex that all mixed faces share and that is above the inside of the part, if there is one.
+// The weights, in the part, of a vertex that all mixed faces share, if it is above the inside of the part.
 std::optional<Vec3> common_vertex(const Part& part, const Mesh& b) {
   std::optional<Corners> first;
   std::array<bool, 3> common{true, true, true};

@@ -15,7 +15,7 @@ namespace {
 constexpr int kMostDivisions = 200;
 // A bound that comes closer to the lower bound by this factor is worth another evaluation before a division.
 constexpr double kProgress = 0.5;
-// Of the precision: distances that differ less count as equal.
+// Distances that differ by less than this fraction of the precision count as equal.
 constexpr double kEqual = 1.0 / 16;
 
 }  // namespace

@@ -24,7 +24,7 @@ class TrianglePairs {
       for (int k = 0; k < 3; ++k) corner_[0][c][k][lane] = a[c][k], corner_[1][c][k][lane] = b[c][k];
   }
 
-  // For the first `count` lanes.
+  // The squared distances of the first `count` lanes.
   void squared_distances(size_t count, double (&squared)[kLanes]) const {
     const Doubles d;
     for (size_t i = 0; i < count; i += hn::Lanes(d)) hn::StoreU(squared_distances(i), d, squared + i);

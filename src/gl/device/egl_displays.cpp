@@ -26,7 +26,7 @@ bool has_client_extension(const char* name) {
 }
 
 std::vector<EGLDeviceEXT> devices() {
-  // Without these, libepoxy's functions abort.
+  // libepoxy's functions abort if an extension that they need is missing.
   if (!has_client_extension("EGL_EXT_platform_device") || !has_client_extension("EGL_EXT_platform_base") ||
       !(has_client_extension("EGL_EXT_device_base") ||
         (has_client_extension("EGL_EXT_device_enumeration") && has_client_extension("EGL_EXT_device_query"))))

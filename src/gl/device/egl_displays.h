@@ -17,8 +17,9 @@ struct DisplayCandidate {
   bool last_resort = false;  ///< used only if no earlier one works
 };
 
-/// In order of preference: EGL's devices, hardware first; then, as last resorts, Mesa's surfaceless platform
-/// and the default display. Throws sdm::Error if the OpenGL libraries are not installed.
+/// The displays, the preferred ones first: EGL's devices, hardware before software; then, as last resorts,
+/// Mesa's surfaceless platform and the default display. Throws sdm::Error if the OpenGL libraries are not
+/// installed.
 [[nodiscard]] std::vector<DisplayCandidate> display_candidates();
 
 /// The name of EGL's last error on this thread.

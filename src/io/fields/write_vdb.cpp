@@ -166,7 +166,7 @@ class VdbTree {
     const Index3& n = field_.grid.dims;
     return p[0] < n[0] && p[1] < n[1] && p[2] < n[2];
   }
-  // Of a point without a value.
+  // Whether a point without a value is inside.
   [[nodiscard]] bool is_inside(const Index3& p) const {
     return !inside_.empty() && in_grid(p) && inside_[field_.grid.index(p[0], p[1], p[2])];
   }
@@ -207,7 +207,7 @@ void put_metadata(Bytes& out, const std::string& name, const std::string& text) 
   out.put(text);
 }
 
-// From the indices of points to their coordinates.
+// The map from the indices of points to their coordinates.
 void put_transform(Bytes& out, const Grid& grid) {
   const Vec3& h = grid.spacing;
   const bool uniform = h[0] == h[1] && h[0] == h[2];

@@ -39,7 +39,7 @@ struct Plane {
 
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
-// Of a file compressed with ZIP.
+// OpenEXR's number of rows in a chunk of a file compressed with ZIP.
 constexpr std::uint32_t kRowsPerChunk = 16;
 
 // A file that is written in chunks. Chunks are compressed by the caller, by all threads at once: OpenEXR's

@@ -96,7 +96,7 @@ class BlockSearch {
   std::size_t on_;
   double max_distance_;
   std::vector<std::pair<double, std::uint32_t>> order_;  // distances of boxes from the samples, and bodies
-  // Of each point: its distance, in space, to the nearest body, that body, and, in the frame of that body,
+  // The distance of each point, in space, to the nearest body, that body, and, in the frame of that body,
   // the point itself and its closest point.
   std::array<double, surface::kBlockSize> distance_;
   std::array<std::uint32_t, surface::kBlockSize> body_;

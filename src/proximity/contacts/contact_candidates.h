@@ -14,8 +14,8 @@ namespace sdm::contacts {
 
 using Bodies = std::array<const shape::PosedBody*, 2>;
 
-/// Of a call of ContactFinder::find(), whose parameters these are, for the features of one body. Its spans
-/// and pointers are valid for that call.
+/// The parameters of a call of ContactFinder::find(), for the features of one body. Spans and pointers are
+/// valid for that call.
 struct ContactQuery {
   Bodies bodies{};
   std::array<mesh::Similarity, 2> to_other{};
@@ -29,7 +29,7 @@ struct ContactQuery {
   [[nodiscard]] const shape::Body& other() const { return bodies[1 - side]->body(); }
 };
 
-/// Finds it; reuses its memory between calls.
+/// Finds the regions and the edges that may be in contact. Memory is reused between calls.
 class ContactCandidates {
  public:
   /// Cost: of a closest point for each region, and for each set of vertices on one side.
@@ -43,7 +43,7 @@ class ContactCandidates {
   [[nodiscard]] std::uint32_t near_faces(std::uint32_t leaf) const {
     return query_.near->of_leaf[query_.side][leaf];
   }
-  /// Of the regions that are not inside as a whole. Threads may query them at once.
+  /// The vertices of the regions that are not inside as a whole. Threads may query them at once.
   [[nodiscard]] OneSidedVertices& vertices() { return vertices_; }
 
  private:

@@ -8,10 +8,10 @@
 namespace sdm::contacts {
 namespace {
 
-// With fewer leaves with near faces, of both bodies, handing part of the work to another core takes as long
-// as it saves.
+// Handing part of the work to another core takes as long as it saves, if fewer leaves of both bodies have
+// near faces.
 constexpr std::size_t kFewLeaves = 64;
-// Of a task; with fewer, no time is gained.
+// A task with fewer regions or leaves gains no time.
 constexpr std::size_t kRegionsOfTask = 16, kLeavesOfTask = 32;
 
 }  // namespace

@@ -30,7 +30,7 @@ struct ContactRegion {
   [[nodiscard]] bool is_inside() const { return kind == Kind::inside || kind == Kind::deep; }
 };
 
-/// Finds them; reuses its memory.
+/// Finds the regions of a body that may be in contact. Memory is reused.
 class ContactRegions {
  public:
   /// Finds nodes that cover all of `on` that is inside `other` or within `margin` of it. `to_other`: from the

@@ -56,7 +56,7 @@ HWY_EXPORT(BoundByTriangle);
 HWY_EXPORT(LargestBound);
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Of distances in single precision, relative to the coordinates.
+// Rounding of distances in single precision, relative to the coordinates.
 constexpr float kUnitRounding = 4e-6f;
 
 }  // namespace
@@ -122,7 +122,7 @@ void DeepestVertex::bound(std::uint32_t face, std::size_t first, std::size_t las
   (unit_triangle(face), {{at_[0].data(), at_[1].data(), at_[2].data()}, bound_.data()}, first, last);
 }
 
-// By the faces found and that of its group, of which one is probably the closest.
+// The distance to the nearest one of the faces found and that of the group, probably the closest face of all.
 double DeepestVertex::exact_bound(const Vec3& at, std::size_t i) const {
   const auto distance = [&](std::uint32_t face) {
     return sites::closest_on_face(internals(other_->sites()), face, at).distance;

@@ -12,13 +12,14 @@
 
 namespace sdm::contacts {
 
-/// Finds it with few searches for closest points: no vertex is deeper than its distance to any face, so that
-/// only those are searched for that are farther from all faces found so far than the deepest one is deep.
-/// Reuses its memory.
+/// Finds the deepest vertex with few searches for closest points: no vertex is deeper than its distance to
+/// any face, so that only those are searched for that are farther from all faces found so far than the
+/// deepest one is deep. Memory is reused.
 class DeepestVertex {
  public:
-  /// Of vertices of `on`, numbered as in the regions of its sites, in `other`. `to_other`, `from_other`: from
-  /// the frame of one to that of the other, and back. Bodies and `to_other` must outlive the search.
+  /// Starts with no vertex of `on`, numbered as in the regions of its sites; depths are in `other`.
+  /// `to_other`, `from_other`: from the frame of one to that of the other, and back. Bodies and `to_other`
+  /// must outlive the search.
   void start(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other,
              const mesh::Similarity& from_other);
   /// A face, or kNone, that is probably close to the vertices added from here on. Required before the first
@@ -37,7 +38,7 @@ class DeepestVertex {
   /// the same one, to rounding, any. Cost: linear for each search, of which there are a few.
   [[nodiscard]] Found find(double margin);
 
-  /// For the vector code, in single precision: a face, in the unit frame of `on`.
+  /// A face in single precision, for the vector code, in the unit frame of `on`.
   struct UnitTriangle {
     float corner[3][3] = {};
     bool flat = true;  ///< whether its normal is reliable

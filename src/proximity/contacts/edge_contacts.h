@@ -12,7 +12,7 @@
 
 namespace sdm::contacts {
 
-/// Finds them for one edge after another; reuses its memory.
+/// Finds the contacts of one edge after another. Memory is reused.
 ///
 /// A face supports the part of an edge above it or, up to the reach, below it that is parallel to it, but for
 /// a small angle, as a box lies on another one: the ends of these parts carry the body. Below it, only if it
@@ -42,7 +42,7 @@ class EdgeContacts {
   [[nodiscard]] std::span<const Found> find(const Edge& edge, const shape::Body& other, double margin,
                                             double reach, double tolerance);
 
-  /// Of the edge, as t.
+  /// A part of the edge, by the parameter t at its ends.
   struct Part {
     double from, to;
   };
@@ -62,7 +62,7 @@ class EdgeContacts {
     double height, rise;  ///< above the plane of the face, at a and along the edge
     [[nodiscard]] double height_at(double t) const { return height + t * rise; }
   };
-  /// Of faces that continue each other.
+  /// A part that faces which continue each other support.
   struct JoinedPart {
     double from, to;
     std::size_t last;  ///< the supported part that ends there

@@ -12,8 +12,8 @@
 
 namespace sdm::contacts {
 
-/// Finds them in single precision, so that some of those returned are farther away. Reuses its memory; what
-/// is returned is valid until the next call.
+/// Finds the faces near an edge in single precision, so that some of those returned are farther away. Memory
+/// is reused: what is returned is valid until the next call.
 class FacesNearEdge {
  public:
   /// Part of an edge, in the frame of the sites.
@@ -32,7 +32,8 @@ class FacesNearEdge {
                                                                std::span<const Vec3> sides, double margin,
                                                                double reach);
 
-  /// In single precision: of distances, relative to coordinates, and of squares, relative to their sum.
+  /// Rounding in single precision of distances, relative to coordinates, and of squares, relative to their
+  /// sum.
   static constexpr float kSegmentRounding = 2e-6f;
 
   /// The part of the segment near the mesh, in the unit frame and in single precision.

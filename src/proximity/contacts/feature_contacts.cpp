@@ -77,7 +77,7 @@ void FeatureContacts::find_at_vertices(ContactCandidates& candidates, Regions re
   add_contacts();
 }
 
-// Of a part, or of a region that is deep inside, the deepest vertex.
+// Adds the contact at the deepest vertex of a part, or of a region that is deep inside.
 void FeatureContacts::find_deepest(Regions part) {
   const sites::SitesData& sites = internals(on().sites());
   const OneSidedVertices& vertices = candidates_->vertices();
@@ -151,7 +151,7 @@ Box FeatureContacts::box_of(Regions part) {
   return box;
 }
 
-// Of depths, in the frame of the other body: well below what bounds on the depth allow for.
+// The tolerance of depths, in the frame of the other body: well below what bounds on the depth allow for.
 double FeatureContacts::tolerance() const {
   return 0.5 * query().length / query().bodies[1 - query().side]->pose().scale;
 }

@@ -13,18 +13,18 @@
 
 namespace sdm::contacts {
 
-/// Finds them; reuses its memory between calls. What several finders find for parts of the candidates does
-/// not depend on their order, so that they may run at once.
+/// Finds the contacts of features. Memory is reused between calls. What several finders find for parts of the
+/// candidates does not depend on their order, so that they may run at once.
 class FeatureContacts {
  public:
-  /// Of the vertices of some regions, which include all or none of those of a part. Cost: of a few closest
-  /// points for each contact.
+  /// Finds the contacts at the vertices of some regions, which include all or none of those of a part. Cost:
+  /// of a few closest points for each contact.
   void find_at_vertices(ContactCandidates& candidates, std::span<const ContactRegion> regions);
-  /// Of the edges of some leaves with near faces.
+  /// Finds the contacts at the edges of some leaves with near faces.
   void find_at_edges(ContactCandidates& candidates, std::span<const std::uint32_t> leaves);
 
   [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
-  /// Of each contact: the box of the faces around it that are in contact, in space.
+  /// The box, in space, of the faces in contact around each of the contacts.
   [[nodiscard]] std::span<const Box> boxes() const { return boxes_; }
   /// Boxes of parts that are in contact and have no contact: they connect others.
   [[nodiscard]] std::span<const Box> bridges() const { return bridges_; }

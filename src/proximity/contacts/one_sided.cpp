@@ -66,7 +66,7 @@ OneSidedVertices::Side OneSidedVertices::side_of(const SurfacePoint& point) cons
   return point.distance <= margin_ ? Side::contact : Side::free;
 }
 
-// Of a set, one vertex is measured; where it is so near to the surface that rounding may decide, the next one
+// One vertex of a set is measured; where it is so near to the surface that rounding may decide, the next one
 // as well.
 void OneSidedVertices::find_sides() {
   std::uint32_t face = kNone;

@@ -90,8 +90,8 @@ WayOut WayOutFinder::find(const SurfaceAround& around, const shape::Body& other,
 
   SurfacePoint p = point;
   for (int step = 0; step < kMostSteps; ++step) {
-    // With s the length of the step along u, n the way out at the closest point and m the normal of the face,
-    // the distances become deep − s u·n, at least, and below − s u·m.
+    // The distances become deep − s u·n, at least, and below − s u·m, with s the length of the step along u,
+    // n the way out at the closest point and m the normal of the face.
     const double below = dot(normal, corner - p.at), missing = kClear * below + p.distance;
     const Vec3 n = outwards(other, p, tolerance);
     if (!(below > tolerance) || n == Vec3{}) return {};

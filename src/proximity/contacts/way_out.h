@@ -32,7 +32,7 @@ struct WayOut {
   std::uint32_t own_face = kNone;  ///< which contains the point
 };
 
-/// Finds it; reuses its memory.
+/// Finds the way out of points below a face. Memory is reused.
 ///
 /// A point on the side of a solid has its nearest way out there, whatever lies on the top of the solid with
 /// its other points: of a box on a table, flush with it or across its edge, the points at the side of the

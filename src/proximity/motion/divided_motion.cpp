@@ -52,8 +52,8 @@ void DividedMotion::find_rotation(const mesh::Similarity& to) {
   mesh_axis_ = normalized(mesh_axis_);
 }
 
-// Of translations: at most 16 roundings by half a unit, of poses, of the difference of two centres, of its
-// motion, and of products with a direction. Of the points of a body: products with the matrix and a
+// Translations: at most 16 roundings by half a unit, of poses, of the difference of two centres, of its
+// motion, and of products with a direction. The points of a body: products with the matrix and a
 // direction; if it turns, also sine, cosine, the matrix, its correction by set_pose, and speeds up to angle²
 // times the radius.
 void DividedMotion::find_rounding(double radius) {

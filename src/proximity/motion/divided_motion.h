@@ -7,7 +7,7 @@
 
 namespace sdm::motion {
 
-/// At the time t, a point p of the mesh is at
+/// A motion: a point p of the mesh is, at the time t, at
 ///   start + t shift + R(t) q,   q = L (p − middle),
 /// with L the linear part of the first pose and R(t) the rotation by t angle about the axis.
 class DividedMotion {
@@ -24,10 +24,10 @@ class DividedMotion {
   [[nodiscard]] const Vec3& shift() const { return shift_; }
   [[nodiscard]] double scale() const { return from_.scale; }
 
-  /// Of length 1, in space and in the frame of the mesh; 0 if it does not turn.
+  /// The axis of rotation, of length 1, in space and in the frame of the mesh; 0 if the mesh does not turn.
   [[nodiscard]] const Vec3& axis() const { return axis_; }
   [[nodiscard]] const Vec3& mesh_axis() const { return mesh_axis_; }
-  /// In [0, π].
+  /// The angle of the whole rotation, in [0, π].
   [[nodiscard]] double angle() const { return angle_; }
 
   /// The rows of R(t) L.

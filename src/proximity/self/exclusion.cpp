@@ -46,7 +46,7 @@ class Neighbours {
     if (rule.geodesic) enclose();
   }
 
-  // In increasing order.
+  // The patch and those that it reaches, in increasing order.
   [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t patch) const {
     std::vector<std::uint32_t> reached{patch};
     reach(patch, reached);

@@ -69,7 +69,7 @@ PatchTree::PatchTree(const sites::SitesData& sites, const Exclusion& exclusion) 
       for (std::uint32_t slot = 0; slot < nodes[n].count; ++slot)
         if (const std::uint32_t patch = below(nodes[n].child[slot]); patch != kNone && of_node[n] == kNone)
           put(patch, WideTree::kWidth * n + slot);
-    // With nothing but faces of one patch in the tree, the children of the root stand for it.
+    // The children of the root stand for a patch that has all faces of the tree.
     for (std::uint32_t slot = 0; !nodes.empty() && of_node[0] != kNone && slot < nodes[0].count; ++slot)
       put(of_node[0], slot);
   });

@@ -267,7 +267,7 @@ class Search {
     alignas(64) float best[PointGroup::kPacket];
     std::fill_n(best, PointGroup::kPacket, std::numeric_limits<float>::infinity());
     count_work(&WorkCounts::evaluations, lists.size());
-    // Of equal distances the first wins: at the end of an edge its vertex, at the border of a face its edge.
+    // The first of equal distances wins: at the end of an edge its vertex, at the border of a face its edge.
     offer(lists.vertices, first, best, winners);
     offer(lists.edges, first, best, winners);
     offer(lists.faces, first, best, winners);

@@ -121,7 +121,7 @@ uint32_t on_edge(const sites::SitesData& sites, uint32_t edge, Packet& p, uint32
 // Where no edge of the vertex is closer.
 uint32_t on_vertex(const sites::SitesData& sites, uint32_t vertex, Packet& p, uint32_t lanes) {
   const Vec3& point = sites.mesh.positions[vertex];
-  // In a closed, consistently oriented mesh every neighbour follows the vertex in exactly one face.
+  // Every neighbour follows the vertex in exactly one face of a closed, consistently oriented mesh.
   const int last = sites.consistently_oriented ? 1 : 2;
   return for_lanes(p, lanes, [&](const Vec3v& query, Vec3v& from) HWY_ATTR {
     const Doubles d;

@@ -12,7 +12,7 @@
 
 namespace sdm::closest {
 
-/// In the unit frame of O2, in single precision.
+/// A ball in the unit frame of O2, in single precision.
 struct Ball {
   float centre[3];
   float radius;

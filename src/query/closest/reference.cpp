@@ -31,7 +31,7 @@ ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q, dou
   const auto visit_leaf = [&](std::uint32_t leaf) {
     for (const std::uint32_t face : sites.tree.items_of(leaf)) {
       const ClosestPoint c = sites::closest_on_face(sites, face, q);
-      // Without a best one yet, the type is none, which follows all others: max_distance itself is near
+      // The type is none until there is a best one, and follows all others: max_distance itself is near
       // enough.
       if (order(c) < order(best)) best = c;
     }

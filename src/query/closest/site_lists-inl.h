@@ -24,7 +24,7 @@
 namespace sdm::closest {
 namespace {
 
-// For each mask of eight bits, the positions of the set bits, one byte each.
+// The positions of the set bits of each mask of eight bits, one byte each.
 constexpr std::array<std::uint64_t, 256> kPositions = [] {
   std::array<std::uint64_t, 256> table{};
   for (unsigned mask = 0; mask < 256; ++mask)
@@ -122,7 +122,7 @@ void gather(std::span<const uint32_t> places, const std::vector<typename TypedBl
       if (i + kAhead < places.size()) hwy::Prefetch(&regions[places[i + kAhead]]);
       from[lane] = &regions[places[std::min(i, places.size() - 1)]];
     }
-    // With fifteen rows, the last group of four overlaps the one before.
+    // The last group of four overlaps the one before, if there are fifteen rows.
     static_assert(TypedBlock::kRows == 15 || TypedBlock::kRows == 16);
     for (size_t row = 0; row < TypedBlock::kRows; row += 4)
       transpose_four(from, std::min(row, TypedBlock::kRows - 4), block);

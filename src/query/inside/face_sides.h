@@ -1,4 +1,4 @@
-// On which sides of its surface a solid lies.
+// The sides of its surface on which a solid lies.
 #pragma once
 
 #include <atomic>

@@ -39,10 +39,10 @@ class InsideTest {
   [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries,
                                          const sites::ClosestPacket& closest) const;
 
-  /// For a query inside a solid: whether its closest point lies on the boundary, to 1e-6 of the size of the
+  /// Whether the closest point of a query inside a solid lies on the boundary, to 1e-6 of the size of the
   /// solid. True for solids that do not intersect themselves. False also where this was not decided.
   [[nodiscard]] bool at_boundary(const Vec3& query, const ClosestPoint& closest) const;
-  /// For a solid: the sides of its faces.
+  /// The sides of the faces of a solid.
   [[nodiscard]] const FaceSides& sides() const { return *sides_; }
 
  private:

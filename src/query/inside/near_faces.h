@@ -12,7 +12,7 @@ namespace sdm::inside {
 
 /// Lengths in the unit frame: twice the error with which engines find closest sites, and more.
 inline constexpr double kClearance = 4e-6;
-/// In radians: faces that share a corner or an edge at a smaller angle count as near.
+/// Faces that share a corner or an edge at a smaller angle, in radians, count as near.
 inline constexpr double kClearAngle = 1e-3;
 
 /// The corners of a face in the unit frame.

@@ -77,7 +77,7 @@ std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, co
 
 int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point) {
   if (solid.tree.nodes.empty()) return 0;
-  // In the frame of the solid, where the way out is shortest along one of the axes.
+  // The shortest way out of the box is along one of the axes of the frame of the solid.
   const tree::FloatBox& box = solid.tree.box(0);
   const Vec3 p = solid.frame.to_unit(inverse(pose)(point));
   int axis = 0;

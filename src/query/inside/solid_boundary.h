@@ -78,7 +78,7 @@ class SolidBoundary {
   [[nodiscard]] bool find_cuts(const Piece& piece, std::span<const std::uint32_t> faces, std::size_t most,
                                std::vector<Plane>& cuts) const;
   [[nodiscard]] bool is_inside(const Vec3& point) const;  ///< the solid; in the unit frame
-  /// Of a point of the face; `covered` if others may coincide with it there.
+  /// The sides at a point of the face; `covered` if others may coincide with it there.
   [[nodiscard]] Sides sides_beside(const Vec3& point, std::uint32_t face, bool covered) const;
   /// Whether a face with a smaller number contains the piece.
   [[nodiscard]] bool repeats_earlier_face(const Piece& piece) const;

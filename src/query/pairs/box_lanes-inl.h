@@ -59,7 +59,7 @@ struct CentredBox {
 // boxes of either tree, and in the direction between the closest points found so far.
 class BoxDistances {
  public:
-  // For boxes of the tree of `side`, and a box of the other tree in the other tree's frame.
+  // Distances of boxes of the tree of `side` to a box of the other tree, in the other tree's frame.
   BoxDistances(const UnitMaps& maps, const Direction& direction, int side, const CentredBox& other)
       : maps_(maps), direction_(direction), side_(side), other_(other), seen_(other, maps.to[side]) {}
 

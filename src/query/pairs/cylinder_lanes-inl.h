@@ -37,7 +37,7 @@ HWY_INLINE Vec half_extent(Vec radius, Vec half_height, Vec cosine, Vec squared)
 // none does.
 class CylinderDistances {
  public:
-  // For cylinders of the tree of `side`, and a cylinder of the other tree in the other tree's frame.
+  // Distances of cylinders of the tree of `side` to one of the other tree, in the other tree's frame.
   CylinderDistances(const UnitMaps& maps, const Direction& direction, int side, const Cylinder& other)
       : maps_(maps), direction_(direction), side_(side), other_(other) {
     const FrameMap& map = maps.to[side];
@@ -58,7 +58,7 @@ class CylinderDistances {
   HWY_INLINE Vec operator()(const sites::BoundingCylinders& all, size_t i) const {
     return distances(all, hn::Load(Lanes(), all.half_height + i), i);
   }
-  // For the discs of a leaf's faces. `thin`: some normals may be unreliable.
+  // The distances of the discs of a leaf's faces. `thin`: some normals may be unreliable.
   HWY_INLINE Vec operator()(const sites::FaceBounds& all, bool thin, size_t i) const {
     return distances(all, thin ? hn::Load(Lanes(), all.radius + i) : hn::Zero(Lanes()), i);
   }

@@ -21,7 +21,7 @@ inline constexpr FacePair kNoFaces{kNone, kNone};
 struct MeshPair {
   const sites::SitesData &o1, &o2;
   Affine pose{};
-  /// Of the nodes of O1 and O2: bounds that make searches shorter, and change no result. Null: none.
+  /// Bounds on the nodes of O1 and O2 that make searches shorter, and change no result. Null: none.
   std::array<const sites::CylinderTree*, 2> cylinders{};
   [[nodiscard]] bool has_cylinders() const {
     const auto known = [](const sites::CylinderTree* tree) {

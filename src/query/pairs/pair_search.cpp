@@ -34,7 +34,8 @@ class PairSearch {
 
   Separation run() {
     w_.overlapping.clear(), w_.apart.clear();
-    // Without a bound, caps of large meshes are mostly too large: trying costs a tenth of the search.
+    // Caps of large meshes are mostly too large as long as there is no bound: trying costs a tenth of the
+    // search.
     if (!separate || !closest_.bounded() || !pair_caps()) w_.overlapping.assign(1, {});
     tree::visit_pairs(s_.sites[0]->wide, s_.sites[1]->wide, *this);
     return intersection_.intersecting ? intersection_ : closest_.result();
@@ -146,7 +147,7 @@ class PairSearch {
   // The box of a leaf with large faces is a loose bound: against a smaller box, its faces are bounded one by
   // one. Returns whether this pair is finished; otherwise it is opened later.
   bool put_off(Pair pair, int large, const CentredBox (&box)[2]) {
-    // By the discs around the faces, which take less time, unless they are much larger.
+    // The discs around the faces bound in less time, unless they are much larger.
     constexpr float kMuch = separate ? 4 : 0;
     const bool by_discs =
         cylinders_known_ && pair.place[1 - large].slot != kNone &&
@@ -234,8 +235,7 @@ class PairSearch {
     find_intersection({touching, count});
   }
 
-  // Of candidates that may intersect, the first that do, in the order of the trees; the others may be
-  // closest.
+  // Finds the first candidates that intersect, in the order of the trees; the others may be closest.
   void find_intersection(std::span<Candidate> touching) {
     std::ranges::sort(touching, {}, [](const Candidate& c) { return std::pair(c.owner1, c.owner2); });
     for (const Candidate& candidate : touching) {

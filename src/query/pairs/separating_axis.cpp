@@ -36,7 +36,7 @@ class SeparatingAxis {
     }
   }
 
-  // By the axes of the separating axis theorem, the normals of faces and the products of two edges, of the
+  // Tries the axes of the separating axis theorem, the normals of faces and the products of two edges, of the
   // whole boxes. The one that overlaps least may separate those of the children.
   bool exists() {
     for (int k = 0; k < 3; ++k) {
@@ -66,7 +66,7 @@ class SeparatingAxis {
     return false;
   }
 
-  // By those around the children of the roots.
+  // Whether an axis separates the boxes around the children of the roots.
   bool separates_children(const Vec3& axis) const {
     const Vec3 u = dot(axis, between_) < 0 ? -axis : axis;
     Vec3 u2;

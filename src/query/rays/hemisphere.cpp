@@ -17,7 +17,7 @@ std::uint64_t next(std::uint64_t& state) {
   return z ^ z >> 31;
 }
 
-// In [0, 1).
+// The bits as a number in [0, 1).
 double fraction(std::uint32_t bits) {
   return 0x1p-32 * bits;
 }

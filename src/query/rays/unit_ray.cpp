@@ -32,8 +32,8 @@ bool UnitRay::place(const Ray& ray, const UnitFrame& frame) {
   length = frame.scale * largest * size;
   skipped = away > kFar ? away - kNear : 0;
   const Vec3 start = from + skipped * unit;
-  // From a point at distance r ≥ 4 in a direction that meets the ball of radius 1.74, r − 2 ahead is at most
-  // 3 from 0.
+  // A direction that meets the ball of radius 1.74 comes within 3 of 0, r − 2 ahead of a point at distance
+  // r ≥ 4.
   if (norm(start) > kFar + slack) return false;
   const double first = length * ray.t_min - skipped - slack, last = length * ray.t_max - skipped + slack;
   if (last < 0 || first > kReach + slack) return false;

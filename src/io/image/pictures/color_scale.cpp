@@ -42,7 +42,7 @@ std::uint8_t to_byte(float x) {
 Rgb gradient(std::span<const Rgb> colors, double t) {
   const float s = static_cast<float>(std::clamp(t, 0.0, 1.0)) * static_cast<float>(colors.size() - 1);
   const int i = std::min(static_cast<int>(s), static_cast<int>(colors.size()) - 2);
-  // In 16 bits of fraction: integers are faster than three conversions each way.
+  // Integers with 16 bits of fraction are faster than three conversions each way.
   const int f = static_cast<int>(65536 * (s - static_cast<float>(i)));
   const auto mix = [f](int a, int b) {
     return static_cast<std::uint8_t>((65536 * a + f * (b - a) + 32768) >> 16);

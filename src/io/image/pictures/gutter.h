@@ -39,7 +39,7 @@ class Gutter {
   std::uint32_t blocks_;  ///< per row
   std::vector<std::array<int, 2>> steps_;  ///< all offsets within a disc, shortest first
   std::span<const std::uint32_t> owners_;
-  /// For each block, whether it or one of the eight around it has an owned texel.
+  /// Whether each block, or one of the eight around it, has an owned texel.
   std::vector<std::uint8_t> close_;
 };
 

@@ -26,8 +26,8 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom
     return bottom - (d - scale.lo) / (scale.hi - scale.lo) * (bottom - top);
   };
   constexpr int kSteps = 4096;  // finer than any pixel of the bar
-  // Without antialiasing, every pixel has the colour of one step, unblended with the background. Each step
-  // extends below the next one, which covers it, so rounding leaves no seams.
+  // Every pixel has the colour of one step, unblended with the background, if there is no antialiasing. Each
+  // step extends below the next one, which covers it, so rounding leaves no seams.
   cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
   for (int i = 0; i < kSteps; ++i) {
     const double foot = bottom - i * (bottom - top) / kSteps, head = std::max(top, foot - 3);

@@ -29,7 +29,7 @@ class Buffer {
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
 
-  /// To append to.
+  /// The text to append to.
   std::string& bytes() {
     constexpr std::size_t kMost = 1 << 20;
     if (bytes_.size() > kMost) flush();

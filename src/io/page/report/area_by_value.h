@@ -36,7 +36,7 @@ class AreaSums {
   std::vector<double> by_key_, by_bin_;
 };
 
-/// Of the texels of a map. Cost: linear, all cores.
+/// The area of the texels of a map by their distance. Cost: linear, all cores.
 [[nodiscard]] AreaByValue area_by_value(const Surface& surface, const DistanceMap& map);
 
 }  // namespace sdm::io

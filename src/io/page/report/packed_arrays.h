@@ -26,7 +26,7 @@ class PackedArrays {
 
   /// Compresses all planes. Cost: linear, all cores.
   void compress();
-  /// For each array its `count` and the lengths of its four compressed planes, `bytes`, 0 for a plane of
+  /// The `count` of each array and the lengths of its four compressed planes, `bytes`, 0 for a plane of
   /// zeros; planes follow each other in the order of the arrays. After compress().
   [[nodiscard]] const nlohmann::ordered_json& index() const { return index_; }
   /// The planes in base64. After compress().

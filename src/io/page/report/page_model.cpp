@@ -46,7 +46,7 @@ std::vector<std::uint32_t> differences_of_map(std::span<const std::uint32_t> cha
   return result;
 }
 
-// For each corner, how many vertices its vertex was before the first one that has not occurred yet: 0 for
+// How many vertices the vertex of each corner was before the first one that has not occurred yet: 0 for
 // that one. Vertices must be numbered in the order of their first use.
 std::vector<std::uint32_t> corner_codes(std::span<const Triangle> triangles) {
   std::vector<std::uint32_t> codes;

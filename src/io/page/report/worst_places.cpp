@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMost = 10;  // places
 constexpr std::size_t kPartsOfSamples = 16;
-// Of so many samples, which are close together on the surface, the one of the largest |distance| will do.
+// The sample of the largest |distance| stands for so many, which are close together on the surface.
 constexpr std::size_t kRun = 64;
 
 }  // namespace
@@ -25,7 +25,7 @@ LargestByCell::LargestByCell(const Box& box)
 void LargestByCell::add(const Place& place) {
   if (!std::isfinite(place.distance)) return;
   Place& largest = places_[cell(place.point)];
-  // Of equal ones the first, so that the result does not depend on the number of threads.
+  // The first one of equals stays, so that the result does not depend on the number of threads.
   if (largest.distance == 0 || std::abs(place.distance) > std::abs(largest.distance)) largest = place;
 }
 

@@ -108,7 +108,7 @@ bool DialectAttempt::is_number(std::string_view cell) const {
   return row.more() && row.number(ignored) && !row.more();
 }
 
-// At most a header and the number of rows precede the rows; another number and its rows may follow them.
+// Rows follow a header and their number at most; another number and its rows may follow them.
 void DialectAttempt::read() {
   const auto number = [this](std::string_view cell) { return is_number(cell); };
   std::optional<std::uint64_t> left;
