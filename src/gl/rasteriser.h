@@ -10,16 +10,10 @@
 #include <vector>
 
 #include "gl/device/context.h"
+#include "gl/image_size.h"
 #include "gl/polygons/raster_polygon.h"
 
 namespace sdm::gl {
-
-/// The size of an image in texels.
-struct ImageSize {
-  std::uint32_t columns, rows;
-
-  [[nodiscard]] std::size_t texels() const { return std::size_t{columns} * rows; }
-};
 
 /// Which texels a domain's polygons may cover. Domains that share an image own disjoint texels.
 struct WholeImage {};  ///< a single domain that owns all texels
