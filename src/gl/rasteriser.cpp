@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "atlas/size_text.h"
 #include "core/memory.h"
@@ -19,8 +20,6 @@
 
 namespace sdm::gl {
 namespace {
-
-constexpr std::size_t kCounters = 1024;  // fragment counters, one per piece
 
 // An upper bound on a polygon's fragments: the texels of its bounding rectangle, within the image.
 double fragment_bound(std::span<const RasterCorner> corners, const ImageSize& size) {
@@ -58,18 +57,62 @@ RasterDevice::~RasterDevice() {
   }
 }
 
+namespace {
+
+/// Atomic counters of fragments, one for each piece.
+class FragmentCounters {
+ public:
+  FragmentCounters() {
+    glNamedBufferStorage(counters_, kCounters * sizeof(GLuint), nullptr, 0);
+    clear();
+  }
+  /// Binds the counter of the next piece. Waits for the device if all are used.
+  void bind_next() {
+    if (used_ == kCounters) collect();
+    glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, 0, counters_, static_cast<GLintptr>(used_++ * sizeof(GLuint)),
+                      sizeof(GLuint));
+  }
+  /// Returns the sum since the last call. Waits for the device.
+  std::uint64_t take() {
+    collect();
+    return std::exchange(sum_, 0);
+  }
+
+ private:
+  static constexpr std::size_t kCounters = 1024;
+
+  void clear() {
+    const GLuint zero = 0;
+    glClearNamedBufferData(counters_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    used_ = 0;
+  }
+  void collect() {
+    std::array<GLuint, kCounters> counts{};
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(counters_, 0, sizeof counts, counts.data());
+    sum_ = std::accumulate(counts.begin(), counts.end(), sum_);
+    clear();
+  }
+
+  Buffer counters_;
+  std::size_t used_ = 0;
+  std::uint64_t sum_ = 0;
+};
+
+}  // namespace
+
 struct Rasteriser::Impl {
   const RasterDevice& device;
   bool by_owner;
   std::optional<StencilValues> stencil;
   std::optional<StencilCache> cache;
-  std::uint64_t batches = 0, fragments = 0;
-  std::size_t counters_used = 0;
+  std::uint64_t batches = 0;
 
   RasterTarget target;
   RasterPiece piece;
   Texture<GL_TEXTURE_2D> owners;
-  Buffer counters, stencil_texels;
+  FragmentCounters counters;
+  Buffer stencil_texels;
   VertexArray texel_points;
 
   Impl(const RasterDevice& d, const ImageSize& s, const Ownership& owned);
@@ -80,8 +123,6 @@ struct Rasteriser::Impl {
   void set_stencil(std::uint32_t domain);
   void fill_stencil(std::uint32_t domain, int value);
   void begin_polygons() const;
-  void clear_counters();
-  void collect_counters();
 };
 
 Rasteriser::Impl::Impl(const RasterDevice& d, const ImageSize& s, const Ownership& owned)
@@ -93,7 +134,6 @@ Rasteriser::Impl::Impl(const RasterDevice& d, const ImageSize& s, const Ownershi
   target.check_complete();
   make_inputs(owned);
   target.clear();
-  clear_counters();
   device.context().check("preparing the map");
 }
 
@@ -113,8 +153,6 @@ void Rasteriser::Impl::make_inputs(const Ownership& owned) {
   glEnableVertexArrayAttrib(texel_points, 0);
   glVertexArrayAttribIFormat(texel_points, 0, 1, GL_UNSIGNED_INT, 0);
   glVertexArrayAttribBinding(texel_points, 0, 0);
-
-  glNamedBufferStorage(counters, kCounters * sizeof(GLuint), nullptr, 0);
 }
 
 // Sets the state that no draw changes. The context and the programs are shared with other rasterisers.
@@ -147,9 +185,7 @@ void Rasteriser::Impl::draw_piece(const RasterBatch& batch, std::size_t begin, s
                       : batches % 2 == 0 ? Order::by_domain
                                          : Order::by_domain_reversed;
   piece.set(batch, begin, end, order, device.programs_->polygons);
-  if (counters_used == kCounters) collect_counters();
-  glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, 0, counters,
-                    static_cast<GLintptr>(counters_used++ * sizeof(GLuint)), sizeof(GLuint));
+  counters.bind_next();
   glBindTextureUnit(1, owners);
   begin_polygons();
   if (stencil)
@@ -180,20 +216,6 @@ void Rasteriser::Impl::fill_stencil(std::uint32_t domain, int value) {
   glStencilFunc(GL_ALWAYS, value, 0xFF);
   glDrawArrays(GL_POINTS, static_cast<GLint>(stencil->offsets[domain]),
                static_cast<GLsizei>(stencil->offsets[domain + 1] - stencil->offsets[domain]));
-}
-
-void Rasteriser::Impl::clear_counters() {
-  const GLuint zero = 0;
-  glClearNamedBufferData(counters, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
-  counters_used = 0;
-}
-
-void Rasteriser::Impl::collect_counters() {
-  std::array<GLuint, kCounters> counts{};
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(counters, 0, sizeof counts, counts.data());
-  fragments = std::accumulate(counts.begin(), counts.end(), fragments);
-  clear_counters();
 }
 
 Rasteriser::Rasteriser(const RasterDevice& device, const ImageSize& size, const Ownership& owned) {
@@ -242,9 +264,7 @@ RasterImage Rasteriser::read_back() {
 }
 
 void Rasteriser::count_into(GlReport& report) {
-  impl_->collect_counters();
-  report.fragments += impl_->fragments;
-  impl_->fragments = 0;
+  report.fragments += impl_->counters.take();
   report.batches += impl_->batches;
   if (const auto& cache = impl_->cache) {
     report.stencil_lookups += cache->lookups();

@@ -65,11 +65,10 @@ void DeepestVertex::start(const shape::Body& on, const shape::Body& other, const
                           const mesh::Similarity& from_other) {
   on_ = &on, other_ = &other, to_other_ = &to_other;
   const UnitFrame& frame = internals(on.sites()).frame;
-  scale_ = frame.scale * from_other.scale;
-  to_unit_ = from_other.map;
+  to_unit_ = {from_other.map, frame.scale * from_other.scale};
   for (std::size_t k = 0; k < 3; ++k) {
-    for (double& x : to_unit_.rows[k]) x *= frame.scale;
-    to_unit_.offset[k] = (to_unit_.offset[k] - frame.origin[k]) * frame.scale;
+    for (double& x : to_unit_.map.rows[k]) x *= frame.scale;
+    to_unit_.map.offset[k] = (to_unit_.map.offset[k] - frame.origin[k]) * frame.scale;
   }
   best_ = {};
   vertices_.clear(), groups_.clear(), faces_.clear();
@@ -107,7 +106,7 @@ DeepestVertex::UnitTriangle DeepestVertex::unit_triangle(std::uint32_t face) {
   double largest = 1;
   const Corners corners = corners_of(sites.mesh, face);
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 corner = to_unit_(corners[k]);
+    const Vec3 corner = to_unit_.map(corners[k]);
     for (std::size_t j = 0; j < 3; ++j) {
       t.corner[k][j] = static_cast<float>(corner[j]);
       largest = std::max(largest, std::abs(corner[j]));
@@ -150,7 +149,7 @@ DeepestVertex::Found DeepestVertex::find(double margin) {
     for (; used < faces_.size(); ++used) bound(faces_[used], 0, count);
     const float largest = HWY_DYNAMIC_DISPATCH(LargestBound)(bound_.data(), padded);
     const double enough = -best_.point.distance * (1 + kDoubleRounding);
-    if (largest == -kInfinity || largest + rounding_ <= enough * scale_) break;
+    if (largest == -kInfinity || largest + rounding_ <= enough * to_unit_.scale) break;
     const std::size_t deepest = std::ranges::find(bound_, largest) - bound_.begin();
     bound_[deepest] = -kInfinity;
     const std::uint32_t vertex = vertices_[deepest];

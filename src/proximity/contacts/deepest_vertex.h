@@ -60,9 +60,8 @@ class DeepestVertex {
 
   const shape::Body *on_ = nullptr, *other_ = nullptr;
   const mesh::Similarity* to_other_ = nullptr;
-  Affine to_unit_;      ///< from the frame of the other body to the unit frame of `on`
-  double scale_ = 1;    ///< of lengths, by to_unit_
-  float rounding_ = 0;  ///< of bounds
+  mesh::Similarity to_unit_;  ///< from the frame of the other body to the unit frame of `on`
+  float rounding_ = 0;        ///< of bounds
   Found best_;
   std::vector<std::uint32_t> vertices_;
   std::array<std::vector<float>, 3> at_;  ///< coordinates, in the unit frame

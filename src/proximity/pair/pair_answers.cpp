@@ -29,7 +29,7 @@ void check_options(double contact_margin, double depth_precision) {
 
 void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const FacePair& hint) {
   bodies_ = {&o1, &o2};
-  closest_faces_ = hint;
+  results_ = {.closest_faces = hint};
   for (int b = 0; b < 2; ++b) {
     const mesh::Similarity &from = bodies_[b]->pose(), &to = bodies_[1 - b]->pose();
     to_other_[b] = {inverse(to.map) * from.map, from.scale / to.scale};
@@ -37,41 +37,39 @@ void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, 
   Box box = o1.box();
   extend(box, o2.box());
   precision_ = 1e-6 * diagonal(box);
-  depth_found_ = false;
-  intersecting_.reset(), separation_.reset(), depth_.reset(), colliding_.reset(), contacts_.reset();
 }
 
 const BoundedLength& PairAnswers::separation() {
-  if (!separation_) find_closest(kNoLimit);
-  return *separation_;
+  if (!results_.separation) find_closest(kNoLimit);
+  return *results_.separation;
 }
 
 BoundedBool PairAnswers::colliding() {
-  if (!colliding_)
-    colliding_ = {box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
-                      (surfaces_intersect() || pairs::one_contains_part_of_other(meshes())),
-                  Certainty::exact};
-  return *colliding_;
+  if (!results_.colliding)
+    results_.colliding = {box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
+                              (surfaces_intersect() || pairs::one_contains_part_of_other(meshes())),
+                          Certainty::exact};
+  return *results_.colliding;
 }
 
 const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
-  if (!depth_found_) depth_ = depth();
-  depth_found_ = true;  // unless that has thrown
-  return depth_;
+  if (!results_.depth) results_.depth = depth();
+  return *results_.depth;
 }
 
 std::span<const Contact> PairAnswers::contacts() {
-  if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
-  if (!contacts_) contacts_ = contact_finder_.find(bodies_, meshes(), to_other_, contact_margin_, precision_);
-  return *contacts_;
+  if (!results_.contacts && !within(contact_margin_)) results_.contacts = std::span<const Contact>();
+  if (!results_.contacts)
+    results_.contacts = contact_finder_.find(bodies_, meshes(), to_other_, contact_margin_, precision_);
+  return *results_.contacts;
 }
 
 bool PairAnswers::within(double distance) {
   if (box_distance(bodies_[0]->box(), bodies_[1]->box()) > distance) return false;
   const shape::Ball &ball1 = bodies_[0]->ball(), &ball2 = bodies_[1]->ball();
   if (norm(ball2.centre - ball1.centre) > distance + ball1.radius + ball2.radius) return false;
-  if (distance > 0 && !separation_ && !find_closest(distance)) intersecting_ = false;
-  return (separation_ && separation_->value <= distance) || colliding().value;
+  if (distance > 0 && !results_.separation && !find_closest(distance)) results_.intersecting = false;
+  return (results_.separation && results_.separation->value <= distance) || colliding().value;
 }
 
 pairs::MeshPair PairAnswers::meshes() const {
@@ -79,25 +77,27 @@ pairs::MeshPair PairAnswers::meshes() const {
   return {internals(o1.sites()), internals(o2.sites()), to_other_[1].map, {&o1.cylinders(), &o2.cylinders()}};
 }
 
-// Computes separation_ if it is at most `bound`, and returns whether it is.
+// Computes results_.separation if it is at most `bound`, and returns whether it is.
 bool PairAnswers::find_closest(double bound) {
   const mesh::Similarity& pose = bodies_[0]->pose();
-  const pairs::Separation c = pairs::find_closest(meshes(), bound / pose.scale, workspace_, closest_faces_);
+  const pairs::Separation c =
+      pairs::find_closest(meshes(), bound / pose.scale, workspace_, results_.closest_faces);
   if (c.face1 == kNone) return false;
-  intersecting_ = c.intersecting;
-  closest_faces_ = {c.face1, c.face2};
+  results_.intersecting = c.intersecting;
+  results_.closest_faces = {c.face1, c.face2};
   const double distance = pose.scale * c.distance;
-  separation_ = {.value = distance,
-                 .certainty = Certainty::exact,
-                 .lower = distance,
-                 .upper = distance,
-                 .witness = std::array{pose.map(c.point1), pose.map(c.point2)}};
+  results_.separation = {.value = distance,
+                         .certainty = Certainty::exact,
+                         .lower = distance,
+                         .upper = distance,
+                         .witness = std::array{pose.map(c.point1), pose.map(c.point2)}};
   return true;
 }
 
 bool PairAnswers::surfaces_intersect() {
-  if (!intersecting_) intersecting_ = pairs::find_intersection(meshes(), workspace_).intersecting;
-  return *intersecting_;
+  if (!results_.intersecting)
+    results_.intersecting = pairs::find_intersection(meshes(), workspace_).intersecting;
+  return *results_.intersecting;
 }
 
 std::optional<BoundedLength> PairAnswers::depth() {

@@ -40,7 +40,7 @@ class PairAnswers {
   /// Whether the bodies collide or their surfaces are at most this far apart.
   [[nodiscard]] bool within(double distance);
   /// The closest faces, or faces that intersect, if the separation was computed; otherwise the hint.
-  [[nodiscard]] const FacePair& closest_faces() const { return closest_faces_; }
+  [[nodiscard]] const FacePair& closest_faces() const { return results_.closest_faces; }
 
   [[nodiscard]] const BoundedLength& separation();
   [[nodiscard]] BoundedBool colliding();
@@ -61,13 +61,16 @@ class PairAnswers {
   pairs::PairWorkspace workspace_;
   depth::DepthSearch depth_search_;
 
-  // Results for the current bodies.
-  bool depth_found_ = false;
-  FacePair closest_faces_ = kNoFaces;
-  std::optional<bool> intersecting_;  // the surfaces
-  std::optional<BoundedLength> separation_, depth_;
-  std::optional<BoundedBool> colliding_;
-  std::optional<std::span<const Contact>> contacts_;
+  /// What is known of the current bodies.
+  struct Results {
+    FacePair closest_faces = kNoFaces;
+    std::optional<bool> intersecting{};  ///< the surfaces
+    std::optional<BoundedLength> separation{};
+    std::optional<std::optional<BoundedLength>> depth{};
+    std::optional<BoundedBool> colliding{};
+    std::optional<std::span<const Contact>> contacts{};
+  };
+  Results results_;
 };
 
 }  // namespace sdm::pair

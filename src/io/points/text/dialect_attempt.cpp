@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 namespace sdm::io {
 namespace {
@@ -87,12 +88,13 @@ bool DialectAttempt::agrees_with(const DialectAttempt& other) const {
 
 std::string DialectAttempt::doubt() const {
   constexpr std::size_t kRows = 3;
-  if (!by_place_ || table_.plan.has_normals()) return {};
-  if (counting_ && rows_.size() >= kRows)
+  if (!unnamed_ || table_.plan.has_normals()) return {};
+  if (unnamed_->counting && rows_.size() >= kRows)
     return "the first column counts the rows, so that it may be x or the number of the point";
-  if (cell_of_grid_ && rows_.size() >= kRows && has_fraction_[0] && has_fraction_[1] && has_fraction_[2])
+  if (unnamed_->grid && rows_.size() >= kRows && std::ranges::all_of(unnamed_->has_fraction, std::identity()))
     return "the first two columns may be x and y, or the row and column of a scanner before x, y and z";
-  if (halves_ && given_.separator == TextSeparator::automatic && given_.decimal == DecimalMark::automatic)
+  if (unnamed_->halves && given_.separator == TextSeparator::automatic &&
+      given_.decimal == DecimalMark::automatic)
     return fmt::format("the rows may be {} numbers, or {} with decimal commas", columns_, columns_ / 2);
   return {};
 }
@@ -134,7 +136,7 @@ void DialectAttempt::read() {
       throw Misfit{line.number, row_fault(line.text, table_.plan)};
     rows_.push_back(values);
     numbers_ += numbers;
-    if (by_place_) examine(line, cells);
+    if (unnamed_) examine(line, cells);
   }
   if (rows_.empty()) {
     if (!header_) throw Misfit{1, "there are no rows"};
@@ -143,7 +145,7 @@ void DialectAttempt::read() {
     throw Misfit{header_->number,
                  header ? "names columns, but no row follows" : "not a row of three numbers"};
   }
-  if (!normals_) return;
+  if (!unnamed_ || !unnamed_->normals) return;
   table_.plan.want({0, 1, 2, 3, 4, 5});
   std::copy(std::begin(kRoleNames), std::end(kRoleNames), table_.dialect.columns.begin());
   rows_ = std::move(rows_with_normals_);
@@ -172,11 +174,10 @@ void DialectAttempt::plan(const TextLine& first_row, Cells row) {
     return use(*found);
   }
   if (const auto found = columns_in_comment()) return use(*found);
-  by_place_ = true;
-  normals_ = columns_ >= kRoles;
-  counting_ = columns_ > 3;
-  cell_of_grid_ = columns_ > 4;
-  halves_ = table_.plan.separator == TextSeparator::comma && columns_ >= 6 && columns_ % 2 == 0;
+  unnamed_ = {.normals = columns_ >= kRoles,
+              .counting = columns_ > 3,
+              .grid = columns_ > 4,
+              .halves = table_.plan.separator == TextSeparator::comma && columns_ >= 6 && columns_ % 2 == 0};
   use({.columns = {0, 1, 2}});
 }
 
@@ -220,17 +221,19 @@ void DialectAttempt::use(const NamedColumns& named) {
 // Updates what is said of columns by their place.
 void DialectAttempt::examine(const TextLine& row, const Cells& cells) {
   RowNumbers values{};
-  if (normals_) {
+  if (unnamed_->normals) {
     RowPlan plan = table_.plan;
     plan.want({0, 1, 2, 3, 4, 5});
-    normals_ = read_row(row.text, plan, values) && has_unit_normal(values);
-    if (normals_) rows_with_normals_.push_back(values);
+    unnamed_->normals = read_row(row.text, plan, values) && has_unit_normal(values);
+    if (unnamed_->normals) rows_with_normals_.push_back(values);
   }
   const auto count = lone_count(cells[0]);
-  counting_ = counting_ && count && is_number(cells[3]) && (rows_.size() == 1 || *count == last_count_ + 1);
-  last_count_ = count.value_or(0);
-  if (cell_of_grid_) examine_grid(row, cells);
-  for (std::size_t i = 0; halves_ && i < columns_; ++i) halves_ = is_whole(cells[i], i % 2 == 0);
+  unnamed_->counting = unnamed_->counting && count && is_number(cells[3]) &&
+                       (rows_.size() == 1 || *count == unnamed_->last_count + 1);
+  unnamed_->last_count = count.value_or(0);
+  if (unnamed_->grid) examine_grid(row, cells);
+  for (std::size_t i = 0; unnamed_->halves && i < columns_; ++i)
+    unnamed_->halves = is_whole(cells[i], i % 2 == 0);
 }
 
 // Scanners write their points by row and column, or by column and row, often with gaps.
@@ -239,12 +242,12 @@ void DialectAttempt::examine_grid(const TextLine& row, const Cells& cells) {
   RowNumbers point{};
   RowPlan plan = table_.plan;
   plan.want({2, 3, 4});
-  cell_of_grid_ = first && second && read_row(row.text, plan, point);
-  if (!cell_of_grid_) return;
-  const GridCell cell{*first, *second};
-  cell_of_grid_ = rows_.size() == 1 || last_cell_ < cell;
-  last_cell_ = cell;
-  for (std::size_t k = 0; k < 3; ++k) has_fraction_[k] |= point[k] != std::trunc(point[k]);
+  unnamed_->grid = first && second && read_row(row.text, plan, point);
+  if (!unnamed_->grid) return;
+  const std::pair cell{*first, *second};
+  unnamed_->grid = rows_.size() == 1 || unnamed_->last_cell < cell;
+  unnamed_->last_cell = cell;
+  for (std::size_t k = 0; k < 3; ++k) unnamed_->has_fraction[k] |= point[k] != std::trunc(point[k]);
 }
 
 }  // namespace sdm::io

@@ -71,14 +71,17 @@ class DialectAttempt {
   std::vector<RowNumbers> rows_, rows_with_normals_;
   std::size_t columns_ = 0, numbers_ = 0;
   std::optional<TextLine> header_;
-  // What is known of columns that have no names: whether columns 4 to 6 are normals, column 1 counts the
-  // rows, columns 1 and 2 increase as the cells of a grid do, with which of columns 3 to 5 having fractions,
-  // and all cells are whole numbers that may be halves of numbers with decimal commas.
-  using GridCell = std::pair<std::uint64_t, std::uint64_t>;
-  bool by_place_ = false, normals_ = false, counting_ = false, cell_of_grid_ = false, halves_ = false;
-  std::array<bool, 3> has_fraction_{};
-  std::uint64_t last_count_ = 0;
-  GridCell last_cell_{};
+  /// What is known of columns that have no names.
+  struct UnnamedColumns {
+    bool normals = false;   ///< columns 4 to 6 are normals
+    bool counting = false;  ///< column 1 counts the rows
+    bool grid = false;      ///< columns 1 and 2 increase as the cells of a grid do
+    bool halves = false;    ///< all cells are whole numbers that may be halves of numbers with decimal commas
+    std::array<bool, 3> has_fraction{};  ///< which of columns 3 to 5
+    std::uint64_t last_count = 0;
+    std::pair<std::uint64_t, std::uint64_t> last_cell{};
+  };
+  std::optional<UnnamedColumns> unnamed_;
 };
 
 }  // namespace sdm::io
