@@ -42,3 +42,4 @@
 #include <sdm/version.h>
 #include <sdm/vertex_distances.h>
 #include <sdm/volume.h>
+#include <sdm/weld.h>
