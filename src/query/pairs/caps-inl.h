@@ -106,7 +106,7 @@ class Caps {
   }
 
   // The smallest lower bound on x·u over the leaves, and the leaf that has it.
-  float find_first(int side, Place& first) {
+  HWY_NOINLINE float find_first(int side, Place& first) {
     float least = std::numeric_limits<float>::infinity();
     visit_leaves(
         side, [&] { return least; },
@@ -120,7 +120,7 @@ class Caps {
 
   // The leaves that are not too far, given that the other surface extends to `along`. Returns false if there
   // are too many.
-  bool collect_cap(int side, float along) {
+  HWY_NOINLINE bool collect_cap(int side, float along) {
     Cap& cap = caps_[side];
     cap.count = 0;
     const float most =

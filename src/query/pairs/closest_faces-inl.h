@@ -110,7 +110,7 @@ class ClosestFaces {
 
  private:
   // Compares as many candidates as there are lanes, from `next` on. Returns the first one after them.
-  size_t compare_some(size_t next) {
+  HWY_NOINLINE size_t compare_some(size_t next) {
     const double most = limit_in_double();
     // Most pairs are excluded by their boxes in double precision if the meshes have details too fine for
     // single precision, else none.

@@ -7,8 +7,9 @@ Corners MeshPair::face1(std::uint32_t face) const {
 }
 
 Corners MeshPair::face2(std::uint32_t face) const {
-  const auto [a, b, c] = corners_of(o2.mesh, face);
-  return {pose(a), pose(b), pose(c)};
+  const auto& [a, b, c] = o2.mesh.triangles[face];
+  const std::vector<Vec3>& at = o2.mesh.positions;  // not copied before they are posed
+  return {pose(at[a]), pose(at[b]), pose(at[c])};
 }
 
 }  // namespace sdm::pairs

@@ -22,6 +22,10 @@ namespace sdm::pairs::HWY_NAMESPACE {
 namespace {
 
 // The policy of a search of both trees. `separate`: for the closest faces, otherwise for any that intersect.
+//
+// Steps that call scalar code are not inlined into the loop of the search: the compiler clears the upper
+// halves of vector registers where a function returns, without which the scalar code is slower (collisions of
+// small meshes by a fifth).
 template <bool separate>
 class PairSearch {
  public:
@@ -128,7 +132,8 @@ class PairSearch {
 
   // Lower bounds on the distances of the children of one node to the other, from their boxes and then from
   // their cylinders.
-  void bound_children(const Pair& pair, int side, const CentredBox& other, float (&least)[kWidth]) const {
+  HWY_NOINLINE void bound_children(const Pair& pair, int side, const CentredBox& other,
+                                   float (&least)[kWidth]) const {
     const Lanes d;
     const uint32_t index = pair.place[side].child;
     const BoxDistances boxes(s_.maps, closest_.direction(), side, other);
@@ -208,7 +213,7 @@ class PairSearch {
     faces_[side].place(*s_.sites[side], leaf, side == 1 ? &s_.maps.to[0] : nullptr);
   }
 
-  void compare_leaves(const Pair& pair) {
+  HWY_NOINLINE void compare_leaves(const Pair& pair) {
     if (discs_apart(pair)) return;  // the direction may have improved since the leaves were paired
     const uint32_t near1 = faces_near(pair, 0);
     const uint32_t near2 = near1 == 0 ? 0 : faces_near(pair, 1);
@@ -236,7 +241,7 @@ class PairSearch {
   }
 
   // Finds the first candidates that intersect, in the order of the trees; the others may be closest.
-  void find_intersection(std::span<Candidate> touching) {
+  HWY_NOINLINE void find_intersection(std::span<Candidate> touching) {
     std::ranges::sort(touching, {}, [](const Candidate& c) { return std::pair(c.owner1, c.owner2); });
     for (const Candidate& candidate : touching) {
       const FacePair faces = closest_.faces_of(candidate);
