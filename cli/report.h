@@ -51,8 +51,6 @@ void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json&
 /// JSON text; drops invalid bytes of file names that are not UTF-8.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);
 
-/// A tolerance in words, such as "±0.1 mm".
-[[nodiscard]] std::string limits_text(const sdm::Tolerance& tolerance, const std::string& unit);
 /// The extreme that exceeds the tolerance most, or comes closest to a limit.
 [[nodiscard]] const sdm::Extreme& decisive_extreme(const sdm::Summary& summary);
 

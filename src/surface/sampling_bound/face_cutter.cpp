@@ -12,8 +12,7 @@ namespace {
 /// square.
 constexpr double kNearEnough = 1.1;
 
-}  // namespace
-
+// Half the diagonal of a square texel, if all the area were shared among the samples.
 double typical_radius(const Surface& surface) {
   double doubled_area = 0;
   for (std::size_t f = 0; f < surface.mesh().triangles.size(); ++f) {
@@ -22,6 +21,8 @@ double typical_radius(const Surface& surface) {
   }
   return 0.5 * std::sqrt(doubled_area / static_cast<double>(surface.sample_texels().size()));
 }
+
+}  // namespace
 
 // The base is the longest edge, and the height is at most half a square.
 std::array<Vec2, 3> unfolded(const std::array<Vec3, 3>& vertices, double piece_length) {

@@ -22,8 +22,6 @@ struct CutFace {
   double enough;  ///< a distance from a piece to its sample that needs no improvement
 };
 
-/// Half the diagonal of a square texel, if all the area were shared among the samples.
-[[nodiscard]] double typical_radius(const Surface& surface);
 /// A triangle in the plane that represents a face without area: its base is the face's longest edge, as many
 /// squares long as the face should have pieces of this length.
 [[nodiscard]] std::array<Vec2, 3> unfolded(const std::array<Vec3, 3>& vertices, double piece_length);
