@@ -17,12 +17,12 @@ namespace sdm {
 enum class SignMethod {
   automatic,  ///< exact where O2 is closed and orientable, else none
   none,       ///< unsigned distances
-  /// For closed, orientable O2: inside are the points with a winding number other than 0, with all shells
+  /// Inside of a closed, orientable O2 are the points with a winding number other than 0, with all shells
   /// oriented outwards, whether O2 intersects itself or not. A shell is a cavity if it lies inside an odd
   /// number of other shells that it neither touches nor intersects, otherwise a solid. Exact at points
   /// farther from O2 than 1e-6 of the diagonal of the scene.
   exact,
-  /// For closed, orientable O2 the same as exact. For any other O2: inside are the points with a generalised
+  /// The same as exact for closed, orientable O2. Inside of any other O2 are the points with a generalised
   /// winding number above 1/2 (Jacobson et al. 2013), decided to rounding; an estimate of insideness.
   winding,
 };

@@ -102,7 +102,7 @@ struct Judgement {
 /// Whether all distances of a surface are within a tolerance, in units of the mesh.
 struct ToleranceVerdict : Judgement {
   Tolerance tolerance{};
-  /// Of |distance|, over all samples and all vertices of faces; infinite if one of them has no value.
+  /// The largest |distance| of all samples and all vertices of faces; infinite if one of them has no value.
   double largest = 0;
   /// Fraction of the area, in [0, 1], of texels whose distance is out of the tolerance by more than the error
   /// of the engine, or that have no value.

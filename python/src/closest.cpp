@@ -21,7 +21,7 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// By the areas of the triangles opposite to the corners, of a face that has an area.
+// The areas of the triangles opposite to the corners, relative to that of the face, which has one.
 Vec3 weights_in_face(const std::array<Vec3, 3>& corners, const Vec3& p) {
   const Vec3 normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
   Vec3 weights;

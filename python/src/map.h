@@ -27,7 +27,7 @@ struct PyMap {
   std::uint64_t surface_shape = 0, surface_edits = 0, sites_shape = 0;
   MapOptions options;
   std::string engine;  ///< its name
-  /// Of a map of a surface to itself: what each face excludes; otherwise null.
+  /// What each face excludes in a map of a surface to itself; otherwise null.
   std::shared_ptr<const Exclusion> exclusion;
   DistanceMap map;
   double ms = 0;  ///< that it took
@@ -63,7 +63,7 @@ struct PyMap {
           "the distances of a surface to itself jump between faces, so that texels do not bound them; "
           "SelfProximityQuery.separation() is exact");
   }
-  /// Of a distance, for the present shapes. Self maps are exact but for rounding to float.
+  /// The accuracy of a distance, for the present shapes. Self maps are exact but for rounding to float.
   [[nodiscard]] double accuracy() const {
     const EngineInfo& info = options.engine ? engine_info(*options.engine) : engines().front();
     return engine_accuracy(info, on->surface.mesh(), to->sites.mesh());

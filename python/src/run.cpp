@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 // What the computing thread and the waiting one tell each other.
 class Exchange {
  public:
-  // On the computing thread. Returns false to cancel.
+  // Called on the computing thread. Returns false to cancel.
   bool report(std::string_view step, double fraction) {
     if (cancelled_) return false;
     std::unique_lock lock(mutex_);
@@ -34,8 +34,8 @@ class Exchange {
   }
   [[nodiscard]] const std::atomic<bool>& cancelled() const { return cancelled_; }
 
-  // On the waiting thread. Calls on_report for every report, and on_pause when there is none for a while;
-  // they return false to cancel.
+  // Called on the waiting thread. Calls on_report for every report, and on_pause when there is none for a
+  // while; they return false to cancel.
   template <class OnReport, class OnPause>
   void wait(OnReport on_report, OnPause on_pause) {
     std::unique_lock lock(mutex_);
