@@ -57,8 +57,6 @@ RasterDevice::~RasterDevice() {
   }
 }
 
-namespace {
-
 /// Atomic counters of fragments, one for each piece.
 class FragmentCounters {
  public:
@@ -98,8 +96,6 @@ class FragmentCounters {
   std::size_t used_ = 0;
   std::uint64_t sum_ = 0;
 };
-
-}  // namespace
 
 struct Rasteriser::Impl {
   const RasterDevice& device;
