@@ -36,6 +36,7 @@
 #include <sdm/threads.h>
 #include <sdm/time_of_contact.h>
 #include <sdm/tolerance.h>
+#include <sdm/tolerance_proof.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>
 #include <sdm/uv_tiles.h>

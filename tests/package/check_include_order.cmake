@@ -34,6 +34,7 @@ set(order
   map
   registration
   certify/hausdorff
+  certify/tolerance
   certify/depth
   volume
   proximity/contacts

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <new>
 
-#include "certify/hausdorff/part_search.h"
-#include "certify/hausdorff/vertex_search.h"
+#include "certify/hausdorff/largest_distance.h"
 #include "core/memory.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
@@ -15,28 +14,15 @@
 namespace sdm {
 namespace {
 
-double largest_coordinate(const Box& box) {
-  double largest = 0;
-  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
-  return largest;
-}
-
 void check(const HausdorffOptions& options) {
   if (!(options.precision >= 0)) throw Error("the precision of a Hausdorff distance must be at least 0");
 }
 
 HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const HausdorffOptions& options) {
-  const Box box = bounds(a);
-  Box both = bounds(b.mesh);
-  extend(both, box);
-  const double size = diagonal(both), coordinate = largest_coordinate(box);
-  const double asked = options.precision > 0 ? options.precision : HausdorffOptions::kPrecision * size;
-  const double precision = std::max(asked, kDoubleRounding * std::max(size, largest_coordinate(both)));
-
-  hausdorff::LowerBound lower;
-  const auto vertices = hausdorff::search_vertices(a, b, options.progress, lower);
-  hausdorff::PartSearch parts(b, precision, coordinate, lower);
-  const double upper = parts(a, vertices, options.progress);
+  const hausdorff::Scale scale = hausdorff::scale_of(a, b);
+  const double asked = options.precision > 0 ? options.precision : HausdorffOptions::kPrecision * scale.size;
+  const auto [lower, upper] =
+      hausdorff::largest_distance(a, b, scale, {.precision = asked}, options.progress);
 
   HausdorffDistance result{.faces = lower.faces};
   BoundedLength& distance = result.distance;
@@ -44,7 +30,7 @@ HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const
   distance.lower = std::min(lower.value, distance.value);
   distance.upper = std::max(upper, distance.value);
   distance.certainty =
-      distance.upper - distance.lower <= kDoubleRounding * size ? Certainty::exact : Certainty::bounded;
+      distance.upper - distance.lower <= kDoubleRounding * scale.size ? Certainty::exact : Certainty::bounded;
   distance.witness = std::array{lower.point, lower.closest};
   return result;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "certify/hausdorff/nearest_face.h"
+#include "certify/hausdorff/side.h"
 #include "geometry/vec.h"
 
 namespace sdm::hausdorff {
@@ -13,13 +14,16 @@ struct LowerBound {
   double value = -1;        ///< ≤ the largest distance
   Vec3 point{}, closest{};  ///< of A and of B
   std::array<std::uint32_t, 2> faces{kNone, kNone};
+  const Side* side = nullptr;  ///< null: points on both sides of B count
 
   void raise(const LowerBound& other) {
     if (other.value > value) *this = other;
   }
   /// `point` is a point of a face of A, at most `rounding` from it.
   void raise(const Vec3& p, double rounding, std::uint32_t face, const NearestFace& nearest) {
-    raise({std::max(0.0, nearest.lower - rounding), p, nearest.point, {face, nearest.face}});
+    const double distance = std::max(0.0, nearest.lower - rounding);
+    if (distance > value && (side == nullptr || side->has(p)))
+      *this = {distance, p, nearest.point, {face, nearest.face}, side};
   }
 };
 

@@ -22,6 +22,7 @@ constexpr double kEqual = 1.0 / 16;
 
 double PartSearch::operator()(const Mesh& a, std::span<const VertexDistance> vertices,
                               const Progress& progress) {
+  forgive();
   parts_.start(lower_.value, precision_);
   {
     const FirstParts first = first_parts(a, b_, vertices, lower_.value, precision_);
@@ -38,14 +39,22 @@ void PartSearch::evaluate(std::span<const Part> run, Found& found) const {
   for (const Part& part : run) evaluate(part, found);
 }
 
-void PartSearch::learn(std::span<const Part> /*run*/, const Found& found) {
+void PartSearch::learn(std::span<const Part> run, const Found& found) {
+  examined_ += run.size();
   lower_.raise(found.lower);
+  forgive();
   parts_.raise(lower_.value);
 }
 
 void PartSearch::conclude(std::span<const Part> /*run*/, const Found& found) {
   parts_.settle(found.settled);
   for (const Part& part : found.open) parts_.put(part);
+}
+
+// Once a distance above the limit is known, only larger ones than those that are forgiven matter.
+void PartSearch::forgive() {
+  if (decision_ && lower_.value > decision_->limit)
+    lower_.value = std::max(lower_.value, decision_->forgiven);
 }
 
 void PartSearch::evaluate(const Part& part, Found& found) const {
@@ -69,6 +78,16 @@ void PartSearch::evaluate(const Part& part, Found& found) const {
   double reach = 0;  // of the part, from the point
   for (const Vec3& corner : part.at) reach = std::max(reach, norm(corner - highest));
   better.upper = std::min(part.upper, (1 + kFewRoundings) * (nearest.upper + reach));  // as d is 1-Lipschitz
+  if (const Side* side = found.lower.side; side != nullptr && nearest.lower > 0 && !side->has(highest)) {
+    // The way from the point to one on the side that counts leads through B.
+    const double beyond = (1 + kFewRoundings) * reach - nearest.lower;
+    better.upper = side->is_one_sided(part.at) ? 0 : std::clamp(beyond, 0.0, better.upper);
+    better.stalled = true;
+    if (better.upper + rounding(part) <= found.lower.value + precision_) {
+      found.settled = std::max(found.settled, better.upper + rounding(part));
+      return;
+    }
+  }
   // Where B has needles, the bounds on a distance may be farther apart than the precision: no division helps.
   constexpr double kFinest = 1.0 / 8;  // of the precision
   const bool finest = reach <= std::max(kFinest * precision_, nearest.upper - nearest.lower);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "certify/hausdorff/largest_distance.h"
 #include "certify/hausdorff/lower_bound.h"
 #include "certify/hausdorff/part.h"
 #include "certify/hausdorff/vertex_search.h"
@@ -25,26 +26,44 @@ class PartSearch : public search::Policy {
     double settled = 0;
   };
 
-  /// `coordinate` is the largest of A. `lower` is raised.
-  PartSearch(const sites::SitesData& b, double precision, double coordinate, LowerBound& lower)
-      : b_(b), precision_(precision), coordinate_(coordinate), lower_(lower) {}
+  struct Limits {
+    double precision, coordinate;  ///< of the bounds; the largest coordinate of A
+    std::optional<Decision> decision{};
+    std::size_t most_parts = std::numeric_limits<std::size_t>::max();
+  };
+
+  /// `lower` is raised; with a decision, it is at least its limit.
+  PartSearch(const sites::SitesData& b, const Limits& limits, LowerBound& lower)
+      : b_(b),
+        precision_(limits.precision),
+        coordinate_(limits.coordinate),
+        decision_(limits.decision),
+        most_parts_(limits.most_parts),
+        lower_(lower) {}
 
   /// Returns the upper bound. It is farther than the precision from the lower bound only if parts were
-  /// divided to the precision of double.
+  /// divided to the precision of double, if the search ended at the decision, or after the most parts.
   double operator()(const Mesh& a, std::span<const VertexDistance> vertices, const Progress& progress);
 
   void evaluate(std::span<const Part> run, Found& found) const;
   void learn(std::span<const Part> run, const Found& found);
   void conclude(std::span<const Part> run, const Found& found);
+  [[nodiscard]] bool within_budget() const {
+    return examined_ < most_parts_ && !(decision_ && lower_.value > decision_->forgiven);
+  }
 
  private:
   void evaluate(const Part& part, Found& found) const;
+  void forgive();
   void put(Part part, Found& found) const;
   [[nodiscard]] double rounding(const Part& part) const;
 
   const sites::SitesData& b_;
   const double precision_, coordinate_;
+  const std::optional<Decision> decision_;
+  const std::size_t most_parts_;
   LowerBound& lower_;
+  std::size_t examined_ = 0;
   search::Parts<Part, Found> parts_;
 };
 

@@ -1,0 +1,83 @@
+/// Proofs that every distance of a surface is within a tolerance, or that one is not: of all points, not only
+/// of samples.
+///
+/// Threads: the functions may be called concurrently, also with the same Sites.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/mesh.h>
+#include <sdm/progress.h>
+#include <sdm/sign.h>
+#include <sdm/sites.h>
+#include <sdm/tolerance.h>
+#include <sdm/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace sdm {
+
+/// What has been proven of a surface and a tolerance.
+enum class Proof {
+  inside,     ///< every point of the surface is within the tolerance
+  outside,    ///< the witness is out of it by more than the accuracy
+  undecided,  ///< neither
+};
+
+/// A point of the surface, and what is known of its distance.
+struct ToleranceWitness {
+  Vec3 point{}, closest{};                           ///< on the surface, and the point of O2 closest to it
+  std::uint32_t face = kNone, closest_face = kNone;  ///< that contain these
+  double distance = 0;                               ///< |closest − point|, negative inside O2
+};
+
+/// The answer of prove_tolerance().
+struct ToleranceProof {
+  Proof proof = Proof::undecided;
+  /// A point out of the tolerance: of Proof::outside always; if undecided, one that is out of it by no more
+  /// than the accuracy, if one was found.
+  std::optional<ToleranceWitness> witness{};
+  bool at_lower = false;  ///< the limit that the witness exceeds or, without one, that was not proven
+  /// If undecided: no point is out of the tolerance by more than this. At most the accuracy, unless the
+  /// search ended at ToleranceProofOptions::most_parts. Nothing if signs are the reason.
+  std::optional<double> undecided_by{};
+  /// Undecided because it depends on signs that are estimates (SignMethod::winding of an open O2): some point
+  /// is within the tolerance with one sign and out of it with the other.
+  bool depends_on_signs = false;
+};
+
+/// Options of prove_tolerance().
+struct ToleranceProofOptions {
+  SignMethod sign = SignMethod::automatic;  ///< as of a map
+  /// Distances that exceed a limit by no more than this, in units of the meshes, are not out of the
+  /// tolerance, as rounding may be the reason; but nothing with such a distance is proven to be inside. ≥ 0
+  double accuracy = 0;
+  /// The faces of the surface that matter; by default all.
+  std::optional<std::span<const std::uint32_t>> faces{};
+  /// The search ends, undecided, after so many parts of the surface were examined in one step of the proof.
+  std::size_t most_parts = std::size_t{1} << 20;
+  Progress progress{};
+};
+
+/// Decides whether all points of a surface have distances to O2 within a tolerance, by branch and bound as of
+/// one_sided_hausdorff(), which ends as soon as the answer is known. Unsigned distances are never negative,
+/// so that a lower limit of 0 or less holds. Each side of O2 has its own limits: signs are decided exactly
+/// where the distance exceeds a limit. With estimated signs, what |d| alone decides is proven, and the rest
+/// is undecided with `depends_on_signs`.
+///
+/// A proof holds to 1e-12 of the diagonal of both meshes and of their largest coordinate. It is undecided
+/// only if the most extreme distance is that close to a limit, or beyond it by no more than the accuracy; if
+/// it depends on estimated signs; or at the end of the search (`most_parts`), which happens where the surface
+/// touches O2 at a limit of 0 that distinguishes signs. The result does not depend on the number of threads.
+///
+/// Throws sdm::Error if the surface is unusable (see validate), for a face that it does not have, a tolerance
+/// that is not finite and ordered, an accuracy that is negative or NaN, a sign method that O2 does not
+/// permit, a tolerance that needs a sign where distances have none, or if there is not enough memory;
+/// Cancelled. Cost: as of one_sided_hausdorff(), but only near the points that may be out of the tolerance.
+[[nodiscard]] SDM_API ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites,
+                                                     const Tolerance& tolerance,
+                                                     const ToleranceProofOptions& options = {});
+
+}  // namespace sdm

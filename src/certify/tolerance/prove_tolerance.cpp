@@ -1,0 +1,185 @@
+#include <sdm/error.h>
+#include <sdm/tolerance_proof.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "certify/hausdorff/largest_distance.h"
+#include "certify/hausdorff/nearest_face.h"
+#include "certify/hausdorff/vertex_search.h"
+#include "certify/tolerance/least_distance.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "geometry/vec.h"
+#include "mesh/validate.h"
+#include "query/inside/inside.h"
+
+namespace sdm {
+namespace {
+
+using hausdorff::LowerBound;
+using hausdorff::NearestFace;
+using hausdorff::Side;
+
+/// The faces of a mesh that matter.
+Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> faces) {
+  Mesh part;
+  part.positions = mesh.positions;
+  part.triangles.reserve(faces.size());
+  for (const std::uint32_t face : faces) {
+    if (face >= mesh.triangles.size())
+      throw Error("the surface has no face " + std::to_string(face) + " for a tolerance to be proven of");
+    part.triangles.push_back(mesh.triangles[face]);
+  }
+  return part;
+}
+
+/// All answers together.
+ToleranceProof operator&(const ToleranceProof& a, const ToleranceProof& b) {
+  if (a.proof == Proof::outside || b.proof == Proof::inside) return a;
+  if (b.proof == Proof::outside || a.proof == Proof::inside) return b;
+  ToleranceProof worse = a.undecided_by < b.undecided_by ? b : a;
+  worse.depends_on_signs = a.depends_on_signs || b.depends_on_signs;
+  return worse;
+}
+
+/// Answers questions on a surface and O2.
+class Prover {
+ public:
+  Prover(const Mesh& a, const sites::SitesData& b, SignMethod sign, const ToleranceProofOptions& options)
+      : a_(a), b_(b), sign_(sign), options_(options), scale_(hausdorff::scale_of(a, b)) {}
+
+  ToleranceProof operator()(const Tolerance& tolerance) const {
+    const auto [lo, hi] = tolerance;
+    const double least = std::max({lo, -hi, 0.0}), most = std::max(-lo, hi), tight = std::min(-lo, hi);
+    if (sign_ == SignMethod::none) return at_least(least, true) & at_most(hi);
+    if (sign_ == SignMethod::winding && lo != -hi) return by_either_sign(tight, most);
+    if (tight < 0) {
+      const ToleranceProof apart = at_least(least, lo > 0);
+      return apart.proof == Proof::inside ? on_side(hi < 0) & at_most(most) : apart;
+    }
+    return tight == most ? at_most(most) : at_most(tight, -lo < hi) & at_most(most);
+  }
+
+ private:
+  /// Whether no distance is larger, of the points on one side of O2 or of all.
+  ToleranceProof at_most(double limit, std::optional<bool> inside = {}) const {
+    std::optional<Side> side;
+    if (inside) side.emplace(b_, *inside);
+    const hausdorff::Decision decision{.limit = limit, .forgiven = limit + options_.accuracy};
+    const hausdorff::LargestDistance found = hausdorff::largest_distance(
+        a_, b_, scale_,
+        {.decision = decision, .side = side ? &*side : nullptr, .most_parts = options_.most_parts},
+        options_.progress);
+    ToleranceProof result{.at_lower = inside.value_or(false)};
+    if (found.lower.faces[0] != kNone) {
+      result.witness = witness(found.lower);
+      result.at_lower = result.witness->distance < 0;
+    }
+    if (result.witness && norm(found.lower.closest - found.lower.point) > decision.forgiven)
+      result.proof = Proof::outside;
+    else if (!result.witness && found.upper <= limit + scale_.precision)
+      result.proof = Proof::inside;
+    else
+      result.undecided_by = std::max(found.upper - limit, 0.0);
+    return result;
+  }
+
+  /// Whether no |distance| is smaller; `at_lower`: that is the lower limit.
+  ToleranceProof at_least(double limit, bool at_lower) const {
+    if (!(limit > 0)) return {.proof = Proof::inside};
+    const tolerance::LeastDistance found = tolerance::least_distance(a_, b_, limit);
+    ToleranceProof result{.at_lower = at_lower};
+    if (found.face == kNone || found.value >= limit - scale_.precision) {
+      result.proof = Proof::inside;
+      return result;
+    }
+    result.witness = {found.point, found.closest, found.face, found.closest_face, found.value};
+    if (limit - found.value > options_.accuracy)
+      result.proof = Proof::outside;
+    else
+      result.undecided_by = limit - found.value;
+    return result;
+  }
+
+  /// Whether all faces of a surface that does not meet O2 are on a side of it: by one corner each.
+  ToleranceProof on_side(bool inside) const {
+    const Side side(b_, inside);
+    std::vector<std::uint8_t> wrong(a_.triangles.size());
+    parallel_for(wrong.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) {
+        const Triangle& t = a_.triangles[f];
+        if (!hausdorff::repeats_corner(t)) wrong[f] = side.has(a_.positions[t[0]]) ? 0 : 1;
+      }
+    });
+    const auto found = std::ranges::find(wrong, 1);
+    if (found == wrong.end()) return {.proof = Proof::inside};
+    const auto face = static_cast<std::uint32_t>(found - wrong.begin());
+    const Vec3& p = a_.positions[a_.triangles[face][0]];
+    LowerBound at;
+    at.raise(p, 0, face, hausdorff::nearest_face(b_, p, b_.tree.items[0]));
+    return {.proof = Proof::outside, .witness = witness(at), .at_lower = !inside};
+  }
+
+  /// What |d| decides alone: within the tolerance with either sign, or with neither.
+  ToleranceProof by_either_sign(double tight, double most) const {
+    if (tight >= 0) {
+      const ToleranceProof within = at_most(tight);
+      if (within.proof == Proof::inside) return within;
+    }
+    ToleranceProof result = at_most(most);
+    if (result.proof == Proof::outside) return result;
+    result.proof = Proof::undecided;
+    result.undecided_by.reset();
+    result.depends_on_signs = true;
+    return result;
+  }
+
+  ToleranceWitness witness(const LowerBound& at) const {
+    const double distance = norm(at.closest - at.point);
+    const bool is_inside = sign_ == SignMethod::exact     ? distance > 0 && inside::contains(b_, {}, at.point)
+                           : sign_ == SignMethod::winding ? inside::WindingNumber(b_).above_half(at.point)
+                                                          : false;
+    return {at.point, at.closest, at.faces[0], at.faces[1], is_inside ? -distance : distance};
+  }
+
+  const Mesh& a_;
+  const sites::SitesData& b_;
+  SignMethod sign_;
+  const ToleranceProofOptions& options_;
+  hausdorff::Scale scale_;
+};
+
+void check(const Tolerance& tolerance, const ToleranceProofOptions& options) {
+  if (!(std::isfinite(tolerance.lo) && std::isfinite(tolerance.hi) && tolerance.lo <= tolerance.hi))
+    throw Error("the tolerance to prove must be two finite numbers, the smaller one first");
+  if (!(options.accuracy >= 0)) throw Error("the accuracy of a tolerance's proof must be at least 0");
+}
+
+}  // namespace
+
+ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,
+                               const ToleranceProofOptions& options) try {
+  check(tolerance, options);
+  if (std::ranges::any_of(surface.triangles, is_removed))
+    mesh::validate_edited(surface);
+  else
+    validate(surface);
+  const SignUsed sign = choose_sign(sites, options.sign);
+  if (sign.method == SignMethod::none && tolerance.needs_sign())
+    throw Error("a tolerance that differs by sign needs signed distances, but these are unsigned: " +
+                    sign.reason + "; choose another sign method or a symmetric tolerance",
+                Remedy::sign_method);
+  if (!options.faces) return Prover(surface, internals(sites), sign.method, options)(tolerance);
+  const Mesh part = part_of(surface, *options.faces);
+  ToleranceProof result = Prover(part, internals(sites), sign.method, options)(tolerance);
+  if (result.witness) result.witness->face = (*options.faces)[result.witness->face];
+  return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the proof of a tolerance");
+}
+
+}  // namespace sdm
