@@ -15,11 +15,11 @@ SUBJECTS = {
     "Files": ["io", "report", "points", "sequence", "field_files", "player"],
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "sign", "engine", "gl", "closest_points",
                       "closest_in_parts", "vertex_distances"],
-    "Results of maps": ["channels", "summary", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
-                         "part_statistics", "combined_statistics", "temporal_maps"],
+    "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
+                         "coverage", "doubts", "part_statistics", "combined_statistics", "temporal_maps"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "self_proximity_query", "time_of_contact",
                   "hausdorff"],
-    "Other queries": ["align", "rays", "volume"],
+    "Other queries": ["align", "unit_check", "rays", "volume"],
     "Errors, progress and threads": ["error", "printable", "progress", "cancellation", "threads"],
 }  # fmt: skip
 # Headers that declare nothing of their own.

@@ -9,6 +9,8 @@
 #include <sdm/closest_in_parts.h>
 #include <sdm/closest_points.h>
 #include <sdm/combined_statistics.h>
+#include <sdm/coverage.h>
+#include <sdm/doubts.h>
 #include <sdm/engine.h>
 #include <sdm/error.h>
 #include <sdm/gl.h>
@@ -39,6 +41,8 @@
 #include <sdm/tolerance_proof.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>
+#include <sdm/unit_check.h>
+#include <sdm/units.h>
 #include <sdm/uv_tiles.h>
 #include <sdm/version.h>
 #include <sdm/vertex_distances.h>

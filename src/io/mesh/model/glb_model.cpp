@@ -1,6 +1,7 @@
 #include "io/mesh/model/glb_model.h"
 
-#include <map>
+#include <sdm/units.h>
+
 #include <numbers>
 
 #include "geometry/vec.h"
@@ -8,10 +9,8 @@
 namespace sdm::io {
 
 Placement placement(const Box& box, const std::string& units) {
-  static const std::map<std::string, double> metres{{"m", 1},     {"cm", 1e-2},   {"mm", 1e-3},
-                                                    {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
   Placement result;
-  if (const auto unit = metres.find(units); unit != metres.end()) result.scale = unit->second;
+  result.scale = metres_per(units).value_or(1);
   if (norm(centre(box)) > 8 * diagonal(box)) result.origin = centre(box);
   if (!(diagonal(box) < std::numeric_limits<float>::max() / 8))
     throw Error("coordinates are too large for glTF's single precision; scale the mesh down");

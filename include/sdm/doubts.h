@@ -1,0 +1,43 @@
+/// Doubts that withhold a PASS: signs that what was measured is not what was meant.
+///
+/// Threads: the functions may be called concurrently.
+#pragma once
+
+#include <sdm/align.h>
+#include <sdm/api.h>
+#include <sdm/coverage.h>
+#include <sdm/unit_check.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sdm {
+
+/// What a doubt is about.
+enum class DoubtReason {
+  other_unit,    ///< in another unit of length, O1 fits O2 far better
+  poor_fit,      ///< after an alignment, most samples of O1 do not fit O2
+  undetermined,  ///< the surfaces do not determine all freedoms of the alignment
+  low_coverage,  ///< too little of O2 has a measured point near it
+};
+
+/// A reason not to trust that all distances are within a tolerance, although they are.
+struct Doubt {
+  DoubtReason reason = DoubtReason::other_unit;
+  std::string text{};    ///< a clause: what was found
+  std::string remedy{};  ///< a clause: what mends it, by the options of the command
+};
+
+/// Returns the doubts that an alignment leaves: O1 fits in another unit, less than half of the samples fit
+/// (Alignment::fraction_used), or a degree of freedom is free.
+[[nodiscard]] SDM_API std::vector<Doubt> doubts_of(const Alignment& alignment,
+                                                   const std::optional<OtherUnit>& other_unit);
+
+/// Returns the doubt that a coverage below `least` leaves: by its value, not by its bounds.
+[[nodiscard]] SDM_API std::optional<Doubt> doubt_of(const Coverage& coverage, double least);
+
+/// "other unit", "poor fit", "undetermined" or "low coverage".
+[[nodiscard]] SDM_API const char* name_of(DoubtReason reason);
+
+}  // namespace sdm

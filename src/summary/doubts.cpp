@@ -1,0 +1,82 @@
+#include <sdm/doubts.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace sdm {
+namespace {
+
+std::string digits_of(double number, int digits) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
+  return text.data();
+}
+
+/// Two units, the first one larger.
+struct UnitNames {
+  double factor;
+  const char *larger, *smaller;
+};
+
+Doubt unit_doubt(const OtherUnit& unit) {
+  constexpr std::array kNames{UnitNames{10, "cm", "mm"}, UnitNames{25.4, "in", "mm"},
+                              UnitNames{304.8, "ft", "mm"}, UnitNames{1000, "m", "mm"}};
+  const bool grows = unit.factor > 1;
+  const double ratio = grows ? unit.factor : 1 / unit.factor;
+  const UnitNames& names =
+      *std::ranges::min_element(kNames, {}, [&](const UnitNames& n) { return std::abs(n.factor - ratio); });
+  const std::string o1 = grows ? names.larger : names.smaller, o2 = grows ? names.smaller : names.larger;
+  return {DoubtReason::other_unit,
+          "O1 fits O2 far better " + digits_of(ratio, 4) + " times as " + (grows ? "large" : "small") +
+              ", as if it was in " + o1 + " and O2 in " + o2 + " (to " + digits_of(100 * unit.misfit, 2) +
+              " % of its size, instead of " + digits_of(100 * unit.misfit_as_given, 2) + " %)",
+          "--units-o1 " + o1 + " --units-o2 " + o2 + " converts it"};
+}
+
+}  // namespace
+
+std::vector<Doubt> doubts_of(const Alignment& alignment, const std::optional<OtherUnit>& other_unit) {
+  constexpr double kMost = 0.5;
+  std::vector<Doubt> doubts;
+  if (other_unit) doubts.push_back(unit_doubt(*other_unit));
+  if (alignment.fraction_used < kMost)
+    doubts.push_back(
+        {DoubtReason::poor_fit,
+         digits_of(100 * (1 - alignment.fraction_used), 3) +
+             " % of the samples of the aligned O1 do not fit O2",
+         "start the alignment elsewhere (--align-from), or give the parts that belong together"});
+  const auto free = std::ranges::count_if(alignment.freedoms, &DegreeOfFreedom::free);
+  if (free > 0)
+    doubts.push_back({DoubtReason::undetermined,
+                      "the surfaces do not determine " + std::to_string(free) +
+                          (free == 1 ? " freedom" : " freedoms") + " of the alignment",
+                      "place O1 by --transform-o1 instead of --align"});
+  return doubts;
+}
+
+std::optional<Doubt> doubt_of(const Coverage& coverage, double least) {
+  if (!(coverage.value < least)) return std::nullopt;
+  return Doubt{DoubtReason::low_coverage,
+               "only " + digits_of(100 * coverage.value, 3) +
+                   " % of the area of O2 have a measured point within " + digits_of(coverage.reach, 5) +
+                   ", less than " + digits_of(100 * least, 3) + " %",
+               "measure the rest, or choose a lower --min-coverage"};
+}
+
+const char* name_of(DoubtReason reason) {
+  switch (reason) {
+    case DoubtReason::other_unit:
+      return "other unit";
+    case DoubtReason::poor_fit:
+      return "poor fit";
+    case DoubtReason::undetermined:
+      return "undetermined";
+    case DoubtReason::low_coverage:
+      return "low coverage";
+  }
+  return "";
+}
+
+}  // namespace sdm
