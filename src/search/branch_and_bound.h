@@ -149,7 +149,8 @@ bool Parts<Part, Found>::take_batch(Policy& policy) {
   constexpr std::uint32_t kStride = 64;
   Poll due(kStride);
   if (open_.size() > Policy::kMany)  // the last ones of a heap have low bounds, and its rest is a heap
-    while (batch_.size() < Policy::kOfMany) batch_.push_back(take(open_.back().slot));
+    while (policy.within_budget() && batch_.size() < Policy::kOfMany)
+      batch_.push_back(take(open_.back().slot));
   else
     while (!open_.empty() && policy.within_budget() &&
            batch_.size() < std::max(Policy::kLeast, open_.size() / Policy::kFraction + 1))
