@@ -23,8 +23,11 @@ double diagonal(const sdm::Box& box) {
   return length({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
 }
 
-AlignOutcome timed(const sdm::Sites& o2, const AlignCommand& command, const sdm::Progress& progress,
-                   const std::function<sdm::Alignment(const sdm::AlignOptions&)>& align) {
+AlignOutcome timed(
+    const sdm::Sites& o2, const AlignCommand& command, const sdm::Progress& progress,
+    const std::function<sdm::Alignment(const sdm::AlignOptions&)>& align,
+    const std::function<std::optional<sdm::OtherUnit>(const sdm::Alignment&, const sdm::AlignOptions&)>&
+        find_other_unit) {
   Stopwatch watch;
   sdm::AlignOptions options;
   options.progress = progress;
@@ -34,6 +37,7 @@ AlignOutcome timed(const sdm::Sites& o2, const AlignCommand& command, const sdm:
     options.pose = sdm::read_matrix(command.from);
   try {
     AlignOutcome outcome{align(options), command.from, diagonal(sdm::bounds(o2.mesh()))};
+    if (command.judged) outcome.other_unit = find_other_unit(outcome.alignment, options);
     outcome.time_ms = watch.lap();
     return outcome;
   } catch (const sdm::Cancelled&) {
@@ -93,16 +97,23 @@ void add_align_options(CLI::App& app, AlignCommand& command) {
 
 AlignOutcome align_mesh(sdm::Mesh& o1, const sdm::Sites& o2, const AlignCommand& command,
                         const sdm::Progress& progress) {
-  AlignOutcome outcome = timed(o2, command, progress,
-                               [&](const sdm::AlignOptions& options) { return sdm::align(o1, o2, options); });
+  AlignOutcome outcome = timed(
+      o2, command, progress, [&](const sdm::AlignOptions& options) { return sdm::align(o1, o2, options); },
+      [&](const sdm::Alignment& found, const sdm::AlignOptions& options) {
+        return sdm::find_other_unit(o1, o2, found, options);
+      });
   sdm::transform(o1, outcome.alignment.transform);
   return outcome;
 }
 
 AlignOutcome align_points(std::span<const sdm::Vec3> points, std::span<const sdm::Vec3> normals,
                           const sdm::Sites& o2, const AlignCommand& command, const sdm::Progress& progress) {
-  return timed(o2, command, progress,
-               [&](const sdm::AlignOptions& options) { return sdm::align(points, normals, o2, options); });
+  return timed(
+      o2, command, progress,
+      [&](const sdm::AlignOptions& options) { return sdm::align(points, normals, o2, options); },
+      [&](const sdm::Alignment& found, const sdm::AlignOptions& options) {
+        return sdm::find_other_unit(points, normals, o2, found, options);
+      });
 }
 
 Json to_json(const AlignOutcome& outcome) {

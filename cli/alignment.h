@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/align.h>
+#include <sdm/unit_check.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 struct AlignCommand {
   bool on = false;
   std::string from = "none";  ///< "none", "pca" or the name of a matrix file
+  bool judged = false;        ///< a verdict depends on it: whether O1 fits in another unit is looked at too
 };
 
 /// Adds --align and --align-from.
@@ -23,6 +25,7 @@ struct AlignOutcome {
   std::string from;
   double size = 0;  ///< the diagonal of O2
   double time_ms = 0;
+  std::optional<sdm::OtherUnit> other_unit{};
 };
 
 /// Aligns a mesh to O2, and moves it.

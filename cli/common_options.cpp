@@ -147,7 +147,8 @@ void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files) {
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance) {
   app.add_option_function<std::string>(
          "--tolerance", [&tolerance](const std::string& text) { tolerance = parse_tolerance(text); },
-         "Draw colour bands, and exit with code 3 if any distance is below LO or above HI; T: the same as "
+         "Draw colour bands, and judge whether all distances are from LO to HI, by the exit code too; T: the "
+         "same as "
          "-T:T, also for unsigned distances")
       ->check(CLI::Validator(
           [](const std::string& text) {

@@ -152,7 +152,9 @@ int run(const HausdorffCommand& command) {
   };
   print(command, report, [&] { return hausdorff_summary(command, answer) + note_lines(answer.notes, 13); });
   const auto& tolerance = command.tolerance;
-  return !tolerance || verdict(answer.distance.distance, *tolerance).within ? kSuccess : kToleranceExceeded;
+  if (!tolerance) return kSuccess;
+  const HausdorffVerdict v = verdict(answer.distance.distance, *tolerance);
+  return !v.certified ? kNotDecided : v.within ? kSuccess : kToleranceExceeded;
 }
 
 }  // namespace

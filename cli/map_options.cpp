@@ -44,6 +44,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       app.add_flag("--both", c.both, "Also compute the map of O2; results in DIR/o1 and DIR/o2");
 
   add_pair_transforms(app, c);
+  add_unit_options(app, c.file_units);
   add_align_options(app, c.align);
   add_map_layout(app, c.layout, both);
 
@@ -67,6 +68,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       "--no-bound-culling", [&c] { c.gl.bound_culling = false; },
       "gl: do not cull sites by upper bounds on the distance; the map is unchanged");
   add_tolerance_option(app, c.picture.tolerance);
+  add_doubt_options(app, c.doubts);
   app.add_option(
          "--bands", c.bands,
          "The edges of the bands of distance in the report, increasing, with the fraction of the area in "
@@ -84,6 +86,7 @@ void add_options(CLI::App& app, MapCommand& c) {
 
 void check_combination(const CLI::App& app, const MapCommand& c) {
   check_layout(c.layout.atlas);
+  check_doubts(c.doubts, c.picture.tolerance);
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");
   if (const auto& t = c.picture.tolerance;

@@ -12,8 +12,10 @@
 
 #include "alignment.h"
 #include "common_options.h"
+#include "doubts.h"
 #include "input_pair.h"
 #include "map_files.h"
+#include "unit_options.h"
 
 /// How O1 is laid out.
 struct MapLayout {
@@ -30,7 +32,9 @@ struct MapOutput {
 
 struct MapCommand : PairFiles, RunOptions {
   bool both = false;
+  UnitOptions file_units;
   AlignCommand align;
+  DoubtCommand doubts;
   MapLayout layout;
   sdm::MapOptions map;  ///< its engine is created from the next two members
   sdm::EngineInfo engine = sdm::engines().front();

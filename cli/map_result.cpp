@@ -65,7 +65,10 @@ sdm::SummaryOptions summary_options(const MapTask& task, const AtlasPart& part, 
           .bands = command.bands,
           .names = task.on.names,
           .whole = &task.on.mesh,
-          .whole_face = part.source_face};
+          .whole_face = part.source_face,
+          .coverage = task.coverage,
+          .doubts = task.doubts,
+          .accept_doubts = command.doubts.accept};
 }
 
 /// Writes all files but the report, and sums up the map meanwhile.

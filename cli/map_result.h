@@ -26,6 +26,8 @@ struct MapTask {
   Input &on, &to;
   const std::optional<AlignOutcome>& aligned;  ///< how O1 was, if it was
   double import_ms;
+  std::vector<sdm::Doubt> doubts{};
+  std::optional<sdm::Coverage> coverage{};
   std::unique_ptr<sdm::Sites> sites{};  ///< of `to`; null: the first map builds them
   std::optional<SharedScale> shared{};
 };

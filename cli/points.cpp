@@ -12,6 +12,7 @@
 
 #include "alignment.h"
 #include "common_options.h"
+#include "doubts.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "map_files.h"
@@ -23,6 +24,7 @@
 #include "report.h"
 #include "scenes/placement.h"
 #include "stopwatch.h"
+#include "unit_options.h"
 
 namespace {
 
@@ -31,7 +33,9 @@ using Json = nlohmann::ordered_json;
 struct PointsCommand : RunOptions {
   std::string cloud, o2, transform_o1, transform_o2;
   std::filesystem::path out;
+  UnitOptions file_units;
   AlignCommand align;
+  DoubtCommand doubts;
   sdm::MapOptions map;
   sdm::PictureOptions picture;
   sdm::TextDialect text;
@@ -44,7 +48,9 @@ struct PointsOutcome {
   std::optional<AlignOutcome> aligned;
   double import_ms = 0, align_ms = 0, points_ms = 0;
 
-  [[nodiscard]] bool within() const { return !summary.tolerance || summary.tolerance->within; }
+  [[nodiscard]] ExitCode code() const {
+    return summary.tolerance ? exit_code(summary.tolerance->verdict) : kSuccess;
+  }
 };
 
 // How text was read; null for a cloud that is not text.
@@ -92,21 +98,9 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
 
 std::string tolerance_line(const PointsOutcome& outcome, const std::string& unit) {
   const sdm::Summary& summary = outcome.summary;
-  const sdm::ToleranceVerdict& verdict = *summary.tolerance;
+  const sdm::CertifiedVerdict& verdict = *summary.tolerance;
   const std::string word = sdm::name_of(verdict.verdict);
-  switch (verdict.reason) {
-    case sdm::VerdictReason::all_within:
-      return word + ": all points are within it";
-    case sdm::VerdictReason::nothing_measured:
-      return word + ": no point has coordinates";
-    case sdm::VerdictReason::estimated_signs:
-      return word + ": all points are within it, but their signs are estimates";
-    case sdm::VerdictReason::exceeded:
-    case sdm::VerdictReason::beyond_max_distance:
-      break;
-    default:
-      return word + ": all points are within it, but one is within rounding of a limit";
-  }
+  if (verdict.verdict != sdm::Verdict::fail) return word + ": " + sdm::verdict_text(summary);
   const std::string share = fmt::format("{}: {} % of the points are out of it", word,
                                         number(100 * summary.exceeding_point_fraction));
   const sdm::Extreme& most = decisive_extreme(summary);
@@ -140,7 +134,21 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   if (s.beyond_max_distance > 0)
     text += fmt::format("            {} points are farther than --max-distance\n", s.beyond_max_distance);
   if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
-  return text + note_lines(s.notes, 12);
+  return text + coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
+}
+
+// How much of O2 was measured, by up to 2^20 of the points, which may be a doubt.
+void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& placement,
+                            const sdm::Mesh& o2, sdm::Summary& summary, ProgressLine& progress) {
+  constexpr std::size_t kSample = std::size_t{1} << 20;
+  progress.step("coverage");
+  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, command.text, progress.callback());
+  if (sample.points.empty()) return;
+  sdm::transform(sample.points, placement);
+  summary.coverage = sdm::coverage(o2, sample.points, reach_of(command.doubts, command.picture.tolerance),
+                                   {.progress = progress.callback()});
+  if (auto doubt = sdm::doubt_of(*summary.coverage, *command.doubts.min_coverage))
+    summary.doubts.push_back(std::move(*doubt));
 }
 
 // The alignment of a sample of the points, after their placement.
@@ -190,6 +198,7 @@ int run(PointsCommand command) {
     outcome.import_ms = watch.lap();
     if (command.align.on) {
       progress.step("align");
+      command.align.judged = command.picture.tolerance.has_value();
       outcome.aligned = align_sample(command, options.placement, sites, progress.callback());
       options.placement = outcome.aligned->alignment.transform * options.placement;
       write_text(out.staging() / "alignment.json", to_text(to_json(*outcome.aligned)));
@@ -199,6 +208,11 @@ int run(PointsCommand command) {
     outcome.found = sdm::measure_points(command.cloud, sites, ply, options);
     const sdm::Box& box = outcome.found.bounds;
     outcome.summary = sdm::summarize(outcome.found, options);
+    if (outcome.aligned)
+      outcome.summary.doubts = sdm::doubts_of(outcome.aligned->alignment, outcome.aligned->other_unit);
+    if (command.doubts.min_coverage)
+      measure_cloud_coverage(command, options.placement, o2.mesh, outcome.summary, progress);
+    sdm::withhold_pass(outcome.summary, command.doubts.accept);
     Notes& all = outcome.summary.notes;
     if (const auto note = precision_note(command, box)) all.push_back(*note);
     std::ranges::copy(o2.notes, std::back_inserter(all));
@@ -221,7 +235,7 @@ int run(PointsCommand command) {
         return text_of(command, outcome) +
                result_lines(12, total.lap(), command.out.string(), files(command));
       });
-  return outcome.within() ? kSuccess : kToleranceExceeded;
+  return outcome.code();
 }
 
 void add_files_option(CLI::App& app, PointsCommand& command) {
@@ -283,12 +297,14 @@ void add_points_command(CLI::App& app) {
   add_output_option(*points, c.out);
   add_transform_option(*points, "--transform-o1", "The cloud (without fit)", c.transform_o1);
   add_transform_option(*points, "--transform-o2", "O2", c.transform_o2);
+  add_unit_options(*points, c.file_units);
   add_align_options(*points, c.align);
   points->add_option("--max-distance", c.map.max_distance, "Points farther than this have no value")
       ->check(positive_number())
       ->type_name("D");
   add_sign_option(*points, c.map.sign);
   add_tolerance_option(*points, c.picture.tolerance);
+  add_doubt_options(*points, c.doubts);
   add_color_options(*points, c.picture);
   points->add_option("--units", c.picture.units, "Units of the cloud and the mesh, for printed values")
       ->type_name("NAME");
@@ -305,6 +321,9 @@ void add_points_command(CLI::App& app) {
         t && std::max(std::abs(t->lo), std::abs(t->hi)) > command->map.max_distance)
       throw CLI::ValidationError(
           "--tolerance", "must not be greater than --max-distance, beyond which points have no value");
+    check_doubts(command->doubts, command->picture.tolerance);
+    convert_units(command->file_units, {command->cloud, command->o2, command->transform_o1,
+                                        command->transform_o2, command->picture.units});
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
   });
 }

@@ -115,36 +115,17 @@ std::string farthest(const Outcome& outcome, const std::string& unit) {
                      place(most.point, outcome.size));
 }
 
-// The --precision that would decide, and the resolution that it needs: texels are about as far apart as the
-// error bound is long.
-std::string deciding_precision(const Outcome& outcome, const std::string& unit) {
-  const double bound = outcome.summary.tolerance->deciding_bound;
-  if (!(bound > 0)) return "no --precision decides, as a distance is within rounding of a limit";
-  const double finer = outcome.summary.evidence.error_bound / bound;
-  if (std::max(outcome.resolution, outcome.rows) * finer > 32768)
-    return fmt::format("an error of {}{} would decide, but needs more than 32768² texels", number(bound, 2),
-                       unit);
-  const double columns = outcome.resolution * finer, rows = outcome.rows * finer;
-  if (columns != rows)
-    return fmt::format("an error of {}{} would decide (about --resolution {:.0f}x{:.0f})", number(bound, 2),
-                       unit, columns, rows);
-  return fmt::format("--precision {} would decide (about {:.0f}² texels)", number(bound, 2), columns);
-}
-
 std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
-  const sdm::ToleranceVerdict& verdict = *outcome.summary.tolerance;
-  const sdm::ToleranceShares& shares = verdict.shares;
-  const std::string limits = limits_text(verdict.tolerance, unit);
+  const sdm::CertifiedVerdict& verdict = *outcome.summary.tolerance;
   const std::string word = sdm::name_of(verdict.verdict);
-  switch (verdict.verdict) {
-    case sdm::Verdict::pass:
-      return fmt::format("{}: every point of the surface is within {}", word, limits);
-    case sdm::Verdict::not_decided:
-      return fmt::format("{}: all samples are within {}, but points between them may not be; {}", word,
-                         limits, deciding_precision(outcome, unit));
-    case sdm::Verdict::fail:
-      break;
-  }
+  if (verdict.verdict != sdm::Verdict::fail)
+    return fmt::format("{}: {}", word, sdm::verdict_text(outcome.summary));
+  const sdm::ToleranceShares& shares = verdict.shares;
+  const std::string limits = sdm::limits_text(verdict.tolerance, outcome.summary.units);
+  if (verdict.proof && verdict.proof->witness)
+    return fmt::format("{}: a point between the texels is out of {}: {}{} at {}", word, limits,
+                       number(verdict.proof->witness->distance), unit,
+                       place(verdict.proof->witness->point, outcome.size));
   std::string text = fmt::format("{}: {} % of the area is out of {}", word,
                                  number(100 * verdict.exceeded_area_fraction), limits);
   if (outcome.summary.sign.method != sdm::SignMethod::none)
@@ -153,6 +134,21 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
 }
 
 }  // namespace
+
+std::string coverage_line(const sdm::Summary& summary) {
+  if (!summary.coverage) return {};
+  const sdm::Coverage& c = *summary.coverage;
+  return fmt::format("  coverage  {} % of O2 have a measured point within {}{} (between {} and {} %)\n",
+                     number(100 * c.value, 4), number(c.reach), unit_suffix(summary.units),
+                     number(100 * c.lower, 4), number(100 * c.upper, 4));
+}
+
+std::string doubt_lines(std::span<const sdm::Doubt> doubts, std::size_t column) {
+  std::string text;
+  for (const sdm::Doubt& doubt : doubts)
+    text += fmt::format("  {:<{}}{}; {}\n", "doubt", column - 2, doubt.text, doubt.remedy);
+  return text;
+}
 
 const sdm::Extreme& decisive_extreme(const sdm::Summary& summary) {
   return summary.tolerance->nearest_is_lower ? summary.extremes.min : summary.extremes.max;
@@ -185,7 +181,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   add("  error     at most {}{} between the texels, whose values are exact\n", number(s.evidence.error_bound),
       unit);
   if (s.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
-  text += note_lines(s.notes, 12);
+  text += coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,
         number(overdraw(*outcome.raster)));

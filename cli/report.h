@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,10 @@ void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json&
 /// JSON text; drops invalid bytes of file names that are not UTF-8.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);
 
+/// A line on the coverage of O2, if it was measured.
+[[nodiscard]] std::string coverage_line(const sdm::Summary& summary);
+/// One line for each doubt; the text begins in the given column.
+[[nodiscard]] std::string doubt_lines(std::span<const sdm::Doubt> doubts, std::size_t column);
 /// The extreme that exceeds the tolerance most, or comes closest to a limit.
 [[nodiscard]] const sdm::Extreme& decisive_extreme(const sdm::Summary& summary);
 

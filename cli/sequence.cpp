@@ -141,7 +141,9 @@ int run(SequenceCommand command) {
       });
   if (!command.pair.json && !command.pair.quiet) std::cout << sequence_summary(command, loop, files, notes);
   check_end(end, loop, checkpoint.finished(), count, command.out.string());
-  return std::ranges::all_of(loop.frames(), &Frame::within) ? kSuccess : kToleranceExceeded;
+  sdm::Verdict verdict = sdm::Verdict::pass;
+  for (const Frame& frame : loop.frames()) verdict = worse(verdict, frame.verdict());
+  return exit_code(verdict);
 }
 
 }  // namespace
@@ -156,8 +158,9 @@ void add_sequence_command(CLI::App& app) {
       "time: temporal.exr, min.png, mean.png, max.png; with --player a page that plays the frames, "
       "player.html.\n"
       "An interrupt (Ctrl-C, SIGTERM) or a bad frame keeps the frames that are finished; --resume computes\n"
-      "the others, and then all files are those of an uninterrupted run.\n\n"
-      "Example:\n"
+      "the others, and then all files are those of an uninterrupted run.\n" +
+      exit_codes() +
+      "\n\nExample:\n"
       "  sdm scene letters -o letters\n"
       "  sdm sequence letters/E.ply+letters/E.npy letters/G.ply+letters/G.npy -o out");
   const auto command = std::make_shared<SequenceCommand>();

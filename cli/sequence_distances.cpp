@@ -19,8 +19,8 @@ FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& si
       .min = found.min.distance, .mean = sdm::statistics(surface, map).mean, .max = found.max.distance};
   if (!tolerance) return result;
   const double accuracy = sdm::engine_accuracy(sdm::engines().front(), surface.mesh(), sites.mesh());
-  const sdm::ToleranceVerdict verdict =
-      sdm::check_tolerance(surface, map, at_vertices, error_bound, accuracy, *tolerance);
+  const sdm::CertifiedVerdict verdict = sdm::certify_tolerance(
+      surface, sites, map, at_vertices, *tolerance, {.error_bound = error_bound, .accuracy = accuracy});
   result.verdict = verdict.verdict;
   result.exceeded_area_fraction = verdict.exceeded_area_fraction;
   return result;

@@ -13,11 +13,12 @@ struct FrameDistances {
   std::optional<sdm::Verdict> verdict{};  ///< of the tolerance, if there is one
   double exceeded_area_fraction = 0;      ///< of it
 
-  [[nodiscard]] bool within() const { return !verdict || *verdict != sdm::Verdict::fail; }
+  [[nodiscard]] sdm::Verdict judged() const { return verdict.value_or(sdm::Verdict::pass); }
 };
 
 /// Summarises the map on `surface` to `sites`, which has this error bound. Throws sdm::Error if the tolerance
-/// needs signs and there are none. Cost: closest points of the vertices, and linear.
+/// needs signs and there are none. Cost: closest points of the vertices, linear, and that of a proof where
+/// the map does not decide.
 [[nodiscard]] FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
                                              const sdm::DistanceMap& map, double error_bound,
                                              const std::optional<sdm::Tolerance>& tolerance);

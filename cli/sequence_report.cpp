@@ -255,10 +255,11 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
                       number(error(*std::ranges::max_element(frames, {}, error))), unit);
   for (int b = 0; b < 2; ++b)
     if (const auto& first = frames.front().distances[b]; first && first->verdict) {
-      const auto out = std::ranges::count_if(
-          frames, [&](const Frame& f) { return f.distances[b] && !f.distances[b]->within(); });
+      const auto out = std::ranges::count_if(frames, [&](const Frame& f) {
+        return f.distances[b] && f.distances[b]->judged() == sdm::Verdict::fail;
+      });
       const bool decided = std::ranges::none_of(frames, [&](const Frame& f) {
-        return f.distances[b] && f.distances[b]->verdict == sdm::Verdict::not_decided;
+        return f.distances[b] && f.distances[b]->judged() == sdm::Verdict::not_decided;
       });
       text += fmt::format("  tolerance  O{}: {}\n", b + 1,
                           out > 0   ? fmt::format("FAIL in {} of {} frames", out, frames.size())

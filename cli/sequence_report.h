@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "exit_codes.h"
 #include "sequence_distances.h"
 
 /// Milliseconds of the steps of a frame.
@@ -41,9 +42,12 @@ struct Frame {
   std::array<std::optional<FrameDistances>, 2> distances{};  ///< of each body, where asked for
   FrameTimes time;
 
-  /// Whether no distance is out of the tolerance, if there is one.
-  [[nodiscard]] bool within() const {
-    return std::ranges::all_of(distances, [](const auto& d) { return !d || d->within(); });
+  /// The verdict on both bodies; a pass without a tolerance.
+  [[nodiscard]] sdm::Verdict verdict() const {
+    sdm::Verdict both = sdm::Verdict::pass;
+    for (const auto& d : distances)
+      if (d) both = worse(both, d->judged());
+    return both;
   }
 };
 

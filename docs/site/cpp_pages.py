@@ -16,7 +16,7 @@ SUBJECTS = {
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "sign", "engine", "gl", "closest_points",
                       "closest_in_parts", "vertex_distances"],
     "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
-                         "coverage", "doubts", "part_statistics", "combined_statistics", "temporal_maps"],
+                         "certified_verdict", "coverage", "doubts", "part_statistics", "combined_statistics", "temporal_maps"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "self_proximity_query", "time_of_contact",
                   "hausdorff"],
     "Other queries": ["align", "unit_check", "rays", "volume"],

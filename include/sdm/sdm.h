@@ -5,6 +5,7 @@
 #include <sdm/api.h>
 #include <sdm/atlas.h>
 #include <sdm/cancellation.h>
+#include <sdm/certified_verdict.h>
 #include <sdm/channels.h>
 #include <sdm/closest_in_parts.h>
 #include <sdm/closest_points.h>

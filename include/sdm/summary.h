@@ -7,10 +7,14 @@
 
 #include <sdm/api.h>
 #include <sdm/atlas.h>
+#include <sdm/certified_verdict.h>
 #include <sdm/combined_statistics.h>
+#include <sdm/coverage.h>
+#include <sdm/doubts.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/part_statistics.h>
+#include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
@@ -110,7 +114,9 @@ struct Summary {
   double max_distance = std::numeric_limits<double>::infinity();  ///< infinite if there is no limit
   Evidence evidence{};                                            ///< with the accuracy and the error bound
   LargestDistance hausdorff{};  ///< of a map: the one-sided Hausdorff distance
-  std::optional<ToleranceVerdict> tolerance{};
+  std::optional<CertifiedVerdict> tolerance{};
+  std::optional<Coverage> coverage{};          ///< of O2, if it was asked for
+  std::vector<Doubt> doubts{};                 ///< which make a pass Verdict::doubtful, unless accepted
   std::uint64_t exceeding_points = 0;          ///< of a cloud: out of the tolerance, or without a value
   double exceeding_point_fraction = 0;         ///< their fraction of all points
   std::optional<ColorRange> colors{};          ///< nothing of several maps together
@@ -134,12 +140,16 @@ struct SummaryOptions {
       whole_face{};  ///< the face of `whole` of each of the surface; empty: the same
   const DistanceStatistics* distance = nullptr;  ///< statistics() of the map, if they are known
   std::span<const std::uint8_t> boundary{};      ///< boundary_mask() of the map, if it is known
+  std::optional<Coverage> coverage{};            ///< for Summary::coverage
+  std::vector<Doubt> doubts{};                   ///< for Summary::doubts
+  bool accept_doubts = false;                    ///< a pass stays one
+  Progress progress{};                           ///< of the proof of the tolerance
 };
 
 /// Sums up a map on `surface` of the distances to `sites`. `vertex_distances`: the distance at each vertex of
 /// surface.mesh(), NaN if it has no value. Throws sdm::Error if the map or the distances belong to another
-/// surface, as color_range() and check_tolerance() do, and for bands that do not increase. Cost: linear in
-/// texels and faces, all cores.
+/// surface, as color_range() and certify_tolerance() do, and for bands that do not increase; Cancelled. Cost:
+/// linear in texels and faces, and that of certify_tolerance(), all cores.
 [[nodiscard]] SDM_API Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                         std::span<const float> vertex_distances,
                                         const SummaryOptions& options = {});
@@ -150,7 +160,7 @@ struct SummaryOptions {
 
 /// The summary of several maps, such as those of the UDIM tiles of a mesh, as of one: statistics weighted by
 /// area over all of them, the extremes, the largest error bound, and the verdict: Verdict::fail if that of
-/// one is, Verdict::pass if that of all is.
+/// one is, else Verdict::not_decided or Verdict::doubtful if that of one is, else Verdict::pass.
 class SDM_API CombinedSummary {
  public:
   /// Adds a map, which need not be kept, and its summary. Throws sdm::Error as CombinedStatistics::add()
@@ -163,7 +173,7 @@ class SDM_API CombinedSummary {
   CombinedStatistics statistics_;
   Summary total_;
   std::vector<double> areas_;
-  std::vector<ToleranceVerdict> verdicts_;
+  std::vector<CertifiedVerdict> verdicts_;
 };
 
 /// Returns a sentence if one box is about as many times as large as the other as a unit of length is (10,
@@ -174,7 +184,16 @@ class SDM_API CombinedSummary {
 /// Returns both notes, if there are; none for a box that is empty.
 [[nodiscard]] SDM_API std::vector<std::string> notes_on(const Box& a, const Box& b);
 
-/// "PASS", "FAIL" or "NOT DECIDED".
+/// Withholds a pass because of the doubts of the summary, unless they are accepted.
+SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
+
+/// The tolerance in words, such as "±0.1 mm".
+[[nodiscard]] SDM_API std::string limits_text(const Tolerance& tolerance, const std::string& units);
+/// The verdict as a clause, without its word and without a place: what all outputs say of a verdict that is
+/// not decided or doubtful. Empty without a tolerance.
+[[nodiscard]] SDM_API std::string verdict_text(const Summary& summary);
+
+/// "PASS", "FAIL", "NOT DECIDED" or "DOUBTFUL".
 [[nodiscard]] SDM_API const char* name_of(Verdict verdict);
 /// The enumerator in words, such as "all within" or "between samples".
 [[nodiscard]] SDM_API const char* name_of(VerdictReason reason);

@@ -47,6 +47,7 @@ enum class Verdict {
   pass,         ///< every point is within the tolerance
   fail,         ///< some sample is not, or has no value
   not_decided,  ///< all samples are, but that does not prove it for every point
+  doubtful,     ///< every point is, but there are doubts whether what was measured is what was meant
 };
 
 /// Why a verdict is what it is.
@@ -59,6 +60,7 @@ enum class VerdictReason {
   estimated_signs,      ///< not decided: with the other sign, which is an estimate, a distance might be out
   unknown_accuracy,     ///< not decided: the accuracy of the distances is unknown
   nothing_measured,     ///< not decided: there are no samples
+  in_doubt,             ///< doubtful: see Doubt
 };
 
 /// All that a verdict depends on besides the tolerance. Samples are the texels of a map and the vertices of
@@ -72,6 +74,7 @@ struct Evidence {
   /// Upper bound on how much a distance at any point can differ from those of the samples, without that
   /// error, as of SamplingBound::value(); 0 where there is nothing between samples.
   double error_bound = 0;
+  bool is_signed = true;  ///< false: no distance is negative, so that a lower limit of 0 or less holds
 };
 
 /// What some evidence proves about a tolerance.

@@ -1,6 +1,7 @@
 // The numbers of a map: statistics, bounds, and whether it is within a tolerance.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <sdm/certified_verdict.h>
 #include <sdm/hausdorff.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/summary.h>
@@ -115,16 +116,17 @@ std::string word_of(Verdict verdict) {
   return word;
 }
 
-ToleranceVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progress) {
+CertifiedVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progress) {
   self.require_other_mesh();
   const Tolerance accepted = tolerance_of(tolerance, self.map.sign.method);
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
-  ToleranceVerdict result;
+  CertifiedVerdict result;
   run(progress, [&](const Progress& report) {
     const Surface& surface = self.on->surface;
-    result = check_tolerance(surface, self.map, self.vertex_distances(report), covering_radius(surface),
-                             self.accuracy(), accepted);
+    result = certify_tolerance(
+        surface, self.to->sites, self.map, self.vertex_distances(report), accepted,
+        {.error_bound = covering_radius(surface), .accuracy = self.accuracy(), .progress = report});
   });
   return result;
 }
@@ -159,18 +161,27 @@ void bind_statistics(nb::module_& module) {
       });
 }
 
+// (distance, point), or None.
+nb::object witness_of(const CertifiedVerdict& verdict) {
+  if (!verdict.proof || !verdict.proof->witness) return nb::none();
+  const ToleranceWitness& witness = *verdict.proof->witness;
+  return nb::make_tuple(witness.distance,
+                        nb::make_tuple(witness.point[0], witness.point[1], witness.point[2]));
+}
+
 void bind_verdict(nb::module_& module) {
-  using V = ToleranceVerdict;
+  using V = CertifiedVerdict;
   nb::class_<V>(module, "ToleranceVerdict",
                 "Whether the distances of all points of a surface are within a tolerance.")
       .def_prop_ro(
           "verdict", [](const V& self) { return word_of(self.verdict); },
-          "'pass': every point of the surface is within the tolerance; 'fail': some texel or vertex is not; "
-          "'not decided': all texels and vertices are, but points between them may not be.")
+          "'pass': every point of the surface is within the tolerance; 'fail': some point is not; 'not "
+          "decided': "
+          "neither is proven, as a distance is within the accuracy of a limit, or signs are estimates.")
       .def_prop_ro(
           "reason", [](const V& self) { return sdm::name_of(self.reason); },
-          "Why, in words: 'all within', 'exceeded', 'beyond max distance', 'between samples', 'within "
-          "rounding' or 'estimated signs'.")
+          "Why, in words: 'all within', 'exceeded', 'beyond max distance', 'within rounding', 'estimated "
+          "signs', 'unknown accuracy' or 'nothing measured'.")
       .def_ro(
           "margin", &V::margin,
           "How far the distances of texels and vertices stay from the limits, less the accuracy; negative "
@@ -180,7 +191,7 @@ void bind_verdict(nb::module_& module) {
           nb::sig("def tolerance(self) -> tuple[float, float]"), "The least and the most accepted distance.")
       .def_ro("largest", &V::largest,
               "The largest absolute distance of all texels and vertices; infinite if one has no value.")
-      .def_ro("within", &V::within, "All texels and vertices are within the tolerance.")
+      .def_ro("within", &V::within, "No point is known to be out of the tolerance.")
       .def_ro("certified", &V::certified, "The verdict holds for every point of the surface.")
       .def_ro("exceeded_area_fraction", &V::exceeded_area_fraction,
               "An estimate: the fraction of the area that is out of the tolerance, in [0, 1].")
@@ -190,10 +201,14 @@ void bind_verdict(nb::module_& module) {
       .def_prop_ro(
           "below_area_fraction", [](const V& self) { return self.shares.below; },
           "The fraction with smaller ones.")
-      .def_ro(
-          "deciding_precision", &V::deciding_bound,
-          "If not decided: a ``precision`` of map() that will decide, unless a larger distance turns up; 0 "
-          "if none does.")
+      .def_prop_ro("witness", &witness_of,
+                   nb::sig("def witness(self) -> tuple[float, tuple[float, float, float]] | None"),
+                   "A point between texels and vertices that is out of the tolerance, if the verdict depends "
+                   "on one: its "
+                   "distance, and where it is.")
+      .def_prop_ro(
+          "undecided_by", [](const V& self) { return self.proof ? self.proof->undecided_by : std::nullopt; },
+          "If not decided: no point is out of the tolerance by more than this. None if it is not known.")
       .def("__repr__", [](const V& self) {
         return nb::str("sdm.ToleranceVerdict({!r}, largest={:.6g})")
             .format(word_of(self.verdict), self.largest);

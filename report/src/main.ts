@@ -11,12 +11,12 @@ import { PageData, readData, readReport, Report, Vec, Worst } from './page_data'
 import { boxOf, Subject, toFile, toScene } from './subject';
 import { Surface } from './surface';
 import { inputsOf, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
-import { isCloud, isSigned, judge, limitsText, unitOf, verdictOf, wholeOf } from './verdict';
+import { isCloud, isSigned, limitsText, unitOf, verdictFor, verdictOf, wholeOf } from './verdict';
 import { View } from './view';
 
 function showVerdict(report: Report): void {
   const { verdict, sentence } = verdictOf(report);
-  const signs: Record<string, string> = { PASS: '✓', FAIL: '✗', 'NOT DECIDED': '?', MEASURED: 'i' };
+  const signs: Record<string, string> = { PASS: '✓', FAIL: '✗', 'NOT DECIDED': '?', DOUBTFUL: '?', MEASURED: 'i' };
   byId('verdict').className = verdict.toLowerCase().replace(' ', '-');
   byId('verdict').replaceChildren(make('span', { 'aria-hidden': 'true' }, signs[verdict]), ` ${verdict}`);
   const tile = report.atlas?.udim ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.' : '';
@@ -106,12 +106,11 @@ class Page {
 
   private showWhatIf({ scale }: State): void {
     const outside = 1 - this.data.area.within(scale.lower - scale.accuracy, scale.upper + scale.accuracy);
-    const { evidence } = this.report;
-    const open = !evidence || evidence.accuracy === null;
+    const verdict = verdictFor(this.report, scale);
     byId('what-if').replaceChildren(
       `With ${limitsText(scale, this.report)}: `,
-      make('b', {}, open ? 'The accuracy of this map is unknown, so no tolerance can be checked.' : judge(evidence, scale).verdict),
-      open ? '' : isCloud(this.report) ? `. ${percent(outside)} of the points are out of it.` : `. About ${percent(outside)} of the area is out of it.`,
+      make('b', {}, verdict ?? 'The accuracy of this map is unknown, so no tolerance can be checked.'),
+      verdict === null ? '' : isCloud(this.report) ? `. ${percent(outside)} of the points are out of it.` : `. About ${percent(outside)} of the area is out of it.`,
     );
   }
 

@@ -18,6 +18,7 @@ export interface Evidence {
   estimated_signs: boolean;
   accuracy: number | null; ///< null: unknown
   error_bound: number | null;
+  signed?: boolean; ///< false: no distance is negative
 }
 /// A mesh, or a cloud, which has points.
 export interface Input {
@@ -65,10 +66,12 @@ export interface Report {
     certified?: boolean;
     reason?: string;
     nearest_limit?: 'lower' | 'upper';
-    deciding_precision?: number | null;
+    text?: string; ///< the verdict as a clause
+    proof?: { witness: { distance: number; point: Vec } | null } | null;
     exceeded_area_fraction?: number;
     exceeded_point_fraction?: number;
   };
+  doubts?: { reason: string; text: string; remedy: string }[];
   notes?: string[];
   time_ms?: Record<string, number | null>;
   [key: string]: unknown;

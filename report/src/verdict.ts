@@ -1,9 +1,9 @@
-// Whether a part is within a tolerance: as the report says, and for other limits by the rule of judge() in
-// include/sdm/tolerance.h, on the same evidence.
+// Whether a part is within a tolerance: as the report says, where a proof may have decided, and for other limits by
+// the rule of judge() in include/sdm/tolerance.h, on the evidence of the samples.
 import type { Evidence, Report } from './page_data';
 import { text } from './numbers';
 
-export type Verdict = 'PASS' | 'FAIL' | 'NOT DECIDED' | 'MEASURED';
+export type Verdict = 'PASS' | 'FAIL' | 'NOT DECIDED' | 'DOUBTFUL' | 'MEASURED';
 
 export interface Limits {
   lower: number;
@@ -14,7 +14,6 @@ export interface Judgement {
   verdict: Verdict;
   reason: string; ///< as name_of(VerdictReason) in include/sdm/summary.h
   nearestIsLower: boolean; ///< the limit that is exceeded most, or approached most closely
-  decidingPrecision: number; ///< 0: none decides
 }
 
 export function isCloud(report: Report): boolean {
@@ -48,8 +47,10 @@ export function limitsText({ lower, upper }: Limits, report: Report): string {
 }
 
 /// The judgement of judge(), number by number.
-export function judge(evidence: Evidence, { lower, upper }: Limits): Judgement {
+export function judge(evidence: Evidence, limits: Limits): Judgement {
   const { complete, estimated_signs: estimated } = evidence;
+  const { upper } = limits;
+  const lower = evidence.signed === false && limits.lower <= 0 ? -Infinity : limits.lower;
   const lowest = evidence.lowest ?? Infinity;
   const highest = evidence.highest ?? -Infinity;
   const accuracy = evidence.accuracy ?? Infinity;
@@ -58,7 +59,7 @@ export function judge(evidence: Evidence, { lower, upper }: Limits): Judgement {
   const farthest = Math.max(-lowest, highest);
   const measured = marginOf(lowest, highest);
   const margin = estimated ? marginOf(-farthest, farthest) : measured;
-  const result = { nearestIsLower: lower - lowest > highest - upper, decidingPrecision: 0 };
+  const result = { nearestIsLower: lower - lowest > highest - upper };
   // The sign of a distance that rounding does not tell from zero is not certain.
   const isZero = (d: number) => Math.abs(d) <= accuracy;
   const below = (isZero(lowest) ? Math.abs(lowest) : lowest) < lower - accuracy;
@@ -67,7 +68,6 @@ export function judge(evidence: Evidence, { lower, upper }: Limits): Judgement {
   if (below || above) return { ...result, verdict: 'FAIL', reason: 'exceeded' };
   if (!(lowest <= highest)) return { ...result, verdict: 'NOT DECIDED', reason: 'nothing measured' };
   if (bound <= margin) return { ...result, verdict: 'PASS', reason: 'all within' };
-  const decidingPrecision = Math.max(0, margin / 2);
   const reason = !Number.isFinite(accuracy)
     ? 'unknown accuracy'
     : bound <= measured || (margin <= 0 && measured > 0)
@@ -75,71 +75,53 @@ export function judge(evidence: Evidence, { lower, upper }: Limits): Judgement {
       : margin > 0
         ? 'between samples'
         : 'within rounding';
-  return { verdict: 'NOT DECIDED', reason, nearestIsLower: result.nearestIsLower, decidingPrecision };
+  return { ...result, verdict: 'NOT DECIDED', reason };
 }
 
-/// The judgement of the report, for the limits in it.
-export function judgementOf({ tolerance: t, evidence }: Report): Judgement | null {
-  if (!t || !evidence) return null;
-  return {
-    verdict: t.verdict as Verdict,
-    reason: t.reason ?? '',
-    nearestIsLower: t.nearest_limit === 'lower',
-    decidingPrecision: t.deciding_precision ?? 0,
-  };
+/// The verdict with these limits: that of the report for the limits in it, otherwise by the rule.
+export function verdictFor(report: Report, limits: Limits): Verdict | null {
+  const { tolerance, evidence } = report;
+  if (!evidence || evidence.accuracy === null) return null;
+  const judged = limitsOf(report);
+  if (tolerance?.verdict && judged && judged.lower === limits.lower && judged.upper === limits.upper)
+    return tolerance.verdict as Verdict;
+  return judge(evidence, limits).verdict;
 }
 
-/// A judgement in words. `outside`: the fraction of the area, or of the points, that is out of the limits.
-export function sentenceOf(report: Report, limits: Limits, judgement: Judgement, outside: number | null): string {
+/// A clause as a sentence.
+function sentence(clause: string): string {
+  return `${clause.charAt(0).toUpperCase()}${clause.slice(1)}.`;
+}
+
+/// Of a verdict that is FAIL.
+function failure(report: Report, limits: Limits): string {
   const unit = unitOf(report);
-  const within = limitsText(limits, report);
   const cloud = isCloud(report);
-  switch (judgement.reason) {
-    case 'all within':
-      return `Every point of the ${cloud ? 'cloud' : 'surface'} is within the tolerance of ${within}.`;
-    case 'beyond max distance':
-      return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
-        report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
-      }.`;
-    case 'exceeded': {
-      const most = judgement.nearestIsLower ? report.evidence!.lowest : report.evidence!.highest;
-      const share = outside === null ? '' : `, and ${cloud ? '' : 'about '}${text(100 * outside, 3)}\u00a0% of the ${cloud ? 'points are' : 'area is'} out of tolerance`;
-      return `A distance of ${text(most)}${unit} was found, which is out of the tolerance of ${within}${share}.`;
-    }
-    case 'nothing measured':
-      return `No point of the ${cloud ? 'cloud' : 'surface'} has a distance.`;
-    case 'unknown accuracy':
-      return 'The accuracy of this map is unknown, so no tolerance can be checked.';
-    case 'estimated signs':
-      return `All ${cloud ? '' : 'measured '}points are within the tolerance of ${within}, but whether they are inside or outside of the reference, which has holes, is an estimate.`;
-    case 'between samples':
-      return (
-        `All measured points are within the tolerance of ${within}, but points between them may not be: ` +
-        `the distance there is known to ±${text(report.error_bound, 3)}${unit}. Measured again with --precision ${roundedDown(
-          judgement.decidingPrecision,
-        )}, it will be decided, unless a larger distance turns up.`
-      );
-    default:
-      return `All ${cloud ? '' : 'measured '}points are within the tolerance of ${within}, but the largest distance is as close to the limit as numbers can be told apart${cloud ? '' : ', so no precision will decide'}.`;
-  }
-}
-
-/// Rounds to two digits, never up: a precision that is still fine enough, to type into a command line.
-function roundedDown(value: number): string {
-  const unit = 10 ** (Math.floor(Math.log10(value)) - 1);
-  return String(Number((Math.floor(value / unit) * unit).toPrecision(2)));
+  const t = report.tolerance!;
+  const outside = t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null;
+  if (t.reason === 'beyond max distance')
+    return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
+      report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
+    }.`;
+  const between = t.proof?.witness;
+  const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
+  const share =
+    outside === null || between ? '' : `, and ${cloud ? '' : 'about '}${text(100 * outside, 3)}\u00a0% of the ${cloud ? 'points are' : 'area is'} out of tolerance`;
+  return `A distance of ${text(most)}${unit} was found${between ? ' between the measured points' : ''}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
 }
 
 /// The verdict of the report, in words.
 export function verdictOf(report: Report): { verdict: Verdict; sentence: string } {
   const limits = limitsOf(report);
-  const judgement = judgementOf(report);
-  if (!limits || !judgement)
+  const t = report.tolerance;
+  if (!limits || !t?.verdict || !report.evidence)
     return {
       verdict: 'MEASURED',
       sentence: 'No tolerance was given (--tolerance), so nothing was judged. The slider below shows what would be.',
     };
-  const t = report.tolerance!;
-  const outside = t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null;
-  return { verdict: judgement.verdict, sentence: sentenceOf(report, limits, judgement, outside) };
+  const verdict = t.verdict as Verdict;
+  if (verdict === 'FAIL') return { verdict, sentence: failure(report, limits) };
+  if (verdict === 'PASS')
+    return { verdict, sentence: `Every point of the ${isCloud(report) ? 'cloud' : 'surface'} is within the tolerance of ${limitsText(limits, report)}.` };
+  return { verdict, sentence: sentence(t.text ?? '') };
 }

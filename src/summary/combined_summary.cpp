@@ -41,23 +41,24 @@ void extend(Evidence& all, const Evidence& more) {
 
 /// The verdict of one of the maps decides: of the first that fails, else of the one that is farthest from
 /// being decided, else of the one with the least margin.
-const ToleranceVerdict& decisive(std::span<const ToleranceVerdict> verdicts) {
-  const auto rank = [](const ToleranceVerdict& v) {
+const CertifiedVerdict& decisive(std::span<const CertifiedVerdict> verdicts) {
+  const auto rank = [](const CertifiedVerdict& v) {
     const double least = v.verdict == Verdict::not_decided ? v.deciding_bound : v.margin;
     return std::pair(v.verdict == Verdict::fail          ? 0
                      : v.verdict == Verdict::not_decided ? 1
-                                                         : 2,
+                     : v.verdict == Verdict::doubtful    ? 2
+                                                         : 3,
                      v.verdict == Verdict::fail ? (v.certified ? 0.0 : 1.0) : least);
   };
   return *std::ranges::min_element(verdicts, {}, rank);
 }
 
-ToleranceVerdict combined(std::span<const ToleranceVerdict> verdicts, std::span<const double> areas) {
-  ToleranceVerdict total = decisive(verdicts);
+CertifiedVerdict combined(std::span<const CertifiedVerdict> verdicts, std::span<const double> areas) {
+  CertifiedVerdict total = decisive(verdicts);
   total.shares = {}, total.largest = 0;
   double area = 0;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
-    const ToleranceVerdict& v = verdicts[i];
+    const CertifiedVerdict& v = verdicts[i];
     total.largest = std::max(total.largest, v.largest);
     total.margin = std::min(total.margin, v.margin);
     area += areas[i];
@@ -98,7 +99,8 @@ Summary CombinedSummary::summary() const {
   total.hausdorff = summary::largest_distance(total);
   if (!verdicts_.empty()) {
     total.tolerance = combined(verdicts_, areas_);
-    total.tolerance->nearest_is_lower = judge(total.evidence, total.tolerance->tolerance).nearest_is_lower;
+    if (!total.tolerance->proof)
+      total.tolerance->nearest_is_lower = judge(total.evidence, total.tolerance->tolerance).nearest_is_lower;
   }
   return total;
 }

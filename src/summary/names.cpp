@@ -10,6 +10,8 @@ const char* name_of(Verdict verdict) {
       return "FAIL";
     case Verdict::not_decided:
       return "NOT DECIDED";
+    case Verdict::doubtful:
+      return "DOUBTFUL";
   }
   return "";
 }
@@ -32,6 +34,8 @@ const char* name_of(VerdictReason reason) {
       return "unknown accuracy";
     case VerdictReason::nothing_measured:
       return "nothing measured";
+    case VerdictReason::in_doubt:
+      return "in doubt";
   }
   return "";
 }

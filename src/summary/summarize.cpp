@@ -89,8 +89,12 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
   result.evidence = evidence_of(surface, map, vertex_distances, error_bound, options.accuracy);
   result.hausdorff = summary::largest_distance(result);
   if (options.tolerance)
-    result.tolerance =
-        check_tolerance(surface, map, vertex_distances, error_bound, options.accuracy, *options.tolerance);
+    result.tolerance = certify_tolerance(
+        surface, sites, map, vertex_distances, *options.tolerance,
+        {.error_bound = error_bound, .accuracy = options.accuracy, .progress = options.progress});
+  result.coverage = options.coverage;
+  result.doubts = options.doubts;
+  withhold_pass(result, options.accept_doubts);
   result.notes = notes_of(surface, sites, result, options);
   return result;
 }

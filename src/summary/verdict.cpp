@@ -17,7 +17,8 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
   Evidence evidence{.complete = map.beyond_max_distance == 0,
                     .estimated_signs = map.sign.method == SignMethod::winding,
                     .accuracy = accuracy,
-                    .error_bound = error_bound};
+                    .error_bound = error_bound,
+                    .is_signed = map.sign.method != SignMethod::none};
   const auto add = [&](double d) {
     evidence.lowest = std::fmin(evidence.lowest, d), evidence.highest = std::fmax(evidence.highest, d);
   };
@@ -38,6 +39,12 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
 
 namespace {
 
+/// Without a lower limit that unsigned distances cannot exceed.
+Tolerance limits_of(const Tolerance& tolerance, bool is_signed) {
+  return is_signed || tolerance.lo > 0 ? tolerance
+                                       : Tolerance(-std::numeric_limits<double>::infinity(), tolerance.hi);
+}
+
 /// How far the distances stay from the limits.
 double margin_of(double lowest, double highest, const Tolerance& tolerance, double accuracy) {
   return std::min(tolerance.hi - highest, lowest - tolerance.lo) - accuracy;
@@ -56,12 +63,13 @@ VerdictReason open_question(const Evidence& evidence, double margin, double meas
 }  // namespace
 
 Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
-  const auto& [lowest, highest, complete, estimated_signs, accuracy, error_bound] = evidence;
+  const auto& [lowest, highest, complete, estimated_signs, accuracy, error_bound, is_signed] = evidence;
+  const Tolerance limited = limits_of(tolerance, is_signed);
   const double farthest = std::max(-lowest, highest);
-  const double measured = margin_of(lowest, highest, tolerance, accuracy);
-  Judgement result{.margin = estimated_signs ? margin_of(-farthest, farthest, tolerance, accuracy) : measured,
-                   .nearest_is_lower = tolerance.lo - lowest > highest - tolerance.hi};
-  const map::ToleranceLimits limits(tolerance, accuracy);
+  const double measured = margin_of(lowest, highest, limited, accuracy);
+  Judgement result{.margin = estimated_signs ? margin_of(-farthest, farthest, limited, accuracy) : measured,
+                   .nearest_is_lower = limited.lo - lowest > highest - limited.hi};
+  const map::ToleranceLimits limits(limited, accuracy);
   result.within = complete && !limits.below(lowest) && !limits.above(highest);
   if (!result.within) {
     result.verdict = Verdict::fail;

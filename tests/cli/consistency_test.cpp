@@ -144,7 +144,8 @@ TEST_F(Consistency, EverythingStatesTheSummaryOfTheLibrary) {
                                        .complete = found["complete"],
                                        .estimated_signs = found["estimated_signs"],
                                        .accuracy = found["accuracy"],
-                                       .error_bound = found["error_bound"]},
+                                       .error_bound = found["error_bound"],
+                                       .is_signed = found["signed"]},
                                       tolerance);
     EXPECT_EQ(found["error_bound"], 0);
     EXPECT_EQ(cloud["tolerance"]["verdict"], name_of(judgement.verdict));

@@ -179,13 +179,13 @@ TEST_F(PointsCommand, StatesWhatIsNotDecided) {
     return std::pair(Json::parse(found.out)["tolerance"]["verdict"].get<std::string>(), found.code);
   };
   EXPECT_EQ(verdict({"--tolerance", "1.1"}), std::pair(std::string("PASS"), 0));
-  EXPECT_EQ(verdict({"--tolerance", "1"}), std::pair(std::string("NOT DECIDED"), 0));
+  EXPECT_EQ(verdict({"--tolerance", "1"}), std::pair(std::string("NOT DECIDED"), 4));
   EXPECT_EQ(verdict({"--tolerance", "0.9"}), std::pair(std::string("FAIL"), 3));
   EXPECT_THAT(run(with("none.xyz", "nan 0 0\n"), {"--tolerance", "1"}).out,
               HasSubstr("NOT DECIDED: no point has coordinates"));
   o2 = write_obj(folder / "open.obj", square(8, 0));
   EXPECT_EQ(verdict({"--tolerance", "-0.1:2.5", "--sign", "winding"}),
-            std::pair(std::string("NOT DECIDED"), 0));
+            std::pair(std::string("NOT DECIDED"), 4));
   EXPECT_THAT(run(cloud, {"--tolerance", "-0.1:2.5", "--sign", "winding"}).out,
               HasSubstr("signs are estimates"));
 }

@@ -153,7 +153,7 @@ class Prover {
   hausdorff::Scale scale_;
 };
 
-void check(const Tolerance& tolerance, const ToleranceProofOptions& options) {
+void check_question(const Tolerance& tolerance, const ToleranceProofOptions& options) {
   if (!(std::isfinite(tolerance.lo) && std::isfinite(tolerance.hi) && tolerance.lo <= tolerance.hi))
     throw Error("the tolerance to prove must be two finite numbers, the smaller one first");
   if (!(options.accuracy >= 0)) throw Error("the accuracy of a tolerance's proof must be at least 0");
@@ -163,7 +163,7 @@ void check(const Tolerance& tolerance, const ToleranceProofOptions& options) {
 
 ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,
                                const ToleranceProofOptions& options) try {
-  check(tolerance, options);
+  check_question(tolerance, options);
   if (std::ranges::any_of(surface.triangles, is_removed))
     mesh::validate_edited(surface);
   else

@@ -86,7 +86,8 @@ Json extremes_json(const Summary& summary) {
 Json to_json(const Evidence& evidence) {
   return {{"lowest", evidence.lowest},     {"highest", evidence.highest},
           {"complete", evidence.complete}, {"estimated_signs", evidence.estimated_signs},
-          {"accuracy", evidence.accuracy}, {"error_bound", evidence.error_bound}};
+          {"accuracy", evidence.accuracy}, {"error_bound", evidence.error_bound},
+          {"signed", evidence.is_signed}};
 }
 
 Json to_json(const ToleranceShares& shares) {
@@ -96,8 +97,29 @@ Json to_json(const ToleranceShares& shares) {
           {"without_value", shares.without_value}};
 }
 
+/// What was proven where the samples did not decide.
+Json to_json(const ToleranceProof& proof) {
+  Json json{{"witness", nullptr},
+            {"undecided_by", optional(proof.undecided_by)},
+            {"depends_on_signs", proof.depends_on_signs}};
+  if (const auto& witness = proof.witness)
+    json["witness"] = {{"distance", witness->distance},
+                       {"point", witness->point},
+                       {"closest", witness->closest},
+                       {"triangle", witness->face},
+                       {"closest_triangle", witness->closest_face}};
+  return json;
+}
+
+Json to_json(const std::vector<Doubt>& doubts) {
+  Json json = Json::array();
+  for (const Doubt& doubt : doubts)
+    json.push_back({{"reason", name_of(doubt.reason)}, {"text", doubt.text}, {"remedy", doubt.remedy}});
+  return json;
+}
+
 Json tolerance_json(const Summary& summary) {
-  const ToleranceVerdict& verdict = *summary.tolerance;
+  const CertifiedVerdict& verdict = *summary.tolerance;
   const auto [lo, hi] = verdict.tolerance;
   Json json;
   json["value"] = lo == -hi ? Json(hi) : Json();
@@ -105,6 +127,7 @@ Json tolerance_json(const Summary& summary) {
   json["upper"] = hi;
   json["verdict"] = name_of(verdict.verdict);
   json["reason"] = name_of(verdict.reason);
+  json["text"] = verdict_text(summary);
   if (summary.of_points) {
     json["exceeded_points"] = summary.exceeding_points;
     json["exceeded_point_fraction"] = summary.exceeding_point_fraction;
@@ -116,8 +139,7 @@ Json tolerance_json(const Summary& summary) {
   json["certified"] = verdict.certified;
   json["margin"] = verdict.margin;
   json["nearest_limit"] = verdict.nearest_is_lower ? "lower" : "upper";
-  json["deciding_precision"] =
-      verdict.deciding_bound > 0 && !summary.of_points ? Json(verdict.deciding_bound) : Json();
+  json["proof"] = verdict.proof ? to_json(*verdict.proof) : Json();
   return json;
 }
 
@@ -195,6 +217,13 @@ Json to_json(const Summary& summary) {
   if (!summary.of_points) add_surface(json, summary);
   json["evidence"] = to_json(summary.evidence);
   if (summary.tolerance) json["tolerance"] = tolerance_json(summary);
+  json["doubts"] = to_json(summary.doubts);
+  if (const auto& c = summary.coverage)
+    json["coverage"] = {{"value", c->value},
+                        {"kind", "estimate"},
+                        {"lower", c->lower},
+                        {"upper", c->upper},
+                        {"reach", c->reach}};
   if (summary.distribution) add(json, *summary.distribution, summary.tolerance.has_value());
   if (summary.colors) json["notes"] = summary.notes;
   return json;

@@ -271,13 +271,14 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
                   .max_distance = options.map.max_distance,
                   .evidence = {.complete = found.beyond_max_distance == 0,
                                .estimated_signs = found.sign.method == SignMethod::winding,
-                               .accuracy = found.accuracy},
+                               .accuracy = found.accuracy,
+                               .is_signed = found.sign.method != SignMethod::none},
                   .colors = color_range(color_choice(picture), found.distance)};
   if (found.distance.texels > 0)
     summary.evidence.lowest = found.min.distance, summary.evidence.highest = found.max.distance;
   if (!picture.tolerance) return summary;
   const Judgement judgement = judge(summary.evidence, *picture.tolerance);
-  summary.tolerance = ToleranceVerdict{judgement, *picture.tolerance, found.distance.max_abs, 0, {}};
+  summary.tolerance = CertifiedVerdict{{judgement, *picture.tolerance, found.distance.max_abs, 0, {}}};
   summary.exceeding_points = found.beyond_tolerance;
   summary.exceeding_point_fraction =
       static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points);

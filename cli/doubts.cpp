@@ -1,0 +1,31 @@
+#include "doubts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "option_checks.h"
+
+void add_doubt_options(CLI::App& app, DoubtCommand& command) {
+  app.add_flag("--accept-doubts", command.accept,
+               "PASS stays PASS where the alignment or the coverage leave a doubt, instead of DOUBTFUL");
+  CLI::Option* least =
+      app.add_option("--min-coverage", command.min_coverage,
+                     "Measure which fraction of O2's area has a measured point within --reach, and doubt a "
+                     "PASS if it is below F; 0 only measures it")
+          ->check(number("a number from 0 to 1", [](double x) { return x >= 0 && x <= 1; }))
+          ->type_name("F");
+  app.add_option("--reach", command.reach, "That reach; by default the larger limit of the tolerance")
+      ->check(positive_number())
+      ->type_name("D")
+      ->needs(least);
+}
+
+double reach_of(const DoubtCommand& command, const std::optional<sdm::Tolerance>& tolerance) {
+  if (command.reach) return *command.reach;
+  return tolerance ? std::max(std::abs(tolerance->lo), std::abs(tolerance->hi)) : 0;
+}
+
+void check_doubts(const DoubtCommand& command, const std::optional<sdm::Tolerance>& tolerance) {
+  if (command.min_coverage && !(reach_of(command, tolerance) > 0))
+    throw CLI::ValidationError("--min-coverage", "needs --reach, or a tolerance other than 0");
+}

@@ -1,0 +1,63 @@
+#include "unit_options.h"
+
+#include <fmt/format.h>
+#include <sdm/units.h>
+
+#include <filesystem>
+
+namespace {
+
+bool is_gltf(const std::string& file) {
+  const std::string extension = std::filesystem::path(file).extension().string();
+  return extension == ".glb" || extension == ".gltf";
+}
+
+/// The unit of a file: as given, as its format has it, or that of all lengths.
+std::string unit_of(const std::string& given, const std::string& file, const std::string& units,
+                    const char* option) {
+  if (!given.empty()) return given;
+  if (is_gltf(file)) return "m";
+  if (units.empty())
+    throw CLI::ValidationError(option, fmt::format("is needed, as {} does not state its units", file));
+  return units;
+}
+
+void scale_first(std::string& transform, double factor) {
+  if (factor == 1) return;
+  constexpr int kExact = 15;  // digits: ratios of units are decimal numbers, or their inverses
+  transform = fmt::format("scale:{:.{}g}{}{}", factor, kExact, transform.empty() ? "" : ",", transform);
+}
+
+}  // namespace
+
+void add_unit_options(CLI::App& app, UnitOptions& units) {
+  const auto add = [&](const char* option, const char* mesh, std::string& unit) {
+    app.add_option(option, unit,
+                   fmt::format("The unit of the coordinates in the file of {}, m, cm, mm, um, in or ft: both "
+                               "files are converted to --units, by default the unit of O2; glTF is in m",
+                               mesh))
+        ->check(CLI::Validator(
+            [](const std::string& text) {
+              return sdm::metres_per(text) ? std::string() : text + " is not one of m, cm, mm, um, in, ft";
+            },
+            ""))
+        ->type_name("UNIT");
+  };
+  add("--units-o1", "O1", units.o1);
+  add("--units-o2", "O2", units.o2);
+}
+
+void convert_units(const UnitOptions& options, const ConvertedPair& pair) {
+  if (options.o1.empty() && options.o2.empty()) return;
+  const std::string o1 = unit_of(options.o1, pair.file_o1, pair.units, "--units-o1");
+  const std::string o2 = unit_of(options.o2, pair.file_o2, pair.units, "--units-o2");
+  if (pair.units.empty()) pair.units = o2;
+  const std::optional<double> target = sdm::metres_per(pair.units);
+  if (!target)
+    throw CLI::ValidationError("--units", fmt::format("{} is not one of m, cm, mm, um, in, ft, to which "
+                                                      "--units-o1 and --units-o2 convert",
+                                                      pair.units));
+  const auto factor = [&](const std::string& unit) { return *sdm::metres_per(unit) / *target; };
+  scale_first(pair.transform_o1, factor(o1));
+  scale_first(pair.transform_o2, factor(o2));
+}

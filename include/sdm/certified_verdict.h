@@ -1,0 +1,45 @@
+/// Verdicts on a tolerance that hold for every point of a surface: by the map where its error bound decides,
+/// otherwise by a proof.
+///
+/// Threads: the functions may be called concurrently, also with the same map.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/map.h>
+#include <sdm/progress.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+#include <sdm/tolerance.h>
+#include <sdm/tolerance_proof.h>
+
+#include <optional>
+#include <span>
+
+namespace sdm {
+
+/// A verdict, with the proof that led to it.
+struct CertifiedVerdict : ToleranceVerdict {
+  std::optional<ToleranceProof> proof{};  ///< where the samples of the map did not decide
+};
+
+/// Options of certify_tolerance().
+struct CertifyOptions {
+  double error_bound = 0;  ///< of the map: covering_radius() of its surface
+  double accuracy = 0;     ///< of the distances: engine_accuracy(); infinite if unknown
+  Progress progress{};
+};
+
+/// Returns the judgement that a proof leads to, of samples that were judged as not decided.
+[[nodiscard]] SDM_API Judgement judge(const Judgement& of_samples, const ToleranceProof& proof);
+
+/// check_tolerance() and, where that does not decide because distances between the samples or the rounding of
+/// a sample leave it open, prove_tolerance(). Verdict::not_decided remains for an extreme distance within the
+/// accuracy of a limit, for what depends on signs that are estimates, where nothing was measured, and for an
+/// unknown accuracy. Errors as of both. Cost: that of check_tolerance() and, unless it decides, of the proof.
+[[nodiscard]] SDM_API CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites,
+                                                         const DistanceMap& map,
+                                                         std::span<const float> vertex_distances,
+                                                         const Tolerance& tolerance,
+                                                         const CertifyOptions& options);
+
+}  // namespace sdm

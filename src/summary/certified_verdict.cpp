@@ -1,0 +1,63 @@
+#include <sdm/certified_verdict.h>
+#include <sdm/summary.h>
+
+namespace sdm {
+namespace {
+
+/// Whether a proof may decide what the samples leave open.
+bool is_open(const ToleranceVerdict& verdict) {
+  switch (verdict.reason) {
+    case VerdictReason::between_samples:
+    case VerdictReason::within_rounding:
+      return true;
+    case VerdictReason::estimated_signs:  // unless with the other sign a sample is out of the tolerance
+      return verdict.margin > 0;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
+  Judgement result = of_samples;
+  result.deciding_bound = 0;  // the proof does not depend on the map
+  result.nearest_is_lower = proof.witness ? proof.at_lower : of_samples.nearest_is_lower;
+  switch (proof.proof) {
+    case Proof::inside:
+      result.verdict = Verdict::pass, result.reason = VerdictReason::all_within;
+      result.certified = true;
+      break;
+    case Proof::outside:
+      result.verdict = Verdict::fail, result.reason = VerdictReason::exceeded;
+      result.certified = true, result.within = false;
+      break;
+    case Proof::undecided:
+      result.reason =
+          proof.depends_on_signs ? VerdictReason::estimated_signs : VerdictReason::within_rounding;
+      break;
+  }
+  return result;
+}
+
+CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, const DistanceMap& map,
+                                   std::span<const float> vertex_distances, const Tolerance& tolerance,
+                                   const CertifyOptions& options) {
+  CertifiedVerdict result{
+      check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance)};
+  if (!is_open(result)) return result;
+  result.proof =
+      prove_tolerance(surface.mesh(), sites, tolerance,
+                      {.sign = map.sign.method, .accuracy = options.accuracy, .progress = options.progress});
+  static_cast<Judgement&>(result) = judge(result, *result.proof);
+  return result;
+}
+
+void withhold_pass(Summary& summary, bool accept_doubts) {
+  if (!summary.tolerance || summary.doubts.empty() || accept_doubts) return;
+  CertifiedVerdict& verdict = *summary.tolerance;
+  if (verdict.verdict != Verdict::pass) return;
+  verdict.verdict = Verdict::doubtful, verdict.reason = VerdictReason::in_doubt;
+}
+
+}  // namespace sdm

@@ -1,0 +1,77 @@
+#include <sdm/summary.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace sdm {
+namespace {
+
+std::string short_text(double number, int digits = 5) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
+  return text.data();
+}
+
+std::string with_unit(double length, const std::string& units, int digits = 5) {
+  return short_text(length, digits) + (units.empty() ? "" : " " + units);
+}
+
+/// Of a verdict that no point is proven to contradict.
+std::string open_text(const Summary& summary, const std::string& limits) {
+  const CertifiedVerdict& verdict = *summary.tolerance;
+  switch (verdict.reason) {
+    case VerdictReason::nothing_measured:
+      return summary.of_points ? "no point has coordinates" : "nothing was measured";
+    case VerdictReason::unknown_accuracy:
+      return "the accuracy of the distances is unknown";
+    case VerdictReason::estimated_signs:
+      return "all " + std::string(summary.of_points ? "" : "measured ") + "points are within " + limits +
+             ", but their signs are estimates, and with the other sign a point may be out of it";
+    case VerdictReason::between_samples:
+      return "all measured points are within " + limits + ", but points between them may not be";
+    default:
+      break;
+  }
+  const std::string accuracy = with_unit(summary.evidence.accuracy, summary.units, 2);
+  if (!verdict.proof || !verdict.proof->undecided_by)
+    return "all points are within " + limits + " or out of it by less than the accuracy of a distance, " +
+           accuracy + ", which one is closer to a limit than";
+  const std::string by = with_unit(*verdict.proof->undecided_by, summary.units, 2);
+  if (*verdict.proof->undecided_by > summary.evidence.accuracy)
+    return "no point is out of " + limits + " by more than " + by + ", where the search ended";
+  return "no point is out of " + limits + " by more than " + by + ", less than the accuracy of a distance, " +
+         accuracy;
+}
+
+}  // namespace
+
+std::string limits_text(const Tolerance& tolerance, const std::string& units) {
+  const auto [lo, hi] = tolerance;
+  return lo == -hi ? "±" + with_unit(hi, units) : short_text(lo) + " to " + with_unit(hi, units);
+}
+
+std::string verdict_text(const Summary& summary) {
+  if (!summary.tolerance) return {};
+  const CertifiedVerdict& verdict = *summary.tolerance;
+  const std::string limits = limits_text(verdict.tolerance, summary.units);
+  const std::string all =
+      std::string(summary.of_points ? "every point of the cloud" : "every point of the surface") +
+      " is within " + limits;
+  switch (verdict.verdict) {
+    case Verdict::pass:
+      return all;
+    case Verdict::doubtful:
+      return all + ", but " + summary.doubts.front().text + "; " + summary.doubts.front().remedy +
+             ", or --accept-doubts";
+    case Verdict::fail:
+      return verdict.reason == VerdictReason::beyond_max_distance
+                 ? "a point is farther than the maximum distance"
+                 : "a point is out of " + limits;
+    case Verdict::not_decided:
+      break;
+  }
+  return open_text(summary, limits);
+}
+
+}  // namespace sdm

@@ -1,0 +1,194 @@
+// Verdicts of whole jobs: units that were mistaken, doubts, and what overrules them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/samples.h"
+#include "geometry/vec.h"
+#include "support/meshes.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+/// A part, and a scan of it that is tilted and shifted.
+struct Verdicts : ::testing::Test {
+  TemporaryFolder folder;
+  std::string out = folder / "out";
+
+  /// The scan in another unit.
+  [[nodiscard]] std::string scan_of(const Mesh& part, double factor) const {
+    const double size = diagonal(bounds(part));
+    return write_obj(folder / "scan.obj", placed(part, fmt::format("rotate:1:-1:1,translate:{}:0:0,scale:{}",
+                                                                   0.01 * size, factor)));
+  }
+  [[nodiscard]] Outcome map(const std::string& o1, const std::string& o2,
+                            const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"map",          o1,   o2,        "-o",       out, "--write", "none",
+                                       "--resolution", "64", "--atlas", "triangles"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+};
+
+const std::vector<std::pair<double, std::string>> kUnits{
+    {10, "cm"}, {25.4, "in"}, {304.8, "ft"}, {1000, "m"}};
+
+// 3 parts, 4 units, both directions.
+TEST_F(Verdicts, UnitMistakesAreWithheld) {
+  for (const char* name : {"fandisk.off", "cow.off", "elephant.off"}) {
+    const Mesh part = load(name, "fit,scale:100");
+    const std::string o2 = write_obj(folder / "part.obj", part);
+    for (const auto& [factor, unit] : kUnits) {
+      SCOPED_TRACE(fmt::format("{} {}", name, unit));
+      const std::string small = scan_of(part, 1 / factor);
+      const Outcome withheld = map(small, o2, {"--align", "--tolerance", "30"});
+      EXPECT_EQ(withheld.code, 5) << withheld.out << withheld.err;
+      EXPECT_THAT(withheld.out, HasSubstr("tolerance DOUBTFUL: every point of the surface is within"));
+      EXPECT_THAT(withheld.out, HasSubstr("--units-o1 " + unit + " --units-o2 mm"));
+      const Outcome mended =
+          map(small, o2, {"--align", "--tolerance", "1", "--units-o1", unit, "--units-o2", "mm"});
+      EXPECT_EQ(mended.code, 0) << mended.out << mended.err;
+      const Outcome large = map(scan_of(part, factor), o2, {"--align", "--tolerance", "30"});
+      EXPECT_TRUE(large.code == 3 || large.code == 5) << large.out << large.err;
+    }
+  }
+}
+
+TEST_F(Verdicts, TheSamePartInTheSameUnitIsNotDoubted) {
+  for (const char* name : {"fandisk.off", "cow.off", "elephant.off", "anchor.off", "pinion.off"}) {
+    const Mesh part = load(name, "fit,scale:100");
+    const std::string o2 = write_obj(folder / "part.obj", part);
+    const Outcome run = map(scan_of(part, 1), o2, {"--align", "--tolerance", "1"});
+    EXPECT_EQ(run.code, 0) << name << run.out << run.err;
+    EXPECT_THAT(run.out, Not(HasSubstr("doubt")));
+  }
+}
+
+TEST_F(Verdicts, DoubtsAreReportedAndOverruled) {
+  const Mesh part = load("fandisk.off", "fit,scale:100");
+  const std::string o2 = write_obj(folder / "part.obj", part), o1 = scan_of(part, 0.001);
+  const std::vector<std::string> options{"--align", "--tolerance", "30", "--json"};
+  const Outcome run = map(o1, o2, options);
+  EXPECT_EQ(run.code, 5);
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["tolerance"]["verdict"], "DOUBTFUL");
+  EXPECT_EQ(report["tolerance"]["reason"], "in doubt");
+  EXPECT_EQ(report["doubts"][0]["reason"], "other unit");
+  EXPECT_THAT(report["tolerance"]["text"].get<std::string>(),
+              HasSubstr(report["doubts"][0]["text"].get<std::string>()));
+  std::vector<std::string> accepting = options;
+  accepting.emplace_back("--accept-doubts");
+  const Outcome accepted = map(o1, o2, accepting);
+  EXPECT_EQ(accepted.code, 0) << accepted.err;
+  EXPECT_EQ(Json::parse(accepted.out)["tolerance"]["verdict"], "PASS");
+  EXPECT_EQ(Json::parse(accepted.out)["doubts"], report["doubts"]);
+}
+
+TEST_F(Verdicts, AFailureStaysOne) {
+  const Mesh part = load("fandisk.off", "fit,scale:100");
+  const std::string o2 = write_obj(folder / "part.obj", part);
+  const Outcome run = map(scan_of(part, 0.001), o2, {"--align", "--tolerance", "1:2"});
+  EXPECT_EQ(run.code, 3) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("doubt     O1 fits O2 far better 1000 times as large"));
+}
+
+// A plane slides and turns in itself.
+TEST_F(Verdicts, AnUndeterminedAlignmentIsDoubted) {
+  const std::string o1 = write_obj(folder / "o1.obj", square(1, 0.01)),
+                    o2 = write_obj(folder / "o2.obj", square(2, 0));
+  const Outcome run = map(o1, o2, {"--align", "--tolerance", "0.1"});
+  EXPECT_EQ(run.code, 5) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("do not determine 3 freedoms of the alignment"));
+  EXPECT_EQ(map(o1, o2, {"--tolerance", "0.1"}).code, 0) << "without an alignment there is no doubt";
+}
+
+// Half of the square is covered, and 0.1 around it.
+TEST_F(Verdicts, CoverageIsMeasuredAndDoubted) {
+  Mesh half = square(2, 0);
+  for (Vec3& p : half.positions) p[0] = 0.5 * p[0] - 0.5;
+  const std::string o1 = write_obj(folder / "o1.obj", half), o2 = write_obj(folder / "o2.obj", square(2, 0));
+  const auto covered = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> options{"--tolerance", "0.1", "--json"};
+    options.insert(options.end(), more.begin(), more.end());
+    return map(o1, o2, options);
+  };
+  const Outcome measured = covered({"--min-coverage", "0"});
+  EXPECT_EQ(measured.code, 0) << measured.err;
+  const Json coverage = Json::parse(measured.out)["coverage"];
+  EXPECT_NEAR(coverage["value"], 0.55, 0.01);
+  EXPECT_LE(coverage["lower"], 0.55);
+  EXPECT_GE(coverage["upper"], 0.55);
+  EXPECT_LT(coverage["upper"].get<double>() - coverage["lower"].get<double>(), 0.02);
+  EXPECT_EQ(coverage["reach"], 0.1);
+  EXPECT_EQ(covered({"--min-coverage", "0.5"}).code, 0);
+  EXPECT_EQ(covered({"--min-coverage", "0.6"}).code, 5);
+  EXPECT_EQ(covered({"--min-coverage", "0.6", "--reach", "0.3"}).code, 0);
+  EXPECT_EQ(covered({"--min-coverage", "0.6", "--accept-doubts"}).code, 0);
+  EXPECT_EQ(covered({"--reach", "0.3"}).code, 2);
+  EXPECT_EQ(map(o1, o2, {"--min-coverage", "0.6"}).code, 2);
+
+  // As a cloud.
+  std::ofstream cloud(folder / "cloud.xyz");
+  for (int i = 0; i <= 50; ++i)
+    for (int j = 0; j <= 100; ++j) cloud << -1 + 0.02 * i << ' ' << -1 + 0.02 * j << " 0\n";
+  cloud.close();
+  const Outcome points = run_sdm({"points", folder / "cloud.xyz", o2, "-o", out, "--write", "none",
+                                  "--tolerance", "0.1", "--min-coverage", "0.6", "--json"});
+  EXPECT_EQ(points.code, 5) << points.err;
+  const Json report = Json::parse(points.out);
+  EXPECT_NEAR(report["coverage"]["value"], 0.55, 0.01);
+  EXPECT_EQ(report["doubts"][0]["reason"], "low coverage");
+}
+
+TEST_F(Verdicts, FilesInTheirUnits) {
+  const std::string o2 = write_obj(folder / "part.obj", cube(1)),
+                    o1 = write_obj(folder / "scan.obj", cube(0.001));
+  const std::vector<std::string> tolerance{"--tolerance", "1e-9", "--json"};
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.end(), tolerance.begin(), tolerance.end());
+    return map(o1, o2, more);
+  };
+  const Outcome converted = run({"--units-o1", "m", "--units-o2", "mm"});
+  EXPECT_EQ(converted.code, 0) << converted.err;
+  EXPECT_EQ(Json::parse(converted.out)["units"], "mm");
+  EXPECT_EQ(Json::parse(converted.out)["o1"]["transform"], "scale:1000");
+  EXPECT_EQ(run({"--units", "mm", "--units-o1", "m"}).code, 0) << "O2 is in the unit of all lengths";
+  EXPECT_EQ(Json::parse(run({"--units", "in", "--units-o1", "m", "--units-o2", "mm"}).out)["units"], "in");
+  EXPECT_EQ(run({"--units-o1", "m"}).code, 2);
+  EXPECT_EQ(run({"--units-o1", "parsec", "--units-o2", "mm"}).code, 2);
+  EXPECT_EQ(run({"--units", "parsec", "--units-o1", "m", "--units-o2", "mm"}).code, 2);
+  EXPECT_EQ(run({}).code, 3);
+}
+
+// A part against itself, in any order of vertices, however coarse the map is.
+TEST_F(Verdicts, APartAgainstItselfPasses) {
+  for (const char* name : {"fandisk.off", "cow.off"}) {
+    const std::string part = mesh_file(name);
+    const Outcome run = map(part, part, {"--tolerance", "0.001"});
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_THAT(run.out, HasSubstr("tolerance PASS: every point of the surface is within ±0.001\n"));
+  }
+}
+
+// What is left open is within the accuracy, and has an exit code.
+TEST_F(Verdicts, NotDecidedSaysByHowMuch) {
+  const std::string o1 = write_obj(folder / "o1.obj", square(1, 0.1)),
+                    o2 = write_obj(folder / "o2.obj", square(2, 0));
+  const Outcome open = map(o1, o2, {"--tolerance", "0.0999999"});
+  EXPECT_EQ(open.code, 4) << open.out;
+  EXPECT_THAT(open.out, HasSubstr("NOT DECIDED: no point is out of ±0.1 by more than "));
+  EXPECT_THAT(open.out, Not(HasSubstr("--precision")));
+  EXPECT_EQ(map(o1, o2, {"--tolerance", "0:0.2"}).code, 0);
+  EXPECT_EQ(map(o2, o2, {"--tolerance", "0:0.2"}).code, 0) << "unsigned distances are not negative";
+}
+
+}  // namespace
+}  // namespace sdm::test
