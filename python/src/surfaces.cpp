@@ -1,4 +1,8 @@
-// The Hausdorff distance of two surfaces, and their alignment.
+// The Hausdorff distance of two surfaces, their alignment, and the doubts that it leaves.
+#include <nanobind/stl/string.h>
+#include <sdm/coverage.h>
+#include <sdm/doubts.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -211,6 +215,85 @@ have no weight.
 True)");
 }
 
+void bind_doubts(nb::module_& module) {
+  nb::class_<Doubt>(module, "Doubt",
+                    "Why it should not be trusted that all distances are within a tolerance.")
+      .def_prop_ro(
+          "reason", [](const Doubt& self) { return name_of(self.reason); },
+          "'other unit', 'poor fit', 'undetermined' or 'low coverage'.")
+      .def_ro("text", &Doubt::text, "What was found.")
+      .def_ro("remedy", &Doubt::remedy, "What mends it, by the options of the command.")
+      .def("__repr__", [](const Doubt& self) {
+        return nb::str("sdm.Doubt({}: {})").format(name_of(self.reason), self.text);
+      });
+  module.def(
+      "alignment_doubts",
+      [](nb::handle o1, nb::handle o2, const Alignment& alignment, const char* start, nb::handle pose) {
+        const AlignOptions options =
+            align_options(start, pose, AlignOptions{}.samples, AlignOptions{}.max_iterations);
+        const Mesh mesh = mesh_of(o1, nb::none());
+        SitesInUse to(o2);
+        std::vector<Doubt> doubts;
+        run(nb::none(), [&](const Progress&) {
+          doubts = doubts_of(alignment, find_other_unit(mesh, to.get(), alignment, options));
+        });
+        nb::list result;
+        for (Doubt& doubt : doubts) result.append(nb::cast(std::move(doubt)));
+        return result;
+      },
+      nb::arg("o1").none(), nb::arg("o2").none(), nb::arg("alignment"), nb::kw_only(),
+      nb::arg("start") = "pose", nb::arg("pose") = nb::none(),
+      nb::sig("def alignment_doubts(o1: object, o2: object, alignment: Alignment, *, start: str = 'pose', "
+              "pose: object = None) -> list[Doubt]"),
+      R"(Returns the doubts that an alignment leaves, for which the command withholds a PASS.
+
+o1: as it was given to align(), which returned the alignment with these ``start`` and ``pose``.
+
+They are that o1 fits far better 10, 25.4, 304.8 or 1000 times as large, or as small; that less than half of
+its samples fit; and that the surfaces do not determine all freedoms. Errors as of align(). Cost: that of up to
+8 alignments of 1024 samples.
+
+>>> sdm.alignment_doubts(box, box, sdm.align(box, box))
+[])");
+}
+
+void bind_coverage(nb::module_& module) {
+  nb::class_<Coverage>(module, "Coverage", "The share of the area of O2 that has a measured point near it.")
+      .def_ro("value", &Coverage::value, "In [0, 1]; an estimate within the bounds.")
+      .def_ro("lower", &Coverage::lower, "Certified.")
+      .def_ro("upper", &Coverage::upper, "Certified.")
+      .def_ro("reach", &Coverage::reach, "How near.")
+      .def("__repr__", [](const Coverage& self) {
+        return nb::str("sdm.Coverage({:.4g}, from {:.4g} to {:.4g})")
+            .format(self.value, self.lower, self.upper);
+      });
+  static const std::string coverage_signature =
+      std::string("def coverage(o2: object, measured: object, reach: float, *, ") + kProgress + "Coverage";
+  module.def(
+      "coverage",
+      [](nb::handle o2, nb::handle measured, double reach, nb::handle progress) {
+        const Mesh mesh = mesh_of(o2, nb::none());
+        SitesInUse on(measured);
+        Coverage result;
+        run(progress,
+            [&](const Progress& report) { result = coverage(mesh, on.get(), reach, {.progress = report}); });
+        return result;
+      },
+      nb::arg("o2").none(), nb::arg("measured").none(), nb::arg("reach"), nb::kw_only(),
+      nb::arg("progress") = nb::none(), nb::sig(coverage_signature.c_str()),
+      R"(Returns how much of the area of O2 has a point of the measured surface within a reach.
+
+o2: any form of a mesh (see Mesh). measured: the same, or Sites.
+reach: a length, greater than 0.
+progress: called as progress(step, fraction), on this thread; False cancels.
+
+Raises Error for an unusable mesh or reach. Cost: a closest point for each face of O2 and each piece of those
+that are not decided as a whole.
+
+>>> sdm.coverage(box, box, 0.1).value
+1.0)");
+}
+
 }  // namespace
 
 void bind_surfaces(nb::module_& module) {
@@ -219,6 +302,8 @@ void bind_surfaces(nb::module_& module) {
   bind_hausdorff(module);
   bind_align(module);
   bind_align_points(module);
+  bind_doubts(module);
+  bind_coverage(module);
 }
 
 }  // namespace sdm::python

@@ -364,6 +364,24 @@ def test_tolerances(distance_map):
         unsigned.check("text")
 
 
+def test_coverage():
+    box = meshes.box()
+    everything = sdm.coverage(box, box, 0.1)
+    assert everything.value == everything.lower == everything.upper == 1 and everything.reach == 0.1
+    some = sdm.coverage(box, meshes.box((0, 0, 0), (1, 1, 0.5)), 0.05)
+    assert 0 < some.lower <= some.value <= some.upper < 1
+    with pytest.raises(sdm.Error):
+        sdm.coverage(box, box, 0)
+
+
+def test_doubts():
+    part = meshes.box((0, 0, 0), (100, 60, 30))
+    assert sdm.alignment_doubts(part, part, sdm.align(part, part)) == []
+    in_metres = (0.001 * part[0], part[1])
+    doubts = sdm.alignment_doubts(in_metres, part, sdm.align(in_metres, part))
+    assert doubts[0].reason == "other unit" and "--units-o1 m" in doubts[0].remedy and doubts[0].text
+
+
 def test_self_maps():
     plate = meshes.box((0, 0, 0), (10, 10, 0.5))
     m = sdm.self_map(plate, resolution=128, max_distance=2)
