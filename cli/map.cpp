@@ -112,7 +112,8 @@ int run(MapCommand command) {
       aligned = align_mesh(pair.o1.mesh, *task.sites, command.align, progress.callback());
       write_text(out.staging() / kAlignmentFile, to_text(to_json(*aligned)));
     }
-    if (aligned) task.doubts = sdm::doubts_of(aligned->alignment, aligned->other_unit);
+    if (aligned && command.align.judged)
+      task.doubts = sdm::doubts_of(aligned->alignment, aligned->other_unit);
     const std::vector<sdm::Doubt> doubts = task.doubts;
     if (command.doubts.min_coverage) measure_coverage(task, progress);
     meshes.push_back(measure_mesh(std::move(task), out, progress));

@@ -208,7 +208,7 @@ int run(PointsCommand command) {
     outcome.found = sdm::measure_points(command.cloud, sites, ply, options);
     const sdm::Box& box = outcome.found.bounds;
     outcome.summary = sdm::summarize(outcome.found, options);
-    if (outcome.aligned)
+    if (outcome.aligned && command.align.judged)
       outcome.summary.doubts = sdm::doubts_of(outcome.aligned->alignment, outcome.aligned->other_unit);
     if (command.doubts.min_coverage)
       measure_cloud_coverage(command, options.placement, o2.mesh, outcome.summary, progress);

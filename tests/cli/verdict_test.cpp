@@ -31,8 +31,7 @@ struct Verdicts : ::testing::Test {
   }
   [[nodiscard]] Outcome map(const std::string& o1, const std::string& o2,
                             const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"map",          o1,   o2,        "-o",       out, "--write", "none",
-                                       "--resolution", "64", "--atlas", "triangles"};
+    std::vector<std::string> arguments{"map", o1, o2, "-o", out, "--write", "none", "--resolution", "64"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_sdm(arguments);
   }
