@@ -8,12 +8,12 @@
 void add_doubt_options(CLI::App& app, DoubtCommand& command) {
   app.add_flag("--accept-doubts", command.accept,
                "PASS stays PASS where the alignment or the coverage leave a doubt, instead of DOUBTFUL");
-  CLI::Option* least =
-      app.add_option("--min-coverage", command.min_coverage,
-                     "Measure which fraction of O2's area has a measured point within --reach, and doubt a "
-                     "PASS if it is below F; 0 only measures it")
-          ->check(number("a number from 0 to 1", [](double x) { return x >= 0 && x <= 1; }))
-          ->type_name("F");
+  CLI::Option* least = app.add_option("--min-coverage", command.min_coverage,
+                                      "Measure which fraction of O2's area has a measured point near it (by "
+                                      "--reach D) and doubt a PASS if "
+                                      "it is below F; 0 only measures it")
+                           ->check(number("a number from 0 to 1", [](double x) { return x >= 0 && x <= 1; }))
+                           ->type_name("F");
   app.add_option("--reach", command.reach, "That reach; by default the larger limit of the tolerance")
       ->check(positive_number())
       ->type_name("D")

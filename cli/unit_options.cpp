@@ -32,10 +32,11 @@ void scale_first(std::string& transform, double factor) {
 
 void add_unit_options(CLI::App& app, UnitOptions& units) {
   const auto add = [&](const char* option, const char* mesh, std::string& unit) {
-    app.add_option(option, unit,
-                   fmt::format("The unit of the coordinates in the file of {}, m, cm, mm, um, in or ft: both "
-                               "files are converted to --units, by default the unit of O2; glTF is in m",
-                               mesh))
+    app.add_option(
+           option, unit,
+           fmt::format("The unit of the coordinates in the file of {}, m, cm, mm, um, in or ft: both "
+                       "files are converted to the unit of --units or else to that of O2; glTF is in m",
+                       mesh))
         ->check(CLI::Validator(
             [](const std::string& text) {
               return sdm::metres_per(text) ? std::string() : text + " is not one of m, cm, mm, um, in, ft";
