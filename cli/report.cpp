@@ -101,13 +101,6 @@ std::string to_text(const Json& json) {
 
 namespace {
 
-// A tolerance in words, such as "±0.1 mm".
-std::string limits_text(const sdm::Tolerance& tolerance, const std::string& unit) {
-  const auto [lo, hi] = tolerance;
-  return lo == -hi ? fmt::format("±{}{}", number(hi), unit)
-                   : fmt::format("{} to {}{}", number(lo), number(hi), unit);
-}
-
 std::string farthest(const Outcome& outcome, const std::string& unit) {
   const sdm::Extreme& most = decisive_extreme(outcome.summary);
   if (std::isnan(most.distance)) return "no texel has a value";

@@ -5,6 +5,7 @@
 
 #include "certify/hausdorff/part_search.h"
 #include "certify/hausdorff/vertex_search.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 
 namespace sdm::hausdorff {
@@ -19,12 +20,11 @@ double largest_coordinate(const Box& box) {
 }  // namespace
 
 Scale scale_of(const Mesh& a, const sites::SitesData& b) {
-  constexpr double kRounding = 1e-12;
   const Box box = bounds(a);
   Box both = bounds(b.mesh);
   extend(both, box);
   const double size = diagonal(both);
-  return {size, largest_coordinate(box), kRounding * std::max(size, largest_coordinate(both))};
+  return {size, largest_coordinate(box), kDoubleRounding * std::max(size, largest_coordinate(both))};
 }
 
 LargestDistance largest_distance(const Mesh& a, const sites::SitesData& b, const Scale& scale,

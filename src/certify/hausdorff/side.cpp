@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/triangle_pair.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "query/inside/solid.h"
 #include "tree/visit.h"
@@ -15,11 +16,10 @@ bool Side::has(const Vec3& p) const {
 
 bool Side::is_one_sided(const Corners& triangle) const {
   // Mapping corners into the frame rounds.
-  constexpr double kRounding = 1e-15;
   Box box;
   for (const Vec3& corner : triangle) {
     Vec3 unit = solid_.frame.to_unit(corner), rounding;
-    for (int k = 0; k < 3; ++k) rounding[k] = kRounding * (1 + std::abs(unit[k]));
+    for (int k = 0; k < 3; ++k) rounding[k] = kFewRoundings * (1 + std::abs(unit[k]));
     extend(box, unit - rounding), extend(box, unit + rounding);
   }
   const tree::FloatBox around = tree::FloatBox::around(box);

@@ -5,6 +5,7 @@
 
 #include "certify/hausdorff/vertex_search.h"
 #include "core/parallel.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "tree/visit.h"
 
@@ -14,7 +15,6 @@ namespace {
 // Lowers `least` by the distance of a face of A.
 void lower_by_face(const sites::SitesData& b, const Corners& corners, std::uint32_t face,
                    LeastDistance& least) {
-  constexpr double kRounding = 1e-15;
   Box box;
   double size = 1;
   for (const Vec3& corner : corners) {
@@ -24,7 +24,7 @@ void lower_by_face(const sites::SitesData& b, const Corners& corners, std::uint3
   }
   const tree::FloatBox around = tree::FloatBox::around(box);
   const auto bound = [&](const tree::FloatBox& other) {
-    return (1 - 1e-12) * norm(tree::gap(around, other)) - kRounding * size;
+    return (1 - 1e-12) * norm(tree::gap(around, other)) - kFewRoundings * size;
   };
   const auto enter = [&](double distance) { return distance < least.value * b.frame.scale; };
   const auto leaf = [&](std::uint32_t node) {
