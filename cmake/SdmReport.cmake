@@ -1,8 +1,30 @@
 # The pages of report.html and player.html: report/ bundled by esbuild into one HTML file each, which the library embeds.
 find_program(NPM npm)
 find_program(NODE NAMES node nodejs)
-if(NOT NPM OR NOT NODE)
-  message(FATAL_ERROR "npm was not found: install npm (Debian), or build without report.html: -DSDM_BUILD_REPORT=OFF")
+if(NOT NODE)
+  message(FATAL_ERROR "Node was not found: install nodejs (Debian), or build without report.html: -DSDM_BUILD_REPORT=OFF")
+endif()
+set(npm_command ${NPM})
+if(NOT NPM)
+  # Debian's npm comes with 350 packages. Its own archive has all that it needs.
+  set(SDM_NPM_ARCHIVE https://registry.npmjs.org/npm/-/npm-10.9.9.tgz CACHE STRING "Where npm is downloaded from if it is not installed")
+  mark_as_advanced(SDM_NPM_ARCHIVE)
+  set(npm_folder ${PROJECT_BINARY_DIR}/npm)
+  set(npm_command ${NODE} ${npm_folder}/package/bin/npm-cli.js)
+  if(NOT EXISTS ${npm_folder}/package/bin/npm-cli.js)
+    message(STATUS "Downloading npm")
+    file(DOWNLOAD ${SDM_NPM_ARCHIVE} ${npm_folder}/npm.tgz TLS_VERIFY ON STATUS status)
+    list(GET status 0 failed)
+    if(failed)
+      list(GET status 1 reason)
+      message(FATAL_ERROR "npm was not found, and not downloaded (${reason}): install npm (Debian), or build without report.html: -DSDM_BUILD_REPORT=OFF")
+    endif()
+    file(SHA512 ${npm_folder}/npm.tgz checksum)
+    if(NOT checksum STREQUAL d60fba8cb42f688b81e33c2f1cbef2ad7b977166700ec0ad057f1b6d60ea6ef2524abf673e20c35931cd8305d1dbb8887134d6eefdc0e7b8435bd458bf65b862)
+      message(FATAL_ERROR "${SDM_NPM_ARCHIVE} is not npm 10.9.9: install npm (Debian), or build without report.html: -DSDM_BUILD_REPORT=OFF")
+    endif()
+    file(ARCHIVE_EXTRACT INPUT ${npm_folder}/npm.tgz DESTINATION ${npm_folder})
+  endif()
 endif()
 set(SDM_REPORT_FOLDER ${PROJECT_BINARY_DIR}/report)
 
@@ -14,7 +36,7 @@ function(sdm_npm_ci folder)
   add_custom_command(OUTPUT ${folder}/packages
     COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
     COMMAND ${CMAKE_COMMAND} -E copy ${files} ${folder}
-    COMMAND ${CMAKE_COMMAND} -E chdir ${folder} ${NPM} ci --silent --ignore-scripts --no-audit --no-fund ${ARGN}
+    COMMAND ${CMAKE_COMMAND} -E chdir ${folder} ${npm_command} ci --silent --ignore-scripts --no-audit --no-fund ${ARGN}
     COMMAND ${CMAKE_COMMAND} -E touch ${folder}/packages
     DEPENDS ${files}
     COMMENT "Installing the packages of report/"
