@@ -20,14 +20,17 @@ struct Item {
 
 // All halves but the last hold 16·2^k items, so that all packets but the last are full.
 void order(std::span<Item> items) {
-  if (items.size() <= kPacket) return;
+  if (items.size() <= kPacket) {
+    std::ranges::sort(items, {}, &Item::index);  // a selection leaves them in any order
+    return;
+  }
   const std::size_t half = kPacket * std::bit_floor((items.size() - 1) / kPacket);
   const Side side = longest_side<Item>(items);
   const SplitRange range = split_range(items, side, half, [](const Item&) { return 1; });
   std::ranges::nth_element(items.subspan(range.begin, range.end - range.begin),
                            items.begin() + static_cast<std::ptrdiff_t>(half), {}, [&side](const Item& item) {
                              return std::pair(item.point[side.axis],
-                                              item.index);  // unique, so the order is too
+                                              item.index);  // unique, so the half is too
                            });
   const auto first = [=] { order(items.first(half)); };
   const auto second = [=] { order(items.subspan(half)); };

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -40,7 +41,7 @@ class Parts {
     else
       slot = free_.back(), free_.pop_back(), slots_[slot] = part;
     open_.push_back({part.upper, slot});
-    std::ranges::push_heap(open_, {}, &Open::upper);
+    std::ranges::push_heap(open_);
   }
 
   [[nodiscard]] double lower() const { return lower_; }
@@ -54,7 +55,8 @@ class Parts {
  private:
   struct Open {
     double upper;
-    std::uint32_t slot;
+    std::uint32_t slot;  // unique, so that the order of equal bounds is that of the slots
+    auto operator<=>(const Open&) const = default;
   };
 
   void forget() { open_.clear(), slots_.clear(), free_.clear(); }
@@ -168,12 +170,12 @@ bool Parts<Part, Found>::take_highest(Policy& policy) {
     forget();
     return false;
   }
-  std::ranges::pop_heap(open_, {}, &Open::upper);
+  std::ranges::pop_heap(open_);
   Open& highest = open_.back();
   Part& open = slots_[highest.slot];
   if (policy.tighten(open) && open.upper > enough()) {
     highest.upper = open.upper;
-    std::ranges::push_heap(open_, {}, &Open::upper);
+    std::ranges::push_heap(open_);
     return true;
   }
   const Part part = take(highest.slot);

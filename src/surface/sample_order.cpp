@@ -109,7 +109,9 @@ class SampleOrder {
     }
   }
 
-  void write(std::span<const Item> items, std::span<std::uint32_t> result) const {
+  // One square, or single samples, which selections leave in any order.
+  void write(std::span<Item> items, std::span<std::uint32_t> result) const {
+    std::ranges::sort(items, {}, &Item::texel);
     std::size_t next = 0;
     for (const Item& item : items)
       for (std::uint32_t k = 0; k < item.samples(); ++k)

@@ -55,5 +55,23 @@ TEST(NormalCone, KeepsFewRaysOfMany) {
   EXPECT_NEAR(widest(normals, cone.axis), widest(cone.rays, cone.axis), 1e-12);
 }
 
+// Rays at the same place of the projection, and the corners of its hull, are chosen by their values.
+TEST(NormalCone, DoesNotDependOnTheOrderOfNormals) {
+  std::mt19937 random(6);
+  const Vec3 axis = normalized({1, 2, 3});
+  for (const std::size_t count : {7u, 300u}) {
+    std::vector<Vec3> normals = normals_near(axis, 0.5, count, random);
+    for (std::size_t i = 0; i < count; ++i)
+      normals.push_back((1 + 1e-3 * static_cast<double>(i)) * normals[i]);
+    const atlas::NormalCone cone = atlas::spanned_cone(normals, axis);
+    for (int k = 0; k < 10; ++k) {
+      std::ranges::shuffle(normals, random);
+      const atlas::NormalCone again = atlas::spanned_cone(normals, axis);
+      EXPECT_EQ(again.rays, cone.rays);
+      EXPECT_EQ(again.axis, cone.axis);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sdm

@@ -286,6 +286,19 @@ TEST(SpatialOrder, AlignedPacketsAreCompact) {
   }
 }
 
+// The halves are determined by coordinates and indices, and so is the order in a packet, which a selection
+// would leave to the standard library.
+TEST(SpatialOrder, IsAscendingInEachPacket) {
+  std::mt19937 random(8);
+  std::uniform_int_distribution<int> u(0, 9);  // many points at the same place
+  std::vector<Vec3> points(3001);
+  for (Vec3& p : points) p = {1.0 * u(random), 1.0 * u(random), 1.0 * u(random)};
+  const std::vector<std::uint32_t> order = spatial_order(points);
+  for (std::size_t first = 0; first < order.size(); first += 16)
+    EXPECT_TRUE(
+        std::ranges::is_sorted(std::span(order).subspan(first, std::min(16ul, order.size() - first))));
+}
+
 TEST(SpatialOrder, TakesNoPointsAndEqualPoints) {
   EXPECT_TRUE(spatial_order({}).empty());
   EXPECT_EQ(spatial_order(std::vector<Vec3>(5, Vec3{3, 3, 3})).size(), 5u);

@@ -59,6 +59,18 @@ TEST(SampleOrder, OfSmallChartsAndOfFewSamples) {
   expect_compact(Surface(test::tetrahedron(), {.kind = AtlasKind::triangles, .resolution = 17}));
 }
 
+// The order in a packet is that of the texels, not that in which a selection leaves them.
+TEST(SampleOrder, IsAscendingInEachPacket) {
+  const Mesh bunny = test::load("bunny.obj", "fit");
+  for (const std::uint32_t resolution : {250u, 1024u}) {
+    const Surface surface(bunny, {.resolution = resolution});
+    const auto order = surface.sample_texels();
+    for (std::size_t first = 0; first < order.size(); first += 16)
+      ASSERT_TRUE(
+          std::ranges::is_sorted(order.subspan(first, std::min<std::size_t>(16, order.size() - first))));
+  }
+}
+
 // Far from the origin, single precision must not be that of the coordinates.
 TEST(SampleOrder, FarFromTheOrigin) {
   expect_compact(Surface(test::placed(test::cube(), "translate:1e7:1e7:1e7"), {.resolution = 128}));

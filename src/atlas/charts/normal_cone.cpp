@@ -1,6 +1,7 @@
 #include "atlas/charts/normal_cone.h"
 
 #include <algorithm>
+#include <compare>
 
 #include "atlas/charts/tangent_frame.h"
 #include "geometry/vec.h"
@@ -19,6 +20,7 @@ std::vector<Vec3> extreme_rays(std::span<const Vec3> vectors, const Vec3& axis) 
   struct Point {
     Vec2 at;
     Vec3 ray;
+    auto operator<=>(const Point&) const = default;
   };
   const auto [right, up] = tangent_frame(axis);
   std::vector<Point> points;

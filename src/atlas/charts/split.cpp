@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <queue>
 
@@ -96,7 +97,7 @@ class Splitter {
       double cost;
       std::uint32_t face;
       std::uint8_t half;
-      bool operator>(const Front& other) const { return cost > other.cost; }
+      auto operator<=>(const Front&) const = default;
     };
     const auto index = [&](std::uint32_t face) {
       const auto at = std::lower_bound(chart.faces.begin(), chart.faces.end(), face);
@@ -106,6 +107,7 @@ class Splitter {
       return std::binary_search(chart.faces.begin(), chart.faces.end(), face);
     };
     std::vector<std::uint8_t> half(chart.faces.size(), 0);
+    // Distinct elements make the order unique, whichever heap the standard library makes.
     std::priority_queue<Front, std::vector<Front>, std::greater<>> queue;
     queue.push({0, first, 1});
     queue.push({0, second, 2});

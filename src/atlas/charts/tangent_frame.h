@@ -41,14 +41,13 @@ void remove_inner_points(std::vector<Point>& points, At at) {
 }
 
 /// The corners of the convex hull, counter-clockwise (Andrew's monotone chain). `at` returns the position of
-/// a point.
+/// a point. Points are ordered by their positions first; the first of several at one position is kept.
 template <class Point, class At>
 std::vector<Point> convex_hull(std::vector<Point> points, At at) {
   constexpr std::size_t kMany = 64;
   if (points.size() > kMany) remove_inner_points(points, at);
-  const auto lower = [&](const Point& p, const Point& q) { return at(p) < at(q); };
   const auto same = [&](const Point& p, const Point& q) { return at(p) == at(q); };
-  std::sort(points.begin(), points.end(), lower);
+  std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end(), same), points.end());
   if (points.size() < 3) return points;
   std::vector<Point> hull;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "atlas/packing/rasterise.h"
 #include "core/scattered_order.h"
@@ -142,7 +143,7 @@ Stamp make_stamp(const Bitmap& bitmap) {
     }
   }
   std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
-    return std::pair(b.length, a.row) < std::pair(a.length, b.row);
+    return std::tuple(b.length, a.row, a.begin) < std::tuple(a.length, b.row, b.begin);
   });
   Stamp stamp{bitmap.width, bitmap.height, {}};
   for (const std::uint32_t i : scattered_order(runs.size())) stamp.runs.push_back(runs[i]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "geometry/vec.h"
 
@@ -31,7 +32,9 @@ std::uint32_t BoxGroups::build(std::uint32_t begin, std::uint32_t end) {
   const Vec3 size = box.hi - box.lo;
   const auto axis = static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
   const std::uint32_t middle = begin + (end - begin) / 2;
-  const auto twice_centre = [&](std::uint32_t i) { return boxes_[i].lo[axis] + boxes_[i].hi[axis]; };
+  const auto twice_centre = [&](std::uint32_t i) {
+    return std::pair(boxes_[i].lo[axis] + boxes_[i].hi[axis], i);
+  };
   std::ranges::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, {},
                            twice_centre);
   const std::uint32_t left = build(begin, middle), right = build(middle, end);

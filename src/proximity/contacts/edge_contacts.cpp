@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "core/cancellation.h"
 #include "geometry/rounding.h"
@@ -146,7 +147,7 @@ void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, do
     poll();
     add_interval(edge, sites, face, limit);
   }
-  std::ranges::sort(intervals_, {}, &Interval::from);
+  std::ranges::sort(intervals_, {}, [](const Interval& i) { return std::pair(i.from, i.face); });
 }
 
 void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, double margin, double reach,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <tuple>
 #include <vector>
 
 #include "core/cancellation.h"
@@ -35,7 +37,7 @@ class Search {
     while (!now_.empty() || !later_.empty()) {
       due();
       if (now_.empty()) {
-        std::ranges::pop_heap(later_, std::greater{}, &Pair::time);
+        std::pop_heap(later_.begin(), later_.end(), std::greater{});
         now_.push_back(later_.back());
         later_.pop_back();
         safe_.set_now(now_.back().time);
@@ -65,6 +67,13 @@ class Search {
     Vec3 direction{};     // along which this was found, for themselves or for the nodes that contain them
 
     [[nodiscard]] bool faces() const { return place[0].face && place[1].face; }
+    // Pairs of one time follow each other in the order of the trees.
+    bool operator>(const Pair& other) const {
+      const auto order = [](const Pair& p) {
+        return std::tuple(p.time, p.place[0].face, p.place[0].child, p.place[1].face, p.place[1].child);
+      };
+      return order(*this) > order(other);
+    }
   };
   using TwoParts = std::array<const Part*, 2>;
 
@@ -153,7 +162,7 @@ class Search {
   void put_off(Pair& pair, double time) {
     pair.time = time;
     later_.push_back(pair);
-    std::ranges::push_heap(later_, std::greater{}, &Pair::time);
+    std::push_heap(later_.begin(), later_.end(), std::greater{});
   }
 
   // Into the pairs with the children of the larger node, or with the faces of a leaf.

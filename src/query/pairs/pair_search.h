@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "query/pairs/mesh_pair.h"
@@ -19,6 +20,12 @@ struct PairWorkspace {
     float least = 0;  ///< lower bound on the distance; if the boxes overlap, minus the depth of the overlap
 
     [[nodiscard]] bool leaves() const { return place[0].leaf() && place[1].leaf(); }
+    /// Pairs equally near follow each other in the order of the trees.
+    bool operator>(const Entry& other) const {
+      if (least != other.least) return least > other.least;
+      return std::pair(place[0].child, place[1].child) >
+             std::pair(other.place[0].child, other.place[1].child);
+    }
   };
   /// A heap with the nearest pair on top.
   class Heap {
@@ -28,10 +35,10 @@ struct PairWorkspace {
     [[nodiscard]] const Entry& top() const { return entries_.front(); }
     void push(const Entry& entry) {
       entries_.push_back(entry);
-      std::ranges::push_heap(entries_, std::greater{}, &Entry::least);
+      std::push_heap(entries_.begin(), entries_.end(), std::greater{});
     }
     Entry pop() {
-      std::ranges::pop_heap(entries_, std::greater{}, &Entry::least);
+      std::pop_heap(entries_.begin(), entries_.end(), std::greater{});
       const Entry entry = entries_.back();
       entries_.pop_back();
       return entry;
