@@ -9,27 +9,27 @@
 namespace sdm::registration {
 namespace {
 
-struct Spectrum {
-  Eigen::Matrix<double, 6, 1> determined;  ///< decreasing
-  Matrix6 motions;                         ///< as columns
-  int free = 0;                            ///< the number of free ones, which come last
+struct OrderedMotions {
+  Motion determined;  ///< decreasing
+  Matrix6 motions;    ///< as columns
+  int free = 0;       ///< the number of free ones, which come last
 };
 
-Spectrum spectrum(const Matrix6& information) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
-  Spectrum result{solver.eigenvalues().reverse().cwiseMax(0).cwiseSqrt(),
-                  solver.eigenvectors().rowwise().reverse()};
+OrderedMotions ordered_motions(const Matrix6& information) {
+  const Spectrum<6> all = spectrum(information);
+  OrderedMotions result{all.values.reverse().cwiseMax(0).cwiseSqrt(), all.vectors.rowwise().reverse()};
   for (int k = 0; k < 6; ++k) result.free += result.determined[k] < kFree;
   return result;
 }
 
 // Rotates a basis of free motions so that as many of them as possible are pure translations: with the
-// rotation parts W = U S Vᵀ, those are the columns of V with a singular value of zero. The others are
-// orthogonal to them, which makes the screws of a cylinder or a plane rotations about their axes.
+// rotation parts W, those are the eigenvectors of WᵀW with an eigenvalue of zero. The others are orthogonal
+// to them, which makes the screws of a cylinder or a plane rotations about their axes. W is a part of
+// orthonormal columns, so that its eigenvalues are at most 1: the rest of the matrix comes last.
 Motions separated(const Motions& free) {
-  const Eigen::MatrixXd turns = free.topRows<3>();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(turns, Eigen::ComputeFullV);
-  return free * svd.matrixV().rowwise().reverse();
+  Matrix6 turns = Matrix6::Zero();
+  turns.topLeftCorner<3, 3>().setIdentity();
+  return free * spectrum(reduced(turns, free, 2)).vectors.topLeftCorner(free.cols(), free.cols());
 }
 
 // The axis of the screw with the rotation ω and the translation τ at the centre is where ω × x + τ is along
@@ -48,7 +48,7 @@ DegreeOfFreedom described(const Motion& motion, const Pivot& pivot) {
 }  // namespace
 
 Motions determined_motions(const Correspondences& pairs, const Sites& o2, const Pivot& pivot, double cut) {
-  const Spectrum all = spectrum(information(pairs, smooth_normals(pairs, o2), pivot, cut));
+  const OrderedMotions all = ordered_motions(information(pairs, smooth_normals(pairs, o2), pivot, cut));
   return all.motions.leftCols(6 - all.free);
 }
 
@@ -56,7 +56,7 @@ std::array<DegreeOfFreedom, 6> degrees_of_freedom(const Correspondences& pairs, 
                                                   const Pivot& pivot, double cut, double deviation,
                                                   std::size_t count) {
   const Matrix6 matrix = information(pairs, smooth_normals(pairs, o2), pivot, cut);
-  Spectrum all = spectrum(matrix);
+  OrderedMotions all = ordered_motions(matrix);
   if (all.free > 0) all.motions.rightCols(all.free) = separated(all.motions.rightCols(all.free));
   std::array<DegreeOfFreedom, 6> result;
   for (int k = 0; k < 6; ++k) {

@@ -1,5 +1,6 @@
 #include "registration/point_to_plane.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -46,17 +47,16 @@ double trimming_cut(const Correspondences& pairs, const Pivot& pivot, const Moti
   const double largest = *std::ranges::max_element(middle, distances.end());
   if (cut >= largest || motions.cols() == 0) return cut;
 
-  const auto kept_information = [&](double within) -> Eigen::MatrixXd {
+  const auto kept_information = [&](double within) -> Matrix6 {
     const auto kept =
         static_cast<double>(std::ranges::count_if(distances, [&](double d) { return d <= within; }));
-    return kept * motions.transpose() * information(pairs, pairs.normals, pivot, within) * motions;
+    return kept * information(pairs, pairs.normals, pivot, within);
   };
-  Eigen::MatrixXd all = kept_information(largest);
-  all.diagonal().array() += 1e-12 * all.trace();  // the factor must exist
+  // A share of the information on every motion, m·Am ≥ share m·Bm: A − share B has no negative eigenvalue.
+  const Matrix6 least = kLeast * kept_information(largest);
   for (; cut < largest; cut *= 2) {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> shares(kept_information(cut), all,
-                                                                           Eigen::EigenvaluesOnly);
-    if (shares.eigenvalues().minCoeff() >= kLeast) break;
+    const Matrix6 more = reduced(kept_information(cut) - least, motions, least.trace());
+    if (spectrum(more).values[0] >= 0) break;
   }
   return cut;
 }
@@ -70,9 +70,13 @@ Motion best_motion(const Correspondences& pairs, const Pivot& pivot, const Motio
     matrix.noalias() += j * j.transpose();
     gradient += dot(pairs.normals[i], pairs.points[i] - pairs.closest[i]) * j;
   }
-  Eigen::MatrixXd reduced = motions.transpose() * matrix * motions;
-  reduced.diagonal().array() += 1e-12 * matrix.trace() + 1e-300;
-  Motion motion = -(motions * reduced.ldlt().solve(motions.transpose() * gradient));
+  Motion along = Motion::Zero();
+  along.head(motions.cols()) = motions.transpose() * gradient;
+  Matrix6 all = reduced(matrix, motions, matrix.trace());
+  all.diagonal().array() += 1e-12 * matrix.trace() + 1e-300;
+  const Spectrum<6> solved = spectrum(all);
+  const Motion solution = solved.vectors * (solved.vectors.transpose() * along).cwiseQuotient(solved.values);
+  Motion motion = -(motions * solution.head(motions.cols()));
   // A motion by a large part of the size is beyond the linearisation.
   constexpr double kLongest = 0.5;
   if (const double length = motion.norm(); length > kLongest * pivot.radius)

@@ -51,12 +51,12 @@ Axes axes_of(std::span<const Vec3> points) {
   axes.mean /= static_cast<double>(core.size());
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Vec3& p : core) covariance += (vector(p) - axes.mean) * (vector(p) - axes.mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  axes.columns = solver.eigenvectors();
+  const Spectrum<3> principal = spectrum(covariance);
+  axes.columns = principal.vectors;
   if (axes.columns.determinant() < 0) axes.columns.col(0) *= -1;
   constexpr double kAlike = 0.75;
-  const Eigen::Vector3d& moments = solver.eigenvalues();
-  axes.ambiguous = moments[0] > kAlike * moments[1] || moments[1] > kAlike * moments[2];
+  axes.ambiguous = principal.values[0] > kAlike * principal.values[1] ||
+                   principal.values[1] > kAlike * principal.values[2];
   return axes;
 }
 

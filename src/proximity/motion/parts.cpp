@@ -84,11 +84,12 @@ Part Parts::fitted(std::span<const std::uint32_t> faces, const Part& box) const 
       const Eigen::Vector3d r = registration::vector(corner(faces[f], i) - from);
       sum += r, squares += r * r.transpose(), ++count;
     }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares - sum * sum.transpose() / count);
+  const Eigen::Matrix3d moments = squares - sum * sum.transpose() / count;
+  const auto principal = registration::spectrum(moments);
   Part part;
   // Perpendicular to each other to the last digit, as the box requires.
-  part.axis[0] = normalized(registration::vec3(solver.eigenvectors().col(0)));
-  part.axis[2] = normalized(cross(part.axis[0], registration::vec3(solver.eigenvectors().col(1))));
+  part.axis[0] = normalized(registration::vec3(principal.vectors.col(0)));
+  part.axis[2] = normalized(cross(part.axis[0], registration::vec3(principal.vectors.col(1))));
   part.axis[1] = cross(part.axis[2], part.axis[0]);
   Box extent;
   double radius = 0, reach = 0;  // squared
@@ -100,7 +101,7 @@ Part Parts::fitted(std::span<const std::uint32_t> faces, const Part& box) const 
       reach = std::max(reach, squared_norm(p));
     }
   part.half = 0.5 * (extent.hi - extent.lo);
-  if (solver.info() == Eigen::Success && area(part.half) < area(box.half)) {
+  if (principal.found && area(part.half) < area(box.half)) {
     part.point[0] = from;
     for (int k = 0; k < 3; ++k) part.point[0] += (0.5 * (extent.lo[k] + extent.hi[k])) * part.axis[k];
   } else {
