@@ -1,17 +1,27 @@
-# sdm_unite_folders(<target> <file>...): with SDM_UNITE_FOLDERS, compiles the sources of a folder as one, which takes
-# about half the time, as they share most of their headers. Names in unnamed namespaces are unique in a folder.
-function(sdm_unite_folders target)
-  if(NOT SDM_UNITE_FOLDERS)
-    return()
+# sdm_omit_instructions(<file>...): of what Highway compiles once for each set of instructions, omits those that are not worth
+# the time of compiling them (docs/design/cpu.md). A definition of the files, not of their target: it would be part of the
+# precompiled header, and then of every file.
+set(SDM_OMIT_INSTRUCTIONS "HWY_SSSE3|HWY_SSE4" CACHE STRING "Sets of instructions that are not compiled for, as HWY_DISABLED_TARGETS")
+mark_as_advanced(SDM_OMIT_INSTRUCTIONS)
+function(sdm_omit_instructions)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS "HWY_DISABLED_TARGETS=(${SDM_OMIT_INSTRUCTIONS})")
+endfunction()
+
+# sdm_divide_sources(<target> <file>...): with SDM_UNITE_FOLDERS, compiles the sources of a folder as one, which takes about
+# half the time, as they share most of their headers. Names in unnamed namespaces are unique in a folder. What is compiled
+# for each set of instructions stays on its own.
+function(sdm_divide_sources target)
+  if(SDM_UNITE_FOLDERS)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source ${ARGN})
-    file(STRINGS ${source} includes_itself REGEX "^#define HWY_TARGET_INCLUDE")  # once for each set of instructions
-    get_filename_component(folder ${source} DIRECTORY)
-    string(MAKE_C_IDENTIFIER "folder_${folder}" group)
+    file(STRINGS ${source} includes_itself REGEX "^#define HWY_TARGET_INCLUDE")
     if(includes_itself)
+      sdm_omit_instructions(${source})
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     else()
+      get_filename_component(folder ${source} DIRECTORY)
+      string(MAKE_C_IDENTIFIER "folder_${folder}" group)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endif()
   endforeach()
@@ -26,7 +36,7 @@ function(sdm_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LINK_PRIVATE" ${ARGN})
   set(internal_folders ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/src)
   add_library(${name}_objects OBJECT ${ARG_SOURCES})
-  sdm_unite_folders(${name}_objects ${ARG_SOURCES})
+  sdm_divide_sources(${name}_objects ${ARG_SOURCES})
   target_include_directories(${name}_objects
     PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include
     PRIVATE ${internal_folders})
