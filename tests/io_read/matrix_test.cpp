@@ -32,8 +32,8 @@ struct MatrixFile : ::testing::Test {
 
 const Transform kExpected{{{{1, 2, 3, 4}, {0, 5, 6, 7.5}, {0, 0, -8, 1e-3}, {0, 0, 0, 1}}}};
 
-std::string npy(const std::string& type, const std::string& order, const std::string& shape,
-                const std::string& data) {
+std::string npy_matrix(const std::string& type, const std::string& order, const std::string& shape,
+                       const std::string& data) {
   std::string header = "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }";
   header.resize(117, ' ');
   header += '\n';
@@ -62,14 +62,16 @@ TEST_F(MatrixFile, AsText) {
 }
 
 TEST_F(MatrixFile, AsNpy) {
-  EXPECT_EQ(read_matrix(with(npy("<f8", "False", "(4, 4)", bytes_of<double>(kExpected, false)))).rows,
+  EXPECT_EQ(read_matrix(with(npy_matrix("<f8", "False", "(4, 4)", bytes_of<double>(kExpected, false)))).rows,
             kExpected.rows);
-  EXPECT_EQ(read_matrix(with(npy("<f8", "True", "(4, 4)", bytes_of<double>(kExpected, true)))).rows,
+  EXPECT_EQ(read_matrix(with(npy_matrix("<f8", "True", "(4, 4)", bytes_of<double>(kExpected, true)))).rows,
             kExpected.rows);
-  EXPECT_EQ(read_matrix(with(npy(">f8", "False", "(4, 4)", bytes_of<double>(kExpected, false, true)))).rows,
-            kExpected.rows);
-  EXPECT_EQ(read_matrix(with(npy("<f4", "False", "(4, 4)", bytes_of<float>(kExpected, false)))).rows[2][3],
-            1e-3f);
+  EXPECT_EQ(
+      read_matrix(with(npy_matrix(">f8", "False", "(4, 4)", bytes_of<double>(kExpected, false, true)))).rows,
+      kExpected.rows);
+  EXPECT_EQ(
+      read_matrix(with(npy_matrix("<f4", "False", "(4, 4)", bytes_of<float>(kExpected, false)))).rows[2][3],
+      1e-3f);
 }
 
 TEST_F(MatrixFile, AsJson) {
@@ -94,9 +96,9 @@ TEST_F(MatrixFile, FaultsAreOneSentenceThatNamesTheFile) {
   refused("1 2 inf 4\n" + rest, "infinite or NaN");
   refused("1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n", "the translation is the last column");
   refused("1 0 0 0\n0 1 0 0\n0 0 0 0\n0 0 0 1\n", "singular");
-  refused(npy("<f8", "False", "(3, 4)", ""), "has the shape (3, 4)");
-  refused(npy("<f8", "False", "(4, 4)", "short"), "truncated");
-  refused(npy("<i8", "False", "(4, 4)", std::string(128, 'x')), "'<i8'");
+  refused(npy_matrix("<f8", "False", "(3, 4)", ""), "has the shape (3, 4)");
+  refused(npy_matrix("<f8", "False", "(4, 4)", "short"), "truncated");
+  refused(npy_matrix("<i8", "False", "(4, 4)", std::string(128, 'x')), "'<i8'");
   refused("{", "invalid JSON");
   refused(std::string("1\0 \0\x32\0 \0\x33\0 \0", 12), "this is UTF-16 text; save it as UTF-8");
   refused("{\"rows\": []}", "\"matrix\"");

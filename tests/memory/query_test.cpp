@@ -20,7 +20,7 @@ void add_contact(Numbers& numbers, const Contact& c) {
   numbers.add(c.point1, c.point2, c.normal, c.depth, c.patch, c.faces, c.barycentric, c.id);
 }
 
-std::vector<Vec3> bent(const Mesh& mesh) {
+std::vector<Vec3> slightly_bent(const Mesh& mesh) {
   std::vector<Vec3> positions = mesh.positions;
   for (Vec3& p : positions) p = {p[0] + 0.1 * p[1] * p[1], 0.9 * p[1], p[2] + 0.1 * p[0]};
   return positions;
@@ -63,7 +63,7 @@ const Calls<ProximityQuery> kPair{
     }};
 
 TEST(FailedAllocations, LeaveAPairAsItWasOrBrokenByARefit) {
-  const std::vector<Vec3> a = bent(first_mesh()), b = bent(second_mesh());
+  const std::vector<Vec3> a = slightly_bent(first_mesh()), b = slightly_bent(second_mesh());
   const std::function<void(ProximityQuery&)> refit = [&](ProximityQuery& q) { q.refit(a, b); };
   for (const auto& make : {pair_of_bodies, pair_with_answers})
     (void)expect_all_or_nothing(make, refit, kPair, Guarantee::unchanged_or_broken);
@@ -87,7 +87,7 @@ TEST(FailedAllocations, WrongPositionsAndPosesChangeNothing) {
   const auto before = observe(*query, kPair);
   std::vector<Vec3> bad = second_mesh().positions;
   bad.back()[1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(query->refit(bent(first_mesh()), bad), Error);
+  EXPECT_THROW(query->refit(slightly_bent(first_mesh()), bad), Error);
   EXPECT_THROW(query->set_pose(1, {.rows = {{{1, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}}),
                Error);
   EXPECT_THROW(query->edit(0, {.removed_faces = {1, 1}}), Error);
@@ -150,7 +150,7 @@ const Calls<MultiBodyQuery> kBodies{
     }};
 
 TEST(FailedAllocations, LeaveManyBodiesAsTheyWereOrBrokenByARefit) {
-  const std::vector<Vec3> a = bent(first_mesh()), b = bent(second_mesh());
+  const std::vector<Vec3> a = slightly_bent(first_mesh()), b = slightly_bent(second_mesh());
   const std::function<void(MultiBodyQuery&)> one = [&](MultiBodyQuery& q) { q.refit(0, a); };
   const std::function<void(MultiBodyQuery&)> all = [&](MultiBodyQuery& q) {
     q.refit(std::array<std::span<const Vec3>, 3>{a, b, std::span<const Vec3>{}});
@@ -163,7 +163,7 @@ TEST(FailedAllocations, LeaveManyBodiesAsTheyWereOrBrokenByARefit) {
 TEST(FailedAllocations, WrongPositionsAndPosesOfOneBodyMoveNone) {
   const auto query = bodies_with_answers();
   const auto before = observe(*query, kBodies);
-  const std::vector<Vec3> good = bent(first_mesh());
+  const std::vector<Vec3> good = slightly_bent(first_mesh());
   std::vector<Vec3> bad = second_mesh().positions;
   bad.pop_back();
   EXPECT_THROW(query->refit(std::array<std::span<const Vec3>, 3>{good, bad, std::span<const Vec3>{}}), Error);
@@ -194,7 +194,7 @@ const Calls<SelfProximityQuery> kSelf{
     [](SelfProximityQuery& q) { return numbers_of(q.exclusion().patches()); }};
 
 TEST(FailedAllocations, LeaveAFoldedSurfaceAsItWasOrBrokenByARefit) {
-  const std::vector<Vec3> positions = bent(folded({})->sites().mesh());
+  const std::vector<Vec3> positions = slightly_bent(folded({})->sites().mesh());
   const std::function<void(SelfProximityQuery&)> refit = [&](SelfProximityQuery& q) { q.refit(positions); };
   for (const bool answered : {false, true}) {
     const auto make = [&] {

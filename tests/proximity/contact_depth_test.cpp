@@ -231,7 +231,7 @@ class Poses {
   std::mt19937 random_;
 };
 
-double signed_distance(const Mesh& solid, const Vec3& p) {
+double solid_distance(const Mesh& solid, const Vec3& p) {
   const double distance = oracle::brute_force(solid, p);
   return oracle::winding_number(solid, p) != 0 ? -distance : distance;
 }
@@ -294,10 +294,10 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
   if (std::abs(c.depth) > rounding && norm(vector - c.depth * along) > rounding)
     return "normal not along the points";
   if (c.depth > upper) return "deeper than the bound";
-  if (c.depth > rounding && signed_distance(other, p + (1e-3 * c.depth) * along) > rounding)
+  if (c.depth > rounding && solid_distance(other, p + (1e-3 * c.depth) * along) > rounding)
     return "not inside";
   if (-c.depth > pose.margin + rounding) return "beyond the margin";
-  const double distance = signed_distance(other, p);
+  const double distance = solid_distance(other, p);
   if (std::abs(distance) > std::abs(c.depth) + rounding) return "closer than the surface";
   if (distance > pose.margin + rounding) return "not in contact";
   if (std::abs(distance) >= std::abs(c.depth) - rounding) return {};
@@ -313,7 +313,7 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
   const auto depth_at = [&](const Vec3& q) {
     const double below = dot(normal, other.positions[t[0]] - q);
     const double beyond = box_distance({q, q}, box_of_other);
-    return std::min(below, beyond > 0 ? -beyond : -signed_distance(other, q));
+    return std::min(below, beyond > 0 ? -beyond : -solid_distance(other, q));
   };
   // First close to the point.
   for (const auto& [reach, sure] :

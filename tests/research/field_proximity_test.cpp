@@ -12,7 +12,7 @@ namespace sdm::test {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 struct Pose {
   std::string name;
@@ -22,7 +22,7 @@ struct Pose {
 TEST(FieldProximityBounds, HoldForTheSurfaces) {
   const Mesh o2 = ring(24), ball = placed(sphere(2), "scale:0.35");
   const Grid grid = make_grid(around(o2, 0.3), {40, 40, 24});
-  for (const double band : {kInfinity, 0.15})
+  for (const double band : {kUnlimited, 0.15})
     for (const Pose& pose : {Pose{"apart", {0, 0, 1.2}}, Pose{"in_the_hole", {0, 0, 0}},
                              Pose{"touching", {0, 0.3, 0.4}}, Pose{"penetrating", {0.8, 0.1, 0.1}},
                              Pose{"within", {1, 0, 0}}, Pose{"outside_the_grid", {4, 4, 4}}}) {
@@ -50,7 +50,7 @@ TEST(FieldProximityBounds, HoldForTheSurfaces) {
         EXPECT_NEAR(found.separation.value, separation.value, found.error_bound);
         EXPECT_NEAR(found.depth->value, deepest, found.error_bound);
       }
-      if (band == kInfinity &&
+      if (band == kUnlimited &&
           (pose.name == "apart" || pose.name == "within" || pose.name == "outside_the_grid")) {
         EXPECT_EQ(found.colliding.certainty, Certainty::exact);
       }
@@ -59,7 +59,7 @@ TEST(FieldProximityBounds, HoldForTheSurfaces) {
 
 TEST(FieldProximityBounds, GetCloserWithTheGrid) {
   const Mesh o2 = ring(24), o1 = moved(sphere(2), {0, 0, 2});
-  double before = kInfinity;
+  double before = kUnlimited;
   for (const std::uint32_t n : {10u, 20u, 40u}) {
     const Grid grid = make_grid({{-2, -2, -1}, {2, 2, 3.2}}, {n, n, n});
     const fields::Proximity found = fields::proximity(compute_field(Sites(o2), grid), o1);

@@ -246,7 +246,7 @@ TEST_P(Traversal, ShrinkingLimitsLeadToTheNearestLeaf) {
 }
 
 // A policy of the wide tree without an order, for the leaves whose boxes overlap one.
-struct Overlapping {
+struct OverlappingLeaves {
   const tree::FloatBox& box;
   std::vector<std::uint32_t>& leaves;
   std::size_t most = std::numeric_limits<std::size_t>::max();
@@ -276,13 +276,13 @@ TEST_P(Traversal, WideSearchesWithoutAnOrderFindTheAcceptedLeavesUntilOneEndsThe
     extend(around, p), extend(around, q);
     const tree::FloatBox box = tree::FloatBox::around(around);
     std::vector<std::uint32_t> found, expected;
-    EXPECT_TRUE(visit(wide, stack, Overlapping{box, found}));
+    EXPECT_TRUE(visit(wide, stack, OverlappingLeaves{box, found}));
     for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf)
       if (squared_norm(gap(tree.box(leaves[leaf]), box)) == 0) expected.push_back(leaf);
     EXPECT_THAT(found, testing::UnorderedElementsAreArray(expected));
     const std::vector<std::uint32_t> all_found = std::exchange(found, {});
     if (all_found.size() < 2) continue;
-    EXPECT_FALSE(visit(wide, stack, Overlapping{box, found, 2}));
+    EXPECT_FALSE(visit(wide, stack, OverlappingLeaves{box, found, 2}));
     EXPECT_THAT(found, testing::ElementsAre(all_found[0], all_found[1]));
   }
 }

@@ -22,12 +22,12 @@ namespace sdm {
 namespace {
 
 /// A closed mesh that intersects itself, with every shell oriented outwards.
-struct Scene {
+struct SignScene {
   const char* name;
   std::function<Mesh()> o2;
   bool everywhere_positive = true;  ///< no part has a negative winding number
 };
-void PrintTo(const Scene& scene, std::ostream* out) {
+void PrintTo(const SignScene& scene, std::ostream* out) {
   *out << scene.name;
 }
 
@@ -104,7 +104,7 @@ Mesh pair_of(const char* file, const char* second) {
 
 const Mesh kCube = test::cube(1), kSphere = test::sphere(3);
 
-const Scene kScenes[] = {
+const SignScene kSignScenes[] = {
     {"TwoCubes",
      [] {
        return test::joined(bar({0, 0, 0}, {1, 1, 1}), bar({0.5, 0.25, 0.25}, {1.5, 0.75, 0.75}));
@@ -217,7 +217,7 @@ const Scene kScenes[] = {
      false},
 };
 
-class Overlapping : public testing::TestWithParam<Scene> {};
+class Overlapping : public testing::TestWithParam<SignScene> {};
 
 TEST_P(Overlapping, SignsAreThoseOfTheWindingNumber) {
   const Mesh o2 = GetParam().o2(), o1 = test::load("knot2.off", "fit,scale:2");
@@ -245,7 +245,7 @@ TEST_P(Overlapping, SignsAreThoseOfTheWindingNumber) {
     EXPECT_GE(*std::ranges::min_element(turns), 0) << "the scene is not what it is meant to be";
   }
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, Overlapping, testing::ValuesIn(kScenes),
+INSTANTIATE_TEST_SUITE_P(Scenes, Overlapping, testing::ValuesIn(kSignScenes),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 // Regression: beside a small mesh far from the origin, rounding moved the points at which its sides are
