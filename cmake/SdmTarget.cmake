@@ -7,12 +7,15 @@ function(sdm_omit_instructions)
   set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS "HWY_DISABLED_TARGETS=(${SDM_OMIT_INSTRUCTIONS})")
 endfunction()
 
-# sdm_divide_sources(<target> <file>...): with SDM_UNITE_FOLDERS, compiles the sources of a folder as one, which takes about
-# half the time, as they share most of their headers. Names in unnamed namespaces are unique in a folder. What is compiled
-# for each set of instructions stays on its own.
+# sdm_divide_sources(<target> <file>...): with SDM_UNITE_FOLDERS, compiles the sources of a folder of src/ as one, with those
+# of its subfolders, which takes about half the time, as they share most of their headers. Names in unnamed namespaces are
+# unique in such a folder. io has one for read, one for points, and one for each folder of write, which has other headers.
+# What is compiled for each set of instructions stays on its own.
 function(sdm_divide_sources target)
   if(SDM_UNITE_FOLDERS)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    # Sources that are included are taken for headers, whose classes should not use unnamed namespaces.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
   foreach(source ${ARGN})
     file(STRINGS ${source} includes_itself REGEX "^#define HWY_TARGET_INCLUDE")
@@ -21,6 +24,9 @@ function(sdm_divide_sources target)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     else()
       get_filename_component(folder ${source} DIRECTORY)
+      if(NOT folder MATCHES "^io/write")
+        string(REGEX REPLACE "^((io/)?[^/]+)/.*" "\\1" folder "${folder}/")
+      endif()
       string(MAKE_C_IDENTIFIER "folder_${folder}" group)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endif()
@@ -82,8 +88,12 @@ endfunction()
 # Sets strict warnings and C++20 for a target of the project.
 function(sdm_compile_options name)
   target_compile_features(${name} PUBLIC cxx_std_20)
-  target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
-    $<$<BOOL:${SDM_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(SDM_WARNINGS)
+    target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+      $<$<BOOL:${SDM_WARNINGS_AS_ERRORS}>:-Werror>)
+  endif()
+  # GCC looks for unused memory whenever it has taken this many KiB: from 128 MiB on by default, a tenth of its time.
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>)
 endfunction()
 
 # For the targets of a folder that have precompiled headers: ccache keeps their objects only with this setting.

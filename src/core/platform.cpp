@@ -33,8 +33,8 @@ std::size_t machine_memory() {
 // The limit of the container minus its usage.
 std::size_t cgroup_memory() {
   std::size_t limit = 0, used = 0;
-  std::ifstream max("/sys/fs/cgroup/memory.max"), current("/sys/fs/cgroup/memory.current");
-  if (max >> limit && current >> used) return limit > used ? limit - used : 0;
+  std::ifstream max("/sys/fs/cgroup/memory.max"), usage("/sys/fs/cgroup/memory.current");
+  if (max >> limit && usage >> used) return limit > used ? limit - used : 0;
   return std::numeric_limits<std::size_t>::max();
 }
 
