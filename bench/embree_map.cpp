@@ -11,18 +11,6 @@ namespace {
 Vec3f single(const Vec3& a) {
   return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
 }
-Vec3f operator+(const Vec3f& a, const Vec3f& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vec3f operator-(const Vec3f& a, const Vec3f& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec3f operator*(float s, const Vec3f& a) {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-float dot(const Vec3f& a, const Vec3f& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// The closest point of a triangle to the origin, by the signs of the barycentric coordinates of its
 /// projection.

@@ -19,10 +19,6 @@ double length(const sdm::Vec3& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
 
-double diagonal(const sdm::Box& box) {
-  return length({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
-}
-
 AlignOutcome timed(
     const sdm::Sites& o2, const AlignCommand& command, const sdm::Progress& progress,
     const std::function<sdm::Alignment(const sdm::AlignOptions&)>& align,
@@ -36,7 +32,7 @@ AlignOutcome timed(
   else if (command.from != "none")
     options.pose = sdm::read_matrix(command.from);
   try {
-    AlignOutcome outcome{align(options), command.from, diagonal(sdm::bounds(o2.mesh()))};
+    AlignOutcome outcome{align(options), command.from, size_of(sdm::bounds(o2.mesh()))};
     if (command.judged) outcome.other_unit = find_other_unit(outcome.alignment, options);
     outcome.time_ms = watch.lap();
     return outcome;

@@ -45,7 +45,7 @@ sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::B
     for (std::size_t k = 0; k < 3; ++k) box.lo[k] = command.bounds[k], box.hi[k] = command.bounds[k + 3];
   } else {
     box = sdm::bounds(o2);
-    const double diagonal = std::hypot(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]);
+    const double diagonal = size_of(box);
     const double band = command.options.band;
     const double margin = band < std::numeric_limits<double>::infinity() ? band : 0.1 * diagonal;
     for (std::size_t k = 0; k < 3; ++k) box.lo[k] -= margin, box.hi[k] += margin;

@@ -13,22 +13,6 @@ using sdm::Vec3;
 
 namespace {
 
-Vec3 operator+(const Vec3& a, const Vec3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vec3 operator-(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec3 operator*(double s, const Vec3& a) {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 sdm::Mesh box(double x, double y, double z) {
   sdm::Mesh mesh{{},
                  {{0, 2, 3},
@@ -134,7 +118,7 @@ int main() {
       Body &a = bodies[first], &b = bodies[second];
       const Vec3 other = std::abs(c.normal[0]) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
       Vec3 across = cross(c.normal, other);
-      across = (1 / std::sqrt(dot(across, across))) * across;
+      across = normalized(across);
       const double gap = -c.depth;  // below 0: pushed out, a fifth of it in each frame
       constraints.push_back({&a,
                              &b,

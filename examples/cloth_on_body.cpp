@@ -11,19 +11,6 @@ namespace {
 
 using sdm::Vec3;
 
-Vec3 operator+(const Vec3& a, const Vec3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vec3 operator-(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec3 operator*(double s, const Vec3& v) {
-  return {s * v[0], s * v[1], s * v[2]};
-}
-double norm(const Vec3& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
-
 // A ball of radius 0.5: rings of latitude between two poles.
 sdm::Mesh ball() {
   constexpr std::uint32_t kRings = 23, kSides = 48;

@@ -8,8 +8,6 @@ namespace sdm::scenes {
 /// The columns of a 3 × 3 matrix.
 using Matrix = std::array<Vec3, 3>;
 
-using core::operator*;  // otherwise hidden by those below
-
 inline Vec3 operator*(const Matrix& m, const Vec3& x) {
   return x[0] * m[0] + x[1] * m[1] + x[2] * m[2];
 }

@@ -45,6 +45,7 @@
 #include <sdm/unit_check.h>
 #include <sdm/units.h>
 #include <sdm/uv_tiles.h>
+#include <sdm/vec.h>
 #include <sdm/version.h>
 #include <sdm/vertex_distances.h>
 #include <sdm/volume.h>

@@ -3,19 +3,14 @@
 /// Threads: plain values.
 #pragma once
 
+#include <sdm/vec.h>
+
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 
 namespace sdm {
 
-/// A point of a texture.
-using Vec2 = std::array<double, 2>;
-/// A point or a vector.
-using Vec3 = std::array<double, 3>;
-/// The same in single precision, as maps store it.
-using Vec3f = std::array<float, 3>;
 /// Three indices of vertices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 

@@ -11,22 +11,12 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-Vec3 minus(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 // The areas of the triangles opposite to the corners, relative to that of the face, which has one.
 Vec3 weights_in_face(const std::array<Vec3, 3>& corners, const Vec3& p) {
-  const Vec3 normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+  const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   Vec3 weights;
   for (int k = 0; k < 3; ++k) {
-    const Vec3 area = cross(minus(corners[(k + 1) % 3], p), minus(corners[(k + 2) % 3], p));
+    const Vec3 area = cross(corners[(k + 1) % 3] - p, corners[(k + 2) % 3] - p);
     weights[k] = std::max(0.0, dot(normal, area));
   }
   const double sum = weights[0] + weights[1] + weights[2];
@@ -42,7 +32,7 @@ void PyClosestPoints::set_gradients(std::span<const Vec3> points) {
     for (std::size_t i = begin; i < end; ++i) {
       const double distance = distance_of(i);
       if (found[i].type == SiteType::none || distance == 0) continue;
-      const Vec3 to_point = minus(points[i], found[i].point);
+      const Vec3 to_point = points[i] - found[i].point;
       for (int k = 0; k < 3; ++k) gradients[i][k] = to_point[k] / distance;
     }
   });
@@ -65,8 +55,8 @@ Vec3 PyClosestPoints::barycentric_of(const ClosestPoint& closest) const {
     return weights;
   }
   const auto [from, to] = mesh.edges()[closest.site];
-  const Vec3 along = minus((*positions)[to], (*positions)[from]);
-  const double t = dot(minus(closest.point, (*positions)[from]), along) / dot(along, along);
+  const Vec3 along = (*positions)[to] - (*positions)[from];
+  const double t = dot(closest.point - (*positions)[from], along) / dot(along, along);
   weights[corner(to)] = t >= 0 ? std::min(t, 1.0) : 0;  // 0 also for an edge without length
   weights[corner(from)] = 1 - weights[corner(to)];
   return weights;

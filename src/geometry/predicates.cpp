@@ -14,9 +14,9 @@ int sign(double x) {
   return (x > 0) - (x < 0);
 }
 
-template <std::size_t n, std::size_t count>
-std::array<std::array<Integer, n>, count - 1> differences(
-    const std::array<std::array<double, n>, count>& points) {
+template <class Point, std::size_t count>
+auto differences(const std::array<Point, count>& points) {
+  constexpr std::size_t n = std::tuple_size_v<Point>;
   int exponent = std::numeric_limits<int>::max();
   for (const auto& p : points)
     for (const double x : p)

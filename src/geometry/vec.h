@@ -1,4 +1,4 @@
-// Arithmetic on vectors and boxes.
+// Boxes, and what the library needs of vectors beside the arithmetic of sdm/vec.h.
 #pragma once
 
 #include <sdm/types.h>
@@ -8,58 +8,8 @@
 
 namespace sdm::core {
 
-constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-constexpr Vec3 operator-(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-constexpr Vec3 operator-(const Vec3& a) {
-  return {-a[0], -a[1], -a[2]};
-}
-constexpr Vec3 operator*(double s, const Vec3& a) {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-constexpr Vec3& operator+=(Vec3& a, const Vec3& b) {
-  return a = a + b;
-}
-
-constexpr Vec2 operator+(const Vec2& a, const Vec2& b) {
-  return {a[0] + b[0], a[1] + b[1]};
-}
-constexpr Vec2 operator-(const Vec2& a, const Vec2& b) {
-  return {a[0] - b[0], a[1] - b[1]};
-}
-constexpr Vec2 operator*(double s, const Vec2& a) {
-  return {s * a[0], s * a[1]};
-}
-
-constexpr double dot(const Vec2& a, const Vec2& b) {
-  return a[0] * b[0] + a[1] * b[1];
-}
-constexpr double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-constexpr double cross(const Vec2& a, const Vec2& b) {
-  return a[0] * b[1] - a[1] * b[0];
-}
-constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-constexpr double squared_norm(const Vec3& a) {
-  return dot(a, a);
-}
-inline double norm(const Vec3& a) {
-  return std::sqrt(dot(a, a));
-}
 inline bool finite(const Vec3& a) {
   return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
-}
-
-/// a / |a|, or the zero vector if a is zero.
-inline Vec3 normalized(const Vec3& a) {
-  const double length = norm(a);
-  return length > 0 ? (1 / length) * a : Vec3{};
 }
 
 inline void extend(Box& box, const Vec3& p) {

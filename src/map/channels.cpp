@@ -93,6 +93,12 @@ struct Values<std::array<float, N>> {
   static constexpr const char* kText = "NaN";
 };
 template <>
+struct Values<Vec3f> {
+  static constexpr ChannelType kType = ChannelType::float32;
+  static constexpr Vec3f kNoValue{kNaN, kNaN, kNaN};
+  static constexpr const char* kText = "NaN";
+};
+template <>
 struct Values<Vec3> {
   static constexpr ChannelType kType = ChannelType::float64;
   static constexpr Vec3 kNoValue{kNaN, kNaN, kNaN};

@@ -11,7 +11,7 @@
 namespace sdm::search {
 
 /// The values of a function at the corners of a triangle.
-using CornerValues = std::array<double, 3>;
+using CornerValues = Vec3;
 
 struct MixedBound {
   double value = std::numeric_limits<double>::infinity();  ///< infinite if there are no functions

@@ -62,7 +62,8 @@ struct Inspection : ::testing::Test {
     EXPECT_LT(alignment_error(report), 0.5 * noise);
     const Json& min = report["extremes"]["min"];
     EXPECT_NEAR(min["distance"], -depth, 4 * noise);
-    const Vec3 at = min["point"], place = truth["dent"]["place"];
+    const Vec3 at{min["point"].get<std::array<double, 3>>()};
+    const Vec3 place{truth["dent"]["place"].get<std::array<double, 3>>()};
     EXPECT_LT(norm(at - place), 0.5 * truth["dent"]["radius"].get<double>());
     EXPECT_LT(report["extremes"]["max"]["distance"], 5 * noise);
     EXPECT_NEAR(report["distance"]["p50"], 0, 0.2 * noise);

@@ -36,9 +36,9 @@ GltfTransform gltf_matrix_transform(const std::array<double, 16>& m) {
 
 GltfTransform gltf_node_transform(const nlohmann::json& node) {
   if (node.contains("matrix")) return gltf_matrix_transform(node["matrix"].get<std::array<double, 16>>());
-  return gltf_transform(node.value("translation", Vec3{}),
+  return gltf_transform(Vec3{node.value("translation", std::array<double, 3>{})},
                         node.value("rotation", std::array<double, 4>{0, 0, 0, 1}),
-                        node.value("scale", Vec3{1, 1, 1}));
+                        Vec3{node.value("scale", std::array<double, 3>{1, 1, 1})});
 }
 
 }  // namespace sdm::io
