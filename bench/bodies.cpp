@@ -155,7 +155,7 @@ class Frames {
     verified_ &= agree(query.pairs(), expected, max_distance_);
     candidates_ += query.candidate_pairs();
     pairs_ += query.pairs().size();
-    for (const PairProximity& pair : query.pairs()) colliding_ += pair.colliding.value;
+    for (const PairProximity& pair : query.pairs()) colliding_ += pair.colliding;
   }
 
   [[nodiscard]] Outcome outcome() const {
@@ -258,7 +258,7 @@ Outcome agents(const Trial& trial) {
     for (std::size_t b = 0; b < positions.size(); ++b) positions[b] = scene.bodies()[b].mesh.positions;
     query.refit(positions);
     pairs += query.pairs().size();
-    for (const PairProximity& pair : query.pairs()) colliding += pair.colliding.value;
+    for (const PairProximity& pair : query.pairs()) colliding += pair.colliding;
   }
   return {
       .verified = colliding == 0,

@@ -86,7 +86,7 @@ Outcome measure(const Trial& trial, scenes::SceneKind kind) {
     times.update.push_back(watch.lap());
     (void)query.separation(), (void)query.penetration_depth();
     contacts += query.contacts().size();
-    colliding += query.colliding().value;
+    colliding += query.colliding();
     times.queries.push_back(watch.lap());
     for (int b = 0; b < 2; ++b) compute_map(query.surface(b), query.sites(1 - b), {}, maps[b]);
     times.maps.push_back(watch.lap());

@@ -66,7 +66,7 @@ int main(int argc, char** argv) try {
     time(contacts_all_us, find_contacts);
     const ThreadLimit alone(1);
     time(separation_us, [&](std::size_t i) { separation[i] = query.separation().value; });
-    time(colliding_us, [&](std::size_t i) { colliding[i] = query.colliding().value; });
+    time(colliding_us, [&](std::size_t i) { colliding[i] = query.colliding(); });
     time(contacts_us, find_contacts);
   }
   bench::write_array<Vec3>(out / "vertices1", m1.positions);

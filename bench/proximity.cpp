@@ -118,7 +118,7 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
     };
     const FclPair::Contacts theirs = fcl.contacts(pose);
     if (const std::span<const Contact> contacts = find_contacts(); !contacts.empty()) {
-      wrong += !query.colliding().value;
+      wrong += !query.colliding();
       const bool is_shallow = contacts[0].depth < kShallow * size;
       if (is_shallow && theirs.count > 0)
         same_side.push_back(dot(contacts[0].normal, theirs.deepest_normal) < 0);
@@ -127,7 +127,7 @@ Outcome measure(const Trial& trial, const std::array<Mesh, 2>& meshes) {
       times.add(contender([&] { (void)find_contacts(); }), contender([&] { (void)fcl.contacts(pose); }));
     } else {
       // Surfaces that just touch may have contacts or not.
-      wrong += theirs.count > 0 && query.colliding().value && query.penetration_depth() &&
+      wrong += theirs.count > 0 && query.colliding() && query.penetration_depth() &&
                query.penetration_depth()->lower > 1e-9 * size;
       Stopwatch watch;
       constexpr int kTimes = 20;

@@ -21,7 +21,7 @@ std::string words(const sdm::BoundedLength& length) {
 
 Row row(const sdm::PairProximity& pair) {
   return {fmt::to_string(pair.first), fmt::to_string(pair.second),
-          fmt::format("{} ({})", pair.colliding.value ? "yes" : "no", name(pair.colliding.certainty)),
+          fmt::format("{} ({})", pair.colliding ? "yes" : "no", name(sdm::Certainty::exact)),
           words(pair.separation), pair.penetration_depth ? words(*pair.penetration_depth) : "none: no solid"};
 }
 
@@ -31,7 +31,7 @@ Json to_json(const sdm::PairProximity& pair) {
   return {{"first", pair.first},
           {"second", pair.second},
           {"separation", to_json(pair.separation)},
-          {"colliding", to_json(pair.colliding)},
+          {"colliding", collision_json(pair.colliding)},
           {"penetration_depth", pair.penetration_depth ? to_json(*pair.penetration_depth) : Json(nullptr)}};
 }
 

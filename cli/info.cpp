@@ -35,7 +35,7 @@ struct Info {
   Notes notes{};
   std::uint64_t budget = 0;                       ///< of the search for self-intersections, in pairs of faces
   std::optional<FacePairs> self_intersections{};  ///< unless it takes more
-  std::optional<sdm::VolumeBounds> volume{};      ///< if closed and orientable, and these are known
+  std::optional<sdm::BoundedNumber> volume{};     ///< if closed and orientable, and these are known
 
   [[nodiscard]] bool is_solid() const { return mesh.closed && mesh.orientable; }
 };
@@ -47,7 +47,7 @@ Info collect(const std::string& file) {
   info.budget = sdm::self_intersection_budget(sites);
   info.self_intersections = sdm::self_intersections(sites, info.budget);
   if (info.is_solid() && info.self_intersections)
-    info.volume = sdm::solid_volume(sites, info.self_intersections->empty());
+    info.volume = sdm::solid_volume(sites, {.embedded = info.self_intersections->empty()});
   return info;
 }
 
@@ -110,7 +110,7 @@ std::string text(const FacePairs& pairs) {
 std::string volume_text(const Info& info) {
   if (!info.is_solid()) return "none: not closed and orientable";
   if (!info.volume) return "not determined, as the self-intersections";
-  if (info.volume->lower == info.volume->upper) return text(info.volume->lower);
+  if (info.volume->certainty == sdm::Certainty::exact) return text(info.volume->value);
   return fmt::format("between {} and {}", text(info.volume->lower), text(info.volume->upper));
 }
 

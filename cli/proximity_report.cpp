@@ -27,8 +27,8 @@ Json to_json(const sdm::Contact& contact) {
           {"id", contact.id}};
 }
 
-Json to_json(const sdm::BoundedBool& decision) {
-  return {{"value", decision.value}, {"kind", name(decision.certainty)}};
+Json collision_json(bool colliding) {
+  return {{"value", colliding}, {"kind", name(sdm::Certainty::exact)}};
 }
 
 namespace {
@@ -70,7 +70,7 @@ std::string between(const sdm::BoundedLength& length, double size) {
 Json to_json(sdm::ProximityQuery& query) {
   Json json;
   json["separation"] = to_json(query.separation());
-  json["colliding"] = to_json(query.colliding());
+  json["colliding"] = collision_json(query.colliding());
   if (const auto& depth = query.penetration_depth()) {
     json["penetration_depth"] = to_json(*depth);
   } else {
@@ -85,9 +85,8 @@ Json to_json(sdm::ProximityQuery& query) {
 
 std::string summary(sdm::ProximityQuery& query, const std::string& units, double size) {
   const std::string unit = unit_suffix(units);
-  const sdm::BoundedBool colliding = query.colliding();
   std::string text =
-      fmt::format("  colliding  {} ({})\n", colliding.value ? "yes" : "no", name(colliding.certainty));
+      fmt::format("  colliding  {} ({})\n", query.colliding() ? "yes" : "no", name(sdm::Certainty::exact));
   text += "  separation " + words(query.separation(), unit) + between(query.separation(), size);
   if (const auto& depth = query.penetration_depth())
     text += "  depth      " + words(*depth, unit) + between(*depth, size);

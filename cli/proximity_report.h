@@ -8,7 +8,8 @@
 
 [[nodiscard]] const char* name(sdm::Certainty kind);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedLength& length);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedBool& decision);
+/// Of ProximityQuery::colliding(), which is exact.
+[[nodiscard]] nlohmann::ordered_json collision_json(bool colliding);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Contact& contact);
 
 /// All results of the query, which are computed if necessary.

@@ -88,7 +88,7 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   Json json;
   json["frame"] = frame.index;
   json["separation"] = to_json(frame.separation);
-  json["colliding"] = to_json(frame.colliding);
+  json["colliding"] = collision_json(frame.colliding);
   json["penetration_depth"] = frame.depth ? to_json(*frame.depth) : Json(nullptr);
   json["contacts"] = frame.contacts;
   json["patches"] = Json::array();  // for each patch its deepest contact, which comes first
@@ -129,7 +129,7 @@ Frame frame_from(const Json& line) {
   frame.index = line.at("frame");
   frame.separation = length_from(line.at("separation"));
   const Json& colliding = line.at("colliding");
-  frame.colliding = {colliding.at("value"), certainty(colliding.at("kind"))};
+  frame.colliding = colliding.at("value");
   if (const Json& depth = line.at("penetration_depth"); !depth.is_null()) frame.depth = length_from(depth);
   frame.contacts = line.at("contacts");
   frame.patches = line.at("patches").size();
@@ -166,8 +166,8 @@ std::string to_csv(const std::vector<Frame>& frames) {
       for (const double v : values) cells.push_back(cell(v));
     };
     add({f.separation.value, f.separation.lower, f.separation.upper});
-    cells.push_back(f.colliding.value ? "1" : "0");
-    cells.push_back(name(f.colliding.certainty));
+    cells.push_back(f.colliding ? "1" : "0");
+    cells.push_back(name(sdm::Certainty::exact));
     if (f.depth)
       add({f.depth->value, f.depth->lower, f.depth->upper});
     else
@@ -240,7 +240,7 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
   const auto least = std::ranges::min_element(frames, {}, [](const Frame& f) { return f.separation.value; });
   text += fmt::format("  separation at least {}{}, in frame {} ({})\n", number(least->separation.value), unit,
                       least->index, name(least->separation.certainty));
-  const auto colliding = std::ranges::count_if(frames, [](const Frame& f) { return f.colliding.value; });
+  const auto colliding = std::ranges::count_if(frames, [](const Frame& f) { return f.colliding; });
   text += fmt::format("  colliding  in {} frames\n", colliding);
   const auto deepest =
       std::ranges::max_element(frames, {}, [](const Frame& f) { return f.depth ? f.depth->value : -1; });

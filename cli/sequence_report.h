@@ -32,7 +32,7 @@ struct TopologyReport {
 struct Frame {
   std::size_t index = 0;
   sdm::BoundedLength separation;
-  sdm::BoundedBool colliding;
+  bool colliding = false;
   std::optional<sdm::BoundedLength> depth;
   std::size_t contacts = 0, patches = 0;
   std::array<double, 2> error_bound{};                       ///< of each body: covering radius

@@ -29,7 +29,7 @@ int main() {
     speed -= 0.01;
     for (sdm::Vec3& p : falling.positions) p[2] += speed;
     query.refit(falling.positions, {});  // the other cube does not move
-    if (query.colliding().value && !query.contacts().empty()) {
+    if (query.colliding() && !query.contacts().empty()) {
       const sdm::Contact& deepest = query.contacts().front();
       for (sdm::Vec3& p : falling.positions)
         for (int k = 0; k < 3; ++k) p[k] += deepest.depth * deepest.normal[k];

@@ -71,6 +71,6 @@ print(len(contacts.depth), "contacts in", len(np.unique(contacts.patch)), "patch
 # In the middle of the hole, they are as far apart as they get:
 pose[0, 3] = 1.0
 query.set_pose(1, pose)
-print(query.separation(), bool(query.colliding()))
+print(query.separation(), query.colliding())
 
 assert all((s.value == 0) == (d.value > 0) for s, d in zip(separation, depth))

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/bounds.h>
 #include <sdm/mesh.h>
 #include <sdm/progress.h>
-#include <sdm/proximity_query.h>
 #include <sdm/sites.h>
 
 #include <array>

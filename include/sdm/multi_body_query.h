@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/bounds.h>
 #include <sdm/map.h>
 #include <sdm/proximity_query.h>
 
@@ -26,7 +27,7 @@ struct MultiBodyOptions {
 struct PairProximity {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   BoundedLength separation{};
-  BoundedBool colliding{};
+  bool colliding = false;
   std::optional<BoundedLength> penetration_depth{};
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/bounds.h>
 #include <sdm/map.h>
 #include <sdm/mesh_edit.h>
 #include <sdm/shape.h>
@@ -14,28 +15,6 @@
 #include <span>
 
 namespace sdm {
-
-/// How reliable a number is.
-enum class Certainty {
-  exact,    ///< from the triangles, accurate to 1e-6 of the diagonal of both bodies' box
-  bounded,  ///< the true value lies between the given bounds
-  estimate  ///< no guarantee; no query returns it
-};
-
-/// A length with its bounds.
-struct BoundedLength {
-  double value = 0;
-  Certainty certainty = Certainty::bounded;
-  double lower = 0, upper = 0;  ///< lower ≤ truth ≤ upper, unless an estimate
-  /// A point of O1 and a point of O2 that are `value` apart; empty where no pair of points attains the value.
-  std::optional<std::array<Vec3, 2>> witness{};
-};
-
-/// A yes/no result with its certainty.
-struct BoundedBool {
-  bool value = false;
-  Certainty certainty = Certainty::estimate;
-};
 
 /// A point p of one body that is in contact, and the point q of the other body to which it is pushed. With
 /// b(x) the distance of a point x to the other body's surface or, inside a solid, to its boundary, q is
@@ -130,9 +109,9 @@ class SDM_API ProximityQuery {
 
   /// The smallest distance between the two surfaces, from the triangles: exact, and 0 if they intersect.
   [[nodiscard]] const BoundedLength& separation();
-  /// Whether the surfaces intersect or one body is a solid that contains part of the other. Always exact,
-  /// from the triangles.
-  [[nodiscard]] BoundedBool colliding();
+  /// Whether the surfaces intersect or one body is a solid that contains part of the other. Exact, from
+  /// the triangles.
+  [[nodiscard]] bool colliding();
   /// The largest distance from a surface point of either body that lies inside the other to the boundary of
   /// that other body. Exactly 0 if they do not collide, otherwise bounded
   /// (ProximityOptions::depth_precision), with a witness at the depth `value`. Empty if neither body is a

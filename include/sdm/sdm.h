@@ -4,6 +4,7 @@
 #include <sdm/align.h>
 #include <sdm/api.h>
 #include <sdm/atlas.h>
+#include <sdm/bounds.h>
 #include <sdm/cancellation.h>
 #include <sdm/certified_verdict.h>
 #include <sdm/channels.h>

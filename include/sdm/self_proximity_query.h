@@ -5,6 +5,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/bounds.h>
 #include <sdm/map.h>
 #include <sdm/proximity_query.h>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <sdm/api.h>
-#include <sdm/proximity_query.h>
+#include <sdm/bounds.h>
 #include <sdm/shape.h>
 #include <sdm/transform.h>
 

@@ -100,7 +100,8 @@ constexpr Vec3& operator+=(Vec3& a, const Vec3& b) {
 
 }  // namespace sdm
 
-/// Lets structured bindings take the numbers of a vector.
+/// @cond
+// Let structured bindings take the numbers of a vector.
 template <>
 struct std::tuple_size<sdm::Vec3> : std::tuple_size<std::array<double, 3>> {};
 template <std::size_t I>
@@ -113,3 +114,4 @@ template <>
 struct std::tuple_size<sdm::Vec3f> : std::tuple_size<std::array<float, 3>> {};
 template <std::size_t I>
 struct std::tuple_element<I, sdm::Vec3f> : std::tuple_element<I, std::array<float, 3>> {};
+/// @endcond

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/bounds.h>
 #include <sdm/mesh.h>
 #include <sdm/progress.h>
 #include <sdm/sign.h>
@@ -88,13 +89,15 @@ struct DistanceField {
 [[nodiscard]] SDM_API DistanceField compute_field(const Sites& sites, const Grid& grid,
                                                   const FieldOptions& options = {});
 
-/// The distance at a point between grid points, interpolated linearly along each axis (an estimate), and
-/// bounds that hold because distances are 1-Lipschitz.
-struct FieldSample {
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN outside the grid, and beside a NaN
-  double lower = -std::numeric_limits<double>::infinity();  ///< lower ≤ distance ≤ upper
-  double upper = std::numeric_limits<double>::infinity();
-  double magnitude = 0;  ///< ≤ |distance|: beyond the band of a signed field more than the two imply
+/// The distance at a point between grid points: its value is interpolated linearly along each axis, NaN
+/// outside the grid and beside a NaN; its bounds hold because distances are 1-Lipschitz.
+struct FieldSample : BoundedNumber {
+  /// Nothing is known of the distance.
+  FieldSample()
+      : BoundedNumber{std::numeric_limits<double>::quiet_NaN(), Certainty::bounded,
+                      -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()} {}
+
+  double magnitude = 0;  ///< ≤ |distance|: beyond the band of a signed field more than the bounds imply
 };
 
 /// |value − distance| ≤ interpolation_error(grid) + field.accuracy, unless signs are estimates

@@ -14,7 +14,6 @@ array([[1. , 0.5, 0.5]])
 
 from ._core import (
     Alignment,
-    BoundedBool,
     BoundedLength,
     Cancelled,
     ClosestPoints,
@@ -65,7 +64,6 @@ from ._distance_map import DistanceMap, MapBounds, map, self_map
 
 __all__ = [
     "Alignment",
-    "BoundedBool",
     "BoundedLength",
     "Cancelled",
     "ClosestPoints",

@@ -71,7 +71,7 @@ void bind_pairs(nb::module_& module) {
           [](P& self) {
             return self.colliding.get([&] {
               std::vector<std::uint8_t> flags(self.pairs.size());
-              for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = self.pairs[i].colliding.value;
+              for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = self.pairs[i].colliding;
               return array_of<bool>(std::move(flags), {self.pairs.size()});
             });
           },

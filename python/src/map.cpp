@@ -56,7 +56,8 @@ std::unique_ptr<PyMap> compute_self(nb::handle surface, nb::handle sites, nb::ha
   const Mesh at_rest = mesh_of(rest, nb::none());
   run(progress, [&](const Progress& report) {
     const auto begin = std::chrono::steady_clock::now();
-    result->exclusion = std::make_shared<Exclusion>(at_rest, rule, report);
+    result->exclusion =
+        std::make_shared<Exclusion>(at_rest, ExclusionOptions{.rule = rule, .progress = report});
     result->map = compute_self_map(result->on->surface, result->to->sites, *result->exclusion,
                                    {.max_distance = max_distance, .progress = report});
     result->ms = milliseconds_since(begin);

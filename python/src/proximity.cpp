@@ -49,15 +49,6 @@ of points attains the value.)")
         return nb::str("sdm.BoundedLength({:.9g}, in [{:.9g}, {:.9g}])")
             .format(self.value, self.lower, self.upper);
       });
-  nb::class_<BoundedBool>(module, "BoundedBool",
-                          "A yes/no result with its certainty. ``bool()`` of it is the value.")
-      .def_ro("value", &BoundedBool::value)
-      .def_prop_ro(
-          "certainty", [](const BoundedBool& self) { return name_of(self.certainty); }, "'exact'.")
-      .def("__bool__", [](const BoundedBool& self) { return self.value; })
-      .def("__repr__", [](const BoundedBool& self) {
-        return nb::str("sdm.BoundedBool({}, {})").format(self.value, name_of(self.certainty));
-      });
 }
 
 template <class Get>
@@ -291,7 +282,7 @@ A call raises Error while another thread uses the object.
 >>> query.set_pose(1, [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
 >>> query.separation()
 sdm.BoundedLength(2, exact)
->>> bool(query.colliding())
+>>> query.colliding()
 False)");
   bind_motion(query);
   bind_answers(query);

@@ -32,7 +32,7 @@ def public_objects():
 
 
 # Fields whose names say it all.
-PLAIN = re.compile(r"sdm\.(DistanceStatistics|BoundedLength|BoundedBool|SiteType)\.\w+|sdm.MapBounds\.\w+")
+PLAIN = re.compile(r"sdm\.(DistanceStatistics|BoundedLength|SiteType)\.\w+|sdm.MapBounds\.\w+")
 
 
 @pytest.mark.parametrize("name", [name for name, _ in public_objects()])

@@ -26,8 +26,7 @@ def test_separation():
     assert separation.certainty == "exact" and separation.value == pytest.approx(2, abs=1e-2)
     assert separation.lower <= float(separation) <= separation.upper
     assert np.linalg.norm(separation.witness[1] - separation.witness[0]) == pytest.approx(separation.value)
-    colliding = query.colliding()
-    assert not colliding and colliding.certainty == "exact"
+    assert query.colliding() is False
     assert query.penetration_depth().value == 0 and len(query.contacts()) == 0
     # The separation is that of the closest points of a dense sampling, from above.
     vertices = meshes.sphere(steps=3)[0] + [4, 0.5, 0.5]
@@ -37,7 +36,7 @@ def test_separation():
 def test_contacts_and_depth():
     query = sdm.ProximityQuery(meshes.box(), meshes.box(), contact_margin=0.1, depth_precision=1e-3)
     query.set_pose(0, shift(0.1, 0.2, 0.75))
-    assert query.colliding() and query.separation().value == 0
+    assert query.colliding() is True and query.separation().value == 0
     depth = query.penetration_depth()
     assert depth.certainty == "bounded" and depth.lower <= depth.value <= depth.upper <= depth.lower + 1.1e-3
     assert repr(depth).startswith("sdm.BoundedLength(")

@@ -98,7 +98,8 @@ struct Proximity {
   /// As those methods decide it: the value of a sample is not positive, or for an unsigned field not above
   /// error_bound. `exact` where the bounds imply it: a sample is inside O2, or no point of O1's surface is
   /// inside or on it; otherwise an estimate.
-  BoundedBool colliding;
+  bool colliding = false;
+  Certainty colliding_certainty = Certainty::estimate;
   std::size_t samples = 0;
   std::size_t without_value = 0;  ///< samples outside the grid or beside points beyond the band
   double covering_radius = 0;     ///< no point of O1's surface is farther from all samples

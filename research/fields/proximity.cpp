@@ -135,9 +135,8 @@ Proximity proximity(const DistanceField& field, const Mesh& o1, const ProximityO
   const bool apart = (sign == SignMethod::exact ? all.lowest_lower : all.nearest_lower) > 0;
   const bool inside = sign == SignMethod::exact && all.lowest_upper < 0;
   const bool certain = inside || (apart && sign != SignMethod::winding);
-  result.colliding.value =
-      certain ? inside : all.lowest <= (sign == SignMethod::none ? result.error_bound : 0);
-  result.colliding.certainty = certain ? Certainty::exact : Certainty::estimate;
+  result.colliding = certain ? inside : all.lowest <= (sign == SignMethod::none ? result.error_bound : 0);
+  result.colliding_certainty = certain ? Certainty::exact : Certainty::estimate;
   return result;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("proximity from a distance field");

@@ -47,7 +47,7 @@ Deforming run_frames(Run& run, const Recording& recording, std::uint32_t resolut
     const auto& depth = query.penetration_depth();
     result.depth.push_back(depth ? depth->value : 0);
     (void)query.contacts().size();
-    result.colliding += query.colliding().value;
+    result.colliding += query.colliding();
     result.queries.add(watch.lap());
     if (run.gl && frame % gl_stride == 0) {
       watch.lap();

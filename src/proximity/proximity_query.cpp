@@ -110,7 +110,7 @@ const BoundedLength& ProximityQuery::separation() {
   impl_->require_intact();
   return with_memory([&]() -> const BoundedLength& { return impl_->answers.separation(); });
 }
-BoundedBool ProximityQuery::colliding() {
+bool ProximityQuery::colliding() {
   impl_->require_intact();
   return with_memory([&] { return impl_->answers.colliding(); });
 }

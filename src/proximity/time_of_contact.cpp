@@ -26,7 +26,7 @@ class MovingPair {
     answers_.begin(bodies_[0], bodies_[1], answers_.closest_faces());
   }
   double separation() { return answers_.separation().value; }
-  bool colliding() { return answers_.colliding().value; }
+  bool colliding() { return answers_.colliding(); }
 
   /// What there is to know at this time.
   TimeOfContact found(double time) {

@@ -46,7 +46,7 @@ TEST_F(BodiesCommand, PrintsThePairsOfTheLibrary) {
     EXPECT_EQ(json["pairs"][i]["separation"]["value"], pair.separation.value);
     EXPECT_EQ(json["pairs"][i]["separation"]["lower"], pair.separation.lower);
     EXPECT_EQ(json["pairs"][i]["separation"]["kind"], "exact");
-    EXPECT_EQ(json["pairs"][i]["colliding"]["value"], pair.colliding.value);
+    EXPECT_EQ(json["pairs"][i]["colliding"]["value"], pair.colliding);
     EXPECT_EQ(json["pairs"][i]["penetration_depth"]["upper"], pair.penetration_depth->upper);
   }
   EXPECT_EQ(json["pairs"][0]["colliding"]["value"], true);

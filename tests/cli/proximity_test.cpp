@@ -67,7 +67,7 @@ TEST_F(ProximityCommand, AsksTheTrianglesThemselves) {
     EXPECT_EQ(json["separation"]["kind"], "exact");
     EXPECT_EQ(json["separation"]["value"], query.separation().value);
     EXPECT_EQ(json["separation"]["lower"], json["separation"]["upper"]);
-    EXPECT_EQ(json["colliding"]["value"], query.colliding().value);
+    EXPECT_EQ(json["colliding"]["value"], query.colliding());
     EXPECT_EQ(json["colliding"]["kind"], "exact");
   }
 }

@@ -69,7 +69,7 @@ TEST_F(SequenceCommand, FollowsTheBodies) {
     EXPECT_EQ(all[i]["frame"], i);
     query.refit(read_mesh(std::filesystem::path(moving) / (std::to_string(i) + ".obj")).positions, {});
     EXPECT_EQ(all[i]["separation"]["value"], query.separation().value);
-    EXPECT_EQ(all[i]["colliding"]["value"], query.colliding().value);
+    EXPECT_EQ(all[i]["colliding"]["value"], query.colliding());
     EXPECT_EQ(all[i]["penetration_depth"]["value"], query.penetration_depth()->value);
     EXPECT_EQ(all[i]["contacts"], query.contacts().size());
     bound.refit(query.surface(0));
@@ -458,7 +458,7 @@ TEST_F(ResumeTopology, EveryFrameIsAsByItself) {
     const Json& line = all[static_cast<std::size_t>(i)];
     ProximityQuery query(changing(i), others[static_cast<std::size_t>(i)]);
     EXPECT_NEAR(line["separation"]["value"], query.separation().value, 1e-12);
-    EXPECT_EQ(line["colliding"]["value"], query.colliding().value);
+    EXPECT_EQ(line["colliding"]["value"], query.colliding());
     ASSERT_EQ(line["penetration_depth"].is_null(), !query.penetration_depth().has_value());
     if (query.penetration_depth()) {
       EXPECT_LE(line["penetration_depth"]["lower"], query.penetration_depth()->upper);

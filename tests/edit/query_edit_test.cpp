@@ -28,7 +28,7 @@ Mesh compact(Mesh mesh) {
 
 void expect_same_answers(ProximityQuery& edited, ProximityQuery& fresh) {
   EXPECT_NEAR(edited.separation().value, fresh.separation().value, 1e-12);
-  EXPECT_EQ(edited.colliding().value, fresh.colliding().value);
+  EXPECT_EQ(edited.colliding(), fresh.colliding());
   const auto &depth = edited.penetration_depth(), &expected = fresh.penetration_depth();
   ASSERT_EQ(depth.has_value(), expected.has_value());
   if (depth) {  // both are bounds

@@ -350,6 +350,7 @@ TEST(SequenceGltf, ErrorsNameTheFault) {
   refuse_with("{\"POSITION\":1}", "{\"POSITION\":3}", "differ in their number of vertices");
   const std::string file = write("morph.glb", good);
   expect_refused(file, {"rate"}, {.rate = -1});
+  expect_refused(file, {"rate"}, {.rate = 0});
   expect_refused(file, {"rate"}, {.rate = std::nan("")});
   expect_refused(file, {"more than a billion"}, {.rate = 1e300});
   // An infinite weight is an error of its frame.

@@ -48,7 +48,7 @@ std::unique_ptr<ProximityQuery> pair_with_answers() {
 
 const Calls<ProximityQuery> kPair{
     [](ProximityQuery& q) { return numbers_of_length(q.separation()); },
-    [](ProximityQuery& q) { return numbers_of(q.colliding().value, q.colliding().certainty); },
+    [](ProximityQuery& q) { return numbers_of(q.colliding()); },
     [](ProximityQuery& q) { return numbers_of_length(q.penetration_depth()); },
     [](ProximityQuery& q) {
       Numbers numbers;
@@ -119,7 +119,7 @@ const Calls<MultiBodyQuery> kBodies{
     [](MultiBodyQuery& q) {
       Numbers numbers;
       for (const PairProximity& pair : q.pairs()) {
-        numbers.add(pair.first, pair.second, pair.colliding.value, pair.separation.value);
+        numbers.add(pair.first, pair.second, pair.colliding, pair.separation.value);
         numbers.add(pair.penetration_depth.has_value());
         if (pair.penetration_depth) numbers.add(pair.penetration_depth->lower, pair.penetration_depth->upper);
       }

@@ -183,8 +183,7 @@ void check(const Body& a, const Body& b) {
   const BoundedLength separation = query.separation();
   const std::optional<BoundedLength> depth = query.penetration_depth();
 
-  ASSERT_EQ(query.colliding().value, collide);
-  ASSERT_EQ(query.colliding().certainty, Certainty::exact);
+  ASSERT_EQ(query.colliding(), collide);
   ASSERT_EQ(separation.certainty, Certainty::exact);
   if (intersect) {
     ASSERT_EQ(separation.value, 0);
@@ -214,7 +213,7 @@ void check(const Body& a, const Body& b) {
   MultiBodyQuery bodies(with_atlases(std::vector{a.mesh, b.mesh}, kResolution));
   ASSERT_EQ(bodies.pairs().size(), 1u);
   const PairProximity& pair = bodies.pairs()[0];
-  ASSERT_EQ(pair.colliding.value, collide);
+  ASSERT_EQ(pair.colliding, collide);
   ASSERT_EQ(pair.separation.value, separation.value);
   ASSERT_EQ(pair.penetration_depth.has_value(), depth.has_value());
   if (depth) {

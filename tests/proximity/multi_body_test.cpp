@@ -97,8 +97,7 @@ void expect_same(const BoundedLength& a, const BoundedLength& b) {
 
 void expect_same(const PairProximity& a, const PairProximity& b) {
   expect_same(a.separation, b.separation);
-  EXPECT_EQ(a.colliding.value, b.colliding.value);
-  EXPECT_EQ(a.colliding.certainty, b.colliding.certainty);
+  EXPECT_EQ(a.colliding, b.colliding);
   ASSERT_EQ(a.penetration_depth.has_value(), b.penetration_depth.has_value());
   if (a.penetration_depth) expect_same(*a.penetration_depth, *b.penetration_depth);
 }
@@ -129,13 +128,13 @@ TEST(MultiBodyQuery, AgreesWithPairQueries) {
                                        [](const PairProximity& p) { return std::pair(p.first, p.second); }));
     EXPECT_LE(reported.size(), bodies.candidate_pairs());
     for (const PairProximity& pair : expected) {
-      const bool within = pair.separation.lower <= max_distance || pair.colliding.value;
+      const bool within = pair.separation.lower <= max_distance || pair.colliding;
       EXPECT_EQ(reported.contains({pair.first, pair.second}), within) << pair.first << ' ' << pair.second;
     }
     // One body far inside another is nearer to its surface than nothing, but collides.
     EXPECT_TRUE(reported.contains({2, 3}));
     colliding = static_cast<std::size_t>(
-        std::ranges::count_if(bodies.pairs(), [](const PairProximity& p) { return p.colliding.value; }));
+        std::ranges::count_if(bodies.pairs(), [](const PairProximity& p) { return p.colliding; }));
   }
   EXPECT_GE(colliding, 3u);
 }
@@ -243,7 +242,7 @@ TEST(MultiBodyQuery, DoesNotDependOnTheOrder) {
     ASSERT_NE(same, bodies.pairs().end());
     EXPECT_NEAR(pair.separation.value, same->separation.value, 1e-12);
     EXPECT_NEAR(pair.separation.lower, same->separation.lower, 1e-12);
-    EXPECT_EQ(pair.colliding.value, same->colliding.value);
+    EXPECT_EQ(pair.colliding, same->colliding);
     ASSERT_EQ(pair.penetration_depth.has_value(), same->penetration_depth.has_value());
     if (pair.penetration_depth) {
       EXPECT_NEAR(pair.penetration_depth->value, same->penetration_depth->value, 1e-12);

@@ -38,16 +38,14 @@ TEST(Proximity, Cubes) {
     EXPECT_EQ(query.separation().certainty, Certainty::exact);
     EXPECT_NEAR(query.separation().value, gap, 1e-12);
     expect_witness(query.separation());
-    EXPECT_FALSE(query.colliding().value);
-    EXPECT_EQ(query.colliding().certainty, Certainty::exact);
+    EXPECT_FALSE(query.colliding());
     ASSERT_TRUE(query.penetration_depth());
     EXPECT_EQ(query.penetration_depth()->value, 0);
     EXPECT_EQ(query.penetration_depth()->upper, 0);
     EXPECT_TRUE(query.contacts().empty());
   }
   ProximityQuery query(cube(), moved(cube(), {1.7, 0.1, 0.2}));
-  EXPECT_TRUE(query.colliding().value);
-  EXPECT_EQ(query.colliding().certainty, Certainty::exact);
+  EXPECT_TRUE(query.colliding());
   expect_holds(*query.penetration_depth(), 0.3, 1e-9);
   EXPECT_NEAR(query.penetration_depth()->value, 0.3, 1e-5);
   expect_witness(*query.penetration_depth());
@@ -80,13 +78,12 @@ TEST(Proximity, DepthInATorus) {
     for (Vec3& p : ball.positions) p = 0.4 * p + Vec3{2.3, 0, 0};
     ProximityQuery query(torus(2 * n, n), ball);
     const BoundedLength depth = *query.penetration_depth();
-    EXPECT_TRUE(query.colliding().value);
+    EXPECT_TRUE(query.colliding());
     expect_holds(depth, 1, 0.04 * 24 / n);
     const double now = std::max(std::abs(depth.upper - 1), std::abs(depth.lower - 1));
     EXPECT_LT(now, 0.7 * error);
     error = now;
     EXPECT_NEAR(query.separation().value, 0.3, 0.04 * 24 / n);
-    EXPECT_EQ(query.colliding().certainty, Certainty::exact);
   }
 }
 
@@ -118,7 +115,7 @@ TEST(Proximity, AgreesWithCompleteMaps) {
     EXPECT_GE(query.separation().value, lower - tolerance);
     const BoundedLength& depth = *query.penetration_depth();
     EXPECT_GE(depth.upper, deepest - tolerance);
-    if (!query.colliding().value) continue;
+    if (!query.colliding()) continue;
     EXPECT_LE(depth.lower, upper + tolerance);
     EXPECT_LE(depth.upper - depth.lower, 1e-3 * diagonal(bounds(bunny)) + tolerance);
     expect_witness(depth);
@@ -144,7 +141,7 @@ TEST(Proximity, DepthIsAsPreciseAsAsked) {
     EXPECT_LE(deepest, shallowest);
   }
   EXPECT_LT(shallowest - deepest, 1e-4);
-  for (const double bad : {-1.0, std::nan("")})
+  for (const double bad : {-1.0, 0.0, std::nan("")})
     EXPECT_THROW(ProximityQuery(a, b, {.depth_precision = bad}), Error);
 }
 
@@ -185,7 +182,7 @@ TEST(Proximity, OpenMeshesHaveNoInside) {
   EXPECT_FALSE(query.penetration_depth());
   EXPECT_EQ(query.separation().value, 0);
   EXPECT_EQ(query.separation().certainty, Certainty::exact);
-  EXPECT_TRUE(query.colliding().value);
+  EXPECT_TRUE(query.colliding());
   // Of a pair with one solid the other's surface can be inside of it.
   ProximityQuery solid(cube(), moved(open, {0, 0, 0.8}));
   ASSERT_TRUE(solid.penetration_depth());
@@ -210,8 +207,7 @@ TEST(Proximity, OverlappingShellsAreOneSolid) {
     SCOPED_TRACE(depth);
     for (const bool swapped : {false, true}) {
       ProximityQuery query(swapped ? two : box(lo, hi), swapped ? box(lo, hi) : two);
-      EXPECT_TRUE(query.colliding().value);
-      EXPECT_EQ(query.colliding().certainty, Certainty::exact);
+      EXPECT_TRUE(query.colliding());
       const BoundedLength found = *query.penetration_depth();
       EXPECT_LE(found.lower, depth);
       EXPECT_GE(found.upper, depth);
@@ -226,7 +222,7 @@ TEST(Proximity, OverlappingShellsAreOneSolid) {
 // Regression: the separation of bodies that intersect was that of the nearest samples.
 TEST(Proximity, SeparationOfIntersectingBodiesIsZero) {
   ProximityQuery query(sphere(3), moved(sphere(3), {0.9, 0.1, 0.2}));
-  EXPECT_TRUE(query.colliding().value);
+  EXPECT_TRUE(query.colliding());
   EXPECT_EQ(query.separation().value, 0);
   EXPECT_EQ(query.separation().upper, 0);
   EXPECT_EQ(query.separation().certainty, Certainty::exact);
@@ -237,8 +233,7 @@ TEST(Proximity, NestedMeshesCollide) {
   Mesh inner = cube(0.5);
   for (const bool swapped : {false, true}) {
     ProximityQuery query(swapped ? inner : cube(), swapped ? cube() : inner);
-    EXPECT_TRUE(query.colliding().value);
-    EXPECT_EQ(query.colliding().certainty, Certainty::exact);
+    EXPECT_TRUE(query.colliding());
     EXPECT_NEAR(query.separation().value, 0.5, 1e-12);
     expect_holds(*query.penetration_depth(), 0.5, 1e-9);
   }
@@ -268,7 +263,7 @@ TEST(Contacts, WithinTheMarginPointAlongTheLineOfCentres) {
   const double distance = norm(centre);
   ProximityQuery query(sphere(4), moved(sphere(4), centre), {.contact_margin = distance - 2 + 0.02});
   ASSERT_FALSE(query.contacts().empty());
-  EXPECT_FALSE(query.colliding().value);
+  EXPECT_FALSE(query.colliding());
   const Vec3 along = (-1 / distance) * centre;  // pushes O1 off O2
   for (const Contact& c : query.contacts()) {
     EXPECT_LE(c.depth, -(distance - 2) + 0.01);
@@ -363,7 +358,7 @@ struct Answers {
 
 Answers answers(ProximityQuery& query) {
   Answers a{query.separation().value,         query.separation().lower, query.penetration_depth()->value,
-            query.penetration_depth()->upper, query.colliding().value,  {}};
+            query.penetration_depth()->upper, query.colliding(),        {}};
   for (const Contact& c : query.contacts()) a.depths.push_back(c.depth);
   return a;
 }
@@ -376,7 +371,7 @@ TEST(ProximityRefit, ReturnsToTheSameBits) {
   EXPECT_EQ(answers(query), first);
   const std::vector<Vec3> away = moved(b, {3, 0, 0}).positions;
   query.refit({}, away);
-  EXPECT_FALSE(query.colliding().value);
+  EXPECT_FALSE(query.colliding());
   EXPECT_GT(query.separation().lower, 1);
   EXPECT_TRUE(query.contacts().empty());
   // Texels that have moved away come back but for rounding; from then on to the bit.
@@ -399,7 +394,7 @@ TEST(ProximityRefit, RigidMotion) {
               placed(b, "rotate:20:50:-70,translate:2:3:4").positions);
   EXPECT_NEAR(query.separation().value, first.separation, 2e-5);
   EXPECT_NEAR(query.penetration_depth()->value, first.depth, 2e-5);
-  EXPECT_EQ(query.colliding().value, first.colliding);
+  EXPECT_EQ(query.colliding(), first.colliding);
 }
 
 /// Fails if refits and queries still allocate memory when bodies repeat their poses.

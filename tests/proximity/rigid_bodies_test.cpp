@@ -63,7 +63,7 @@ void expect_equal(const Contact& a, const Contact& b) {
 
 void expect_equal(ProximityQuery& a, ProximityQuery& b) {
   expect_equal(a.separation(), b.separation());
-  EXPECT_EQ(a.colliding().value, b.colliding().value);
+  EXPECT_EQ(a.colliding(), b.colliding());
   ASSERT_EQ(a.penetration_depth().has_value(), b.penetration_depth().has_value());
   if (a.penetration_depth()) expect_equal(*a.penetration_depth(), *b.penetration_depth());
   ASSERT_EQ(a.contacts().size(), b.contacts().size());
@@ -110,8 +110,8 @@ TEST(RigidBodies, AgreeWithMovedVertices) {
         ASSERT_TRUE(posed.separation().witness);
         EXPECT_NEAR(norm((*posed.separation().witness)[1] - (*posed.separation().witness)[0]),
                     posed.separation().value, 1e-12);
-        ASSERT_EQ(posed.colliding().value, moved.colliding().value);
-        ++(posed.colliding().value ? colliding : apart);
+        ASSERT_EQ(posed.colliding(), moved.colliding());
+        ++(posed.colliding() ? colliding : apart);
         ASSERT_EQ(posed.penetration_depth().has_value(), moved.penetration_depth().has_value());
         if (posed.penetration_depth()) {
           const BoundedLength &p = *posed.penetration_depth(), &m = *moved.penetration_depth();
@@ -180,7 +180,7 @@ TEST(RigidBodies, AnswersDoNotDependOnEarlierFrames) {
     fresh.set_pose(1, pose);
     expect_equal(query, fresh);
     if (HasFailure()) return;
-    colliding += query.colliding().value;
+    colliding += query.colliding();
   }
   EXPECT_GT(colliding, 200);
   EXPECT_LT(colliding, 800);
@@ -380,13 +380,13 @@ TEST_F(SharedShapes, HaveTheAnswersOfPairs) {
         expect_equal(contact->contact, c);
         ++contact;
       }
-      if (expected.separation().value > 0.5 && !expected.colliding().value) continue;
+      if (expected.separation().value > 0.5 && !expected.colliding()) continue;
       ASSERT_NE(found, bodies.pairs().end());
       ASSERT_EQ(std::pair(found->first, found->second), std::pair(a, b));
       expect_equal(found->separation, expected.separation());
-      EXPECT_EQ(found->colliding.value, expected.colliding().value);
+      EXPECT_EQ(found->colliding, expected.colliding());
       if (found->penetration_depth) expect_equal(*found->penetration_depth, *expected.penetration_depth());
-      colliding += found->colliding.value;
+      colliding += found->colliding;
       ++found;
     }
   EXPECT_EQ(contact, bodies.contacts().end());

@@ -402,11 +402,10 @@ TEST(TimeOfContact, NoCollisionBefore) {
           EXPECT_NEAR(motions[b].at(1, shapes[b]).rows[row][k], motions[b].to.rows[row][k], 1e-9);
     for (int step = 0; step < 100; ++step) {
       set(found.time * step / 100);
-      ASSERT_TRUE(found.time == 0 ||
-                  (!query.colliding().value && query.separation().value > 0.5 * kTolerance));
+      ASSERT_TRUE(found.time == 0 || (!query.colliding() && query.separation().value > 0.5 * kTolerance));
     }
     set(found.time);
-    EXPECT_EQ(found.contact, query.separation().value <= kTolerance || query.colliding().value);
+    EXPECT_EQ(found.contact, query.separation().value <= kTolerance || query.colliding());
     EXPECT_EQ(found.separation, query.separation().value);
     EXPECT_EQ(found.certainty, Certainty::exact);
     expect_witness(found, shapes, motions);

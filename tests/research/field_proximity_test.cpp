@@ -43,8 +43,8 @@ TEST(FieldProximityBounds, HoldForTheSurfaces) {
       ASSERT_TRUE(found.depth);
       EXPECT_GE(found.depth->upper, deepest - 1e-9);
       EXPECT_LE(found.depth->lower, deepest + found.covering_radius + 1e-9);
-      if (found.colliding.certainty == Certainty::exact) {
-        EXPECT_EQ(found.colliding.value, exact.colliding().value);
+      if (found.colliding_certainty == Certainty::exact) {
+        EXPECT_EQ(found.colliding, exact.colliding());
       }
       if (found.without_value == 0) {
         EXPECT_NEAR(found.separation.value, separation.value, found.error_bound);
@@ -52,7 +52,7 @@ TEST(FieldProximityBounds, HoldForTheSurfaces) {
       }
       if (band == kUnlimited &&
           (pose.name == "apart" || pose.name == "within" || pose.name == "outside_the_grid")) {
-        EXPECT_EQ(found.colliding.certainty, Certainty::exact);
+        EXPECT_EQ(found.colliding_certainty, Certainty::exact);
       }
     }
 }
@@ -76,11 +76,11 @@ TEST(FieldProximityBounds, OfUnsignedFields) {
   const Mesh above = moved(placed(sphere(1), "scale:0.05"), {0.5, 0.5, b.hi[2] + 0.3});
   fields::Proximity found = fields::proximity(field, above);
   EXPECT_FALSE(found.depth);
-  EXPECT_FALSE(found.colliding.value);
-  EXPECT_EQ(found.colliding.certainty, Certainty::exact);
+  EXPECT_FALSE(found.colliding);
+  EXPECT_EQ(found.colliding_certainty, Certainty::exact);
   found = fields::proximity(field, open);
-  EXPECT_TRUE(found.colliding.value);
-  EXPECT_EQ(found.colliding.certainty, Certainty::estimate);
+  EXPECT_TRUE(found.colliding);
+  EXPECT_EQ(found.colliding_certainty, Certainty::estimate);
 }
 
 TEST(FieldProximityBounds, OfWrongInputAreErrors) {

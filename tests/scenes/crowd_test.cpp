@@ -43,7 +43,7 @@ TEST(Crowd, StaysApartAndOnTheGround) {
     if (frame % 20 != 0) continue;
     for (std::size_t i = 0; i < kAgents; ++i) positions[i] = scene.bodies()[i].mesh.positions;
     query.refit(positions);
-    for (const PairProximity& pair : query.pairs()) ASSERT_FALSE(pair.colliding.value) << frame;
+    for (const PairProximity& pair : query.pairs()) ASSERT_FALSE(pair.colliding) << frame;
     near += query.pairs().size();
     for (const ClosestPoint& closest : closest_points(hills, now)) ASSERT_LE(closest.distance, 0.02);
   }

@@ -44,11 +44,10 @@ const BoundedLength& PairAnswers::separation() {
   return *results_.separation;
 }
 
-BoundedBool PairAnswers::colliding() {
+bool PairAnswers::colliding() {
   if (!results_.colliding)
-    results_.colliding = {box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
-                              (surfaces_intersect() || pairs::one_contains_part_of_other(meshes())),
-                          Certainty::exact};
+    results_.colliding = box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
+                         (surfaces_intersect() || pairs::one_contains_part_of_other(meshes()));
   return *results_.colliding;
 }
 
@@ -69,7 +68,7 @@ bool PairAnswers::within(double distance) {
   const shape::Ball &ball1 = bodies_[0]->ball(), &ball2 = bodies_[1]->ball();
   if (norm(ball2.centre - ball1.centre) > distance + ball1.radius + ball2.radius) return false;
   if (distance > 0 && !results_.separation && !find_closest(distance)) results_.intersecting = false;
-  return (results_.separation && results_.separation->value <= distance) || colliding().value;
+  return (results_.separation && results_.separation->value <= distance) || colliding();
 }
 
 pairs::MeshPair PairAnswers::meshes() const {
@@ -86,11 +85,9 @@ bool PairAnswers::find_closest(double bound) {
   results_.intersecting = c.intersecting;
   results_.closest_faces = {c.face1, c.face2};
   const double distance = pose.scale * c.distance;
-  results_.separation = {.value = distance,
-                         .certainty = Certainty::exact,
-                         .lower = distance,
-                         .upper = distance,
-                         .witness = std::array{pose.map(c.point1), pose.map(c.point2)}};
+  results_.separation = {
+      {.value = distance, .certainty = Certainty::exact, .lower = distance, .upper = distance},
+      std::array{pose.map(c.point1), pose.map(c.point2)}};
   return true;
 }
 
@@ -102,15 +99,15 @@ bool PairAnswers::surfaces_intersect() {
 
 std::optional<BoundedLength> PairAnswers::depth() {
   if (!bodies_[0]->body().solid() && !bodies_[1]->body().solid()) return {};
-  if (!colliding().value) return BoundedLength{.certainty = Certainty::exact};
+  if (!colliding()) return BoundedLength{{.certainty = Certainty::exact}};
   const double size = std::min(diagonal(bodies_[0]->box()), diagonal(bodies_[1]->box()));
   const depth::Depth found = depth_search_.find(
       bodies_, to_other_, depth_precision_ > 0 ? depth_precision_ : ProximityOptions::kDepthPrecision * size);
-  return BoundedLength{.value = found.value,
-                       .certainty = Certainty::bounded,
-                       .lower = std::max(0.0, found.lower - precision_),
-                       .upper = found.upper + precision_,
-                       .witness = found.points};
+  return BoundedLength{{.value = found.value,
+                        .certainty = Certainty::bounded,
+                        .lower = std::max(0.0, found.lower - precision_),
+                        .upper = found.upper + precision_},
+                       found.points};
 }
 
 }  // namespace sdm::pair

@@ -43,7 +43,7 @@ class PairAnswers {
   [[nodiscard]] const FacePair& closest_faces() const { return results_.closest_faces; }
 
   [[nodiscard]] const BoundedLength& separation();
-  [[nodiscard]] BoundedBool colliding();
+  [[nodiscard]] bool colliding();
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
   [[nodiscard]] std::span<const Contact> contacts();
 
@@ -67,7 +67,7 @@ class PairAnswers {
     std::optional<bool> intersecting{};  ///< the surfaces
     std::optional<BoundedLength> separation{};
     std::optional<std::optional<BoundedLength>> depth{};
-    std::optional<BoundedBool> colliding{};
+    std::optional<bool> colliding{};
     std::optional<std::span<const Contact>> contacts{};
   };
   Results results_;

@@ -126,11 +126,9 @@ std::optional<BoundedLength> SelfProximityQuery::separation() try {
   if (!impl_->closest) impl_->closest = impl_->find_closest();
   const self::FacePair& c = *impl_->closest;
   if (c.face1 == kNone) return {};
-  return BoundedLength{.value = c.distance,
-                       .certainty = Certainty::exact,
-                       .lower = c.distance,
-                       .upper = c.distance,
-                       .witness = std::array{c.point1, c.point2}};
+  return BoundedLength{
+      {.value = c.distance, .certainty = Certainty::exact, .lower = c.distance, .upper = c.distance},
+      std::array{c.point1, c.point2}};
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a proximity query of a mesh with itself");
 }

@@ -18,18 +18,17 @@ void check_solid(const Sites& sites) {
 
 }  // namespace
 
-VolumeBounds solid_volume(const Sites& sites) {
-  check_solid(sites);
-  return solid_volume(sites, is_embedded(sites));
-}
-
-VolumeBounds solid_volume(const Sites& sites, bool embedded) try {
+BoundedNumber solid_volume(const Sites& sites, const SolidVolumeOptions& options) try {
   check_solid(sites);
   const sites::SitesData& data = internals(sites);
-  if (!embedded) {
+  if (!(options.embedded ? *options.embedded : is_embedded(sites))) {
     const inside::SolidBoundary::Volume bounds =
         inside::SolidBoundary(data, inside::FaceSides(data)).volume();
-    return {bounds.lower, bounds.upper};
+    const bool exact = bounds.lower == bounds.upper;
+    return {.value = exact ? bounds.lower : 0.5 * (bounds.lower + bounds.upper),
+            .certainty = exact ? Certainty::exact : Certainty::bounded,
+            .lower = bounds.lower,
+            .upper = bounds.upper};
   }
   // The divergence theorem: tetrahedra between the faces and a point near them.
   double six_volumes = 0;
@@ -39,7 +38,8 @@ VolumeBounds solid_volume(const Sites& sites, bool embedded) try {
     const double six_volume = dot(from_origin(0), cross(from_origin(1), from_origin(2)));
     six_volumes += data.inverted[face] ? -six_volume : six_volume;
   }
-  return {six_volumes / 6, six_volumes / 6};
+  const double volume = six_volumes / 6;
+  return {.value = volume, .certainty = Certainty::exact, .lower = volume, .upper = volume};
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the volume of a solid");
 }

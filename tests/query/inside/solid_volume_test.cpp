@@ -11,16 +11,20 @@ namespace sdm {
 namespace {
 
 void expect_exactly(const Mesh& mesh, double volume) {
-  const VolumeBounds bounds = solid_volume(Sites(mesh));
+  const BoundedNumber bounds = solid_volume(Sites(mesh));
+  EXPECT_EQ(bounds.certainty, Certainty::exact);
   EXPECT_EQ(bounds.lower, bounds.upper);
+  EXPECT_EQ(bounds.value, bounds.lower);
   EXPECT_NEAR(bounds.lower, volume, 1e-12 * volume);
 }
 
 void expect_between(const Mesh& mesh, double volume, double width) {
-  const VolumeBounds bounds = solid_volume(Sites(mesh));
+  const BoundedNumber bounds = solid_volume(Sites(mesh));
   EXPECT_LE(bounds.lower, volume * (1 + 1e-12));
   EXPECT_GE(bounds.upper, volume * (1 - 1e-12));
   EXPECT_LE(bounds.upper - bounds.lower, width * volume);
+  EXPECT_LE(bounds.lower, bounds.value);
+  EXPECT_LE(bounds.value, bounds.upper);
 }
 
 TEST(SolidVolume, OfEmbeddedMeshesIsExact) {
@@ -63,7 +67,7 @@ TEST(SolidVolume, OfAMeshThatPassesThroughItself) {
   for (Vec3& p : mesh.positions) p[0] *= p[2] + 0.4;
   const auto integral = [](double z) { return z * z / 2 - z * z * z * z / 4 + 0.4 * (z - z * z * z / 3); };
   const double volume = std::numbers::pi * (integral(1) - 2 * integral(-0.4) + integral(-1));
-  const VolumeBounds bounds = solid_volume(Sites(mesh));
+  const BoundedNumber bounds = solid_volume(Sites(mesh));
   EXPECT_GT(bounds.upper, 0.99 * volume);  // the sphere is a polyhedron
   EXPECT_LT(bounds.lower, volume);
   EXPECT_LT(bounds.upper - bounds.lower, 1e-6 * volume);
