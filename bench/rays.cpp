@@ -131,7 +131,7 @@ Outcome measure(const Trial& trial, scenes::SceneKind kind, double max_distance)
             timed("map",
                   [&] { compute_map(side.surface, side.sites, {.sign = SignMethod::none}, side.map); });
             timed("our rays", [&] {
-              side.ours = ambient_occlusion(side.surface, side.map, side.sites,
+              side.ours = ambient_occlusion(side.surface, side.sites, side.map,
                                             {.rays = kRays, .max_distance = max_distance});
             });
           },
@@ -141,7 +141,7 @@ Outcome measure(const Trial& trial, scenes::SceneKind kind, double max_distance)
                   [&] { embree_occlusion(side.embree, side.surface, max_distance, {}, side.by_embree); });
           }};
       for (const std::size_t turn : {reversed, !reversed}) turns[turn]();
-      side.free = free_distances(side.surface, side.map, side.sites);
+      side.free = free_distances(side.surface, side.sites, side.map);
       timed("Embree's rays from the map",
             [&] { embree_occlusion(side.embree, side.surface, max_distance, side.free, side.by_both); });
       samples += side.surface.sample_texels().size();

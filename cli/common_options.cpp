@@ -89,7 +89,7 @@ void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
 std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, const sdm::GlOptions& gl,
                                                const sdm::AtlasOptions& atlas) {
   if (engine.name != "gl") return sdm::make_engine(engine.name);
-  (void)sdm::gl_device(gl, std::max(atlas.resolution, atlas.rows));  // fails before a surface is built
+  (void)sdm::gl_device(std::max(atlas.resolution, atlas.rows), gl);  // fails before a surface is built
   return sdm::make_gl_engine(gl);
 }
 

@@ -24,7 +24,7 @@ namespace {
 sdm::AtlasOptions atlas_options(const MapCommand& command, const sdm::Mesh& mesh) {
   sdm::AtlasOptions options = command.layout.atlas;
   if (const auto& precision = command.layout.precision)
-    options.resolution = sdm::resolution_for(mesh, options, *precision);
+    options.resolution = sdm::resolution_for(mesh, *precision, options);
   return options;
 }
 

@@ -155,7 +155,8 @@ void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& 
 AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& placement,
                           const sdm::Sites& sites, const sdm::Progress& progress) {
   constexpr std::size_t kSample = 1 << 18;
-  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, command.text, progress);
+  sdm::PointSample sample =
+      sdm::sample_points(command.cloud, kSample, {.text = command.text, .progress = progress});
   if (sample.points.empty()) throw sdm::Error(command.cloud + ": there are no points with coordinates");
   sdm::transform(sample.points, placement);
   for (sdm::Vec3& n : sample.normals) n = placement.normal(n);

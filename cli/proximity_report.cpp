@@ -22,8 +22,8 @@ Json to_json(const sdm::Contact& contact) {
           {"normal", contact.normal},
           {"depth", contact.depth},
           {"patch", contact.patch},
-          {"faces", contact.faces},
-          {"barycentric", contact.barycentric},
+          {"faces", {contact.on[0].face, contact.on[1].face}},
+          {"barycentric", {contact.on[0].barycentric, contact.on[1].barycentric}},
           {"id", contact.id}};
 }
 

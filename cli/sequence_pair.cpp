@@ -90,7 +90,7 @@ void MovingPair::bound_errors(Frame& frame) {
 
 void MovingPair::refine(Frame& frame) {
   const sdm::Mesh mesh = surface(0).mesh();
-  atlases_[0].resolution = sdm::resolution_for(mesh, atlases_[0], precision_);
+  atlases_[0].resolution = sdm::resolution_for(mesh, precision_, atlases_[0]);
   query_.replace(0, sdm::Shape(mesh, atlases_[0]));
   temporal_.before_restart();
   bounds_[0].rebuild(surface(0));

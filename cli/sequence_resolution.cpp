@@ -80,7 +80,7 @@ WorstFrame worst_frame(Body body, const sdm::AtlasOptions& atlas, double precisi
 std::uint32_t resolution_for_frames(const std::function<Body()>& open, const sdm::AtlasOptions& atlas,
                                     double precision, const std::function<void(std::size_t)>& progress) {
   sdm::AtlasOptions options = atlas;
-  options.resolution = sdm::resolution_for(open().mesh(), atlas, precision);
+  options.resolution = sdm::resolution_for(open().mesh(), precision, atlas);
   for (;;) {
     const WorstFrame worst = worst_frame(open(), options, precision, progress);
     if (worst.bound <= precision) return options.resolution;

@@ -28,6 +28,11 @@ struct PartNumbers {
   std::span<const std::uint32_t> vertices, edges, faces;
 };
 
+/// Options of merge_closest().
+struct MergeClosestOptions {
+  Progress progress{};
+};
+
 /// Replaces each entry of `best` by the closest point of `part` to its query, where that is closer: smaller
 /// by (distance, type, site, face), in double precision. An entry's own distance limits its search, also
 /// before the first part, where its type is none.
@@ -40,6 +45,6 @@ struct PartNumbers {
 /// coordinate that is NaN or beyond 1e37, or if there is not enough memory; Cancelled. `best` is then
 /// unspecified. Cost: one search of the cpu engine per query, and a short one in double precision.
 SDM_API void merge_closest(const Sites& part, const PartNumbers& numbers, std::span<const Vec3> queries,
-                           std::span<ClosestInParts> best, const Progress& progress = {});
+                           std::span<ClosestInParts> best, const MergeClosestOptions& options = {});
 
 }  // namespace sdm

@@ -22,16 +22,10 @@ namespace sdm {
                                                                std::span<const Vec3> points,
                                                                const MapOptions& options = {});
 
-/// A point of a face of O2: its corners weighted by 1 − u − v, u and v, none of them negative.
-struct FacePoint {
-  std::uint32_t face = kNone;
-  double u = 0, v = 0;
-};
-
 /// Returns the closest point to `query` on a face of this site, which must be a closest site of `query`, as
-/// maps and closest_points() have it; no face for SiteType::none. Throws sdm::Error if there is no such site.
-/// Cost: constant.
-[[nodiscard]] SDM_API FacePoint point_on_face(const Sites& sites, SiteType type, std::uint32_t site,
-                                              const Vec3& query);
+/// maps and closest_points() have it, with weights that are not negative; no face for SiteType::none. Throws
+/// sdm::Error if there is no such site. Cost: constant.
+[[nodiscard]] SDM_API SurfacePoint point_on_face(const Sites& sites, SiteType type, std::uint32_t site,
+                                                 const Vec3& query);
 
 }  // namespace sdm

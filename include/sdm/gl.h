@@ -46,7 +46,7 @@ struct GlOptions {
 /// Returns the device that `options` selects for maps whose longer side has `resolution` texels. Throws
 /// sdm::Error if there is none, or if its largest image is smaller; programs can thus fail before they build
 /// a surface.
-[[nodiscard]] SDM_API GlDevice gl_device(const GlOptions& options, std::uint32_t resolution);
+[[nodiscard]] SDM_API GlDevice gl_device(std::uint32_t resolution, const GlOptions& options = {});
 
 /// Counters and times of the gl engine. Counts do not depend on the number of threads. A pair is a site of O2
 /// and a tile of O1 (the texels of one face in a square of 16 × 16 texels). Each pair has exactly one

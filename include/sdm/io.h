@@ -131,14 +131,10 @@ struct ExrOptions {
 /// map.exr: the planes of the channels() whose layer is in the file by default, and coverage.A. Values are
 /// dilated into the gutters, by four texels or AtlasOptions::gutter, if that is more; coverage.A is the
 /// coverage before dilation. Texels without a value hold NaN and 0xFFFFFFFF; in self maps, texels with
-/// nothing in range hold +∞, 0 and 0xFFFFFFFF. `boundary`, of boundary_mask() or empty: written as a channel
-/// boundary.M (FLOAT, 0 or 1).
+/// nothing in range hold +∞, 0 and 0xFFFFFFFF. Also throws sdm::Error for an
+/// unknown layer, and if the sites are missing or those of another map.
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-                       std::span<const std::uint8_t> boundary = {});
-/// The same with other layers and attributes. Also throws sdm::Error for an unknown layer, and if `sites` are
-/// missing or those of another map.
-SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-                       const ExrOptions& options);
+                       const ExrOptions& options = {});
 /// The same for statistics over time: channels min.D, mean.D, max.D (FLOAT) and coverage.A.
 SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface, const TemporalMaps& maps);
 

@@ -41,11 +41,19 @@ struct PartStatistics {
   ToleranceShares tolerance;    ///< fractions of the part's own area; 0 without a tolerance
 };
 
+/// Options of part_statistics().
+struct PartStatisticsOptions {
+  std::optional<Tolerance> tolerance{};
+  double accuracy = 0;  ///< of a distance, as for tolerance_shares()
+};
+
 /// `part_of_face`: for each face of the surface, the number of its part, below `parts`, or kNone for faces
-/// that belong to none. `accuracy`: as for tolerance_shares(). Throws sdm::Error if the map or the parts
+/// that belong to none. Throws sdm::Error if the map or the parts
 /// belong to another surface. Cost: linear in texels and faces, all cores; eight bytes for each texel.
-[[nodiscard]] SDM_API std::vector<PartStatistics> part_statistics(
-    const Surface& surface, const DistanceMap& map, std::span<const std::uint32_t> part_of_face,
-    std::size_t parts, const std::optional<Tolerance>& tolerance = {}, double accuracy = 0);
+[[nodiscard]] SDM_API std::vector<PartStatistics> part_statistics(const Surface& surface,
+                                                                  const DistanceMap& map,
+                                                                  std::span<const std::uint32_t> part_of_face,
+                                                                  std::size_t parts,
+                                                                  const PartStatisticsOptions& options = {});
 
 }  // namespace sdm

@@ -101,13 +101,18 @@ class SDM_API PointReader {
 /// The names of the formats that PointReader supports, for messages and help texts.
 [[nodiscard]] SDM_API std::string point_format_names();
 
+/// Options of sample_points().
+struct PointSampleOptions {
+  TextDialect text{};  ///< of a cloud in text, as of PointReader
+  Progress progress{};
+};
 /// A pseudorandom sample of at most `most` of the finite points of a file, each with the same probability.
 struct PointSample {
   std::vector<Vec3> points, normals;  ///< `normals` is empty if there are none
 };
 /// Draws such a sample. Throws sdm::Error as PointReader does; Cancelled. Cost: reads the file once.
 [[nodiscard]] SDM_API PointSample sample_points(const std::filesystem::path& file, std::size_t most,
-                                                const TextDialect& text = {}, const Progress& progress = {});
+                                                const PointSampleOptions& options = {});
 
 /// Options of measure_points().
 struct PointDistancesOptions {

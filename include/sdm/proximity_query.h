@@ -30,11 +30,8 @@ struct Contact {
   /// pseudonormal. Moving O1 by depth along it takes p to q, or q to p. Swapping the two bodies negates it.
   Vec3 normal{};
   double depth = 0;  ///< ±|point2 − point1|, exact; positive if the point in contact is inside the other body
-  std::uint32_t patch = 0;  ///< contact patch: contacts on connected parts of the surface share one
-  /// A face of O1 that contains point1 and one of O2 that contains point2, and the barycentric coordinates of
-  /// the points there, to rounding.
-  std::array<std::uint32_t, 2> faces{kNone, kNone};
-  std::array<Vec3, 2> barycentric{};
+  std::uint32_t patch = 0;           ///< contact patch: contacts on connected parts of the surface share one
+  std::array<SurfacePoint, 2> on{};  ///< point1 on a face of O1 and point2 on a face of O2, to rounding
   /// Identifies the vertex, the part of a surface or the edge whose contact this is (see
   /// ProximityQuery::contacts): unique among the contacts of a pair, and the same in all frames, so that a
   /// solver can start from the forces of the frame before.

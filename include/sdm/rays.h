@@ -24,13 +24,17 @@ struct Ray {
   double t_max = std::numeric_limits<double>::infinity();
 };
 
-/// The first point of O2 on a ray.
-struct RayHit {
+/// The first point of O2 on a ray; without a face if the ray does not meet O2. The weights of the face's
+/// corners are not negative; their point is that of t to rounding; of a needle, to 1e-7 of its length.
+struct RayHit : SurfacePoint {
   double t = std::numeric_limits<double>::infinity();
-  std::uint32_t face = kNone;  ///< kNone: the ray does not meet O2
-  /// Weights of the face's corners: not negative, with a sum of 1 up to rounding. Their point is that of t to
-  /// rounding; of a needle, to 1e-7 of its length.
-  Vec3 barycentric{};
+
+  friend bool operator==(const RayHit&, const RayHit&) = default;
+};
+
+/// Options of first_hits() and occluded().
+struct RayOptions {
+  Progress progress{};
 };
 
 /// Returns the first hit of each ray. O2 is the union of its closed faces, edges and vertices; faces without
@@ -48,20 +52,20 @@ struct RayHit {
 /// is NaN; Cancelled. Cost: one traversal of the tree over the faces for each ray with t_min ≤ t_max, all
 /// cores. Consecutive rays with similar origins and directions are faster.
 [[nodiscard]] SDM_API std::vector<RayHit> first_hits(const Sites& sites, std::span<const Ray> rays,
-                                                     const Progress& progress = {});
+                                                     const RayOptions& options = {});
 
 /// Returns 1 for each ray that meets O2, otherwise 0: first_hits() with a face. Throws as first_hits does.
 /// Cost: at most that of first_hits(); a traversal ends at the first face that it finds.
 [[nodiscard]] SDM_API std::vector<std::uint8_t> occluded(const Sites& sites, std::span<const Ray> rays,
-                                                         const Progress& progress = {});
+                                                         const RayOptions& options = {});
 
 /// Returns, for each texel, a radius within which there is no point of O2: the distance of the map less the
 /// largest error that an engine may make (EngineInfo::relative_error), at least 0; 0 where the map has no
 /// value. The t_min of rays of unit direction that start at the texel's surface point. The map must be one of
 /// this surface to these sites in their present shapes.
 /// Throws sdm::Error if its resolution is not that of the surface. Cost: linear.
-[[nodiscard]] SDM_API std::vector<double> free_distances(const Surface& surface, const DistanceMap& map,
-                                                         const Sites& sites);
+[[nodiscard]] SDM_API std::vector<double> free_distances(const Surface& surface, const Sites& sites,
+                                                         const DistanceMap& map);
 
 /// Options of ambient_occlusion().
 struct AmbientOcclusionOptions {
@@ -83,8 +87,8 @@ struct AmbientOcclusionOptions {
 /// farther than max_distance from O2 needs no ray. The result is the same with any such map. Throws
 /// sdm::Error for options out of range or a map of another resolution, or if there is not enough memory;
 /// Cancelled. Cost: `rays` rays for each other sample, all cores.
-[[nodiscard]] SDM_API std::vector<float> ambient_occlusion(const Surface& surface, const DistanceMap& map,
-                                                           const Sites& sites,
+[[nodiscard]] SDM_API std::vector<float> ambient_occlusion(const Surface& surface, const Sites& sites,
+                                                           const DistanceMap& map,
                                                            const AmbientOcclusionOptions& options = {});
 
 }  // namespace sdm

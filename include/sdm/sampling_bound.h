@@ -110,7 +110,7 @@ class SDM_API RelativeError {
 /// more than nine tenths of the precision, or a resolution smaller by 16 or by an eighth does not suffice.
 /// Throws sdm::Error if the precision is not a positive number, if 32768 texels per side do not suffice, and
 /// as Surface does. Cost: two to six atlas layouts, as the bound is about proportional to 1 / resolution.
-[[nodiscard]] SDM_API std::uint32_t resolution_for(const Mesh& mesh, const AtlasOptions& options,
-                                                   double precision);
+[[nodiscard]] SDM_API std::uint32_t resolution_for(const Mesh& mesh, double precision,
+                                                   const AtlasOptions& options = {});
 
 }  // namespace sdm

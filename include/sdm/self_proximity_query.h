@@ -27,6 +27,12 @@ struct ExclusionRule {
   std::optional<double> geodesic{};
 };
 
+/// Options of an Exclusion.
+struct ExclusionOptions {
+  ExclusionRule rule{};
+  Progress progress{};
+};
+
 /// The faces that each face of a mesh excludes: itself and its neighbourhood. The relation is symmetric. It
 /// depends on the mesh at rest only, not on later deformation. It is stored for patches: groups of faces that
 /// exclude the same faces.
@@ -47,7 +53,7 @@ class SDM_API Exclusion {
   /// enough memory; Cancelled. Memory: with a geodesic length, whatever it is, up to about 200 numbers per
   /// face of a surface with well-shaped faces, but always as many as faces share a vertex; with rings, the
   /// sizes of all neighbourhoods. Cost: linear in that, most of it on all cores.
-  explicit Exclusion(const Mesh& rest, const ExclusionRule& rule = {}, const Progress& progress = {});
+  explicit Exclusion(const Mesh& rest, const ExclusionOptions& options = {});
 
   /// The number of faces of the mesh.
   [[nodiscard]] std::size_t faces() const { return patch_of_.size(); }

@@ -59,14 +59,20 @@ struct DistanceBand {
   double area_fraction = 0;
 };
 
+/// Options of distance_bands().
+struct DistanceBandOptions {
+  double accuracy = 0;  ///< of a distance
+  double centre = 0;    ///< of the tolerance, within which rounding counts
+};
+
 /// Returns the bands below, between and above `edges`, with fractions of the area of all texels of the map,
-/// those without a value included. A distance at an edge, or beyond it by no more than `accuracy`, belongs to
-/// the band on the side of `centre`, so that the bands within a tolerance hold what tolerance_shares() counts
-/// as within. Throws sdm::Error unless the edges are finite and increasing and the map belongs to the
+/// those without a value included. A distance at an edge, or beyond it by no more than the accuracy, belongs
+/// to the band on the side of the centre, so that the bands within a tolerance hold what tolerance_shares()
+/// counts as within. Throws sdm::Error unless the edges are finite and increasing and the map belongs to the
 /// surface. Cost: linear in texels, times the logarithm of the number of edges, all cores.
 [[nodiscard]] SDM_API std::vector<DistanceBand> distance_bands(const Surface& surface, const DistanceMap& map,
                                                                std::span<const double> edges,
-                                                               double accuracy = 0, double centre = 0);
+                                                               const DistanceBandOptions& options = {});
 
 /// Fractions of the area of all texels of a map, those without a value included.
 struct DistanceHistogram {

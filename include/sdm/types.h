@@ -17,6 +17,14 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// The index that represents "no face", "no site" and "no texel".
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
+/// A point of a face of a mesh.
+struct SurfacePoint {
+  std::uint32_t face = kNone;  ///< kNone: no point
+  Vec3 barycentric{};          ///< weights of the face's corners; their sum is 1 up to rounding
+
+  friend bool operator==(const SurfacePoint&, const SurfacePoint&) = default;
+};
+
 /// Axis-aligned box; empty while lo > hi.
 struct Box {
   Vec3 lo{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),

@@ -72,7 +72,7 @@ void write(const PyMap& self, const std::string& format, nb::handle file, const 
     } else if (format == "exr") {
       std::vector<std::uint8_t> boundary;
       if (!self.exclusion && !self.to->sites.closed()) boundary = boundary_mask(self.to->sites, self.map);
-      write_exr(path, surface, self.map, boundary);
+      write_exr(path, surface, self.map, {.boundary = boundary});
     } else if (format == "glb") {
       write_glb(path, surface, self.map, self.vertex_distances(report), picture);
     } else {

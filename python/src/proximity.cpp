@@ -80,11 +80,18 @@ At most penetration_depth().upper.)")
           "patch", contact_column(&PyContacts::patch, [](const Contact& c) { return c.patch; }),
           nb::sig("def patch(self) -> numpy.ndarray"),
           "The patch of each contact, (n,) uint32: contacts on connected parts of a surface share one.")
-      .def_prop_ro("faces", contact_column(&PyContacts::faces, [](const Contact& c) { return c.faces; }),
+      .def_prop_ro("faces",
+                   contact_column(&PyContacts::faces,
+                                  [](const Contact& c) {
+                                    return std::array{c.on[0].face, c.on[1].face};
+                                  }),
                    nb::sig("def faces(self) -> numpy.ndarray"),
                    "A face of O1 that contains point1 and one of O2 that contains point2, (n, 2) uint32.")
       .def_prop_ro("barycentric",
-                   contact_column(&PyContacts::barycentric, [](const Contact& c) { return c.barycentric; }),
+                   contact_column(&PyContacts::barycentric,
+                                  [](const Contact& c) {
+                                    return std::array{c.on[0].barycentric, c.on[1].barycentric};
+                                  }),
                    nb::sig("def barycentric(self) -> numpy.ndarray"),
                    "The barycentric coordinates of the points in these faces, (n, 2, 3) float64.")
       .def_prop_ro(

@@ -87,8 +87,9 @@ void bind_rays(nb::module_& module, nb::class_<PySites>& sites) {
             const std::vector<Ray> rays = rays_of(origins, directions, t_min, t_max);
             const auto lock = self.access.use();
             auto result = std::make_unique<H>();
-            run(progress,
-                [&](const Progress& report) { result->hits = first_hits(self.sites, rays, report); });
+            run(progress, [&](const Progress& report) {
+              result->hits = first_hits(self.sites, rays, {.progress = report});
+            });
             return result.release();
           },
           nb::rv_policy::take_ownership, nb::arg("origins").none(), nb::arg("directions").none(),
@@ -117,7 +118,8 @@ True)")
             const std::vector<Ray> rays = rays_of(origins, directions, t_min, t_max);
             const auto lock = self.access.use();
             std::vector<std::uint8_t> flags;
-            run(progress, [&](const Progress& report) { flags = occluded(self.sites, rays, report); });
+            run(progress,
+                [&](const Progress& report) { flags = occluded(self.sites, rays, {.progress = report}); });
             return array_of<bool>(std::move(flags), {rays.size()});
           },
           nb::arg("origins").none(), nb::arg("directions").none(), nb::kw_only(), nb::arg("t_min") = 0.0,
@@ -136,7 +138,7 @@ void bind_map_rays(nb::class_<PyMap>& map) {
            const auto lock = self.use_surface();
            const auto sites_lock = self.use_sites();
            auto values = run_sized(
-               self.texels(), [&] { return free_distances(self.on->surface, self.map, self.to->sites); });
+               self.texels(), [&] { return free_distances(self.on->surface, self.to->sites, self.map); });
            return array_of<double>(std::move(values), {self.rows(), self.map.resolution});
          },
          nb::sig("def free_distances(self) -> numpy.ndarray"))
@@ -150,7 +152,7 @@ void bind_map_rays(nb::class_<PyMap>& map) {
             std::vector<float> values;
             run(progress, [&](const Progress& report) {
               values = ambient_occlusion(
-                  self.on->surface, self.map, self.to->sites,
+                  self.on->surface, self.to->sites, self.map,
                   {.rays = rays, .max_distance = max_distance, .seed = seed, .progress = report});
             });
             return array_of<float>(std::move(values), {self.rows(), self.map.resolution});

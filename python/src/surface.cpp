@@ -46,7 +46,7 @@ Layout layout(nb::handle resolution, nb::handle precision, const char* atlas, do
 
 std::unique_ptr<PySurface> built(Mesh mesh, Layout layout, const Progress& progress) {
   layout.options.progress = progress;
-  if (layout.precision) layout.options.resolution = resolution_for(mesh, layout.options, *layout.precision);
+  if (layout.precision) layout.options.resolution = resolution_for(mesh, *layout.precision, layout.options);
   return std::make_unique<PySurface>(std::move(mesh), layout.options);
 }
 
@@ -122,7 +122,7 @@ void bind_construction(nb::class_<PySurface>& surface) {
           AtlasOptions atlas_options = options.options;
           atlas_options.progress = report;
           if (options.precision)
-            atlas_options.resolution = resolution_for(value, atlas_options, *options.precision);
+            atlas_options.resolution = resolution_for(value, *options.precision, atlas_options);
           new (self) PySurface(std::move(value), atlas_options);
         });
       },

@@ -49,7 +49,7 @@ Machine this_machine() {
   machine.threads = thread_count();
   machine.memory_gb = std::strtod(entry("/proc/meminfo", "MemTotal").c_str(), nullptr) / (1 << 20);
   try {
-    const GlDevice device = gl_device({}, 1024);
+    const GlDevice device = gl_device(1024);
     machine.gl_device = device.name, machine.gl_driver = device.driver, machine.gl_software = device.software;
   } catch (const Error&) {  // figures that need a device say so
   }

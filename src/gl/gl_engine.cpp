@@ -90,7 +90,7 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
 
 }  // namespace gl
 
-GlDevice gl_device(const GlOptions& options, std::uint32_t resolution) {
+GlDevice gl_device(std::uint32_t resolution, const GlOptions& options) {
   gl::check(options);
   return gl::devices().pool.with(options.device, [&](const gl::RasterDevice& device, double) {
     gl::Rasteriser::check_size(device.context(), {resolution, resolution});

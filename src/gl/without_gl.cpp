@@ -16,7 +16,7 @@ std::vector<GlDevice> gl_devices() {
   refuse();
 }
 
-GlDevice gl_device(const GlOptions&, std::uint32_t) {
+GlDevice gl_device(std::uint32_t, const GlOptions&) {
   refuse();
 }
 

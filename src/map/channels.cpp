@@ -32,7 +32,7 @@ class map::TexelBlock {
       fill(points_, [&](std::size_t k) { return source_.surface->texel_point(texels_[k]); });
     return points_[i];
   }
-  [[nodiscard]] const FacePoint& closest(std::size_t i) const {
+  [[nodiscard]] const SurfacePoint& closest(std::size_t i) const {
     const DistanceMap& map = *source_.map;
     if (closest_.empty())
       fill(closest_, [&](std::size_t k) {
@@ -53,7 +53,7 @@ class map::TexelBlock {
   std::span<const std::uint32_t> texels_;
   std::uint32_t first_;
   mutable std::vector<Vec3> points_;
-  mutable std::vector<FacePoint> closest_;
+  mutable std::vector<SurfacePoint> closest_;
 };
 
 namespace {
@@ -173,9 +173,9 @@ std::uint32_t closest_face(const TexelBlock& block, std::size_t i) {
 }
 
 std::array<float, 2> closest_uv(const TexelBlock& block, std::size_t i) {
-  const FacePoint& closest = block.closest(i);
+  const SurfacePoint& closest = block.closest(i);
   if (closest.face == kNone) return {kNaN, kNaN};
-  return {static_cast<float>(closest.u), static_cast<float>(closest.v)};
+  return {static_cast<float>(closest.barycentric[1]), static_cast<float>(closest.barycentric[2])};
 }
 
 Flag coverage(const TexelBlock& block, std::size_t i) {

@@ -45,7 +45,7 @@ auto order(const ClosestInParts& c) {
 }  // namespace
 
 void merge_closest(const Sites& part, const PartNumbers& numbers, std::span<const Vec3> queries,
-                   std::span<ClosestInParts> best, const Progress& progress) try {
+                   std::span<ClosestInParts> best, const MergeClosestOptions& options) try {
   const sites::SitesData& data = internals(part);
   require_numbers(data, numbers);
   if (queries.size() != best.size()) throw Error("there must be one result for each query");
@@ -57,7 +57,7 @@ void merge_closest(const Sites& part, const PartNumbers& numbers, std::span<cons
     return (1 + 4 * closest::kSlack) * distance + 4 * closest::kSlack / data.frame.scale;
   };
   const std::vector<ClosestPoint> near =
-      closest_points(part, queries, {.max_distance = widened(farthest), .progress = progress});
+      closest_points(part, queries, {.max_distance = widened(farthest), .progress = options.progress});
   constexpr std::size_t kGrain = 1024;
   parallel_for(queries.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -43,7 +43,7 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
   throw out_of_memory("closest points");
 }
 
-FacePoint point_on_face(const Sites& sites, SiteType type, std::uint32_t site, const Vec3& query) {
+SurfacePoint point_on_face(const Sites& sites, SiteType type, std::uint32_t site, const Vec3& query) {
   if (type == SiteType::none) return {};
   const sites::SitesData& data = internals(sites);
   const std::size_t count = type == SiteType::vertex ? data.mesh.positions.size()
@@ -54,9 +54,7 @@ FacePoint point_on_face(const Sites& sites, SiteType type, std::uint32_t site, c
   const std::uint32_t face = data.face_of(type, site);
   const Triangle& t = data.mesh.triangles[face];
   const auto& p = data.mesh.positions;
-  const Vec3 weights =
-      barycentric(p[t[0]], p[t[1]], p[t[2]], sites::closest_on_face(data, face, query).point);
-  return {face, weights[1], weights[2]};
+  return {face, barycentric(p[t[0]], p[t[1]], p[t[2]], sites::closest_on_face(data, face, query).point)};
 }
 
 }  // namespace sdm

@@ -41,11 +41,11 @@ std::uint64_t self_intersection_budget(const Sites& sites) {
 }
 
 std::optional<FacePairs> self_intersections(const Sites& sites, std::uint64_t most,
-                                            const Progress& progress) try {
+                                            const SelfIntersectionOptions& options) try {
   FacePairs pairs;
   std::mutex mutex;
   const bool all =
-      find_intersections(internals(sites), most, progress, [&](std::uint32_t a, std::uint32_t b) {
+      find_intersections(internals(sites), most, options.progress, [&](std::uint32_t a, std::uint32_t b) {
         const std::scoped_lock lock(mutex);
         pairs.push_back({a, b});
         return true;
@@ -58,13 +58,13 @@ std::optional<FacePairs> self_intersections(const Sites& sites, std::uint64_t mo
   throw out_of_memory("self-intersections");
 }
 
-FacePairs self_intersections(const Sites& sites, const Progress& progress) {
-  return *self_intersections(sites, kAll, progress);
+FacePairs self_intersections(const Sites& sites, const SelfIntersectionOptions& options) {
+  return *self_intersections(sites, kAll, options);
 }
 
-bool is_embedded(const Sites& sites, const Progress& progress) try {
+bool is_embedded(const Sites& sites, const SelfIntersectionOptions& options) try {
   std::atomic<bool> embedded{true};
-  (void)find_intersections(internals(sites), kAll, progress, [&](std::uint32_t, std::uint32_t) {
+  (void)find_intersections(internals(sites), kAll, options.progress, [&](std::uint32_t, std::uint32_t) {
     embedded = false;
     return false;
   });

@@ -32,7 +32,8 @@ PartTable part_table(const Surface& surface, const DistanceMap& map, std::string
                      std::span<const std::uint32_t> part_of_face, std::span<const std::string> names,
                      std::size_t parts, const std::optional<Tolerance>& tolerance, double accuracy) {
   PartTable table{.kind = std::move(kind), .count = 0, .rows = {}};
-  std::vector<PartStatistics> all = part_statistics(surface, map, part_of_face, parts, tolerance, accuracy);
+  std::vector<PartStatistics> all =
+      part_statistics(surface, map, part_of_face, parts, {.tolerance = tolerance, .accuracy = accuracy});
   for (std::size_t p = 0; p < parts; ++p)
     table.rows.push_back({p < names.size() ? names[p] : "", std::move(all[p]), kNone});
   for (std::uint32_t f = 0; f < part_of_face.size(); ++f)
@@ -98,7 +99,7 @@ Distribution distribution_of(const Surface& surface, const DistanceMap& map,
   if (edges.empty() && tolerance) edges = default_bands(*tolerance, map.sign.method != SignMethod::none);
   if (!edges.empty()) {
     const double centre = tolerance ? tolerance->lo + (tolerance->hi - tolerance->lo) / 2 : 0;
-    result.bands = distance_bands(surface, map, edges, accuracy, centre);
+    result.bands = distance_bands(surface, map, edges, {.accuracy = accuracy, .centre = centre});
   }
   result.parts = part_tables(surface, map, options, accuracy);
   return result;

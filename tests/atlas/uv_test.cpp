@@ -70,7 +70,7 @@ TEST(Uv, OnlyOwnCoordinatesCanHaveAnotherShape) {
     EXPECT_EQ(Surface(test::cube(), {.kind = kind, .resolution = 64, .rows = 64}).rows(), 64u);
   }
   EXPECT_THROW(Surface(test::height_field(4), {.kind = AtlasKind::uv, .resolution = 64, .rows = 15}), Error);
-  EXPECT_THROW((void)resolution_for(test::height_field(4), {.kind = AtlasKind::uv, .rows = 15}, 0.1), Error);
+  EXPECT_THROW((void)resolution_for(test::height_field(4), 0.1, {.kind = AtlasKind::uv, .rows = 15}), Error);
 }
 
 TEST(Uv, StoredAtlasesHaveTheirShape) {

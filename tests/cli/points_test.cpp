@@ -563,7 +563,7 @@ TEST(PointReader, SamplesAllPartsOfAFile) {
   EXPECT_NEAR(mean, 5000, 400) << "four standard deviations of the mean";
   EXPECT_EQ(sample_points(folder / "a.xyz", 20000).points.size(), 10000u);
   const auto cancel = [](std::string_view, double) { return false; };
-  EXPECT_THROW((void)sample_points(folder / "a.xyz", 1000, {}, cancel), Cancelled);
+  EXPECT_THROW((void)sample_points(folder / "a.xyz", 1000, {.progress = cancel}), Cancelled);
 }
 
 // A text is read for the number of its points first.

@@ -87,8 +87,7 @@ void expect_equal_contacts(std::span<const Contact> found, std::span<const Conta
     ASSERT_EQ(a.point1, b.point1);
     ASSERT_EQ(a.point2, b.point2);
     ASSERT_EQ(a.normal, b.normal);
-    ASSERT_EQ(a.faces, b.faces);
-    ASSERT_EQ(a.barycentric, b.barycentric);
+    ASSERT_EQ(a.on, b.on);
   }
 }
 

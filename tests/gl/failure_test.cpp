@@ -36,12 +36,12 @@ TEST_F(GlErrors, UnknownDevices) {
 }
 
 TEST_F(GlErrors, BeforeASurfaceExists) {
-  EXPECT_FALSE(gl_device({}, 256).name.empty());
-  EXPECT_THAT(error_of([] { return gl_device({.device = "no such device"}, 256); }),
+  EXPECT_FALSE(gl_device(256).name.empty());
+  EXPECT_THAT(error_of([] { return gl_device(256, {.device = "no such device"}); }),
               HasSubstr("no such device"));
-  EXPECT_THAT(error_of([] { return gl_device({}, 1u << 20); }),
+  EXPECT_THAT(error_of([] { return gl_device(1u << 20); }),
               AllOf(HasSubstr("1048576"), HasSubstr("resolution")));
-  EXPECT_THAT(error_of([] { return gl_device({.stencil_values = 0}, 256); }), HasSubstr("255"));
+  EXPECT_THAT(error_of([] { return gl_device(256, {.stencil_values = 0}); }), HasSubstr("255"));
 }
 
 TEST_F(GlErrors, ClosestPointsAreNotSupported) {

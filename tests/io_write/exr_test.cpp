@@ -159,7 +159,7 @@ TEST(Exr, MarksTheBoundaryOfAnOpenMesh) {
   const DistanceMap map = compute_map(surface, square_sites);
   const std::vector<std::uint8_t> mask = boundary_mask(square_sites, map);
   const TemporaryFolder folder;
-  write_exr(folder / "map.exr", surface, map, mask);
+  write_exr(folder / "map.exr", surface, map, {.boundary = mask});
   const Channels channels = read_exr(folder / "map.exr", map.resolution);
   EXPECT_EQ(channels.size(), 9u);
   std::size_t marked = 0;
@@ -174,7 +174,8 @@ TEST(Exr, MarksTheBoundaryOfAnOpenMesh) {
   }
   EXPECT_GT(marked, 0u);
   EXPECT_LT(marked, surface.sample_texels().size());
-  EXPECT_THROW(write_exr(folder / "other.exr", surface, map, std::vector<std::uint8_t>(3)), Error);
+  EXPECT_THROW(write_exr(folder / "other.exr", surface, map, {.boundary = std::vector<std::uint8_t>(3)}),
+               Error);
   EXPECT_THROW(static_cast<void>(boundary_mask(Sites(single_triangle()), map)), Error);
 }
 

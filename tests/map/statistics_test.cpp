@@ -146,7 +146,8 @@ TEST(Statistics, BandsAndHistogramsHoldTheAreaBetweenTheirEdges) {
 
   const std::vector<double> edges{-0.5, 0, 0.5};
   for (const double accuracy : {0.0, 0.04}) {
-    const std::vector<DistanceBand> bands = distance_bands(surface, map, edges, accuracy, 0.25);
+    const std::vector<DistanceBand> bands =
+        distance_bands(surface, map, edges, {.accuracy = accuracy, .centre = 0.25});
     ASSERT_EQ(bands.size(), 4u);
     EXPECT_EQ(bands[0].lo, -std::numeric_limits<double>::infinity());
     EXPECT_EQ(bands[1].lo, -0.5);
@@ -187,7 +188,7 @@ TEST(PartStatistics, AreThoseOfAMapOfThePartAlone) {
       map_of(surface, [](const Vec3& p) { return p[1] > 0.9 ? std::nan("") : p[0] + p[1]; });
   const std::vector<std::uint32_t> components = face_components(mesh);
   const std::vector<PartStatistics> parts =
-      part_statistics(surface, map, components, 2, Tolerance(-0.5, 4), 0);
+      part_statistics(surface, map, components, 2, {.tolerance = Tolerance(-0.5, 4)});
   ASSERT_EQ(parts.size(), 2u);
   double area = 0;
   for (std::uint32_t p = 0; p < 2; ++p) {
@@ -205,7 +206,7 @@ TEST(PartStatistics, AreThoseOfAMapOfThePartAlone) {
     expect_as_naive(parts[p].distance, naive(surface, alone));
     EXPECT_EQ(parts[p].faces, p == 0 ? 288u : 128u);
     EXPECT_EQ(parts[p].box.lo[0] > 2, p == 1);
-    EXPECT_NEAR(parts[p].tolerance.within, within / part_area, 1e-6);
+    EXPECT_NEAR(parts[p].tolerance.value().within, within / part_area, 1e-6);
     const ToleranceShares& t = parts[p].tolerance;
     EXPECT_NEAR(t.below + t.within + t.above + t.without_value, 1, 1e-9);
     EXPECT_GT(t.without_value, 0);

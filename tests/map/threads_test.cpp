@@ -32,7 +32,7 @@ TEST(Threads, ShareASurfaceAndSites) {
     std::vector<Ray> rays;
     for (const Vec3& p : on.positions) rays.push_back({.origin = p, .direction = {1, 0.1, 0.2}});
     for (const RayHit& hit : first_hits(sites, rays)) result.hits.push_back(hit.face);
-    const std::vector<float> occlusion = ambient_occlusion(surface, map, sites, {.rays = 4});
+    const std::vector<float> occlusion = ambient_occlusion(surface, sites, map, {.rays = 4});
     for (const std::uint32_t texel : surface.sample_texels()) result.occlusion.push_back(occlusion[texel]);
     result.bound = SamplingBound(surface).value();
     return result;

@@ -17,7 +17,8 @@ Numbers numbers_of_length(const std::optional<BoundedLength>& length) {
   return numbers;
 }
 void add_contact(Numbers& numbers, const Contact& c) {
-  numbers.add(c.point1, c.point2, c.normal, c.depth, c.patch, c.faces, c.barycentric, c.id);
+  numbers.add(c.point1, c.point2, c.normal, c.depth, c.patch, c.on[0].face, c.on[1].face, c.on[0].barycentric,
+              c.on[1].barycentric, c.id);
 }
 
 std::vector<Vec3> slightly_bent(const Mesh& mesh) {
@@ -214,7 +215,7 @@ TEST(FailedAllocations, AnswersOfAFoldedSurfaceAreGivenByTheNextCall) {
 TEST(FailedAllocations, LeaveNoMarksForTheNextExclusion) {
   for (const ExclusionRule& rule : {ExclusionRule{.rings = 2}, ExclusionRule{.geodesic = 0.7}}) {
     const std::function<Numbers(Mesh&)> exclude = [&](Mesh& mesh) {
-      const Exclusion exclusion(mesh, rule);
+      const Exclusion exclusion(mesh, {.rule = rule});
       Numbers numbers;
       for (std::uint32_t p = 0; p < exclusion.patches(); ++p)
         numbers.add(exclusion.faces_of(p), exclusion.excluded_by(p));

@@ -280,13 +280,13 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
   const Mesh& other = pose.bodies[1 - side];
   for (const std::size_t k : {0, 1}) {
     const Mesh& mesh = pose.bodies[k];
-    if (c.faces[k] >= mesh.triangles.size()) return "face";
-    const Triangle& t = mesh.triangles[c.faces[k]];
+    if (c.on[k].face >= mesh.triangles.size()) return "face";
+    const Triangle& t = mesh.triangles[c.on[k].face];
     Vec3 at{};
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
-      if (!(c.barycentric[k][i] > -1e-6)) return "barycentric";
-      sum += c.barycentric[k][i], at = at + c.barycentric[k][i] * mesh.positions[t[i]];
+      if (!(c.on[k].barycentric[i] > -1e-6)) return "barycentric";
+      sum += c.on[k].barycentric[i], at = at + c.on[k].barycentric[i] * mesh.positions[t[i]];
     }
     if (std::abs(sum - 1) > 1e-9 || norm(at - points[k]) > rounding) return "point off its face";
   }
@@ -302,7 +302,7 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
   if (distance > pose.margin + rounding) return "not in contact";
   if (std::abs(distance) >= std::abs(c.depth) - rounding) return {};
   // Not the nearest way out of this point: one along the normal of a face.
-  const Triangle& t = other.triangles[c.faces[1 - side]];
+  const Triangle& t = other.triangles[c.on[1 - side].face];
   const Vec3 normal = normalized(
       cross(other.positions[t[1]] - other.positions[t[0]], other.positions[t[2]] - other.positions[t[0]]));
   if (norm(normal - along) > 1e-6) return "neither nearest nor across a face";

@@ -303,8 +303,7 @@ TEST(Contacts, DoNotDependOnTheNumberOfThreads) {
       EXPECT_EQ(one.point1, two.point1);
       EXPECT_EQ(one.point2, two.point2);
       EXPECT_EQ(one.normal, two.normal);
-      EXPECT_EQ(one.faces, two.faces);
-      EXPECT_EQ(one.barycentric, two.barycentric);
+      EXPECT_EQ(one.on, two.on);
     }
     contacts += found[0].size();
   }

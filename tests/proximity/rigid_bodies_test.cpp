@@ -56,8 +56,7 @@ void expect_equal(const Contact& a, const Contact& b) {
   EXPECT_EQ(a.normal, b.normal);
   EXPECT_EQ(a.depth, b.depth);
   EXPECT_EQ(a.patch, b.patch);
-  EXPECT_EQ(a.faces, b.faces);
-  EXPECT_EQ(a.barycentric, b.barycentric);
+  EXPECT_EQ(a.on, b.on);
   EXPECT_EQ(a.id, b.id);
 }
 
@@ -149,9 +148,9 @@ TEST(RigidBodies, AgreeWithMovedVertices) {
           EXPECT_GE(covered + 1, 0.98 * static_cast<double>(some.size()));
         }
         for (const Contact& c : posed.contacts()) {
-          EXPECT_NEAR(norm(point_at(vertices[0], meshes[a], c.faces[0], c.barycentric[0]) - c.point1), 0,
+          EXPECT_NEAR(norm(point_at(vertices[0], meshes[a], c.on[0].face, c.on[0].barycentric) - c.point1), 0,
                       tolerance);
-          EXPECT_NEAR(norm(point_at(vertices[1], meshes[b], c.faces[1], c.barycentric[1]) - c.point2), 0,
+          EXPECT_NEAR(norm(point_at(vertices[1], meshes[b], c.on[1].face, c.on[1].barycentric) - c.point2), 0,
                       tolerance);
           EXPECT_NEAR(norm(c.point2 - c.point1), std::abs(c.depth), tolerance);
           EXPECT_NEAR(norm(c.normal), 1, 1e-6);

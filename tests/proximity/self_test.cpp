@@ -175,7 +175,7 @@ TEST(Self, ExclusionMatchesItsDefinition) {
   for (const Case& c : cases()) {
     if (c.mesh.triangles.size() > 500) continue;
     SCOPED_TRACE(c.name);
-    expect_exclusion(Exclusion(c.mesh, c.rule), excluded(c.mesh, c.rule));
+    expect_exclusion(Exclusion(c.mesh, {.rule = c.rule}), excluded(c.mesh, c.rule));
   }
 }
 
@@ -215,7 +215,7 @@ Mesh tube(std::uint32_t n, double radius, double height) {
 TEST(Self, PatchesAreSmall) {
   const Mesh mesh = bumpy(4);
   const double length = 0.6;
-  const Exclusion exclusion(mesh, {.geodesic = length});
+  const Exclusion exclusion(mesh, {.rule = {.geodesic = length}});
   EXPECT_LT(exclusion.patches(), mesh.triangles.size() / 3);
   std::vector<std::uint32_t> times(mesh.triangles.size());
   for (std::uint32_t patch = 0; patch < exclusion.patches(); ++patch) {
@@ -235,7 +235,7 @@ TEST(Self, PatchesAreSmall) {
 TEST(Self, LongFacesDoNotExcludeTheOppositeWall) {
   const double length = 5;
   const Mesh mesh = tube(400, 30, 100);
-  const Exclusion exclusion(mesh, {.geodesic = length});
+  const Exclusion exclusion(mesh, {.rule = {.geodesic = length}});
   EXPECT_EQ(exclusion.patches(), mesh.triangles.size());
   for (const float d : self_distances_at_vertices(Sites(mesh), exclusion)) {
     ASSERT_GE(d, 0.9 * length);
@@ -243,7 +243,7 @@ TEST(Self, LongFacesDoNotExcludeTheOppositeWall) {
   }
   // Long faces beside small ones.
   const Mesh both = joined(mesh, placed(bumpy(4), "scale:5"));
-  const Exclusion of_both(both, {.geodesic = length});
+  const Exclusion of_both(both, {.rule = {.geodesic = length}});
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
     EXPECT_FALSE(of_both.excludes(
         f, static_cast<std::uint32_t>((f + mesh.triangles.size() / 2) % mesh.triangles.size())));
@@ -305,7 +305,7 @@ TEST(Self, ExclusionOfPatchesMatchesItsDefinition) {
   };
   for (const auto& [mesh, length] : {Fine{bumpy(3), 1.0}, Fine{bumpy(4), 0.8}, Fine{folded(0.2, 80, 12), 0.9},
                                      Fine{load("eight.off", "fit"), 0.3}}) {
-    const Exclusion exclusion(mesh, {.geodesic = length});
+    const Exclusion exclusion(mesh, {.rule = {.geodesic = length}});
     EXPECT_LT(exclusion.patches(), 2 * mesh.triangles.size() / 3);
     const Relation expected = excluded_patches(mesh, exclusion, length);
     for (std::uint32_t p = 0; p < exclusion.patches(); ++p) {
@@ -321,7 +321,7 @@ TEST(Self, ExclusionOfPatchesMatchesItsDefinition) {
 TEST(Self, ExclusionOfPatchesReachesALittleFartherThanItsLength) {
   const Mesh mesh = bumpy(3);
   for (const double length : {0.2, 0.6, 1.0}) {
-    const Exclusion exclusion(mesh, {.geodesic = length});
+    const Exclusion exclusion(mesh, {.rule = {.geodesic = length}});
     for (std::uint32_t p = 0; p < exclusion.patches(); ++p)
       for (const std::uint32_t q : exclusion.excluded_by(p)) {
         ASSERT_TRUE(std::ranges::binary_search(exclusion.excluded_by(q), p));
@@ -339,7 +339,7 @@ TEST(Self, ExclusionOfPatchesReachesALittleFartherThanItsLength) {
 TEST(Self, ExclusionTakesMemoryInProportionToTheFaces) {
   const Mesh mesh = bumpy(5);
   for (const double length : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
-    const Exclusion exclusion(mesh, {.geodesic = length});
+    const Exclusion exclusion(mesh, {.rule = {.geodesic = length}});
     std::size_t entries = 0;
     for (std::uint32_t p = 0; p < exclusion.patches(); ++p) entries += exclusion.excluded_by(p).size();
     EXPECT_LT(entries, 200 * mesh.triangles.size()) << "length " << length;
@@ -349,7 +349,7 @@ TEST(Self, ExclusionTakesMemoryInProportionToTheFaces) {
 // Paths along edges are paths along the surface.
 void expect_everything_nearer_excluded(double length) {
   const Mesh mesh = load("eight.off", "fit");
-  const Exclusion exclusion(mesh, {.geodesic = length});
+  const Exclusion exclusion(mesh, {.rule = {.geodesic = length}});
   const std::size_t n = mesh.positions.size();
   const Sites sites(mesh);
   std::vector<std::set<std::uint32_t>> around(n);
@@ -392,7 +392,7 @@ TEST(Self, MapAgreesWithBruteForceAtEveryTexel) {
     SCOPED_TRACE(c.name);
     const Surface surface(c.mesh, {.resolution = 96});
     const Sites sites(c.mesh);
-    const Exclusion exclusion(c.mesh, c.rule);
+    const Exclusion exclusion(c.mesh, {.rule = c.rule});
     Relation all(c.mesh.triangles.size(), std::vector<bool>(c.mesh.triangles.size()));
     for (std::uint32_t f = 0; f < all.size(); ++f)
       for (std::uint32_t g = 0; g < all.size(); ++g) all[f][g] = exclusion.excludes(f, g);
@@ -409,7 +409,8 @@ TEST(Self, DistanceAcrossAFoldIsItsGap) {
   const Surface surface(mesh, {.resolution = 128});
   const Sites sites(mesh);
   // The exclusion is that of the flat rest shape: the path around the bend counts.
-  const DistanceMap map = compute_self_map(surface, sites, Exclusion(flat(60, 8), {.geodesic = 0.6}));
+  const DistanceMap map =
+      compute_self_map(surface, sites, Exclusion(flat(60, 8), {.rule = {.geodesic = 0.6}}));
   for (const std::uint32_t texel : surface.sample_texels()) {
     if (surface.texel_point(texel)[0] > 1) continue;
     ASSERT_NEAR(map.distance[texel], 0.2, 1e-6);
@@ -437,7 +438,7 @@ TEST(Self, NoDistanceWhereAllIsExcluded) {
 TEST(Self, NoDistanceWithinALengthBeyondTheMesh) {
   const Mesh mesh = folded(0.2);
   const ExclusionRule rule{.geodesic = 100};
-  const Exclusion exclusion(mesh, rule);
+  const Exclusion exclusion(mesh, {.rule = rule});
   EXPECT_EQ(exclusion.patches(), 1u);
   const Surface surface(mesh, {.resolution = 64});
   const Sites sites(mesh);
@@ -447,7 +448,7 @@ TEST(Self, NoDistanceWithinALengthBeyondTheMesh) {
 
   // Another sheet, which is not connected to the first, is not excluded.
   const Mesh sheets = joined(flat(10, 3), placed(flat(10, 3), "translate:0:0:0.1"));
-  const Exclusion of_sheets(sheets, rule);
+  const Exclusion of_sheets(sheets, {.rule = rule});
   EXPECT_EQ(of_sheets.patches(), 2u);
   for (const float d : self_distances_at_vertices(Sites(sheets), of_sheets)) ASSERT_NEAR(d, 0.1, 1e-6);
 }
@@ -457,7 +458,7 @@ TEST(Self, VerticesHaveTheMinimumOfTheirFaces) {
   mesh.positions.push_back({9, 9, 9});  // of no face
   const Sites sites(mesh);
   const ExclusionRule rule{.rings = 2};
-  const std::vector<float> found = self_distances_at_vertices(sites, Exclusion(mesh, rule));
+  const std::vector<float> found = self_distances_at_vertices(sites, Exclusion(mesh, {.rule = rule}));
   const Relation out = excluded(mesh, rule);
   std::vector<double> expected(mesh.positions.size(), kInf);
   for (std::uint32_t f = 0; f < out.size(); ++f)
@@ -636,9 +637,9 @@ TEST(Self, RigidMotionsChangeNothing) {
   const ExclusionRule rule{.rings = 3};
   const Sites sites(here), moved(there);
   Surface surface(here, {.resolution = 64});
-  const DistanceMap before = compute_self_map(surface, sites, Exclusion(here, rule));
+  const DistanceMap before = compute_self_map(surface, sites, Exclusion(here, {.rule = rule}));
   surface.refit(there.positions);
-  const DistanceMap after = compute_self_map(surface, moved, Exclusion(there, rule));
+  const DistanceMap after = compute_self_map(surface, moved, Exclusion(there, {.rule = rule}));
   for (const std::uint32_t texel : surface.sample_texels())
     ASSERT_NEAR(before.distance[texel], after.distance[texel], 1e-6);
   SelfProximityQuery a(here, {.exclusion = rule}), b(there, {.exclusion = rule});
@@ -655,9 +656,9 @@ TEST(Self, MaximumDistanceHidesSeparations) {
 
 TEST(Self, RejectsOptionsOutOfRange) {
   const Mesh mesh = folded(0.2);
-  EXPECT_THROW(Exclusion(mesh, {.rings = 0}), Error);
+  EXPECT_THROW(Exclusion(mesh, {.rule = {.rings = 0}}), Error);
   for (const double bad : {0.0, -1.0, kInf, std::nan("")})
-    EXPECT_THROW(Exclusion(mesh, {.geodesic = bad}), Error);
+    EXPECT_THROW(Exclusion(mesh, {.rule = {.geodesic = bad}}), Error);
   EXPECT_THROW(SelfProximityQuery(mesh, {.max_distance = 0}), Error);
   SelfProximityQuery query(mesh);
   EXPECT_THROW((void)query.contacts(-1), Error);
@@ -669,7 +670,7 @@ TEST(Self, RejectsOptionsOutOfRange) {
                Error);
   std::vector<Vec3> wrong(mesh.positions.begin() + 1, mesh.positions.end());
   EXPECT_THROW(query.refit(wrong), Error);
-  EXPECT_THROW(Exclusion(mesh, {}, [](std::string_view, double) { return false; }), Cancelled);
+  EXPECT_THROW(Exclusion(mesh, {.progress = [](std::string_view, double) { return false; }}), Cancelled);
 }
 
 }  // namespace

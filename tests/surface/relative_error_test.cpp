@@ -119,7 +119,7 @@ TEST(ResolutionFor, IsAboutTheSmallestSufficient) {
         done = fraction;
         return true;
       };
-      const std::uint32_t resolution = resolution_for(mesh, options, precision);
+      const std::uint32_t resolution = resolution_for(mesh, precision, options);
       options.progress = {};
       options.resolution = resolution;
       const double bound = bound_or_none(mesh, options);
@@ -135,8 +135,8 @@ TEST(ResolutionFor, IsAboutTheSmallestSufficient) {
 }
 
 TEST(ResolutionFor, CoarsePrecisionsUseTheMinimumOfTheCharts) {
-  EXPECT_EQ(resolution_for(test::load("cube.off"), {}, 1e6), 16u);
-  const std::uint32_t resolution = resolution_for(test::load("bunny.obj"), {}, 1e6);
+  EXPECT_EQ(resolution_for(test::load("cube.off"), 1e6), 16u);
+  const std::uint32_t resolution = resolution_for(test::load("bunny.obj"), 1e6);
   EXPECT_GT(resolution, 16u);
   EXPECT_LE(resolution, 512u);
 }
@@ -144,9 +144,9 @@ TEST(ResolutionFor, CoarsePrecisionsUseTheMinimumOfTheCharts) {
 TEST(ResolutionFor, RejectsUnattainablePrecisions) {
   const Mesh mesh = test::load("cube.off");
   for (const double precision : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
-    EXPECT_THROW((void)resolution_for(mesh, {}, precision), Error);
+    EXPECT_THROW((void)resolution_for(mesh, precision), Error);
   try {
-    (void)resolution_for(mesh, {}, 1e-9);
+    (void)resolution_for(mesh, 1e-9);
     FAIL();
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("the maximum of 32768 texels per side"));

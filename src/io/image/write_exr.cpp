@@ -265,11 +265,6 @@ void check(const ExrOptions& options, const DistanceMap& map, const Contents& co
 }  // namespace
 
 void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
-               std::span<const std::uint8_t> boundary) {
-  write_exr(file, surface, map, ExrOptions{.boundary = boundary});
-}
-
-void write_exr(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                const ExrOptions& options) try {
   const Contents contents = contents_of(options);
   check(options, map, contents, file);

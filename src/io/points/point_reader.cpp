@@ -55,16 +55,17 @@ std::string point_format_names() {
   return "PLY, PCD, LAS, PTX, PTS, text in columns (XYZ, CSV)";
 }
 
-PointSample sample_points(const std::filesystem::path& file, std::size_t most, const TextDialect& text,
-                          const Progress& progress) {
+PointSample sample_points(const std::filesystem::path& file, std::size_t most,
+                          const PointSampleOptions& options) {
   constexpr std::size_t kChunk = 1 << 16;
-  PointReader reader(file, text);
+  PointReader reader(file, options.text);
   PointSample sample;
   std::mt19937_64 random;  // its sequence is that of the standard
   std::uint64_t seen = 0;
   std::vector<Vec3> points, normals;
   while (reader.read(kChunk, points, normals)) {
-    if (progress && !progress("sample", 0)) throw Cancelled();  // of a number that may not be known
+    if (options.progress && !options.progress("sample", 0))
+      throw Cancelled();  // of a number that may not be known
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3& p = points[i];
       if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;

@@ -63,13 +63,14 @@ ToleranceShares tolerance_shares(const Surface& surface, const DistanceMap& map,
 }
 
 std::vector<DistanceBand> distance_bands(const Surface& surface, const DistanceMap& map,
-                                         std::span<const double> edges, double accuracy, double centre) {
+                                         std::span<const double> edges, const DistanceBandOptions& options) {
   check_increasing(edges);
   // The largest number of the band below each edge.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<double> last;
   for (const double edge : edges)
-    last.push_back(edge > centre ? edge + accuracy : std::nextafter(edge - accuracy, -kInfinity));
+    last.push_back(edge > options.centre ? edge + options.accuracy
+                                         : std::nextafter(edge - options.accuracy, -kInfinity));
   const auto of = shares(surface, map, edges.size() + 2, [&](float d) -> std::size_t {
     if (!std::isfinite(d)) return edges.size() + 1;
     return static_cast<std::size_t>(std::ranges::lower_bound(last, double{d}) - last.begin());

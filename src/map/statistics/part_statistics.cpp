@@ -117,7 +117,7 @@ std::vector<std::uint32_t> face_components(const Mesh& mesh) try {
 
 std::vector<PartStatistics> part_statistics(const Surface& surface, const DistanceMap& map,
                                             std::span<const std::uint32_t> part_of_face, std::size_t parts,
-                                            const std::optional<Tolerance>& tolerance, double accuracy) try {
+                                            const PartStatisticsOptions& options) try {
   const std::vector<Triangle>& triangles = surface.mesh().triangles;
   if (part_of_face.size() != triangles.size())
     throw Error("part_statistics() needs one part for each face of the surface's mesh");
@@ -133,7 +133,7 @@ std::vector<PartStatistics> part_statistics(const Surface& surface, const Distan
   const SamplesByPart samples = samples_by_part(WeightedTexels(surface, map), part_of_face, parts);
   parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
-      measure(samples.of(p), samples.area, tolerance, accuracy, result[p]);
+      measure(samples.of(p), samples.area, options.tolerance, options.accuracy, result[p]);
   });
   return result;
 } catch (const std::bad_alloc&) {

@@ -321,15 +321,13 @@ void FeatureContacts::add_contact(const Feature& feature) {
       .point2 = point + vector,
       .normal = query().side == 0 ? outwards : -outwards,
       .depth = depth,
-      .faces = {face, closest.face},
-      .barycentric = {weights_in(sites.mesh, face, from_other().map(p)),
-                      weights_in(sites_of_other.mesh, closest.face, p + closest.vector)},
+      .on = {{{face, weights_in(sites.mesh, face, from_other().map(p))},
+              {closest.face, weights_in(sites_of_other.mesh, closest.face, p + closest.vector)}}},
       .id = std::uint64_t(query().side) << kBodyBit | feature.key,
   };
   if (query().side == 1) {
     std::swap(contact.point1, contact.point2);
-    std::swap(contact.faces[0], contact.faces[1]);
-    std::swap(contact.barycentric[0], contact.barycentric[1]);
+    std::swap(contact.on[0], contact.on[1]);
   }
   contacts_.push_back(contact);
   boxes_.push_back(image(query().bodies[query().side]->pose().map, feature.faces));

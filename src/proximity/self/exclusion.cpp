@@ -180,7 +180,8 @@ void check_pairs(const CompressedRows<std::uint32_t>& faces_of_vertex, std::size
 
 }  // namespace
 
-Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress& progress) try {
+Exclusion::Exclusion(const Mesh& rest, const ExclusionOptions& options) try {
+  const ExclusionRule& rule = options.rule;
   validate(rest);
   check(rule);
   const CompressedRows<std::uint32_t> faces_of_vertex = self::faces_of_vertices(rest);
@@ -217,7 +218,8 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionRule& rule, const Progress
     }
     for (const std::vector<std::uint32_t>& row : rows)
       excluded_.insert(excluded_.end(), row.begin(), row.end());
-    if (progress && !progress("neighbourhoods", static_cast<double>(end) / static_cast<double>(count)))
+    if (options.progress &&
+        !options.progress("neighbourhoods", static_cast<double>(end) / static_cast<double>(count)))
       throw Cancelled();
     block = std::clamp(kEntries / std::max<std::size_t>(1, entries / rows.size()), kLeast, kMost);
     first = end;

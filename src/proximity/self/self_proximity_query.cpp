@@ -40,7 +40,7 @@ struct SelfProximityQuery::Impl {
 
   Impl(Mesh rest, const SelfProximityOptions& options)
       : sites(std::move(rest)),
-        exclusion(sites.mesh(), options.exclusion, options.progress),
+        exclusion(sites.mesh(), {.rule = options.exclusion, .progress = options.progress}),
         patch_tree(internals(sites), exclusion),
         max_distance(options.max_distance) {}
 

@@ -63,7 +63,7 @@ struct SampleRays {
 
 }  // namespace
 
-std::vector<double> free_distances(const Surface& surface, const DistanceMap& map, const Sites& sites) {
+std::vector<double> free_distances(const Surface& surface, const Sites& sites, const DistanceMap& map) {
   check_resolution(surface, map, "free_distances");
   const double error = largest_error(surface, sites);
   std::vector<double> result(map.distance.size());
@@ -71,7 +71,7 @@ std::vector<double> free_distances(const Surface& surface, const DistanceMap& ma
   return result;
 }
 
-std::vector<float> ambient_occlusion(const Surface& surface, const DistanceMap& map, const Sites& sites,
+std::vector<float> ambient_occlusion(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                      const AmbientOcclusionOptions& options) try {
   constexpr std::uint32_t kMostRays = 1 << 16;
   constexpr std::size_t kGrain = 16;

@@ -49,14 +49,15 @@ std::vector<Result> trace(std::span<const Ray> rays, const Progress& progress, c
 
 }  // namespace
 
-std::vector<RayHit> first_hits(const Sites& sites, std::span<const Ray> rays, const Progress& progress) {
-  return trace<RayHit>(rays, progress, [&](std::span<const Ray> some, rays::Scratch& scratch, RayHit* hits) {
-    rays::first_hits(internals(sites), some, scratch, hits);
-  });
+std::vector<RayHit> first_hits(const Sites& sites, std::span<const Ray> rays, const RayOptions& options) {
+  return trace<RayHit>(rays, options.progress,
+                       [&](std::span<const Ray> some, rays::Scratch& scratch, RayHit* hits) {
+                         rays::first_hits(internals(sites), some, scratch, hits);
+                       });
 }
 
-std::vector<std::uint8_t> occluded(const Sites& sites, std::span<const Ray> rays, const Progress& progress) {
-  return trace<std::uint8_t>(rays, progress,
+std::vector<std::uint8_t> occluded(const Sites& sites, std::span<const Ray> rays, const RayOptions& options) {
+  return trace<std::uint8_t>(rays, options.progress,
                              [&](std::span<const Ray> some, rays::Scratch& scratch, std::uint8_t* result) {
                                rays::occluded(internals(sites), some, scratch, result);
                              });

@@ -39,7 +39,7 @@ struct Scene {
         sites(std::move(o2)),
         map(compute_map(surface, sites)) {}
   [[nodiscard]] std::vector<float> occlusion(const AmbientOcclusionOptions& options) const {
-    return ambient_occlusion(surface, map, sites, options);
+    return ambient_occlusion(surface, sites, map, options);
   }
 };
 
@@ -105,7 +105,7 @@ TEST(AmbientOcclusion, DoesNotDependOnTheMap) {
     for (const double most : {0.05, 0.4, std::numeric_limits<double>::infinity()}) {
       const AmbientOcclusionOptions options{.rays = 16, .max_distance = most, .seed = 7};
       const std::vector<float> with = scene.occlusion(options),
-                               without = ambient_occlusion(scene.surface, nothing, scene.sites, options);
+                               without = ambient_occlusion(scene.surface, scene.sites, nothing, options);
       std::size_t partly = 0;
       for (const std::uint32_t texel : scene.surface.sample_texels()) {
         ASSERT_EQ(with[texel], without[texel]) << texel;
@@ -171,9 +171,9 @@ TEST(AmbientOcclusion, Errors) {
   EXPECT_THAT(error({.max_distance = 0}), HasSubstr("max_distance"));
   EXPECT_THAT(error({.max_distance = std::nan("")}), HasSubstr("max_distance"));
   const Surface other(test::sphere(1), {.resolution = 64});
-  EXPECT_THAT(test::error_of([&] { return ambient_occlusion(other, scene.map, scene.sites); }),
+  EXPECT_THAT(test::error_of([&] { return ambient_occlusion(other, scene.sites, scene.map); }),
               HasSubstr("resolutions differ"));
-  EXPECT_THAT(test::error_of([&] { return free_distances(other, scene.map, scene.sites); }),
+  EXPECT_THAT(test::error_of([&] { return free_distances(other, scene.sites, scene.map); }),
               HasSubstr("resolutions differ"));
   EXPECT_THROW((void)scene.occlusion({.progress = [](std::string_view, double) { return false; }}),
                Cancelled);

@@ -255,7 +255,7 @@ TEST_P(Rays, StartWhereTheMapIsFree) {
     for (const EngineInfo& engine : engines()) {
       if (engine.maps_only) continue;
       const DistanceMap map = compute_map(surface, sites, {.engine = make_engine(engine.name)});
-      const std::vector<double> free = free_distances(surface, map, sites);
+      const std::vector<double> free = free_distances(surface, sites, map);
       std::vector<Ray> all, late;
       for (const std::uint32_t texel : surface.sample_texels()) {
         const Vec3 p = surface.texel_point(texel),
@@ -371,7 +371,8 @@ TEST(RaysAlone, Errors) {
   EXPECT_TRUE(first_hits(sites, {}).empty());
   EXPECT_TRUE(occluded(sites, {}).empty());
   const std::vector<Ray> rays(10, Ray{{}, {1, 0, 0}});
-  EXPECT_THROW((void)first_hits(sites, rays, [](std::string_view, double) { return false; }), Cancelled);
+  EXPECT_THROW((void)first_hits(sites, rays, {.progress = [](std::string_view, double) { return false; }}),
+               Cancelled);
 }
 
 }  // namespace
