@@ -32,7 +32,7 @@ bool agree(std::string_view method, const DistanceField& field, const DistanceFi
   const double tolerance = field.accuracy + reference.accuracy;
   for (std::size_t i = 0; i < field.distance.size(); ++i) {
     const double d = field.distance[i], e = reference.distance[i];
-    const bool border = std::abs(std::abs(std::isnan(d) ? e : d) - field.band) <= tolerance;
+    const bool border = std::abs(std::abs(std::isnan(d) ? e : d) - field.max_distance) <= tolerance;
     if (std::isnan(d) != std::isnan(e) ? !border : std::abs(std::abs(d) - std::abs(e)) > tolerance) {
       std::fprintf(stderr, "%s is wrong at point %zu: %g, not %g\n", std::string(method).c_str(), i, d, e);
       return false;
@@ -63,14 +63,15 @@ Outcome against_openvdb(const Trial& trial, const std::string& file, double cell
   for (int k = 0; k < 3; ++k) longest = std::max(longest, box.hi[k] - box.lo[k]);
   const double spacing = longest / cells_across;
   const Grid grid = make_grid(enlarged(box, (kCells + 1) * spacing), spacing);
-  const FieldOptions options{.band = kCells * spacing};
+  const FieldOptions options{.max_distance = kCells * spacing};
 
   Outcome outcome;
   const Sites sites(mesh);
   DistanceField ours = compute_field(sites, grid, options);
   outcome.verified =
       agree("best", ours,
-            fields::compute_field(sites, grid, {.method = fields::Method::reference, .band = options.band}));
+            fields::compute_field(
+                sites, grid, {.method = fields::Method::reference, .max_distance = options.max_distance}));
   const auto transform = openvdb::math::Transform::createLinearTransform(spacing);
   const Race signed_race = race({[&] { ours = compute_field(Sites(mesh), grid, options); }, trial.threads},
                                 {[&] {
@@ -81,7 +82,7 @@ Outcome against_openvdb(const Trial& trial, const std::string& file, double cell
                                 trial.repetitions);
   outcome.rows.push_back({"", signed_race.figures()});
   outcome.counts = {{"points", static_cast<double>(grid.size())},
-                    {"in_band", static_cast<double>(grid.size() - ours.beyond_band)}};
+                    {"in_band", static_cast<double>(grid.size() - ours.beyond_max_distance)}};
   return outcome;
 }
 
@@ -91,7 +92,7 @@ Outcome methods(const Trial& trial, double band_in_cells) {
   const Grid grid = make_grid(enlarged(bounds(mesh), 0.1), {180, 150, 256});
   const Sites sites(mesh);
   fields::Options options{.sign = SignMethod::none};
-  if (band_in_cells > 0) options.band = band_in_cells * std::ranges::max(grid.spacing);
+  if (band_in_cells > 0) options.max_distance = band_in_cells * std::ranges::max(grid.spacing);
   const auto compute = [&](fields::Method method) {
     fields::Options with = options;
     with.method = method;
@@ -100,7 +101,8 @@ Outcome methods(const Trial& trial, double band_in_cells) {
   Outcome outcome{.verified = true};
   const DistanceField reference = compute(fields::Method::reference);
   for (const fields::MethodInfo& method : fields::methods()) {
-    if (method.method == fields::Method::reference || (method.needs_band && band_in_cells == 0)) continue;
+    if (method.method == fields::Method::reference || (method.needs_max_distance && band_in_cells == 0))
+      continue;
     const fields::Field field = compute(method.method);
     outcome.verified &= agree(method.name, field, reference);
     if (method.method == fields::Method::best) continue;

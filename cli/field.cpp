@@ -46,8 +46,8 @@ sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::B
   } else {
     box = sdm::bounds(o2);
     const double diagonal = size_of(box);
-    const double band = command.options.band;
-    const double margin = band < std::numeric_limits<double>::infinity() ? band : 0.1 * diagonal;
+    const double farthest = command.options.max_distance;
+    const double margin = farthest < std::numeric_limits<double>::infinity() ? farthest : 0.1 * diagonal;
     for (std::size_t k = 0; k < 3; ++k) box.lo[k] -= margin, box.hi[k] += margin;
     extend(box, more);
   }
@@ -60,10 +60,10 @@ nlohmann::ordered_json field_json(const sdm::DistanceField& field) {
   nlohmann::ordered_json json;
   json["grid"] = {
       {"points", field.grid.dims}, {"origin", field.grid.origin}, {"spacing", field.grid.spacing}};
-  json["band"] = field.band;  // null: no limit
+  json["max_distance"] = field.max_distance;  // null: no limit
   json["sign"] = {{"method", sdm::name_of(field.sign.method)}, {"reason", field.sign.reason}};
   json["distance"] = {{"min", range.min}, {"max", range.max}};  // null: no point has a value
-  json["beyond_band"] = field.beyond_band;
+  json["beyond_max_distance"] = field.beyond_max_distance;
   json["accuracy"] = field.accuracy;
   json["accuracy_kind"] = "bounded";
   return json;
@@ -76,15 +76,16 @@ std::string field_lines(const FieldCommand& command, const sdm::DistanceField& f
                                  grid.dims[0], grid.dims[1], grid.dims[2], number(grid.spacing[0]),
                                  number(grid.spacing[1]), number(grid.spacing[2]), unit);
   const Range range = range_of(field);
-  if (field.beyond_band == field.distance.size())
-    text += "  distance   no point is within the band\n";
+  if (field.beyond_max_distance == field.distance.size())
+    text += "  distance   no point is within the maximum distance\n";
   else
     text += fmt::format("  distance   min {}   max {}{}, to {}\n", number(range.min), number(range.max), unit,
                         number(field.accuracy, 2));
   if (field.sign.method == sdm::SignMethod::none)
     text += fmt::format("             unsigned: {}\n", field.sign.reason);
-  if (field.beyond_band > 0)
-    text += fmt::format("             {} points are beyond the band\n", field.beyond_band);
+  if (field.beyond_max_distance > 0)
+    text +=
+        fmt::format("             {} points are beyond the maximum distance\n", field.beyond_max_distance);
   return text;
 }
 
@@ -117,12 +118,13 @@ void add_field_options(CLI::App& app, FieldCommand& command, const std::string& 
       ->type_name("H");
   app.add_option("--bounds", command.bounds,
                  "The lowest and the highest corner of the grid; by default the box of O2, extended by the "
-                 "band, or by a tenth of its diagonal" +
+                 "maximum distance, or by a tenth of its diagonal" +
                      box)
       ->expected(6)
       ->check(any_number())
       ->type_name("X0 Y0 Z0 X1 Y1 Z1");
-  app.add_option("--band", command.options.band, "Points farther from O2 than D have no value")
+  app.add_option("--max-distance", command.options.max_distance,
+                 "Points farther from O2 than D have no value")
       ->check(positive_number())
       ->type_name("D");
   add_sign_option(app, command.options.sign);

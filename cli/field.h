@@ -27,11 +27,11 @@ void add_field_options(CLI::App& app, FieldCommand& command, const std::string& 
 /// Throws CLI::ValidationError for options that do not fit together, or a file of no known format.
 void check_field_options(const FieldCommand& command);
 
-/// The grid of the options. Without bounds, it extends around O2 by the band, or by a tenth of O2's diagonal,
-/// and around `more`, which may be empty.
+/// The grid of the options. Without bounds, it extends around O2 by the maximum distance, or by a
+/// tenth of O2's diagonal, and around `more`, which may be empty.
 [[nodiscard]] sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::Box& more);
 
 /// Keys that describe the field, without `work`.
 [[nodiscard]] nlohmann::ordered_json field_json(const sdm::DistanceField& field);
-/// The first lines of the text, up to the points beyond the band.
+/// The first lines of the text, up to the points beyond the maximum distance.
 [[nodiscard]] std::string field_lines(const FieldCommand& command, const sdm::DistanceField& field);

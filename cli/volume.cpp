@@ -21,11 +21,12 @@ namespace {
 
 struct VolumeOutcome {
   sdm::DistanceField field;
+  sdm::FieldReport report;
   double import_ms = 0, sites_ms = 0, output_ms = 0;
 };
 
 nlohmann::ordered_json report_of(const FieldCommand& command, const Input& o2, const VolumeOutcome& outcome) {
-  const sdm::FieldReport& report = outcome.field.report;
+  const sdm::FieldReport& report = outcome.report;
   nlohmann::ordered_json json;
   json["version"] = sdm::kVersion;
   json["o2"] = to_json(o2);
@@ -41,9 +42,9 @@ nlohmann::ordered_json report_of(const FieldCommand& command, const Input& o2, c
   return json;
 }
 
-std::string summary(const FieldCommand& command, const Input& o2, const sdm::DistanceField& field) {
-  return field_lines(command, field) + note_lines(o2.notes, 13) +
-         fmt::format("  time       {} s\n  result     {}\n", number(field.report.milliseconds / 1000, 3),
+std::string summary(const FieldCommand& command, const Input& o2, const VolumeOutcome& outcome) {
+  return field_lines(command, outcome.field) + note_lines(o2.notes, 13) +
+         fmt::format("  time       {} s\n  result     {}\n", number(outcome.report.milliseconds / 1000, 3),
                      command.out.string());
 }
 
@@ -58,7 +59,7 @@ VolumeOutcome compute(const FieldCommand& command, Input& o2, const sdm::Progres
   outcome.sites_ms = watch.lap();
   sdm::FieldOptions options = command.options;
   options.progress = progress;
-  outcome.field = sdm::compute_field(sites, grid, options);
+  outcome.field = sdm::compute_field(sites, grid, options, outcome.report);
   return outcome;
 }
 
@@ -79,7 +80,7 @@ void run(const FieldCommand& command) {
   });
   print(
       command, [&] { return report_of(command, o2, outcome); },
-      [&] { return summary(command, o2, outcome.field); });
+      [&] { return summary(command, o2, outcome); });
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ void add_volume_command(CLI::App& app) {
   volume->footer(
       "Distances are exact at the points of the grid.\n\n"
       "Example, a level set for other programs:\n"
-      "  sdm volume part.stl --spacing 0.5 --band 1.5 -o part.vdb");
+      "  sdm volume part.stl --spacing 0.5 --max-distance 1.5 -o part.vdb");
   const auto command = std::make_shared<FieldCommand>();
   add_field_options(*volume, *command, "");
   volume->get_option("--output")->required();

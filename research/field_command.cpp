@@ -124,7 +124,7 @@ Outcome compute(const Command& command, Input& o2, const sdm::Progress& progress
   outcome.field = fields::compute_field(sites, grid,
                                         {.method = command.method,
                                          .sign = command.options.sign,
-                                         .band = command.options.band,
+                                         .max_distance = command.options.max_distance,
                                          .sites = command.options.sites,
                                          .tessellation = command.tessellation,
                                          .progress = progress});
@@ -164,8 +164,8 @@ void run(const Command& command) {
 
 void check(const Command& command, const CLI::App& app) {
   const fields::MethodInfo& method = fields::info(command.method);
-  if (method.needs_band && command.options.band == std::numeric_limits<double>::infinity())
-    throw CLI::ValidationError("--method", fmt::format("{} needs --band", method.name));
+  if (method.needs_max_distance && command.options.max_distance == std::numeric_limits<double>::infinity())
+    throw CLI::ValidationError("--method", fmt::format("{} needs --max-distance", method.name));
   if (command.tessellation > 0 && command.method != fields::Method::brute_force)
     throw CLI::ValidationError("--tessellation", "requires --method brute_force");
   if (command.out.empty() && command.o1.empty())

@@ -26,11 +26,11 @@ SDM_API void check_field_format(const std::filesystem::path& file);
 /// .vti  VTK ImageData, for ParaView: the point data `distance`, and `site` and `site_type` if the field has
 ///       them; raw appended data.
 /// .vdb  OpenVDB: the grid `distance`, float, with a transform from the indices of points to the coordinates
-/// of
-///       the mesh. Points with a value are active; the others have the band as their value (the background,
-///       also outside of the grid), or, without a band, the largest distance. A signed field with a band of
-///       at least the largest spacing is a level set, with the negated band at points beyond the band that
-///       are inside O2; OpenVDB's tools for level sets also need cubic cells.
+///       of the mesh. Points with a value are active; the others have the maximum distance as their value
+///       (the background, also outside of the grid), or, without one, the largest distance. A signed field
+///       with a maximum distance of at least the largest spacing is a level set, with the negated maximum
+///       distance at points beyond it that are inside O2; OpenVDB's tools for level sets also need cubic
+///       cells.
 SDM_API void write_field(const std::filesystem::path& file, const DistanceField& field);
 
 }  // namespace sdm

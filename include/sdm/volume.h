@@ -52,10 +52,34 @@ struct Grid {
 struct FieldOptions {
   SignMethod sign = SignMethod::automatic;
   /// Greater than 0, in units of the mesh. Points farther than this have no value (NaN).
-  double band = std::numeric_limits<double>::infinity();
+  double max_distance = std::numeric_limits<double>::infinity();
   bool sites = false;  ///< also store the closest sites
   Progress progress{};
 };
+
+/// One value per grid point. Points without a value, farther than the maximum distance, hold NaN, kNone and
+/// SiteType::none.
+struct DistanceField {
+  Grid grid;
+  std::vector<float> distance;      ///< negative inside O2 if signed
+  std::vector<std::uint32_t> site;  ///< index of the closest site among those of its type; empty unless asked
+  std::vector<SiteType> site_type;  ///< empty unless asked for
+  double max_distance = std::numeric_limits<double>::infinity();  ///< as FieldOptions::max_distance
+  /// Upper bound on the error of a distance, rounding to float included: 1e-6 of the diagonal of the box of
+  /// O2 and the grid.
+  double accuracy = 0;
+  Box o2_bounds{};  ///< no point outside of it is inside O2
+  SignUsed sign;
+  std::size_t beyond_max_distance = 0;  ///< points without a value
+};
+
+/// Computes the field, whose sites and distances are the closest ones to within DistanceField::accuracy.
+/// Throws sdm::Error for a grid out of range, with a coordinate beyond 1e37 or with spacings that vanish by
+/// rounding, for a sign method that O2 does not allow, for a maximum distance that is not positive, or if
+/// there is not enough memory, which is checked before anything is allocated; Cancelled. All cores. Cost: a
+/// search per point, or per point near O2 if there is a maximum distance.
+[[nodiscard]] SDM_API DistanceField compute_field(const Sites& sites, const Grid& grid,
+                                                  const FieldOptions& options = {});
 
 /// What a field cost.
 struct FieldReport {
@@ -64,30 +88,9 @@ struct FieldReport {
   std::size_t working_bytes = 0;  ///< allocated besides; an estimate
 };
 
-/// One value per grid point. Points without a value, farther than the band, hold NaN, kNone and
-/// SiteType::none.
-struct DistanceField {
-  Grid grid;
-  std::vector<float> distance;      ///< negative inside O2 if signed
-  std::vector<std::uint32_t> site;  ///< index of the closest site among those of its type; empty unless asked
-  std::vector<SiteType> site_type;  ///< empty unless asked for
-  double band = std::numeric_limits<double>::infinity();
-  /// Upper bound on the error of a distance, rounding to float included: 1e-6 of the diagonal of the box of
-  /// O2 and the grid.
-  double accuracy = 0;
-  Box o2_bounds{};  ///< no point outside of it is inside O2
-  SignUsed sign;
-  std::size_t beyond_band = 0;  ///< points without a value
-  FieldReport report;
-};
-
-/// Computes the field, whose sites and distances are the closest ones to within DistanceField::accuracy.
-/// Throws sdm::Error for a grid out of range, with a coordinate beyond 1e37 or with spacings that vanish by
-/// rounding, for a sign method that O2 does not allow, for a band that is not positive, or if there is not
-/// enough memory, which is checked before anything is allocated; Cancelled. All cores. Cost: a search per
-/// point, or per point near O2 if there is a band.
+/// The same, with a report.
 [[nodiscard]] SDM_API DistanceField compute_field(const Sites& sites, const Grid& grid,
-                                                  const FieldOptions& options = {});
+                                                  const FieldOptions& options, FieldReport& report);
 
 /// The distance at a point between grid points: its value is interpolated linearly along each axis, NaN
 /// outside the grid and beside a NaN; its bounds hold because distances are 1-Lipschitz.
@@ -97,7 +100,8 @@ struct FieldSample : BoundedNumber {
       : BoundedNumber{std::numeric_limits<double>::quiet_NaN(), Certainty::bounded,
                       -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()} {}
 
-  double magnitude = 0;  ///< ≤ |distance|: beyond the band of a signed field more than the bounds imply
+  double magnitude =
+      0;  ///< ≤ |distance|: beyond the maximum distance of a signed field more than the bounds imply
 };
 
 /// |value − distance| ≤ interpolation_error(grid) + field.accuracy, unless signs are estimates

@@ -33,7 +33,7 @@ struct PyFieldSamples {
   LazyArray value, lower, upper;
 };
 
-Box box_of(const Mesh& mesh, nb::handle bounds, std::optional<double> margin, double band) {
+Box box_of(const Mesh& mesh, nb::handle bounds, std::optional<double> margin, double max_distance) {
   if (!bounds.is_none()) {
     const Points corners(bounds, "bounds");
     if (corners.get().size() != 2 || margin)
@@ -42,7 +42,7 @@ Box box_of(const Mesh& mesh, nb::handle bounds, std::optional<double> margin, do
   }
   Box box = sdm::bounds(mesh);
   const double diagonal = std::hypot(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]);
-  const double around = margin.value_or(band < kInfinity ? band : 0.1 * diagonal);
+  const double around = margin.value_or(max_distance < kInfinity ? max_distance : 0.1 * diagonal);
   if (!(around >= 0) || !std::isfinite(around))
     throw Error("margin must be a finite number that is not negative");
   for (int k = 0; k < 3; ++k) box.lo[k] -= around, box.hi[k] += around;
@@ -50,9 +50,9 @@ Box box_of(const Mesh& mesh, nb::handle bounds, std::optional<double> margin, do
 }
 
 Grid grid_of(const Mesh& mesh, std::optional<double> spacing, nb::handle shape, nb::handle bounds,
-             std::optional<double> margin, double band) {
+             std::optional<double> margin, double max_distance) {
   if (spacing.has_value() == !shape.is_none()) throw Error("give either spacing or shape");
-  const Box box = box_of(mesh, bounds, margin, band);
+  const Box box = box_of(mesh, bounds, margin, max_distance);
   if (spacing) return make_grid(box, *spacing);
   std::array<std::int64_t, 3> points{};
   if (!nb::try_cast(shape, points, true)) throw Error("shape must be three integers: (nz, ny, nx)");
@@ -144,7 +144,8 @@ void bind_grid(nb::class_<PyField>& field) {
           "spacing", [](const F& self) { return vector_of(self.field.grid.spacing); },
           nb::sig("def spacing(self) -> numpy.ndarray"), "Between points along x, y and z, (3,) float64.")
       .def_prop_ro(
-          "band", [](const F& self) { return self.field.band; }, "Points farther away have no value.")
+          "max_distance", [](const F& self) { return self.field.max_distance; },
+          "Points farther away have no value.")
       .def_prop_ro(
           "accuracy", [](const F& self) { return self.field.accuracy; },
           "Upper bound on the error of a distance, in units of the mesh, rounding to float32 included.")
@@ -153,7 +154,7 @@ void bind_grid(nb::class_<PyField>& field) {
           [](const F& self) { return interpolation_error(self.field.grid) + self.field.accuracy; },
           "Upper bound on the error of an interpolated distance.")
       .def_prop_ro(
-          "beyond_band", [](const F& self) { return self.field.beyond_band; },
+          "beyond_max_distance", [](const F& self) { return self.field.beyond_max_distance; },
           "The number of points without a value.")
       .def_prop_ro(
           "sign", [](const F& self) { return name_of(self.field.sign.method); },
@@ -198,7 +199,7 @@ void bind_field(nb::module_& module) {
       R"(The distances from the points of a regular grid to a mesh. Returned by distance_field().
 
 Arrays are read-only and have the shape (nz, ny, nx): the value of the point with the coordinates
-``origin + (i, j, k) * spacing`` is at [k, j, i]. Points farther than the band hold NaN or NONE.)");
+``origin + (i, j, k) * spacing`` is at [k, j, i]. Points farther than the maximum distance hold NaN or NONE.)");
   bind_arrays(field);
   bind_grid(field);
   bind_uses(field);
@@ -212,11 +213,12 @@ void bind_volume(nb::module_& module) {
   module.def(
       "distance_field",
       [](nb::handle mesh, std::optional<double> spacing, nb::handle shape, nb::handle bounds,
-         std::optional<double> margin, const char* sign, double band, bool sites, nb::handle progress) {
+         std::optional<double> margin, const char* sign, double max_distance, bool sites,
+         nb::handle progress) {
         SitesInUse to(mesh);
         validate(to.mesh());
-        FieldOptions options{.sign = sign_of(sign), .band = band, .sites = sites};
-        const Grid grid = grid_of(to.mesh(), spacing, shape, bounds, margin, band);
+        FieldOptions options{.sign = sign_of(sign), .max_distance = max_distance, .sites = sites};
+        const Grid grid = grid_of(to.mesh(), spacing, shape, bounds, margin, max_distance);
         auto result = std::make_unique<PyField>();
         run(progress, [&](const Progress& report) {
           options.progress = report;
@@ -226,11 +228,11 @@ void bind_volume(nb::module_& module) {
       },
       nb::rv_policy::take_ownership, nb::arg("mesh").none(), nb::kw_only(), nb::arg("spacing") = nb::none(),
       nb::arg("shape") = nb::none(), nb::arg("bounds") = nb::none(), nb::arg("margin") = nb::none(),
-      nb::arg("sign") = "automatic", nb::arg("band") = kInfinity, nb::arg("sites") = false,
+      nb::arg("sign") = "automatic", nb::arg("max_distance") = kInfinity, nb::arg("sites") = false,
       nb::arg("progress") = nb::none(),
       nb::sig("def distance_field(mesh: object, *, spacing: float | None = None, shape: tuple[int, int, int] "
               "| None = None, bounds: object = None, margin: float | None = None, sign: "
-              "str = 'automatic', band: float = ..., sites: bool = False, progress: "
+              "str = 'automatic', max_distance: float = ..., sites: bool = False, progress: "
               "collections.abc.Callable[[str, float], bool | None] | None = None) -> DistanceField"),
       R"(Computes the distances from the points of a regular grid to a mesh.
 
@@ -238,13 +240,13 @@ mesh: any form of a mesh (see Mesh); Sites are used as they are.
 spacing: > 0: cubic cells of this size, the fewest that cover the box.
 shape: instead, the numbers of points (nz, ny, nx), whose outermost ones are on the sides of the box.
 bounds: the lowest and the highest corner of the box, (2, 3) numbers. By default the box of the mesh and
-``margin`` around it, which is the band, or a tenth of the diagonal without a band.
-sign: as of map(). band: > 0; points farther away have no value. Lengths are in units of the mesh.
+``margin`` around it, which is ``max_distance``, or a tenth of the diagonal without one.
+sign: as of map(). max_distance: > 0; points farther away have no value. Lengths are in units of the mesh.
 sites: whether to keep the closest sites.
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 Raises Error for an unusable mesh, a grid or an option out of range, or too little memory, which is checked
-first; Cancelled. Cost: a search per point, or per point near the mesh if there is a band; all cores.
+first; Cancelled. Cost: a search per point, or per point near the mesh if there is a maximum distance; all cores.
 
 >>> field = sdm.distance_field(box, shape=(3, 5, 5), bounds=[[0, 0, 0], [1, 1, 1]])
 >>> field.distance.shape, float(field.distance[1, 2, 2]), float(field.transform[0, 0])

@@ -43,8 +43,8 @@ def test_samples_of_fields():
 
 def test_bands_bounds_and_margins(tmp_path):
     sites = sdm.Sites(meshes.box())
-    field = sdm.distance_field(sites, spacing=0.25, band=0.3)
-    assert field.band == 0.3 and 0 < field.beyond_band == np.isnan(field.distance).sum() and field.site is None
+    field = sdm.distance_field(sites, spacing=0.25, max_distance=0.3)
+    assert field.max_distance == 0.3 and 0 < field.beyond_max_distance == np.isnan(field.distance).sum() and field.site is None
     assert field.distance.shape == sdm.distance_field(sites, spacing=0.25, margin=0.3).distance.shape
     bounded = sdm.distance_field(sites, shape=(1, 2, 3), bounds=[[0, 0, 0], [1, 1, 1]])
     np.testing.assert_array_equal(bounded.origin, [0, 0, 0.5])
@@ -60,7 +60,7 @@ def test_bands_bounds_and_margins(tmp_path):
     {}, {"spacing": 0.1, "shape": (2, 2, 2)}, {"spacing": 0}, {"spacing": np.nan}, {"spacing": 1e-9}, {"shape": (2, 2)},
     {"shape": (0, 2, 2)}, {"shape": (2, 2, 2.5)}, {"shape": (2**21, 2, 2)}, {"spacing": 0.1, "bounds": [[1, 1, 1], [0, 0, 0]]},
     {"spacing": 0.1, "bounds": [[0, 0, 0]]}, {"spacing": 0.1, "margin": -1}, {"spacing": 0.1, "margin": np.inf},
-    {"spacing": 0.1, "band": 0}, {"spacing": 0.1, "sign": "other"},
+    {"spacing": 0.1, "max_distance": 0}, {"spacing": 0.1, "sign": "other"},
     {"spacing": 0.1, "bounds": [[0, 0, 0], [1, 1, 1]], "margin": 1},
 ])  # fmt: skip
 def test_bad_options_of_fields(options):

@@ -29,8 +29,8 @@ constexpr MethodInfo kMethods[] = {
 };
 
 void check_options(const Options& options, const MethodInfo& method) {
-  if (method.needs_band && options.band == std::numeric_limits<double>::infinity())
-    throw Error("the method " + std::string(method.name) + " needs a band");
+  if (method.needs_max_distance && options.max_distance == std::numeric_limits<double>::infinity())
+    throw Error("the method " + std::string(method.name) + " needs a maximum distance");
   if (!(options.tessellation >= 0)) throw Error("the tessellation must not be negative");
   if (options.tessellation == 0) return;
   if (method.method != Method::brute_force)
@@ -49,7 +49,7 @@ Field draw_field(const Sites& sites, const Grid& grid, const Options& options, c
   const bool is_signed = sign.method != SignMethod::none;
   const bool with_winners = is_signed || options.sites;
   Field field{volume::new_field(sites, grid,
-                                {.band = options.band,
+                                {.max_distance = options.max_distance,
                                  .sites = options.sites,
                                  .relative_error = method.relative_error,
                                  .more_bytes_per_point = with_winners ? sizeof(std::uint32_t) : 0})};
@@ -67,12 +67,13 @@ Field draw_field(const Sites& sites, const Grid& grid, const Options& options, c
   else
     sweep_slices(task, field, winners);
   field.report.milliseconds = watch.lap();
+  field.report.field_bytes = volume::bytes_of(field);
   if (with_winners) {
     field.report.working_bytes += winners.size() * sizeof(std::uint32_t);
     store_sites(task, winners, field);
     field.work.sign_milliseconds = watch.lap();
   }
-  field.beyond_band = volume::count_without_value(field.distance);
+  field.beyond_max_distance = volume::count_without_value(field.distance);
   return field;
 }
 
@@ -91,15 +92,20 @@ const MethodInfo& info(Method method) {
 Field compute_field(const Sites& sites, const Grid& grid, const Options& options) try {
   const MethodInfo& method = info(options.method);
   check_options(options, method);
-  const FieldOptions common{
-      .sign = options.sign, .band = options.band, .sites = options.sites, .progress = options.progress};
+  const FieldOptions common{.sign = options.sign,
+                            .max_distance = options.max_distance,
+                            .sites = options.sites,
+                            .progress = options.progress};
   Field field;
+  FieldReport report;
   switch (options.method) {
     case Method::best:
-      field = {sdm::compute_field(sites, grid, common)};
+      field = {sdm::compute_field(sites, grid, common, report), {}, report};
       break;
     case Method::reference:
-      field = {volume::field_by_engine(sites, grid, common, reference::ReferenceEngine(), false)};
+      field = {volume::field_by_engine(sites, grid, common, reference::ReferenceEngine(), false, report),
+               {},
+               report};
       break;
     default:
       field = draw_field(sites, grid, options, method);

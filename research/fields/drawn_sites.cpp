@@ -64,7 +64,7 @@ SliceRules::SliceRules(const DrawingTask& task, const UnitGrid& grid) {
                 std::string(info(task.options.method).name) + "; use best");
   slack = kRegionSlack * size;
   margin = kBoundSlack * size;
-  limit = std::min(std::sqrt(reach), task.sites.frame.scale * task.options.band) + margin;
+  limit = std::min(std::sqrt(reach), task.sites.frame.scale * task.options.max_distance) + margin;
 }
 
 }  // namespace sdm::fields

@@ -24,8 +24,8 @@ enum class Method {
   /// SGGM06: as DiFi, but a site is drawn as the polygon in which its region of influence intersects the
   /// slice, with a distance vector that is linear over the polygon.
   linear_factorization,
-  /// Mauch 2003, Sigg et al. 2003: the polyhedron that contains a site's region within the band is scan
-  /// converted, site by site. Requires a band.
+  /// Mauch 2003, Sigg et al. 2003: the polyhedron that contains a site's region within the maximum distance
+  /// is scan converted, site by site. Requires a maximum distance.
   csc,
 };
 
@@ -35,7 +35,7 @@ struct MethodInfo {
   /// Upper bound on the error of a distance, rounding to float included, as a fraction of the diagonal of the
   /// bounding box of O2 and the grid.
   double relative_error;
-  bool needs_band;
+  bool needs_max_distance;
 };
 
 /// All methods, best first.
@@ -46,12 +46,12 @@ struct MethodInfo {
 struct Options {
   Method method = Method::best;
   SignMethod sign = SignMethod::automatic;
-  double band = std::numeric_limits<double>::infinity();  ///< as FieldOptions::band
-  bool sites = false;                                     ///< also store the closest sites
+  double max_distance = std::numeric_limits<double>::infinity();  ///< as FieldOptions::max_distance
+  bool sites = false;                                             ///< also store the closest sites
   /// brute_force: distance functions of edges and vertices are drawn as meshes, as HCK99 and HZLM01 did,
   /// whose distances exceed the true ones by at most this, in units of the mesh, and are never less. The
-  /// field is then unsigned, and points from the band less this on may have no value. 0: they are evaluated
-  /// at each point.
+  /// field is then unsigned, and points from the maximum distance less this on may have no value. 0: they are
+  /// evaluated at each point.
   double tessellation = 0;
   Progress progress{};
 };
@@ -69,15 +69,16 @@ struct Work {
 
 struct Field : DistanceField {
   Method method = Method::best;
+  FieldReport report{};
   Work work{};
 };
 
 /// Computes the field. Every method finds the closest sites at every point of the grid, to within
 /// DistanceField::accuracy, which includes the tessellation. Throws as sdm::compute_field does, and for an
-/// infinite band where the method needs one, or a tessellation that is negative, too fine for single
-/// precision, with another method than brute_force or with signs; Cancelled. All cores. Cost, for m sites and
-/// n points a side: brute_force O(m n³); difi and linear_factorization O(m n) for clipping, and what culling
-/// leaves of O(m n³); csc O(m) and the points in the polyhedra.
+/// infinite maximum distance where the method needs one, or a tessellation that is negative, too fine for
+/// single precision, with another method than brute_force or with signs; Cancelled. All cores. Cost, for m
+/// sites and n points a side: brute_force O(m n³); difi and linear_factorization O(m n) for clipping, and
+/// what culling leaves of O(m n³); csc O(m) and the points in the polyhedra.
 [[nodiscard]] Field compute_field(const Sites& sites, const Grid& grid, const Options& options = {});
 
 struct ProximityOptions {
@@ -101,7 +102,7 @@ struct Proximity {
   bool colliding = false;
   Certainty colliding_certainty = Certainty::estimate;
   std::size_t samples = 0;
-  std::size_t without_value = 0;  ///< samples outside the grid or beside points beyond the band
+  std::size_t without_value = 0;  ///< samples outside the grid or beside points beyond the maximum distance
   double covering_radius = 0;     ///< no point of O1's surface is farther from all samples
   /// Of the values, as far as samples have one: interpolation_error, field.accuracy and covering_radius.
   double error_bound = 0;

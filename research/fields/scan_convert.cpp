@@ -108,7 +108,7 @@ class ScanConversion {
         store_.store(rows, std::size_t{height} * (k - begin) + j, j, k);
   }
 
-  // The slice of a polyhedron: the region, within the band.
+  // The slice of a polyhedron: the region, within the maximum distance.
   void convert(const Slice& slice, const DrawnSite& site, std::size_t first_row, DepthRows& rows,
                Counts& counts) const {
     thread_local PolygonRows polygon_rows;

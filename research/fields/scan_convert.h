@@ -7,8 +7,8 @@
 
 namespace sdm::fields {
 
-/// Computes the distances within the band, unsigned, and their sites if `winners` has one entry per point of
-/// the grid. Fills the counters and the working memory of the report.
+/// Computes the distances within the maximum distance, unsigned, and their sites if `winners` has one entry
+/// per point of the grid. Fills the counters and the working memory of the report.
 void scan_convert(const DrawingTask& task, Field& field, std::span<std::uint32_t> winners);
 
 }  // namespace sdm::fields

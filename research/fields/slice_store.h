@@ -25,7 +25,7 @@ class SliceStore {
   /// `winners`: one per point of the grid, or none.
   SliceStore(const DrawingTask& task, DistanceField& field, std::span<std::uint32_t> winners)
       : grid_(task.grid),
-        band_(task.options.band),
+        band_(task.options.max_distance),
         unit_(1 / task.sites.frame.scale),
         writer_(field),
         winners_(winners) {}

@@ -80,8 +80,8 @@ Contender measure_volume(Run& run, const Recording& recording, const std::vector
   const auto fields_of = [&](const std::array<Sites, 2>& sites, const Grid& grid) {
     std::array<fields::Field, 2> result;
     for (int b = 0; b < 2; ++b)
-      result[b] =
-          fields::compute_field(sites[b], grid, {.method = method, .sign = SignMethod::none, .band = band});
+      result[b] = fields::compute_field(sites[b], grid,
+                                        {.method = method, .sign = SignMethod::none, .max_distance = band});
     return result;
   };
   const auto grid_of = [&](std::size_t frame) {

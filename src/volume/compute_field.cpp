@@ -10,9 +10,15 @@
 
 namespace sdm {
 
-DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOptions& options) try {
-  const bool has_band = options.band < std::numeric_limits<double>::infinity();
-  return volume::field_by_engine(sites, grid, options, cpu::CpuEngine(), has_band);
+DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOptions& options) {
+  FieldReport unused;
+  return compute_field(sites, grid, options, unused);
+}
+
+DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOptions& options,
+                            FieldReport& report) try {
+  const bool only_near = options.max_distance < std::numeric_limits<double>::infinity();
+  return volume::field_by_engine(sites, grid, options, cpu::CpuEngine(), only_near, report);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a distance field");
 }

@@ -35,21 +35,25 @@ void allocate(DistanceField& field, bool with_sites, std::size_t more_bytes_per_
     field.site.assign(count, kNone);
     field.site_type.assign(count, SiteType::none);
   }
-  field.report.field_bytes = count * bytes;
 }
 
 }  // namespace
 
 DistanceField new_field(const Sites& o2, const Grid& grid, const NewField& properties) {
   check_grid(grid);
-  if (!(properties.band > 0)) throw Error("the band must be greater than 0");
+  if (!(properties.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
   DistanceField field;
   field.grid = grid;
-  field.band = properties.band;
+  field.max_distance = properties.max_distance;
   field.o2_bounds = bounds(o2.mesh());
   field.accuracy = properties.relative_error * diagonal_of_scene(grid, field.o2_bounds);
   allocate(field, properties.sites, properties.more_bytes_per_point);
   return field;
+}
+
+std::size_t bytes_of(const DistanceField& field) {
+  return field.distance.size() * sizeof(float) + field.site.size() * sizeof(std::uint32_t) +
+         field.site_type.size() * sizeof(SiteType);
 }
 
 std::size_t count_without_value(std::span<const float> distances) {

@@ -7,19 +7,21 @@
 namespace sdm::volume {
 
 DistanceField field_by_engine(const Sites& sites, const Grid& grid, const FieldOptions& options,
-                              const Engine& engine, bool only_near) {
+                              const Engine& engine, bool only_near, FieldReport& report) {
   const SignUsed sign = choose_sign(sites, options.sign);
-  DistanceField field = new_field(
-      sites, grid,
-      {.band = options.band, .sites = options.sites, .relative_error = engine.info().relative_error});
+  DistanceField field = new_field(sites, grid,
+                                  {.max_distance = options.max_distance,
+                                   .sites = options.sites,
+                                   .relative_error = engine.info().relative_error});
   field.sign = sign;
   Stopwatch watch;
   const sites::SitesData& data = internals(sites);
   const inside::InsideTest is_inside(data, sign.method, field.accuracy);
   const FieldTask task{sites, data, grid, options, is_inside, sign.method != SignMethod::none};
-  field.report.working_bytes = query_grid(task, engine, only_near, field);
-  field.report.milliseconds = watch.lap();
-  field.beyond_band = count_without_value(field.distance);
+  report.working_bytes = query_grid(task, engine, only_near, field);
+  report.milliseconds = watch.lap();
+  report.field_bytes = bytes_of(field);
+  field.beyond_max_distance = count_without_value(field.distance);
   return field;
 }
 

@@ -7,9 +7,9 @@
 
 namespace sdm::volume {
 
-/// Does what sdm::compute_field does, by an engine. With `only_near`, points that are surely beyond the band
-/// are skipped.
+/// Does what sdm::compute_field does, by an engine. With `only_near`, points that are surely beyond the
+/// maximum distance are skipped.
 [[nodiscard]] DistanceField field_by_engine(const Sites& sites, const Grid& grid, const FieldOptions& options,
-                                            const Engine& engine, bool only_near);
+                                            const Engine& engine, bool only_near, FieldReport& report);
 
 }  // namespace sdm::volume

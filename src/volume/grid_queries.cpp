@@ -75,7 +75,7 @@ Ball ball_of(const Grid& grid, const Index3& first, const Index3& size) {
   return {0.5 * (lo + hi), 0.5 * norm(hi - lo)};
 }
 
-// Finds which balls may contain points within the band.
+// Finds which balls may contain points within the maximum distance.
 class NearBalls {
  public:
   NearBalls(const FieldTask& task, const Engine& engine) : task_(task), engine_(engine) {
@@ -94,7 +94,7 @@ class NearBalls {
       radius = std::max(radius, ball.radius);
     }
     near.assign(balls.size(), 0);
-    const double reach = task_.options.band + slack_;
+    const double reach = task_.options.max_distance + slack_;
     engine_.closest_points(
         task_.o2, centres, reach + radius, [&](std::size_t first, const sites::ClosestPacket& closest) {
           for (std::size_t i = 0; i < closest.count; ++i)
@@ -155,7 +155,7 @@ struct Queries {
       indices.push_back(grid.index(p[0], p[1], p[2]));
     }
   }
-  // The cells of a brick that may contain points within the band.
+  // The cells of a brick that may contain points within the maximum distance.
   void add_near(const Bricks& bricks, const Grid& grid, const Index3& first, const NearBalls& near_balls) {
     const std::size_t step = std::min(std::size_t{1} << kCellBits, bricks.offsets.size());
     for (std::size_t i = 0; i < bricks.offsets.size(); i += step) {
@@ -192,7 +192,7 @@ std::size_t query_grid(const FieldTask& task, const Engine& engine, bool only_ne
         queries.add(bricks, grid, first, 0, bricks.offsets.size());
       if (queries.points.empty()) continue;
       engine.closest_points(
-          task.o2, queries.points, task.options.band,
+          task.o2, queries.points, task.options.max_distance,
           [&](std::size_t at, const sites::ClosestPacket& closest) {
             const std::uint32_t inside =
                 task.is_signed ? task.is_inside(std::span(queries.points).subspan(at, closest.count), closest)

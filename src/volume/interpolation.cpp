@@ -17,8 +17,8 @@ namespace {
 
 // A corner of a cell at the distance `apart` from the point, where the distance is `value`.
 void include(FieldSample& sample, double value, double apart, const DistanceField& field) {
-  if (std::isnan(value)) {  // beyond the band, on either side
-    sample.magnitude = std::max(sample.magnitude, field.band - apart);
+  if (std::isnan(value)) {  // beyond the maximum distance, on either side
+    sample.magnitude = std::max(sample.magnitude, field.max_distance - apart);
     return;
   }
   switch (field.sign.method) {

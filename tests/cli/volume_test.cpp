@@ -24,12 +24,12 @@ TEST_F(VolumeCommand, WritesTheFieldOfTheLibrary) {
   Box box = bounds(sites.mesh());
   for (int k = 0; k < 3; ++k) box.lo[k] -= 0.2, box.hi[k] += 0.2;
   const DistanceField expected =
-      compute_field(sites, make_grid(box, {20, 21, 9}), {.band = 0.2, .sites = true});
+      compute_field(sites, make_grid(box, {20, 21, 9}), {.max_distance = 0.2, .sites = true});
   for (const std::string extension : {".npy", ".vti", ".vdb"}) {
     SCOPED_TRACE(extension);
     const std::filesystem::path file = folder / "new" / ("field" + extension),
                                 same = folder / ("same" + extension);
-    const Outcome run = run_sdm({"volume", o2, "--grid", "20", "21", "9", "--band", "0.2", "--sites",
+    const Outcome run = run_sdm({"volume", o2, "--grid", "20", "21", "9", "--max-distance", "0.2", "--sites",
                                  "--json", "--units", "mm", "-o", file.string()});
     ASSERT_EQ(run.code, 0) << run.err;
     write_field(same, expected);
@@ -38,9 +38,9 @@ TEST_F(VolumeCommand, WritesTheFieldOfTheLibrary) {
     EXPECT_EQ(json["grid"]["points"], expected.grid.dims);
     EXPECT_EQ(json["grid"]["origin"], expected.grid.origin);
     EXPECT_EQ(json["grid"]["spacing"], expected.grid.spacing);
-    EXPECT_EQ(json["band"], 0.2);
+    EXPECT_EQ(json["max_distance"], 0.2);
     EXPECT_EQ(json["sign"]["method"], "exact");
-    EXPECT_EQ(json["beyond_band"], expected.beyond_band);
+    EXPECT_EQ(json["beyond_max_distance"], expected.beyond_max_distance);
     EXPECT_EQ(json["accuracy"], expected.accuracy);
     EXPECT_EQ(json["units"], "mm");
     EXPECT_EQ(json["file"], file.string());
@@ -57,7 +57,7 @@ TEST_F(VolumeCommand, WrongUsage) {
       {{"--grid", "4", "0", "4", "-o", "f.vdb"}, "1 to 1048576"},
       {{"--grid", "4", "4", "9999999", "-o", "f.vdb"}, "1 to 1048576"},
       {{"--spacing", "-1", "-o", "f.vdb"}, "positive"},
-      {{"--spacing", "1", "--band", "0", "-o", "f.vdb"}, "positive"},
+      {{"--spacing", "1", "--max-distance", "0", "-o", "f.vdb"}, "positive"},
       {{"--spacing", "1", "--bounds", "0", "0", "0", "1", "1", "-o", "f.vdb"}, "--bounds"},
       {{"--spacing", "1", "--bounds", "0", "0", "0", "1", "1", "-1", "-o", "f.vdb"}, "lowest"},
       {{"--spacing", "1", "-o", "f.raw"}, ".vdb (OpenVDB)"},

@@ -58,7 +58,7 @@ TEST(FailedAllocations, FieldsAreComputedByTheNextCall) {
   for (const double band : {0.5, std::numeric_limits<double>::infinity()}) {
     const std::function<Numbers(TwoMeshes&)> call = [&](TwoMeshes& m) {
       const Grid grid = make_grid(Box{{-1, -1, -1}, {1.5, 1, 1}}, std::array<std::uint32_t, 3>{6, 5, 5});
-      return numbers_of(compute_field(m.sites, grid, {.band = band}).distance);
+      return numbers_of(compute_field(m.sites, grid, {.max_distance = band}).distance);
     };
     expect_repeatable(two_meshes, call);
   }

@@ -20,7 +20,7 @@ TEST_F(FieldCommand, HasAllMethods) {
   for (const fields::MethodInfo& method : fields::methods()) {
     SCOPED_TRACE(method.name);
     const Outcome run =
-        run_sdm_paper({"field", o2, "--spacing", "0.25", "--band", "0.3", "--method",
+        run_sdm_paper({"field", o2, "--spacing", "0.25", "--max-distance", "0.3", "--method",
                        std::string(method.name), "--sign", "none", "--json", "-o", folder / "f.npy"});
     ASSERT_EQ(run.code, 0) << run.err;
     const Json json = Json::parse(run.out);
@@ -64,7 +64,7 @@ TEST_F(FieldCommand, EstimatesProximity) {
 }
 
 TEST_F(FieldCommand, WritesWhatTheCommandVolumeWrites) {
-  const std::vector<std::string> options{o2, "--spacing", "0.25", "--band", "0.3", "--sites", "-o"};
+  const std::vector<std::string> options{o2, "--spacing", "0.25", "--max-distance", "0.3", "--sites", "-o"};
   const auto write = [&](const char* name, auto&& run, const char* command) {
     std::vector<std::string> arguments{command};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -81,7 +81,7 @@ TEST_F(FieldCommand, WrongUsage) {
       {{"-o", "f.vdb"}, "--grid"},
       {{"--spacing", "1", "--tessellation", "0.1", "-o", "f.vdb"}, "--method brute_force"},
       {{"--spacing", "1", "--method", "brute_force", "--tessellation", "0", "-o", "f.vdb"}, "positive"},
-      {{"--spacing", "1", "--method", "csc", "-o", "f.vdb"}, "csc needs --band"},
+      {{"--spacing", "1", "--method", "csc", "-o", "f.vdb"}, "csc needs --max-distance"},
       {{"--spacing", "1", "--method", "fast", "-o", "f.vdb"}, "not one of"},
       {{"--spacing", "1", "-o", "f.raw"}, ".vdb (OpenVDB)"},
       {{"--spacing", "1"}, "-o"},

@@ -28,7 +28,7 @@ TEST(FieldProximityBounds, HoldForTheSurfaces) {
                              Pose{"within", {1, 0, 0}}, Pose{"outside_the_grid", {4, 4, 4}}}) {
       SCOPED_TRACE(pose.name + ", band " + std::to_string(band));
       const Mesh o1 = moved(pose.name == "within" ? placed(sphere(2), "scale:0.1") : ball, pose.offset);
-      const DistanceField field = compute_field(Sites(o2), grid, {.band = band});
+      const DistanceField field = compute_field(Sites(o2), grid, {.max_distance = band});
       const fields::Proximity found = fields::proximity(field, o1);
       ProximityQuery exact(o1, o2);
       const BoundedLength separation = exact.separation();

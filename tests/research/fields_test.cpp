@@ -21,12 +21,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void expect_agreement(const FieldScene& scene, double band) {
   const Sites sites(scene.mesh);
-  const DistanceField expected = reference_field(sites, scene.grid, {.band = band});
+  const DistanceField expected = reference_field(sites, scene.grid, {.max_distance = band});
   for (const MethodInfo& method : fields::methods()) {
-    if (method.needs_band && band == kInfinity) continue;
+    if (method.needs_max_distance && band == kInfinity) continue;
     SCOPED_TRACE(scene.name + ", " + std::string(method.name) + ", band " + std::to_string(band));
     const fields::Field field =
-        fields::compute_field(sites, scene.grid, {.method = method.method, .band = band});
+        fields::compute_field(sites, scene.grid, {.method = method.method, .max_distance = band});
     EXPECT_EQ(field.method, method.method);
     EXPECT_LE(field.accuracy, 1.0001 * kFieldTolerance * diagonal_of(scene));
     expect_equal(field, expected, kFieldTolerance * diagonal_of(scene));
@@ -57,8 +57,9 @@ TEST(FieldMethods, FindSites) {
     for (const MethodInfo& method : fields::methods()) {
       SCOPED_TRACE(scene.name + ", " + std::string(method.name));
       expect_sites_at_their_distances(
-          fields::compute_field(sites, scene.grid,
-                                {.method = method.method, .band = 0.1 * diagonal_of(scene), .sites = true}),
+          fields::compute_field(
+              sites, scene.grid,
+              {.method = method.method, .max_distance = 0.1 * diagonal_of(scene), .sites = true}),
           sites, kFieldTolerance * diagonal_of(scene));
     }
   }
@@ -78,7 +79,8 @@ TEST(FieldMethods, DoNotDependOnTheNumberOfThreads) {
   const Sites sites(scene.mesh);
   for (const MethodInfo& method : fields::methods()) {
     SCOPED_TRACE(method.name);
-    const fields::Options options{.method = method.method, .band = 0.1 * diagonal_of(scene), .sites = true};
+    const fields::Options options{
+        .method = method.method, .max_distance = 0.1 * diagonal_of(scene), .sites = true};
     const fields::Field several = fields::compute_field(sites, scene.grid, options);
     const ThreadLimit limit(1);
     const fields::Field one = fields::compute_field(sites, scene.grid, options);
@@ -95,8 +97,8 @@ TEST(FieldMethods, OfWrongOptionsAreErrors) {
   const auto error = [&](const fields::Options& options) {
     return error_of([&] { return fields::compute_field(sites, grid, options); });
   };
-  EXPECT_THAT(error({.method = Method::difi, .band = 0}), HasSubstr("band"));
-  EXPECT_THAT(error({.method = Method::csc}), HasSubstr("needs a band"));
+  EXPECT_THAT(error({.method = Method::difi, .max_distance = 0}), HasSubstr("max_distance"));
+  EXPECT_THAT(error({.method = Method::csc}), HasSubstr("needs a maximum distance"));
   EXPECT_THAT(error({.method = static_cast<Method>(99)}), HasSubstr("unknown method"));
 }
 
@@ -107,7 +109,7 @@ TEST(FieldMethods, ThatExceedTheMemoryAreErrors) {
   for (const MethodInfo& method : fields::methods())
     EXPECT_NE(error_of([&] {
                 return fields::compute_field(sites, grid,
-                                             {.method = method.method, .band = 1, .sites = true});
+                                             {.method = method.method, .max_distance = 1, .sites = true});
               }),
               "");
 }
@@ -123,7 +125,7 @@ TEST(FieldMethods, CanBeCancelled) {
   const Grid grid = make_grid({{-1, -1, -1}, {1, 1, 1}}, {24, 24, 24});
   for (const MethodInfo& method : fields::methods()) {
     SCOPED_TRACE(method.name);
-    fields::Options options{.method = method.method, .band = 1};
+    fields::Options options{.method = method.method, .max_distance = 1};
     std::vector<double> seen;
     options.progress = [&](std::string_view, double fraction) {
       seen.push_back(fraction);

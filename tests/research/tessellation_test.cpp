@@ -19,7 +19,7 @@ fields::Field drawn(const Sites& sites, const Grid& grid, double error,
                     double band = std::numeric_limits<double>::infinity()) {
   return fields::compute_field(
       sites, grid,
-      {.method = fields::Method::brute_force, .band = band, .sites = true, .tessellation = error});
+      {.method = fields::Method::brute_force, .max_distance = band, .sites = true, .tessellation = error});
 }
 
 TEST(Tessellation, NeverFallsBelowTheDistanceNorExceedsItsError) {
@@ -83,7 +83,7 @@ TEST(Tessellation, WithinABandMissesOnlyPointsNearItsEnd) {
     EXPECT_NEAR(field.distance[i], exact.distance[i], field.accuracy);
   }
   EXPECT_GT(values, 100u);
-  EXPECT_GT(field.beyond_band, 100u);
+  EXPECT_GT(field.beyond_max_distance, 100u);
 }
 
 TEST(Tessellation, NeedsBruteForceAndNoSign) {

@@ -12,7 +12,7 @@ namespace sdm::test {
 namespace {
 
 void expect_agreement(const FieldScene& scene, const FieldOptions& options) {
-  SCOPED_TRACE(scene.name + ", band " + std::to_string(options.band));
+  SCOPED_TRACE(scene.name + ", band " + std::to_string(options.max_distance));
   const Sites sites(scene.mesh);
   const double tolerance = kFieldTolerance * diagonal_of(scene);
   const DistanceField field = compute_field(sites, scene.grid, options);
@@ -26,7 +26,8 @@ TEST(FieldAgreement, WithoutABand) {
 
 TEST(FieldAgreement, WithinBands) {
   for (const FieldScene& scene : field_scenes())
-    for (const double part : {0.01, 0.1}) expect_agreement(scene, {.band = part * diagonal_of(scene)});
+    for (const double part : {0.01, 0.1})
+      expect_agreement(scene, {.max_distance = part * diagonal_of(scene)});
 }
 
 TEST(FieldAgreement, OnEverySetOfInstructions) {
@@ -34,7 +35,7 @@ TEST(FieldAgreement, OnEverySetOfInstructions) {
   for (const SimdTarget target : simd_targets()) {
     SCOPED_TRACE(name(target));
     const UseSimdTarget use(target);
-    expect_agreement(scene, {.band = 0.1 * diagonal_of(scene)});
+    expect_agreement(scene, {.max_distance = 0.1 * diagonal_of(scene)});
   }
 }
 
@@ -67,7 +68,7 @@ TEST(FieldAgreement, OfSites) {
     SCOPED_TRACE(scene.name);
     const Sites sites(scene.mesh);
     expect_sites_at_their_distances(
-        compute_field(sites, scene.grid, {.band = 0.1 * diagonal_of(scene), .sites = true}), sites,
+        compute_field(sites, scene.grid, {.max_distance = 0.1 * diagonal_of(scene), .sites = true}), sites,
         kFieldTolerance * diagonal_of(scene));
   }
 }
@@ -82,7 +83,7 @@ TEST(FieldAgreement, WithTheGeneralisedWindingNumber) {
 TEST(FieldAgreement, OfAnyNumberOfThreads) {
   const FieldScene scene = field_scenes()[0];
   const Sites sites(scene.mesh);
-  const FieldOptions options{.band = 0.1 * diagonal_of(scene), .sites = true};
+  const FieldOptions options{.max_distance = 0.1 * diagonal_of(scene), .sites = true};
   const DistanceField several = compute_field(sites, scene.grid, options);
   const ThreadLimit limit(1);
   const DistanceField one = compute_field(sites, scene.grid, options);

@@ -21,7 +21,7 @@ inline DistanceField reference_field(const Sites& sites, const Grid& grid, const
 /// A point at the border of the band may have a value or not, one on the surface may have either sign.
 inline void expect_equal(const DistanceField& field, const DistanceField& expected, double tolerance) {
   ASSERT_EQ(field.distance.size(), expected.distance.size());
-  const auto is_border = [&](float d) { return std::abs(std::abs(d) - field.band) <= tolerance; };
+  const auto is_border = [&](float d) { return std::abs(std::abs(d) - field.max_distance) <= tolerance; };
   double worst = 0;
   std::size_t missing = 0, wrong_signs = 0;
   for (std::size_t i = 0; i < field.distance.size(); ++i) {

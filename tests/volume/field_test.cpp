@@ -55,8 +55,8 @@ TEST(Fields, OfWrongOptionsAreErrors) {
   const auto error = [&](const Sites& sites, const FieldOptions& options) {
     return error_of([&] { return compute_field(sites, grid, options); });
   };
-  EXPECT_THAT(error(closed, {.band = 0}), HasSubstr("band"));
-  EXPECT_THAT(error(closed, {.band = kNaN}), HasSubstr("band"));
+  EXPECT_THAT(error(closed, {.max_distance = 0}), HasSubstr("max_distance"));
+  EXPECT_THAT(error(closed, {.max_distance = kNaN}), HasSubstr("max_distance"));
   EXPECT_THAT(error(open, {.sign = SignMethod::exact}), HasSubstr("open"));
   Grid wrong = grid;
   wrong.dims[1] = 0;
@@ -83,7 +83,7 @@ TEST(Fields, MayBeFarAway) {
 TEST(Fields, CanBeCancelled) {
   const Sites sites(sphere(2));
   const Grid grid = make_grid({{-1, -1, -1}, {1, 1, 1}}, {24, 24, 24});
-  FieldOptions options{.band = 1};
+  FieldOptions options{.max_distance = 1};
   std::vector<double> seen;
   options.progress = [&](std::string_view, double fraction) {
     seen.push_back(fraction);
@@ -100,14 +100,15 @@ TEST(Fields, CanBeCancelled) {
 
 TEST(Fields, ReportTheirMemory) {
   const FieldScene scene = field_scenes()[0];
-  const FieldReport report = compute_field(Sites(scene.mesh), scene.grid).report;
+  FieldReport report;
+  (void)compute_field(Sites(scene.mesh), scene.grid, {}, report);
   EXPECT_EQ(report.field_bytes, 4 * scene.grid.size());
   EXPECT_GT(report.working_bytes, 0u);
 }
 
-TEST(Fields, HaveNoValueBeyondTheBand) {
+TEST(Fields, HaveNoValueBeyondTheMaximumDistance) {
   const Grid grid = make_grid({{-2, -2, -2}, {2, 2, 2}}, {9, 9, 9});
-  const DistanceField field = compute_field(Sites(cube()), grid, {.band = 0.5});
+  const DistanceField field = compute_field(Sites(cube()), grid, {.max_distance = 0.5});
   std::size_t without = 0;
   for (std::size_t i = 0; i < grid.size(); ++i) {
     without += std::isnan(field.distance[i]);
@@ -115,11 +116,11 @@ TEST(Fields, HaveNoValueBeyondTheBand) {
       EXPECT_LE(std::abs(field.distance[i]), 0.5f);
     }
   }
-  EXPECT_EQ(field.beyond_band, without);
+  EXPECT_EQ(field.beyond_max_distance, without);
   EXPECT_GT(without, 0u);
   EXPECT_TRUE(std::isnan(field.distance[grid.index(4, 4, 4)]));
   EXPECT_EQ(field.distance[grid.index(4, 4, 3)], -0.5f) << "at the band exactly";
-  EXPECT_EQ(compute_field(Sites(cube()), grid, {.band = kInfinity}).beyond_band, 0u);
+  EXPECT_EQ(compute_field(Sites(cube()), grid, {.max_distance = kInfinity}).beyond_max_distance, 0u);
 }
 
 }  // namespace

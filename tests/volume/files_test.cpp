@@ -40,7 +40,7 @@ void expect_same(const std::vector<float>& found, const std::vector<float>& expe
 struct FieldFiles : ::testing::Test {
   TemporaryFolder folder;
   Grid grid = make_grid({{-2, -2.5, -1}, {2, 2.5, 1}}, {7, 6, 5});
-  DistanceField field = compute_field(Sites(ring(16)), grid, {.band = 1.2, .sites = true});
+  DistanceField field = compute_field(Sites(ring(16)), grid, {.max_distance = 1.2, .sites = true});
 };
 
 TEST_F(FieldFiles, NumPy) {
@@ -110,9 +110,9 @@ TEST(FarSigns, AreThoseOfWindingNumbers) {
     const Grid part = make_grid(box, {31, 32, 33});
     double widest = 0;
     for (const double h : part.spacing) widest = std::max(widest, h);
-    const DistanceField field = compute_field(Sites(nested), part, {.band = widest});
+    const DistanceField field = compute_field(Sites(nested), part, {.max_distance = widest});
     ASSERT_TRUE(io::has_far_signs(field));
-    EXPECT_GT(field.beyond_band, 0u);
+    EXPECT_GT(field.beyond_max_distance, 0u);
     const std::vector<bool> inside = io::far_signs(field);
     for_some_points(part, 2000, [&](std::size_t i, const Vec3& p) {
       if (std::isnan(field.distance[i])) {
@@ -120,8 +120,10 @@ TEST(FarSigns, AreThoseOfWindingNumbers) {
       }
     });
   }
-  EXPECT_FALSE(io::has_far_signs(compute_field(Sites(nested), grid, {.band = 0.05}))) << "a thin band";
-  EXPECT_FALSE(io::has_far_signs(compute_field(Sites(nested), grid, {.sign = SignMethod::none, .band = 1})));
+  EXPECT_FALSE(io::has_far_signs(compute_field(Sites(nested), grid, {.max_distance = 0.05})))
+      << "a thin band";
+  EXPECT_FALSE(
+      io::has_far_signs(compute_field(Sites(nested), grid, {.sign = SignMethod::none, .max_distance = 1})));
 }
 
 }  // namespace

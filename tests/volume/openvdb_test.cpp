@@ -60,7 +60,7 @@ TEST_F(OpenVdb, ReadsFields) {
     for (const double part : {0.05, std::numeric_limits<double>::infinity()}) {
       SCOPED_TRACE(scene.name + ", band " + std::to_string(part));
       const DistanceField field =
-          compute_field(Sites(scene.mesh), scene.grid, {.band = part * diagonal_of(scene)});
+          compute_field(Sites(scene.mesh), scene.grid, {.max_distance = part * diagonal_of(scene)});
       const openvdb::FloatGrid::Ptr vdb = read_back(field);
       ASSERT_TRUE(vdb);
       expect_values(*vdb, field);
@@ -78,16 +78,16 @@ TEST_F(OpenVdb, ReadsFields) {
 // Larger than the nodes of all levels of OpenVDB's trees.
 TEST_F(OpenVdb, ReadsLongFields) {
   const Mesh mesh = joined(moved(sphere(1), {2, 0, 0}), moved(sphere(1), {4498, 0, 0}));
-  const DistanceField field =
-      compute_field(Sites(mesh), make_grid({{0, -1.5, -1.5}, {4500, 1.5, 1.5}}, {9001, 7, 7}), {.band = 1});
-  EXPECT_GT(field.beyond_band, 0u);
+  const DistanceField field = compute_field(
+      Sites(mesh), make_grid({{0, -1.5, -1.5}, {4500, 1.5, 1.5}}, {9001, 7, 7}), {.max_distance = 1});
+  EXPECT_GT(field.beyond_max_distance, 0u);
   expect_values(*read_back(field), field);
 }
 
 TEST_F(OpenVdb, FindsLevelSetsComplete) {
   const Mesh mesh = joined(moved(ring(20), {0.9, 0.2, 0.1}), sphere(3));
   const Grid grid = make_grid(around(mesh, 0.1), 0.05);
-  const DistanceField field = compute_field(Sites(mesh), grid, {.band = 0.15});
+  const DistanceField field = compute_field(Sites(mesh), grid, {.max_distance = 0.15});
   const openvdb::FloatGrid::Ptr vdb = read_back(field);
   EXPECT_EQ(vdb->getGridClass(), openvdb::GRID_LEVEL_SET);
   EXPECT_EQ(vdb->background(), 0.15f);
@@ -99,10 +99,11 @@ TEST_F(OpenVdb, FindsLevelSetsComplete) {
     inside += d == -0.15f;
     wrong += d != filled->tree().getValue(coord(grid, i));
   }
-  EXPECT_EQ(wrong, 0u) << "signs beyond the band are those that OpenVDB finds";
+  EXPECT_EQ(wrong, 0u) << "signs beyond the maximum distance are those that OpenVDB finds";
   EXPECT_GT(inside, 0u);
 
-  const DistanceField without = compute_field(Sites(mesh), grid, {.sign = SignMethod::none, .band = 0.15});
+  const DistanceField without =
+      compute_field(Sites(mesh), grid, {.sign = SignMethod::none, .max_distance = 0.15});
   EXPECT_EQ(read_back(without)->getGridClass(), openvdb::GRID_UNKNOWN);
 }
 
@@ -131,7 +132,7 @@ TEST_F(OpenVdb, AgreesWithFields) {
     Box box = bounds(mesh);
     for (int k = 0; k < 3; ++k) box.lo[k] -= 4.3 * spacing, box.hi[k] += 4.1 * spacing;
     const Grid grid = make_grid(box, spacing);
-    const DistanceField field = compute_field(Sites(mesh), grid, {.band = kCells * spacing});
+    const DistanceField field = compute_field(Sites(mesh), grid, {.max_distance = kCells * spacing});
     using namespace openvdb::tools;
     const auto vdb = meshToVolume<openvdb::FloatGrid>(
         IndexSpaceMesh{mesh, grid}, *openvdb::math::Transform::createLinearTransform(spacing), kCells, kCells,

@@ -25,7 +25,7 @@ TEST(FieldSamples, HaveBoundsThatHold) {
   for (const FieldScene& scene : field_scenes())
     for (const double band : {kInfinity, 0.05 * diagonal_of(scene)}) {
       SCOPED_TRACE(scene.name + ", band " + std::to_string(band));
-      const DistanceField field = compute_field(Sites(scene.mesh), scene.grid, {.band = band});
+      const DistanceField field = compute_field(Sites(scene.mesh), scene.grid, {.max_distance = band});
       const bool is_signed = field.sign.method == SignMethod::exact;
       Box box = bounds(scene.mesh);  // parts of it are outside of some grids, as is some of the grid of it
       extend(box, scene.grid.origin);

@@ -9,7 +9,7 @@ bool has_far_signs(const DistanceField& field) {
   double largest = 0;
   for (int k = 0; k < 3; ++k)
     if (field.grid.dims[k] > 1) largest = std::max(largest, field.grid.spacing[k]);
-  return field.sign.method == SignMethod::exact && field.band >= largest;
+  return field.sign.method == SignMethod::exact && field.max_distance >= largest;
 }
 
 std::vector<bool> far_signs(const DistanceField& field) {

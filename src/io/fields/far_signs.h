@@ -1,4 +1,4 @@
-// The signs of points beyond the band of a signed field.
+// The signs of points beyond the maximum distance of a signed field.
 #pragma once
 
 #include <sdm/volume.h>
@@ -7,8 +7,8 @@
 
 namespace sdm::io {
 
-/// Whether points without a value are known to be inside or outside: in a signed field with a band of at
-/// least the largest spacing.
+/// Whether points without a value are known to be inside or outside: in a signed field with a maximum
+/// distance of at least the largest spacing.
 [[nodiscard]] bool has_far_signs(const DistanceField& field);
 
 /// Returns for each point of such a field whether it is inside. Two neighbours of a grid on different sides
