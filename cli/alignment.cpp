@@ -70,9 +70,10 @@ std::string direction(sdm::Vec3 v) {
 
 std::string in_words(const sdm::DegreeOfFreedom& freedom, double size) {
   constexpr double kSlight = 0.05;
-  if (length(freedom.rotation) < kSlight) return "translation along " + direction(freedom.translation);
+  if (!freedom.axis_point || length(freedom.rotation) < kSlight)
+    return "translation along " + direction(freedom.translation);
   return fmt::format("rotation about {} through {}", direction(freedom.rotation),
-                     place(freedom.axis_point, size));
+                     place(*freedom.axis_point, size));
 }
 
 }  // namespace
@@ -122,9 +123,9 @@ Json to_json(const AlignOutcome& outcome) {
   for (const sdm::DegreeOfFreedom& f : a.freedoms)
     freedoms.push_back({{"translation", f.translation},
                         {"rotation", f.rotation},
-                        {"axis_point", f.axis_point},
+                        {"axis_point", f.axis_point ? Json(*f.axis_point) : Json()},
                         {"determined", f.determined},
-                        {"standard_error", f.free ? Json() : Json(f.standard_error)},
+                        {"standard_error", f.standard_error ? Json(*f.standard_error) : Json()},
                         {"free", f.free}});
   return {{"matrix", a.transform.rows},
           {"order", "row-major, for column vectors"},

@@ -38,7 +38,10 @@ CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, cons
   return app
       .add_option_function<std::string>(
           "--resolution",
-          [&atlas](const std::string& text) { std::tie(atlas.resolution, atlas.rows) = *parse_size(text); },
+          [&atlas](const std::string& text) {
+            const auto [columns, rows] = *parse_size(text);
+            atlas.resolution = columns, atlas.rows = rows;
+          },
           "Texels along each side of " + maps + "; with --atlas uv also WxH, those of a row and of a column")
       ->check(CLI::Validator(
           [](const std::string& text) {
@@ -51,7 +54,7 @@ CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, cons
 }
 
 void check_layout(const sdm::AtlasOptions& atlas) {
-  if (atlas.rows != 0 && atlas.rows != atlas.resolution && atlas.kind != sdm::AtlasKind::uv)
+  if (atlas.rows && *atlas.rows != atlas.resolution && atlas.kind != sdm::AtlasKind::uv)
     throw CLI::ValidationError("--resolution", "a map that is not square needs --atlas uv");
 }
 
@@ -89,7 +92,8 @@ void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
 std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, const sdm::GlOptions& gl,
                                                const sdm::AtlasOptions& atlas) {
   if (engine.name != "gl") return sdm::make_engine(engine.name);
-  (void)sdm::gl_device(std::max(atlas.resolution, atlas.rows), gl);  // fails before a surface is built
+  (void)sdm::gl_device(std::max(atlas.resolution, atlas.rows.value_or(0)),
+                       gl);  // fails before a surface is built
   return sdm::make_gl_engine(gl);
 }
 
@@ -161,7 +165,7 @@ void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& toleranc
 }
 
 void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
-                           double& depth_precision) {
+                           std::optional<double>& depth_precision) {
   app.add_option("--margin", contact_margin,
                  "Also report contacts up to a distance of D, not only of penetrating parts")
       ->check(no_negative_number())

@@ -45,7 +45,7 @@ void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files);
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance);
 /// Adds --units, --margin and --precision, for commands that print proximity.
 void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
-                           double& depth_precision);
+                           std::optional<double>& depth_precision);
 /// How a command runs and what it prints.
 struct RunOptions {
   unsigned threads = 0;  ///< 0: all cores

@@ -67,6 +67,7 @@ HausdorffAnswer decide(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1
   HausdorffAnswer answer = measure(sites, o1, options);
   while (command.tolerance && !verdict(answer.distance.distance, *command.tolerance).certified) {
     const double gap = answer.distance.distance.upper - answer.distance.distance.lower;
+    if (!(gap > 0)) break;
     options.precision = kCloser * gap;
     const HausdorffAnswer closer = measure(sites, o1, options);
     if (!(closer.distance.distance.upper - closer.distance.distance.lower < 0.5 * gap)) break;  // rounding

@@ -69,14 +69,14 @@ CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest) {
       "");
 }
 
-std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text) {
-  const auto parse = [](const std::string& part, std::uint32_t& side) {
+std::optional<std::pair<std::uint32_t, std::optional<std::uint32_t>>> parse_size(const std::string& text) {
+  const auto parse = [](const std::string& part, auto& side) {
     const std::optional<std::int64_t> value = parse_whole_number(part);
     if (!value || *value < 16 || *value > 32768) return false;
     side = static_cast<std::uint32_t>(*value);
     return true;
   };
-  std::pair<std::uint32_t, std::uint32_t> size{0, 0};
+  std::pair<std::uint32_t, std::optional<std::uint32_t>> size{0, std::nullopt};
   const std::size_t by = text.find('x');
   const bool good = by == std::string::npos
                         ? parse(text, size.first)

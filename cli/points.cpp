@@ -59,7 +59,7 @@ Json text_json(const std::optional<sdm::TextDialect>& text) {
   return {{"separator", sdm::name_of(text->separator)},
           {"decimal", sdm::name_of(text->decimal)},
           {"columns", text->columns},
-          {"header_line", text->header_line > 0 ? Json(text->header_line) : Json()}};
+          {"header_line", text->header_line ? Json(*text->header_line) : Json()}};
 }
 
 // How text was read, unless that is the plain way: x, y and z first, between blanks.
@@ -72,7 +72,7 @@ std::string text_summary(const sdm::TextDialect& text) {
   if (plain) return {};
   return fmt::format("  text      separator {}, decimal {}, columns {}{}\n", sdm::name_of(text.separator),
                      sdm::name_of(text.decimal), fmt::join(c, ","),
-                     text.header_line > 0 ? fmt::format(", header in line {}", text.header_line) : "");
+                     text.header_line ? fmt::format(", header in line {}", *text.header_line) : "");
 }
 
 Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcome& outcome) {
@@ -103,11 +103,11 @@ std::string tolerance_line(const PointsOutcome& outcome, const std::string& unit
   if (verdict.verdict != sdm::Verdict::fail) return word + ": " + sdm::verdict_text(summary);
   const std::string share = fmt::format("{}: {} % of the points are out of it", word,
                                         number(100 * summary.exceeding_point_fraction));
-  const sdm::Extreme& most = decisive_extreme(summary);
-  if (std::isnan(most.distance)) return share + "; no point has a value";
-  return fmt::format("{}; {}{} at point {} {}", share, number(most.distance), unit,
+  const std::optional<sdm::Extreme> most = decisive_extreme(summary);
+  if (!most) return share + "; no point has a value";
+  return fmt::format("{}; {}{} at point {} {}", share, number(most->distance), unit,
                      summary.extreme_points[verdict.nearest_is_lower ? 0 : 1],
-                     place(most.point, size_of(outcome.found.bounds)));
+                     place(most->point, size_of(outcome.found.bounds)));
 }
 
 std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) {

@@ -102,10 +102,10 @@ std::string to_text(const Json& json) {
 namespace {
 
 std::string farthest(const Outcome& outcome, const std::string& unit) {
-  const sdm::Extreme& most = decisive_extreme(outcome.summary);
-  if (std::isnan(most.distance)) return "no texel has a value";
-  return fmt::format("{}{} at {} {}", number(most.distance), unit, most.at_vertex ? "vertex" : "texel",
-                     place(most.point, outcome.size));
+  const std::optional<sdm::Extreme> most = decisive_extreme(outcome.summary);
+  if (!most) return "no texel has a value";
+  return fmt::format("{}{} at {} {}", number(most->distance), unit, most->at_vertex ? "vertex" : "texel",
+                     place(most->point, outcome.size));
 }
 
 std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
@@ -143,8 +143,9 @@ std::string doubt_lines(std::span<const sdm::Doubt> doubts, std::size_t column) 
   return text;
 }
 
-const sdm::Extreme& decisive_extreme(const sdm::Summary& summary) {
-  return summary.tolerance->nearest_is_lower ? summary.extremes.min : summary.extremes.max;
+std::optional<sdm::Extreme> decisive_extreme(const sdm::Summary& summary) {
+  if (!summary.extremes) return std::nullopt;
+  return summary.tolerance->nearest_is_lower ? summary.extremes->min : summary.extremes->max;
 }
 
 std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
@@ -155,10 +156,10 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   const auto add = [&]<class... Values>(fmt::format_string<Values...> line, Values&&... values) {
     fmt::format_to(std::back_inserter(text), line, std::forward<Values>(values)...);
   };
-  if (d.texels == 0) {
+  if (d.texels == 0 || !s.extremes) {
     add("  distance  no texel is within the maximum distance\n");
   } else {
-    const auto& [min, max] = s.extremes;
+    const auto& [min, max] = *s.extremes;
     add("  distance  min {}   mean {}   max {}{}\n", number(min.distance), number(d.mean),
         number(max.distance), unit);
     add("            mean |d| {}   rms {}   σ {}{}\n", number(d.mean_abs), number(d.rms), number(d.stddev),

@@ -57,7 +57,7 @@ void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json&
 /// One line for each doubt; the text begins in the given column.
 [[nodiscard]] std::string doubt_lines(std::span<const sdm::Doubt> doubts, std::size_t column);
 /// The extreme that exceeds the tolerance most, or comes closest to a limit.
-[[nodiscard]] const sdm::Extreme& decisive_extreme(const sdm::Summary& summary);
+[[nodiscard]] std::optional<sdm::Extreme> decisive_extreme(const sdm::Summary& summary);
 
 /// A few lines of text. `on` is the mesh that carries the map, of the distances to `to`.
 [[nodiscard]] std::string summary(const Input& on, const Input& to, const Outcome& outcome);

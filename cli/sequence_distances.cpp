@@ -14,9 +14,11 @@ FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& si
                                const sdm::DistanceMap& map, double error_bound,
                                const std::optional<sdm::Tolerance>& tolerance) {
   const std::vector<float> at_vertices = sdm::distances_at_vertices(surface.mesh(), sites);
-  const sdm::Extremes found = sdm::extremes(surface, map, at_vertices);
-  FrameDistances result{
-      .min = found.min.distance, .mean = sdm::statistics(surface, map).mean, .max = found.max.distance};
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::optional<sdm::Extremes> found = sdm::extremes(surface, map, at_vertices);
+  FrameDistances result{.min = found ? found->min.distance : kNan,
+                        .mean = sdm::statistics(surface, map).mean,
+                        .max = found ? found->max.distance : kNan};
   if (!tolerance) return result;
   const double accuracy = sdm::engine_accuracy(sdm::engines().front(), surface.mesh(), sites.mesh());
   const sdm::CertifiedVerdict verdict = sdm::certify_tolerance(

@@ -126,7 +126,7 @@ void SequenceFiles::write_collected(const std::vector<Frame>& frames) {
                              .units = pair.units,
                              .up = command_.picture.up,
                              .colors = command_.picture};
-  if (command_.reading.rate > 0) options.frames_per_second = command_.reading.rate;
+  if (command_.reading.rate) options.frames_per_second = *command_.reading.rate;
   if (command_.outputs.player) {
     player_->write(folder_ / "player.html", player_panels(frames, pair.units), options);
     listed_ += " player.html";

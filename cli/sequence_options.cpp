@@ -28,8 +28,8 @@ void add_output_options(CLI::App& app, SequenceCommand& c) {
 }
 
 void add_reading_options(CLI::App& app, SequenceCommand& c) {
-  app.add_option("--rate", c.reading.rate, "glTF animations: frames per second; 0: one frame per key")
-      ->check(no_negative_number())
+  app.add_option("--rate", c.reading.rate, "glTF animations: frames per second; by default one frame per key")
+      ->check(positive_number())
       ->type_name("FPS");
   app.add_flag("--allow-topology", c.reading.allow_topology,
                "Numbered files may add and remove vertices and faces between frames; what stays keeps "
@@ -68,6 +68,10 @@ void check_combination(const SequenceCommand& c) {
     throw CLI::ValidationError("--allow-topology", "cannot be used with --engine gl");
 }
 
+Json optional(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
 Json options_json(const SequenceCommand& c) {
   const auto& range = c.picture.range;
   const auto& tolerance = c.picture.tolerance;
@@ -76,11 +80,11 @@ Json options_json(const SequenceCommand& c) {
           {"--transform-o2", c.pair.transform_o2},
           {"--units", c.pair.units},
           {"--margin", c.pair.options.contact_margin},
-          {"--precision", c.pair.options.depth_precision},
-          {"--resolution", {c.atlas.resolution, c.atlas.rows}},
+          {"--precision", optional(c.pair.options.depth_precision)},
+          {"--resolution", {c.atlas.resolution, c.atlas.rows.value_or(0)}},
           {"--map-precision", c.map_precision},
           {"--maps", c.outputs.maps_every},
-          {"--rate", c.reading.rate},
+          {"--rate", optional(c.reading.rate)},
           {"--allow-topology", c.reading.allow_topology},
           {"--engine", c.engine.name},
           {"--no-temporal", !c.outputs.temporal},

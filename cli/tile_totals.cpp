@@ -39,12 +39,12 @@ Json TileTotals::report() const {
   for (const Tile& tile : tiles_) report["tiles"].push_back(tile.udim);
   report.update(Json::parse(sdm::summary_json(combined_.summary())));
   std::vector<Tile> worst = tiles_;
-  std::erase_if(worst, [](const Tile& tile) { return std::isnan(farthest(tile.extremes).distance); });
+  std::erase_if(worst, [](const Tile& tile) { return !tile.extremes; });
   std::ranges::stable_sort(worst, std::ranges::greater(),
-                           [](const Tile& tile) { return std::abs(farthest(tile.extremes).distance); });
+                           [](const Tile& tile) { return std::abs(farthest(*tile.extremes).distance); });
   report["worst"] = Json::array();
   for (const Tile& tile : worst) {
-    const sdm::Extreme& most = farthest(tile.extremes);
+    const sdm::Extreme& most = farthest(*tile.extremes);
     report["worst"].push_back({{"tile", tile.udim},
                                {"distance", most.distance},
                                {"point", most.point},

@@ -34,7 +34,7 @@ class TileTotals {
  private:
   struct Tile {
     int udim;
-    sdm::Extremes extremes;
+    std::optional<sdm::Extremes> extremes;
   };
 
   std::vector<Tile> tiles_;

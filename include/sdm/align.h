@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 namespace sdm {
@@ -37,13 +38,14 @@ struct AlignOptions {
 /// |translation|² + |rotation|² = 1.
 struct DegreeOfFreedom {
   Vec3 translation{}, rotation{};
-  Vec3 axis_point{};  ///< on the axis of the motion, the closest to the centre of O1; if there is a rotation
+  /// On the axis of the motion, the closest point to the centre of O1; if there is a rotation.
+  std::optional<Vec3> axis_point{};
   /// The rms distance along the normals of O2 by which the samples move, per unit of motion, in [0, √2]: 1
   /// for a plane that moves along its normal, 0 for one that moves in itself.
   double determined = 0;
-  /// An estimate: the standard error of the motion, as a length, if residuals are independent noise. Infinite
-  /// if free.
-  double standard_error = 0;
+  /// An estimate: the standard error of the motion, as a length, if residuals are independent noise.
+  /// Nothing if free.
+  std::optional<double> standard_error{};
   /// `determined` is below 0.02: O2 is nearly unchanged by this motion. The alignment leaves it as at the
   /// start.
   bool free = false;

@@ -6,6 +6,7 @@
 #include <sdm/progress.h>
 
 #include <cstdint>
+#include <optional>
 
 namespace sdm {
 
@@ -20,9 +21,9 @@ enum class AtlasKind {
 struct AtlasOptions {
   AtlasKind kind = AtlasKind::charts;
   std::uint32_t resolution = 1024;  ///< texels per row, in [16, 32768]
-  /// Texels per column, in [16, 32768]; 0: as many as per row, as is necessary unless the kind is uv. Texels
-  /// of such an atlas are as high and as wide on the surface as the texture makes them.
-  std::uint32_t rows = 0;
+  /// Texels per column, in [16, 32768]; by default as many as per row, as is necessary unless the kind is uv.
+  /// Texels of an atlas of another shape are as high and as wide on the surface as the texture makes them.
+  std::optional<std::uint32_t> rows{};
   double max_stretch = 1.3;  ///< charts: bounds the growth of lengths from atlas to surface; in (1, 100]
   /// charts, triangles: free texels around each chart, not shared. All: values of files extend at least this
   /// far beyond the charts (see write_exr).

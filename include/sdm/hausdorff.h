@@ -11,15 +11,16 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace sdm {
 
 /// Options of one_sided_hausdorff() and symmetric_hausdorff().
 struct HausdorffOptions {
-  /// The bounds are at most this far apart, or 1e-6 of the diagonal of the box of both meshes if it is 0;
-  /// ≥ 0, in units of the meshes. At least 1e-12 of the diagonal and of the largest coordinate is used:
+  /// The bounds are at most this far apart, by default kPrecision of the diagonal of the box of both meshes;
+  /// > 0, in units of the meshes. At least 1e-12 of the diagonal and of the largest coordinate is used:
   /// rounding permits no less.
-  double precision = 0;
+  std::optional<double> precision{};
   static constexpr double kPrecision = 1e-6;
   Progress progress{};
 };
@@ -50,7 +51,7 @@ struct SymmetricHausdorff {
 /// options ask. Where triangles would have to be divided beyond the precision of double, the bounds stay
 /// farther apart. The result does not depend on the number of threads.
 ///
-/// Throws sdm::Error if A is unusable (see validate), for a precision that is negative or NaN, or if there is
+/// Throws sdm::Error if A is unusable (see validate), for a precision that is not positive, or if there is
 /// not enough memory; Cancelled. Cost: sorting the vertices of A in space, and one search for each of those
 /// near which the maximum may lie, at most all of them; then some searches for each doubling of the
 /// precision. More where the largest distance is attained, nearly, on a large part of the surface.

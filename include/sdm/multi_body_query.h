@@ -19,8 +19,8 @@ namespace sdm {
 struct MultiBodyOptions {
   /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
   double max_distance = std::numeric_limits<double>::infinity();
-  double depth_precision = 0;  ///< as that of ProximityOptions
-  double contact_margin = 0;   ///< as that of ProximityOptions
+  std::optional<double> depth_precision{};  ///< as that of ProximityOptions
+  double contact_margin = 0;                ///< as that of ProximityOptions
 };
 
 /// The results of ProximityQuery for one pair: O1 is `first`, O2 is `second`.

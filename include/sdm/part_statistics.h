@@ -35,10 +35,10 @@ struct FaceNames {
 /// The distances of one part of a surface.
 struct PartStatistics {
   std::size_t faces = 0;
-  Box box;                      ///< of the vertices of its faces
-  double area_fraction = 0;     ///< of the area of all texels of the map, in [0, 1]
-  DistanceStatistics distance;  ///< of the texels of its faces
-  ToleranceShares tolerance;    ///< fractions of the part's own area; 0 without a tolerance
+  Box box;                                   ///< of the vertices of its faces
+  double area_fraction = 0;                  ///< of the area of all texels of the map, in [0, 1]
+  DistanceStatistics distance;               ///< of the texels of its faces
+  std::optional<ToleranceShares> tolerance;  ///< fractions of the part's own area; if there is one
 };
 
 /// Options of part_statistics().

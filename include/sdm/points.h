@@ -44,8 +44,8 @@ struct TextDialect {
   /// ignored any other name, such as "_". As in a header, case does not matter, and easting, northing and
   /// elevation (or height) stand for x, y and z. Columns after the last are ignored.
   std::vector<std::string> columns{};
-  /// The line of the header in a file that was opened, from 1; 0 if it has none.
-  std::uint64_t header_line = 0;
+  /// The line of the header in a file that was opened, from 1; nothing if it has none.
+  std::optional<std::uint64_t> header_line{};
 };
 
 /// "automatic", "blank", "tab", "comma" or "semicolon".
@@ -125,7 +125,7 @@ struct PointDistancesOptions {
 
 /// The distance of a point and the place of that point in the file, from 0.
 struct PointExtreme {
-  double distance = 0;  ///< NaN if there is none
+  double distance = 0;
   Vec3 point{};
   std::uint64_t index = 0;
 };
@@ -141,7 +141,7 @@ struct PointDistances {
   SignUsed sign;
   DistanceStatistics
       distance;  ///< of the points with a value, each with the same weight; `texels`: their number
-  PointExtreme min, max;
+  std::optional<PointExtreme> min, max;  ///< nothing if no point has a value
   /// Points whose distance is out of picture.tolerance by more than the accuracy, or that are beyond the
   /// maximum distance.
   std::uint64_t beyond_tolerance = 0;

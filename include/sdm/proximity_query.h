@@ -40,10 +40,10 @@ struct Contact {
 
 /// Options of a ProximityQuery.
 struct ProximityOptions {
-  /// The bounds on the penetration depth are at most this far apart, or 1/1000 of the diagonal of the smaller
-  /// body's box if it is 0; ≥ 0, in units of the meshes. Errors of computed distances are added, and where
-  /// faces of a solid that intersects itself nearly coincide, bounds on distances to its boundary.
-  double depth_precision = 0;
+  /// The bounds on the penetration depth are at most this far apart, by default kDepthPrecision of the
+  /// diagonal of the smaller body's box; > 0, in units of the meshes. Errors of computed distances are added,
+  /// and where faces of a solid that intersects itself nearly coincide, bounds on distances to its boundary.
+  std::optional<double> depth_precision{};
   static constexpr double kDepthPrecision = 1e-3;
   /// Contacts are reported for points inside the other body or within this distance of it; ≥ 0, in units of
   /// the meshes.

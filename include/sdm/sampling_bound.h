@@ -105,9 +105,9 @@ class SDM_API RelativeError {
 };
 
 /// Returns a resolution at which covering_radius(Surface(mesh, options)) ≤ precision, a length in units
-/// of the mesh; options.resolution is ignored, and options.rows must be 0. The result is a multiple of 16,
-/// because a power of two may need four times the texels. It is close to the smallest: either the bound is
-/// more than nine tenths of the precision, or a resolution smaller by 16 or by an eighth does not suffice.
+/// of the mesh; options.resolution is ignored, and options.rows must not be set. The result is a multiple of
+/// 16, because a power of two may need four times the texels. It is close to the smallest: either the bound
+/// is more than nine tenths of the precision, or a resolution smaller by 16 or by an eighth does not suffice.
 /// Throws sdm::Error if the precision is not a positive number, if 32768 texels per side do not suffice, and
 /// as Surface does. Cost: two to six atlas layouts, as the bound is about proportional to 1 / resolution.
 [[nodiscard]] SDM_API std::uint32_t resolution_for(const Mesh& mesh, double precision,

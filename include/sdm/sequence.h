@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -17,8 +18,8 @@ namespace sdm {
 
 /// Options of a MeshSequence.
 struct SequenceOptions {
-  /// Frames per second of glTF animations, from the first key to the last; 0: one frame per key.
-  double rate = 0;
+  /// Frames per second of glTF animations, from the first key to the last, > 0; by default one frame per key.
+  std::optional<double> rate{};
   /// Vertices and faces may be added and removed between numbered files; see MeshSequence::change.
   bool allow_topology = false;
 };

@@ -8,6 +8,7 @@
 #include <sdm/surface.h>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,7 @@ struct DistanceStatistics {
 
 /// Where a distance was measured.
 struct Extreme {
-  double distance = 0;     ///< NaN if there is none
+  double distance = 0;
   Vec3 point{};            ///< on the surface
   bool at_vertex = false;  ///< at a vertex of the mesh; otherwise at a texel
 };
@@ -43,10 +44,11 @@ struct Extremes {
   Extreme min, max;
 };
 
-/// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value. Throws
-/// sdm::Error if the map or the distances belong to another surface. Cost: linear in texels and faces.
-[[nodiscard]] SDM_API Extremes extremes(const Surface& surface, const DistanceMap& map,
-                                        std::span<const float> vertex_distances);
+/// Returns nothing if no texel and no vertex has a value. `vertex_distances`: the distance at each vertex of
+/// surface.mesh(), NaN if it has no value. Throws sdm::Error if the map or the distances belong to another
+/// surface. Cost: linear in texels and faces.
+[[nodiscard]] SDM_API std::optional<Extremes> extremes(const Surface& surface, const DistanceMap& map,
+                                                       std::span<const float> vertex_distances);
 
 /// Returns the fraction of the area, in [0, 1], whose |distance| is above `limit`; texels beyond the map's
 /// maximum distance count as above. 0 for a map without texels. Cost: O(n) in texels, all cores.

@@ -107,7 +107,7 @@ struct Summary {
   bool of_itself = false;  ///< a map of a surface to itself, whose texels say nothing about other points
   SignUsed sign{};
   DistanceStatistics distance{};  ///< an estimate for the surface; exact for a cloud, but for the accuracy
-  Extremes extremes{};
+  std::optional<Extremes> extremes{};             ///< nothing without a value
   std::array<std::uint64_t, 2> extreme_points{};  ///< of a cloud: their places in the file, from 0
   std::size_t beyond_max_distance = 0;
   std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh

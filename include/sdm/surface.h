@@ -76,7 +76,7 @@ class SDM_API Surface {
   [[nodiscard]] AtlasKind atlas_kind() const;
   /// Texels per row.
   [[nodiscard]] std::uint32_t resolution() const;
-  /// Texels per column: AtlasOptions::rows or, if that is 0, resolution(), until edits add rows.
+  /// Texels per column: AtlasOptions::rows, by default resolution(), until edits add rows.
   [[nodiscard]] std::uint32_t rows() const;
 
   /// The face that owns each texel, or kNone; resolution() · rows() values.

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace sdm {
 
@@ -41,8 +42,8 @@ struct TimeOfContact {
   std::array<Vec3, 2> witness{};
   std::array<std::uint32_t, 2> faces{kNone, kNone};
   /// Unit vector along which moving O1 separates it from O2: (witness[0] − witness[1]) / separation, or the
-  /// opposite where one body contains part of the other at time 0. 0 if the surfaces intersect then.
-  Vec3 normal{};
+  /// opposite where one body contains part of the other at time 0. Nothing if the surfaces intersect then.
+  std::optional<Vec3> normal{};
 };
 
 /// Finds the first contact by controlled conservative advancement (Tang, Kim & Manocha 2009): two parts of

@@ -9,7 +9,7 @@
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
 
-#include <limits>
+#include <optional>
 #include <span>
 
 namespace sdm {
@@ -66,11 +66,10 @@ enum class VerdictReason {
 /// All that a verdict depends on besides the tolerance. Samples are the texels of a map and the vertices of
 /// its faces, or the points of a cloud.
 struct Evidence {
-  /// The smallest and the largest distance of all samples with a value; lowest > highest if there are none.
-  double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
+  std::optional<double> lowest{}, highest{};  ///< of the distances of all samples with a value
   bool complete = true;          ///< every sample has a value: none is farther than the maximum distance
   bool estimated_signs = false;  ///< SignMethod::winding: between samples a distance may have the other sign
-  double accuracy = 0;           ///< the error of a distance, as of engine_accuracy(); infinite if unknown
+  double accuracy = 0;  ///< the error of a distance, as of engine_accuracy(); infinite if it has no bound
   /// Upper bound on how much a distance at any point can differ from those of the samples, without that
   /// error, as of SamplingBound::value(); 0 where there is nothing between samples.
   double error_bound = 0;
@@ -88,13 +87,13 @@ struct Judgement {
   /// sign of an estimate.
   bool certified = true;
   /// How far `lowest` and `highest` stay from the limits, less the accuracy, whatever their signs if these
-  /// are estimates. Verdict::pass needs at least the error bound. −∞ if a sample has no value, infinite
-  /// without any sample.
-  double margin = 0;
+  /// are estimates. Verdict::pass needs at least the error bound. Nothing if a sample has no value, if there
+  /// are no samples, or if the accuracy has no bound.
+  std::optional<double> margin{};
   bool nearest_is_lower = false;  ///< the limit that is exceeded most, or approached most closely
   /// If not decided: an error bound that leads to Verdict::pass if no sample of a finer map comes closer to a
-  /// limit than half of the present margin. 0 if no error bound does.
-  double deciding_bound = 0;
+  /// limit than half of the present margin. Nothing if no error bound does.
+  std::optional<double> deciding_bound{};
 };
 
 /// Judges by the rule for all verdicts. The accuracy benefits the part: rounding exceeds no tolerance, and a
@@ -105,8 +104,8 @@ struct Judgement {
 /// Whether all distances of a surface are within a tolerance, in units of the mesh.
 struct ToleranceVerdict : Judgement {
   Tolerance tolerance{};
-  /// The largest |distance| of all samples and all vertices of faces; infinite if one of them has no value.
-  double largest = 0;
+  /// The largest |distance| of all samples and all vertices of faces; nothing if one of them has no value.
+  std::optional<double> largest{};
   /// Fraction of the area, in [0, 1], of texels whose distance is out of the tolerance by more than the error
   /// of the engine, or that have no value.
   double exceeded_area_fraction = 0;

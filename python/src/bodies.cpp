@@ -178,19 +178,19 @@ void bind_motion(nb::class_<PyMultiBodyQuery>& query) {
   query
       .def(
           "__init__",
-          [](PyMultiBodyQuery* self, nb::handle bodies, double max_distance, double depth_precision,
-             double contact_margin) {
+          [](PyMultiBodyQuery* self, nb::handle bodies, double max_distance,
+             std::optional<double> depth_precision, double contact_margin) {
             new (self) PyMultiBodyQuery{query_of(bodies, {.max_distance = max_distance,
                                                           .depth_precision = depth_precision,
                                                           .contact_margin = contact_margin}),
                                         {}};
           },
           nb::arg("bodies").none(), nb::kw_only(),
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("depth_precision") = 0.0,
-          nb::arg("contact_margin") = 0.0,
+          nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::arg("depth_precision") = nb::none(), nb::arg("contact_margin") = 0.0,
           nb::sig(
               "def __init__(self, bodies: collections.abc.Iterable[object], *, max_distance: float = ..., "
-              "depth_precision: float = 0.0, contact_margin: float = 0.0) -> None"))
+              "depth_precision: float | None = None, contact_margin: float = 0.0) -> None"))
       .def("__len__", [](const PyMultiBodyQuery& self) { return self.query.size(); })
       .def(
           "set_pose",

@@ -71,7 +71,7 @@ BoundedLength largest_distance(const PyMap& self) {
   const double accuracy = self.accuracy();
   if (self.map.beyond_max_distance > 0) {  // somewhere, and not known by how much
     const double least = std::max(0.0, self.options.max_distance - accuracy);
-    return {.value = least, .lower = least, .upper = kInfinity};
+    return {{.value = least, .lower = least, .upper = kInfinity}};
   }
   const Surface& surface = self.on->surface;
   const SamplingBound bound(surface);
@@ -185,12 +185,12 @@ void bind_verdict(nb::module_& module) {
       .def_ro(
           "margin", &V::margin,
           "How far the distances of texels and vertices stay from the limits, less the accuracy; negative "
-          "if they do not.")
+          "if they do not. None if one of them has no value, or none has.")
       .def_prop_ro(
           "tolerance", [](const V& self) { return nb::make_tuple(self.tolerance.lo, self.tolerance.hi); },
           nb::sig("def tolerance(self) -> tuple[float, float]"), "The least and the most accepted distance.")
       .def_ro("largest", &V::largest,
-              "The largest absolute distance of all texels and vertices; infinite if one has no value.")
+              "The largest absolute distance of all texels and vertices; None if one has no value.")
       .def_ro("within", &V::within, "No point is known to be out of the tolerance.")
       .def_ro("certified", &V::certified, "The verdict holds for every point of the surface.")
       .def_ro("exceeded_area_fraction", &V::exceeded_area_fraction,
@@ -210,8 +210,9 @@ void bind_verdict(nb::module_& module) {
           "undecided_by", [](const V& self) { return self.proof ? self.proof->undecided_by : std::nullopt; },
           "If not decided: no point is out of the tolerance by more than this. None if it is not known.")
       .def("__repr__", [](const V& self) {
+        if (!self.largest) return nb::str("sdm.ToleranceVerdict({!r})").format(word_of(self.verdict));
         return nb::str("sdm.ToleranceVerdict({!r}, largest={:.6g})")
-            .format(word_of(self.verdict), self.largest);
+            .format(word_of(self.verdict), *self.largest);
       });
 }
 

@@ -48,7 +48,7 @@ nb::object dict_of(const std::optional<TextDialect>& text) {
   result["separator"] = sdm::name_of(text->separator);
   result["decimal"] = sdm::name_of(text->decimal);
   result["columns"] = text->columns;
-  result["header_line"] = text->header_line > 0 ? nb::cast(text->header_line) : nb::none();
+  result["header_line"] = text->header_line ? nb::cast(*text->header_line) : nb::none();
   return result;
 }
 
@@ -75,7 +75,7 @@ nb::object read_points(nb::handle file, const std::optional<std::vector<std::str
 void bind_distances(nb::module_& module) {
   using E = PointExtreme;
   nb::class_<E>(module, "PointExtreme", "The distance of a point of a cloud.")
-      .def_ro("distance", &E::distance, "In units of the mesh; NaN if no point has one.")
+      .def_ro("distance", &E::distance, "In units of the mesh.")
       .def_prop_ro(
           "point", [](const E& self) { return vector_of(self.point); },
           nb::sig("def point(self) -> numpy.ndarray"), "The point, (3,) float64.")
@@ -104,15 +104,15 @@ void bind_distances(nb::module_& module) {
           "How inside and outside are distinguished: 'none', 'exact' or 'winding'.")
       .def_prop_ro(
           "sign_reason", [](const D& self) { return self.sign.reason; }, "Why, in words.")
-      .def_ro("min", &D::min, "The point with the smallest distance.")
-      .def_ro("max", &D::max, "The point with the largest distance.")
+      .def_ro("min", &D::min, "The point with the smallest distance; None if no point has one.")
+      .def_ro("max", &D::max, "The point with the largest distance; None if no point has one.")
       .def(
           "statistics", [](const D& self) { return self.distance; },
           "Returns statistics of the points with a value, each with the same weight; ``texels`` is their "
           "number.")
       .def("__repr__", [](const D& self) {
         return nb::str("sdm.PointDistances({} points, {:.6g} to {:.6g})")
-            .format(self.points, self.min.distance, self.max.distance);
+            .format(self.points, self.distance.min, self.distance.max);
       });
 }
 

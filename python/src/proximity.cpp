@@ -174,15 +174,15 @@ void bind_motion(nb::class_<PyProximityQuery>& query) {
   query
       .def(
           "__init__",
-          [](PyProximityQuery* self, nb::handle o1, nb::handle o2, double depth_precision,
+          [](PyProximityQuery* self, nb::handle o1, nb::handle o2, std::optional<double> depth_precision,
              double contact_margin) {
             const ProximityOptions options{.depth_precision = depth_precision,
                                            .contact_margin = contact_margin};
             new (self) PyProximityQuery{ProximityQuery(shape_of(o1), shape_of(o2), options), {}};
           },
-          nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("depth_precision") = 0.0,
+          nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("depth_precision") = nb::none(),
           nb::arg("contact_margin") = 0.0,
-          nb::sig("def __init__(self, o1: object, o2: object, *, depth_precision: float = 0.0, "
+          nb::sig("def __init__(self, o1: object, o2: object, *, depth_precision: float | None = None, "
                   "contact_margin: float = "
                   "0.0) -> None"))
       .def(
@@ -276,10 +276,10 @@ void bind_proximity(nb::module_& module) {
       R"(Proximity of two bodies that move and deform: separation, collision, penetration depth, contacts.
 
 o1, o2: each any form of a mesh (see Mesh), or a Shape.
-depth_precision: the bounds on the penetration depth are at most this far apart; 0: 1/1000 of the
+depth_precision: the bounds on the penetration depth are at most this far apart, > 0; None: 1/1000 of the
 diagonal of the smaller body's box.
 contact_margin: contacts are reported for points inside the other body or within this distance.
-Both in units of the meshes, ≥ 0.
+≥ 0. Both in units of the meshes.
 
 A closed, orientable body is a solid; any other one is a surface without an inside. All results are
 in space, with both bodies in their poses, and are computed by the first call after a body has moved.

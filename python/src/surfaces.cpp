@@ -1,4 +1,5 @@
 // The Hausdorff distance of two surfaces, their alignment, and the doubts that it leaves.
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <sdm/coverage.h>
 #include <sdm/doubts.h>
@@ -13,7 +14,8 @@
 namespace sdm::python {
 namespace {
 
-BoundedLength hausdorff(nb::handle a, nb::handle b, double precision, bool one_sided, nb::handle progress) {
+BoundedLength hausdorff(nb::handle a, nb::handle b, std::optional<double> precision, bool one_sided,
+                        nb::handle progress) {
   SitesInUse on(a), to(b);
   BoundedLength result;
   run(progress, [&](const Progress& report) {
@@ -60,7 +62,7 @@ divided by its radius of gyration, in radians.)")
       .def_ro(
           "standard_error", &F::standard_error,
           "An estimate: the standard error of the motion, as a length, if residuals are independent noise; "
-          "infinite if it is free.")
+          "None if it is free.")
       .def_ro("free", &F::free, "O2 is nearly unchanged by the motion, which the alignment leaves as it was.")
       .def("__repr__", [](const F& self) {
         return nb::str("sdm.DegreeOfFreedom(determined={:.3g}{})")
@@ -110,24 +112,24 @@ constexpr const char* kProgress =
     "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> ";
 
 void bind_hausdorff(nb::module_& module) {
-  static const std::string hausdorff_signature =
-      std::string(
-          "def hausdorff(a: object, b: object, *, precision: float = 0.0, one_sided: bool = False, ") +
-      kProgress + "BoundedLength";
+  static const std::string hausdorff_signature = std::string(
+                                                     "def hausdorff(a: object, b: object, *, precision: "
+                                                     "float | None = None, one_sided: bool = False, ") +
+                                                 kProgress + "BoundedLength";
   module.def("hausdorff", &hausdorff, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
-             nb::arg("precision") = 0.0, nb::arg("one_sided") = false, nb::arg("progress") = nb::none(),
-             nb::sig(hausdorff_signature.c_str()),
+             nb::arg("precision") = nb::none(), nb::arg("one_sided") = false,
+             nb::arg("progress") = nb::none(), nb::sig(hausdorff_signature.c_str()),
              R"(Returns the Hausdorff distance of two surfaces, with certified bounds.
 
 a, b: any form of a mesh (see Mesh), or Sites. Any triangle soups.
-precision: the bounds are at most this far apart, in units of the meshes; 0: 1e-6 of the diagonal of the box
-of both.
+precision: the bounds are at most this far apart, > 0, in units of the meshes; None: 1e-6 of the diagonal of the
+box of both.
 one_sided: only the largest distance from a point of a to the closest point of b, which is 0 where a is a part
 of b; otherwise the larger one of both directions.
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 The witness is a point of a and a point of b that are ``value`` apart. Nothing is sampled: lower ≤ truth ≤
-upper, rounding included. Raises Error for an unusable mesh, or a precision that is negative or NaN.
+upper, rounding included. Raises Error for an unusable mesh, or a precision that is not positive.
 
 >>> distance = sdm.hausdorff(box, sphere)
 >>> distance.lower <= distance.value <= distance.upper

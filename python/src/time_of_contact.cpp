@@ -1,4 +1,5 @@
 // When two moving bodies first come into contact.
+#include <nanobind/stl/optional.h>
 #include <sdm/time_of_contact.h>
 
 #include "proximity.h"
@@ -49,11 +50,12 @@ float64.)")
           nb::sig("def faces(self) -> tuple[int, int]"),
           "A face of O1 and one of O2 that contain these points.")
       .def_prop_ro(
-          "normal", [](const T& self) { return vector_of(self.found.normal); },
-          nb::sig("def normal(self) -> numpy.ndarray"),
+          "normal",
+          [](const T& self) { return self.found.normal ? vector_of(*self.found.normal) : nb::none(); },
+          nb::sig("def normal(self) -> numpy.ndarray | None"),
           R"(Unit vector along which moving O1 separates it from O2, (3,) float64:
 (witness[0] - witness[1]) / separation, or the opposite where one body contains part of the other at time 0;
-0 if the surfaces intersect then.)")
+None if the surfaces intersect then.)")
       .def_prop_ro(
           "pose1", [](const T& self) { return matrix(self.poses[0]); },
           nb::sig("def pose1(self) -> numpy.ndarray"),

@@ -121,7 +121,7 @@ Layout uv_layout(const Mesh& mesh, const AtlasOptions& options) {
   Layout layout;
   layout.corners.resize(mesh.triangles.size());
   layout.maps.resize(mesh.triangles.size());
-  const std::uint32_t columns = options.resolution, rows = options.rows == 0 ? columns : options.rows;
+  const std::uint32_t columns = options.resolution, rows = options.rows.value_or(columns);
   place_corners(mesh, faces, columns, rows, layout);
   check_layers(faces, columns, rows, layout);
   if (options.strict_uv) check_overlaps(faces, std::max(columns, rows), layout);

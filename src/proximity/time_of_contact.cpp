@@ -33,14 +33,14 @@ class MovingPair {
     const BoundedLength& separation = answers_.separation();
     TimeOfContact found{.time = time, .separation = separation.value, .faces = answers_.closest_faces()};
     found.witness = *separation.witness;
-    found.normal = normalized(found.witness[0] - found.witness[1]);
+    if (separation.value > 0) found.normal = normalized(found.witness[0] - found.witness[1]);
     return found;
   }
 
  private:
   std::array<const DividedMotion*, 2> motions_;
   std::array<shape::PosedBody, 2> bodies_;
-  pair::PairAnswers answers_{0, 0};
+  pair::PairAnswers answers_{0, std::nullopt};
 };
 
 TimeOfContact find(const Shape& o1, const DividedMotion& motion1, const Shape& o2,
@@ -49,7 +49,7 @@ TimeOfContact find(const Shape& o1, const DividedMotion& motion1, const Shape& o
   pair.set_time(0);
   TimeOfContact found = pair.found(0);
   const bool collide = pair.colliding();
-  if (collide && found.separation > 0) found.normal = -found.normal;
+  if (collide && found.normal) found.normal = -*found.normal;
   found.contact = collide || found.separation <= tolerance;
   if (found.contact) return found;
   if (motion1.rests() && motion2.rests()) {

@@ -39,9 +39,8 @@ DegreeOfFreedom described(const Motion& motion, const Pivot& pivot) {
   result.rotation = vec3(motion.head<3>());
   result.translation = vec3(motion.tail<3>());
   const double squared = squared_norm(result.rotation);
-  result.axis_point = pivot.centre;
   if (squared > 1e-12)
-    result.axis_point += (pivot.radius / squared) * cross(result.rotation, result.translation);
+    result.axis_point = pivot.centre + (pivot.radius / squared) * cross(result.rotation, result.translation);
   return result;
 }
 
@@ -64,9 +63,8 @@ std::array<DegreeOfFreedom, 6> degrees_of_freedom(const Correspondences& pairs, 
     result[k] = described(motion, pivot);
     result[k].determined = std::sqrt(std::max(0.0, motion.dot(matrix * motion)));
     result[k].free = k >= 6 - all.free;
-    result[k].standard_error =
-        result[k].free ? std::numeric_limits<double>::infinity()
-                       : deviation / (result[k].determined * std::sqrt(static_cast<double>(count)));
+    if (!result[k].free)
+      result[k].standard_error = deviation / (result[k].determined * std::sqrt(static_cast<double>(count)));
   }
   return result;
 }

@@ -23,27 +23,39 @@ double area_of(const Surface& surface) {
   return area;
 }
 
-void extend(Extremes& all, const Extremes& more) {
-  const auto replace = [](Extreme& most, const Extreme& other, bool farther) {
-    if (std::isnan(most.distance) || farther) most = other;
-  };
-  replace(all.min, more.min, more.min.distance < all.min.distance);
-  replace(all.max, more.max, more.max.distance > all.max.distance);
+void extend(std::optional<Extremes>& all, const std::optional<Extremes>& more) {
+  if (!all) {
+    all = more;
+  } else if (more) {
+    if (more->min.distance < all->min.distance) all->min = more->min;
+    if (more->max.distance > all->max.distance) all->max = more->max;
+  }
 }
 
 void extend(Evidence& all, const Evidence& more) {
-  all.lowest = std::min(all.lowest, more.lowest), all.highest = std::max(all.highest, more.highest);
+  if (more.lowest) {
+    all.lowest = std::min(all.lowest.value_or(*more.lowest), *more.lowest);
+    all.highest = std::max(all.highest.value_or(*more.highest), *more.highest);
+  }
   all.complete = all.complete && more.complete;
   all.estimated_signs = all.estimated_signs || more.estimated_signs;
   all.accuracy = std::max(all.accuracy, more.accuracy);
   all.error_bound = std::max(all.error_bound, more.error_bound);
 }
 
+/// The margin of a map among others: a map without samples has no limit, one of which a sample has no value
+/// is worse than all others.
+double comparable_margin(const ToleranceVerdict& v) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return v.margin.value_or(v.reason == VerdictReason::nothing_measured ? kInfinity : -kInfinity);
+}
+
 /// The verdict of one of the maps decides: of the first that fails, else of the one that is farthest from
 /// being decided, else of the one with the least margin.
 const CertifiedVerdict& decisive(std::span<const CertifiedVerdict> verdicts) {
   const auto rank = [](const CertifiedVerdict& v) {
-    const double least = v.verdict == Verdict::not_decided ? v.deciding_bound : v.margin;
+    const double least =
+        v.verdict == Verdict::not_decided ? v.deciding_bound.value_or(0) : comparable_margin(v);
     return std::pair(v.verdict == Verdict::fail          ? 0
                      : v.verdict == Verdict::not_decided ? 1
                      : v.verdict == Verdict::doubtful    ? 2
@@ -55,18 +67,22 @@ const CertifiedVerdict& decisive(std::span<const CertifiedVerdict> verdicts) {
 
 CertifiedVerdict combined(std::span<const CertifiedVerdict> verdicts, std::span<const double> areas) {
   CertifiedVerdict total = decisive(verdicts);
-  total.shares = {}, total.largest = 0;
-  double area = 0;
+  total.shares = {}, total.largest.reset(), total.margin.reset();
+  double area = 0, margin = std::numeric_limits<double>::infinity();
+  bool complete = true;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     const CertifiedVerdict& v = verdicts[i];
-    total.largest = std::max(total.largest, v.largest);
-    total.margin = std::min(total.margin, v.margin);
+    complete = complete && (v.largest || v.reason == VerdictReason::nothing_measured);
+    if (v.largest) total.largest = std::max(total.largest.value_or(0), *v.largest);
+    margin = std::min(margin, comparable_margin(v));
     area += areas[i];
     total.shares.below += areas[i] * v.shares.below;
     total.shares.within += areas[i] * v.shares.within;
     total.shares.above += areas[i] * v.shares.above;
     total.shares.without_value += areas[i] * v.shares.without_value;
   }
+  if (!complete) total.largest.reset();
+  if (std::isfinite(margin)) total.margin = margin;
   if (area > 0)
     for (double* share :
          {&total.shares.below, &total.shares.within, &total.shares.above, &total.shares.without_value})

@@ -62,8 +62,8 @@ LargestDistance largest_distance(const Summary& summary) {
     result.lower = std::max(0.0, summary.max_distance - evidence.accuracy);
     return result;
   }
-  const Extreme& most = farthest(summary.extremes);
-  const double largest = std::isnan(most.distance) ? 0 : std::abs(most.distance);
+  const Extreme most = summary.extremes ? farthest(*summary.extremes) : Extreme{};
+  const double largest = std::abs(most.distance);
   result.lower = std::max(0.0, largest - evidence.accuracy);
   result.upper = largest + evidence.error_bound + evidence.accuracy;
   result.point = most.point;

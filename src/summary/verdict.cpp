@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/vec.h"
 #include "map/statistics/tolerance_limits.h"
@@ -20,7 +21,8 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
                     .error_bound = error_bound,
                     .is_signed = map.sign.method != SignMethod::none};
   const auto add = [&](double d) {
-    evidence.lowest = std::fmin(evidence.lowest, d), evidence.highest = std::fmax(evidence.highest, d);
+    evidence.lowest = std::fmin(evidence.lowest.value_or(d), d);
+    evidence.highest = std::fmax(evidence.highest.value_or(d), d);
   };
   for (const std::uint32_t texel : surface.sample_texels())
     if (std::isfinite(map.distance[texel])) add(map.distance[texel]);
@@ -53,7 +55,7 @@ double margin_of(double lowest, double highest, const Tolerance& tolerance, doub
 /// What is not decided of evidence that is within the tolerance: `measured` is its margin with the signs as
 /// they were found.
 VerdictReason open_question(const Evidence& evidence, double margin, double measured) {
-  if (!(evidence.lowest <= evidence.highest)) return VerdictReason::nothing_measured;
+  if (!evidence.lowest) return VerdictReason::nothing_measured;
   if (!std::isfinite(evidence.accuracy)) return VerdictReason::unknown_accuracy;
   if (evidence.error_bound <= measured || (margin <= 0 && measured > 0))
     return VerdictReason::estimated_signs;
@@ -63,12 +65,16 @@ VerdictReason open_question(const Evidence& evidence, double margin, double meas
 }  // namespace
 
 Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
-  const auto& [lowest, highest, complete, estimated_signs, accuracy, error_bound, is_signed] = evidence;
-  const Tolerance limited = limits_of(tolerance, is_signed);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double lowest = evidence.lowest.value_or(kInfinity), highest = evidence.highest.value_or(-kInfinity);
+  const bool complete = evidence.complete, estimated_signs = evidence.estimated_signs;
+  const double accuracy = evidence.accuracy, error_bound = evidence.error_bound;
+  const Tolerance limited = limits_of(tolerance, evidence.is_signed);
   const double farthest = std::max(-lowest, highest);
   const double measured = margin_of(lowest, highest, limited, accuracy);
-  Judgement result{.margin = estimated_signs ? margin_of(-farthest, farthest, limited, accuracy) : measured,
-                   .nearest_is_lower = limited.lo - lowest > highest - limited.hi};
+  const double margin = estimated_signs ? margin_of(-farthest, farthest, limited, accuracy) : measured;
+  Judgement result{.nearest_is_lower = limited.lo - lowest > highest - limited.hi};
+  if (complete && std::isfinite(margin)) result.margin = margin;
   const map::ToleranceLimits limits(limited, accuracy);
   result.within = complete && !limits.below(lowest) && !limits.above(highest);
   if (!result.within) {
@@ -76,15 +82,13 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
     result.reason = complete ? VerdictReason::exceeded : VerdictReason::beyond_max_distance;
     result.certified =
         !estimated_signs || !complete || farthest - accuracy > std::max(-tolerance.lo, tolerance.hi);
-    if (!complete) result.margin = -std::numeric_limits<double>::infinity();
     return result;
   }
-  result.certified = lowest <= highest && error_bound <= result.margin;
+  result.certified = lowest <= highest && error_bound <= margin;
   if (result.certified) return result;
   result.verdict = Verdict::not_decided;
-  result.reason = open_question(evidence, result.margin, measured);
-  if (result.reason != VerdictReason::nothing_measured)
-    result.deciding_bound = std::max(0.0, result.margin / 2);
+  result.reason = open_question(evidence, margin, measured);
+  if (result.margin > 0.0) result.deciding_bound = *result.margin / 2;
   return result;
 }
 
@@ -96,11 +100,11 @@ ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
                     map.sign.reason + "; choose another sign method or a symmetric tolerance",
                 Remedy::sign_method);
   const Evidence evidence = evidence_of(surface, map, vertex_distances, error_bound, accuracy);
-  ToleranceVerdict verdict{judge(evidence, tolerance), tolerance, 0, 0, {}};
+  ToleranceVerdict verdict{judge(evidence, tolerance), tolerance, {}, 0, {}};
   verdict.shares = tolerance_shares(surface, map, tolerance, accuracy);
   verdict.exceeded_area_fraction = verdict.shares.below + verdict.shares.above + verdict.shares.without_value;
-  verdict.largest = evidence.complete ? std::max({0.0, -evidence.lowest, evidence.highest})
-                                      : std::numeric_limits<double>::infinity();
+  if (evidence.complete && evidence.lowest)
+    verdict.largest = std::max({0.0, -*evidence.lowest, *evidence.highest});
   return verdict;
 }
 

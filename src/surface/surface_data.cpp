@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint32_t kMinResolution = 16, kMaxResolution = 32768;
 
 std::uint32_t rows_of(const AtlasOptions& options) {
-  return options.rows == 0 ? options.resolution : options.rows;
+  return options.rows.value_or(options.resolution);
 }
 
 void check(const Mesh& mesh, const AtlasOptions& options) {

@@ -139,8 +139,8 @@ TEST_F(Consistency, EverythingStatesTheSummaryOfTheLibrary) {
     const Outcome cloud_run = run_sdm(arguments);
     const Json cloud = Json::parse(contents(out + "/report.json"));
     const Json& found = cloud["evidence"];
-    const Judgement judgement = judge({.lowest = found["lowest"],
-                                       .highest = found["highest"],
+    const Judgement judgement = judge({.lowest = found["lowest"].get<double>(),
+                                       .highest = found["highest"].get<double>(),
                                        .complete = found["complete"],
                                        .estimated_signs = found["estimated_signs"],
                                        .accuracy = found["accuracy"],
@@ -150,7 +150,7 @@ TEST_F(Consistency, EverythingStatesTheSummaryOfTheLibrary) {
     EXPECT_EQ(found["error_bound"], 0);
     EXPECT_EQ(cloud["tolerance"]["verdict"], name_of(judgement.verdict));
     EXPECT_EQ(cloud["tolerance"]["reason"], name_of(judgement.reason));
-    EXPECT_EQ(cloud["tolerance"]["margin"], judgement.margin);
+    EXPECT_EQ(cloud["tolerance"]["margin"], judgement.margin.value());
     EXPECT_THAT(cloud_run.out, HasSubstr(fmt::format("tolerance {}: ", name_of(judgement.verdict))));
   }
 }

@@ -84,11 +84,11 @@ TEST_F(ToleranceTest, NamesTheErrorBoundThatWouldDecide) {
   const auto verdict = [&](double bound, double accuracy, double tolerance) {
     return check_tolerance(surface, map, at_vertices, bound, accuracy, tolerance);
   };
-  const double bound = verdict(1, 0.01, 1.25).deciding_bound;
+  const double bound = verdict(1, 0.01, 1.25).deciding_bound.value();
   EXPECT_NEAR(bound, (1.25 - 1 - 0.01) / 2, 1e-12);
   EXPECT_EQ(verdict(bound, 0.01, 1.25).verdict, Verdict::pass);
   EXPECT_EQ(verdict(1, 0.01, 1.005).verdict, Verdict::not_decided);
-  EXPECT_EQ(verdict(1, 0.01, 1.005).deciding_bound, 0) << "within rounding of the limit";
+  EXPECT_EQ(verdict(1, 0.01, 1.005).deciding_bound, std::nullopt) << "within rounding of the limit";
 }
 
 // At distances that rounding does not tell from zero, the sign is not certain either.
@@ -107,7 +107,18 @@ TEST_F(ToleranceTest, IsExceededWhereThereIsNoValue) {
   EXPECT_FALSE(check_tolerance(surface, map, unknown, 0, 0, 2).within);
   const MapOptions near{.max_distance = 0.5};
   map = compute_map(surface, sites, near);
-  EXPECT_FALSE(check_tolerance(surface, map, at_vertices, 0, 0, 2).within);
+  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0, 0, 2);
+  EXPECT_FALSE(verdict.within);
+  EXPECT_EQ(verdict.margin, std::nullopt);
+  EXPECT_EQ(verdict.largest, std::nullopt);
+}
+
+TEST(Judge, OfNothingMeasuredHasNoNumbers) {
+  const Judgement judgement = judge({}, 1);
+  EXPECT_EQ(judgement.verdict, Verdict::not_decided);
+  EXPECT_EQ(judgement.reason, VerdictReason::nothing_measured);
+  EXPECT_EQ(judgement.margin, std::nullopt);
+  EXPECT_EQ(judgement.deciding_bound, std::nullopt);
 }
 
 TEST_F(ToleranceTest, RejectsDistancesOfOtherVertices) {

@@ -41,7 +41,7 @@ void expect_witness(const TimeOfContact& found, const std::array<Shape, 2>& shap
   const Vec3 apart = found.witness[0] - found.witness[1];
   EXPECT_NEAR(norm(apart), found.separation, rounding);
   if (found.separation > 0) {
-    EXPECT_LE(norm(found.separation * found.normal - apart), 1e-9 + rounding);
+    EXPECT_LE(norm(found.separation * found.normal.value() - apart), 1e-9 + rounding);
   }
 }
 
@@ -114,7 +114,7 @@ TEST(TimeOfContact, OfARodThatOnlyTurns) {
     EXPECT_LE(found.time, angle / (0.75 * std::acos(-1.0)));
     EXPECT_NEAR(found.time, angle / (0.75 * std::acos(-1.0)), tolerance + 1e-14);
     EXPECT_LE(found.separation, tolerance);
-    EXPECT_NEAR(found.normal[1], -1, 1e-3);  // of points that are 1e-12 apart, rounded to 1e-16
+    EXPECT_NEAR(found.normal.value()[1], -1, 1e-3);  // of points that are 1e-12 apart, rounded to 1e-16
     expect_witness(found, {rod, wall}, {turn, Motion{}});
   }
   // At a distance beyond its reach, it turns freely.
@@ -140,7 +140,7 @@ TEST(TimeOfContact, EndsBelowTheResolutionOfTime) {
     EXPECT_NEAR(found.time, meet, 1e-14);
     EXPECT_GT(found.separation, tolerance);
     EXPECT_LT(found.separation, 1e-10);
-    EXPECT_NEAR(found.normal[0], -1, 1e-3);
+    EXPECT_NEAR(found.normal.value()[0], -1, 1e-3);
     expect_witness(found, shapes, motions);
   }
   for (const double tolerance : {1e-3, 1e-6, 1e-10}) {
@@ -234,7 +234,7 @@ TEST(TimeOfContact, IsThatOfTheArmThatArrives) {
     EXPECT_TRUE(found.contact);
     EXPECT_LE(found.time, 3.0 / 8);
     EXPECT_NEAR(found.time, 3.0 / 8, tolerance);
-    EXPECT_NEAR(found.normal[0], 1, 1e-9);
+    EXPECT_NEAR(found.normal.value()[0], 1, 1e-9);
     expect_witness(found, {fork, table}, motions);
   }
 }
@@ -362,19 +362,19 @@ TEST(TimeOfContact, StartsWithTheDirectionThatSeparates) {
     EXPECT_EQ(contained[b].time, 0);
     EXPECT_EQ(contained[b].certainty, Certainty::exact);
     EXPECT_NEAR(contained[b].separation, 0.1, 1e-12);
-    EXPECT_NEAR(contained[b].normal[0], b == 0 ? 1 : -1, 1e-12);
+    EXPECT_NEAR(contained[b].normal.value()[0], b == 0 ? 1 : -1, 1e-12);
   }
   const TimeOfContact across =
       time_of_contact(outer, leaves, Shape(cube(1.1)), straight({1, 1, 1}, {9, 9, 9}), 1e-3);
   EXPECT_TRUE(across.contact);
   EXPECT_EQ(across.time, 0);
   EXPECT_EQ(across.separation, 0);
-  EXPECT_EQ(across.normal, Vec3{});
+  EXPECT_EQ(across.normal, std::nullopt);
   const TimeOfContact touching =
       time_of_contact(outer, {}, outer, straight({2.0005, 0.3, 0}, {9, 9, 9}), 1e-3);
   EXPECT_TRUE(touching.contact);
   EXPECT_EQ(touching.time, 0);
-  EXPECT_NEAR(touching.normal[0], -1, 1e-9);
+  EXPECT_NEAR(touching.normal.value()[0], -1, 1e-9);
 }
 
 TEST(TimeOfContact, NoCollisionBefore) {

@@ -29,7 +29,7 @@ TEST(WorstPlaces, StartAtTheLargestAndAreApart) {
   const std::vector<Place> places = worst_places(surface, map, vertices);
   ASSERT_GE(places.size(), 3u);
   ASSERT_LE(places.size(), 10u);
-  const Extremes all = extremes(surface, map, vertices);
+  const Extremes all = extremes(surface, map, vertices).value();
   EXPECT_EQ(std::abs(places[0].distance), std::max(std::abs(all.min.distance), std::abs(all.max.distance)));
   const double apart = 0.06 * diagonal(bounds(surface.mesh()));
   for (std::size_t i = 0; i < places.size(); ++i) {

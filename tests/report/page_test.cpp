@@ -190,15 +190,15 @@ TEST_F(Page, JudgesAsTheLibrary) {
                       .accuracy = any_of({0, 1e-6, 0.001, 0.02, kInfinity}),
                       .error_bound = any_of({0, 0.01, 0.1, 0.5}),
                       .is_signed = random() % 4 != 0};
-    if (evidence.lowest == kInfinity) evidence.highest = -kInfinity;
-    if (evidence.lowest > evidence.highest && evidence.lowest < kInfinity) continue;
+    if (evidence.lowest == kInfinity) evidence.lowest.reset(), evidence.highest.reset();
+    if (evidence.lowest > evidence.highest) continue;
     const double lower = any_of({-2.1, -1, -0.5, 0, 0.001, 0.5}),
                  upper = lower + any_of({0, 0.5, 1, 2.2, 4.2});
     const Judgement j = judge(evidence, {lower, upper});
     ++reasons[static_cast<std::size_t>(j.reason)];
     cases.push_back({{"evidence",
-                      {{"lowest", evidence.lowest},
-                       {"highest", evidence.highest},
+                      {{"lowest", evidence.lowest ? Json(*evidence.lowest) : Json()},
+                       {"highest", evidence.highest ? Json(*evidence.highest) : Json()},
                        {"complete", evidence.complete},
                        {"estimated_signs", evidence.estimated_signs},
                        {"accuracy", evidence.accuracy},

@@ -15,12 +15,13 @@ namespace sdm {
 namespace {
 
 void check(const HausdorffOptions& options) {
-  if (!(options.precision >= 0)) throw Error("the precision of a Hausdorff distance must be at least 0");
+  if (options.precision && !(*options.precision > 0))
+    throw Error("the precision of a Hausdorff distance must be greater than 0");
 }
 
 HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const HausdorffOptions& options) {
   const hausdorff::Scale scale = hausdorff::scale_of(a, b);
-  const double asked = options.precision > 0 ? options.precision : HausdorffOptions::kPrecision * scale.size;
+  const double asked = options.precision.value_or(HausdorffOptions::kPrecision * scale.size);
   const auto [lower, upper] =
       hausdorff::largest_distance(a, b, scale, {.precision = asked}, options.progress);
 

@@ -38,14 +38,14 @@ struct Mark {
   std::string text;
 };
 
-std::vector<Mark> marks_of(const Extremes& extremes, const std::string& units) {
+std::vector<Mark> marks_of(const std::optional<Extremes>& extremes, const std::string& units) {
   std::vector<Mark> marks;
+  if (!extremes) return marks;
   const auto add = [&](const char* name, const Extreme& extreme) {
-    if (!std::isfinite(extreme.distance)) return;
     marks.push_back({extreme.point, std::string(name) + " " + value_label(extreme.distance) +
                                         (units.empty() ? "" : " " + units)});
   };
-  add("min", extremes.min), add("max", extremes.max);
+  add("min", extremes->min), add("max", extremes->max);
   return marks;
 }
 
@@ -163,7 +163,7 @@ void draw_scale_bar(Canvas& canvas, const ViewLayout& layout, const std::string&
 void write_views_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                      std::span<const float> vertex_distances, const Mesh* other,
                      const PictureOptions& options) try {
-  const Extremes found = extremes(surface, map, vertex_distances);
+  const std::optional<Extremes> found = extremes(surface, map, vertex_distances);
   const ColorScale scale = color_scale(surface, map, options);
   const Box box = bounds(surface.mesh());
   const ViewLayout layout = layout_views(other != nullptr ? shown_box(box, bounds(*other)) : box, options.up);
@@ -187,7 +187,9 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
           std::ranges::min_element(views, {}, [&](const View& view) { return view.in_front[k]; }) -
           views.begin());
 
-  LegendText text = legend_text(map, found.min.distance, found.max.distance, scale, options.units);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  LegendText text = legend_text(map, found ? found->min.distance : kNan, found ? found->max.distance : kNan,
+                                scale, options.units);
   if (other != nullptr) text.notes.emplace_back("pale: O2");
   const Picture legend = draw_legend(scale, text, layout.height);
   Canvas canvas(layout.width + legend.width, std::max(layout.height + kScaleBarHeight, double(legend.height)),

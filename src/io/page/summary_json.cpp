@@ -68,25 +68,25 @@ Json to_json(const ColorRange& colors) {
 }
 
 Json to_json(const Extreme& extreme) {
-  if (std::isnan(extreme.distance)) return nullptr;
   return {{"distance", extreme.distance},
           {"point", extreme.point},
           {"at", extreme.at_vertex ? "vertex" : "texel"}};
 }
 
 Json extremes_json(const Summary& summary) {
-  Json json{{"min", to_json(summary.extremes.min)}, {"max", to_json(summary.extremes.max)}};
+  if (!summary.extremes) return {{"min", nullptr}, {"max", nullptr}};
+  Json json{{"min", to_json(summary.extremes->min)}, {"max", to_json(summary.extremes->max)}};
   if (!summary.of_points) return json;
   for (const auto& [key, index] :
        {std::pair("min", summary.extreme_points[0]), std::pair("max", summary.extreme_points[1])})
-    if (!json[key].is_null()) json[key]["at"] = "point", json[key]["index"] = index;
+    json[key]["at"] = "point", json[key]["index"] = index;
   return json;
 }
 
 Json to_json(const Evidence& evidence) {
-  return {{"lowest", evidence.lowest},     {"highest", evidence.highest},
-          {"complete", evidence.complete}, {"estimated_signs", evidence.estimated_signs},
-          {"accuracy", evidence.accuracy}, {"error_bound", evidence.error_bound},
+  return {{"lowest", optional(evidence.lowest)}, {"highest", optional(evidence.highest)},
+          {"complete", evidence.complete},       {"estimated_signs", evidence.estimated_signs},
+          {"accuracy", evidence.accuracy},       {"error_bound", evidence.error_bound},
           {"signed", evidence.is_signed}};
 }
 
@@ -137,13 +137,13 @@ Json tolerance_json(const Summary& summary) {
   }
   json["within"] = verdict.within;
   json["certified"] = verdict.certified;
-  json["margin"] = verdict.margin;
+  json["margin"] = optional(verdict.margin);
   json["nearest_limit"] = verdict.nearest_is_lower ? "lower" : "upper";
   json["proof"] = verdict.proof ? to_json(*verdict.proof) : Json();
   return json;
 }
 
-Json to_json(const PartTable& table, bool with_tolerance) {
+Json to_json(const PartTable& table) {
   Json rows = Json::array();
   for (const auto& [name, part, first_face] : table.rows) {
     Json row;
@@ -154,13 +154,13 @@ Json to_json(const PartTable& table, bool with_tolerance) {
     row["area_fraction"] = part.area_fraction;
     row["distance"] = to_json(part.distance);
     row["texels_with_value"] = part.distance.texels;
-    if (with_tolerance) row["tolerance"] = to_json(part.tolerance);
+    if (part.tolerance) row["tolerance"] = to_json(*part.tolerance);
     rows.push_back(std::move(row));
   }
   return {{"kind", table.kind}, {"count", table.count}, {"largest", std::move(rows)}};
 }
 
-void add(Json& json, const Distribution& distribution, bool with_tolerance) {
+void add(Json& json, const Distribution& distribution) {
   json["histogram"] = nullptr;
   if (const auto& h = distribution.histogram)
     json["histogram"] = {{"lower", h->lo},    {"upper", h->hi},    {"area_fractions", h->area_fractions},
@@ -168,10 +168,10 @@ void add(Json& json, const Distribution& distribution, bool with_tolerance) {
   json["bands"] = Json::array();
   for (const DistanceBand& band : distribution.bands)  // null: no limit
     json["bands"].push_back({{"lower", band.lo}, {"upper", band.hi}, {"area_fraction", band.area_fraction}});
-  json["components"] = to_json(distribution.parts.front(), with_tolerance);
+  json["components"] = to_json(distribution.parts.front());
   json["groups"] = Json::array();
   for (std::size_t i = 1; i < distribution.parts.size(); ++i)
-    json["groups"].push_back(to_json(distribution.parts[i], with_tolerance));
+    json["groups"].push_back(to_json(distribution.parts[i]));
 }
 
 Json largest_json(const Summary& summary) {

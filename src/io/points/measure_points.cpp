@@ -52,7 +52,6 @@ class Measurement {
       throw Error("the tolerance depends on the sign of the distances, which are unsigned: " +
                   result_.sign.reason);
     row_.has_normals = result_.has_normals;
-    result_.min.distance = result_.max.distance = kNan;
   }
 
   PointDistances write(const std::filesystem::path& ply) {
@@ -156,8 +155,8 @@ class Measurement {
     DistanceStatistics& s = result_.distance;
     ++s.texels, s.negative_texels += d < 0;
     sum_ += d, square_ += double{d} * d, magnitude_ += std::abs(d);
-    if (!(result_.min.distance <= d)) result_.min = {d, point, index};
-    if (!(result_.max.distance >= d)) result_.max = {d, point, index};
+    if (!result_.min || d < result_.min->distance) result_.min = {d, point, index};
+    if (!result_.max || d > result_.max->distance) result_.max = {d, point, index};
   }
 
   // Calls visit(row) for the rows from `begin` to `end` of the file.
@@ -188,7 +187,7 @@ class Measurement {
       return;
     }
     const auto count = static_cast<double>(s.texels);
-    s.min = result_.min.distance, s.max = result_.max.distance;
+    s.min = result_.min->distance, s.max = result_.max->distance;
     s.max_abs = std::max(std::abs(s.min), std::abs(s.max));
     s.negative_area_fraction = static_cast<double>(s.negative_texels) / count;
     s.mean = sum_ / count, s.rms = std::sqrt(square_ / count), s.mean_abs = magnitude_ / count;
@@ -265,8 +264,6 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
                   .of_points = true,
                   .sign = found.sign,
                   .distance = found.distance,
-                  .extremes = {{found.min.distance, found.min.point}, {found.max.distance, found.max.point}},
-                  .extreme_points = {found.min.index, found.max.index},
                   .beyond_max_distance = found.beyond_max_distance,
                   .max_distance = options.map.max_distance,
                   .evidence = {.complete = found.beyond_max_distance == 0,
@@ -274,11 +271,15 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
                                .accuracy = found.accuracy,
                                .is_signed = found.sign.method != SignMethod::none},
                   .colors = color_range(color_choice(picture), found.distance)};
-  if (found.distance.texels > 0)
-    summary.evidence.lowest = found.min.distance, summary.evidence.highest = found.max.distance;
+  if (found.min) {
+    summary.extremes = {{found.min->distance, found.min->point}, {found.max->distance, found.max->point}};
+    summary.extreme_points = {found.min->index, found.max->index};
+    summary.evidence.lowest = found.min->distance, summary.evidence.highest = found.max->distance;
+  }
   if (!picture.tolerance) return summary;
   const Judgement judgement = judge(summary.evidence, *picture.tolerance);
-  summary.tolerance = CertifiedVerdict{{judgement, *picture.tolerance, found.distance.max_abs, 0, {}}};
+  summary.tolerance = CertifiedVerdict{{judgement, *picture.tolerance, {}, 0, {}}};
+  if (found.min && found.beyond_max_distance == 0) summary.tolerance->largest = found.distance.max_abs;
   summary.exceeding_points = found.beyond_tolerance;
   summary.exceeding_point_fraction =
       static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points);

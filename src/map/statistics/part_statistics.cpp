@@ -77,7 +77,7 @@ void measure(std::span<const Sample> samples, double all_area, const std::option
 
   const map::ToleranceLimits limits(tolerance.value_or(Tolerance()), accuracy);
   double area = 0;
-  ToleranceShares& shares = part.tolerance;
+  ToleranceShares shares;
   for (const auto& [d, weight] : samples) {
     area += weight;
     if (!tolerance) continue;
@@ -90,6 +90,7 @@ void measure(std::span<const Sample> samples, double all_area, const std::option
   if (area > 0)
     for (double* share : {&shares.below, &shares.within, &shares.above, &shares.without_value})
       *share /= area;
+  if (tolerance) part.tolerance = shares;
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ DistanceStatistics statistics(const Surface& surface, const DistanceMap& map) {
   });
 }
 
-Extremes extremes(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances) {
+std::optional<Extremes> extremes(const Surface& surface, const DistanceMap& map,
+                                 std::span<const float> vertex_distances) {
   if (map.distance.size() != surface.texel_faces().size())
     throw Error("the map belongs to another surface: its number of texels differs");
   if (vertex_distances.size() != surface.mesh().positions.size())
@@ -49,6 +50,7 @@ Extremes extremes(const Surface& surface, const DistanceMap& map, std::span<cons
       if (greater(d)) result.max = {d, surface.mesh().positions[v], true};
     }
   }
+  if (std::isnan(result.min.distance)) return std::nullopt;
   return result;
 }
 

@@ -65,7 +65,8 @@ class AnswersPool {
   }
 
  private:
-  double contact_margin_, depth_precision_;
+  double contact_margin_;
+  std::optional<double> depth_precision_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<pair::PairAnswers>> idle_;
 };

@@ -18,13 +18,14 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-void check_options(double contact_margin, double depth_precision) {
-  const auto check = [](const char* what, double length) {
-    if (!(length >= 0 && std::isfinite(length)))
-      throw Error(std::string(what) + " of " + std::to_string(length) + " is out of range; use 0 or more");
+void check_options(double contact_margin, const std::optional<double>& depth_precision) {
+  const auto fail = [](const char* what, double length, const char* remedy) {
+    throw Error(std::string(what) + " of " + std::to_string(length) + " is out of range; use " + remedy);
   };
-  check("a contact margin", contact_margin);
-  check("a precision of the depth", depth_precision);
+  if (!(contact_margin >= 0 && std::isfinite(contact_margin)))
+    fail("a contact margin", contact_margin, "0 or more");
+  if (depth_precision && !(*depth_precision > 0 && std::isfinite(*depth_precision)))
+    fail("a precision of the depth", *depth_precision, "a length above 0");
 }
 
 void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const FacePair& hint) {
@@ -102,7 +103,7 @@ std::optional<BoundedLength> PairAnswers::depth() {
   if (!colliding()) return BoundedLength{{.certainty = Certainty::exact}};
   const double size = std::min(diagonal(bodies_[0]->box()), diagonal(bodies_[1]->box()));
   const depth::Depth found = depth_search_.find(
-      bodies_, to_other_, depth_precision_ > 0 ? depth_precision_ : ProximityOptions::kDepthPrecision * size);
+      bodies_, to_other_, depth_precision_.value_or(ProximityOptions::kDepthPrecision * size));
   return BoundedLength{{.value = found.value,
                         .certainty = Certainty::bounded,
                         .lower = std::max(0.0, found.lower - precision_),

@@ -15,7 +15,7 @@
 namespace sdm::pair {
 
 /// Throws sdm::Error unless both are finite and at least 0.
-void check_options(double contact_margin, double depth_precision);
+void check_options(double contact_margin, const std::optional<double>& depth_precision);
 
 using pairs::FacePair, pairs::kNoFaces;
 
@@ -27,7 +27,7 @@ using pairs::FacePair, pairs::kNoFaces;
 class PairAnswers {
  public:
   /// `depth_precision`: see ProximityOptions.
-  PairAnswers(double contact_margin, double depth_precision)
+  PairAnswers(double contact_margin, std::optional<double> depth_precision)
       : contact_margin_(contact_margin), depth_precision_(depth_precision) {}
 
   /// Sets the bodies to which the results refer. They must outlive this object and remain unchanged until the
@@ -53,7 +53,8 @@ class PairAnswers {
   [[nodiscard]] bool surfaces_intersect();
   [[nodiscard]] std::optional<BoundedLength> depth();
 
-  double contact_margin_, depth_precision_;
+  double contact_margin_;
+  std::optional<double> depth_precision_;
   std::array<const shape::PosedBody*, 2> bodies_{};
   std::array<mesh::Similarity, 2> to_other_;  // from the frame of each body to that of the other
   double precision_ = 0;                      // error of a computed distance

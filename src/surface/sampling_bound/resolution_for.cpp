@@ -56,7 +56,7 @@ std::uint32_t resolution_for(const Mesh& mesh, double precision, const AtlasOpti
   if (!(precision > 0 && std::isfinite(precision)))
     throw Error("a precision of " + std::to_string(precision) +
                 " is out of range; use a length above 0 in the units of the mesh");
-  if (options.rows != 0)
+  if (options.rows)
     throw Error("a resolution for a precision is that of a square atlas; omit the number of rows");
   validate(mesh);
   // Typical of most atlases: seven tenths of the texels are owned, and points beside seams are a third

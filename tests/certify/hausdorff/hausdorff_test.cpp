@@ -21,7 +21,7 @@
 namespace sdm::test {
 namespace {
 
-HausdorffDistance from(const Mesh& a, const Mesh& b, double precision = 0) {
+HausdorffDistance from(const Mesh& a, const Mesh& b, std::optional<double> precision = {}) {
   return one_sided_hausdorff(a, Sites(b), {.precision = precision});
 }
 
@@ -292,8 +292,9 @@ TEST(Hausdorff, DoesNotDependOnTheNumberOfThreads) {
 TEST(Hausdorff, RejectsWhatItCannotCompute) {
   const Sites sites(cube());
   EXPECT_EQ(error_of([&] { return one_sided_hausdorff(cube(), sites, {.precision = -1}); }),
-            "the precision of a Hausdorff distance must be at least 0");
-  EXPECT_NE(error_of([&] { return one_sided_hausdorff(cube(), sites, {.precision = std::nan("")}); }), "");
+            "the precision of a Hausdorff distance must be greater than 0");
+  for (const double bad : {0.0, std::nan("")})
+    EXPECT_NE(error_of([&] { return one_sided_hausdorff(cube(), sites, {.precision = bad}); }), "");
   EXPECT_NE(error_of([&] { return one_sided_hausdorff(Mesh(), sites); }), "");
   Mesh broken = cube();
   broken.triangles[0][0] = 99;

@@ -42,6 +42,7 @@ class FrameSource {
 
 /// Animated morph targets of a glTF file; null if it has no animation.
 [[nodiscard]] std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes,
-                                                       const std::filesystem::path& file, double rate);
+                                                       const std::filesystem::path& file,
+                                                       std::optional<double> rate);
 
 }  // namespace sdm::io

@@ -31,7 +31,7 @@ fs::path npy_file(const fs::path& mesh, const fs::path& npy) {
   return fs::exists(npy, ignored) ? npy : mesh.parent_path() / npy;
 }
 
-std::unique_ptr<FrameSource> open_file(const fs::path& file, double rate) {
+std::unique_ptr<FrameSource> open_file(const fs::path& file, std::optional<double> rate) {
   const FileBytes contents = read_bytes(file);
   if (contents.view().starts_with("\x93NUMPY"))
     throw Error(
@@ -43,7 +43,7 @@ std::unique_ptr<FrameSource> open_file(const fs::path& file, double rate) {
 }
 
 // Existing files and folders take precedence over patterns, whatever characters their names contain.
-std::unique_ptr<FrameSource> open_source(const std::string& input, double rate) {
+std::unique_ptr<FrameSource> open_source(const std::string& input, std::optional<double> rate) {
   std::error_code ignored;
   if (fs::is_directory(input, ignored)) return numbered_files_in(input);
   if (fs::exists(input, ignored)) return open_file(input, rate);
@@ -111,9 +111,8 @@ void MeshSequence::Impl::read(std::size_t frame) {
 
 MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& options) try
     : impl_(std::make_unique<Impl>()) {
-  if (!(options.rate >= 0) || !std::isfinite(options.rate))
-    throw Error(
-        "the rate of a sequence must be a number of frames per second, or 0 for one frame at every key");
+  if (options.rate && !(*options.rate > 0 && std::isfinite(*options.rate)))
+    throw Error("the rate of a sequence must be a number of frames per second greater than 0");
   impl_->input = input;
   io::with_error_prefix(input, [&] { impl_->open(options); });
 } catch (const std::bad_alloc&) {

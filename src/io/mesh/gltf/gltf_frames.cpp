@@ -76,7 +76,7 @@ std::vector<std::vector<Displaced>> targets_of(const GltfDocument& document, con
 
 class GltfFrames : public FrameSource {
  public:
-  GltfFrames(const GltfDocument& document, std::string file_name, double rate)
+  GltfFrames(const GltfDocument& document, std::string file_name, std::optional<double> rate)
       : file_name_(std::move(file_name)) {
     const auto samplers = weight_samplers(list_of(document.root(), "animations"));
     const std::vector<GltfInstance> instances = gltf_instances(document);
@@ -128,16 +128,16 @@ class GltfFrames : public FrameSource {
 
  private:
   // Frames are at the keys of all tracks, or in equal steps from the first key to the last.
-  void choose_times(double rate) {
+  void choose_times(std::optional<double> rate) {
     for (const WeightTrack& track : tracks_)
       key_times_.insert(key_times_.end(), track.times().begin(), track.times().end());
     std::ranges::sort(key_times_);
     key_times_.erase(std::unique(key_times_.begin(), key_times_.end()), key_times_.end());
     count_ = key_times_.size();
-    if (rate == 0) return;
-    interval_ = 1 / rate;
+    if (!rate) return;
+    interval_ = 1 / *rate;
     constexpr double kStepRounding = 1e-6;  // as a fraction of a step
-    const double steps = std::floor((key_times_.back() - key_times_.front()) * rate + kStepRounding);
+    const double steps = std::floor((key_times_.back() - key_times_.front()) * *rate + kStepRounding);
     if (!(steps < 1e9)) throw Error("has more than a billion frames at this rate; choose a lower one");
     count_ = static_cast<std::size_t>(steps) + 1;
   }
@@ -159,7 +159,7 @@ class GltfFrames : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes, const std::filesystem::path& file,
-                                         double rate) {
+                                         std::optional<double> rate) {
   try {
     const GltfDocument document(bytes, file.parent_path());
     if (list_of(document.root(), "animations").empty()) return nullptr;

@@ -91,8 +91,7 @@ Box usual_box(std::span<const Shown> sample, const Box& all) {
 
 Contents contents_of(MeasuredRows& rows, const PointDistances& found) {
   Contents result;
-  const bool any = found.distance.texels > 0;
-  AreaSums sums(any ? found.min.distance : 0, any ? found.max.distance : 0);
+  AreaSums sums(found.min ? found.min->distance : 0, found.max ? found.max->distance : 0);
   Picks picks(found.points, std::min(found.points, kPagePoints));
   rows.for_each([&](std::uint64_t number, const MeasuredPoint& p) {
     const bool picked = picks(number);
@@ -112,7 +111,7 @@ Contents contents_of(MeasuredRows& rows, const PointDistances& found) {
   // The largest of each neighbourhood, and the extremes.
   std::vector<std::uint64_t> more;
   for (const Place& place : cells.largest()) more.push_back(place.sample);
-  if (any) more.insert(more.end(), {found.min.index, found.max.index});
+  if (found.min && found.max) more.insert(more.end(), {found.min->index, found.max->index});
   std::ranges::sort(more);
   more.erase(std::ranges::unique(more).begin(), more.end());
   for (const std::uint64_t number : more)

@@ -159,7 +159,8 @@ void DialectAttempt::plan(const TextLine& first_row, Cells row) {
   if (columns_ < 3)
     throw Misfit{first_row.number,
                  fmt::format("{} column{}, fewer than three", columns_, columns_ == 1 ? "" : "s")};
-  table_.dialect.header_line = header_ ? header_->number : 0;
+  table_.dialect.header_line.reset();
+  if (header_) table_.dialect.header_line = header_->number;
   if (!given_.columns.empty()) {
     const Cells names(given_.columns.begin(), given_.columns.end());
     if (names.size() > columns_)
