@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/printable.h>
 #include <unistd.h>
 
 #include <iostream>
 #include <utility>
 
 #include "interrupts.h"
+#include "src/core/printable.h"
 
 ProgressLine::ProgressLine(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) != 0) {}
 

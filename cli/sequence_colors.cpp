@@ -1,12 +1,13 @@
 #include "sequence_colors.h"
 
 #include <sdm/error.h>
-#include <sdm/player.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 
 #include <algorithm>
 #include <optional>
+
+#include "src/io/write/player/sequence_player.h"
 
 namespace {
 

@@ -1,8 +1,6 @@
 // The files of `sdm sequence`.
 #pragma once
 
-#include <sdm/player.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +14,7 @@
 #include "sequence_options.h"
 #include "sequence_pair.h"
 #include "sequence_report.h"
+#include "src/io/write/player/sequence_player.h"
 
 /// Writes the files of one run. All functions throw sdm::Error if a file cannot be written.
 class SequenceFiles {

@@ -1,9 +1,9 @@
 #include "terminal_text.h"
 
-#include <sdm/printable.h>
-
 #include <iostream>
 #include <new>
+
+#include "src/core/printable.h"
 
 namespace {
 

@@ -12,7 +12,7 @@ PLAIN = re.compile(r"\(variable\)|\w+\((\w+ ?&&|const \w+ ?&)\)|operator=|operat
 # Headers by subject, in the order of the reference.
 SUBJECTS = {
     "Meshes": ["types", "vec", "bounds", "mesh", "mesh_edit", "transform", "weld", "self_intersections", "solid"],
-    "Files": ["io", "report", "points", "sequence", "field_files", "player"],
+    "Files": ["io", "report", "points", "sequence", "field_files"],
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "sign", "engine", "gl", "closest_points",
                       "closest_in_parts", "vertex_distances"],
     "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
@@ -20,7 +20,7 @@ SUBJECTS = {
     "Proximity": ["proximity_query", "shape", "multi_body_query", "self_proximity_query", "time_of_contact",
                   "hausdorff"],
     "Other queries": ["align", "unit_check", "rays", "volume"],
-    "Errors, progress and threads": ["error", "printable", "progress", "cancellation", "threads"],
+    "Errors, progress and threads": ["error", "progress", "cancellation", "threads"],
 }  # fmt: skip
 # Headers that declare nothing of their own.
 WITHOUT_PAGE = {"api", "sdm"}

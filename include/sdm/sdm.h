@@ -22,7 +22,6 @@
 #include <sdm/mesh_edit.h>
 #include <sdm/multi_body_query.h>
 #include <sdm/part_statistics.h>
-#include <sdm/printable.h>
 #include <sdm/progress.h>
 #include <sdm/proximity_query.h>
 #include <sdm/rays.h>

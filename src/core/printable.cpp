@@ -1,4 +1,4 @@
-#include <sdm/printable.h>
+#include "core/printable.h"
 
 #include <array>
 #include <cstdint>

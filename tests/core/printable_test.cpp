@@ -1,8 +1,8 @@
 // Text of files as messages show it.
 #include <gtest/gtest.h>
-#include <sdm/printable.h>
 
 #include "core/excerpt.h"
+#include "core/printable.h"
 
 namespace sdm {
 namespace {

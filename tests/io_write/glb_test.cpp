@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
-#include <sdm/player.h>
 #include <sdm/sites.h>
 #include <tiny_gltf.h>
 
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "io/write/player/sequence_player.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

@@ -3,13 +3,13 @@
 #include <sdm/hausdorff.h>
 #include <sdm/io.h>
 #include <sdm/map.h>
-#include <sdm/player.h>
 #include <sdm/sequence.h>
 #include <sdm/vertex_distances.h>
 #include <sdm/volume.h>
 
 #include <fstream>
 
+#include "io/write/player/sequence_player.h"
 #include "memory/all_or_nothing.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <sdm/channels.h>
 #include <sdm/error.h>
-#include <sdm/player.h>
 #include <sdm/points.h>
 
 #include <array>
@@ -20,6 +19,7 @@
 #include <random>
 
 #include "cli/samples.h"
+#include "io/page/player/sequence_player.h"
 #include "io/page/report/page_channels.h"
 #include "support/made_up_maps.h"
 #include "support/run_sdm.h"

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <sdm/error.h>
-#include <sdm/printable.h>
 
 #include <filesystem>
 #include <new>
 #include <string>
 #include <string_view>
 
+#include "core/printable.h"
 #include "io/mesh/polygons/polygon_mesh.h"
 
 namespace sdm::io {

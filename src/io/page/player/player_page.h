@@ -1,13 +1,13 @@
 // The file player.html.
 #pragma once
 
-#include <sdm/player.h>
-
 #include <array>
 #include <cstddef>
 #include <filesystem>
 #include <span>
 #include <vector>
+
+#include "io/write/player/sequence_player.h"
 
 namespace sdm::io {
 

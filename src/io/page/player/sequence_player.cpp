@@ -1,5 +1,6 @@
+#include "io/write/player/sequence_player.h"
+
 #include <sdm/error.h>
-#include <sdm/player.h>
 #include <sdm/threads.h>
 #include <sdm/vertex_distances.h>
 
