@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "src/io/write/player/sequence_player.h"
+#include "src/io/page/player/sequence_player.h"
 
 namespace {
 

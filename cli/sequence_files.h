@@ -14,7 +14,7 @@
 #include "sequence_options.h"
 #include "sequence_pair.h"
 #include "sequence_report.h"
-#include "src/io/write/player/sequence_player.h"
+#include "src/io/page/player/sequence_player.h"
 
 /// Writes the files of one run. All functions throw sdm::Error if a file cannot be written.
 class SequenceFiles {

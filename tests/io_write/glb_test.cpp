@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "io/write/player/sequence_player.h"
+#include "io/page/player/sequence_player.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

@@ -9,7 +9,7 @@
 
 #include <fstream>
 
-#include "io/write/player/sequence_player.h"
+#include "io/page/player/sequence_player.h"
 #include "memory/all_or_nothing.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

@@ -19,7 +19,8 @@ inline DistanceField reference_field(const Sites& sites, const Grid& grid, const
   return volume::field_by_engine(sites, grid, options, reference::ReferenceEngine(), false, unused);
 }
 
-/// A point at the border of the maximum distance may have a value or not, one on the surface may have either sign.
+/// A point at the border of the maximum distance may have a value or not, one on the surface may have either
+/// sign.
 inline void expect_equal(const DistanceField& field, const DistanceField& expected, double tolerance) {
   ASSERT_EQ(field.distance.size(), expected.distance.size());
   const auto is_border = [&](float d) { return std::abs(std::abs(d) - field.max_distance) <= tolerance; };

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "geometry/triangle_pair.h"
 #include "geometry/rounding.h"
+#include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "query/inside/solid.h"
 #include "tree/visit.h"

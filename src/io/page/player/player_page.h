@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "io/write/player/sequence_player.h"
+#include "io/page/player/sequence_player.h"
 
 namespace sdm::io {
 

@@ -1,4 +1,4 @@
-#include "io/write/player/sequence_player.h"
+#include "io/page/player/sequence_player.h"
 
 #include <sdm/error.h>
 #include <sdm/threads.h>
