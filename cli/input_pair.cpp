@@ -8,6 +8,7 @@
 #include "common_options.h"
 #include "format.h"
 #include "stopwatch.h"
+#include "weld.h"
 
 void add_pair_arguments(CLI::App& app, PairFiles& files, const std::array<std::string, 2>& descriptions) {
   app.add_option("O1", files.o1, descriptions[0])->required();
@@ -17,6 +18,7 @@ void add_pair_arguments(CLI::App& app, PairFiles& files, const std::array<std::s
 void add_pair_transforms(CLI::App& app, PairFiles& files) {
   add_transform_option(app, "--transform-o1", "O1", files.transform_o1);
   add_transform_option(app, "--transform-o2", "O2", files.transform_o2);
+  add_weld_option(app, files.weld, "both meshes");
 }
 
 InputPair load_pair(const PairFiles& files, const PairReading& reading) {
@@ -25,6 +27,7 @@ InputPair load_pair(const PairFiles& files, const PairReading& reading) {
   const auto load = [&](Input& input, const char* role, const std::string& file, const std::string& transform,
                         bool vertices) {
     input = load_input(role, file, transform, {vertices});
+    if (files.weld) weld(input, *files.weld);
     if (reading.inspects) inspect(input);
   };
   sdm::run_concurrently({[&] { load(pair.o1, "o1", files.o1, files.transform_o1, reading.vertices[0]); },

@@ -4,18 +4,20 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "report.h"
 
-/// The files of both and their transforms, as they are given.
+/// The files of both and what is done to them, as they are given.
 struct PairFiles {
   std::string o1, o2, transform_o1, transform_o2;
+  std::optional<sdm::WeldOptions> weld{};
 };
 
 /// Adds O1 and O2, both required, with these descriptions.
 void add_pair_arguments(CLI::App& app, PairFiles& files, const std::array<std::string, 2>& descriptions);
-/// Adds --transform-o1 and --transform-o2.
+/// Adds --transform-o1, --transform-o2 and --weld.
 void add_pair_transforms(CLI::App& app, PairFiles& files);
 
 /// Both meshes, after their transforms.

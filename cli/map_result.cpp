@@ -16,6 +16,7 @@
 #include "notes.h"
 #include "output_folder.h"
 #include "stopwatch.h"
+#include "weld.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -26,17 +27,6 @@ sdm::AtlasOptions atlas_options(const MapCommand& command, const sdm::Mesh& mesh
   if (const auto& precision = command.layout.precision)
     options.resolution = sdm::resolution_for(mesh, *precision, options);
   return options;
-}
-
-void check_sign(const MapTask& task) {
-  const std::optional<sdm::Tolerance>& tolerance = task.command.picture.tolerance;
-  if (!tolerance || !tolerance->needs_sign()) return;
-  const sdm::SignUsed sign = sdm::choose_sign(*task.sites, task.command.map.sign);
-  if (sign.method == sdm::SignMethod::none)
-    throw sdm::Error(fmt::format(
-        "{}: the tolerance {}:{} differs by sign, but the distances are unsigned: {}; use one number, or "
-        "another --sign",
-        task.to.file, tolerance->lo, tolerance->hi, sign.reason));
 }
 
 /// What map.exr says about itself.
@@ -104,9 +94,10 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
 }
 
 /// What users probably did not intend, and what a summary does not know of.
-Notes all_notes(const MapTask& task, const AtlasPart& part, const Notes& of_summary) {
+Notes all_notes(const MapTask& task, const AtlasPart& part, const sdm::Summary& summary) {
   Notes all = file_notes(task.on, task.to);
-  std::ranges::copy(of_summary, std::back_inserter(all));
+  std::ranges::copy(summary.notes, std::back_inserter(all));
+  if (const auto note = note_on_welding(summary.sign, task.command.map.sign, task.to)) all.push_back(*note);
   std::ranges::copy(part.notes, std::back_inserter(all));
   if (task.aligned) std::ranges::copy(notes(*task.aligned), std::back_inserter(all));
   return all;
@@ -161,7 +152,7 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
       },
       [&] { inspect(task.on), inspect(task.to); },
   });
-  check_sign(task);
+  check_sign(task.command.picture.tolerance, sdm::choose_sign(*task.sites, task.command.map.sign), task.to);
 
   Stopwatch watch;
   sdm::DistanceMap& map = computed.map = sdm::compute_map(*surface, *task.sites, command.map);
@@ -181,7 +172,7 @@ MapResult write_part(const MapTask& task, const AtlasPart& part, const ComputedM
   Outcome& outcome = result.outcome;
   write_files(task, part, computed, folder, outcome);
   outcome.size = size_of(sdm::bounds(task.on.mesh));
-  outcome.summary.notes = all_notes(task, part, outcome.summary.notes);
+  outcome.summary.notes = all_notes(task, part, outcome.summary);
   outcome.time.output = watch.lap();
   outcome.time.total = task.import_ms + computed.ms + *outcome.time.output;
 

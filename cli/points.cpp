@@ -25,6 +25,7 @@
 #include "scenes/placement.h"
 #include "stopwatch.h"
 #include "unit_options.h"
+#include "weld.h"
 
 namespace {
 
@@ -34,6 +35,7 @@ struct PointsCommand : RunOptions {
   std::string cloud, o2, transform_o1, transform_o2;
   std::filesystem::path out;
   UnitOptions file_units;
+  std::optional<sdm::WeldOptions> weld{};  ///< of O2
   AlignCommand align;
   DoubtCommand doubts;
   sdm::MapOptions map;
@@ -142,7 +144,7 @@ void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& 
                             const sdm::Mesh& o2, sdm::Summary& summary, ProgressLine& progress) {
   constexpr std::size_t kSample = std::size_t{1} << 20;
   progress.step("coverage");
-  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, command.text, progress.callback());
+  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, {command.text, progress.callback()});
   if (sample.points.empty()) return;
   sdm::transform(sample.points, placement);
   summary.coverage = sdm::coverage(o2, sample.points, reach_of(command.doubts, command.picture.tolerance),
@@ -191,11 +193,14 @@ int run(PointsCommand command) {
   sdm::PointDistancesOptions options{.map = command.map, .picture = command.picture, .text = command.text};
   options.placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1));
   Input o2 = load_input("o2", command.o2, command.transform_o2);
+  if (command.weld) weld(o2, *command.weld);
   PointsOutcome outcome;
   Json report;
   out.fill([&] {
     const sdm::Sites sites(o2.mesh);
     inspect(o2);
+    const sdm::SignUsed sign = sdm::choose_sign(sites, command.map.sign);
+    check_sign(command.picture.tolerance, sign, o2);
     outcome.import_ms = watch.lap();
     if (command.align.on) {
       progress.step("align");
@@ -217,6 +222,7 @@ int run(PointsCommand command) {
     Notes& all = outcome.summary.notes;
     if (const auto note = precision_note(command, box)) all.push_back(*note);
     std::ranges::copy(o2.notes, std::back_inserter(all));
+    if (const auto note = note_on_welding(sign, command.map.sign, o2)) all.push_back(*note);
     std::ranges::copy(sdm::notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(all));
     if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
     outcome.points_ms = watch.lap();
@@ -299,6 +305,7 @@ void add_points_command(CLI::App& app) {
   add_transform_option(*points, "--transform-o1", "The cloud (without fit)", c.transform_o1);
   add_transform_option(*points, "--transform-o2", "O2", c.transform_o2);
   add_unit_options(*points, c.file_units);
+  add_weld_option(*points, c.weld, "O2");
   add_align_options(*points, c.align);
   points->add_option("--max-distance", c.map.max_distance, "Points farther than this have no value")
       ->check(positive_number())

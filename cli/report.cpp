@@ -78,7 +78,7 @@ void inspect(Input& input) {
 }
 
 sdm::ReportedMesh reported(const Input& input) {
-  return {.file = input.file, .transform = input.transform, .info = *input.info};
+  return {.file = input.file, .transform = input.transform, .info = *input.info, .weld = input.weld};
 }
 
 Json to_json(const Input& input) {

@@ -18,6 +18,7 @@ struct Input {
   std::string file, transform;
   sdm::Mesh mesh;
   std::optional<sdm::MeshInfo> info{};  ///< once inspected
+  std::optional<sdm::WeldReport> weld{};
   std::vector<sdm::FaceNames> names{};
   std::vector<std::string> notes{};             ///< on the file
   std::optional<sdm::FileVertices> vertices{};  ///< of the file, without the transform, if requested

@@ -9,7 +9,7 @@ endfunction()
 
 # sdm_divide_sources(<target> <file>...): with SDM_UNITE_FOLDERS, compiles the sources of a folder of src/ as one, with those
 # of its subfolders, which takes about half the time, as they share most of their headers. Names in unnamed namespaces are
-# unique in such a folder. io has one for read, one for points, and one for each folder of write, which has other headers.
+# unique in such a folder. io has one for each of its folders; those of images and pages have one for each subfolder.
 # What is compiled for each set of instructions stays on its own.
 function(sdm_divide_sources target)
   if(SDM_UNITE_FOLDERS)
@@ -24,7 +24,7 @@ function(sdm_divide_sources target)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     else()
       get_filename_component(folder ${source} DIRECTORY)
-      if(NOT folder MATCHES "^io/write")
+      if(NOT folder MATCHES "^io/(image|page)")
         string(REGEX REPLACE "^((io/)?[^/]+)/.*" "\\1" folder "${folder}/")
       endif()
       string(MAKE_C_IDENTIFIER "folder_${folder}" group)

@@ -9,6 +9,7 @@
 #include <sdm/mesh.h>
 #include <sdm/summary.h>
 #include <sdm/surface.h>
+#include <sdm/weld.h>
 
 #include <cstddef>
 #include <optional>
@@ -20,6 +21,7 @@ namespace sdm {
 struct ReportedMesh {
   std::string file, transform{};
   MeshInfo info{};
+  std::optional<WeldReport> weld{};  ///< if it was welded
 };
 
 /// Wall-clock times in milliseconds; nothing where none was taken.

@@ -23,11 +23,8 @@ struct WeldOptions {
   Progress progress{};
 };
 
-/// A mesh whose boundary edges were joined, and how.
-struct Welded {
-  /// All vertices keep their number; those that were joined to another one have its position and no face.
-  Mesh mesh{};
-  std::vector<std::uint32_t> vertex{};  ///< of each vertex, the one that its faces have now
+/// What weld() did.
+struct WeldReport {
   /// The largest distance between the ends of two edges that were joined; 0 if none were.
   double tolerance = 0;
   double largest_move = 0;  ///< of a vertex; several edges that meet may add up to more than tolerance
@@ -36,6 +33,13 @@ struct Welded {
   /// Vertices of boundary edges that are left, which lie on another one within the tolerance: one edge there
   /// meets several, and joining vertices closes no such gap.
   std::size_t t_junctions = 0;
+};
+
+/// A mesh whose boundary edges were joined, and how.
+struct Welded : WeldReport {
+  /// All vertices keep their number; those that were joined to another one have its position and no face.
+  Mesh mesh{};
+  std::vector<std::uint32_t> vertex{};  ///< of each vertex, the one that its faces have now
 };
 
 /// Joins each boundary edge with the one whose ends are closest to its own, within the tolerance and a

@@ -292,7 +292,7 @@ Welded weld(const Mesh& mesh, const WeldOptions& options) try {
   mesh::Matching matching(mesh, edges, most);
   const std::vector<mesh::Match> matches = matching.run(options.progress);
   const auto nearer = [](const mesh::Match& a, const mesh::Match& b) { return a.distance < b.distance; };
-  Welded welded{.mesh = mesh};
+  Welded welded{{}, mesh, {}};
   mesh::VertexSets sets(mesh, topology);
   if (!matches.empty()) {
     const double widest = std::ranges::max_element(matches, nearer)->distance;

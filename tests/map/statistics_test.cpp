@@ -207,7 +207,7 @@ TEST(PartStatistics, AreThoseOfAMapOfThePartAlone) {
     EXPECT_EQ(parts[p].faces, p == 0 ? 288u : 128u);
     EXPECT_EQ(parts[p].box.lo[0] > 2, p == 1);
     EXPECT_NEAR(parts[p].tolerance.value().within, within / part_area, 1e-6);
-    const ToleranceShares& t = parts[p].tolerance;
+    const ToleranceShares& t = *parts[p].tolerance;
     EXPECT_NEAR(t.below + t.within + t.above + t.without_value, 1, 1e-9);
     EXPECT_GT(t.without_value, 0);
     area += parts[p].area_fraction;

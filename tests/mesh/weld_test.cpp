@@ -16,23 +16,6 @@
 namespace sdm {
 namespace {
 
-// Every face with vertices of its own, each moved by up to `error` along each axis.
-Mesh taken_apart(const Mesh& mesh, double error, unsigned seed = 1) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> moved(-error, error);
-  Mesh apart;
-  for (const Triangle& t : mesh.triangles) {
-    const auto first = static_cast<std::uint32_t>(apart.positions.size());
-    apart.triangles.push_back({first, first + 1, first + 2});
-    for (const std::uint32_t v : t) {
-      Vec3 p = mesh.positions[v];
-      for (double& x : p) x += moved(random);
-      apart.positions.push_back(p);
-    }
-  }
-  return apart;
-}
-
 // A box of the given sides.
 Mesh box(const Vec3& sides) {
   Mesh mesh = test::cube(0.5);
@@ -65,7 +48,7 @@ TEST(Weld, ClosesWhatIsOffByRounding) {
                                     {test::torus(40, 20), "torus"},
                                     {blade(0.03), "blade"}}) {
     constexpr double kError = 1e-6;
-    const Mesh apart = taken_apart(whole, kError);
+    const Mesh apart = test::taken_apart(whole, kError);
     ASSERT_FALSE(inspect(apart).closed) << name;
     const Welded welded = weld(apart);
     const MeshInfo info = inspect(welded.mesh);
@@ -81,7 +64,7 @@ TEST(Weld, ClosesWhatIsOffByRounding) {
 }
 
 TEST(Weld, VerticesGoWhereTheirFacesGo) {
-  const Mesh apart = taken_apart(test::sphere(3), 1e-5);
+  const Mesh apart = test::taken_apart(test::sphere(3), 1e-5);
   const Welded welded = weld(apart);
   ASSERT_EQ(welded.vertex.size(), apart.positions.size());
   double largest = 0;
@@ -96,7 +79,7 @@ TEST(Weld, VerticesGoWhereTheirFacesGo) {
 
 TEST(Weld, DoesNotJoinTheSidesOfASheet) {
   const Mesh sheet = test::single_triangle();
-  const Mesh both = taken_apart(test::joined(sheet, test::flipped(sheet)), 1e-6);
+  const Mesh both = test::taken_apart(test::joined(sheet, test::flipped(sheet)), 1e-6);
   EXPECT_EQ(weld(both).joined_vertices, 0u);
 }
 
@@ -108,7 +91,7 @@ TEST(Weld, DoesNotJoinTheSidesOfAThinWall) {
 
   // A closed plate that is thinner than the tolerance, with all faces apart: still a plate.
   const Mesh plate = box({1, 1, thickness});
-  const Welded welded = weld(taken_apart(plate, 1e-6), {2 * thickness});
+  const Welded welded = weld(test::taken_apart(plate, 1e-6), {2 * thickness});
   EXPECT_TRUE(inspect(welded.mesh).closed);
   EXPECT_NEAR(solid_volume(Sites(welded.mesh)).upper, thickness, 1e-5);
 }
@@ -122,12 +105,12 @@ TEST(Weld, OpenMeshesStayOpen) {
   EXPECT_EQ(welded.mesh.triangles, sheet.triangles);
   EXPECT_EQ(welded.boundary_edges, inspect(sheet).boundary_edges);
   // With all faces apart, only the inner edges close.
-  const Welded apart = weld(taken_apart(sheet, 1e-6));
+  const Welded apart = weld(test::taken_apart(sheet, 1e-6));
   EXPECT_EQ(apart.boundary_edges, welded.boundary_edges);
 }
 
 TEST(Weld, AGapWiderThanTheToleranceStays) {
-  const Mesh apart = taken_apart(test::cube(), 1e-3);
+  const Mesh apart = test::taken_apart(test::cube(), 1e-3);
   EXPECT_EQ(weld(apart, {1e-6}).joined_vertices, 0u);
   EXPECT_TRUE(inspect(weld(apart, {1e-2}).mesh).closed);
 }
@@ -159,12 +142,12 @@ TEST(Weld, ManyEdgesInOnePlace) {
   // Each pair of wedges could close by any of the others' faces.
   Mesh stack;
   for (int i = 0; i < 10; ++i) stack = test::joined(stack, test::cube());
-  const Welded welded = weld(taken_apart(stack, 1e-6));
+  const Welded welded = weld(test::taken_apart(stack, 1e-6));
   EXPECT_EQ(welded.boundary_edges, 0u);
 }
 
 TEST(Weld, TheResultDoesNotDependOnTheNumberOfThreads) {
-  const Mesh apart = taken_apart(test::torus(30, 20), 1e-5);
+  const Mesh apart = test::taken_apart(test::torus(30, 20), 1e-5);
   const Welded all = weld(apart);
   const ThreadLimit one(1);
   const Welded single = weld(apart);

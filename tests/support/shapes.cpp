@@ -246,6 +246,22 @@ Mesh joined(const Mesh& a, const Mesh& b) {
   return mesh;
 }
 
+Mesh taken_apart(const Mesh& mesh, double error, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> moved(-error, error);
+  Mesh apart;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(apart.positions.size());
+    apart.triangles.push_back({first, first + 1, first + 2});
+    for (const std::uint32_t v : t) {
+      Vec3 p = mesh.positions[v];
+      for (double& x : p) x += moved(random);
+      apart.positions.push_back(p);
+    }
+  }
+  return apart;
+}
+
 Mesh moved(Mesh mesh, const Vec3& by) {
   for (Vec3& p : mesh.positions) p += by;
   return mesh;

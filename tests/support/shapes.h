@@ -61,6 +61,8 @@ namespace sdm::test {
 /// The vertices and faces of both, without texture coordinates.
 [[nodiscard]] Mesh joined(const Mesh& a, const Mesh& b);
 [[nodiscard]] Mesh moved(Mesh mesh, const Vec3& by);
+/// Every face with vertices of its own, each moved by up to `error` along each axis.
+[[nodiscard]] Mesh taken_apart(const Mesh& mesh, double error, unsigned seed = 1);
 /// Every face flipped, or every n-th only; without texture coordinates.
 [[nodiscard]] Mesh flipped(Mesh mesh, std::size_t every = 1);
 /// A third of the faces flipped, and added to it: edges of three faces, duplicates, faces without area.

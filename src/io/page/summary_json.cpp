@@ -19,14 +19,24 @@ Json optional(const std::optional<Value>& value) {
   return value ? Json(*value) : Json();
 }
 
+Json to_json(const WeldReport& weld) {
+  return {{"tolerance", weld.tolerance},
+          {"largest_move", weld.largest_move},
+          {"joined_vertices", weld.joined_vertices},
+          {"boundary_edges", weld.boundary_edges},
+          {"t_junctions", weld.t_junctions}};
+}
+
 Json to_json(const ReportedMesh& mesh) {
-  return {{"file", mesh.file},
-          {"transform", mesh.transform},
-          {"vertices", mesh.info.vertices},
-          {"triangles", mesh.info.triangles},
-          {"closed", mesh.info.closed},
-          {"degenerate_faces", mesh.info.degenerate_faces},
-          {"duplicate_faces", mesh.info.duplicate_faces}};
+  Json json{{"file", mesh.file},
+            {"transform", mesh.transform},
+            {"vertices", mesh.info.vertices},
+            {"triangles", mesh.info.triangles},
+            {"closed", mesh.info.closed},
+            {"degenerate_faces", mesh.info.degenerate_faces},
+            {"duplicate_faces", mesh.info.duplicate_faces}};
+  if (mesh.weld) json["weld"] = to_json(*mesh.weld);
+  return json;
 }
 
 Json to_json(const Surface& surface) {
@@ -224,7 +234,7 @@ Json to_json(const Summary& summary) {
                         {"lower", c->lower},
                         {"upper", c->upper},
                         {"reach", c->reach}};
-  if (summary.distribution) add(json, *summary.distribution, summary.tolerance.has_value());
+  if (summary.distribution) add(json, *summary.distribution);
   if (summary.colors) json["notes"] = summary.notes;
   return json;
 }

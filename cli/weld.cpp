@@ -1,0 +1,70 @@
+#include "weld.h"
+
+#include <sdm/error.h>
+
+#include "format.h"
+#include "option_checks.h"
+
+namespace {
+
+constexpr const char* kAutomatic = "auto";
+
+// What --weld would do for a mesh that is open, as a clause; empty if that does not close it, or was done.
+std::string weld_advice(const Input& input) {
+  if (input.weld) return {};
+  const sdm::Welded welded = sdm::weld(input.mesh);
+  if (welded.joined_vertices == 0 || !sdm::inspect(welded.mesh).closed) return {};
+  return fmt::format("it closes with --weld auto, which moves vertices by at most {}",
+                     number(welded.largest_move));
+}
+
+}  // namespace
+
+void add_weld_option(CLI::App& app, std::optional<sdm::WeldOptions>& weld, const std::string& meshes) {
+  app.add_option_function<std::string>(
+         "--weld",
+         [&weld](const std::string& text) {
+           weld.emplace();
+           if (text != kAutomatic) weld->tolerance = std::stod(text);
+         },
+         fmt::format("Join boundary edges of {} whose ends are at most T apart, after the transforms; auto: "
+                     "the least T that leaves no edge without its partner, at most 0.001 of the diagonal. "
+                     "Distances are then to the welded mesh",
+                     meshes))
+      ->check([positive = positive_number()](const std::string& text) {
+        return text == kAutomatic ? std::string() : positive(text);
+      })
+      ->type_name("T|auto");
+}
+
+void weld(Input& input, const sdm::WeldOptions& options) {
+  sdm::Welded welded = sdm::weld(input.mesh, options);
+  input.weld = welded;
+  if (input.vertices)
+    for (std::uint32_t& vertex : input.vertices->mesh_vertex)
+      if (vertex != sdm::kNone) vertex = welded.vertex[vertex];
+  input.mesh = std::move(welded.mesh);
+  std::string text = fmt::format("{}: {} vertices were joined to others, by moves of at most {}", input.file,
+                                 welded.joined_vertices, number(welded.largest_move));
+  if (welded.boundary_edges > 0) text += fmt::format("; {} boundary edges are left", welded.boundary_edges);
+  if (welded.t_junctions > 0)
+    text += fmt::format(", with {} vertices in the middle of others", welded.t_junctions);
+  input.notes.push_back(std::move(text));
+}
+
+std::optional<std::string> note_on_welding(const sdm::SignUsed& used, sdm::SignMethod wanted,
+                                           const Input& to) {
+  if (used.method != sdm::SignMethod::none || wanted == sdm::SignMethod::none) return std::nullopt;
+  const std::string advice = weld_advice(to);
+  if (advice.empty()) return std::nullopt;
+  return fmt::format("{} is open, so distances are unsigned; {}", to.file, advice);
+}
+
+void check_sign(const std::optional<sdm::Tolerance>& tolerance, const sdm::SignUsed& sign, const Input& to) {
+  if (!tolerance || !tolerance->needs_sign() || sign.method != sdm::SignMethod::none) return;
+  const std::string advice = weld_advice(to);
+  throw sdm::Error(
+      fmt::format("{}: the tolerance {}:{} differs by sign, but the distances are unsigned: {}; {}", to.file,
+                  tolerance->lo, tolerance->hi, sign.reason,
+                  advice.empty() ? "use one number, or another --sign" : advice));
+}
