@@ -83,7 +83,8 @@ TEST_F(BodiesCommand, PlacesBodiesOfOneFileByPoses) {
   ASSERT_GT(json["contacts"].size(), 0u);
   for (std::size_t i = 0; i < expected.contacts().size(); ++i) {
     EXPECT_EQ(json["contacts"][i]["depth"], expected.contacts()[i].depth);
-    EXPECT_EQ(json["contacts"][i]["faces"], expected.contacts()[i].faces);
+    for (std::size_t body = 0; body < 2; ++body)
+      EXPECT_EQ(json["contacts"][i]["faces"][body], expected.contacts()[i].on[body].face);
     EXPECT_EQ(json["contacts"][i]["id"], expected.contacts()[i].id);
     EXPECT_EQ(json["contacts"][i]["second"], 1);
   }
