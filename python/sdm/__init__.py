@@ -42,6 +42,7 @@ from ._core import (
     Surface,
     TimeOfContact,
     ToleranceVerdict,
+    WeldReport,
     align,
     align_points,
     alignment_doubts,
@@ -57,6 +58,7 @@ from ._core import (
     scene,
     thread_limit,
     time_of_contact,
+    weld,
 )
 from ._core import version as __version__
 from ._closest_points import NONE, SiteType, closest_points
@@ -96,6 +98,7 @@ __all__ = [
     "Surface",
     "TimeOfContact",
     "ToleranceVerdict",
+    "WeldReport",
     "align",
     "align_points",
     "alignment_doubts",
@@ -114,6 +117,7 @@ __all__ = [
     "self_map",
     "thread_limit",
     "time_of_contact",
+    "weld",
 ]
 
 # Tracebacks, reprs and pickles name what users import.

@@ -44,10 +44,10 @@ TEST_F(ToleranceTest, IsCertainlyExceeded) {
 
 TEST_F(ToleranceTest, IsExceededByASingleVertexOrSample) {
   std::vector<float> one_vertex = at_vertices;
-  one_vertex[2] = -3;
+  one_vertex[2] = 3;
   EXPECT_EQ(check_tolerance(surface, map, one_vertex, 0, 0, 2).largest, 3);
   EXPECT_FALSE(check_tolerance(surface, map, one_vertex, 0, 0, 2).within);
-  map.distance[surface.sample_texels()[5]] = -3;
+  map.distance[surface.sample_texels()[5]] = 3;
   const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, 0, 0, 2);
   EXPECT_FALSE(verdict.within);
   EXPECT_GT(verdict.exceeded_area_fraction, 0);

@@ -55,8 +55,8 @@ TEST(Fields, OfWrongOptionsAreErrors) {
   const auto error = [&](const Sites& sites, const FieldOptions& options) {
     return error_of([&] { return compute_field(sites, grid, options); });
   };
-  EXPECT_THAT(error(closed, {.max_distance = 0}), HasSubstr("max_distance"));
-  EXPECT_THAT(error(closed, {.max_distance = kNaN}), HasSubstr("max_distance"));
+  EXPECT_THAT(error(closed, {.max_distance = 0}), HasSubstr("maximum distance"));
+  EXPECT_THAT(error(closed, {.max_distance = kNaN}), HasSubstr("maximum distance"));
   EXPECT_THAT(error(open, {.sign = SignMethod::exact}), HasSubstr("open"));
   Grid wrong = grid;
   wrong.dims[1] = 0;
