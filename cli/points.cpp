@@ -174,6 +174,17 @@ std::optional<std::string> precision_note(const PointsCommand& command, const sd
   return note_on_precision(command.cloud, first.points, size_of(box));
 }
 
+/// What users probably did not intend.
+void add_notes(const PointsCommand& command, const Input& o2, PointsOutcome& outcome) {
+  Notes& all = outcome.summary.notes;
+  const sdm::Box& box = outcome.found.bounds;
+  if (const auto note = precision_note(command, box)) all.push_back(*note);
+  std::ranges::copy(o2.notes, std::back_inserter(all));
+  if (const auto note = note_on_welding(outcome.found.sign, command.map.sign, o2)) all.push_back(*note);
+  std::ranges::copy(sdm::notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(all));
+  if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
+}
+
 std::string files(const PointsCommand& command) {
   return fmt::format("{}{}{}", command.align.on ? "alignment.json " : "", command.ply ? "points.ply " : "",
                      command.html ? "report.html " : "");
@@ -199,8 +210,7 @@ int run(PointsCommand command) {
   out.fill([&] {
     const sdm::Sites sites(o2.mesh);
     inspect(o2);
-    const sdm::SignUsed sign = sdm::choose_sign(sites, command.map.sign);
-    check_sign(command.picture.tolerance, sign, o2);
+    check_sign(command.picture.tolerance, sdm::choose_sign(sites, command.map.sign), o2);
     outcome.import_ms = watch.lap();
     if (command.align.on) {
       progress.step("align");
@@ -212,19 +222,13 @@ int run(PointsCommand command) {
     outcome.align_ms = watch.lap();
     const std::filesystem::path ply = out.staging() / "points.ply";
     outcome.found = sdm::measure_points(command.cloud, sites, ply, options);
-    const sdm::Box& box = outcome.found.bounds;
     outcome.summary = sdm::summarize(outcome.found, options);
     if (outcome.aligned && command.align.judged)
       outcome.summary.doubts = sdm::doubts_of(outcome.aligned->alignment, outcome.aligned->other_unit);
     if (command.doubts.min_coverage)
       measure_cloud_coverage(command, options.placement, o2.mesh, outcome.summary, progress);
     sdm::withhold_pass(outcome.summary, command.doubts.accept);
-    Notes& all = outcome.summary.notes;
-    if (const auto note = precision_note(command, box)) all.push_back(*note);
-    std::ranges::copy(o2.notes, std::back_inserter(all));
-    if (const auto note = note_on_welding(sign, command.map.sign, o2)) all.push_back(*note);
-    std::ranges::copy(sdm::notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(all));
-    if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
+    add_notes(command, o2, outcome);
     outcome.points_ms = watch.lap();
     report = report_of(command, o2, outcome);
     if (command.html) {

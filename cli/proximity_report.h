@@ -8,7 +8,7 @@
 
 [[nodiscard]] const char* name(sdm::Certainty kind);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedLength& length);
-/// Of ProximityQuery::colliding(), which is exact.
+/// The result of ProximityQuery::colliding(), which is exact.
 [[nodiscard]] nlohmann::ordered_json collision_json(bool colliding);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Contact& contact);
 

@@ -38,7 +38,7 @@ struct AlignOptions {
 /// |translation|² + |rotation|² = 1.
 struct DegreeOfFreedom {
   Vec3 translation{}, rotation{};
-  /// On the axis of the motion, the closest point to the centre of O1; if there is a rotation.
+  /// The point of the axis that is closest to the centre of O1; nothing without a rotation.
   std::optional<Vec3> axis_point{};
   /// The rms distance along the normals of O2 by which the samples move, per unit of motion, in [0, √2]: 1
   /// for a plane that moves along its normal, 0 for one that moves in itself.

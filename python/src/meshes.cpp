@@ -96,6 +96,50 @@ array([2., 1., 1.]))")
       });
 }
 
+void bind_weld(nb::module_& module) {
+  nb::class_<WeldReport>(module, "WeldReport", "What weld() did.")
+      .def_ro("tolerance", &WeldReport::tolerance,
+              "The largest distance between the ends of two edges that were joined.")
+      .def_ro("largest_move", &WeldReport::largest_move,
+              "The largest move of a vertex: distances to the welded mesh differ from those to the mesh by "
+              "at most this.")
+      .def_ro("joined_vertices", &WeldReport::joined_vertices, "The vertices that have no face any more.")
+      .def_ro("boundary_edges", &WeldReport::boundary_edges, "The boundary edges that are left.")
+      .def_ro("t_junctions", &WeldReport::t_junctions,
+              "Their vertices that lie in the middle of another one, within the tolerance.")
+      .def("__repr__", [](const WeldReport& self) {
+        return nb::str("sdm.WeldReport(joined_vertices={}, largest_move={:.3g}, boundary_edges={})")
+            .format(self.joined_vertices, self.largest_move, self.boundary_edges);
+      });
+  module.def(
+      "weld",
+      [](nb::handle mesh, std::optional<double> tolerance) {
+        const Mesh given = mesh_of(mesh, nb::none());
+        Welded welded;
+        run(nb::none(), [&](const Progress& progress) {
+          welded = weld(given, {.tolerance = tolerance, .progress = progress});
+        });
+        const WeldReport report = welded;
+        return nb::make_tuple(nb::cast(new PyMesh{std::move(welded.mesh)}, nb::rv_policy::take_ownership),
+                              report);
+      },
+      nb::arg("mesh").none(), nb::arg("tolerance") = nb::none(),
+      nb::sig("def weld(mesh: object, tolerance: float | None = None) -> tuple[Mesh, WeldReport]"),
+      R"(Joins boundary edges that coincide but for rounding, so that a mesh that is closed but for rounding
+has an inside. Returns the welded mesh, whose vertices keep their numbers, and what was done.
+
+tolerance: edges are joined whose ends are at most this far apart, and at most a quarter of their length;
+by default 1e-3 of the diagonal of the mesh's box. No two vertices of one face are joined, nor the two
+sides of a thin wall. Raises Error for a tolerance that is not positive.
+
+>>> vertices, faces = sdm.Mesh(box)
+>>> apart = vertices[faces].reshape(-1, 3) + np.linspace(0, 1e-7, 36)[:, None]
+>>> welded, report = sdm.weld((apart, np.arange(36).reshape(-1, 3)))
+>>> report.joined_vertices, report.boundary_edges
+(28, 0)
+)");
+}
+
 void bind_meshes(nb::module_& module) {
   nb::class_<PyMesh> type(
       module, "Mesh",
@@ -148,48 +192,7 @@ Traceback (most recent call last):
     ...
 sdm.Error: ...
 )");
-
-  nb::class_<WeldReport>(module, "WeldReport", "What weld() did.")
-      .def_ro("tolerance", &WeldReport::tolerance,
-              "The largest distance between the ends of two edges that were joined.")
-      .def_ro("largest_move", &WeldReport::largest_move,
-              "The largest move of a vertex: distances to the welded mesh differ from those to the mesh by "
-              "at most this.")
-      .def_ro("joined_vertices", &WeldReport::joined_vertices, "The vertices that have no face any more.")
-      .def_ro("boundary_edges", &WeldReport::boundary_edges, "The boundary edges that are left.")
-      .def_ro("t_junctions", &WeldReport::t_junctions,
-              "Their vertices that lie in the middle of another one, within the tolerance.")
-      .def("__repr__", [](const WeldReport& self) {
-        return nb::str("sdm.WeldReport(joined_vertices={}, largest_move={:.3g}, boundary_edges={})")
-            .format(self.joined_vertices, self.largest_move, self.boundary_edges);
-      });
-  module.def(
-      "weld",
-      [](nb::handle mesh, std::optional<double> tolerance) {
-        const Mesh given = mesh_of(mesh, nb::none());
-        Welded welded;
-        run(nb::none(), [&](const Progress& progress) {
-          welded = weld(given, {.tolerance = tolerance, .progress = progress});
-        });
-        const WeldReport report = welded;
-        return nb::make_tuple(
-            nb::cast(new PyMesh{std::move(welded.mesh)}, nb::rv_policy::take_ownership), report);
-      },
-      nb::arg("mesh").none(), nb::arg("tolerance") = nb::none(),
-      nb::sig("def weld(mesh: object, tolerance: float | None = None) -> tuple[Mesh, WeldReport]"),
-      R"(Joins boundary edges that coincide but for rounding, so that a mesh that is closed but for rounding
-has an inside. Returns the welded mesh, whose vertices keep their numbers, and what was done.
-
-tolerance: edges are joined whose ends are at most this far apart, and at most a quarter of their length;
-by default 1e-3 of the diagonal of the mesh's box. No two vertices of one face are joined, nor the two
-sides of a thin wall. Raises Error for a tolerance that is not positive.
-
->>> vertices, faces = sdm.Mesh(box)
->>> apart = vertices[faces].reshape(-1, 3) + np.linspace(0, 1e-7, 36)[:, None]
->>> welded, report = sdm.weld((apart, np.arange(36).reshape(-1, 3)))
->>> report.joined_vertices, report.boundary_edges
-(28, 0)
-)");
+  bind_weld(module);
 }
 
 }  // namespace sdm::python

@@ -93,7 +93,7 @@ function sentence(clause: string): string {
   return `${clause.charAt(0).toUpperCase()}${clause.slice(1)}.`;
 }
 
-/// Of a verdict that is FAIL.
+/// Why the verdict is FAIL.
 function failure(report: Report, limits: Limits): string {
   const unit = unitOf(report);
   const cloud = isCloud(report);

@@ -41,7 +41,7 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
 
 namespace {
 
-/// Without a lower limit that unsigned distances cannot exceed.
+/// The limits, less a lower one that unsigned distances cannot exceed.
 Tolerance limits_of(const Tolerance& tolerance, bool is_signed) {
   return is_signed || tolerance.lo > 0 ? tolerance
                                        : Tolerance(-std::numeric_limits<double>::infinity(), tolerance.hi);

@@ -17,7 +17,7 @@ std::string with_unit(double length, const std::string& units, int digits = 5) {
   return short_text(length, digits) + (units.empty() ? "" : " " + units);
 }
 
-/// Of a verdict that no point is proven to contradict.
+/// Why a verdict is open: no point is proven to be out of the limits.
 std::string open_text(const Summary& summary, const std::string& limits) {
   const CertifiedVerdict& verdict = *summary.tolerance;
   switch (verdict.reason) {
