@@ -40,26 +40,28 @@ struct Verdicts : ::testing::Test {
 const std::vector<std::pair<double, std::string>> kUnits{
     {10, "cm"}, {25.4, "in"}, {304.8, "ft"}, {1000, "m"}};
 
-// 3 parts, 4 units, both directions.
-TEST_F(Verdicts, UnitMistakesAreWithheld) {
-  for (const char* name : {"fandisk.off", "cow.off", "elephant.off"}) {
-    const Mesh part = load(name, "fit,scale:100");
-    const std::string o2 = write_obj(folder / "part.obj", part);
-    for (const auto& [factor, unit] : kUnits) {
-      SCOPED_TRACE(fmt::format("{} {}", name, unit));
-      const std::string small = scan_of(part, 1 / factor);
-      const Outcome withheld = map(small, o2, {"--align", "--tolerance", "30"});
-      EXPECT_EQ(withheld.code, 5) << withheld.out << withheld.err;
-      EXPECT_THAT(withheld.out, HasSubstr("tolerance DOUBTFUL: every point of the surface is within"));
-      EXPECT_THAT(withheld.out, HasSubstr("--units-o1 " + unit + " --units-o2 mm"));
-      const Outcome mended =
-          map(small, o2, {"--align", "--tolerance", "1", "--units-o1", unit, "--units-o2", "mm"});
-      EXPECT_EQ(mended.code, 0) << mended.out << mended.err;
-      const Outcome large = map(scan_of(part, factor), o2, {"--align", "--tolerance", "30"});
-      EXPECT_TRUE(large.code == 3 || large.code == 5) << large.out << large.err;
-    }
+struct UnitMistakes : Verdicts, ::testing::WithParamInterface<const char*> {};
+
+// Of each part in 4 units, in both directions.
+TEST_P(UnitMistakes, AreWithheld) {
+  const Mesh part = load(GetParam(), "fit,scale:100");
+  const std::string o2 = write_obj(folder / "part.obj", part);
+  for (const auto& [factor, unit] : kUnits) {
+    SCOPED_TRACE(unit);
+    const std::string small = scan_of(part, 1 / factor);
+    const Outcome withheld = map(small, o2, {"--align", "--tolerance", "30"});
+    EXPECT_EQ(withheld.code, 5) << withheld.out << withheld.err;
+    EXPECT_THAT(withheld.out, HasSubstr("tolerance DOUBTFUL: every point of the surface is within"));
+    EXPECT_THAT(withheld.out, HasSubstr("--units-o1 " + unit + " --units-o2 mm"));
+    const Outcome mended =
+        map(small, o2, {"--align", "--tolerance", "1", "--units-o1", unit, "--units-o2", "mm"});
+    EXPECT_EQ(mended.code, 0) << mended.out << mended.err;
+    const Outcome large = map(scan_of(part, factor), o2, {"--align", "--tolerance", "30"});
+    EXPECT_TRUE(large.code == 3 || large.code == 5) << large.out << large.err;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Parts, UnitMistakes, ::testing::Values("fandisk.off", "cow.off", "elephant.off"));
 
 TEST_F(Verdicts, TheSamePartInTheSameUnitIsNotDoubted) {
   for (const char* name : {"fandisk.off", "cow.off", "elephant.off", "anchor.off", "pinion.off"}) {
