@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <array>
 #include <thread>
 #include <vector>
