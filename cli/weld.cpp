@@ -27,10 +27,11 @@ void add_weld_option(CLI::App& app, std::optional<sdm::WeldOptions>& weld, const
            weld.emplace();
            if (text != kAutomatic) weld->tolerance = std::stod(text);
          },
-         fmt::format("Join boundary edges of {} whose ends are at most T apart, after the transforms; auto: "
-                     "the least T that leaves no edge without its partner, at most 0.001 of the diagonal. "
-                     "Distances are then to the welded mesh",
-                     meshes))
+         fmt::format(
+             "Join boundary edges of {} whose ends are at most T apart, after the transforms; auto: at "
+             "most 0.001 of the diagonal. No gap wider than a quarter of its edges is closed. Distances "
+             "are then to the welded mesh",
+             meshes))
       ->check([positive = positive_number()](const std::string& text) {
         return text == kAutomatic ? std::string() : positive(text);
       })
