@@ -1,5 +1,6 @@
 #include "support/run_sdm.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <pty.h>
 #include <sys/resource.h>
@@ -78,6 +79,10 @@ Outcome run_program(const char* program, const std::vector<std::string>& argumen
       pipe(out.data()) == 0 &&
       (options.terminal ? openpty(&err[0], &err[1], nullptr, nullptr, nullptr) : pipe(err.data())) == 0;
   if (!made) throw std::runtime_error("no pipe");
+  // A small pipe blocks a command that runs ahead, so that it cannot end before the signal is sent however
+  // late this process gets its turn.
+  if (options.interrupt_after_lines > 0 && fcntl(out[1], F_SETPIPE_SZ, 4096) < 0)
+    throw std::runtime_error("no small pipe");
   const pid_t child = fork();
   if (child == 0) {
     dup2(out[1], STDOUT_FILENO);
