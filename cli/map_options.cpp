@@ -81,6 +81,7 @@ void add_options(CLI::App& app, MapCommand& c) {
   add_write_option(app, c.output.files, true);
   add_channels_option(app, c.output.layers);
   add_picture_options(app, c.picture);
+  add_field_option(app, c.fields);
   add_run_options(app, c, "the report (report.json) instead of a summary");
 }
 

@@ -15,6 +15,7 @@
 #include "doubts.h"
 #include "input_pair.h"
 #include "map_files.h"
+#include "report_fields.h"
 #include "unit_options.h"
 
 /// How O1 is laid out.
@@ -41,6 +42,7 @@ struct MapCommand : PairFiles, RunOptions {
   sdm::GlOptions gl;
   sdm::PictureOptions picture;
   std::vector<double> bands;
+  ReportFields fields;
   MapOutput output;
 };
 

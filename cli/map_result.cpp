@@ -116,6 +116,7 @@ Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& co
                                               .cut_faces = part.cut_faces,
                                               .time_ms = outcome.time},
                                              *computed.surface, outcome.summary));
+  put_fields(report, command.fields);
   if (task.aligned) report["alignment"] = to_json(*task.aligned);
   if (outcome.raster) report["raster"] = to_json(*outcome.raster);
   return report;

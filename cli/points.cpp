@@ -22,6 +22,7 @@
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
+#include "report_fields.h"
 #include "scenes/placement.h"
 #include "stopwatch.h"
 #include "unit_options.h"
@@ -41,6 +42,7 @@ struct PointsCommand : RunOptions {
   sdm::MapOptions map;
   sdm::PictureOptions picture;
   sdm::TextDialect text;
+  ReportFields fields;
   bool ply = true, html = sdm::can_write_html();
 };
 
@@ -93,6 +95,7 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
   if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned);
   report["engine"] = "cpu";
   report.update(Json::parse(sdm::summary_json(outcome.summary)));
+  put_fields(report, command.fields);
   report["time_ms"] = {
       {"import", outcome.import_ms}, {"align", outcome.align_ms}, {"points", outcome.points_ms}};
   return report;
@@ -322,6 +325,7 @@ void add_points_command(CLI::App& app) {
       ->type_name("NAME");
   add_files_option(*points, c);
   add_up_option(*points, c.picture.up, "report.html");
+  add_field_option(*points, c.fields);
   add_run_options(*points, c, "the report (report.json) instead of a summary");
   points->callback([command] {
     try {

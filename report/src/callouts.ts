@@ -55,6 +55,11 @@ export class Callouts {
     this.update();
   }
 
+  /// Those that are shown.
+  get all(): Callout[] {
+    return this.placed.map(({ distance, point, at, detail }) => ({ distance, point, at, detail }));
+  }
+
   private remove(number: number): void {
     const index = this.placed.findIndex((c) => c.number === number);
     if (index < 0) return;

@@ -79,13 +79,14 @@ class Slider {
 }
 
 
-/// Fills the form. `onChange` is called after each change; `look` with the name of a side.
+/// Fills the form, as it was `saved` if it was. `onChange` is called after each change; `look` with the name of a side.
 export function makeControls(
   report: Report,
   area: AreaByValue,
   hasGhost: boolean,
   ghostShown: boolean,
   isCloud: boolean,
+  saved: State | null,
   onChange: (state: State) => void,
   look: (side: string) => void,
 ): State {
@@ -217,21 +218,25 @@ export function makeControls(
     [['', 'Choose…'], ['corner', 'Corner'], ['front', 'Front'], ['back', 'Back'], ['left', 'Left'], ['right', 'Right'], ['top', 'Top'], ['bottom', 'Bottom']],
     '', (value) => { if (value) look(value); viewSelect.value = ''; },
   );
+  const showState = () => {
+    const { scale, section, ghost, width } = state;
+    modeSelect.value = scale.mode;
+    sectionSelect.value = section.axis === null ? '' : String(section.axis);
+    sectionRange.value = String(kSteps * section.at);
+    flipBox.checked = section.flipped;
+    sectionDetails.hidden = section.axis === null;
+    ghostBox.checked = ghost;
+    widthRange.value = String((kSteps / 2) * (1 + Math.log(width) / Math.log(4)));
+    for (const slider of [sliders.tolerance, sliders.upper]) slider.show(scale.upper);
+    sliders.lower.show(scale.lower);
+    showSliders();
+  };
   const resetButton = make('button', {
     type: 'button',
     id: 'reset',
     click: () => {
       state = start();
-      modeSelect.value = startMode;
-      sectionSelect.value = '';
-      sectionRange.value = String(kSteps / 2);
-      flipBox.checked = false;
-      sectionDetails.hidden = true;
-      ghostBox.checked = ghostShown;
-      widthRange.value = String(kSteps / 2);
-      for (const slider of [sliders.tolerance, sliders.upper]) slider.show(state.scale.upper);
-      sliders.lower.show(state.scale.lower);
-      showSliders();
+      showState();
       look('corner');
       changed();
     },
@@ -246,6 +251,7 @@ export function makeControls(
     resetButton,
   );
   byId('form').addEventListener('submit', (event) => event.preventDefault());
-  showSliders();
+  if (saved) state = saved;
+  showState();
   return state;
 }

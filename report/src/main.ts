@@ -8,9 +8,10 @@ import { drawLegend } from './legend';
 import { count, exactText, percent, place, signedText } from './numbers';
 import { openPage } from './open_page';
 import { PageData, readData, readReport, Report, Vec, Worst } from './page_data';
+import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved';
 import { boxOf, Subject, toFile, toScene } from './subject';
 import { Surface } from './surface';
-import { inputsOf, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
+import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
 import { isCloud, isSigned, limitsText, unitOf, verdictFor, verdictOf, wholeOf } from './verdict';
 import { View } from './view';
 
@@ -44,6 +45,8 @@ class Page {
   constructor(
     private readonly report: Report,
     private readonly data: PageData,
+    private readonly copy: HTMLElement, // of the page as it was in the file
+    saved: Saved | null,
   ) {
     this.signs = isSigned(report);
     this.unit = unitOf(report);
@@ -60,6 +63,7 @@ class Page {
       data.ghost !== null,
       ghostShown,
       data.cloud !== null,
+      saved?.state ?? null,
       (state) => this.apply(state),
       (side) => this.view.look(side),
     );
@@ -67,6 +71,30 @@ class Page {
     this.listen();
     this.showWorst();
     showOmissions(data);
+    this.addSaveButtons();
+    if (!saved) return;
+    for (const callout of saved.callouts) this.callouts.add(callout);
+    this.view.pose = saved.camera;
+  }
+
+  /// The page as it is shown, in one file.
+  text(): string {
+    return pageWith(this.copy, { state: this.state, callouts: this.callouts.all, camera: this.view.pose });
+  }
+
+  /// All numbers of the page, for spreadsheets.
+  csv(): string {
+    return csvOf(this.report, this.callouts.all);
+  }
+
+  private addSaveButtons(): void {
+    const button = (id: string, label: string, name: string, type: string, text: () => string) =>
+      make('button', { type: 'button', id, click: () => download(name, type, text()) }, label);
+    byId('form').append(
+      button('save-page', 'Save this page', 'report.html', 'text/html', () => this.text()),
+      button('save-numbers', 'Numbers as CSV', 'numbers.csv', 'text/csv', () => this.csv()),
+      make('p', { class: 'hint' }, 'The saved page keeps callouts, section, colours and view.'),
+    );
   }
 
   /// Whether the reference is beside the part: then it hides nothing and is shown from the start.
@@ -235,11 +263,14 @@ class Page {
   }
 }
 
+const copy = copyOfPage();
+const saved = readSaved();
 const report = readReport();
 nameSubject(report);
 showVerdict(report);
+showFields(report);
 showNumbers(report);
 showInputs(report);
 showMethod(report);
 showMore(report);
-void openPage('sdmPage', 'part', 'The numbers are complete.', async () => new Page(report, await readData()));
+void openPage('sdmPage', 'part', 'The numbers are complete.', async () => new Page(report, await readData(), copy, saved));

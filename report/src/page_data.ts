@@ -42,6 +42,7 @@ export interface Report {
   mesh?: Input;
   measured_on?: 'o1' | 'o2';
   units?: string;
+  fields?: Record<string, string>; ///< as the author of the report named them
   atlas?: { kind: string; resolution: number; rows?: number; udim?: number | null; charts: number; texels: number };
   engine?: string;
   max_distance?: number | null;

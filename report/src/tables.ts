@@ -25,6 +25,13 @@ export function titleOf(report: Report): string {
     : `${fileName(measured.file)}: distance to itself`;
 }
 
+/// What the author of the report says about it, below the title.
+export function showFields(report: Report): void {
+  const rows = Object.entries(report.fields ?? {});
+  byId('fields').hidden = rows.length === 0;
+  byId('fields').replaceChildren(...rows.map(([name, value]) => make('div', {}, make('dt', {}, name), make('dd', {}, value))));
+}
+
 export function showNumbers(report: Report): void {
   const d = report.distance ?? {};
   const unit = unitOf(report);
@@ -191,7 +198,7 @@ function omittedPoints(shown: number, { points, picked, normals }: NonNullable<P
 const kShown = new Set([
   'version', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'sign',
   'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance',
-  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'notes', 'time_ms', 'histogram',
+  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'notes', 'time_ms', 'histogram', 'fields',
 ]);
 
 function isScalar(value: unknown): boolean {
@@ -213,12 +220,14 @@ function label(key: string): string {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
-/// The scalars of an object and of the objects in it, by their paths.
-function flattened(value: object, prefix = ''): [string, unknown][] {
+/// The scalars of an object and of the objects in it, by their paths; with `lists` those of lists of objects too, by their
+/// places from 0.
+export function flattened(value: object, prefix = '', lists = false): [string, unknown][] {
   return Object.entries(value).flatMap(([key, x]): [string, unknown][] => {
     const path = prefix ? `${prefix}.${key}` : key;
-    if (isScalar(x) || (Array.isArray(x) && x.length > 0 && x.every((y) => typeof y === 'number'))) return [[path, x]];
-    return Array.isArray(x) ? [] : flattened(x as object, path);
+    if (isScalar(x) || (Array.isArray(x) && x.length > 0 && x.every(isScalar) && (lists || x.every((y) => typeof y === 'number'))))
+      return [[path, x]];
+    return Array.isArray(x) && !lists ? [] : flattened(x as object, path, lists);
   });
 }
 

@@ -2,6 +2,7 @@
 import { PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Vec } from './page_data';
+import type { Camera } from './saved';
 
 // Right, up and towards the viewer in the front view.
 const kSides: Record<'y' | 'z', Record<string, Vec>> = {
@@ -83,6 +84,17 @@ export class Viewer {
       away = Math.min(away, 2.6);
     }
     this.camera.position.copy(this.controls.target).addScaledVector(direction, away);
+    this.controls.update();
+    this.draw();
+  }
+
+  /// Where the camera is and what it looks at.
+  get pose(): Camera {
+    return { position: this.camera.position.toArray() as Vec, target: this.controls.target.toArray() as Vec };
+  }
+  set pose({ position, target }: Camera) {
+    this.camera.position.set(...position);
+    this.controls.target.set(...target);
     this.controls.update();
     this.draw();
   }

@@ -209,6 +209,71 @@ const checks = {
     assert.strictEqual(await page.inputValue('#section'), '');
   },
 
+  // A saved page opens with the callouts, the section, the colours and the view that it was saved with, and can be
+  // saved again; the file is a page like any other.
+  async saves(page, saved) {
+    await page.click('#worst-table tbody tr:first-child button');
+    await page.selectOption('#section', '1');
+    await page.fill('#section-at', '700');
+    await page.selectOption('#mode', 'viridis');
+    await page.keyboard.press('Escape');
+    const shown = (of) =>
+      of.evaluate(() => ({
+        callouts: [...document.querySelectorAll('#callout-list li')].map((item) => item.textContent),
+        section: ['section', 'section-at', 'mode'].map((id) => document.getElementById(id).value),
+        inside: window.sdmPage.inspect(300, 200),
+        rest: JSON.parse(window.sdmPage.text().match(/id="saved">(.*?)<\/script>/)[1]),
+      }));
+    const before = await shown(page);
+    assert.strictEqual(before.callouts.length, 1);
+    assert.deepStrictEqual(before.section, ['1', '700', 'viridis']);
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save-page')]);
+    assert.strictEqual(download.suggestedFilename(), 'report.html');
+    await download.saveAs(saved);
+    const original = readFileSync(file, 'utf8');
+    const again = await page.context().browser().newPage({ viewport: page.viewportSize() });
+    await again.goto(pathToFileURL(saved).href);
+    await again.waitForSelector('html[data-ready]');
+    const after = await shown(again);
+    // The position of a camera is computed from its angles again.
+    const rounded = (value) => JSON.parse(JSON.stringify(value, (_, x) => (typeof x === 'number' ? Number(x.toFixed(6)) : x)));
+    assert.deepStrictEqual(rounded(after), rounded(before));
+    await again.click('#reset');
+    assert.strictEqual(await again.inputValue('#section'), '');
+    const text = readFileSync(saved, 'utf8');
+    assert.ok(text.length - original.length < 2000, 'only settings were added');
+    assert.strictEqual((await again.evaluate(() => window.sdmPage.text())).match(/id="saved"/g).length, 1);
+  },
+  // Every number of report.json is in the CSV as it is there, and so are the callouts.
+  async csv(page, reportJson) {
+    await page.click('#worst-table tbody tr:first-child button');
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save-numbers')]);
+    assert.strictEqual(download.suggestedFilename(), 'numbers.csv');
+    const [head, ...lines] = readFileSync(await download.path(), 'utf8').trimEnd().split('\r\n');
+    assert.strictEqual(head, 'name,value');
+    const rows = new Map(lines.map((line) => [line.slice(0, line.indexOf(',')), line.slice(line.indexOf(',') + 1)]));
+    assert.strictEqual(rows.size, lines.length, 'a name occurs twice');
+    let count = 0;
+    const compare = (value, path) => {
+      if (value !== null && typeof value === 'object') {
+        if (Array.isArray(value) && value.length > 0 && value.every((x) => x === null || typeof x !== 'object'))
+          return compare(value.join(' '), path);
+        return Object.entries(value).forEach(([key, x]) => compare(x, path ? `${path}.${key}` : key));
+      }
+      const quoted = rows.get(path);
+      assert.notStrictEqual(quoted, undefined, path);
+      const found = quoted.startsWith('"') ? quoted.slice(1, -1).replace(/""/g, '"') : quoted;
+      if (typeof value === 'number') assert.strictEqual(Number(found), value, path);
+      else assert.strictEqual(found, value === null ? '' : String(value), path);
+      ++count;
+    };
+    const report = JSON.parse(readFileSync(reportJson, 'utf8'));
+    compare(report, '');
+    assert.ok(count > 60, `${count} values`);
+    assert.strictEqual(rows.get('fields.part'), '"4711, ""left"""');
+    assert.ok(rows.has('callouts.0.distance'));
+    assert.ok((await page.textContent('#fields')).includes('4711, "left"'));
+  },
   async callouts(page) {
     const canvas = await page.locator('#canvas').boundingBox();
     const at = await page.evaluate(() => {

@@ -130,6 +130,18 @@ TEST_F(Page, CalloutsStay) {
   EXPECT_TRUE(passes("callouts", page()));
 }
 
+TEST_F(Page, IsSavedAsItIsShown) {
+  map({"--resolution", "128", "--tolerance", "3"});
+  EXPECT_TRUE(passes("saves", page(), {folder / "saved.html"}));
+}
+
+TEST_F(Page, SavesItsNumbers) {
+  const Json report = map({"--resolution", "128", "--tolerance", "3", "--field", "part=4711, \"left\"",
+                           "--field", "inspector=</script>"});
+  EXPECT_EQ(report["fields"]["inspector"], "</script>");
+  EXPECT_TRUE(passes("csv", page(), {out + "/report.json"}));
+}
+
 TEST_F(Page, EveryControlHasAName) {
   map({"--resolution", "128", "--tolerance", "3"});
   EXPECT_TRUE(passes("names", page()));
