@@ -12,6 +12,7 @@
 #include <sdm/closest_points.h>
 #include <sdm/combined_statistics.h>
 #include <sdm/coverage.h>
+#include <sdm/distance_kind.h>
 #include <sdm/doubts.h>
 #include <sdm/engine.h>
 #include <sdm/error.h>
