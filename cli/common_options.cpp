@@ -100,11 +100,13 @@ std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, co
 void add_sign_option(CLI::App& app, sdm::SignMethod& sign) {
   add_choice<sdm::SignMethod>(app, "--sign", sign,
                               "How the inside of O2 (negative) is determined; auto: exact if O2 is "
-                              "closed and orientable, otherwise none",
+                              "closed and orientable, otherwise none; side: of an open O2 the side to which "
+                              "its normals do not point is negative, an estimate",
                               {{"auto", sdm::SignMethod::automatic},
                                {"none", sdm::SignMethod::none},
                                {"exact", sdm::SignMethod::exact},
-                               {"winding", sdm::SignMethod::winding}});
+                               {"winding", sdm::SignMethod::winding},
+                               {"side", sdm::SignMethod::side}});
 }
 
 void add_color_options(CLI::App& app, sdm::PictureOptions& picture) {

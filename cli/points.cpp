@@ -131,13 +131,15 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
     text += fmt::format("  distance  min {}   mean {}   max {}{}\n", number(d.min), number(d.mean),
                         number(d.max), unit);
     if (s.sign.method != sdm::SignMethod::none)
-      text += fmt::format("            {} % of the points are inside (negative)\n",
-                          number(100 * d.negative_area_fraction));
+      text += fmt::format("            {} % of the points are {} (negative)\n",
+                          number(100 * d.negative_area_fraction), side_word(s.sign));
   }
   if (s.sign.method == sdm::SignMethod::none)
     text += fmt::format("            unsigned: {}\n", s.sign.reason);
   if (s.beyond_max_distance > 0)
     text += fmt::format("            {} points are farther than --max-distance\n", s.beyond_max_distance);
+  if (s.sign.method == sdm::SignMethod::side)
+    text += "            signs are estimates; points closest to the boundary of O2 have none: |d|\n";
   if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
   return text + coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
 }

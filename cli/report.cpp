@@ -128,6 +128,10 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
 
 }  // namespace
 
+const char* side_word(const sdm::SignUsed& sign) {
+  return sign.method == sdm::SignMethod::side ? "behind" : "inside";
+}
+
 std::string coverage_line(const sdm::Summary& summary) {
   if (!summary.coverage) return {};
   const sdm::Coverage& c = *summary.coverage;
@@ -167,11 +171,14 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
     add("            95 % of the area has |d| up to {}, 99 % up to {}{}\n", number(d.p95_abs),
         number(d.p99_abs), unit);
     if (s.sign.method != sdm::SignMethod::none)
-      add("            {} % of the area is inside (negative)\n", number(100 * d.negative_area_fraction));
+      add("            {} % of the area is {} (negative)\n", number(100 * d.negative_area_fraction),
+          side_word(s.sign));
   }
   if (s.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", s.sign.reason);
   if (s.beyond_max_distance > 0)
     add("            {} texels are farther than --max-distance\n", s.beyond_max_distance);
+  if (s.sign.method == sdm::SignMethod::side)
+    add("            signs are estimates ({} texels at the boundary of O2 have none: |d|)\n", s.boundary_texels);
   add("  error     at most {}{} between the texels, whose values are exact\n", number(s.evidence.error_bound),
       unit);
   if (s.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));

@@ -53,6 +53,8 @@ void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json&
 /// JSON text; drops invalid bytes of file names that are not UTF-8.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);
 
+/// "inside" or "behind": where distances are negative.
+[[nodiscard]] const char* side_word(const sdm::SignUsed& sign);
 /// A line on the coverage of O2, if it was measured.
 [[nodiscard]] std::string coverage_line(const sdm::Summary& summary);
 /// One line for each doubt; the text begins in the given column.

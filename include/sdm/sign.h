@@ -25,7 +25,19 @@ enum class SignMethod {
   /// The same as exact for closed, orientable O2. Inside of any other O2 are the points with a generalised
   /// winding number above 1/2 (Jacobson et al. 2013), decided to rounding; an estimate of insideness.
   winding,
+  /// The same as exact for closed, orientable O2. Behind any other orientable O2 (negative) are the points on
+  /// the side to which its normals do not point: with c the closest point and n the pseudonormal of the site
+  /// that c lies on, q is behind where (q − c)·n < 0. Normals are those of most faces of each component.
+  /// Points whose closest site is a boundary edge of O2, or a vertex of one, have no side and keep distances
+  /// ≥ 0; boundary_mask() marks them. An estimate: the sign changes where no distance is 0, beyond the
+  /// boundary.
+  side,
 };
+
+/// Whether a method estimates signs: between samples a distance may have the other sign.
+[[nodiscard]] constexpr bool is_estimate(SignMethod method) {
+  return method == SignMethod::winding || method == SignMethod::side;
+}
 
 /// The method that was used, and the reason in words, for reports.
 struct SignUsed {

@@ -199,7 +199,7 @@ SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 [[nodiscard]] SDM_API const char* name_of(VerdictReason reason);
 /// "automatic", "viridis", "diverging" or "paper2006".
 [[nodiscard]] SDM_API const char* name_of(Colormap colormap);
-/// "none", "exact" or "winding"; "automatic" before the choice.
+/// "none", "exact", "winding" or "side"; "automatic" before the choice.
 [[nodiscard]] SDM_API const char* name_of(SignMethod method);
 /// "charts", "triangles" or "uv".
 [[nodiscard]] SDM_API const char* name_of(AtlasKind kind);

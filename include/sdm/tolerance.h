@@ -68,7 +68,7 @@ enum class VerdictReason {
 struct Evidence {
   std::optional<double> lowest{}, highest{};  ///< of the distances of all samples with a value
   bool complete = true;          ///< every sample has a value: none is farther than the maximum distance
-  bool estimated_signs = false;  ///< SignMethod::winding: between samples a distance may have the other sign
+  bool estimated_signs = false;  ///< is_estimate(): between samples a distance may have the other sign
   double accuracy = 0;  ///< the error of a distance, as of engine_accuracy(); infinite if it has no bound
   /// Upper bound on how much a distance at any point can differ from those of the samples, without that
   /// error, as of SamplingBound::value(); 0 where there is nothing between samples.

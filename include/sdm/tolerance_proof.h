@@ -43,7 +43,7 @@ struct ToleranceProof {
   /// If undecided: no point is out of the tolerance by more than this. At most the accuracy, unless the
   /// search ended at ToleranceProofOptions::most_parts. Nothing if signs are the reason.
   std::optional<double> undecided_by{};
-  /// Undecided because it depends on signs that are estimates (SignMethod::winding of an open O2): some point
+  /// Undecided because it depends on signs that are estimates (is_estimate()): some point
   /// is within the tolerance with one sign and out of it with the other.
   bool depends_on_signs = false;
 };

@@ -105,7 +105,7 @@ struct FieldSample : BoundedNumber {
 };
 
 /// |value − distance| ≤ interpolation_error(grid) + field.accuracy, unless signs are estimates
-/// (SignMethod::winding), where bounds hold for either sign. Points outside the grid have bounds from
+/// (is_estimate()), where bounds hold for either sign. Points outside the grid have bounds from
 /// its nearest point and from the box of O2. Throws sdm::Error for a coordinate that is not finite, or a
 /// field whose arrays do not fit its grid. Cost: constant per point, all cores.
 [[nodiscard]] SDM_API std::vector<FieldSample> sample_field(const DistanceField& field,

@@ -59,7 +59,7 @@ class DistanceMap(_core.MapChannels):
 
     @property
     def sign(self) -> str:
-        """How inside and outside are distinguished: 'none' (unsigned distances), 'exact' or 'winding'."""
+        """How inside and outside are distinguished: 'none' (unsigned distances), 'exact', 'winding' or 'side'."""
         return self._core.sign
 
     @property
@@ -264,7 +264,8 @@ def map(
     engine: 'cpu', 'gl' (on OpenGL) or 'reference' (simple and slow).
     transform: a 4 × 4 affine matrix that moves ``a`` first, for column vectors; a reflection also reverses the faces.
     sign: 'automatic': negative inside a closed, orientable ``b``, else unsigned; 'none'; 'exact'; 'winding': by generalised
-    winding numbers for an open ``b``, an estimate of insideness.
+    winding numbers for an open ``b``, an estimate of insideness; 'side': negative behind an open ``b``, on the side to which
+    its normals do not point, an estimate, with no sign (>= 0) at its boundary.
     max_distance: > 0; texels farther away have no value.
     progress: called as progress(step, fraction), on this thread; False cancels.
 

@@ -14,10 +14,11 @@ namespace {
 template <class Value, std::size_t n>
 using Names = std::array<std::pair<const char*, Value>, n>;
 
-constexpr Names<SignMethod, 4> kSigns{{{"automatic", SignMethod::automatic},
+constexpr Names<SignMethod, 5> kSigns{{{"automatic", SignMethod::automatic},
                                        {"none", SignMethod::none},
                                        {"exact", SignMethod::exact},
-                                       {"winding", SignMethod::winding}}};
+                                       {"winding", SignMethod::winding},
+                                       {"side", SignMethod::side}}};
 constexpr Names<AtlasKind, 3> kAtlases{
     {{"charts", AtlasKind::charts}, {"triangles", AtlasKind::triangles}, {"uv", AtlasKind::uv}}};
 

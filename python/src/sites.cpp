@@ -141,7 +141,8 @@ void bind_closest(nb::class_<PySites>& sites) {
 points: (n, 3) numbers. float64 in C order is used without a copy, and must not change during the call.
 max_distance: > 0, in units of the mesh; points farther away have no closest point.
 sign: 'none': unsigned distances; 'exact': negative inside a closed, orientable mesh; 'winding': also for
-other meshes, by generalised winding numbers, an estimate of insideness; 'automatic': exact where the mesh
+other meshes, by generalised winding numbers, an estimate of insideness; 'side': negative behind an open mesh, an
+estimate; 'automatic': exact where the mesh
 allows it, else none.
 gradients: whether the result has the derivatives of the distances.
 engine: 'cpu' or 'reference'; the site is closest to within 1e-6 of the diagonal of both, or to double

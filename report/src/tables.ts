@@ -136,7 +136,9 @@ export function showMethod(report: Report): void {
       sentence(
         sign.method === 'none'
           ? `Distances have no sign (${sign.reason}).`
-          : `Positive is outside ${reference}, negative is inside (${sign.reason}).`,
+          : sign.method === 'side'
+            ? `Positive is in front of ${reference}, negative is behind (${sign.reason}).`
+            : `Positive is outside ${reference}, negative is inside (${sign.reason}).`,
         sign.method === 'winding' && 'The reference is not watertight, so inside and outside are estimates.',
       ),
     );

@@ -64,6 +64,8 @@ const char* name_of(SignMethod method) {
       return "exact";
     case SignMethod::winding:
       return "winding";
+    case SignMethod::side:
+      return "side";
   }
   return "";
 }

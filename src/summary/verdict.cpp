@@ -16,7 +16,7 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
   if (vertex_distances.size() != surface.mesh().positions.size())
     throw Error("a verdict needs one distance for each vertex of the surface's mesh");
   Evidence evidence{.complete = map.beyond_max_distance == 0,
-                    .estimated_signs = map.sign.method == SignMethod::winding,
+                    .estimated_signs = is_estimate(map.sign.method),
                     .accuracy = accuracy,
                     .error_bound = error_bound,
                     .is_signed = map.sign.method != SignMethod::none};

@@ -25,7 +25,8 @@ void include(FieldSample& sample, double value, double apart, const DistanceFiel
     case SignMethod::exact:
       sample.lower = std::max(sample.lower, value - apart);
       break;
-    case SignMethod::winding:  // an estimate of the sign, which changes anywhere
+    case SignMethod::winding:
+    case SignMethod::side:  // an estimate of the sign, which changes anywhere
       value = std::abs(value);
       sample.magnitude = std::max(sample.magnitude, value - apart);
       break;
@@ -42,6 +43,7 @@ void complete(FieldSample& sample, SignMethod sign) {
       sample.magnitude = std::max({sample.magnitude, sample.lower, -sample.upper});
       break;
     case SignMethod::winding:
+    case SignMethod::side:
       sample.lower = -sample.upper;
       break;
     default:

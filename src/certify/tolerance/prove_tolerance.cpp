@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "mesh/validate.h"
+#include "query/closest/reference.h"
 #include "query/inside/inside.h"
 
 namespace sdm {
@@ -56,7 +58,7 @@ class Prover {
     const auto [lo, hi] = tolerance;
     const double least = std::max({lo, -hi, 0.0}), most = std::max(-lo, hi), tight = std::min(-lo, hi);
     if (sign_ == SignMethod::none) return at_least(least, true) & at_most(hi);
-    if (sign_ == SignMethod::winding && lo != -hi) return by_either_sign(tight, most);
+    if (is_estimate(sign_) && lo != -hi) return by_either_sign(tight, most);
     if (tight < 0) {
       const ToleranceProof apart = at_least(least, lo > 0);
       return apart.proof == Proof::inside ? on_side(hi < 0) & at_most(most) : apart;
@@ -140,9 +142,12 @@ class Prover {
 
   ToleranceWitness witness(const LowerBound& at) const {
     const double distance = norm(at.closest - at.point);
-    const bool is_inside = sign_ == SignMethod::exact     ? distance > 0 && inside::contains(b_, {}, at.point)
-                           : sign_ == SignMethod::winding ? inside::WindingNumber(b_).above_half(at.point)
-                                                          : false;
+    constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+    const auto estimate = [&] {
+      return inside::InsideTest(b_, sign_)(at.point, closest::reference_closest(b_, at.point, kAnywhere));
+    };
+    const bool is_inside = sign_ == SignMethod::exact ? distance > 0 && inside::contains(b_, {}, at.point)
+                                                      : is_estimate(sign_) && estimate();
     return {at.point, at.closest, at.faces[0], at.faces[1], is_inside ? -distance : distance};
   }
 

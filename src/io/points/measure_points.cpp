@@ -267,7 +267,7 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
                   .beyond_max_distance = found.beyond_max_distance,
                   .max_distance = options.map.max_distance,
                   .evidence = {.complete = found.beyond_max_distance == 0,
-                               .estimated_signs = found.sign.method == SignMethod::winding,
+                               .estimated_signs = is_estimate(found.sign.method),
                                .accuracy = found.accuracy,
                                .is_signed = found.sign.method != SignMethod::none},
                   .colors = color_range(color_choice(picture), found.distance)};

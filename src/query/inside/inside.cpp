@@ -51,6 +51,7 @@ thread_local Balls balls;
 InsideTest::InsideTest(const sites::SitesData& sites, SignMethod method, double error)
     : sites_(sites), method_(method), error_(error) {
   if (method == SignMethod::exact) sides_.emplace(sites);
+  if (method == SignMethod::side) boundary_ = {sites.topology, sites.mesh.positions.size()};
   refit();
 }
 
@@ -77,6 +78,11 @@ bool InsideTest::inside_solid(const Vec3& query, const ClosestPoint& closest) co
   }
 }
 
+bool InsideTest::behind(const Vec3& query, const ClosestPoint& closest) const {
+  if (closest.type == SiteType::none || boundary_.contains(closest.type, closest.site)) return false;
+  return dot(query - closest.point, sites::pseudonormal(sites_.normals, sites_.topology, closest)) < 0;
+}
+
 // As inside_solid(), but most queries are in a ball that is known.
 bool InsideTest::inside_ball(const Vec3& query, const ClosestPoint& closest) const {
   const double radius = closest.distance - std::max(clearance_, error_);
@@ -95,6 +101,8 @@ bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) cons
       return closest.type != SiteType::none && sdm::contains(box_, query) && inside_ball(query, closest);
     case SignMethod::winding:
       return winding_->above_half(query);
+    case SignMethod::side:
+      return behind(query, closest);
     default:
       return false;
   }
@@ -119,7 +127,7 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
                                      const sites::ClosestPacket& closest) const {
   std::uint32_t inside = 0;
   if (method_ == SignMethod::none) return inside;
-  if (method_ == SignMethod::winding) {
+  if (is_estimate(method_)) {
     for (std::size_t i = 0; i < closest.count; ++i)
       inside |= static_cast<std::uint32_t>((*this)(queries[i], closest.get(i, queries[i]))) << i;
     return inside;

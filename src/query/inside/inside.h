@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "query/inside/boundary_sites.h"
 #include "query/inside/face_sides.h"
 #include "query/inside/solid.h"
 #include "query/inside/winding_number.h"
@@ -47,6 +48,8 @@ class InsideTest {
 
  private:
   [[nodiscard]] bool inside_solid(const Vec3& query, const ClosestPoint& closest) const;
+  /// The side of an open O2, as of SignMethod::side.
+  [[nodiscard]] bool behind(const Vec3& query, const ClosestPoint& closest) const;
   [[nodiscard]] bool inside_ball(const Vec3& query, const ClosestPoint& closest) const;
 
   const sites::SitesData& sites_;
@@ -57,6 +60,7 @@ class InsideTest {
   std::uint64_t shape_ = 0;  ///< unique, over all objects, for these positions
   std::optional<FaceSides> sides_;
   std::optional<WindingNumber> winding_;
+  BoundarySites boundary_;  ///< for SignMethod::side
 };
 
 }  // namespace sdm::inside

@@ -36,11 +36,17 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
       if (open.empty())
         return {SignMethod::exact, "requested by winding number; O2 is closed and orientable"};
       return {SignMethod::winding, "requested; an estimate, because " + open};
+    case SignMethod::side:
+      if (open.empty()) return {SignMethod::exact, "requested by side; O2 is closed and orientable"};
+      if (!sites.orientable())
+        throw Error("the side of O2 is not defined: O2 is not orientable; use sign none, or winding",
+                    Remedy::sign_method);
+      return {SignMethod::side, "requested; an estimate, because " + open};
     case SignMethod::exact:
       if (!open.empty())
-        throw Error(
-            "the inside of O2 is not defined: " + open + "; use sign none, or winding for an estimate",
-            Remedy::sign_method);
+        throw Error("the inside of O2 is not defined: " + open +
+                        "; use sign none, or winding or side for an estimate",
+                    Remedy::sign_method);
       return {SignMethod::exact, "requested; O2 is closed and orientable"};
     case SignMethod::automatic:
       break;

@@ -63,7 +63,9 @@ LegendText legend_text(const DistanceMap& map, double least, double most, const 
   if (const auto& t = scale.tolerance)
     text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
                                          : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
-  text.notes.push_back(map.sign.method == SignMethod::none ? "unsigned" : "negative: inside");
+  text.notes.push_back(map.sign.method == SignMethod::none   ? "unsigned"
+                       : map.sign.method == SignMethod::side ? "negative: behind"
+                                                             : "negative: inside");
   // An empty line otherwise: pictures of a sequence have bars of one length.
   text.notes.emplace_back(least < scale.lo || most > scale.hi ? "beyond: as the ends" : "");
   return text;
