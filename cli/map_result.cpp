@@ -31,12 +31,14 @@ sdm::AtlasOptions atlas_options(const MapCommand& command, const sdm::Mesh& mesh
 
 /// What map.exr says about itself.
 std::vector<std::pair<std::string, std::string>> exr_attributes(const MapTask& task,
-                                                                const sdm::SignUsed& sign) {
+                                                                const sdm::DistanceMap& map) {
+  const sdm::SignUsed& sign = map.sign;
   const Input &on = task.on, &to = task.to;
   std::vector<std::pair<std::string, std::string>> attributes{{"measuredOn", on.file},
                                                               {"distanceTo", to.file},
                                                               {"sign", sdm::name_of(sign.method)},
                                                               {"signReason", sign.reason}};
+  if (map.measured.kind != sdm::DistanceKind::closest) attributes.emplace_back("measured", map.measured.text);
   if (!on.transform.empty()) attributes.emplace_back("measuredOnTransform", on.transform);
   if (!to.transform.empty()) attributes.emplace_back("distanceToTransform", to.transform);
   if (const std::string& units = task.command.picture.units; !units.empty())
@@ -78,7 +80,7 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   const sdm::ExrOptions exr{.layers = command.output.layers,
                             .boundary = boundary,
                             .sites = task.sites.get(),
-                            .attributes = exr_attributes(task, map.sign)};
+                            .attributes = exr_attributes(task, map)};
   sdm::run_concurrently({
       [&] {
         write_map_files(folder, command.output.files, surface, map, computed.at_vertices, &task.to.mesh,
@@ -145,7 +147,7 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
         if (!task.sites) task.sites = std::make_unique<sdm::Sites>(task.to.mesh);
         outcome.time.sites = watch.lap();
         // The atlas leaves a core idle meanwhile. Without an inside, the answer decides nothing.
-        if (sdm::choose_sign(*task.sites, command.map.sign).method == sdm::SignMethod::exact)
+        if (sdm::choose_sign(*task.sites, command.map).method == sdm::SignMethod::exact)
           outcome.embedded = sdm::is_embedded(*task.sites);
         sdm::MapOptions options = command.map;
         options.progress = nullptr;  // the atlas reports
@@ -153,7 +155,7 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
       },
       [&] { inspect(task.on), inspect(task.to); },
   });
-  check_sign(task.command.picture.tolerance, sdm::choose_sign(*task.sites, task.command.map.sign), task.to);
+  check_sign(task.command.picture.tolerance, sdm::choose_sign(*task.sites, task.command.map), task.to);
 
   Stopwatch watch;
   sdm::DistanceMap& map = computed.map = sdm::compute_map(*surface, *task.sites, command.map);

@@ -14,6 +14,7 @@
 #include "common_options.h"
 #include "doubts.h"
 #include "exit_codes.h"
+#include "facing.h"
 #include "format.h"
 #include "map_files.h"
 #include "notes.h"
@@ -123,7 +124,7 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   std::string text = fmt::format("{} -> {}\n", command.cloud, command.o2);
   if (outcome.aligned) text += summary(*outcome.aligned, s.units);
   if (found.text) text += text_summary(*found.text);
-  text += fmt::format("  points    {}\n", found.points);
+  text += fmt::format("  points    {}\n", found.points) + measured_line(s);
   if (found.invalid > 0) text += fmt::format("            {} have no coordinates\n", found.invalid);
   if (d.texels == 0) {
     text += "  distance  no point has a value\n";
@@ -138,7 +139,9 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
     text += fmt::format("            unsigned: {}\n", s.sign.reason);
   if (s.beyond_max_distance > 0)
     text += fmt::format("            {} points are farther than --max-distance\n", s.beyond_max_distance);
-  if (s.sign.method == sdm::SignMethod::side)
+  if (s.without_match > 0)
+    text += fmt::format("            {} points have no face that faces them\n", s.without_match);
+  if (s.sign.method == sdm::SignMethod::side && s.measured.kind == sdm::DistanceKind::closest)
     text += "            signs are estimates; points closest to the boundary of O2 have none: |d|\n";
   if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
   return text + coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
@@ -215,7 +218,7 @@ int run(PointsCommand command) {
   out.fill([&] {
     const sdm::Sites sites(o2.mesh);
     inspect(o2);
-    check_sign(command.picture.tolerance, sdm::choose_sign(sites, command.map.sign), o2);
+    check_sign(command.picture.tolerance, sdm::choose_sign(sites, command.map), o2);
     outcome.import_ms = watch.lap();
     if (command.align.on) {
       progress.step("align");
@@ -320,6 +323,7 @@ void add_points_command(CLI::App& app) {
       ->check(positive_number())
       ->type_name("D");
   add_sign_option(*points, c.map.sign);
+  add_facing_option(*points, c.map, "point");
   add_tolerance_option(*points, c.picture.tolerance);
   add_doubt_options(*points, c.doubts);
   add_color_options(*points, c.picture);
@@ -339,6 +343,7 @@ void add_points_command(CLI::App& app) {
         t && std::max(std::abs(t->lo), std::abs(t->hi)) > command->map.max_distance)
       throw CLI::ValidationError(
           "--tolerance", "must not be greater than --max-distance, beyond which points have no value");
+    check_facing(command->map);
     check_doubts(command->doubts, command->picture.tolerance);
     convert_units(command->file_units, {command->cloud, command->o2, command->transform_o1,
                                         command->transform_o2, command->picture.units});

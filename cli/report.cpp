@@ -128,6 +128,11 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
 
 }  // namespace
 
+std::string measured_line(const sdm::Summary& summary) {
+  if (summary.measured.kind == sdm::DistanceKind::closest) return {};
+  return fmt::format("  measured  {}\n", summary.measured.text);
+}
+
 const char* side_word(const sdm::SignUsed& sign) {
   return sign.method == sdm::SignMethod::side ? "behind" : "inside";
 }
@@ -160,8 +165,10 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   const auto add = [&]<class... Values>(fmt::format_string<Values...> line, Values&&... values) {
     fmt::format_to(std::back_inserter(text), line, std::forward<Values>(values)...);
   };
+  text += measured_line(s);
   if (d.texels == 0 || !s.extremes) {
-    add("  distance  no texel is within the maximum distance\n");
+    add("  distance  no texel {}\n",
+        s.without_match > 0 ? "has a face that faces it" : "is within the maximum distance");
   } else {
     const auto& [min, max] = *s.extremes;
     add("  distance  min {}   mean {}   max {}{}\n", number(min.distance), number(d.mean),
@@ -177,10 +184,15 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   if (s.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", s.sign.reason);
   if (s.beyond_max_distance > 0)
     add("            {} texels are farther than --max-distance\n", s.beyond_max_distance);
-  if (s.sign.method == sdm::SignMethod::side)
-    add("            signs are estimates ({} texels at the boundary of O2 have none: |d|)\n", s.boundary_texels);
-  add("  error     at most {}{} between the texels, whose values are exact\n", number(s.evidence.error_bound),
-      unit);
+  if (s.without_match > 0) add("            {} texels have no face that faces them\n", s.without_match);
+  if (s.sign.method == sdm::SignMethod::side && s.measured.kind == sdm::DistanceKind::closest)
+    add("            signs are estimates ({} texels at the boundary of O2 have none: |d|)\n",
+        s.boundary_texels);
+  if (s.evidence.samples_only)
+    add("  error     unknown between the texels, whose values are exact: there, all is an estimate\n");
+  else
+    add("  error     at most {}{} between the texels, whose values are exact\n",
+        number(s.evidence.error_bound), unit);
   if (s.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
   text += coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
   if (outcome.raster)

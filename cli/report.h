@@ -53,6 +53,8 @@ void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json&
 /// JSON text; drops invalid bytes of file names that are not UTF-8.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);
 
+/// A line on what distances are to, unless it is the closest point.
+[[nodiscard]] std::string measured_line(const sdm::Summary& summary);
 /// "inside" or "behind": where distances are negative.
 [[nodiscard]] const char* side_word(const sdm::SignUsed& sign);
 /// A line on the coverage of O2, if it was measured.

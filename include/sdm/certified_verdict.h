@@ -35,7 +35,8 @@ struct CertifyOptions {
 /// check_tolerance() and, where that does not decide because distances between the samples or the rounding of
 /// a sample leave it open, prove_tolerance(). Verdict::not_decided remains for an extreme distance within the
 /// accuracy of a limit, for what depends on signs that are estimates, where nothing was measured, and for an
-/// unknown accuracy. Errors as of both. Cost: that of check_tolerance() and, unless it decides, of the proof.
+/// unknown accuracy. Of a map whose DistanceKind is not `closest`, samples decide alone. Errors as of both.
+/// Cost: that of check_tolerance() and, unless it decides, of the proof.
 [[nodiscard]] SDM_API CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites,
                                                          const DistanceMap& map,
                                                          std::span<const float> vertex_distances,

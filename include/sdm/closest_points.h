@@ -14,10 +14,11 @@
 namespace sdm {
 
 /// Returns the closest point of O2 to each of `points`, which may be in any order. `distance` is unsigned;
-/// options.sign is ignored. Points farther than options.max_distance have no site (SiteType::none). Throws
-/// sdm::Error for a coordinate that is NaN or beyond 1e37, for a max_distance that is not positive, for an
-/// engine that computes maps only, or if there is not enough memory; Cancelled. Cost: sorting the points in
-/// space, and one search per point by the engine.
+/// options.sign is ignored, and options.facing is an error: closest_facing_points() takes normals. Points
+/// farther than options.max_distance have no site (SiteType::none). Throws sdm::Error for a coordinate that
+/// is NaN or beyond 1e37, for a max_distance that is not positive, for an engine that computes maps only, or
+/// if there is not enough memory; Cancelled. Cost: sorting the points in space, and one search per point by
+/// the engine.
 [[nodiscard]] SDM_API std::vector<ClosestPoint> closest_points(const Sites& sites,
                                                                std::span<const Vec3> points,
                                                                const MapOptions& options = {});

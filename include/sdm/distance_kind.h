@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace sdm {
 
@@ -13,6 +14,12 @@ enum class DistanceKind : std::uint8_t {
   closest,  ///< the closest point of O2
   facing,   ///< the closest point of the faces of O2 that face the same way as the sample
   along,    ///< the nearest point of O2 on a line through the sample
+};
+
+/// What was measured, for reports.
+struct MeasuredDistance {
+  DistanceKind kind = DistanceKind::closest;
+  std::string text = "distance to the closest point";  ///< with the rule's numbers, such as an angle
 };
 
 }  // namespace sdm

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/distance_kind.h>
 #include <sdm/engine.h>
 #include <sdm/progress.h>
 #include <sdm/sign.h>
@@ -14,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,11 +28,15 @@ struct MapOptions {
   SignMethod sign = SignMethod::automatic;
   /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
   double max_distance = std::numeric_limits<double>::infinity();
+  /// An angle in degrees, above 0 and up to 180: distances are to the closest of the faces of O2 whose normal
+  /// is within it of the normal of the sample's face (see sdm/facing.h). Nothing: to the closest point.
+  std::optional<double> facing{};
   Progress progress{};
 };
 
 /// One value per texel, in arrays of resolution · rows(), row 0 at the top. Texels without a value, because
-/// no face owns them or O2 is farther than max_distance, hold NaN, kNone and SiteType::none.
+/// no face owns them, O2 is farther than max_distance or no face of O2 faces as they do, hold NaN, kNone and
+/// SiteType::none.
 struct DistanceMap {
   std::uint32_t resolution = 0;     ///< texels per row
   std::vector<float> distance;      ///< |vector|, negative inside O2 if signed
@@ -38,7 +44,9 @@ struct DistanceMap {
   std::vector<std::uint32_t> site;  ///< index of the closest site among those of its type
   std::vector<SiteType> site_type;
   SignUsed sign;
-  std::size_t beyond_max_distance = 0;  ///< owned texels without a value
+  MeasuredDistance measured;
+  std::size_t beyond_max_distance = 0;  ///< owned texels without a value, besides the next ones
+  std::size_t without_match = 0;        ///< owned texels that no face of O2 is allowed for
 
   /// Texels per column, as Surface::rows().
   [[nodiscard]] std::uint32_t rows() const {
@@ -49,8 +57,8 @@ struct DistanceMap {
 /// Computes the map. Distance and vector are those to a closest site, evaluated in double and stored in
 /// float; the site is closest to within 1e-6 (cpu) or 2e-6 (gl) of the diagonal of both meshes, or double
 /// rounding (reference). Throws sdm::Error for a sign method that O2 does not allow, for a max_distance that
-/// is not positive, if the engine fails, or if there is not enough memory; Cancelled. Cost: depends on the
-/// engine; for cpu, one search per owned texel, all cores.
+/// is not positive, for an angle of `facing` out of range, if the engine fails, or if there is not enough
+/// memory; Cancelled. Cost: depends on the engine; for cpu, one search per owned texel, all cores.
 [[nodiscard]] SDM_API DistanceMap compute_map(const Surface& surface, const Sites& sites,
                                               const MapOptions& options = {});
 
@@ -58,6 +66,14 @@ struct DistanceMap {
 /// values of the map are unspecified.
 SDM_API void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,
                          DistanceMap& map);
+
+/// Returns the sign that distances with these options have: choose_sign(sites, options.sign) or, if they are
+/// to faces that face the samples, the side of the face. Throws sdm::Error as choose_sign() does, and for a
+/// sign method that options.facing excludes.
+[[nodiscard]] SDM_API SignUsed choose_sign(const Sites& sites, const MapOptions& options);
+
+/// Returns what distances with these options are to. Throws sdm::Error if options.facing is out of range.
+[[nodiscard]] SDM_API MeasuredDistance measured_distance(const MapOptions& options);
 
 /// Returns, for each texel, 1 if its closest site is a boundary edge of an open O2 or a vertex of one,
 /// otherwise 0. Such texels may lie beside the part that O2 covers, where distances do not compare the two

@@ -134,11 +134,13 @@ struct PointExtreme {
 struct PointDistances {
   std::uint64_t points = 0;
   std::uint64_t invalid = 0;              ///< with a coordinate that is NaN or infinite
-  std::uint64_t beyond_max_distance = 0;  ///< without a value, besides the invalid ones
+  std::uint64_t beyond_max_distance = 0;  ///< without a value, besides the invalid and the next ones
+  std::uint64_t without_match = 0;        ///< for which no face of O2 faces as they do
   bool has_normals = false;
   std::string format;               ///< as PointReader has it
   std::optional<TextDialect> text;  ///< its dialect
   SignUsed sign;
+  MeasuredDistance measured;
   DistanceStatistics
       distance;  ///< of the points with a value, each with the same weight; `texels`: their number
   std::optional<PointExtreme> min, max;  ///< nothing if no point has a value

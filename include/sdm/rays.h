@@ -63,7 +63,8 @@ struct RayOptions {
 /// largest error that an engine may make (EngineInfo::relative_error), at least 0; 0 where the map has no
 /// value. The t_min of rays of unit direction that start at the texel's surface point. The map must be one of
 /// this surface to these sites in their present shapes.
-/// Throws sdm::Error if its resolution is not that of the surface. Cost: linear.
+/// Throws sdm::Error if its resolution is not that of the surface, or if its distances are not to the closest
+/// point. Cost: linear.
 [[nodiscard]] SDM_API std::vector<double> free_distances(const Surface& surface, const Sites& sites,
                                                          const DistanceMap& map);
 

@@ -16,6 +16,7 @@
 #include <sdm/doubts.h>
 #include <sdm/engine.h>
 #include <sdm/error.h>
+#include <sdm/facing.h>
 #include <sdm/gl.h>
 #include <sdm/hausdorff.h>
 #include <sdm/map.h>

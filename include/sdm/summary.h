@@ -10,6 +10,7 @@
 #include <sdm/certified_verdict.h>
 #include <sdm/combined_statistics.h>
 #include <sdm/coverage.h>
+#include <sdm/distance_kind.h>
 #include <sdm/doubts.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
@@ -106,10 +107,12 @@ struct Summary {
   bool of_points = false;  ///< of a cloud: each point counts the same, and there is nothing between points
   bool of_itself = false;  ///< a map of a surface to itself, whose texels say nothing about other points
   SignUsed sign{};
+  MeasuredDistance measured{};
   DistanceStatistics distance{};  ///< an estimate for the surface; exact for a cloud, but for the accuracy
   std::optional<Extremes> extremes{};             ///< nothing without a value
   std::array<std::uint64_t, 2> extreme_points{};  ///< of a cloud: their places in the file, from 0
   std::size_t beyond_max_distance = 0;
+  std::size_t without_match = 0;    ///< samples without a value, as no face of O2 faces as they do
   std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh
   double max_distance = std::numeric_limits<double>::infinity();  ///< infinite if there is no limit
   Evidence evidence{};                                            ///< with the accuracy and the error bound
@@ -201,6 +204,8 @@ SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 [[nodiscard]] SDM_API const char* name_of(Colormap colormap);
 /// "none", "exact", "winding" or "side"; "automatic" before the choice.
 [[nodiscard]] SDM_API const char* name_of(SignMethod method);
+/// "closest", "facing" or "along".
+[[nodiscard]] SDM_API const char* name_of(DistanceKind kind);
 /// "charts", "triangles" or "uv".
 [[nodiscard]] SDM_API const char* name_of(AtlasKind kind);
 

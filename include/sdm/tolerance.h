@@ -55,6 +55,7 @@ enum class VerdictReason {
   all_within,           ///< pass: no point can be out of the tolerance
   exceeded,             ///< fail: a sample is out of the tolerance by more than the accuracy
   beyond_max_distance,  ///< fail: a sample has no value, as it is farther than the maximum distance
+  without_match,        ///< fail: a sample has no value, as O2 has no face that faces as it does
   between_samples,      ///< not decided: the error bound exceeds the margin
   within_rounding,      ///< not decided: a distance is closer to a limit than the accuracy
   estimated_signs,      ///< not decided: with the other sign, which is an estimate, a distance might be out
@@ -67,8 +68,12 @@ enum class VerdictReason {
 /// its faces, or the points of a cloud.
 struct Evidence {
   std::optional<double> lowest{}, highest{};  ///< of the distances of all samples with a value
-  bool complete = true;          ///< every sample has a value: none is farther than the maximum distance
+  bool complete = true;                       ///< every sample has a value
+  bool unmatched = false;        ///< not complete, as O2 has no face that faces as some sample does
   bool estimated_signs = false;  ///< is_estimate(): between samples a distance may have the other sign
+  /// Nothing bounds the distances between samples, whose verdict then is an estimate for the surface: of maps
+  /// whose DistanceKind is not `closest`. The error bound is infinite.
+  bool samples_only = false;
   double accuracy = 0;  ///< the error of a distance, as of engine_accuracy(); infinite if it has no bound
   /// Upper bound on how much a distance at any point can differ from those of the samples, without that
   /// error, as of SamplingBound::value(); 0 where there is nothing between samples.
@@ -84,7 +89,7 @@ struct Judgement {
   /// Verdict::fail.
   bool within = true;
   /// The verdict holds for every point: not of Verdict::not_decided, nor of a failure that depends on the
-  /// sign of an estimate.
+  /// sign of an estimate, nor of a pass of samples only.
   bool certified = true;
   /// How far `lowest` and `highest` stay from the limits, less the accuracy, whatever their signs if these
   /// are estimates. Verdict::pass needs at least the error bound. Nothing if a sample has no value, if there
@@ -98,7 +103,7 @@ struct Judgement {
 
 /// Judges by the rule for all verdicts. The accuracy benefits the part: rounding exceeds no tolerance, and a
 /// distance within it has no certain sign. It also counts against a proof: Verdict::pass needs
-/// margin ≥ error_bound. Cost: O(1).
+/// margin ≥ error_bound, or of samples only margin ≥ 0. Cost: O(1).
 [[nodiscard]] SDM_API Judgement judge(const Evidence& evidence, const Tolerance& tolerance);
 
 /// Whether all distances of a surface are within a tolerance, in units of the mesh.

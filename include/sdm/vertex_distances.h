@@ -13,9 +13,9 @@
 namespace sdm {
 
 /// Returns the distance from each vertex of `mesh` to O2, NaN beyond options.max_distance; signed as by
-/// compute_map with the same options. A maps_only engine is replaced by cpu. Throws sdm::Error as
-/// closest_points does, and for a sign method that O2 does not allow; Cancelled. Cost: that of
-/// closest_points.
+/// compute_map with the same options. With options.facing, the normal of a vertex is that of its faces,
+/// weighted by their angles. A maps_only engine is replaced by cpu. Throws sdm::Error as closest_points does,
+/// and for a sign method that O2 does not allow; Cancelled. Cost: that of closest_points.
 [[nodiscard]] SDM_API std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites,
                                                                MapOptions options = {});
 

@@ -67,12 +67,22 @@ class DistanceMap(_core.MapChannels):
         """Why, in words."""
         return self._core.sign_reason
 
+    @property
+    def measured(self) -> str:
+        """What the distances are to, in words, such as 'distance to faces that face within 90°'."""
+        return self._core.measured
+
+    @property
+    def without_match(self) -> int:
+        """The number of texels without a value because no face of O2 faces as they do."""
+        return self._core.without_match
+
     @functools.cached_property
     def bounds(self) -> MapBounds:
         """Bounds on the distances of all points of the surface, not only of its texels.
 
         Cost: linear in texels, all cores. Raises Error if the surface or the sites have been refitted, and for a map of a
-        surface to itself.
+        surface to itself or to faces that face it.
 
         >>> bounds = sdm.map(sphere, box, resolution=256).bounds
         >>> bounds.lower < bounds.upper
@@ -250,6 +260,7 @@ def map(
     transform: object = None,
     sign: str = "automatic",
     max_distance: float = float("inf"),
+    facing: "float | None" = None,
     atlas: str = "charts",
     max_stretch: float = 1.3,
     gutter: int = 1,
@@ -267,6 +278,9 @@ def map(
     winding numbers for an open ``b``, an estimate of insideness; 'side': negative behind an open ``b``, on the side to which
     its normals do not point, an estimate, with no sign (>= 0) at its boundary.
     max_distance: > 0; texels farther away have no value.
+    facing: an angle in degrees, above 0 and up to 180: distances are to the closest of the faces of ``b`` whose normal is
+    within it (for 90: less than that) of the normal of the texel's face, with the sign of the side of that face. Texels
+    without such a face have no value. The map has no ``bounds`` and hausdorff(), and a 'pass' of check() is not certified.
     progress: called as progress(step, fraction), on this thread; False cancels.
 
     The site is closest to within 1e-6 (cpu) or 2e-6 (gl) of the diagonal of both meshes, or to double rounding
@@ -289,7 +303,9 @@ def map(
         progress=progress,
     )
     return DistanceMap(
-        _core.compute_map(surface, sites, engine=engine, sign=sign, max_distance=max_distance, progress=progress)
+        _core.compute_map(
+            surface, sites, engine=engine, sign=sign, max_distance=max_distance, facing=facing, progress=progress
+        )
     )
 
 

@@ -30,11 +30,12 @@ std::unique_ptr<PyMap> map_between(nb::handle surface, nb::handle sites) {
 }
 
 std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char* engine, const char* sign,
-                               double max_distance, nb::handle progress) {
+                               double max_distance, std::optional<double> facing, nb::handle progress) {
   const auto lock = nb::cast<const PySurface&>(surface).access.use();
   const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
   auto result = map_between(surface, sites);
-  result->options = {.engine = engine_of(engine), .sign = sign_of(sign), .max_distance = max_distance};
+  result->options = {
+      .engine = engine_of(engine), .sign = sign_of(sign), .max_distance = max_distance, .facing = facing};
   result->engine = engine;
   run(progress, [&](const Progress& report) {
     const auto begin = std::chrono::steady_clock::now();
@@ -85,6 +86,8 @@ void bind_map(nb::module_& module) {
       .def_prop_ro(
           "sites", [](const PyMap& self) { return self.sites_object; }, nb::sig("def sites(self) -> Sites"))
       .def_prop_ro("beyond_max_distance", [](const PyMap& self) { return self.map.beyond_max_distance; })
+      .def_prop_ro("without_match", [](const PyMap& self) { return self.map.without_match; })
+      .def_prop_ro("measured", [](const PyMap& self) { return self.map.measured.text; })
       .def_prop_ro("sign", [](const PyMap& self) { return name_of(self.map.sign.method); })
       .def_prop_ro("sign_reason", [](const PyMap& self) { return self.map.sign.reason; })
       .def(
@@ -107,17 +110,17 @@ void bind_map(nb::module_& module) {
   module.def(
       "compute_map",
       [](nb::handle surface, nb::handle sites, const char* engine, const char* sign, double max_distance,
-         nb::handle progress) {
-        return compute(surface, sites, engine, sign, max_distance, progress).release();
+         std::optional<double> facing, nb::handle progress) {
+        return compute(surface, sites, engine, sign, max_distance, facing, progress).release();
       },
       nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(), nb::kw_only(),
       nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("progress") = nb::none(),
+      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("facing") = nb::none(),
+      nb::arg("progress") = nb::none(),
       nb::sig(
           "def compute_map(surface: Surface, sites: Sites, *, engine: str = 'cpu', sign: str = 'automatic', "
-          "max_distance: float = ..., progress: collections.abc.Callable[[str, float], bool | None] | None = "
-          "None) "
-          "-> Map"));
+          "max_distance: float = ..., facing: float | None = None, progress: collections.abc.Callable[[str, "
+          "float], bool | None] | None = None) -> Map"));
 
   module.def(
       "compute_self_map",

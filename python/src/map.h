@@ -63,6 +63,13 @@ struct PyMap {
           "the distances of a surface to itself jump between faces, so that texels do not bound them; "
           "SelfProximityQuery.separation() is exact");
   }
+  /// Also throws for distances to other points than the closest one, which bound nothing between texels.
+  void require_bounds() const {
+    require_other_mesh();
+    if (map.measured.kind != DistanceKind::closest)
+      throw Error("the map is the " + map.measured.text +
+                  ", which may jump, so that texels do not bound it; check() judges the texels");
+  }
   /// The accuracy of a distance, for the present shapes. Self maps are exact but for rounding to float.
   [[nodiscard]] double accuracy() const {
     const EngineInfo& info = options.engine ? engine_info(*options.engine) : engines().front();

@@ -38,7 +38,7 @@ double least_beyond(const PyMap& self) {
 
 // (lower, upper, covering radius, accuracy): lower ≤ d(p) ≤ upper for all points p of the surface.
 nb::object bounds(const PyMap& self) {
-  self.require_other_mesh();
+  self.require_bounds();
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   double lower = kInfinity, upper = -lower, radius = 0;
@@ -96,7 +96,7 @@ BoundedLength largest_distance(const PyMap& self) {
 }
 
 BoundedLength hausdorff(const PyMap& self, std::optional<double> precision, nb::handle progress) {
-  self.require_other_mesh();
+  self.require_bounds();
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   BoundedLength result;
@@ -180,7 +180,8 @@ void bind_verdict(nb::module_& module) {
           "neither is proven, as a distance is within the accuracy of a limit, or signs are estimates.")
       .def_prop_ro(
           "reason", [](const V& self) { return sdm::name_of(self.reason); },
-          "Why, in words: 'all within', 'exceeded', 'beyond max distance', 'within rounding', 'estimated "
+          "Why, in words: 'all within', 'exceeded', 'beyond max distance', 'without match', 'within "
+          "rounding', 'estimated "
           "signs', 'unknown accuracy' or 'nothing measured'.")
       .def_ro(
           "margin", &V::margin,

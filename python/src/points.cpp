@@ -88,7 +88,12 @@ void bind_distances(nb::module_& module) {
       .def_ro("points", &D::points, "The number of points of the file.")
       .def_ro("invalid", &D::invalid, "The number of those with a coordinate that is NaN or infinite.")
       .def_ro("beyond_max_distance", &D::beyond_max_distance,
-              "The number of those without a value, besides the invalid ones.")
+              "The number of those without a value, besides the invalid ones and those without a match.")
+      .def_ro("without_match", &D::without_match,
+              "The number of those without a value, as no face of the mesh faces as they do.")
+      .def_prop_ro(
+          "measured", [](const D& self) { return self.measured.text; },
+          "What the distances are to, in words.")
       .def_ro("beyond_tolerance", &D::beyond_tolerance,
               "The number of points that are out of the tolerance, or without a value.")
       .def_ro("has_normals", &D::has_normals, "Whether the file has normals.")
@@ -101,7 +106,7 @@ void bind_distances(nb::module_& module) {
           "None without a header). None for other formats.")
       .def_prop_ro(
           "sign", [](const D& self) { return name_of(self.sign.method); },
-          "How inside and outside are distinguished: 'none', 'exact' or 'winding'.")
+          "How inside and outside are distinguished: 'none', 'exact', 'winding' or 'side'.")
       .def_prop_ro(
           "sign_reason", [](const D& self) { return self.sign.reason; }, "Why, in words.")
       .def_ro("min", &D::min, "The point with the smallest distance; None if no point has one.")
@@ -149,14 +154,16 @@ void bind_points(nb::module_& module) {
   module.def(
       "measure_points",
       [](nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion, const char* engine,
-         const char* sign, double max_distance, nb::handle tolerance, const std::string& colormap,
-         std::optional<std::pair<double, double>> range, nb::handle progress,
+         const char* sign, double max_distance, std::optional<double> facing, nb::handle tolerance,
+         const std::string& colormap, std::optional<std::pair<double, double>> range, nb::handle progress,
          const std::optional<std::vector<std::string>>& columns, const std::string& separator,
          const std::string& decimal) {
         const std::filesystem::path from = path_of(cloud), ply = path_of(output);
         SitesInUse to(o2);
-        PointDistancesOptions options{
-            .map = {.engine = engine_of(engine), .sign = sign_of(sign), .max_distance = max_distance}};
+        PointDistancesOptions options{.map = {.engine = engine_of(engine),
+                                              .sign = sign_of(sign),
+                                              .max_distance = max_distance,
+                                              .facing = facing}};
         options.text = dialect_of(columns, separator, decimal);
         if (!motion.is_none()) options.placement = transform(motion, "transform");
         options.picture.colormap = colormap_of(colormap);
@@ -164,7 +171,7 @@ void bind_points(nb::module_& module) {
         PointDistances result;
         run(nb::none(), [&](const Progress&) { (void)to.get(); });
         if (!tolerance.is_none())
-          options.picture.tolerance = tolerance_of(tolerance, choose_sign(to.get(), options.map.sign).method);
+          options.picture.tolerance = tolerance_of(tolerance, choose_sign(to.get(), options.map).method);
         run(progress, [&](const Progress& report) {
           options.map.progress = report;
           result = measure_points(from, to.get(), ply, options);
@@ -173,13 +180,15 @@ void bind_points(nb::module_& module) {
       },
       nb::arg("cloud").none(), nb::arg("o2").none(), nb::arg("output").none(), nb::kw_only(),
       nb::arg("transform") = nb::none(), nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("tolerance") = nb::none(),
-      nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(),
-      nb::arg("columns") = nb::none(), nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
+      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("facing") = nb::none(),
+      nb::arg("tolerance") = nb::none(), nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(),
+      nb::arg("progress") = nb::none(), nb::arg("columns") = nb::none(), nb::arg("separator") = "automatic",
+      nb::arg("decimal") = "automatic",
       nb::sig(
           "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
           "transform: object = None, engine: str = 'cpu', sign: str = 'automatic', max_distance: float = "
-          "..., tolerance: float | tuple[float, float] | None = None, colormap: str = 'automatic', range: "
+          "..., facing: float | None = None, tolerance: float | tuple[float, float] | None = None, colormap: "
+          "str = 'automatic', range: "
           "tuple[float, float] | None = None, progress: collections.abc.Callable[[str, float], bool | "
           "None] | None = None, columns: collections.abc.Sequence[str] | None = None, separator: str = "
           "'automatic', "
@@ -192,7 +201,7 @@ o2: any form of a mesh (see Mesh); Sites are used as they are.
 output: a PLY file to write, with the points in their order: x, y, z, the normals if there are any, distance,
 face and colours.
 transform: a 4 × 4 affine matrix that moves the points first, such as Alignment.transform.
-engine, sign, max_distance: as of map(). tolerance, colormap, range: of the colours, as of DistanceMap.save();
+engine, sign, max_distance, facing: as of map(); facing needs the normals of the cloud. tolerance, colormap, range: of the colours, as of DistanceMap.save();
 the tolerance also of ``beyond_tolerance``.
 progress: called as progress(step, fraction), on this thread; False cancels.
 

@@ -437,3 +437,30 @@ def test_plots(distance_map):
     with pytest.raises(sdm.Error, match="kind"):
         distance_map.plot(kind="other")
     matplotlib.pyplot.close("all")
+
+
+def test_facing_finds_the_skin_that_faces_the_texel():
+    plate = np.array([[x, y, z] for z in (-0.5, 0.0) for y in (-5, 5) for x in (-5, 5)], float)
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    dented = np.array([[0, 0, -0.4], [1, 0, -0.4], [0, 1, -0.4]], float), [[0, 1, 2]]
+    plain = sdm.map(dented, (plate, faces), resolution=16)
+    facing = sdm.map(dented, (plate, faces), resolution=16, facing=90)
+    assert plain.statistics().max_abs == pytest.approx(0.1) and plain.measured == "distance to the closest point"
+    assert facing.statistics().min == pytest.approx(-0.4) and facing.measured == "distance to faces that face within 90°"
+    assert facing.without_match == 0 and facing.check(0.3).verdict == "fail"
+    passed = facing.check(0.5)
+    assert passed.verdict == "pass" and not passed.certified
+    assert facing.report(tolerance=0.5)["measured"]["kind"] == "facing"
+    for refused in (lambda: facing.bounds, facing.hausdorff, facing.free_distances):
+        with pytest.raises(sdm.Error):
+            refused()
+    with pytest.raises(sdm.Error):
+        sdm.map(dented, (plate, faces), resolution=16, facing=200)
+
+
+def test_side_of_an_open_mesh_is_a_sign():
+    ground = np.array([[-5, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]], float), [[0, 1, 2], [0, 2, 3]]
+    below = np.array([[0, 0, -0.4], [1, 0, -0.4], [0, 1, -0.4]], float), [[0, 1, 2]]
+    settled = sdm.map(below, ground, resolution=16, sign="side")
+    assert settled.sign == "side" and settled.statistics().max == pytest.approx(-0.4)

@@ -121,7 +121,7 @@ class Page {
       normal[section.axis] = sign;
       this.view.setCut({ normal, offset: sign * (least + section.at * (most - least)) });
     }
-    const hasGaps = (this.report.beyond_max_distance ?? 0) > 0 || ((this.report.texels_without_value as number) ?? 0) > 0;
+    const hasGaps = (this.report.beyond_max_distance ?? 0) > 0 || (this.report.without_match ?? 0) > 0 || ((this.report.texels_without_value as number) ?? 0) > 0;
     drawLegend(scale, colors, this.report.units ?? '', hasGaps);
     this.drawHistogram();
     this.showWhatIf(state);

@@ -19,6 +19,8 @@ export interface Evidence {
   accuracy: number | null; ///< null: unknown
   error_bound: number | null;
   signed?: boolean; ///< false: no distance is negative
+  unmatched?: boolean; ///< not complete, as nothing faces some sample
+  samples_only?: boolean; ///< nothing is known between samples
 }
 /// A mesh, or a cloud, which has points.
 export interface Input {
@@ -47,12 +49,14 @@ export interface Report {
   engine?: string;
   max_distance?: number | null;
   colors?: { map: string; range: [number, number]; range_from: string };
+  measured?: { kind: string; text: string };
   sign?: { method: string; reason: string };
   distance?: Record<string, number | string | null>;
   extremes?: { min: Extreme | null; max: Extreme | null };
   texels_with_value?: number;
   points_with_value?: number;
   beyond_max_distance?: number;
+  without_match?: number;
   boundary_texels?: number;
   accuracy?: number | null;
   error_bound?: number | null;

@@ -32,6 +32,13 @@ export function showFields(report: Report): void {
   byId('fields').replaceChildren(...rows.map(([name, value]) => make('div', {}, make('dt', {}, name), make('dd', {}, value))));
 }
 
+/// What is measured, as the head of a table, unless it is the closest point.
+function otherDistance(report: Report): string | null {
+  const measured = report.measured;
+  if (!measured || measured.kind === 'closest') return null;
+  return measured.text.charAt(0).toUpperCase() + measured.text.slice(1);
+}
+
 export function showNumbers(report: Report): void {
   const d = report.distance ?? {};
   const unit = unitOf(report);
@@ -69,9 +76,11 @@ export function showNumbers(report: Report): void {
   if (samples !== undefined) rows.push(['Measured points', count(samples), 'exact']);
   if ((report.beyond_max_distance ?? 0) > 0)
     rows.push(['Points farther than the limit', count(report.beyond_max_distance!), 'exact']);
+  if ((report.without_match ?? 0) > 0)
+    rows.push(['Points that no face faces', count(report.without_match!), 'exact']);
   if (cloud && (report.o1?.invalid_points ?? 0) > 0)
     rows.push(['Points without coordinates', count(report.o1!.invalid_points!), 'exact']);
-  byId('numbers-table').replaceChildren(table(['Distance', 'Value', 'Kind'], rows, 'Distances'));
+  byId('numbers-table').replaceChildren(table([otherDistance(report) ?? 'Distance', 'Value', 'Kind'], rows, 'Distances'));
 }
 
 export function showInputs(report: Report): void {
@@ -119,7 +128,9 @@ export function showMethod(report: Report): void {
       atlas &&
         `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the texels of a texture of ${atlas.resolution} × ${atlas.rows ?? atlas.resolution}.`,
       isCloud(report) && `The measured part is a cloud of ${count(report.o1!.points!)} points. Nothing is said about places between them.`,
-      `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
+      otherDistance(report)
+        ? `Measured is the ${report.measured!.text}. What lies between the measured points is an estimate.`
+        : `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
       typeof accuracy === 'number' && `Each of these distances is exact to ${text(accuracy, 2)}${unit}.`,
     ),
   );
@@ -198,9 +209,9 @@ function omittedPoints(shown: number, { points, picked, normals }: NonNullable<P
 }
 
 const kShown = new Set([
-  'version', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'sign',
-  'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance',
-  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'notes', 'time_ms', 'histogram', 'fields',
+  'version', 'fields', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'measured', 'sign',
+  'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance', 'without_match',
+  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'notes', 'time_ms', 'histogram',
 ]);
 
 function isScalar(value: unknown): boolean {

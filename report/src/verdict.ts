@@ -64,10 +64,11 @@ export function judge(evidence: Evidence, limits: Limits): Judgement {
   const isZero = (d: number) => Math.abs(d) <= accuracy;
   const below = (isZero(lowest) ? Math.abs(lowest) : lowest) < lower - accuracy;
   const above = (isZero(highest) ? -Math.abs(highest) : highest) > upper + accuracy;
-  if (!complete) return { ...result, verdict: 'FAIL', reason: 'beyond max distance' };
+  if (!complete)
+    return { ...result, verdict: 'FAIL', reason: evidence.unmatched ? 'without match' : 'beyond max distance' };
   if (below || above) return { ...result, verdict: 'FAIL', reason: 'exceeded' };
   if (!(lowest <= highest)) return { ...result, verdict: 'NOT DECIDED', reason: 'nothing measured' };
-  if (bound <= margin) return { ...result, verdict: 'PASS', reason: 'all within' };
+  if (bound <= margin || (evidence.samples_only && margin >= 0 && Number.isFinite(margin))) return { ...result, verdict: 'PASS', reason: 'all within' };
   const reason = !Number.isFinite(accuracy)
     ? 'unknown accuracy'
     : bound <= measured || (margin <= 0 && measured > 0)
@@ -103,6 +104,8 @@ function failure(report: Report, limits: Limits): string {
     return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
       report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
     }.`;
+  if (t.reason === 'without match')
+    return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} have no face of the reference that faces as they do.`;
   const between = t.proof?.witness;
   const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
   const share =
@@ -122,6 +125,8 @@ export function verdictOf(report: Report): { verdict: Verdict; sentence: string 
   const verdict = t.verdict as Verdict;
   if (verdict === 'FAIL') return { verdict, sentence: failure(report, limits) };
   if (verdict === 'PASS')
-    return { verdict, sentence: `Every point of the ${isCloud(report) ? 'cloud' : 'surface'} is within the tolerance of ${limitsText(limits, report)}.` };
+    return report.evidence.samples_only
+      ? { verdict, sentence: sentence(t.text ?? '') }
+      : { verdict, sentence: `Every point of the ${isCloud(report) ? 'cloud' : 'surface'} is within the tolerance of ${limitsText(limits, report)}.` };
   return { verdict, sentence: sentence(t.text ?? '') };
 }

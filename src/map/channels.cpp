@@ -9,7 +9,11 @@
 #include <type_traits>
 
 #include "core/memory.h"
+#include "geometry/barycentric.h"
+#include "geometry/triangle.h"
 #include "geometry/vec.h"
+#include "sites/closest_on_face.h"
+#include "sites/sites_data.h"
 
 namespace sdm {
 
@@ -36,12 +40,25 @@ class map::TexelBlock {
     const DistanceMap& map = *source_.map;
     if (closest_.empty())
       fill(closest_, [&](std::size_t k) {
-        return point_on_face(*source_.sites, map.site_type[texels_[k]], map.site[texels_[k]], point(k));
+        const SiteType type = map.site_type[texels_[k]];
+        const std::uint32_t site = map.site[texels_[k]];
+        return map.measured.kind == DistanceKind::closest
+                   ? point_on_face(*source_.sites, type, site, point(k))
+                   : point_on_site(type, site, point(k));
       });
     return closest_[i];
   }
 
  private:
+  /// The closest point of a site that need not be the closest one of O2.
+  [[nodiscard]] SurfacePoint point_on_site(SiteType type, std::uint32_t site, const Vec3& query) const {
+    if (type == SiteType::none) return {};
+    const sites::SitesData& data = internals(*source_.sites);
+    const ClosestPoint c = sites::closest_around_site(data, type, site, query);
+    const auto [p, q, r] = corners_of(data.mesh, c.face);
+    return {c.face, barycentric(p, q, r, c.point)};
+  }
+
   template <class T, class Get>
   void fill(std::vector<T>& values, const Get& get) const {
     values.resize(texels_.size());

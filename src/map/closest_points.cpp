@@ -19,6 +19,8 @@ namespace sdm {
 std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
                                          const MapOptions& options) try {
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
+  if (options.facing)
+    throw Error("closest_points() has no normals of the points; use closest_facing_points()");
   using mesh::kMaxCoordinate;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const double x : points[i])

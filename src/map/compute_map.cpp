@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "map/engine_of.h"
+#include "map/facing_map.h"
 #include "map/map_writer.h"
 #include "query/inside/inside.h"
 
@@ -21,12 +22,14 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
 void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,
                  DistanceMap& map) try {
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
+  if (options.facing) return map::compute_facing_map(surface, sites, options, *engine, map);
   const SignUsed sign = choose_sign(sites, options.sign);
   const inside::InsideTest is_inside(internals(sites), sign.method,
                                      engine_accuracy(engine->info(), surface.mesh(), sites.mesh()));
 
   const map::MapWriter writer(map, surface);
   map.sign = sign;
+  map.measured = {}, map.without_match = 0;
   // Indexed by the samples' position, so that threads rarely write to the same cache line.
   struct alignas(64) Counter {
     std::atomic<std::size_t> count{0};

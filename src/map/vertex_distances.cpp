@@ -1,4 +1,5 @@
 #include <sdm/closest_points.h>
+#include <sdm/facing.h>
 #include <sdm/sign.h>
 #include <sdm/vertex_distances.h>
 
@@ -7,15 +8,34 @@
 #include <new>
 
 #include "core/memory.h"
+#include "mesh/vertex_normals.h"
 
 namespace sdm {
+namespace {
+
+struct Found {
+  std::vector<ClosestPoint> closest;
+  std::vector<std::uint8_t> inside;
+};
+
+Found find(const Mesh& mesh, const Sites& sites, const MapOptions& options) {
+  const SignMethod sign = choose_sign(sites, options).method;
+  if (options.facing) {
+    FacingPoints found = closest_facing_points(sites, mesh.positions, mesh::vertex_normals(mesh), options);
+    if (sign == SignMethod::none) found.behind.assign(found.behind.size(), 0);
+    return {std::move(found.closest), std::move(found.behind)};
+  }
+  Found found{closest_points(sites, mesh.positions, options), {}};
+  found.inside.resize(found.closest.size());
+  if (sign != SignMethod::none) found.inside = inside_flags(sites, mesh.positions, found.closest, sign);
+  return found;
+}
+
+}  // namespace
 
 std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, MapOptions options) try {
   if (options.engine && engine_info(*options.engine).maps_only) options.engine = nullptr;
-  const SignMethod sign = choose_sign(sites, options.sign).method;
-  const std::vector<ClosestPoint> closest = closest_points(sites, mesh.positions, options);
-  std::vector<std::uint8_t> inside(closest.size(), 0);
-  if (sign != SignMethod::none) inside = inside_flags(sites, mesh.positions, closest, sign);
+  const auto [closest, inside] = find(mesh, sites, options);
   std::vector<float> result(closest.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < closest.size(); ++i)
     if (closest[i].type != SiteType::none)

@@ -57,4 +57,12 @@ ClosestPoint closest_around_face(const SitesData& sites, std::uint32_t face, con
   return c;
 }
 
+ClosestPoint closest_around_site(const SitesData& sites, SiteType type, std::uint32_t site, const Vec3& q) {
+  if (type != SiteType::face)
+    for (const std::uint32_t face :
+         type == SiteType::edge ? sites.topology.edge_faces(site) : sites.vertex_faces.of(site))
+      if (const ClosestPoint c = closest_on_face(sites, face, q); c.type == type && c.site == site) return c;
+  return closest_on_face(sites, sites.face_of(type, site), q);
+}
+
 }  // namespace sdm::sites

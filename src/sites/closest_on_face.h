@@ -15,4 +15,9 @@ namespace sdm::sites {
 /// consistent with its neighbourhood, as pseudonormals require.
 [[nodiscard]] ClosestPoint closest_around_face(const SitesData& sites, std::uint32_t face, const Vec3& q);
 
+/// closest_on_face() of a face around the site whose point closest to q lies on that site, if there is one,
+/// otherwise of the first face around it.
+[[nodiscard]] ClosestPoint closest_around_site(const SitesData& sites, SiteType type, std::uint32_t site,
+                                               const Vec3& q);
+
 }  // namespace sdm::sites

@@ -45,7 +45,7 @@ CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, c
                                    const CertifyOptions& options) {
   CertifiedVerdict result{
       check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance)};
-  if (!is_open(result)) return result;
+  if (!is_open(result) || map.measured.kind != DistanceKind::closest) return result;
   result.proof =
       prove_tolerance(surface.mesh(), sites, tolerance,
                       {.sign = map.sign.method, .accuracy = options.accuracy, .progress = options.progress});

@@ -38,6 +38,8 @@ void extend(Evidence& all, const Evidence& more) {
     all.highest = std::max(all.highest.value_or(*more.highest), *more.highest);
   }
   all.complete = all.complete && more.complete;
+  all.unmatched = all.unmatched || more.unmatched;
+  all.samples_only = all.samples_only || more.samples_only;
   all.estimated_signs = all.estimated_signs || more.estimated_signs;
   all.accuracy = std::max(all.accuracy, more.accuracy);
   all.error_bound = std::max(all.error_bound, more.error_bound);
@@ -106,6 +108,7 @@ void CombinedSummary::add(const Surface& surface, const DistanceMap& map, const 
   extend(total_.extremes, summary.extremes);
   extend(total_.evidence, summary.evidence);
   total_.beyond_max_distance += summary.beyond_max_distance;
+  total_.without_match += summary.without_match;
   total_.boundary_texels += summary.boundary_texels;
 }
 

@@ -24,6 +24,8 @@ const char* name_of(VerdictReason reason) {
       return "exceeded";
     case VerdictReason::beyond_max_distance:
       return "beyond max distance";
+    case VerdictReason::without_match:
+      return "without match";
     case VerdictReason::between_samples:
       return "between samples";
     case VerdictReason::within_rounding:
@@ -66,6 +68,18 @@ const char* name_of(SignMethod method) {
       return "winding";
     case SignMethod::side:
       return "side";
+  }
+  return "";
+}
+
+const char* name_of(DistanceKind kind) {
+  switch (kind) {
+    case DistanceKind::closest:
+      return "closest";
+    case DistanceKind::facing:
+      return "facing";
+    case DistanceKind::along:
+      return "along";
   }
   return "";
 }

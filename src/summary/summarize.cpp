@@ -38,7 +38,9 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
                                   const SummaryOptions& options) {
   const Mesh& whole = options.whole ? *options.whole : surface.mesh();
   std::vector<std::string> notes = notes_on(bounds(whole), bounds(sites.mesh()));
-  if (summary.distance.texels == 0)
+  if (summary.distance.texels == 0 && summary.without_match > 0)
+    notes.emplace_back("no face of O2 faces as the surface does; are both oriented outwards?");
+  else if (summary.distance.texels == 0)
     notes.emplace_back("no texel is within the maximum distance; the map is empty");
   if (const std::size_t texels = surface.overlapping_texels(); texels > 0)
     notes.push_back(std::to_string(texels) +
@@ -57,7 +59,8 @@ namespace summary {
 LargestDistance largest_distance(const Summary& summary) {
   const Evidence& evidence = summary.evidence;
   LargestDistance result;
-  if (!std::isfinite(evidence.accuracy)) return result;
+  // Distances to other points than the closest one bound nothing.
+  if (!std::isfinite(evidence.accuracy) || evidence.samples_only) return result;
   if (summary.beyond_max_distance > 0) {  // somewhere, and not known by how much
     result.lower = std::max(0.0, summary.max_distance - evidence.accuracy);
     return result;
@@ -76,9 +79,11 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
                   std::span<const float> vertex_distances, const SummaryOptions& options) {
   Summary result{.units = options.units,
                  .sign = map.sign,
+                 .measured = map.measured,
                  .distance = statistics_of(surface, map, options),
                  .extremes = extremes(surface, map, vertex_distances),
                  .beyond_max_distance = map.beyond_max_distance,
+                 .without_match = map.without_match,
                  .max_distance = options.max_distance};
   result.colors = colors_of(options, result.distance);
   double error_bound = 0;

@@ -15,10 +15,13 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
   if (map.distance.size() != surface.texel_faces().size()) throw Error("the map belongs to another surface");
   if (vertex_distances.size() != surface.mesh().positions.size())
     throw Error("a verdict needs one distance for each vertex of the surface's mesh");
-  Evidence evidence{.complete = map.beyond_max_distance == 0,
-                    .estimated_signs = is_estimate(map.sign.method),
+  const bool is_closest = map.measured.kind == DistanceKind::closest;
+  Evidence evidence{.complete = map.beyond_max_distance == 0 && map.without_match == 0,
+                    .unmatched = map.without_match > 0,
+                    .estimated_signs = is_closest && is_estimate(map.sign.method),
+                    .samples_only = !is_closest,
                     .accuracy = accuracy,
-                    .error_bound = error_bound,
+                    .error_bound = is_closest ? error_bound : std::numeric_limits<double>::infinity(),
                     .is_signed = map.sign.method != SignMethod::none};
   const auto add = [&](double d) {
     evidence.lowest = std::fmin(evidence.lowest.value_or(d), d);
@@ -33,7 +36,7 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
       if (std::isfinite(d))
         add(d);
       else
-        evidence.complete = false;
+        evidence.complete = false, evidence.unmatched |= !is_closest && map.beyond_max_distance == 0;
     }
   }
   return evidence;
@@ -79,13 +82,15 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
   result.within = complete && !limits.below(lowest) && !limits.above(highest);
   if (!result.within) {
     result.verdict = Verdict::fail;
-    result.reason = complete ? VerdictReason::exceeded : VerdictReason::beyond_max_distance;
+    result.reason = complete             ? VerdictReason::exceeded
+                    : evidence.unmatched ? VerdictReason::without_match
+                                         : VerdictReason::beyond_max_distance;
     result.certified =
         !estimated_signs || !complete || farthest - accuracy > std::max(-tolerance.lo, tolerance.hi);
     return result;
   }
   result.certified = lowest <= highest && error_bound <= margin;
-  if (result.certified) return result;
+  if (result.certified || (evidence.samples_only && result.margin >= 0.0)) return result;
   result.verdict = Verdict::not_decided;
   result.reason = open_question(evidence, margin, measured);
   if (result.margin > 0.0) result.deciding_bound = *result.margin / 2;

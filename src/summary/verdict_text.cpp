@@ -55,9 +55,12 @@ std::string verdict_text(const Summary& summary) {
   if (!summary.tolerance) return {};
   const CertifiedVerdict& verdict = *summary.tolerance;
   const std::string limits = limits_text(verdict.tolerance, summary.units);
-  const std::string all =
-      std::string(summary.of_points ? "every point of the cloud" : "every point of the surface") +
-      " is within " + limits;
+  const bool samples_only = summary.evidence.samples_only;
+  const std::string all = std::string(summary.of_points ? "every point of the cloud"
+                                      : samples_only    ? "every measured point of the surface"
+                                                        : "every point of the surface") +
+                          " is within " + limits +
+                          (samples_only ? ", an estimate for those between them" : "");
   switch (verdict.verdict) {
     case Verdict::pass:
       return all;
@@ -65,6 +68,8 @@ std::string verdict_text(const Summary& summary) {
       return all + ", but " + summary.doubts.front().text + "; " + summary.doubts.front().remedy +
              ", or --accept-doubts";
     case Verdict::fail:
+      if (verdict.reason == VerdictReason::without_match)
+        return "no face of the reference faces as a point does";
       return verdict.reason == VerdictReason::beyond_max_distance
                  ? "a point is farther than the maximum distance"
                  : "a point is out of " + limits;

@@ -49,24 +49,32 @@ NearestFirst(Bound, Enter, Leaf) -> NearestFirst<Bound, Enter, Leaf>;
 ///
 /// in which case the left child is first; or, for the nearer child first, the left one of two equally near,
 ///
-///   bound(box)      a lower bound on the distance of anything in the box
+///   bound(box)      a lower bound on the distance of anything in the box; also as bound(node, box)
 ///   enter(bound)    whether to enter, asked when its turn comes: the limit may shrink as leaves are visited
 ///   leaf(node)
 template <class Policy>
 void visit(const AabbTree& tree, Subtree below, Policy&& policy) {
   if (below.root == below.end) return;
-  if constexpr (requires { policy.bound(tree.nodes[0].box); }) {
+  constexpr bool by_node = requires {
+    policy.bound(below.root, tree.nodes[0].box);
+  };
+  if constexpr (by_node || requires { policy.bound(tree.nodes[0].box); }) {
+    const auto bound_of = [&](std::uint32_t index) {
+      if constexpr (by_node)
+        return policy.bound(index, tree.nodes[index].box);
+      else
+        return policy.bound(tree.nodes[index].box);
+    };
     const auto descend = [&](const auto& self, std::uint32_t index) -> void {
       const AabbTree::Node& node = tree.nodes[index];
       if (node.leaf()) return policy.leaf(index);
       const std::array<std::uint32_t, 2> children{index + 1, node.right};
-      const std::array bounds{policy.bound(tree.nodes[children[0]].box),
-                              policy.bound(tree.nodes[children[1]].box)};
+      const std::array bounds{bound_of(children[0]), bound_of(children[1])};
       const int nearer = bounds[0] <= bounds[1] ? 0 : 1;
       for (const int k : {nearer, 1 - nearer})
         if (policy.enter(bounds[k])) self(self, children[k]);
     };
-    if (policy.enter(policy.bound(tree.nodes[below.root].box))) descend(descend, below.root);
+    if (policy.enter(bound_of(below.root))) descend(descend, below.root);
   } else {
     if (!policy.enter(below)) return;
     const AabbTree::Node& node = tree.nodes[below.root];

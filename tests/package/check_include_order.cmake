@@ -19,6 +19,7 @@ set(order
   surface/sampling_bound
   sites
   query/closest
+  query/facing
   query/inside
   query/rays
   query/pairs

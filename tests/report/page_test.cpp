@@ -193,12 +193,14 @@ TEST_F(Page, JudgesAsTheLibrary) {
     return values.begin()[random() % values.size()];
   };
   Json cases = Json::array();
-  std::array<int, 8> reasons{};
+  std::array<int, 9> reasons{};
   for (int i = 0; i < 4000; ++i) {
     Evidence evidence{.lowest = any_of({-2, -1, -0.5, -0.01, -0.001, 0, 0.5, kInfinity}),
                       .highest = any_of({-0.001, 0, 0.01, 0.5, 1, 2}),
                       .complete = random() % 10 != 0,
+                      .unmatched = random() % 2 == 0,
                       .estimated_signs = random() % 3 == 0,
+                      .samples_only = random() % 5 == 0,
                       .accuracy = any_of({0, 1e-6, 0.001, 0.02, kInfinity}),
                       .error_bound = any_of({0, 0.01, 0.1, 0.5}),
                       .is_signed = random() % 4 != 0};
@@ -215,7 +217,9 @@ TEST_F(Page, JudgesAsTheLibrary) {
                        {"estimated_signs", evidence.estimated_signs},
                        {"accuracy", evidence.accuracy},
                        {"error_bound", evidence.error_bound},
-                       {"signed", evidence.is_signed}}},
+                       {"signed", evidence.is_signed},
+                       {"unmatched", evidence.unmatched},
+                       {"samples_only", evidence.samples_only}}},
                      {"lower", lower},
                      {"upper", upper},
                      {"verdict", name_of(j.verdict)},

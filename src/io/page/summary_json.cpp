@@ -94,10 +94,11 @@ Json extremes_json(const Summary& summary) {
 }
 
 Json to_json(const Evidence& evidence) {
-  return {{"lowest", optional(evidence.lowest)}, {"highest", optional(evidence.highest)},
-          {"complete", evidence.complete},       {"estimated_signs", evidence.estimated_signs},
-          {"accuracy", evidence.accuracy},       {"error_bound", evidence.error_bound},
-          {"signed", evidence.is_signed}};
+  return {{"lowest", optional(evidence.lowest)},  {"highest", optional(evidence.highest)},
+          {"complete", evidence.complete},        {"estimated_signs", evidence.estimated_signs},
+          {"accuracy", evidence.accuracy},        {"error_bound", evidence.error_bound},
+          {"signed", evidence.is_signed},         {"unmatched", evidence.unmatched},
+          {"samples_only", evidence.samples_only}};
 }
 
 Json to_json(const ToleranceShares& shares) {
@@ -195,7 +196,7 @@ Json largest_json(const Summary& summary) {
 /// What is measured of a surface and not of points.
 void add_surface(Json& json, const Summary& summary) {
   const Evidence& evidence = summary.evidence;
-  const bool known = std::isfinite(evidence.accuracy);
+  const bool known = std::isfinite(evidence.accuracy) && !evidence.samples_only;
   json["boundary_texels"] = summary.boundary_texels;
   json["error_bound"] = known ? Json(evidence.error_bound) : Json();
   json["error_bound_kind"] = known ? "bounded" : "unknown";
@@ -215,6 +216,7 @@ Json to_json(const Summary& summary) {
     json["notes"] = summary.notes;
     return json;
   }
+  json["measured"] = {{"kind", name_of(summary.measured.kind)}, {"text", summary.measured.text}};
   json["sign"] = {{"method", name_of(summary.sign.method)}, {"reason", summary.sign.reason}};
   json["distance"] = to_json(d);
   if (summary.of_points) json["distance"]["kind"] = "bounded", json["distance"]["weights"] = "points";
@@ -222,6 +224,7 @@ Json to_json(const Summary& summary) {
   json[summary.of_points ? "points_with_value" : "texels_with_value"] = d.texels;
   json[summary.of_points ? "negative_points" : "negative_texels"] = d.negative_texels;
   json["beyond_max_distance"] = summary.beyond_max_distance;
+  json["without_match"] = summary.without_match;
   json["accuracy"] = summary.evidence.accuracy;  // null: unknown
   json["accuracy_kind"] = std::isfinite(summary.evidence.accuracy) ? "bounded" : "unknown";
   if (!summary.of_points) add_surface(json, summary);

@@ -1,5 +1,6 @@
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
+#include <sdm/facing.h>
 #include <sdm/points.h>
 #include <sdm/sign.h>
 #include <sdm/threads.h>
@@ -34,6 +35,7 @@ struct Chunk {
   std::vector<Vec3> points, normals;
   std::vector<float> distances;
   std::vector<std::uint32_t> faces;
+  std::vector<std::uint8_t> unmatched;
 };
 
 class Measurement {
@@ -46,7 +48,10 @@ class Measurement {
     result_.has_normals = reader_.has_normals();
     result_.format = reader_.format();
     result_.text = reader_.dialect();
-    result_.sign = choose_sign(sites, options.map.sign);
+    if (options.map.facing && !result_.has_normals)
+      throw Error(cloud_ + ": the cloud has no normals, by which the faces that face its points are chosen");
+    result_.sign = choose_sign(sites, options.map);
+    result_.measured = measured_distance(options.map);
     if (options.picture.tolerance && options.picture.tolerance->needs_sign() &&
         result_.sign.method == SignMethod::none)
       throw Error("the tolerance depends on the sign of the distances, which are unsigned: " +
@@ -118,8 +123,10 @@ class Measurement {
       if (!finite(q)) q = anywhere;
     MapOptions map = options_.map;
     map.progress = {};
-    const std::vector<ClosestPoint> closest = closest_points(sites_, queries, map);
-    const std::vector<std::uint8_t> inside = inside_flags(sites_, queries, closest, result_.sign.method);
+    const FacingPoints found = find(queries, chunk.normals, map);
+    const std::vector<ClosestPoint>& closest = found.closest;
+    const std::vector<std::uint8_t>& inside = found.behind;
+    chunk.unmatched = found.unmatched;
     chunk.distances.assign(queries.size(), static_cast<float>(kNan));
     chunk.faces.assign(queries.size(), kNone);
     for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -129,12 +136,25 @@ class Measurement {
     }
   }
 
+  // The matches of the points, and whether their distances are negative.
+  [[nodiscard]] FacingPoints find(std::span<const Vec3> queries, std::span<const Vec3> normals,
+                                  const MapOptions& map) const {
+    if (map.facing) {
+      FacingPoints found = closest_facing_points(sites_, queries, normals, map);
+      if (result_.sign.method == SignMethod::none) std::ranges::fill(found.behind, std::uint8_t{0});
+      return found;
+    }
+    FacingPoints found{closest_points(sites_, queries, map), {}, std::vector<std::uint8_t>(queries.size())};
+    found.behind = inside_flags(sites_, queries, found.closest, result_.sign.method);
+    return found;
+  }
+
   // Adds the chunk to the sums, and its rows, without colours, to the file.
   void append(std::ostream& out, const Chunk& chunk) {
     std::string bytes;
     bytes.reserve(chunk.points.size() * row_.size());
     for (std::size_t i = 0; i < chunk.points.size(); ++i) {
-      add(chunk.points[i], chunk.distances[i]);
+      add(chunk.points[i], chunk.distances[i], chunk.unmatched[i] != 0);
       for (const double x : chunk.points[i]) append_little_endian(bytes, x);
       if (result_.has_normals)
         for (const double x : chunk.normals[i]) append_little_endian(bytes, static_cast<float>(x));
@@ -145,12 +165,13 @@ class Measurement {
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
 
-  void add(const Vec3& point, float d) {
+  void add(const Vec3& point, float d, bool unmatched) {
     const std::uint64_t index = result_.points++;
     const bool valid = finite(point), has_value = !std::isnan(d);
     if (valid) extend(result_.bounds, point);
     result_.invalid += !valid;
-    result_.beyond_max_distance += valid && !has_value;
+    result_.beyond_max_distance += valid && !has_value && !unmatched;
+    result_.without_match += valid && unmatched;
     if (!has_value) return;
     DistanceStatistics& s = result_.distance;
     ++s.texels, s.negative_texels += d < 0;
@@ -224,7 +245,7 @@ class Measurement {
     picture.accuracy = result_.accuracy;
     const ColorScale scale = color_scale(fixed_colors(picture, result_.distance));
     const map::ToleranceLimits limits(picture.tolerance.value_or(Tolerance()), result_.accuracy);
-    if (picture.tolerance) result_.beyond_tolerance = result_.beyond_max_distance;
+    if (picture.tolerance) result_.beyond_tolerance = result_.beyond_max_distance + result_.without_match;
     std::fstream file(written, std::ios::binary | std::ios::in | std::ios::out);
     for_each_row(file, rows_begin, 0, result_.points, [&](char* row) {
       const auto d = load<float>(row + row_.distance_at());
@@ -263,11 +284,15 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
   Summary summary{.units = picture.units,
                   .of_points = true,
                   .sign = found.sign,
+                  .measured = found.measured,
                   .distance = found.distance,
                   .beyond_max_distance = found.beyond_max_distance,
+                  .without_match = found.without_match,
                   .max_distance = options.map.max_distance,
-                  .evidence = {.complete = found.beyond_max_distance == 0,
-                               .estimated_signs = is_estimate(found.sign.method),
+                  .evidence = {.complete = found.beyond_max_distance + found.without_match == 0,
+                               .unmatched = found.without_match > 0,
+                               .estimated_signs = found.measured.kind == DistanceKind::closest &&
+                                                  is_estimate(found.sign.method),
                                .accuracy = found.accuracy,
                                .is_signed = found.sign.method != SignMethod::none},
                   .colors = color_range(color_choice(picture), found.distance)};
@@ -279,7 +304,7 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
   if (!picture.tolerance) return summary;
   const Judgement judgement = judge(summary.evidence, *picture.tolerance);
   summary.tolerance = CertifiedVerdict{{judgement, *picture.tolerance, {}, 0, {}}};
-  if (found.min && found.beyond_max_distance == 0) summary.tolerance->largest = found.distance.max_abs;
+  if (found.min && summary.evidence.complete) summary.tolerance->largest = found.distance.max_abs;
   summary.exceeding_points = found.beyond_tolerance;
   summary.exceeding_point_fraction =
       static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points);

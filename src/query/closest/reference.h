@@ -1,7 +1,13 @@
 // The closest point in plain code that is easy to verify: the oracle for all other searches.
 #pragma once
 
+#include <limits>
+#include <tuple>
+
+#include "geometry/vec.h"
+#include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
+#include "tree/visit.h"
 
 namespace sdm::closest {
 
@@ -9,9 +15,46 @@ namespace sdm::closest {
 /// of the size of O2. The distances of slivers that are computed from normals are accurate to 1e-7.
 constexpr double kSlack = 1e-6;
 
+/// A lower bound on the computed distance of a point of the unit frame to the faces in a box.
+[[nodiscard]] inline double lower_bound(const tree::FloatBox& box, const Vec3& p) {
+  return (1 - kSlack) * norm(gap(box, p)) - kSlack;
+}
+
 /// Scalar, double precision, nearest child first over the binary tree; all results are accurate to rounding.
 /// The first of all faces by (distance, type, site, face): the result depends on the faces only, not on the
-/// tree.
+/// tree. Of the faces with allows(face), which lie below nodes with may_allow(node).
+template <class MayAllow, class Allows>
+[[nodiscard]] ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q,
+                                             double max_distance, const MayAllow& may_allow,
+                                             const Allows& allows) {
+  const auto order = [](const ClosestPoint& c) { return std::tuple(c.distance, c.type, c.site, c.face); };
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const Vec3 unit = sites.frame.to_unit(q);
+  ClosestPoint best;
+  best.distance = max_distance;
+  const auto bound = [&](std::uint32_t node, const tree::FloatBox& box) {
+    return may_allow(node) ? lower_bound(box, unit) : kNever;
+  };
+  // A node is visited even if its bound equals the best distance: the first of equally close sites is
+  // returned, and O2 may lie at exactly max_distance.
+  const auto enter = [&](double least) {
+    return least < kNever && least <= best.distance * sites.frame.scale;
+  };
+  const auto visit_leaf = [&](std::uint32_t leaf) {
+    for (const std::uint32_t face : sites.tree.items_of(leaf)) {
+      if (!allows(face)) continue;
+      const ClosestPoint c = sites::closest_on_face(sites, face, q);
+      // The type is none until there is a best one, and follows all others: max_distance itself is near
+      // enough.
+      if (order(c) < order(best)) best = c;
+    }
+  };
+  tree::visit(sites.tree, tree::NearestFirst{bound, enter, visit_leaf});
+  if (best.type == SiteType::none) best.distance = std::numeric_limits<double>::infinity();
+  return best;
+}
+
+/// The same of all faces.
 [[nodiscard]] ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& point,
                                              double max_distance);
 

@@ -28,6 +28,8 @@ double largest_error(const Surface& surface, const Sites& sites) {
 void check_resolution(const Surface& surface, const DistanceMap& map, const char* function) {
   if (map.distance.size() != surface.texel_faces().size())
     throw Error(std::string(function) + "() needs a map of the surface: their resolutions differ");
+  if (map.measured.kind != DistanceKind::closest)
+    throw Error(std::string(function) + "() needs a map of distances to the closest point");
 }
 
 double free_distance(float distance, double error) {

@@ -58,7 +58,7 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom
 
 LegendText legend_text(const DistanceMap& map, double least, double most, const ColorScale& scale,
                        const std::string& units) {
-  LegendText text{"Distance", units, {}, map.beyond_max_distance > 0};
+  LegendText text{"Distance", units, {}, map.beyond_max_distance + map.without_match > 0};
   if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
   if (const auto& t = scale.tolerance)
     text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)

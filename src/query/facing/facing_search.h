@@ -1,0 +1,59 @@
+// Closest points among the faces that face the same way as the query.
+#pragma once
+
+#include <vector>
+
+#include "query/facing/normal_cones.h"
+#include "sites/sites_data.h"
+
+namespace sdm::facing {
+
+/// The result for a query. A point on several allowed faces is one of the surface that they form: its normal
+/// is their sum, at a vertex weighted by their angles.
+struct Match {
+  ClosestPoint closest{};  ///< its face is allowed
+  bool behind = false;     ///< (query − closest point) · normal of the match < 0
+  bool unmatched = false;  ///< no face is allowed, at any distance
+};
+
+/// Throws sdm::Error unless an angle in degrees is above 0 and at most 180.
+void check_angle(double angle);
+
+class FacingSearch {
+ public:
+  /// `angle` as of check_angle(). Cost: linear in the faces.
+  FacingSearch(const sites::SitesData& sites, double angle);
+
+  /// Whether the normal of a face is within the angle of a unit vector; for 90° less than that.
+  [[nodiscard]] bool allows(const Vec3& normal, std::uint32_t face) const {
+    return has_normal(sites_, face) && allows(dot(sites_.normals.face[face], normal));
+  }
+
+  /// `normal`: of the query, unit length or 0. `closest`: the closest point of all faces, which is the result
+  /// if it lies on an allowed one; none if nothing is within max_distance.
+  [[nodiscard]] Match match(const Vec3& query, const Vec3& normal, double max_distance,
+                            const ClosestPoint& closest) const;
+
+ private:
+  [[nodiscard]] bool allows(double cosine) const {
+    return right_angle_ ? cosine > 0 : cosine >= least_cosine_;
+  }
+  [[nodiscard]] bool may_allow(std::uint32_t node, const Vec3& normal) const {
+    return allows(largest_cosine(cones_[node], normal));
+  }
+  [[nodiscard]] bool allows_any(const Vec3& normal) const;
+  /// The faces around the site of a point.
+  [[nodiscard]] std::span<const std::uint32_t> faces_of(const ClosestPoint& closest) const;
+  /// The normal of the allowed faces at a point; `face` becomes the first of them, kNone if there is none.
+  [[nodiscard]] Vec3 normal_at(const ClosestPoint& closest, const Vec3& normal, std::uint32_t& face) const;
+
+  const sites::SitesData& sites_;
+  std::vector<Cone> cones_;
+  bool right_angle_;
+  double least_cosine_;
+};
+
+/// The unit normal of a face of a mesh by the order of its corners; 0 for a face without area.
+[[nodiscard]] Vec3 unit_normal(const Mesh& mesh, std::uint32_t face);
+
+}  // namespace sdm::facing

@@ -1,0 +1,96 @@
+// --facing and --sign side of whole jobs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/samples.h"
+#include "support/meshes.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+/// 20 × 20 × 0.5 units, of a cube of size 2.
+Mesh flat(Mesh mesh) {
+  for (Vec3& p : mesh.positions) p = {10 * p[0], 10 * p[1], 0.25 * p[2]};
+  return mesh;
+}
+
+struct FacingJobs : ::testing::Test {
+  TemporaryFolder folder;
+  std::string out = folder / "out";
+  std::string plate = write_obj(folder / "plate.obj", flat(cube()));
+  // Inside the plate, below its middle: a dent of its upper side.
+  std::string dent = write_obj(folder / "dent.obj", square(1, -0.2));
+
+  [[nodiscard]] Outcome run(const std::string& command, const std::string& o1,
+                            std::vector<std::string> more) const {
+    std::vector<std::string> arguments{command, o1, plate, "-o", out, "--write", "none"};
+    if (command == "map") arguments.insert(arguments.end(), {"--resolution", "32"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+  [[nodiscard]] std::string cloud(bool normals) const {
+    std::ofstream file(folder / "cloud.xyz");
+    for (int i = 0; i < 8; ++i) file << 0.1 * i << " 0.5 -0.2" << (normals ? " 0 0 1\n" : "\n");
+    return folder / "cloud.xyz";
+  }
+};
+
+TEST_F(FacingJobs, StateWhatIsMeasured) {
+  const Outcome plain = run("map", dent, {"--tolerance", "0.3"});
+  EXPECT_EQ(plain.code, 0) << plain.err;
+  EXPECT_THAT(plain.out, Not(HasSubstr("measured")));
+  const Outcome facing = run("map", dent, {"--tolerance", "0.3", "--facing"});
+  EXPECT_EQ(facing.code, 3) << facing.err;
+  EXPECT_THAT(facing.out, HasSubstr("distance to faces that face within 90°"));
+  EXPECT_THAT(facing.out, HasSubstr("-0.45"));
+  const Json report = Json::parse(run("map", dent, {"--tolerance", "0.5", "--facing", "60", "--json"}).out);
+  EXPECT_EQ(report["measured"]["kind"], "facing");
+  EXPECT_EQ(report["measured"]["text"], "distance to faces that face within 60°");
+  EXPECT_EQ(report["tolerance"]["verdict"], "PASS");
+  EXPECT_EQ(report["tolerance"]["certified"], false);
+  EXPECT_THAT(report["tolerance"]["text"].get<std::string>(), HasSubstr("estimate"));
+  EXPECT_TRUE(report["error_bound"].is_null());
+}
+
+TEST_F(FacingJobs, FailWithoutAMatch) {
+  const std::string turned = write_obj(folder / "side.obj", placed(square(1, 0), "rotate:45:0:0"));
+  const Outcome result = run("map", turned, {"--tolerance", "1", "--facing", "10"});
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("no face that faces them"));
+}
+
+TEST_F(FacingJobs, OfCloudsNeedNormals) {
+  const Outcome without = run("points", cloud(false), {"--facing"});
+  EXPECT_EQ(without.code, 1);
+  EXPECT_THAT(without.err, HasSubstr("the cloud has no normals"));
+  const Outcome with = run("points", cloud(true), {"--facing", "--tolerance", "0.3"});
+  EXPECT_EQ(with.code, 3) << with.err;
+  EXPECT_THAT(with.out, HasSubstr("distance to faces that face within 90°"));
+  EXPECT_THAT(with.out, HasSubstr("-0.45"));
+}
+
+TEST_F(FacingJobs, RefuseOtherSignsAndAngles) {
+  EXPECT_EQ(run("map", dent, {"--facing", "--sign", "exact"}).code, 2);
+  EXPECT_EQ(run("map", dent, {"--facing", "0"}).code, 2);
+  EXPECT_EQ(run("map", dent, {"--facing", "181"}).code, 2);
+}
+
+TEST_F(FacingJobs, SideGivesOpenReferencesSigns) {
+  plate = write_obj(folder / "open.obj", square(10, 0));
+  const Json report = Json::parse(run("map", dent, {"--sign", "side", "--json"}).out);
+  EXPECT_EQ(report["sign"]["method"], "side");
+  EXPECT_NEAR(report["distance"]["max"].get<double>(), -0.2, 1e-6);
+  EXPECT_THAT(run("map", dent, {"--sign", "side"}).out, HasSubstr("signs are estimates"));
+}
+
+}  // namespace
+}  // namespace sdm::test

@@ -1,0 +1,181 @@
+// Distances to the faces that face the samples.
+#include <gtest/gtest.h>
+#include <sdm/certified_verdict.h>
+#include <sdm/facing.h>
+#include <sdm/summary.h>
+#include <sdm/vertex_distances.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "map/terrain.h"
+#include "support/error_of.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+constexpr double kAccuracy = 1e-6;  // of the engine, relative to the diagonal
+
+/// The distance to a closed triangle, by its plane, sides and corners.
+double to_triangle(const Mesh& mesh, std::uint32_t face, const Vec3& q) {
+  const Triangle& t = mesh.triangles[face];
+  const Vec3 n = normal_of(mesh, face);
+  double least = std::numeric_limits<double>::infinity();
+  bool over = true;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 a = mesh.positions[t[k]], side = mesh.positions[t[(k + 1) % 3]] - a;
+    const double along = squared_norm(side) > 0 ? dot(q - a, side) / squared_norm(side) : 0;
+    least = std::min(least, norm(q - (a + std::clamp(along, 0.0, 1.0) * side)));
+    over = over && dot(cross(n, side), q - a) >= 0;
+  }
+  return over ? std::min(least, std::abs(dot(n, q - mesh.positions[t[0]]))) : least;
+}
+
+/// The least distance to an allowed face; infinite if there is none.
+double brute_force(const Mesh& o2, const Vec3& q, const Vec3& normal, double angle) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t f = 0; f < o2.triangles.size(); ++f) {
+    const Vec3 n = normal_of(o2, f);
+    if (n == Vec3{}) continue;
+    const double cosine = dot(n, normal);
+    if (angle == 90 ? cosine > 0 : cosine >= std::cos(angle * std::numbers::pi / 180) - 1e-12)
+      least = std::min(least, to_triangle(o2, f, q));
+  }
+  return least;
+}
+
+void expect_brute_force(const Mesh& o1, const Mesh& o2, double angle) {
+  SCOPED_TRACE(angle);
+  const Surface surface(o1, {.resolution = 48});
+  const DistanceMap map = compute_map(surface, Sites(o2), {.facing = angle});
+  Box box = bounds(o1);
+  for (const Vec3& p : o2.positions) extend(box, p);
+  const double error = 2 * kAccuracy * diagonal(box);
+  std::size_t unmatched = 0, wrong = 0;
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    const Vec3 q = surface.texel_point(texel);
+    const double expected = brute_force(o2, q, normal_of(o1, surface.texel_faces()[texel]), angle);
+    unmatched += std::isinf(expected);
+    if (std::isinf(expected))
+      wrong += !std::isnan(map.distance[texel]);
+    else
+      wrong += !(std::abs(std::abs(map.distance[texel]) - expected) <= error);
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_EQ(map.without_match, unmatched);
+  EXPECT_EQ(map.beyond_max_distance, 0U);
+  EXPECT_EQ(map.measured.kind, DistanceKind::facing);
+}
+
+TEST(Facing, IsTheClosestAllowedFaceAtEveryTexel) {
+  const std::vector<std::pair<Mesh, Mesh>> pairs{{sphere(2), placed(torus(12, 8), "rotate:1:2:3")},
+                                                 {torus(12, 8), cube(0.7)},
+                                                 {cube(1), sphere(2)},
+                                                 {height_field(8), square(1, 0.2)}};
+  for (const auto& [o1, o2] : pairs)
+    for (const double angle : {15.0, 45.0, 90.0, 120.0, 180.0}) expect_brute_force(o1, o2, angle);
+}
+
+TEST(Facing, NeverAllowsFacesWithoutArea) {
+  Mesh o2 = square(1, 0);
+  // A face without area nearer than the square.
+  const auto first = static_cast<std::uint32_t>(o2.positions.size());
+  for (const double x : {0.2, 0.4, 0.6}) o2.positions.push_back({x, 0.5, 0.5});
+  o2.triangles.push_back({first, first + 1, first + 2});
+  const std::vector<Vec3> points{{0.4, 0.5, 0.6}}, normals{{0, 0, 2}};
+  const FacingPoints found = closest_facing_points(Sites(o2), points, normals, {.facing = 90});
+  EXPECT_NEAR(found.closest[0].distance, 0.6, 1e-12);
+  const std::vector<Vec3> none{{0, 0, 0}};
+  EXPECT_EQ(closest_facing_points(Sites(o2), points, none, {.facing = 90}).unmatched[0], 1);
+}
+
+TEST(Facing, RefusesWhatItDoesNotHave) {
+  const Sites sites(cube());
+  const std::vector<Vec3> points{{0, 0, 2}}, normals{{0, 0, 1}};
+  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, normals, {.facing = 0}); }), "");
+  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, normals, {.facing = 181}); }), "");
+  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, normals, {}); }), "");
+  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, {}, {.facing = 90}); }), "");
+  EXPECT_NE(error_of([&] { (void)closest_points(sites, points, {.facing = 90}); }), "");
+  EXPECT_NE(error_of([&] { (void)choose_sign(sites, MapOptions{.sign = SignMethod::exact, .facing = 90}); }),
+            "");
+}
+
+TEST(Facing, CountsWhatIsBeyondTheMaximumApartFromWhatHasNoMatch) {
+  const Sites sites(square(1, 0));
+  const Surface up(square(1, 0.5), {.resolution = 16}), down(flipped(square(1, 0.5)), {.resolution = 16});
+  const DistanceMap far = compute_map(up, sites, {.max_distance = 0.1, .facing = 90}),
+                    turned = compute_map(down, sites, {.facing = 90});
+  EXPECT_EQ(far.beyond_max_distance, up.sample_texels().size());
+  EXPECT_EQ(far.without_match, 0U);
+  EXPECT_EQ(turned.without_match, down.sample_texels().size());
+  EXPECT_EQ(turned.beyond_max_distance, 0U);
+}
+
+/// A plate over [−5, 25]² from −t to 0.
+Mesh plate(double t) {
+  Mesh mesh = cube(1);
+  for (Vec3& p : mesh.positions) p = {10 + 15 * p[0], 10 + 15 * p[1], t * (p[2] - 1) / 2};
+  return mesh;
+}
+
+double dent(double x, double y) {
+  const double u = std::max(0.0, 1 - ((x - 10) * (x - 10) + (y - 10) * (y - 10)) / 16);
+  return -0.79 * u * u;
+}
+
+struct Sheets : ::testing::TestWithParam<double> {
+  Sites sites{plate(GetParam())};
+  Surface surface{terrain(40, dent), {.resolution = 128}};
+
+  [[nodiscard]] Summary judged(const MapOptions& options) const {
+    const DistanceMap map = compute_map(surface, sites, options);
+    return summarize(
+        surface, sites, map, distances_at_vertices(surface.mesh(), sites, options),
+        {.accuracy = engine_accuracy(engines().front(), surface.mesh(), sites.mesh()), .tolerance = 0.6});
+  }
+};
+
+TEST_P(Sheets, ShowADentThatIsDeeperThanTheWall) {
+  const MapOptions options{.facing = 90};
+  const DistanceMap map = compute_map(surface, sites, options);
+  std::size_t wrong_skin = 0;
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    const double z = surface.texel_point(texel)[2];
+    EXPECT_NEAR(map.distance[texel], z, 1e-5);
+    wrong_skin += map.vector[texel][2] < -1e-5F;  // the top is above
+  }
+  EXPECT_EQ(wrong_skin, 0U);
+  const Summary summary = judged(options);
+  EXPECT_EQ(summary.tolerance->verdict, Verdict::fail);
+  EXPECT_NEAR(summary.extremes->min.distance, -0.79, 1e-5);
+  EXPECT_FALSE(summary.tolerance->proof);
+  EXPECT_FALSE(summary.hausdorff.lower);
+  EXPECT_TRUE(std::isinf(summary.evidence.error_bound));
+  // Without it, no distance exceeds half of the wall, unless the point is through the other skin.
+  const Summary hidden = judged({});
+  EXPECT_EQ(hidden.tolerance->verdict, GetParam() < 2 ? Verdict::pass : Verdict::fail);
+}
+
+TEST_P(Sheets, PassAsAnEstimate) {
+  const MapOptions options{.facing = 90};
+  const DistanceMap map = compute_map(surface, sites, options);
+  const CertifiedVerdict verdict =
+      certify_tolerance(surface, sites, map, distances_at_vertices(surface.mesh(), sites, options),
+                        Tolerance(-0.8, 0.1), {.error_bound = 0.01, .accuracy = 1e-4});
+  EXPECT_EQ(verdict.verdict, Verdict::pass);
+  EXPECT_FALSE(verdict.certified);
+  EXPECT_FALSE(verdict.proof);
+}
+
+INSTANTIATE_TEST_SUITE_P(Thickness, Sheets, ::testing::Values(0.5, 1.0, 3.0));
+
+}  // namespace
+}  // namespace sdm::test
