@@ -15,6 +15,7 @@
 #include "self.h"
 #include "sequence.h"
 #include "terminal_text.h"
+#include "thickness.h"
 #include "usage_error.h"
 #include "volume.h"
 
@@ -77,6 +78,7 @@ int run(int argc, char** argv) {
     add_bodies_command(app);
     add_sequence_command(app);
     add_self_command(app);
+    add_thickness_command(app);
     add_volume_command(app);
     add_info_command(app);
     add_devices_command(app);

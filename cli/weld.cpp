@@ -61,6 +61,13 @@ std::optional<std::string> note_on_welding(const sdm::SignUsed& used, sdm::SignM
   return fmt::format("{} is open, so distances are unsigned; {}", to.file, advice);
 }
 
+void check_closed(const Input& input, const std::string& what) {
+  if (input.info->closed) return;
+  const std::string advice = weld_advice(input);
+  throw sdm::Error(fmt::format("{}: {} needs a closed mesh, and this one is open; {}", input.file, what,
+                               advice.empty() ? "close its holes" : advice));
+}
+
 void check_sign(const std::optional<sdm::Tolerance>& tolerance, const sdm::SignUsed& sign, const Input& to) {
   if (!tolerance || !tolerance->needs_sign() || sign.method != sdm::SignMethod::none) return;
   const std::string advice = weld_advice(to);

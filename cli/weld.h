@@ -20,5 +20,8 @@ void weld(Input& input, const sdm::WeldOptions& options);
 [[nodiscard]] std::optional<std::string> note_on_welding(const sdm::SignUsed& used, sdm::SignMethod wanted,
                                                          const Input& to);
 
+/// Throws sdm::Error, which names what would close it, if the mesh is open. `what` needs a closed one.
+void check_closed(const Input& input, const std::string& what);
+
 /// Throws sdm::Error if the tolerance needs signs, but distances to the mesh have none.
 void check_sign(const std::optional<sdm::Tolerance>& tolerance, const sdm::SignUsed& sign, const Input& to);

@@ -211,6 +211,7 @@ SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface
 struct HtmlOptions {
   const Mesh* other = nullptr;  ///< O2, shown as a ghost; none: O1 only
   UpAxis up = UpAxis::y;        ///< the axis of the meshes that points up
+  bool thinnest = false;        ///< the list of places is of the least values, not of the largest
   // The size of the page, which grows with what it shows:
   std::uint32_t largest = 1024;              ///< the most texels a side, at least 1
   std::size_t triangles = 400'000;           ///< the most of O1; others are shown by a coarser copy

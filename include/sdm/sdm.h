@@ -38,6 +38,7 @@
 #include <sdm/summary.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
+#include <sdm/thickness.h>
 #include <sdm/threads.h>
 #include <sdm/time_of_contact.h>
 #include <sdm/tolerance.h>

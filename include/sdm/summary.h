@@ -103,9 +103,10 @@ struct LargestDistance {
 
 /// What a map, or a measured cloud, is summed up to.
 struct Summary {
-  std::string units{};     ///< of all lengths, as the user names them
-  bool of_points = false;  ///< of a cloud: each point counts the same, and there is nothing between points
-  bool of_itself = false;  ///< a map of a surface to itself, whose texels say nothing about other points
+  std::string units{};        ///< of all lengths, as the user names them
+  bool of_points = false;     ///< of a cloud: each point counts the same, and there is nothing between points
+  bool of_itself = false;     ///< a map of a surface to itself, whose texels say nothing about other points
+  bool of_thickness = false;  ///< of the part itself, with a verdict on its samples
   SignUsed sign{};
   MeasuredDistance measured{};
   DistanceStatistics distance{};  ///< an estimate for the surface; exact for a cloud, but for the accuracy
@@ -160,6 +161,12 @@ struct SummaryOptions {
 /// Sums up a map of a surface to itself: statistics and colours. Errors and cost as of summarize().
 [[nodiscard]] SDM_API Summary summarize_self(const Surface& surface, const DistanceMap& map,
                                              const SummaryOptions& options = {});
+
+/// Sums up one of thickness_maps(): statistics, the extremes of the texels, colours, distribution, and the
+/// verdict on the texels, which between them is an estimate: without a bound, pass is not certified. Errors
+/// and cost as of summarize().
+[[nodiscard]] SDM_API Summary summarize_thickness(const Surface& surface, const DistanceMap& map,
+                                                  const SummaryOptions& options = {});
 
 /// The summary of several maps, such as those of the UDIM tiles of a mesh, as of one: statistics weighted by
 /// area over all of them, the extremes, the largest error bound, and the verdict: Verdict::fail if that of

@@ -64,7 +64,7 @@ from ._core import (
 )
 from ._core import version as __version__
 from ._closest_points import NONE, SiteType, closest_points
-from ._distance_map import DistanceMap, MapBounds, map, self_map
+from ._distance_map import DistanceMap, MapBounds, map, self_map, thickness
 
 __all__ = [
     "Alignment",
@@ -119,6 +119,7 @@ __all__ = [
     "remove_islands",
     "scene",
     "self_map",
+    "thickness",
     "thread_limit",
     "time_of_contact",
     "weld",

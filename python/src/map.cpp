@@ -66,9 +66,33 @@ std::unique_ptr<PyMap> compute_self(nb::handle surface, nb::handle sites, nb::ha
   return result;
 }
 
+std::unique_ptr<PyMap> compute_thickness(nb::handle surface, nb::handle sites, const std::string& method,
+                                         double angle, nb::handle progress) {
+  if (method != "ball" && method != "ray")
+    throw Error("method must be 'ball' or 'ray', not '" + method + "'");
+  const bool ball = method == "ball";
+  const auto lock = nb::cast<const PySurface&>(surface).access.use();
+  const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
+  auto result = map_between(surface, sites);
+  result->options = {.sign = SignMethod::none};
+  result->engine = "thickness";
+  result->thickness = {ball ? ThicknessMethod::ball : ThicknessMethod::ray, angle};
+  run(progress, [&](const Progress& report) {
+    const auto begin = std::chrono::steady_clock::now();
+    ThicknessMaps maps =
+        thickness_maps(result->on->surface, result->to->sites, {.angle = angle, .progress = report});
+    result->map = std::move(ball ? maps.ball : maps.ray);
+    result->ms = milliseconds_since(begin);
+  });
+  return result;
+}
+
 }  // namespace
 
 std::vector<float> PyMap::vertex_distances(const Progress& progress) const {
+  if (thickness)
+    return thickness_at_vertices(to->sites, thickness->first,
+                                 {.angle = thickness->second, .progress = progress});
   if (exclusion)
     return self_distances_at_vertices(to->sites, *exclusion,
                                       {.max_distance = options.max_distance, .progress = progress});
@@ -106,6 +130,7 @@ void bind_map(nb::module_& module) {
   bind_map_files(module, map_class);
   bind_map_rays(map_class);
   bind_channels(module);
+  bind_thickness(module);
 
   module.def(
       "compute_map",
@@ -135,6 +160,18 @@ void bind_map(nb::module_& module) {
       nb::sig("def compute_self_map(surface: Surface, sites: Sites, rest: object, *, rings: int = 1, "
               "geodesic: float | None = None, max_distance: float = ..., progress: "
               "collections.abc.Callable[[str, float], bool | None] | None = None) -> Map"));
+}
+
+void bind_thickness(nb::module_& module) {
+  module.def(
+      "compute_thickness",
+      [](nb::handle surface, nb::handle sites, const std::string& method, double angle, nb::handle progress) {
+        return compute_thickness(surface, sites, method, angle, progress).release();
+      },
+      nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(), nb::kw_only(),
+      nb::arg("method") = "ball", nb::arg("angle") = 90.0, nb::arg("progress") = nb::none(),
+      nb::sig("def compute_thickness(surface: Surface, sites: Sites, *, method: str = 'ball', angle: float = "
+              "90.0, progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> Map"));
 }
 
 }  // namespace sdm::python

@@ -5,6 +5,7 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/sdm.h>
+#include <sdm/thickness.h>
 
 #include <array>
 #include <cstdint>
@@ -29,6 +30,7 @@ struct PyMap {
   std::string engine;  ///< its name
   /// What each face excludes in a map of a surface to itself; otherwise null.
   std::shared_ptr<const Exclusion> exclusion;
+  std::optional<std::pair<ThicknessMethod, double>> thickness;  ///< the method and the angle of such a map
   DistanceMap map;
   double ms = 0;  ///< that it took
 
@@ -56,8 +58,14 @@ struct PyMap {
       throw Error("the sites have been refitted or edited since the map was computed; compute the map again");
     return lock;
   }
+  /// Whether the map is of a surface alone.
+  [[nodiscard]] bool of_itself() const { return exclusion || thickness; }
   /// Throws for a map of a surface to itself, whose texels say nothing about the points between them.
   void require_other_mesh() const {
+    if (thickness)
+      throw Error(
+          "the thickness of a part jumps between faces, so that texels do not bound it; check() judges the "
+          "texels");
     if (exclusion)
       throw Error(
           "the distances of a surface to itself jump between faces, so that texels do not bound them; "
@@ -72,6 +80,7 @@ struct PyMap {
   }
   /// The accuracy of a distance, for the present shapes. Self maps are exact but for rounding to float.
   [[nodiscard]] double accuracy() const {
+    if (thickness) return thickness_accuracy(on->surface.mesh());
     const EngineInfo& info = options.engine ? engine_info(*options.engine) : engines().front();
     return engine_accuracy(info, on->surface.mesh(), to->sites.mesh());
   }
@@ -87,6 +96,7 @@ struct PyMap {
     const std::optional<std::pair<double, double>>& range);
 
 void bind_channels(nb::module_& module);
+void bind_thickness(nb::module_& module);
 void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map);
 void bind_map_files(nb::module_& module, nb::class_<PyMap>& map);
 

@@ -71,7 +71,7 @@ void write(const PyMap& self, const std::string& format, nb::handle file, const 
       found->second(path, file_vertices(surface.mesh()), self.vertex_distances(report));
     } else if (format == "exr") {
       std::vector<std::uint8_t> boundary;
-      if (!self.exclusion && !self.to->sites.closed()) boundary = boundary_mask(self.to->sites, self.map);
+      if (!self.of_itself() && !self.to->sites.closed()) boundary = boundary_mask(self.to->sites, self.map);
       write_exr(path, surface, self.map, {.boundary = boundary});
     } else if (format == "glb") {
       write_glb(path, surface, self.map, self.vertex_distances(report), picture);
@@ -107,6 +107,10 @@ std::string report(const PyMap& self, const VertexDistances& at_vertices, const 
   std::string text;
   run(nb::none(), [&](const Progress&) {
     origin.on.info = inspect(surface.mesh());
+    if (self.thickness) {
+      text = report_json(origin, surface, summarize_thickness(surface, self.map, options));
+      return;
+    }
     if (self.exclusion) {
       text = report_json(origin, surface, summarize_self(surface, self.map, options));
       return;
@@ -138,8 +142,9 @@ void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_ve
   const std::filesystem::path path = path_of(file);
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
-  HtmlOptions options{.other = self.exclusion ? nullptr : &self.to->sites.mesh(),
+  HtmlOptions options{.other = self.of_itself() ? nullptr : &self.to->sites.mesh(),
                       .up = up == "z" ? UpAxis::z : UpAxis::y,
+                      .thinnest = self.thickness.has_value(),
                       .largest = largest,
                       .triangles = triangles};
   options.triangles_of_other = std::min(options.triangles_of_other, triangles);

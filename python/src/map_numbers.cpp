@@ -117,13 +117,18 @@ std::string word_of(Verdict verdict) {
 }
 
 CertifiedVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progress) {
-  self.require_other_mesh();
+  if (!self.thickness) self.require_other_mesh();
   const Tolerance accepted = tolerance_of(tolerance, self.map.sign.method);
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   CertifiedVerdict result;
   run(progress, [&](const Progress& report) {
     const Surface& surface = self.on->surface;
+    if (self.thickness) {
+      result = *summarize_thickness(surface, self.map, {.accuracy = self.accuracy(), .tolerance = accepted})
+                    .tolerance;
+      return;
+    }
     result = certify_tolerance(
         surface, self.to->sites, self.map, self.vertex_distances(report), accepted,
         {.error_bound = covering_radius(surface), .accuracy = self.accuracy(), .progress = report});

@@ -464,3 +464,24 @@ def test_side_of_an_open_mesh_is_a_sign():
     below = np.array([[0, 0, -0.4], [1, 0, -0.4], [0, 1, -0.4]], float), [[0, 1, 2]]
     settled = sdm.map(below, ground, resolution=16, sign="side")
     assert settled.sign == "side" and settled.statistics().max == pytest.approx(-0.4)
+
+
+def test_thickness_of_walls():
+    plate = meshes.box((0, 0, 0), (10, 10, 0.5))
+    for method in ("ball", "ray"):
+        m = sdm.thickness(plate, method=method, resolution=128)
+        up = m.valid & (np.abs(m.normal[..., 2]) > 0.9)
+        np.testing.assert_allclose(m.distance[up], 0.5, atol=1e-6)
+        np.testing.assert_allclose(m.at_vertices(), 0.5, atol=1e-6)
+        assert m.sign == "none"
+        passed, failed = m.check((0.4, 20)), m.check((0.6, 20))
+        assert (passed.verdict, passed.certified, failed.verdict) == ("pass", False, "fail")
+        assert m.report(tolerance=(0.4, 20))["evidence"]["samples_only"] is True
+        for no_bounds in (lambda m=m: m.bounds, m.hausdorff, m.free_distances, m.ambient_occlusion):
+            with pytest.raises(sdm.Error, match="jumps between faces"):
+                no_bounds()
+    with pytest.raises(sdm.Error, match="open"):
+        sdm.thickness((plate[0], plate[1][1:]), resolution=64)
+    for wrong in ({"method": "sphere"}, {"angle": 0}, {"angle": 180}):
+        with pytest.raises(sdm.Error, match=next(iter(wrong))):
+            sdm.thickness(plate, resolution=64, **wrong)

@@ -28,6 +28,7 @@ function showVerdict(report: Report): void {
 
 /// Words of page.html that differ for clouds.
 function nameSubject(report: Report): void {
+  if (report.thickness) byId('worst-title').textContent = 'Thinnest places';
   if (!isCloud(report)) return;
   byId('part-title').textContent = 'The cloud in 3D';
   byId('histogram-title').textContent = 'How the points are distributed';
@@ -251,8 +252,8 @@ class Page {
     byId('worst-table').replaceChildren(
       rows.length === 0
         ? make('p', {}, 'No point of the part has a distance other than 0.')
-        : table(['', 'Distance', 'Position', 'At'], rows, 'The places with the largest distances'),
-      make('p', { class: 'hint' }, 'The largest distances by size, at places that are at least 6 % of the part\u2019s size apart. Choose one to see it.'),
+        : table(['', 'Distance', 'Position', 'At'], rows, this.report.thickness ? 'The thinnest places' : 'The places with the largest distances'),
+      make('p', { class: 'hint' }, `${this.report.thickness ? 'The least values, at texels' : 'The largest distances by size, at places'} that are at least 6 % of the part\u2019s size apart. Choose one to see it.`),
     );
   }
 

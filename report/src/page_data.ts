@@ -18,6 +18,8 @@ export interface Evidence {
   estimated_signs: boolean;
   accuracy: number | null; ///< null: unknown
   error_bound: number | null;
+  unmatched?: boolean; ///< a sample has no match
+  samples_only?: boolean; ///< nothing bounds the distances between samples
   signed?: boolean; ///< false: no distance is negative
   unmatched?: boolean; ///< not complete, as nothing faces some sample
   samples_only?: boolean; ///< nothing is known between samples
@@ -42,6 +44,9 @@ export interface Report {
   o1?: Input;
   o2?: Input;
   mesh?: Input;
+  measured?: { kind: string; text: string };
+  without_match?: number;
+  thickness?: { method: string; text: string };
   measured_on?: 'o1' | 'o2';
   units?: string;
   fields?: Record<string, string>; ///< as the author of the report named them

@@ -22,7 +22,7 @@ export function titleOf(report: Report): string {
   const tile = report.atlas?.udim ? `, tile ${report.atlas.udim}` : '';
   return reference
     ? `${fileName(measured.file)}${tile} compared with ${fileName(reference.file)}`
-    : `${fileName(measured.file)}: distance to itself`;
+    : `${fileName(measured.file)}: ${report.thickness ? 'wall thickness' : 'distance to itself'}`;
 }
 
 /// What the author of the report says about it, below the title.
@@ -53,7 +53,8 @@ export function showNumbers(report: Report): void {
   const bound = report.error_bound;
   const cloud = isCloud(report);
   const sampled =
-    typeof bound === 'number' ? `measured; at most ${text(bound, 3)}${unit} more in between` : 'measured';
+    report.evidence?.samples_only ? 'at the points; an estimate in between'
+    : typeof bound === 'number' ? `measured; at most ${text(bound, 3)}${unit} more in between` : 'measured';
   // A distance below the accuracy may as well be 0.
   const shown = (x: number) =>
     Math.abs(x) <= (report.accuracy ?? 0) ? `0${unit}` : `${signedText(x, signs)}${unit}`;
@@ -76,8 +77,7 @@ export function showNumbers(report: Report): void {
   if (samples !== undefined) rows.push(['Measured points', count(samples), 'exact']);
   if ((report.beyond_max_distance ?? 0) > 0)
     rows.push(['Points farther than the limit', count(report.beyond_max_distance!), 'exact']);
-  if ((report.without_match ?? 0) > 0)
-    rows.push(['Points that no face faces', count(report.without_match!), 'exact']);
+  if ((report.without_match ?? 0) > 0) rows.push(['Points that no face of the reference matches', count(report.without_match!), 'exact']);
   if (cloud && (report.o1?.invalid_points ?? 0) > 0)
     rows.push(['Points without coordinates', count(report.o1!.invalid_points!), 'exact']);
   byId('numbers-table').replaceChildren(table([otherDistance(report) ?? 'Distance', 'Value', 'Kind'], rows, 'Distances'));
@@ -128,10 +128,12 @@ export function showMethod(report: Report): void {
       atlas &&
         `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the texels of a texture of ${atlas.resolution} × ${atlas.rows ?? atlas.resolution}.`,
       isCloud(report) && `The measured part is a cloud of ${count(report.o1!.points!)} points. Nothing is said about places between them.`,
-      otherDistance(report)
+      report.thickness
+        ? `For each, the thickness of the wall below it was found (${report.thickness.text}). Between the points, the thickness is an estimate.`
+        : otherDistance(report)
         ? `Measured is the ${report.measured!.text}. What lies between the measured points is an estimate.`
         : `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
-      typeof accuracy === 'number' && `Each of these distances is exact to ${text(accuracy, 2)}${unit}.`,
+      typeof accuracy === 'number' && `Each of these ${report.thickness ? 'values' : 'distances'} is exact to ${text(accuracy, 2)}${unit}.`,
     ),
   );
   if (typeof bound === 'number')
@@ -142,11 +144,13 @@ export function showMethod(report: Report): void {
         `This is proven, not estimated; --precision makes it as small as needed.`,
       ),
     );
-  if (sign)
+  if (sign && !report.thickness)
     out.push(
       sentence(
         sign.method === 'none'
           ? `Distances have no sign (${sign.reason}).`
+          : report.measured?.kind === 'along'
+            ? 'Positive is on the side to which the normal of that face points: outside, or above.'
           : sign.method === 'side'
             ? `Positive is in front of ${reference}, negative is behind (${sign.reason}).`
             : `Positive is outside ${reference}, negative is inside (${sign.reason}).`,

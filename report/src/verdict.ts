@@ -100,6 +100,7 @@ function failure(report: Report, limits: Limits): string {
   const cloud = isCloud(report);
   const t = report.tolerance!;
   const outside = t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null;
+  if (t.reason === 'without match') return sentence(t.text ?? '');
   if (t.reason === 'beyond max distance')
     return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
       report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
@@ -124,9 +125,7 @@ export function verdictOf(report: Report): { verdict: Verdict; sentence: string 
     };
   const verdict = t.verdict as Verdict;
   if (verdict === 'FAIL') return { verdict, sentence: failure(report, limits) };
-  if (verdict === 'PASS')
-    return report.evidence.samples_only
-      ? { verdict, sentence: sentence(t.text ?? '') }
-      : { verdict, sentence: `Every point of the ${isCloud(report) ? 'cloud' : 'surface'} is within the tolerance of ${limitsText(limits, report)}.` };
+  if (verdict === 'PASS' && !report.evidence.samples_only)
+    return { verdict, sentence: `Every point of the ${isCloud(report) ? 'cloud' : 'surface'} is within the tolerance of ${limitsText(limits, report)}.` };
   return { verdict, sentence: sentence(t.text ?? '') };
 }

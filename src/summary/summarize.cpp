@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "summary/distribution.h"
 #include "summary/largest_distance.h"
@@ -101,6 +102,30 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
   result.doubts = options.doubts;
   withhold_pass(result, options.accept_doubts);
   result.notes = notes_of(surface, sites, result, options);
+  return result;
+}
+
+Summary summarize_thickness(const Surface& surface, const DistanceMap& map, const SummaryOptions& options) {
+  const std::vector<float> unknown(surface.mesh().positions.size(), std::numeric_limits<float>::quiet_NaN());
+  Summary result = summarize_self(surface, map, options);
+  result.of_thickness = true;
+  result.extremes = extremes(surface, map, unknown);
+  result.distribution = summary::distribution_of(surface, map, result.distance, options);
+  Evidence& evidence = result.evidence;
+  evidence = {.complete = map.beyond_max_distance == 0,
+              .samples_only = true,
+              .accuracy = options.accuracy,
+              .error_bound = std::numeric_limits<double>::infinity(),
+              .is_signed = false};
+  if (result.extremes)
+    evidence.lowest = result.extremes->min.distance, evidence.highest = result.extremes->max.distance;
+  if (!options.tolerance) return result;
+  CertifiedVerdict& verdict = result.tolerance.emplace();
+  static_cast<Judgement&>(verdict) = judge(evidence, *options.tolerance);
+  verdict.tolerance = *options.tolerance;
+  verdict.shares = tolerance_shares(surface, map, *options.tolerance, options.accuracy);
+  verdict.exceeded_area_fraction = verdict.shares.below + verdict.shares.above + verdict.shares.without_value;
+  if (evidence.complete) verdict.largest = evidence.highest;
   return result;
 }
 

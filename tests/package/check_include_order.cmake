@@ -43,6 +43,7 @@ set(order
   proximity/motion
   proximity/bodies
   proximity/self
+  proximity/thickness
   proximity
   summary
   io/file

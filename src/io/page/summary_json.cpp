@@ -209,14 +209,15 @@ Json to_json(const Summary& summary) {
   json["units"] = summary.units;
   json["max_distance"] = summary.max_distance;  // null: no limit
   if (summary.colors) json["colors"] = to_json(*summary.colors);
-  if (summary.of_itself) {
+  if (summary.of_itself && !summary.of_thickness) {
     json["distance"] = to_json(d);
     json["texels_with_value"] = d.texels;
     json["texels_without_value"] = summary.beyond_max_distance;
     json["notes"] = summary.notes;
     return json;
   }
-  json["measured"] = {{"kind", name_of(summary.measured.kind)}, {"text", summary.measured.text}};
+  if (!summary.of_thickness)
+    json["measured"] = {{"kind", name_of(summary.measured.kind)}, {"text", summary.measured.text}};
   json["sign"] = {{"method", name_of(summary.sign.method)}, {"reason", summary.sign.reason}};
   json["distance"] = to_json(d);
   if (summary.of_points) json["distance"]["kind"] = "bounded", json["distance"]["weights"] = "points";
@@ -227,7 +228,7 @@ Json to_json(const Summary& summary) {
   json["without_match"] = summary.without_match;
   json["accuracy"] = summary.evidence.accuracy;  // null: unknown
   json["accuracy_kind"] = std::isfinite(summary.evidence.accuracy) ? "bounded" : "unknown";
-  if (!summary.of_points) add_surface(json, summary);
+  if (!summary.of_points && !summary.of_thickness) add_surface(json, summary);
   json["evidence"] = to_json(summary.evidence);
   if (summary.tolerance) json["tolerance"] = tolerance_json(summary);
   json["doubts"] = to_json(summary.doubts);

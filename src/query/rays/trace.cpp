@@ -120,12 +120,16 @@ HWY_INLINE void for_each_face(const sites::SitesData& sites, const UnitRay& ray,
   tree::visit(sites.wide, scratch.stack, tree::NearestFirst{bound, enter, faces});
 }
 
-void FirstHits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits) {
+// The first hits of faces for which accepts(number of the ray, face).
+template <class Accepts>
+HWY_INLINE void first_hits_among(const sites::SitesData& sites, std::span<const Ray> rays,
+                                 const Accepts& accepts, Scratch& scratch, RayHit* hits) {
   for (size_t i = 0; i < rays.size(); ++i) {
     RayHit& hit = hits[i] = {};
     UnitRay unit;
     if (!unit.place(rays[i], sites.frame)) continue;
     for_each_face(sites, unit, scratch, [&](uint32_t face) HWY_ATTR {
+      if (!accepts(i, face)) return false;
       const double t = meet(sites, rays[i], face);
       if (t < hit.t || (t == hit.t && face < hit.face && hit.face != kNone)) {
         hit.t = t, hit.face = face;
@@ -137,6 +141,17 @@ void FirstHits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch
     const auto [a, b, c] = corners_of(sites.mesh, hit.face);
     hit.barycentric = barycentric(a, b, c, rays[i].origin + hit.t * rays[i].direction);
   }
+}
+
+void FirstHits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits) {
+  first_hits_among(
+      sites, rays, [](size_t, uint32_t) { return true; }, scratch, hits);
+}
+
+void FirstHitsAmong(const sites::SitesData& sites, std::span<const Ray> rays, const FaceFilter& filter,
+                    Scratch& scratch, RayHit* hits) {
+  const auto accepts = [&](size_t ray, uint32_t face) { return filter.accepts(filter.data, ray, face); };
+  first_hits_among(sites, rays, accepts, scratch, hits);
 }
 
 void Occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, uint8_t* result) {
@@ -159,10 +174,15 @@ HWY_AFTER_NAMESPACE();
 namespace sdm::rays {
 
 HWY_EXPORT(FirstHits);
+HWY_EXPORT(FirstHitsAmong);
 HWY_EXPORT(Occluded);
 
 void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits) {
   HWY_DYNAMIC_DISPATCH(FirstHits)(sites, rays, scratch, hits);
+}
+void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, const FaceFilter& filter,
+                Scratch& scratch, RayHit* hits) {
+  HWY_DYNAMIC_DISPATCH(FirstHitsAmong)(sites, rays, filter, scratch, hits);
 }
 void occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch,
               std::uint8_t* result) {

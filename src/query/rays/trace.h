@@ -4,6 +4,8 @@
 
 #include <sdm/rays.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,6 +22,23 @@ struct Scratch {
 /// As sdm::first_hits, into `hits`, on the calling thread. Dispatches at run time to the best vector
 /// instructions of the machine.
 void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits);
+
+/// Which faces a ray may hit: accepts(data, number of the ray, face).
+struct FaceFilter {
+  bool (*accepts)(const void* data, std::size_t ray, std::uint32_t face);
+  const void* data;
+};
+/// The filter of a function (number of the ray, face) → bool, which must outlive it.
+template <class Accepts>
+[[nodiscard]] FaceFilter filter(const Accepts& accepts) {
+  return {[](const void* data, std::size_t ray, std::uint32_t face) {
+            return (*static_cast<const Accepts*>(data))(ray, face);
+          },
+          &accepts};
+}
+/// The first hits of faces that the filter accepts.
+void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, const FaceFilter& filter,
+                Scratch& scratch, RayHit* hits);
 
 /// As sdm::occluded.
 void occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch,

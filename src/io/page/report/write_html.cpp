@@ -1,5 +1,6 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
+#include <sdm/thickness.h>
 #include <sdm/threads.h>
 
 #include <new>
@@ -35,6 +36,13 @@ Json worst_json(const Surface& surface, std::span<const Place> places) {
   return json;
 }
 
+std::vector<Place> thinnest(const Surface& surface, const DistanceMap& map) {
+  std::vector<Place> places;
+  for (const std::uint32_t texel : thinnest_texels(surface, map))
+    places.push_back({map.distance[texel], surface.texel_point(texel), texel});
+  return places;
+}
+
 }  // namespace
 
 bool can_write_html() {
@@ -53,17 +61,18 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   PackedArrays arrays, model_arrays, ghost_arrays;
   std::vector<Place> worst;
   AreaByValue area;
-  run_concurrently({[&] { map_json = add_map(arrays, surface, map, options.largest); },
-                    [&] {
-                      model = add_model(model_arrays, surface, vertex_distances, options.largest,
-                                        options.triangles);
-                    },
-                    [&] {
-                      if (options.other)
-                        ghost = add_ghost(ghost_arrays, *options.other, options.triangles_of_other);
-                    },
-                    [&] { worst = worst_places(surface, map, vertex_distances); },
-                    [&] { area = area_by_value(surface, map); }});
+  run_concurrently(
+      {[&] { map_json = add_map(arrays, surface, map, options.largest); },
+       [&] {
+         model = add_model(model_arrays, surface, vertex_distances, options.largest, options.triangles);
+       },
+       [&] {
+         if (options.other) ghost = add_ghost(ghost_arrays, *options.other, options.triangles_of_other);
+       },
+       [&] {
+         worst = options.thinnest ? thinnest(surface, map) : worst_places(surface, map, vertex_distances);
+       },
+       [&] { area = area_by_value(surface, map); }});
   arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
   page = common_json(options.up);
   page["area"] = add_area(arrays, area);

@@ -1,0 +1,80 @@
+/// The wall thickness of a part, at every texel of its atlas.
+///
+/// Threads: the functions may be called concurrently, also with the same Surface and Sites.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/map.h>
+#include <sdm/progress.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace sdm {
+
+/// What the thickness at a point of the surface of a part is. With n, the inward normal of the point's face:
+enum class ThicknessMethod : std::uint8_t {
+  ball,  ///< the diameter of the largest ball in the part that touches there, with its centre along n
+  ray,   ///< the length of the ray along n until it leaves the part
+};
+
+/// Options of thickness_maps() and thickness_at_vertices().
+struct ThicknessOptions {
+  /// Of the ball, in degrees, greater than 0 and less than 180: it is stopped by faces whose normal turns
+  /// from that of the point's face by more than this. Faces that turn less are the neighbourhood of the
+  /// point, which would stop any ball at 0.
+  double angle = 90;
+  Progress progress{};
+};
+
+/// The thickness by either method. `distance` is the thickness; `vector` leads from the texel's surface point
+/// to the point that stops the ball or the ray, on the face `site`. Of the ball, the vector is shorter than
+/// the diameter unless both ends are opposite.
+struct ThicknessMaps {
+  DistanceMap ball, ray;
+};
+
+/// Computes the thickness of a solid at every texel of its surface.
+///
+/// The ray starts at the texel's surface point and ends at the first face whose outward normal has a product
+/// with it above 1e-12: faces next to the point, which it touches or enters, do not end it. The ball that
+/// touches at the point p reaches the point q at the radius r = |q − p|² / (2 n·(q − p)), if n·(q − p) > 0;
+/// it is stopped at the least r of all points of the closed faces that turn by more than the angle, and of
+/// the point where the ray ends, if its face turns by more than 90°. Faces must turn by 0.1° more than the
+/// angle, as the normals of parts in single precision are not exact: at 90°, the sides of a plate do not stop
+/// the balls near its rim.
+///
+/// A part of several solids is measured solid by solid: of a shell that bounds a solid, only its own faces
+/// and those of cavities stop anything, so that parts which touch or overlap do not shorten each other. A
+/// solid that intersects itself is measured as if each of its faces bounded it.
+///
+/// Values are exact to 1e-11 of the diagonal of the mesh and the rounding to float, at the texels. Nothing
+/// bounds them in between: the thickness may jump from face to face. Texels of faces that Sites ignores, and
+/// balls that nothing stops, have no value (NaN, kNone), and count as beyond_max_distance.
+///
+/// `surface` and `sites` must be built from the same mesh and positions. Throws sdm::Error if their numbers
+/// of faces differ, unless the mesh is closed and orientable, for an angle out of range, or if there is not
+/// enough memory; Cancelled. Cost: a ray and a search in the tree for each texel, all cores.
+[[nodiscard]] SDM_API ThicknessMaps thickness_maps(const Surface& surface, const Sites& sites,
+                                                   const ThicknessOptions& options = {});
+
+/// The thickness at each vertex: the minimum over its faces, each with its own normal. NaN for a vertex
+/// without faces. 0 for balls where faces meet at an edge that is sharper than the angle allows. Errors as of
+/// thickness_maps(). Cost: a ray and a search for each corner of a face, all cores.
+[[nodiscard]] SDM_API std::vector<float> thickness_at_vertices(const Sites& sites, ThicknessMethod method,
+                                                               const ThicknessOptions& options = {});
+
+/// Returns the texels of least value, the least first, each at least 6 % of the diagonal of the mesh from
+/// those before it; at most `count`. Throws sdm::Error if the map belongs to another surface. Cost:
+/// O(n log n) in texels.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> thinnest_texels(const Surface& surface,
+                                                                 const DistanceMap& map,
+                                                                 std::size_t count = 10);
+
+/// The largest error of a thickness, in units of the mesh: of rounding.
+[[nodiscard]] SDM_API double thickness_accuracy(const Mesh& mesh);
+
+}  // namespace sdm

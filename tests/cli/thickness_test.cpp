@@ -1,0 +1,118 @@
+// `sdm thickness`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/io.h>
+#include <sdm/sdm.h>
+#include <sdm/thickness.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/samples.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+// A plate of 6 × 4 × 0.5.
+class ThicknessCommandTest : public ::testing::Test {
+ protected:
+  ThicknessCommandTest() {
+    for (Vec3& p : plate.positions) p = {3 * p[0], 2 * p[1], 0.25 * p[2]};
+    write_ply(part, plate);
+    write_ply(open, taken_apart(plate, 1e-6));
+  }
+  [[nodiscard]] Outcome run(const std::string& file, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"thickness", file, "-o", out, "--resolution", "64"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+
+  Mesh plate = cube();
+  const TemporaryFolder folder;
+  const std::string part = folder / "part.ply", open = folder / "open.ply", out = folder / "out";
+};
+
+TEST_F(ThicknessCommandTest, WritesTheNumbersOfTheLibrary) {
+  for (const std::string method : {"ball", "ray"}) {
+    const Outcome outcome = run(part, {"--method", method, "--json", "--units", "mm"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, contents(out + "/report.json"));
+    const Json report = Json::parse(outcome.out);
+    const Mesh mesh = read_mesh(part);
+    const Surface surface(mesh, {.resolution = 64});
+    const ThicknessMaps maps = thickness_maps(surface, Sites(mesh));
+    const DistanceStatistics ball = statistics(surface, maps.ball), ray = statistics(surface, maps.ray);
+    const bool is_ball = method == "ball";
+    EXPECT_EQ(report["distance"]["min"], (is_ball ? ball : ray).min);
+    EXPECT_EQ(report["distance"]["p95"], (is_ball ? ball : ray).p95);
+    EXPECT_EQ(report["thickness"]["method"], method);
+    EXPECT_EQ(report["thickness"]["other"]["method"], is_ball ? "ray" : "ball");
+    EXPECT_EQ(report["thickness"]["other"]["distance"]["mean"], (is_ball ? ray : ball).mean);
+    EXPECT_EQ(report["thickness"]["thinnest"][0]["thickness"], (is_ball ? ball : ray).min);
+    EXPECT_EQ(report["evidence"]["samples_only"], true);
+    EXPECT_FALSE(report.contains("error_bound"));
+    EXPECT_FALSE(report.contains("tolerance"));
+    EXPECT_THAT(names_in(out), Contains(is_ball ? "ray.exr" : "ball.exr"));
+    EXPECT_THAT(names_in(out), Contains("report.html"));
+    EXPECT_THAT(contents(out + "/report.html"), HasSubstr("samples_only"));
+  }
+}
+
+TEST_F(ThicknessCommandTest, JudgesLimitsByItsTexels) {
+  Outcome outcome = run(part, {"--min", "0.4", "--units", "mm"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              HasSubstr("PASS: every texel has at least 0.4 mm; between the texels, an estimate"));
+  outcome = run(part, {"--min", "0.6"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("do not have at least 0.6; 0.5 at ("));
+  EXPECT_EQ(run(part, {"--min", "0.5"}).code, 4);
+  EXPECT_EQ(run(part, {"--max", "6.1"}).code, 0);
+  outcome = run(part, {"--min", "0.4", "--max", "5", "--json"});
+  EXPECT_EQ(outcome.code, 3);
+  const Json report = Json::parse(outcome.out);
+  EXPECT_EQ(report["tolerance"]["verdict"], "FAIL");
+  EXPECT_EQ(report["tolerance"]["nearest_limit"], "upper");
+  EXPECT_EQ(report["thickness"]["max"], 5);
+}
+
+TEST_F(ThicknessCommandTest, NamesWhatClosesAnOpenPart) {
+  Outcome outcome = run(open);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("open.ply"));
+  EXPECT_THAT(outcome.err, HasSubstr("it closes with --weld auto"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  outcome = run(open, {"--weld", "auto", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NEAR(Json::parse(outcome.out)["distance"]["min"], 0.5, 1e-4);
+  write_ply(open, height_field(8));
+  outcome = run(open);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("close its holes"));
+}
+
+TEST_F(ThicknessCommandTest, WrongUsageLeavesNoTrace) {
+  for (const std::vector<std::string>& tail :
+       std::vector<std::vector<std::string>>{{"--method", "sphere"},
+                                             {"--angle", "0"},
+                                             {"--angle", "180"},
+                                             {"--min", "0"},
+                                             {"--max", "-1"},
+                                             {"--min", "2", "--max", "1"}}) {
+    const Outcome outcome = run(part, tail);
+    EXPECT_EQ(outcome.code, 2) << tail[0];
+    EXPECT_THAT(outcome.err, HasSubstr(tail[0]));
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace sdm::test
