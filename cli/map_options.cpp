@@ -54,6 +54,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->type_name("D");
   add_sign_option(app, c.map.sign);
   add_facing_option(app, c.map, "texel's face");
+  add_along_option(app, c.along);
   add_engine_option(app, c.engine);
   app.add_option("--gl-device", c.gl.device,
                  "gl: the device, by its number in `sdm devices` or part of its name")
@@ -90,6 +91,7 @@ void add_options(CLI::App& app, MapCommand& c) {
 void check_combination(const CLI::App& app, const MapCommand& c) {
   check_layout(c.layout.atlas);
   check_facing(c.map);
+  check_along(app, c.along);
   check_doubts(c.doubts, c.picture.tolerance);
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "alignment.h"
+#include "along_option.h"
 #include "common_options.h"
 #include "doubts.h"
 #include "input_pair.h"
@@ -37,7 +38,8 @@ struct MapCommand : PairFiles, RunOptions {
   AlignCommand align;
   DoubtCommand doubts;
   MapLayout layout;
-  sdm::MapOptions map;  ///< its engine is created from the next two members
+  std::optional<sdm::AlongOptions> along{};  ///< in place of closest points
+  sdm::MapOptions map;                       ///< its engine is created from the next two members
   sdm::EngineInfo engine = sdm::engines().front();
   sdm::GlOptions gl;
   sdm::PictureOptions picture;

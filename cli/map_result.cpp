@@ -46,6 +46,26 @@ std::vector<std::pair<std::string, std::string>> exr_attributes(const MapTask& t
   return attributes;
 }
 
+/// The options of distances along lines, of a command that has them.
+sdm::AlongOptions along_options(const MapCommand& command) {
+  sdm::AlongOptions options = *command.along;
+  options.max_distance = command.map.max_distance;
+  options.progress = command.map.progress;
+  return options;
+}
+
+/// The distance at each vertex. Progress is that of the atlas, which is made meanwhile.
+std::vector<float> at_vertices_of(const MapCommand& command, const sdm::Mesh& mesh, const sdm::Sites& sites) {
+  if (command.along) {
+    sdm::AlongOptions options = along_options(command);
+    options.progress = nullptr;
+    return sdm::distances_along_at_vertices(mesh, sites, options);
+  }
+  sdm::MapOptions options = command.map;
+  options.progress = nullptr;
+  return sdm::distances_at_vertices(mesh, sites, options);
+}
+
 sdm::SummaryOptions summary_options(const MapTask& task, const AtlasPart& part, double accuracy) {
   const MapCommand& command = task.command;
   return {.units = command.picture.units,
@@ -149,16 +169,17 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
         // The atlas leaves a core idle meanwhile. Without an inside, the answer decides nothing.
         if (sdm::choose_sign(*task.sites, command.map).method == sdm::SignMethod::exact)
           outcome.embedded = sdm::is_embedded(*task.sites);
-        sdm::MapOptions options = command.map;
-        options.progress = nullptr;  // the atlas reports
-        computed.at_vertices = sdm::distances_at_vertices(mesh, *task.sites, options);
+        computed.at_vertices = at_vertices_of(command, mesh, *task.sites);
       },
       [&] { inspect(task.on), inspect(task.to); },
   });
-  check_sign(task.command.picture.tolerance, sdm::choose_sign(*task.sites, task.command.map), task.to);
+  if (!command.along)
+    check_sign(task.command.picture.tolerance, sdm::choose_sign(*task.sites, task.command.map), task.to);
 
   Stopwatch watch;
-  sdm::DistanceMap& map = computed.map = sdm::compute_map(*surface, *task.sites, command.map);
+  computed.map = command.along ? sdm::along_map(*surface, *task.sites, along_options(command))
+                               : sdm::compute_map(*surface, *task.sites, command.map);
+  const sdm::DistanceMap& map = computed.map;
   outcome.time.map = watch.lap();
   outcome.resolution = map.resolution, outcome.rows = map.rows();
   computed.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), task.on.mesh, task.to.mesh);

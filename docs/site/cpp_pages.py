@@ -13,7 +13,7 @@ PLAIN = re.compile(r"\(variable\)|\w+\((\w+ ?&&|const \w+ ?&)\)|operator=|operat
 SUBJECTS = {
     "Meshes": ["types", "vec", "bounds", "mesh", "mesh_edit", "transform", "weld", "self_intersections", "solid"],
     "Files": ["io", "report", "points", "sequence", "field_files"],
-    "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "distance_kind", "sign", "engine", "gl",
+    "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "distance_kind", "along", "sign", "engine", "gl",
                       "closest_points", "closest_in_parts", "facing", "vertex_distances"],
     "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
                          "certified_verdict", "coverage", "doubts", "part_statistics", "combined_statistics", "temporal_maps"],

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/align.h>
+#include <sdm/along.h>
 #include <sdm/api.h>
 #include <sdm/atlas.h>
 #include <sdm/bounds.h>

@@ -90,6 +90,11 @@ class DistanceMap(_core.MapChannels):
         """
         return MapBounds(*self._core.bounds())
 
+    @property
+    def without_match(self) -> int:
+        """How many texels have no value, as no face of the other mesh on their line faces the same way."""
+        return self._core.without_match
+
     def statistics(self) -> DistanceStatistics:
         """Returns statistics of the texels, weighted by their area on the surface.
 
@@ -259,6 +264,7 @@ def map(
     engine: str = "cpu",
     transform: object = None,
     sign: str = "automatic",
+    along: "str | tuple[float, float, float] | None" = None,
     max_distance: float = float("inf"),
     facing: "float | None" = None,
     atlas: str = "charts",
@@ -277,6 +283,10 @@ def map(
     sign: 'automatic': negative inside a closed, orientable ``b``, else unsigned; 'none'; 'exact'; 'winding': by generalised
     winding numbers for an open ``b``, an estimate of insideness; 'side': negative behind an open ``b``, on the side to which
     its normals do not point, an estimate, with no sign (>= 0) at its boundary.
+    along: None: to the closest point. 'normal' or a direction: along the normal of each texel's face, or that direction,
+    to both sides, to the nearest face of ``b`` that faces the same way; positive on the side to which its normal points.
+    Exact at the texels, and an estimate in between: such a map has no ``bounds`` or hausdorff(), check() judges the texels,
+    and ``sign``, ``engine`` and ``facing`` must be the defaults.
     max_distance: > 0; texels farther away have no value.
     facing: an angle in degrees, above 0 and up to 180: distances are to the closest of the faces of ``b`` whose normal is
     within it (for 90: less than that) of the normal of the texel's face, with the sign of the side of that face. Texels
@@ -302,6 +312,12 @@ def map(
         gutter=gutter,
         progress=progress,
     )
+    if along is not None:
+        if sign != "automatic" or engine != "cpu" or facing is not None:
+            raise Error("sign, engine and facing do not apply to a map with along")
+        return DistanceMap(
+            _core.compute_along(surface, sites, along=along, max_distance=max_distance, progress=progress)
+        )
     return DistanceMap(
         _core.compute_map(
             surface, sites, engine=engine, sign=sign, max_distance=max_distance, facing=facing, progress=progress

@@ -66,6 +66,36 @@ std::unique_ptr<PyMap> compute_self(nb::handle surface, nb::handle sites, nb::ha
   return result;
 }
 
+// 'normal', or the three components of a direction.
+AlongOptions along_of(nb::handle value) {
+  if (nb::isinstance<nb::str>(value)) {
+    if (nb::cast<std::string>(value) == "normal") return {};
+  } else if (nb::isinstance<nb::sequence>(value) && nb::len(value) == 3) {
+    return {.direction = Vec3{real_of(value[0]), real_of(value[1]), real_of(value[2])}};
+  }
+  throw Error("along must be 'normal' or a direction of three numbers");
+}
+
+std::unique_ptr<PyMap> compute_along(nb::handle surface, nb::handle sites, nb::handle along,
+                                     double max_distance, nb::handle progress) {
+  const AlongOptions options = along_of(along);
+  const auto lock = nb::cast<const PySurface&>(surface).access.use();
+  const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
+  auto result = map_between(surface, sites);
+  result->options = {.max_distance = max_distance};
+  result->engine = "along";
+  result->along = options;
+  result->along->max_distance = max_distance;
+  run(progress, [&](const Progress& report) {
+    const auto begin = std::chrono::steady_clock::now();
+    AlongOptions with_progress = *result->along;
+    with_progress.progress = report;
+    result->map = along_map(result->on->surface, result->to->sites, with_progress);
+    result->ms = milliseconds_since(begin);
+  });
+  return result;
+}
+
 std::unique_ptr<PyMap> compute_thickness(nb::handle surface, nb::handle sites, const std::string& method,
                                          double angle, nb::handle progress) {
   if (method != "ball" && method != "ray")
@@ -90,6 +120,11 @@ std::unique_ptr<PyMap> compute_thickness(nb::handle surface, nb::handle sites, c
 }  // namespace
 
 std::vector<float> PyMap::vertex_distances(const Progress& progress) const {
+  if (along) {
+    AlongOptions at_vertices = *along;
+    at_vertices.progress = progress;
+    return distances_along_at_vertices(on->surface.mesh(), to->sites, at_vertices);
+  }
   if (thickness)
     return thickness_at_vertices(to->sites, thickness->first,
                                  {.angle = thickness->second, .progress = progress});
@@ -130,7 +165,7 @@ void bind_map(nb::module_& module) {
   bind_map_files(module, map_class);
   bind_map_rays(map_class);
   bind_channels(module);
-  bind_thickness(module);
+  bind_other_maps(module);
 
   module.def(
       "compute_map",
@@ -162,7 +197,18 @@ void bind_map(nb::module_& module) {
               "collections.abc.Callable[[str, float], bool | None] | None = None) -> Map"));
 }
 
-void bind_thickness(nb::module_& module) {
+void bind_other_maps(nb::module_& module) {
+  module.def(
+      "compute_along",
+      [](nb::handle surface, nb::handle sites, nb::handle along, double max_distance, nb::handle progress) {
+        return compute_along(surface, sites, along, max_distance, progress).release();
+      },
+      nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(), nb::kw_only(),
+      nb::arg("along").none(), nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+      nb::arg("progress") = nb::none(),
+      nb::sig(
+          "def compute_along(surface: Surface, sites: Sites, *, along: object, max_distance: float = ..., "
+          "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> Map"));
   module.def(
       "compute_thickness",
       [](nb::handle surface, nb::handle sites, const std::string& method, double angle, nb::handle progress) {

@@ -31,6 +31,7 @@ struct PyMap {
   /// What each face excludes in a map of a surface to itself; otherwise null.
   std::shared_ptr<const Exclusion> exclusion;
   std::optional<std::pair<ThicknessMethod, double>> thickness;  ///< the method and the angle of such a map
+  std::optional<AlongOptions> along;                            ///< of a map along lines
   DistanceMap map;
   double ms = 0;  ///< that it took
 
@@ -62,6 +63,10 @@ struct PyMap {
   [[nodiscard]] bool of_itself() const { return exclusion || thickness; }
   /// Throws for a map of a surface to itself, whose texels say nothing about the points between them.
   void require_other_mesh() const {
+    if (along)
+      throw Error(
+          "distances along lines jump between faces, so that texels do not bound them; check() judges the "
+          "texels");
     if (thickness)
       throw Error(
           "the thickness of a part jumps between faces, so that texels do not bound it; check() judges the "
@@ -96,7 +101,7 @@ struct PyMap {
     const std::optional<std::pair<double, double>>& range);
 
 void bind_channels(nb::module_& module);
-void bind_thickness(nb::module_& module);
+void bind_other_maps(nb::module_& module);
 void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map);
 void bind_map_files(nb::module_& module, nb::class_<PyMap>& map);
 

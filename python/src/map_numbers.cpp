@@ -117,7 +117,7 @@ std::string word_of(Verdict verdict) {
 }
 
 CertifiedVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progress) {
-  if (!self.thickness) self.require_other_mesh();
+  if (!self.thickness && !self.along) self.require_other_mesh();
   const Tolerance accepted = tolerance_of(tolerance, self.map.sign.method);
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();

@@ -485,3 +485,24 @@ def test_thickness_of_walls():
     for wrong in ({"method": "sphere"}, {"angle": 0}, {"angle": 180}):
         with pytest.raises(sdm.Error, match=next(iter(wrong))):
             sdm.thickness(plate, resolution=64, **wrong)
+
+
+def test_distances_along_lines():
+    vertices, faces = meshes.box((0, 0, 0), (10, 10, 1))
+    # A dent of 0.79 in a sheet 1 thick: the other skin is nearer.
+    dent = (np.array([[1, 1, 0.21], [9, 1, 0.21], [9, 9, 0.21], [1, 9, 0.21]]), [[0, 1, 2], [0, 2, 3]])
+    for along in ("normal", (0, 0, 2), np.array([0, 0, -1.0])):
+        m = sdm.map(dent, (vertices, faces), along=along, resolution=64)
+        np.testing.assert_allclose(m.distance[m.valid], -0.79, atol=1e-6)
+        np.testing.assert_allclose(m.at_vertices(), -0.79, atol=1e-6)
+        assert m.without_match == 0 and m.report()["measured"]["kind"] == "along"
+        passed = m.check(0.8)
+        assert (passed.verdict, passed.certified, m.check(0.6).verdict) == ("pass", False, "fail")
+        for no_bounds in (lambda m=m: m.bounds, m.hausdorff, m.free_distances, m.ambient_occlusion):
+            with pytest.raises(sdm.Error, match="jump between faces"):
+                no_bounds()
+    for wrong in ("up", (1, 2), (0, 0, 0), 3):
+        with pytest.raises(sdm.Error, match="along|direction"):
+            sdm.map(dent, (vertices, faces), along=wrong, resolution=64)
+    with pytest.raises(sdm.Error, match="do not apply"):
+        sdm.map(dent, (vertices, faces), along="normal", sign="none", resolution=64)

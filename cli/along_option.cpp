@@ -1,0 +1,51 @@
+#include "along_option.h"
+
+#include <sdm/vec.h>
+
+#include <sstream>
+#include <string>
+
+#include "option_checks.h"
+
+namespace {
+
+constexpr const char* kNormal = "normal";
+
+/// The three numbers of X,Y,Z, or nothing.
+std::optional<sdm::Vec3> parse_direction(const std::string& text) {
+  std::istringstream in(text);
+  sdm::Vec3 direction{};
+  std::string part;
+  for (double& component : direction) {
+    if (!std::getline(in, part, ',') || !any_number()(part).empty()) return std::nullopt;
+    component = std::stod(part);
+  }
+  if (std::getline(in, part, ',') || text.ends_with(',')) return std::nullopt;
+  return sdm::norm(direction) > 0 ? std::optional(direction) : std::nullopt;
+}
+
+}  // namespace
+
+void add_along_option(CLI::App& app, std::optional<sdm::AlongOptions>& along) {
+  app.add_option_function<std::string>(
+         "--along",
+         [&along](const std::string& text) {
+           along.emplace();
+           if (text != kNormal) along->direction = parse_direction(text);
+         },
+         "Measure along a line, the normal of each texel's face or the direction X,Y,Z, to both sides: to "
+         "the nearest face of O2 that faces the same way. Along 0,0,1: the change of height of terrain. Positive "
+         "on the side to which the normal of that face points. Between texels, an estimate")
+      ->check([](const std::string& text) {
+        return text == kNormal || parse_direction(text)
+                   ? std::string()
+                   : text + " is neither normal nor a direction X,Y,Z other than 0,0,0";
+      })
+      ->type_name("normal|X,Y,Z");
+}
+
+void check_along(const CLI::App& app, const std::optional<sdm::AlongOptions>& along) {
+  if (!along) return;
+  for (const char* option : {"--sign", "--engine", "--facing"})
+    if (app.count(option) > 0) throw CLI::ValidationError(option, "does not apply to --along");
+}

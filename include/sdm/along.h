@@ -1,0 +1,55 @@
+/// The distance to O2 along a line: the normal of O1, or a direction such as the vertical.
+///
+/// Threads: the functions may be called concurrently, also with the same Surface and Sites.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/map.h>
+#include <sdm/mesh.h>
+#include <sdm/progress.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+#include <sdm/types.h>
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace sdm {
+
+/// Options of along_map() and distances_along_at_vertices().
+struct AlongOptions {
+  /// The direction of all lines, of any length. Nothing: the normal of each sample's face.
+  std::optional<Vec3> direction{};
+  /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
+  double max_distance = std::numeric_limits<double>::infinity();
+  Progress progress{};
+};
+
+/// Computes, at every texel, the distance to the nearest point of O2 on the line through the texel's surface
+/// point, to both sides, among the faces that face the same way as the sample. With m, the normal of the
+/// sample's face, and u, the unit vector along the line, these are the faces whose normal n has
+///   n·m > 0                   along normals (u = m)
+///   (n·u) (m·u) > 0           along a direction: seen along it, both show the same side
+/// by more than 1e-12. Along the vertical, the distance of terrain is its change of height; both surfaces
+/// must be oriented alike. `distance` is positive where the sample is on the side of the hit face to which n
+/// points: outside or, of terrain with upward normals, above. `vector` leads to the hit, on the face `site`.
+///
+/// Normals of O2 are outward if it is closed and orientable; otherwise those of its file, made consistent
+/// within each component. Those of O1 are as its triangles are oriented in its file.
+///
+/// Distances are exact to 1e-11 of the size of the meshes and the rounding to float, at the texels. They are
+/// not 1-Lipschitz: nothing bounds them in between. Owned texels without a hit have no value, and count as
+/// without_match, or as beyond_max_distance if there is a hit that is farther. Throws sdm::Error for a
+/// direction that is 0 or not finite, for a max_distance that is not positive, or if there is not enough
+/// memory; Cancelled. Cost: two rays for each texel, all cores.
+[[nodiscard]] SDM_API DistanceMap along_map(const Surface& surface, const Sites& sites,
+                                            const AlongOptions& options = {});
+
+/// The same at the vertices of a mesh: of the distances by its faces, each with its own normal, the one of
+/// least absolute value. NaN for a vertex without a value. Errors and cost as of along_map(), for each corner
+/// of a face.
+[[nodiscard]] SDM_API std::vector<float> distances_along_at_vertices(const Mesh& mesh, const Sites& sites,
+                                                                     const AlongOptions& options = {});
+
+}  // namespace sdm

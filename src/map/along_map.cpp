@@ -1,0 +1,192 @@
+#include <sdm/along.h>
+#include <sdm/error.h>
+#include <sdm/mesh_edit.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <new>
+#include <string>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "geometry/triangle.h"
+#include "geometry/vec.h"
+#include "map/map_writer.h"
+#include "query/rays/trace.h"
+#include "sites/sites_data.h"
+#include "surface/tiles.h"
+
+namespace sdm {
+namespace {
+
+constexpr double kParallel = 1e-12;  // products of unit vectors up to here count as 0
+constexpr std::size_t kTilesAtOnce = 16, kFacesAtOnce = 256;
+constexpr float kNoDistance = std::numeric_limits<float>::quiet_NaN();
+
+Vec3 unit_or_zero(const Vec3& v) {
+  const double size = norm(v);
+  return size > 0 ? (1 / size) * v : Vec3{};
+}
+
+Vec3 face_normal(const Mesh& mesh, std::uint32_t face) {
+  const auto [a, b, c] = corners_of(mesh, face);
+  return unit_or_zero(cross(b - a, c - a));
+}
+
+void check_options(const AlongOptions& options) {
+  if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+  if (!options.direction) return;
+  if (!finite(*options.direction) || !(norm(*options.direction) > 0) ||
+      !std::isfinite(norm(*options.direction)))
+    throw Error("the direction of distances must be finite and not 0");
+}
+
+std::string text_of(const AlongOptions& options) {
+  if (!options.direction) return "distance along the normal of the sample's face, to both sides";
+  std::array<char, 160> text{};
+  const Vec3& d = *options.direction;
+  std::snprintf(text.data(), text.size(), "distance along the direction (%.6g %.6g %.6g), to both sides",
+                d[0], d[1], d[2]);
+  return text.data();
+}
+
+enum class LineEnd : std::uint8_t { hit, too_far, none };
+
+struct OnLine {
+  LineEnd end = LineEnd::none;
+  double distance = 0;  // signed
+  Vec3 vector{};
+  std::uint32_t face = kNone;
+};
+
+// Searches along the lines of the samples of one face after another.
+class LineSearch {
+ public:
+  LineSearch(const sites::SitesData& sites, const AlongOptions& options) : sites_(sites), options_(options) {
+    if (options.direction) {
+      const Vec3& d = *options.direction;
+      const double largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+      direction_ = unit_or_zero((1 / largest) * d);
+    }
+  }
+
+  // Finds hits() of these points of a face with the normal m; none if it is 0.
+  void search(const Vec3& m, std::span<const Vec3> points) {
+    const Vec3 u = options_.direction ? direction_ : m;
+    found_.assign(points.size(), {});
+    if (u == Vec3{} || !(std::abs(dot(m, u)) > kParallel)) return;
+    const Vec3 towards = dot(m, u) > 0 ? u : -1.0 * u;
+    rays_.clear();
+    for (const Vec3& p : points) {
+      rays_.push_back({.origin = p, .direction = u});
+      rays_.push_back({.origin = p, .direction = -1.0 * u});
+    }
+    hits_.resize(rays_.size());
+    const auto faces_alike = [&](std::size_t, std::uint32_t face) {
+      return dot(normal_of(face), towards) > kParallel;
+    };
+    rays::first_hits(sites_, rays_, rays::filter(faces_alike), scratch_, hits_.data());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const bool ahead = hits_[2 * i].t <= hits_[2 * i + 1].t;
+      const RayHit& hit = hits_[ahead ? 2 * i : 2 * i + 1];
+      if (hit.face == kNone) continue;
+      OnLine& found = found_[i];
+      found.end = hit.t <= options_.max_distance ? LineEnd::hit : LineEnd::too_far;
+      found.face = hit.face;
+      found.vector = (ahead ? hit.t : -hit.t) * u;
+      // (p − q)·n has the sign of −vector·n.
+      found.distance = dot(found.vector, normal_of(hit.face)) > 0 ? -hit.t : hit.t;
+    }
+  }
+  [[nodiscard]] std::span<const OnLine> hits() const { return found_; }
+
+ private:
+  [[nodiscard]] Vec3 normal_of(std::uint32_t face) const {
+    const Vec3 n = face_normal(sites_.mesh, face);
+    return sites_.inverted[face] != 0 ? -1.0 * n : n;
+  }
+
+  const sites::SitesData& sites_;
+  const AlongOptions& options_;
+  Vec3 direction_{};
+  rays::Scratch scratch_;
+  std::vector<Ray> rays_;
+  std::vector<RayHit> hits_;
+  std::vector<OnLine> found_;
+};
+
+void store_hit(const OnLine& hit, std::uint32_t texel, DistanceMap& map) {
+  const bool found = hit.end == LineEnd::hit;
+  map.distance[texel] = found ? static_cast<float>(hit.distance) : kNoDistance;
+  for (int k = 0; k < 3; ++k) map.vector[texel][k] = found ? static_cast<float>(hit.vector[k]) : kNoDistance;
+  map.site[texel] = found ? hit.face : kNone;
+  map.site_type[texel] = found ? SiteType::face : SiteType::none;
+}
+
+}  // namespace
+
+DistanceMap along_map(const Surface& surface, const Sites& sites, const AlongOptions& options) try {
+  check_options(options);
+  const sites::SitesData& data = internals(sites);
+  DistanceMap map;
+  map::clear(map, surface);
+  map.sign = {SignMethod::exact, "the side of the face that the line hits"};
+  map.measured = {DistanceKind::along, text_of(options)};
+  const surface::Tiles tiles(surface);
+  std::atomic<std::size_t> none{0}, too_far{0};
+  parallel_for(tiles.count(), kTilesAtOnce, options.progress, "map", [&](std::size_t begin, std::size_t end) {
+    LineSearch search(data, options);
+    std::vector<Vec3> points;
+    std::size_t none_here = 0, too_far_here = 0;
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      const std::span<const std::uint32_t> texels = tiles.of(static_cast<std::uint32_t>(tile));
+      points.clear();
+      for (const std::uint32_t texel : texels) points.push_back(surface.texel_point(texel));
+      search.search(face_normal(surface.mesh(), tiles.faces[tile]), points);
+      for (std::size_t i = 0; i < texels.size(); ++i) {
+        const OnLine& hit = search.hits()[i];
+        store_hit(hit, texels[i], map);
+        none_here += hit.end == LineEnd::none, too_far_here += hit.end == LineEnd::too_far;
+      }
+    }
+    none += none_here, too_far += too_far_here;
+  });
+  map.without_match = none, map.beyond_max_distance = too_far;
+  return map;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the distances along lines");
+}
+
+std::vector<float> distances_along_at_vertices(const Mesh& mesh, const Sites& sites,
+                                               const AlongOptions& options) try {
+  check_options(options);
+  const sites::SitesData& data = internals(sites);
+  std::vector<std::array<float, 3>> at_corners(mesh.triangles.size(),
+                                               {kNoDistance, kNoDistance, kNoDistance});
+  const auto work = [&](std::size_t begin, std::size_t end) {
+    LineSearch search(data, options);
+    for (std::size_t f = begin; f < end; ++f) {
+      if (is_removed(mesh.triangles[f])) continue;
+      search.search(face_normal(mesh, static_cast<std::uint32_t>(f)), corners_of(mesh, f));
+      for (std::size_t k = 0; k < 3; ++k)
+        if (const OnLine& hit = search.hits()[k]; hit.end == LineEnd::hit)
+          at_corners[f][k] = static_cast<float>(hit.distance);
+    }
+  };
+  parallel_for(mesh.triangles.size(), kFacesAtOnce, options.progress, "vertices", work);
+  std::vector<float> least(mesh.positions.size(), kNoDistance);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (std::isnan(at_corners[f][k])) continue;
+      float& value = least[mesh.triangles[f][k]];
+      if (std::isnan(value) || std::abs(at_corners[f][k]) < std::abs(value)) value = at_corners[f][k];
+    }
+  return least;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the distances along lines at vertices");
+}
+
+}  // namespace sdm

@@ -1,0 +1,142 @@
+// Distances along lines: terrain that was moved by a known function, sheets, and what is refused.
+#include <gtest/gtest.h>
+#include <sdm/along.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "support/error_of.h"
+#include "support/shapes.h"
+
+namespace sdm {
+namespace {
+
+double ground(double x, double y) {
+  return 0.3 * std::sin(2 * x) * std::cos(3 * y);
+}
+// Settlement and heave, linear in x and y, so that it is the same between vertices of equal triangles.
+double change(double x, double y) {
+  return 0.2 * x - 0.1 * y + 0.01;
+}
+
+// n² squares over [−1, 1]², seen from above.
+template <class Height>
+Mesh terrain(int n, const Height& height, double from = -1, double to = 1) {
+  Mesh mesh;
+  const auto at = [&](int i) { return from + (to - from) * i / n; };
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) mesh.positions.push_back({at(i), at(j), height(at(i), at(j))});
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const auto a = static_cast<std::uint32_t>(j * (n + 1) + i), b = a + 1, c = a + n + 2, d = a + n + 1;
+      mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+    }
+  return mesh;
+}
+
+TEST(Along, TheVerticalItIsTheChangeOfHeightOfTerrain) {
+  const Mesh before = terrain(40, ground);
+  const Mesh after = terrain(40, [](double x, double y) { return ground(x, y) + change(x, y); });
+  // Whichever way the direction points; surfaces that are oriented differently have no match.
+  for (const bool flip_after : {false, true})
+    for (const double up : {1.0, -3.0}) {
+      const Surface surface(flip_after ? test::flipped(after) : after, {.resolution = 128});
+      const DistanceMap map = along_map(surface, Sites(before), {.direction = Vec3{0, 0, up}});
+      EXPECT_EQ(map.measured.kind, DistanceKind::along);
+      std::size_t checked = 0;
+      for (const std::uint32_t texel : surface.sample_texels()) {
+        const Vec3 p = surface.texel_point(texel);
+        if (std::max(std::abs(p[0]), std::abs(p[1])) > 1 - 1e-9) continue;
+        if (flip_after) {
+          ASSERT_TRUE(std::isnan(map.distance[texel]));
+          continue;
+        }
+        ++checked;
+        ASSERT_NEAR(map.distance[texel], change(p[0], p[1]), 1e-6);
+        ASSERT_NEAR(map.vector[texel][2], -change(p[0], p[1]), 1e-6);
+        ASSERT_EQ(map.vector[texel][0], 0);
+      }
+      EXPECT_EQ(map.without_match == surface.sample_texels().size(), flip_after);
+      EXPECT_EQ(checked > 1000, !flip_after);
+    }
+}
+
+TEST(Along, TexelsBesideO2HaveNoValueAndAreCounted) {
+  const Surface surface(terrain(8, [](double, double) { return 0.5; }), {.resolution = 64});
+  const Sites half(terrain(
+      8, [](double, double) { return 0.0; }, -0.5, 0.5));
+  const DistanceMap map = along_map(surface, half, {.direction = Vec3{0, 0, 1}});
+  std::size_t none = 0;
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    const Vec3 p = surface.texel_point(texel);
+    const bool over = std::max(std::abs(p[0]), std::abs(p[1])) < 0.5;
+    none += !over;
+    ASSERT_EQ(std::isnan(map.distance[texel]), !over);
+    ASSERT_EQ(map.site_type[texel], over ? SiteType::face : SiteType::none);
+    if (over) {
+      ASSERT_EQ(map.distance[texel], 0.5f);
+    }
+  }
+  EXPECT_EQ(map.without_match, none);
+  const DistanceMap near = along_map(surface, half, {.direction = Vec3{0, 0, 1}, .max_distance = 0.4});
+  EXPECT_EQ(near.without_match, none);
+  EXPECT_EQ(near.beyond_max_distance, surface.sample_texels().size() - none);
+  const std::vector<float> at =
+      distances_along_at_vertices(surface.mesh(), half, {.direction = Vec3{0, 0, 1}});
+  for (std::size_t v = 0; v < at.size(); ++v) {
+    const Vec3& p = surface.mesh().positions[v];
+    ASSERT_EQ(std::isnan(at[v]), std::max(std::abs(p[0]), std::abs(p[1])) > 0.5);
+  }
+}
+
+// A sheet 1 thick with a dent of 0.79 in its upper skin, whose lower skin is nearer than the upper one was.
+TEST(Along, NormalsADentIsAsDeepAsItIsInAThinSheet) {
+  Mesh sheet = test::cube();
+  for (Vec3& p : sheet.positions) p = {10 * p[0], 10 * p[1], 0.5 * p[2]};
+  const Mesh dent = terrain(8, [](double, double) { return 0.5 - 0.79; });
+  const Surface surface(dent, {.resolution = 64});
+  const Sites sites(sheet);
+  const DistanceMap along = along_map(surface, sites), closest = compute_map(surface, sites);
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    ASSERT_NEAR(along.distance[texel], -0.79, 1e-6);
+    ASSERT_NEAR(along.vector[texel][2], 0.79, 1e-6);
+    ASSERT_NEAR(closest.distance[texel], -0.21, 1e-6);
+  }
+}
+
+TEST(Along, ASurfaceAgainstItselfIsZeroAndIsJudgedByItsSamples) {
+  const Mesh mesh = test::ring(24);
+  const Surface surface(mesh, {.resolution = 128});
+  const Sites sites(mesh);
+  const DistanceMap map = along_map(surface, sites);
+  EXPECT_EQ(map.without_match, 0u);
+  for (const std::uint32_t texel : surface.sample_texels()) ASSERT_NEAR(map.distance[texel], 0, 1e-9);
+  const std::vector<float> vertices = distances_along_at_vertices(mesh, sites);
+  const SummaryOptions options{.accuracy = 1e-6, .tolerance = 0.1};
+  const Summary summary = summarize(surface, sites, map, vertices, options);
+  EXPECT_TRUE(summary.evidence.samples_only);
+  EXPECT_EQ(summary.tolerance->verdict, Verdict::pass);
+  EXPECT_FALSE(summary.tolerance->certified);
+  EXPECT_FALSE(summary.tolerance->proof);
+  EXPECT_FALSE(summary.hausdorff.lower);
+}
+
+TEST(Along, RefusesOptionsOutOfRange) {
+  const Surface surface(test::cube(), {.resolution = 64});
+  const Sites sites(test::cube());
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const Vec3& direction : {Vec3{0, 0, 0}, Vec3{kInfinity, 0, 0}, Vec3{0, std::nan(""), 1}})
+    EXPECT_NE(test::error_of([&] {
+                (void)along_map(surface, sites, {.direction = direction});
+              }).find("finite and not 0"),
+              std::string::npos);
+  EXPECT_NE(
+      test::error_of([&] { (void)along_map(surface, sites, {.max_distance = 0}); }).find("greater than 0"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace sdm
