@@ -19,7 +19,7 @@ SUBJECTS = {
                          "certified_verdict", "coverage", "doubts", "part_statistics", "combined_statistics", "temporal_maps"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "self_proximity_query", "thickness", "time_of_contact",
                   "hausdorff"],
-    "Other queries": ["align", "unit_check", "rays", "volume"],
+    "Other queries": ["align", "fit_check", "unit_check", "rays", "volume"],
     "Errors, progress and threads": ["error", "progress", "cancellation", "threads"],
 }  # fmt: skip
 # Headers that declare nothing of their own.

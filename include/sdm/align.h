@@ -11,8 +11,10 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace sdm {
 
@@ -24,12 +26,38 @@ enum class AlignStart {
   principal_axes,
 };
 
+/// The motions that an alignment may use: x ↦ about + R (start(x) − about) + t. With the axes of O2's
+/// coordinates, t has no component along an axis whose translation is locked, and the rotation vector of R
+/// none along one whose rotation is. All are allowed by default.
+struct AlignFreedoms {
+  std::array<bool, 3> translations{true, true, true};  ///< along x, y and z
+  std::array<bool, 3> rotations{true, true, true};     ///< about axes along x, y and z
+  Vec3 about{};  ///< the point of these axes; without effect unless a translation or rotation is locked
+
+  /// Whether nothing is locked.
+  [[nodiscard]] bool all() const {
+    return translations == std::array{true, true, true} && rotations == std::array{true, true, true};
+  }
+};
+
+/// The part of O2 that O1 is fitted to: faces and boxes together; all of O2 if there are none.
+struct AlignRegion {
+  std::vector<std::uint8_t> faces{};  ///< one entry for each face of O2, other than 0 if it belongs; or empty
+  std::vector<Box> boxes{};           ///< whatever of O2 is within
+
+  [[nodiscard]] bool whole() const { return faces.empty() && boxes.empty(); }
+};
+
 /// Options of align().
 struct AlignOptions {
   AlignStart start = AlignStart::pose;
   Transform pose{};             ///< rotation and translation; the identity: O1 as it is
   std::size_t samples = 32768;  ///< at least 64; of the last and finest level
   int max_iterations = 100;     ///< greater than 0; per level
+  AlignFreedoms freedoms{};     ///< those locked stay as at `pose`
+  AlignRegion region{};         ///< of the last level; the first, coarse one is of all of O2
+  /// The number of the group of each face of O2, or kNone, for Alignment::groups; or empty.
+  std::span<const std::uint32_t> group_of_face{};
   Progress progress{};
 };
 
@@ -49,27 +77,40 @@ struct DegreeOfFreedom {
   /// `determined` is below 0.02: O2 is nearly unchanged by this motion. The alignment leaves it as at the
   /// start.
   bool free = false;
+  bool locked = false;  ///< AlignOptions::freedoms does not allow it; the alignment leaves it as at the start
 };
 
-/// Distances of the samples to O2, in units of the meshes.
+/// Distances of the samples to O2, in units of the meshes; NaN if there are none.
 struct AlignResiduals {
   double rms = 0;          ///< of all samples
   double trimmed_rms = 0;  ///< of the smallest ones, `fraction_used` of all
 };
 
-/// A rigid motion that aligns O1 to O2, and how good it is.
+/// Distances of the samples whose closest point is on a group of faces of O2.
+struct GroupResiduals {
+  std::size_t samples = 0;
+  double rms = 0, largest = 0;  ///< in units of the meshes; 0 without samples
+};
+
+/// A rigid motion that aligns O1 to O2, and how good it is. With a region, samples are those whose closest
+/// point is in it.
 struct Alignment {
   /// Maps O1, as it was given, to its place on O2: a rotation and a translation.
   Transform transform;
   AlignResiduals before;  ///< of O1 as it was given; of 1024 samples
   AlignResiduals after;
   std::size_t samples = 0;
-  double fraction_used = 0;    ///< of the samples, in the last step; the others are taken for outliers
+  double fraction_used = 0;  ///< of the samples, in the last step; the others are taken for outliers
+  /// Of the samples: those used, and those within 1e-5 of the radius of gyration of O2, since rounding of
+  /// coordinates makes no outliers.
+  double fraction_fitting = 0;
   int iterations = 0;          ///< of all levels
   bool converged = false;      ///< the last step moved O1 by less than 1e-6 of its radius of gyration
   Vec3 centre{};               ///< of O1, aligned: the median of its samples along each axis
   double gyration_radius = 0;  ///< of O1 about its centre
-  std::array<DegreeOfFreedom, 6> freedoms{};  ///< the best determined one first; orthonormal unless free
+  std::array<DegreeOfFreedom, 6> freedoms{};  ///< the best determined one first; orthonormal unless free;
+                                              ///< locked ones come last
+  std::vector<GroupResiduals> groups{};       ///< by AlignOptions::group_of_face, of all samples
 };
 
 /// Finds the rotation and the translation that move the surface of `o1` onto O2, by iterated closest points:
@@ -82,8 +123,9 @@ struct Alignment {
 ///
 /// Finds a local optimum: the start should be within some 20° and 10 % of the size. The result does not
 /// depend on the number of threads. Throws sdm::Error when the mesh is unusable (see validate), for options
-/// out of range, if options.pose is not a rotation and a translation, or if there is not enough memory;
-/// Cancelled. Cost: linear in the faces of O1, and 10 to 30 closest points for each sample.
+/// out of range or of another O2, if options.pose is not a rotation and a translation, if freedoms are locked
+/// and the start is not a pose, if no sample is near the region, or if there is not enough memory; Cancelled.
+/// Cost: linear in the faces of O1, and 10 to 30 closest points for each sample.
 [[nodiscard]] SDM_API Alignment align(const Mesh& o1, const Sites& o2, const AlignOptions& options = {});
 
 /// The same for points, of which a pseudorandom subset is used if there are more than options.samples.
@@ -91,5 +133,13 @@ struct Alignment {
 /// NaN or beyond 1e37, without points, and if the number of normals differs.
 [[nodiscard]] SDM_API Alignment align(std::span<const Vec3> points, std::span<const Vec3> normals,
                                       const Sites& o2, const AlignOptions& options = {});
+
+/// Returns the motion of a 3-2-1 alignment, in closed form: it moves the plane of the first three `points` of
+/// O1, the primary ones, onto that of their `places` on O2; the line of the next two, the secondary ones,
+/// onto that of theirs, both as seen along the normal of the plane; and the last, tertiary one as far along
+/// this line as its place is. The normal is (p1 − p0) × (p2 − p0), and the line runs from p3 to p4. Use it as
+/// AlignOptions::pose. Throws sdm::Error unless there are six of each, for coordinates that are NaN or beyond
+/// 1e37, and if the primary points are on a line or the secondary ones on a normal of the plane. Cost: O(1).
+[[nodiscard]] SDM_API Transform align_321(std::span<const Vec3> points, std::span<const Vec3> places);
 
 }  // namespace sdm

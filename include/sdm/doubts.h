@@ -6,6 +6,7 @@
 #include <sdm/align.h>
 #include <sdm/api.h>
 #include <sdm/coverage.h>
+#include <sdm/fit_check.h>
 #include <sdm/unit_check.h>
 
 #include <optional>
@@ -17,6 +18,7 @@ namespace sdm {
 /// What a doubt is about.
 enum class DoubtReason {
   other_unit,    ///< in another unit of length, O1 fits O2 far better
+  mirrored,      ///< the mirror image of O1 fits O2 far better
   poor_fit,      ///< after an alignment, most samples of O1 do not fit O2
   undetermined,  ///< the surfaces do not determine all freedoms of the alignment
   low_coverage,  ///< too little of O2 has a measured point near it
@@ -29,15 +31,16 @@ struct Doubt {
   std::string remedy{};  ///< a clause: what mends it, by the options of the command
 };
 
-/// Returns the doubts that an alignment leaves: O1 fits in another unit, less than half of the samples fit
-/// (Alignment::fraction_used), or a degree of freedom is free.
+/// Returns the doubts that an alignment leaves: O1 fits in another unit, or mirrored, less than half of the
+/// samples fit (Alignment::fraction_fitting), or a degree of freedom is free.
 [[nodiscard]] SDM_API std::vector<Doubt> doubts_of(const Alignment& alignment,
-                                                   const std::optional<OtherUnit>& other_unit);
+                                                   const std::optional<OtherUnit>& other_unit,
+                                                   const std::optional<MirroredFit>& mirrored = {});
 
 /// Returns the doubt that a coverage below `least` leaves: by its value, not by its bounds.
 [[nodiscard]] SDM_API std::optional<Doubt> doubt_of(const Coverage& coverage, double least);
 
-/// "other unit", "poor fit", "undetermined" or "low coverage".
+/// "other unit", "mirrored", "poor fit", "undetermined" or "low coverage".
 [[nodiscard]] SDM_API const char* name_of(DoubtReason reason);
 
 }  // namespace sdm

@@ -18,6 +18,7 @@
 #include <sdm/engine.h>
 #include <sdm/error.h>
 #include <sdm/facing.h>
+#include <sdm/fit_check.h>
 #include <sdm/gl.h>
 #include <sdm/hausdorff.h>
 #include <sdm/map.h>

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/memory.h"
 #include "geometry/vec.h"
@@ -12,8 +14,10 @@
 #include "mesh/validate.h"
 #include "registration/correspondences.h"
 #include "registration/freedoms.h"
+#include "registration/locked_motion.h"
 #include "registration/point_to_plane.h"
 #include "registration/principal_axes.h"
+#include "registration/refine.h"
 #include "registration/samples.h"
 
 namespace sdm {
@@ -22,16 +26,6 @@ namespace {
 using namespace registration;
 
 constexpr std::size_t kCoarse = 1024;  // samples of the first level
-constexpr double kEverything = std::numeric_limits<double>::infinity();
-constexpr std::size_t kThin = 4096;  // samples that show which motions are determined
-
-/// The state of a registration: a pose of samples that are relative to their centre.
-struct Fit {
-  Affine pose;
-  double cut = kEverything;
-  int iterations = 0;
-  bool converged = false;
-};
 
 void check_progress(const AlignOptions& options, double fraction) {
   if (options.progress && !options.progress("align", fraction)) throw Cancelled();
@@ -51,52 +45,19 @@ Affine rigid(const Transform& pose) {
   return similarity.map;
 }
 
-/// Steps until one is shorter than `tolerance`, relative to `radius`.
-Fit refine(const Samples& samples, Fit fit, double radius, const Target& target, int most, double tolerance) {
-  const Pivot pivot{fit.pose.offset, radius};
-  fit.converged = false;
-  Motions motions;
-  for (int step = 0; step < most && !fit.converged; ++step, ++fit.iterations) {
-    const Correspondences pairs = find_correspondences(samples, fit.pose, target);
-    if (step == 0) motions = determined_motions(thinned(pairs, kThin), target.sites, pivot, kEverything);
-    fit.cut = trimming_cut(pairs, pivot, motions);
-    const Motion motion = best_motion(pairs, pivot, motions, fit.cut);
-    fit.pose = moved(fit.pose, pivot, motion);
-    fit.converged = motion.norm() < tolerance * radius;
-  }
-  return fit;
-}
-
-/// The mean distance, of which each counts at most a tenth of the radius: small features decide between poses
-/// of a nearly symmetric part, and outliers do not.
-double mismatch(const Samples& samples, const Affine& pose, double radius, const Target& target) {
-  constexpr double kMost = 0.1;
-  double sum = 0;
-  for (const double d : find_correspondences(samples, pose, target).distances)
-    sum += std::min(d, kMost * radius);
-  return sum / static_cast<double>(samples.points.size());
-}
-
-Fit best_match_of_axes(const Samples& samples, double radius, const Target& target,
-                       const AlignOptions& options) {
+Fit from_principal_axes(const CentredSamples& o1, const Target& target, const AlignOptions& options) {
   constexpr std::size_t kSamples = 4096;
-  constexpr int kSteps = 15;
-  constexpr double kTolerance = 1e-3, kGood = 0.01;
   const AxisMatches candidates =
-      axis_matches(samples.points, surface_source(target.sites.mesh())(kSamples).points);
-  double least = kEverything;
-  Fit best;
-  for (std::size_t i = 0; i < candidates.poses.size(); ++i) {
-    if (i >= candidates.likely && least < kGood * radius) break;
+      axis_matches(o1.samples.points, surface_source(target.sites.mesh())(kSamples).points);
+  return best_match_of_axes(o1, candidates, target, [&](std::size_t i) {
     check_progress(options, static_cast<double>(i) / static_cast<double>(candidates.poses.size()));
-    const Fit fit = refine(samples, {candidates.poses[i]}, radius, target, kSteps, kTolerance);
-    if (const double found = mismatch(samples, fit.pose, radius, target); found < least)
-      least = found, best = fit;
-  }
-  return best;
+  });
 }
 
-AlignResiduals residuals(std::vector<double> distances, double fraction_used) {
+AlignResiduals residuals(const Correspondences& pairs, double fraction_used) {
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < pairs.points.size(); ++i)
+    if (pairs.is_selected(i)) distances.push_back(pairs.distances[i]);
   std::ranges::sort(distances);
   const auto used =
       static_cast<std::size_t>(std::round(fraction_used * static_cast<double>(distances.size())));
@@ -107,7 +68,46 @@ AlignResiduals residuals(std::vector<double> distances, double fraction_used) {
     if (i + 1 == used) result.trimmed_rms = std::sqrt(sum / static_cast<double>(used));
   }
   result.rms = std::sqrt(sum / static_cast<double>(distances.size()));
+  if (distances.empty()) result.trimmed_rms = result.rms;
   return result;
+}
+
+std::vector<GroupResiduals> group_residuals(const Correspondences& pairs,
+                                            std::span<const std::uint32_t> group_of_face) {
+  std::vector<GroupResiduals> groups;
+  for (const std::uint32_t group : group_of_face)
+    if (group != kNone && group >= groups.size()) groups.resize(group + std::size_t{1});
+  if (groups.empty()) return groups;
+  for (std::size_t i = 0; i < pairs.points.size(); ++i) {
+    const std::uint32_t number = group_of_face[pairs.faces[i]];
+    if (number == kNone) continue;
+    GroupResiduals& group = groups[number];
+    const double d = pairs.distances[i];
+    ++group.samples, group.rms += d * d, group.largest = std::max(group.largest, d);
+  }
+  for (GroupResiduals& group : groups)
+    if (group.samples > 0) group.rms = std::sqrt(group.rms / static_cast<double>(group.samples));
+  return groups;
+}
+
+void check_options(const AlignOptions& options, const Mesh& o2) {
+  if (options.samples < 64) throw Error("an alignment needs at least 64 samples");
+  if (options.max_iterations < 1) throw Error("the number of iterations must be greater than 0");
+  if (options.start != AlignStart::pose && !options.freedoms.all())
+    throw Error("an alignment with locked freedoms starts at a pose, not at the principal axes");
+  for (const double x : options.freedoms.about)
+    if (!(std::abs(x) <= mesh::kMaxCoordinate))
+      throw Error("the point of the axes of rotation has a coordinate that is NaN or beyond 1e37");
+  const std::size_t faces = o2.triangles.size();
+  if (!options.region.faces.empty() && options.region.faces.size() != faces)
+    throw Error("the region of the alignment needs an entry for each face of O2");
+  if (!options.group_of_face.empty() && options.group_of_face.size() != faces)
+    throw Error("the groups of the alignment need an entry for each face of O2");
+  for (const std::uint32_t group : options.group_of_face)
+    if (group != kNone && group >= faces) throw Error("the number of a group is not below that of the faces");
+  for (const Box& box : options.region.boxes)
+    for (int k = 0; k < 3; ++k)
+      if (!(box.lo[k] <= box.hi[k])) throw Error("a box of the region of the alignment is empty");
 }
 
 Samples relative(Samples samples, const Vec3& centre) {
@@ -115,43 +115,62 @@ Samples relative(Samples samples, const Vec3& centre) {
   return samples;
 }
 
+/// The shares of the samples in the region that have a weight, and that fit.
+void add_fractions(const Correspondences& pairs, double cut, double radius, Alignment& result) {
+  constexpr double kRounding = 1e-5;  // of single precision, and of text with six digits, of coordinates
+  std::size_t used = 0, fitting = 0;
+  result.samples = 0;
+  for (std::size_t i = 0; i < pairs.distances.size(); ++i) {
+    if (!pairs.is_selected(i)) continue;
+    const bool has = has_weight(pairs, i, cut);
+    ++result.samples, used += has, fitting += has || pairs.distances[i] <= kRounding * radius;
+  }
+  if (result.samples == 0) throw Error("no part of O1 is near the region of O2 that it was aligned to");
+  const auto all = static_cast<double>(result.samples);
+  result.fraction_used = static_cast<double>(used) / all;
+  result.fraction_fitting = static_cast<double>(fitting) / all;
+}
+
 Alignment align_samples(const SampleSource& source, const Sites& o2, const AlignOptions& options) {
   constexpr double kCoarseTolerance = 1e-4, kTolerance = 1e-6;
-  if (options.samples < 64) throw Error("an alignment needs at least 64 samples");
-  if (options.max_iterations < 1) throw Error("the number of iterations must be greater than 0");
+  check_options(options, o2.mesh());
   const Affine start = rigid(options.pose);
   check_progress(options, 0);
 
-  const Target target(o2);
+  Target target(o2);
   const Samples given = source(options.samples);
   const auto [centre, extent] = robust_extent(given.points);
   const double radius = extent > 0 ? extent : 1;
-  const Samples fine = relative(given, centre);
-  const Samples coarse = relative(source(std::min(kCoarse, options.samples)), centre);
+  const CentredSamples fine{relative(given, centre), radius};
+  const CentredSamples coarse{relative(source(std::min(kCoarse, options.samples)), centre), radius};
 
   Fit fit{{start.rows, start(centre)}};
-  if (options.start == AlignStart::principal_axes) fit = best_match_of_axes(coarse, radius, target, options);
-  fit = refine(coarse, fit, radius, target, options.max_iterations, kCoarseTolerance);
+  std::optional<LockedMotion> motion;
+  if (!options.freedoms.all()) motion.emplace(options.freedoms, fit.pose);
+  LockedMotion* locked = motion ? &*motion : nullptr;
+  if (options.start == AlignStart::principal_axes) fit = from_principal_axes(coarse, target, options);
+  fit = refine(coarse, fit, target, {options.max_iterations, kCoarseTolerance}, locked);
   check_progress(options, 0.5);
-  fit = refine(fine, fit, radius, target, options.max_iterations, kTolerance);
+  if (!options.region.whole()) target.region = &options.region;
+  fit = refine(fine, fit, target, {options.max_iterations, kTolerance}, locked);
   check_progress(options, 1);
 
-  const Correspondences before = find_correspondences(coarse, {Affine{}.rows, centre}, target);
-  const Correspondences after = find_correspondences(fine, fit.pose, target);
-  std::size_t used = 0;
-  for (std::size_t i = 0; i < after.distances.size(); ++i)
-    used += after.usable[i] && after.distances[i] <= fit.cut;
+  const Correspondences before = find_correspondences(coarse.samples, {Affine{}.rows, centre}, target);
+  const Correspondences after = find_correspondences(fine.samples, fit.pose, target);
   Alignment result;
-  result.samples = fine.points.size();
-  result.fraction_used = static_cast<double>(used) / static_cast<double>(result.samples);
-  result.before = residuals(before.distances, result.fraction_used);
-  result.after = residuals(after.distances, result.fraction_used);
+  add_fractions(after, fit.cut, radius, result);
+  result.before = residuals(before, result.fraction_used);
+  result.after = residuals(after, result.fraction_used);
   result.iterations = fit.iterations;
   result.converged = fit.converged;
   result.centre = fit.pose.offset;
   result.gyration_radius = extent;
-  result.freedoms = degrees_of_freedom(thinned(after, kThin), o2, {fit.pose.offset, radius}, fit.cut,
-                                       result.after.trimmed_rms, used);
+  const Pivot pivot{fit.pose.offset, radius};
+  const auto used =
+      static_cast<std::size_t>(std::round(result.fraction_used * static_cast<double>(result.samples)));
+  result.freedoms = degrees_of_freedom(thinned(after, kThin), o2, pivot, fit.cut, result.after.trimmed_rms,
+                                       used, locked ? locked->allowed(pivot) : Motions(Matrix6::Identity()));
+  result.groups = group_residuals(after, options.group_of_face);
   const Vec3 offset = fit.pose.offset - fit.pose.linear(centre);
   result.transform = mesh::Similarity{{fit.pose.rows, offset}, 1}.transform();
   return result;

@@ -59,6 +59,23 @@ void exclude_other_sides(const Samples& samples, const Affine& pose, const Targe
   }
 }
 
+bool in_region(const AlignRegion& region, std::uint32_t face, const Vec3& point) {
+  if (!region.faces.empty() && region.faces[face] != 0) return true;
+  return std::ranges::any_of(region.boxes, [&](const Box& box) {
+    for (int k = 0; k < 3; ++k)
+      if (!(point[k] >= box.lo[k] && point[k] <= box.hi[k])) return false;
+    return true;
+  });
+}
+
+void select_region(const AlignRegion& region, Correspondences& pairs) {
+  pairs.selected.resize(pairs.points.size());
+  for (std::size_t i = 0; i < pairs.points.size(); ++i) {
+    pairs.selected[i] = in_region(region, pairs.faces[i], pairs.closest[i]);
+    pairs.usable[i] = pairs.usable[i] && pairs.selected[i];
+  }
+}
+
 }  // namespace
 
 Target::Target(const Sites& o2) : sites(o2) {
@@ -73,9 +90,13 @@ Target::Target(const Sites& o2) : sites(o2) {
 Correspondences find_correspondences(const Samples& samples, const Affine& pose, const Target& target) {
   const sites::SitesData& data = internals(target.sites);
   const std::size_t count = samples.points.size();
-  Correspondences pairs{std::vector<Vec3>(count),          std::vector<Vec3>(count),
-                        std::vector<Vec3>(count),          std::vector<double>(count),
-                        std::vector<std::uint32_t>(count), std::vector<std::uint8_t>(count)};
+  Correspondences pairs{std::vector<Vec3>(count),
+                        std::vector<Vec3>(count),
+                        std::vector<Vec3>(count),
+                        std::vector<double>(count),
+                        std::vector<std::uint32_t>(count),
+                        std::vector<std::uint8_t>(count),
+                        {}};
   for (std::size_t i = 0; i < count; ++i) pairs.points[i] = pose(samples.points[i]);
   const auto store = [&](std::size_t i, const ClosestPoint& c) {
     pairs.distances[i] = c.distance;
@@ -98,13 +119,18 @@ Correspondences find_correspondences(const Samples& samples, const Affine& pose,
   if (4 * static_cast<std::size_t>(std::ranges::count(pairs.usable, 1)) < count)
     std::ranges::fill(pairs.usable, std::uint8_t{1});
   if (!samples.normals.empty()) exclude_other_sides(samples, pose, target, pairs);
+  if (target.region) select_region(*target.region, pairs);
   return pairs;
 }
 
 Correspondences thinned(const Correspondences& pairs, std::size_t most) {
-  const std::size_t stride = (pairs.points.size() + most - 1) / most;
+  std::vector<std::size_t> selected;
+  for (std::size_t i = 0; i < pairs.points.size(); ++i)
+    if (pairs.is_selected(i)) selected.push_back(i);
+  const std::size_t stride = std::max<std::size_t>((selected.size() + most - 1) / most, 1);
   Correspondences result;
-  for (std::size_t i = 0; i < pairs.points.size(); i += stride) {
+  for (std::size_t k = 0; k < selected.size(); k += stride) {
+    const std::size_t i = selected[k];
     result.points.push_back(pairs.points[i]);
     result.closest.push_back(pairs.closest[i]);
     result.normals.push_back(pairs.normals[i]);

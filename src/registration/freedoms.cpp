@@ -10,15 +10,34 @@ namespace sdm::registration {
 namespace {
 
 struct OrderedMotions {
-  Motion determined;  ///< decreasing
-  Matrix6 motions;    ///< as columns
-  int free = 0;       ///< the number of free ones, which come last
+  Matrix6 motions;  ///< as columns, by decreasing determination
+  int allowed = 6;  ///< the number of allowed ones, which come first
+  int free = 0;     ///< the number of free ones, which are the last of these
 };
 
-OrderedMotions ordered_motions(const Matrix6& information) {
-  const Spectrum<6> all = spectrum(information);
-  OrderedMotions result{all.values.reverse().cwiseMax(0).cwiseSqrt(), all.vectors.rowwise().reverse()};
-  for (int k = 0; k < 6; ++k) result.free += result.determined[k] < kFree;
+int free_count(const Motion& squared_decreasing, int allowed) {
+  int free = 0;
+  for (int k = 0; k < allowed; ++k) free += std::sqrt(std::max(0.0, squared_decreasing[k])) < kFree;
+  return free;
+}
+
+OrderedMotions ordered_motions(const Matrix6& information, const Motions& allowed) {
+  const auto count = static_cast<int>(allowed.cols());
+  OrderedMotions result{.motions = Matrix6::Identity(), .allowed = count};
+  if (count == 6) {
+    const Spectrum<6> all = spectrum(information);
+    result.motions = all.vectors.rowwise().reverse();
+    result.free = free_count(all.values.reverse(), count);
+    return result;
+  }
+  // No eigenvalue of an information is negative: those of the rest of the matrix come first.
+  const Spectrum<6> inside = spectrum(reduced(information, allowed, -1));
+  const Matrix6 decreasing = inside.vectors.rowwise().reverse();
+  result.motions.leftCols(count) = allowed * decreasing.topLeftCorner(count, count);
+  result.free = free_count(inside.values.reverse(), count);
+  // The others are orthogonal to them: the eigenvectors of the projection with an eigenvalue of 0.
+  result.motions.rightCols(6 - count) =
+      spectrum(Matrix6(allowed * allowed.transpose())).vectors.leftCols(6 - count);
   return result;
 }
 
@@ -46,24 +65,29 @@ DegreeOfFreedom described(const Motion& motion, const Pivot& pivot) {
 
 }  // namespace
 
-Motions determined_motions(const Correspondences& pairs, const Sites& o2, const Pivot& pivot, double cut) {
-  const OrderedMotions all = ordered_motions(information(pairs, smooth_normals(pairs, o2), pivot, cut));
-  return all.motions.leftCols(6 - all.free);
+Motions determined_motions(const Correspondences& pairs, const Sites& o2, const Pivot& pivot, double cut,
+                           const Motions& allowed) {
+  const OrderedMotions all =
+      ordered_motions(information(pairs, smooth_normals(pairs, o2), pivot, cut), allowed);
+  return all.motions.leftCols(all.allowed - all.free);
 }
 
 std::array<DegreeOfFreedom, 6> degrees_of_freedom(const Correspondences& pairs, const Sites& o2,
                                                   const Pivot& pivot, double cut, double deviation,
-                                                  std::size_t count) {
+                                                  std::size_t count, const Motions& allowed) {
   const Matrix6 matrix = information(pairs, smooth_normals(pairs, o2), pivot, cut);
-  OrderedMotions all = ordered_motions(matrix);
-  if (all.free > 0) all.motions.rightCols(all.free) = separated(all.motions.rightCols(all.free));
+  OrderedMotions all = ordered_motions(matrix, allowed);
+  const int first_free = all.allowed - all.free;
+  if (all.free > 0)
+    all.motions.middleCols(first_free, all.free) = separated(all.motions.middleCols(first_free, all.free));
   std::array<DegreeOfFreedom, 6> result;
   for (int k = 0; k < 6; ++k) {
     const Motion motion = all.motions.col(k);
     result[k] = described(motion, pivot);
     result[k].determined = std::sqrt(std::max(0.0, motion.dot(matrix * motion)));
-    result[k].free = k >= 6 - all.free;
-    if (!result[k].free)
+    result[k].locked = k >= all.allowed;
+    result[k].free = k >= first_free && !result[k].locked;
+    if (k < first_free)
       result[k].standard_error = deviation / (result[k].determined * std::sqrt(static_cast<double>(count)));
   }
   return result;

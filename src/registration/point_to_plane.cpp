@@ -7,13 +7,9 @@
 #include "geometry/vec.h"
 
 namespace sdm::registration {
-namespace {
-
 bool has_weight(const Correspondences& pairs, std::size_t i, double cut) {
   return pairs.usable[i] && pairs.distances[i] <= cut;
 }
-
-}  // namespace
 
 Motion normal_motion(const Vec3& point, const Vec3& normal, const Pivot& pivot) {
   Motion j;
@@ -61,6 +57,16 @@ double trimming_cut(const Correspondences& pairs, const Pivot& pivot, const Moti
   return cut;
 }
 
+Motion solved_within(const Matrix6& matrix, const Motions& motions, const Motion& right) {
+  Motion along = Motion::Zero();
+  along.head(motions.cols()) = motions.transpose() * right;
+  Matrix6 all = reduced(matrix, motions, matrix.trace());
+  all.diagonal().array() += 1e-12 * matrix.trace() + 1e-300;
+  const Spectrum<6> solved = spectrum(all);
+  const Motion solution = solved.vectors * (solved.vectors.transpose() * along).cwiseQuotient(solved.values);
+  return motions * solution.head(motions.cols());
+}
+
 Motion best_motion(const Correspondences& pairs, const Pivot& pivot, const Motions& motions, double cut) {
   Matrix6 matrix = Matrix6::Zero();
   Motion gradient = Motion::Zero();
@@ -70,13 +76,7 @@ Motion best_motion(const Correspondences& pairs, const Pivot& pivot, const Motio
     matrix.noalias() += j * j.transpose();
     gradient += dot(pairs.normals[i], pairs.points[i] - pairs.closest[i]) * j;
   }
-  Motion along = Motion::Zero();
-  along.head(motions.cols()) = motions.transpose() * gradient;
-  Matrix6 all = reduced(matrix, motions, matrix.trace());
-  all.diagonal().array() += 1e-12 * matrix.trace() + 1e-300;
-  const Spectrum<6> solved = spectrum(all);
-  const Motion solution = solved.vectors * (solved.vectors.transpose() * along).cwiseQuotient(solved.values);
-  Motion motion = -(motions * solution.head(motions.cols()));
+  Motion motion = -solved_within(matrix, motions, gradient);
   // A motion by a large part of the size is beyond the linearisation.
   constexpr double kLongest = 0.5;
   if (const double length = motion.norm(); length > kLongest * pivot.radius)

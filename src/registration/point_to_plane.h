@@ -13,6 +13,9 @@
 
 namespace sdm::registration {
 
+/// Whether a sample is usable, and within `cut` of O2.
+[[nodiscard]] bool has_weight(const Correspondences& pairs, std::size_t i, double cut);
+
 /// The j of a sample.
 [[nodiscard]] Motion normal_motion(const Vec3& point, const Vec3& normal, const Pivot& pivot);
 
@@ -23,6 +26,9 @@ namespace sdm::registration {
 /// The distance within which samples have a weight: three times the robust standard deviation, and more if
 /// that keeps less than a quarter of the information about one of the `motions`.
 [[nodiscard]] double trimming_cut(const Correspondences& pairs, const Pivot& pivot, const Motions& motions);
+
+/// The solution u of matrix u = right in the span of `motions`, for a matrix without negative eigenvalues.
+[[nodiscard]] Motion solved_within(const Matrix6& matrix, const Motions& motions, const Motion& right);
 
 /// The minimising motion in the span of `motions`.
 [[nodiscard]] Motion best_motion(const Correspondences& pairs, const Pivot& pivot, const Motions& motions,

@@ -37,16 +37,27 @@ Doubt unit_doubt(const OtherUnit& unit) {
           "--units-o1 " + o1 + " --units-o2 " + o2 + " converts it"};
 }
 
+Doubt mirror_doubt(const MirroredFit& fit) {
+  constexpr double kLeastShown = 1e-5;
+  const std::string misfit = fit.misfit < kLeastShown ? "less than 0.001" : digits_of(100 * fit.misfit, 2);
+  return {DoubtReason::mirrored,
+          "O1 fits O2 far better mirrored (to " + misfit + " % of its size, instead of " +
+              digits_of(100 * fit.misfit_as_given, 2) + " %)",
+          "compare it with the part of the other hand, or mirror it by --transform-o1 matrix:FILE"};
+}
+
 }  // namespace
 
-std::vector<Doubt> doubts_of(const Alignment& alignment, const std::optional<OtherUnit>& other_unit) {
-  constexpr double kMost = 0.5;
+std::vector<Doubt> doubts_of(const Alignment& alignment, const std::optional<OtherUnit>& other_unit,
+                             const std::optional<MirroredFit>& mirrored) {
+  constexpr double kLeast = 0.5;
   std::vector<Doubt> doubts;
   if (other_unit) doubts.push_back(unit_doubt(*other_unit));
-  if (alignment.fraction_used < kMost)
+  if (mirrored) doubts.push_back(mirror_doubt(*mirrored));
+  if (alignment.fraction_fitting < kLeast)
     doubts.push_back(
         {DoubtReason::poor_fit,
-         digits_of(100 * (1 - alignment.fraction_used), 3) +
+         digits_of(100 * (1 - alignment.fraction_fitting), 3) +
              " % of the samples of the aligned O1 do not fit O2",
          "start the alignment elsewhere (--align-from), or give the parts that belong together"});
   const auto free = std::ranges::count_if(alignment.freedoms, &DegreeOfFreedom::free);
@@ -54,7 +65,7 @@ std::vector<Doubt> doubts_of(const Alignment& alignment, const std::optional<Oth
     doubts.push_back({DoubtReason::undetermined,
                       "the surfaces do not determine " + std::to_string(free) +
                           (free == 1 ? " freedom" : " freedoms") + " of the alignment",
-                      "place O1 by --transform-o1 instead of --align"});
+                      "place O1 by --transform-o1 instead of --align, or lock them by --align-free"});
   return doubts;
 }
 
@@ -71,6 +82,8 @@ const char* name_of(DoubtReason reason) {
   switch (reason) {
     case DoubtReason::other_unit:
       return "other unit";
+    case DoubtReason::mirrored:
+      return "mirrored";
     case DoubtReason::poor_fit:
       return "poor fit";
     case DoubtReason::undetermined:

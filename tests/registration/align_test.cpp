@@ -5,6 +5,7 @@
 #include <sdm/threads.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -373,6 +374,208 @@ TEST(AlignErrors, NameTheFault) {
   EXPECT_THROW((void)align(Mesh{}, sites), Error);
   EXPECT_THROW((void)align(mesh, sites, {.progress = [](std::string_view, double) { return false; }}),
                Cancelled);
+}
+
+// Coordinates in single precision, as in STL, are no outliers, however few faces have them exactly.
+TEST(Align, RoundedCoordinatesFit) {
+  for (const auto& [name, mesh] : bodies()) {
+    Mesh copy = image(mesh, small_motion(mesh));
+    for (Vec3& p : copy.positions)
+      for (double& x : p) x = static_cast<float>(x);
+    const Alignment found = align(copy, Sites(mesh), {.samples = kSamples});
+    EXPECT_EQ(found.fraction_fitting, 1) << name;
+    EXPECT_LE(found.fraction_used, 1) << name;
+  }
+}
+
+/// Every face divided into four, `times` times, with vertices of its own.
+Mesh subdivided(Mesh mesh, int times) {
+  for (; times > 0; --times) {
+    Mesh finer;
+    for (const Triangle& t : mesh.triangles) {
+      const auto first = static_cast<std::uint32_t>(finer.positions.size());
+      for (int k = 0; k < 3; ++k) finer.positions.push_back(mesh.positions[t[k]]);
+      for (int k = 0; k < 3; ++k)
+        finer.positions.push_back(0.5 * (mesh.positions[t[k]] + mesh.positions[t[(k + 1) % 3]]));
+      for (const Triangle& u : {Triangle{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}})
+        finer.triangles.push_back({first + u[0], first + u[1], first + u[2]});
+    }
+    mesh = finer;
+  }
+  return mesh;
+}
+
+TEST(AlignRegion, OnlyTheRegionCounts) {
+  const Mesh mesh = bracket();
+  const double size = size_of(mesh);
+  // Half of O1, x < 0, is bent away by 1 % of the size: no fit of all of it is one of the other half.
+  Mesh bent = subdivided(mesh, 4);
+  for (Vec3& p : bent.positions)
+    if (p[0] < 0) p[2] += 0.01 * size * p[0] * p[0] / 9;
+  const Box half{{0.01, -10, -10}, {10, 10, 10}};
+  const Transform motion = small_motion(mesh);
+  const Sites sites(mesh);
+  const Mesh o1 = image(bent, motion);
+  const Alignment part = align(o1, sites, {.region = {.boxes = {half}}});
+  EXPECT_LT(displacement(mesh, part.transform * motion), 1e-9 * size);
+  EXPECT_LT(part.after.rms, 1e-9 * size);
+  EXPECT_LT(part.samples, 32768u);
+  const Alignment whole = align(o1, sites);
+  EXPECT_GT(displacement(mesh, whole.transform * motion), 1e-6 * size);
+
+  std::vector<std::uint8_t> faces;
+  for (const Triangle& t : mesh.triangles) {
+    double least = 10;
+    for (const std::uint32_t v : t) least = std::min(least, mesh.positions[v][0]);
+    faces.push_back(least > 0.01);
+  }
+  const Alignment by_faces = align(o1, sites, {.region = {.faces = faces}});
+  EXPECT_LT(by_faces.samples, part.samples);
+  EXPECT_LT(displacement(mesh, by_faces.transform * motion), 1e-9 * size);
+}
+
+TEST(AlignRegion, FaultsAreNamed) {
+  const Mesh mesh = cube();
+  const Sites sites(mesh);
+  EXPECT_THAT(error_of([&] {
+                return align(mesh, sites, {.region = {.faces = {1, 1}}});
+              }),
+              HasSubstr("an entry for each face of O2"));
+  EXPECT_THAT(error_of([&] { return align(mesh, sites, {.region = {.boxes = {Box{}}}}); }),
+              HasSubstr("is empty"));
+  EXPECT_THAT(error_of([&] {
+                return align(mesh, sites, {.region = {.boxes = {Box{{9, 9, 9}, {9, 9, 9}}}}});
+              }),
+              HasSubstr("no part of O1 is near the region"));
+  const std::vector<std::uint32_t> groups{0};
+  EXPECT_THAT(error_of([&] { return align(mesh, sites, {.group_of_face = groups}); }),
+              HasSubstr("an entry for each face of O2"));
+}
+
+TEST(AlignGroups, ResidualsAreThoseOfTheFacesOfAGroup) {
+  Mesh mesh = cube(1);
+  Mesh dented = subdivided(mesh, 3);
+  for (Vec3& p : dented.positions)
+    if (p[2] > 0.999 && std::abs(p[0]) < 0.9 && std::abs(p[1]) < 0.9) p[2] -= 0.02;
+  std::vector<std::uint32_t> group;
+  for (const Triangle& t : mesh.triangles) {
+    const auto high = [&](std::uint32_t v) { return mesh.positions[v][2] > 0.999; };
+    group.push_back(std::ranges::all_of(t, high) ? 1 : 0);
+  }
+  group[0] = group[0] == 1 ? 1 : kNone;
+  const Alignment found = align(dented, Sites(mesh), {.group_of_face = group});
+  ASSERT_EQ(found.groups.size(), 2u);
+  EXPECT_NEAR(found.groups[1].largest, 0.02, 1e-6);
+  EXPECT_GT(found.groups[1].rms, 0.005);
+  EXPECT_LT(found.groups[1].rms, found.groups[1].largest);
+  EXPECT_LT(found.groups[0].rms, 1e-3);
+  EXPECT_GT(found.groups[0].samples, found.groups[1].samples);
+  EXPECT_LT(found.groups[0].samples + found.groups[1].samples, found.samples);
+}
+
+/// The rotation by a vector, in radians.
+Transform rotation_by(const Vec3& v) {
+  const double angle = norm(v), half = angle / 2;
+  const double s = angle > 0 ? std::sin(half) / angle : 0;
+  return Transform::quaternion({std::cos(half), s * v[0], s * v[1], s * v[2]});
+}
+
+// A displacement by the free motions is undone; none of the others is used.
+TEST(AlignFreedomsLocked, UndoesADisplacementByFreeMotionsOnly) {
+  const Mesh mesh = bracket();
+  const Sites sites(mesh);
+  const Vec3 about{0.4, -0.3, 0.2};
+  for (int mask = 0; mask < 64; ++mask) {
+    AlignFreedoms freedoms{.about = about};
+    Vec3 shift{}, turn{};
+    const Vec3 shifts{0.05, -0.04, 0.03}, turns{0.03, 0.05, -0.04};
+    for (int k = 0; k < 3; ++k) {
+      if (freedoms.translations[k] = (mask >> k & 1) != 0; freedoms.translations[k]) shift[k] = shifts[k];
+      if (freedoms.rotations[k] = (mask >> (k + 3) & 1) != 0; freedoms.rotations[k]) turn[k] = turns[k];
+    }
+    // The motion to be found is of the form that AlignFreedoms states, so O1 is moved by its inverse.
+    const Transform sought =
+        Transform::translation(about + shift) * rotation_by(turn) * Transform::translation(-about);
+    const Transform back =
+        Transform::translation(about) * rotation_by(-turn) * Transform::translation(-about - shift);
+    const Alignment found = align(image(mesh, back), sites, {.samples = 2048, .freedoms = freedoms});
+    EXPECT_TRUE(found.converged) << mask;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j)
+        EXPECT_NEAR(found.transform.rows[i][j], sought.rows[i][j], 1e-9) << mask << " " << i << j;
+    EXPECT_EQ(std::ranges::count(found.freedoms, true, &DegreeOfFreedom::locked),
+              6 - std::popcount(unsigned(mask)));
+    EXPECT_EQ(free_count(found), 0u) << mask;
+  }
+}
+
+// What is locked is exactly as before, however O1 is displaced.
+TEST(AlignFreedomsLocked, LeavesWhatIsLocked) {
+  const Mesh mesh = bracket();
+  const Mesh o1 = image(mesh, small_motion(mesh));
+  AlignFreedoms freedoms{.translations = {true, true, false}, .rotations = {false, false, true}};
+  const Alignment planar = align(o1, Sites(mesh), {.samples = kSamples, .freedoms = freedoms});
+  EXPECT_EQ(planar.transform.rows[2], (std::array<double, 4>{0, 0, 1, 0}));
+  EXPECT_GT(std::abs(planar.transform.rows[0][1]), 1e-3);
+  EXPECT_LT(planar.after.rms, planar.before.rms);
+  EXPECT_GT(planar.after.rms, 1e-3 * size_of(mesh));
+  const Alignment none = align(
+      o1, Sites(mesh), {.samples = kSamples, .freedoms = {{false, false, false}, {false, false, false}}});
+  EXPECT_EQ(none.transform.rows, Transform{}.rows);
+  EXPECT_TRUE(none.converged);
+  EXPECT_NEAR(none.after.rms, none.before.rms, 0.1 * none.before.rms);
+  EXPECT_THAT(error_of([&] {
+                return align(o1, Sites(mesh), {.start = AlignStart::principal_axes, .freedoms = freedoms});
+              }),
+              HasSubstr("locked"));
+}
+
+// A shaft may turn about its axis without a doubt, if that was locked.
+TEST(AlignFreedomsLocked, WhatO2DoesNotDetermineIsStillFree) {
+  const Mesh mesh = torus(64, 48);
+  const auto free_of = [&](const AlignFreedoms& freedoms) {
+    return free_count(align(mesh, Sites(mesh), {.samples = kSamples, .freedoms = freedoms}));
+  };
+  EXPECT_EQ(free_of({.rotations = {true, false, false}}) + free_of({.rotations = {false, true, false}}) +
+                free_of({.rotations = {false, false, true}}),
+            1u);
+}
+
+TEST(Align321, FindsThePoseOfSixPoints) {
+  const std::vector<Vec3> places{{0, 0, 5}, {10, 1, 5}, {2, 8, 5}, {1, 0, 2}, {9, 0, 3}, {0, 4, 1}};
+  const Transform motion = Transform::translation({1e5, -2e5, 300}) * Transform::rotation({30, 100, -50});
+  std::vector<Vec3> points = places;
+  for (Vec3& p : points) p = motion(p);
+  const Transform found = align_321(points, places);
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT(norm(found(points[i]) - places[i]), 1e-9);
+  EXPECT_NEAR(found.determinant(), 1, 1e-14);
+}
+
+// Each point gives up only the directions that its datum determines.
+TEST(Align321, UsesPlaneThenLineThenPoint) {
+  const std::vector<Vec3> places{{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 2}, {10, 0, 3}, {0, 5, 1}};
+  std::vector<Vec3> points = places;
+  points[1] += Vec3{0.3, -0.2, 0};  // in the plane
+  points[3] += Vec3{0.4, 0, -0.7};  // along the line, and along the normal
+  points[5] += Vec3{0, 0.5, -0.2};  // across the line
+  const Transform found = align_321(points, places);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(found.rows[i][j], i == j ? 1 : 0, 1e-14);
+  points[5][0] += 0.25;
+  EXPECT_NEAR(align_321(points, places).rows[0][3], -0.25, 1e-14);
+}
+
+TEST(Align321, FaultsAreNamed) {
+  const std::vector<Vec3> good{{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 2}, {10, 0, 3}, {0, 5, 1}};
+  std::vector<Vec3> bad = good;
+  EXPECT_THAT(error_of([&] { return align_321(std::span(good).first(5), good); }), HasSubstr("six points"));
+  bad[2] = {20, 0, 0};
+  EXPECT_THAT(error_of([&] { return align_321(bad, good); }),
+              HasSubstr("primary points of O1 are on a line"));
+  bad = good, bad[4] = {0, 0, 9};
+  EXPECT_THAT(error_of([&] { return align_321(good, bad); }), HasSubstr("secondary points on O2"));
+  bad = good, bad[4][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(error_of([&] { return align_321(good, bad); }), HasSubstr("NaN"));
 }
 
 // A few points, or all in one place, determine little; none of it is an error.
