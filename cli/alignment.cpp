@@ -19,21 +19,46 @@ double length(const sdm::Vec3& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
 
-AlignOutcome timed(
-    const sdm::Sites& o2, const AlignCommand& command, const sdm::Progress& progress,
-    const std::function<sdm::Alignment(const sdm::AlignOptions&)>& align,
-    const std::function<std::optional<sdm::OtherUnit>(const sdm::Alignment&, const sdm::AlignOptions&)>&
-        find_other_unit) {
-  Stopwatch watch;
-  sdm::AlignOptions options;
+/// The functions of the library, for a mesh or for points.
+struct AlignCalls {
+  std::function<sdm::Alignment(const sdm::AlignOptions&)> align;
+  std::function<std::optional<sdm::OtherUnit>(const sdm::Alignment&, const sdm::AlignOptions&)> other_unit;
+  std::function<std::optional<sdm::MirroredFit>(const sdm::Alignment&)> mirrored;
+  std::function<std::optional<sdm::OtherScale>(const sdm::Alignment&)> scale;
+};
+
+/// The names that residuals are grouped by: the first kind of the file.
+const sdm::FaceNames* groups_of(const Input& o2) {
+  return o2.names.empty() ? nullptr : &o2.names.front();
+}
+
+sdm::AlignOptions options_of(const AlignCommand& command, const Input& o2, const sdm::Progress& progress) {
+  sdm::AlignOptions options{.freedoms = command.freedoms, .region = region_of(command, o2)};
   options.progress = progress;
-  if (command.from == "pca")
+  if (const sdm::FaceNames* names = groups_of(o2)) options.group_of_face = names->of_face;
+  if (!command.points_321.empty()) {
+    options.pose = read_321(command.points_321);
+    options.freedoms = {.translations = {}, .rotations = {}};
+  } else if (command.from == "pca") {
     options.start = sdm::AlignStart::principal_axes;
-  else if (command.from != "none")
+  } else if (command.from != "none") {
     options.pose = sdm::read_matrix(command.from);
+  }
+  return options;
+}
+
+AlignOutcome timed(const Input& o2, const AlignCommand& command, const sdm::Progress& progress,
+                   const AlignCalls& calls) {
+  Stopwatch watch;
+  const sdm::AlignOptions options = options_of(command, o2, progress);
   try {
-    AlignOutcome outcome{align(options), command.from, size_of(sdm::bounds(o2.mesh()))};
-    if (command.judged) outcome.other_unit = find_other_unit(outcome.alignment, options);
+    AlignOutcome outcome{calls.align(options), command, size_of(sdm::bounds(o2.mesh))};
+    if (command.judged) outcome.other_unit = calls.other_unit(outcome.alignment, options);
+    outcome.mirrored = calls.mirrored(outcome.alignment);
+    if (options.region.whole() && !outcome.other_unit && !outcome.mirrored)
+      outcome.scale = calls.scale(outcome.alignment);
+    if (const sdm::FaceNames* names = groups_of(o2); names && names->names.size() > 1)
+      outcome.group_kind = names->kind, outcome.group_names = names->names;
     outcome.time_ms = watch.lap();
     return outcome;
   } catch (const sdm::Cancelled&) {
@@ -78,40 +103,74 @@ std::string in_words(const sdm::DegreeOfFreedom& freedom, double size) {
 
 }  // namespace
 
-void add_align_options(CLI::App& app, AlignCommand& command) {
-  CLI::Option* align = app.add_flag(
-      "--align", command.on, "First move O1 onto O2, by a rotation and a translation that fit the surfaces");
-  app.add_option(
-         "--align-from", command.from,
-         "Where the alignment starts: none, O1 as it is placed; pca, where the principal axes agree; or a "
-         "file with a 4x4 matrix, such as alignment.json")
-      ->type_name("none|pca|FILE")
-      ->needs(align)
-      ->check(
-          CLI::Validator([](const std::string& text) { return text.empty() ? "the name is empty" : ""; }, ""))
-      ->capture_default_str();
-}
-
-AlignOutcome align_mesh(sdm::Mesh& o1, const sdm::Sites& o2, const AlignCommand& command,
+AlignOutcome align_mesh(sdm::Mesh& o1, const sdm::Sites& sites, const Input& o2, const AlignCommand& command,
                         const sdm::Progress& progress) {
-  AlignOutcome outcome = timed(
-      o2, command, progress, [&](const sdm::AlignOptions& options) { return sdm::align(o1, o2, options); },
-      [&](const sdm::Alignment& found, const sdm::AlignOptions& options) {
-        return sdm::find_other_unit(o1, o2, found, options);
-      });
+  AlignOutcome outcome =
+      timed(o2, command, progress,
+            {[&](const sdm::AlignOptions& options) { return sdm::align(o1, sites, options); },
+             [&](const sdm::Alignment& found, const sdm::AlignOptions& options) {
+               return sdm::find_other_unit(o1, sites, found, options);
+             },
+             [&](const sdm::Alignment& found) { return sdm::find_mirrored(o1, sites, found); },
+             [&](const sdm::Alignment& found) { return sdm::find_scale(o1, sites, found); }});
   sdm::transform(o1, outcome.alignment.transform);
   return outcome;
 }
 
 AlignOutcome align_points(std::span<const sdm::Vec3> points, std::span<const sdm::Vec3> normals,
-                          const sdm::Sites& o2, const AlignCommand& command, const sdm::Progress& progress) {
+                          const sdm::Sites& sites, const Input& o2, const AlignCommand& command,
+                          const sdm::Progress& progress) {
   return timed(
       o2, command, progress,
-      [&](const sdm::AlignOptions& options) { return sdm::align(points, normals, o2, options); },
-      [&](const sdm::Alignment& found, const sdm::AlignOptions& options) {
-        return sdm::find_other_unit(points, normals, o2, found, options);
-      });
+      {[&](const sdm::AlignOptions& options) { return sdm::align(points, normals, sites, options); },
+       [&](const sdm::Alignment& found, const sdm::AlignOptions& options) {
+         return sdm::find_other_unit(points, normals, sites, found, options);
+       },
+       [&](const sdm::Alignment& found) { return sdm::find_mirrored(points, normals, sites, found); },
+       [&](const sdm::Alignment& found) { return sdm::find_scale(points, normals, sites, found); }});
 }
+
+std::vector<sdm::Doubt> doubts_of(const AlignOutcome& outcome) {
+  return sdm::doubts_of(outcome.alignment, outcome.other_unit, outcome.mirrored);
+}
+
+namespace {
+
+/// Residuals of the groups that have any, those with the largest rms first.
+std::vector<std::pair<std::string, sdm::GroupResiduals>> named_residuals(const AlignOutcome& outcome) {
+  std::vector<std::pair<std::string, sdm::GroupResiduals>> result;
+  const std::vector<sdm::GroupResiduals>& groups = outcome.alignment.groups;
+  for (std::size_t i = 0; i < std::min(groups.size(), outcome.group_names.size()); ++i)
+    if (groups[i].samples > 0) result.emplace_back(outcome.group_names[i], groups[i]);
+  std::ranges::stable_sort(result, std::greater(), [](const auto& group) { return group.second.rms; });
+  return result;
+}
+
+/// What was aligned to what, by which motions, and what else fits.
+void add_choices(Json& json, const AlignOutcome& outcome) {
+  const AlignCommand& command = outcome.command;
+  const bool by_points = !command.points_321.empty();
+  json["from"] = by_points ? "321" : command.from;
+  json["points"] = by_points ? Json(command.points_321) : Json();
+  json["on"] = command.region;
+  json["allowed"] = by_points ? std::vector<std::string>() : names_of(command.freedoms);
+  json["about"] = command.freedoms.about;
+  json["mirrored"] = json["scale"] = nullptr;
+  if (const auto& m = outcome.mirrored)
+    json["mirrored"] = {{"misfit", m->misfit}, {"misfit_as_given", m->misfit_as_given}};
+  if (const auto& s = outcome.scale)
+    json["scale"] = {{"factor", s->factor},
+                     {"standard_error", s->standard_error},
+                     {"residual", s->residual},
+                     {"residual_as_given", s->residual_as_given}};
+  json["group_kind"] = outcome.group_kind;
+  json["groups"] = Json::array();
+  for (const auto& [name, group] : named_residuals(outcome))
+    json["groups"].push_back(
+        {{"name", name}, {"samples", group.samples}, {"rms", group.rms}, {"largest", group.largest}});
+}
+
+}  // namespace
 
 Json to_json(const AlignOutcome& outcome) {
   const sdm::Alignment& a = outcome.alignment;
@@ -126,33 +185,53 @@ Json to_json(const AlignOutcome& outcome) {
                         {"axis_point", f.axis_point ? Json(*f.axis_point) : Json()},
                         {"determined", f.determined},
                         {"standard_error", f.standard_error ? Json(*f.standard_error) : Json()},
-                        {"free", f.free}});
-  return {{"matrix", a.transform.rows},
-          {"order", "row-major, for column vectors"},
-          {"from", outcome.from},
-          {"rotation_degrees", degrees},
-          {"translation", shift},
-          {"converged", a.converged},
-          {"iterations", a.iterations},
-          {"samples", a.samples},
-          {"fraction_used", a.fraction_used},
-          {"residuals_kind", "estimate"},
-          {"before", residuals(a.before)},
-          {"after", residuals(a.after)},
-          {"centre", a.centre},
-          {"gyration_radius", a.gyration_radius},
-          {"degrees_of_freedom", freedoms},
-          {"time_ms", outcome.time_ms}};
+                        {"free", f.free},
+                        {"locked", f.locked}});
+  Json json{{"matrix", a.transform.rows},
+            {"order", "row-major, for column vectors"},
+            {"from", nullptr},
+            {"rotation_degrees", degrees},
+            {"translation", shift},
+            {"converged", a.converged},
+            {"iterations", a.iterations},
+            {"samples", a.samples},
+            {"fraction_used", a.fraction_used},
+            {"fraction_fitting", a.fraction_fitting},
+            {"residuals_kind", "estimate"},
+            {"before", residuals(a.before)},
+            {"after", residuals(a.after)},
+            {"centre", a.centre},
+            {"gyration_radius", a.gyration_radius},
+            {"degrees_of_freedom", freedoms}};
+  add_choices(json, outcome);
+  json["time_ms"] = outcome.time_ms;
+  return json;
 }
 
 std::string summary(const AlignOutcome& outcome, const std::string& units) {
   const sdm::Alignment& a = outcome.alignment;
   const std::string unit = unit_suffix(units);
   const auto [degrees, shift] = sizes(a);
-  return fmt::format(
+  std::string text = fmt::format(
       "  aligned   turned O1 by {}° and moved it by {}{}; residual rms {} -> {}{} ({} % of samples)\n",
       number(degrees, 4), number(shift, 4), unit, number(a.before.trimmed_rms, 3),
       number(a.after.trimmed_rms, 3), unit, number(100 * a.fraction_used, 4));
+  const AlignCommand& command = outcome.command;
+  if (!command.points_321.empty()) text += "            by the six points of " + command.points_321 + "\n";
+  if (!command.region.empty())
+    text += fmt::format("            on {} ({} samples)\n", fmt::join(command.region, ", "), a.samples);
+  if (!command.freedoms.all())
+    text += fmt::format("            by {} only; the rest is locked\n",
+                        fmt::join(names_of(command.freedoms), ", "));
+  constexpr std::size_t kShown = 8;
+  const auto groups = named_residuals(outcome);
+  for (std::size_t i = 0; i < std::min(groups.size(), kShown); ++i)
+    text += fmt::format("            {} {}: residual rms {}, largest {}{} (of samples)\n", outcome.group_kind,
+                        groups[i].first, number(groups[i].second.rms, 3), number(groups[i].second.largest, 3),
+                        unit);
+  if (groups.size() > kShown)
+    text += fmt::format("            and {} more with smaller residuals\n", groups.size() - kShown);
+  return text;
 }
 
 std::vector<std::string> notes(const AlignOutcome& outcome) {
@@ -162,15 +241,24 @@ std::vector<std::string> notes(const AlignOutcome& outcome) {
   if (!a.converged)
     notes.push_back(
         fmt::format("the alignment did not converge in {} steps; its matrix is approximate", a.iterations));
-  const char* question = outcome.from == "pca"
-                             ? "is O1 the same part as O2?"
-                             : "is O1 the same part as O2, or does it need --align-from pca?";
+  const bool placed = outcome.command.from == "pca" || !outcome.command.points_321.empty();
+  const char* question =
+      placed ? "is O1 the same part as O2?" : "is O1 the same part as O2, or does it need --align-from pca?";
   if (a.after.trimmed_rms > kLarge * outcome.size)
     notes.push_back(fmt::format("the aligned surfaces are {} % of the size apart; {}",
                                 number(100 * a.after.trimmed_rms / outcome.size, 2), question));
-  else if (a.fraction_used < kMany)
+  else if (a.fraction_fitting < kMany)
     notes.push_back(fmt::format("{} % of the samples do not fit O2 and were taken for outliers; {}",
-                                number(100 * (1 - a.fraction_used), 3), question));
+                                number(100 * (1 - a.fraction_fitting), 3), question));
+  if (outcome.mirrored && !outcome.command.judged)
+    notes.push_back(fmt::format("O1 fits O2 far better mirrored (to {} % of its size, instead of {} %)",
+                                number(100 * outcome.mirrored->misfit, 2),
+                                number(100 * outcome.mirrored->misfit_as_given, 2)));
+  if (const auto& s = outcome.scale)
+    notes.push_back(fmt::format(
+        "O1 fits O2 better {} (standard error {}) times as large: residual rms {} instead of {}, estimates",
+        number(s->factor, 6), number(s->standard_error, 2), number(s->residual, 3),
+        number(s->residual_as_given, 3)));
   std::string free;
   for (const sdm::DegreeOfFreedom& f : a.freedoms)
     if (f.free) free += (free.empty() ? "" : ", ") + in_words(f, outcome.size);

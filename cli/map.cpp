@@ -109,11 +109,10 @@ int run(MapCommand command) {
       progress.step("align");
       task.sites = std::make_unique<sdm::Sites>(pair.o2.mesh);
       command.align.judged = command.picture.tolerance.has_value();
-      aligned = align_mesh(pair.o1.mesh, *task.sites, command.align, progress.callback());
+      aligned = align_mesh(pair.o1.mesh, *task.sites, pair.o2, command.align, progress.callback());
       write_text(out.staging() / kAlignmentFile, to_text(to_json(*aligned)));
     }
-    if (aligned && command.align.judged)
-      task.doubts = sdm::doubts_of(aligned->alignment, aligned->other_unit);
+    if (aligned && command.align.judged) task.doubts = doubts_of(*aligned);
     const std::vector<sdm::Doubt> doubts = task.doubts;
     if (command.doubts.min_coverage) measure_coverage(task, progress);
     meshes.push_back(measure_mesh(std::move(task), out, progress));

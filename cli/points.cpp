@@ -163,14 +163,14 @@ void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& 
 
 // The alignment of a sample of the points, after their placement.
 AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& placement,
-                          const sdm::Sites& sites, const sdm::Progress& progress) {
+                          const sdm::Sites& sites, const Input& o2, const sdm::Progress& progress) {
   constexpr std::size_t kSample = 1 << 18;
   sdm::PointSample sample =
       sdm::sample_points(command.cloud, kSample, {.text = command.text, .progress = progress});
   if (sample.points.empty()) throw sdm::Error(command.cloud + ": there are no points with coordinates");
   sdm::transform(sample.points, placement);
   for (sdm::Vec3& n : sample.normals) n = placement.normal(n);
-  return align_points(sample.points, sample.normals, sites, command.align, progress);
+  return align_points(sample.points, sample.normals, sites, o2, command.align, progress);
 }
 
 // The first points of the file decide; `box` is that of all. A placement may have changed their size.
@@ -223,7 +223,7 @@ int run(PointsCommand command) {
     if (command.align.on) {
       progress.step("align");
       command.align.judged = command.picture.tolerance.has_value();
-      outcome.aligned = align_sample(command, options.placement, sites, progress.callback());
+      outcome.aligned = align_sample(command, options.placement, sites, o2, progress.callback());
       options.placement = outcome.aligned->alignment.transform * options.placement;
       write_text(out.staging() / "alignment.json", to_text(to_json(*outcome.aligned)));
     }
@@ -231,8 +231,7 @@ int run(PointsCommand command) {
     const std::filesystem::path ply = out.staging() / "points.ply";
     outcome.found = sdm::measure_points(command.cloud, sites, ply, options);
     outcome.summary = sdm::summarize(outcome.found, options);
-    if (outcome.aligned && command.align.judged)
-      outcome.summary.doubts = sdm::doubts_of(outcome.aligned->alignment, outcome.aligned->other_unit);
+    if (outcome.aligned && command.align.judged) outcome.summary.doubts = doubts_of(*outcome.aligned);
     if (command.doubts.min_coverage)
       measure_cloud_coverage(command, options.placement, o2.mesh, outcome.summary, progress);
     sdm::withhold_pass(outcome.summary, command.doubts.accept);

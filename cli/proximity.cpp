@@ -29,7 +29,8 @@ void run(const PairCommand& command, const AlignCommand& align) {
   progress.step("import");
   InputPair pair = load_pair(command, {.inspects = true});
   std::optional<AlignOutcome> aligned;
-  if (align.on) aligned = align_mesh(pair.o1.mesh, sdm::Sites(pair.o2.mesh), align, progress.callback());
+  if (align.on)
+    aligned = align_mesh(pair.o1.mesh, sdm::Sites(pair.o2.mesh), pair.o2, align, progress.callback());
   Notes all_notes = notes_on(pair.o1, pair.o2);
   if (aligned) std::ranges::copy(notes(*aligned), std::back_inserter(all_notes));
   Stopwatch watch;

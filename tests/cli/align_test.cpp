@@ -117,6 +117,101 @@ TEST_F(AlignOption, OfProximity) {
   EXPECT_THAT(run_sdm({"proximity", o1, o2, "--align"}).out, HasSubstr("aligned "));
 }
 
+TEST_F(AlignOption, LockedFreedomsAreNotUsed) {
+  const Outcome run = map({"--align", "--align-free", "xy,rz", "--align-about", "0.1,0.2,-1", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json alignment = Json::parse(run.out)["alignment"];
+  EXPECT_EQ(alignment["allowed"], (Json{"x", "y", "rz"}));
+  EXPECT_EQ(alignment["about"], (Json{0.1, 0.2, -1.0}));
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(alignment["matrix"][2][k], k == 2 ? 1 : 0, 1e-15);
+  EXPECT_EQ(alignment["degrees_of_freedom"][3]["locked"], true);
+  EXPECT_GT(alignment["after"]["rms"], 1e-4);
+  EXPECT_THAT(map({"--align", "--align-free", "xy,rz"}).out, HasSubstr("by x, y, rz only"));
+  EXPECT_EQ(map({"--align", "--align-free", "xw"}).code, 2);
+  EXPECT_EQ(map({"--align", "--align-about", "0,0,0"}).code, 2) << "without --align-free";
+  EXPECT_EQ(map({"--align-free", "x"}).code, 2) << "without --align";
+}
+
+/// The mesh with its top as the group "datum" and all else as "rest".
+std::string write_groups(const std::string& file, const Mesh& mesh) {
+  std::ofstream out(file);
+  out.precision(17);
+  for (const Vec3& p : mesh.positions) out << "v " << p[0] << " " << p[1] << " " << p[2] << "\n";
+  for (const bool datum : {true, false}) {
+    out << (datum ? "g datum\n" : "g rest\n");
+    for (const Triangle& t : mesh.triangles) {
+      const bool top =
+          mesh.positions[t[0]][2] > 0.9 && mesh.positions[t[1]][2] > 0.9 && mesh.positions[t[2]][2] > 0.9;
+      if (top == datum) out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    }
+  }
+  return file;
+}
+
+TEST_F(AlignOption, OnGroupsAndBoxes) {
+  o2 = write_groups(folder / "groups.obj", mesh);
+  const Outcome run = map({"--align", "--align-on", "datum", "--align-on", "box:-2,-2,-2,0,2,2", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json alignment = Json::parse(run.out)["alignment"];
+  EXPECT_EQ(alignment["on"], (Json{"datum", "box:-2,-2,-2,0,2,2"}));
+  EXPECT_LT(alignment["samples"], 32768);
+  EXPECT_LT(alignment["after"]["rms"], 1e-12);
+  EXPECT_EQ(alignment["group_kind"], "group");
+  ASSERT_EQ(alignment["groups"].size(), 2u);
+  EXPECT_GE(alignment["groups"][0]["rms"], alignment["groups"][1]["rms"]);
+  EXPECT_THAT(map({"--align"}).out, HasSubstr("group datum: residual rms"));
+  const Outcome unknown = map({"--align", "--align-on", "datums"});
+  EXPECT_EQ(unknown.code, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("no face has the name 'datums' of --align-on; there are datum, rest"));
+  EXPECT_EQ(map({"--align", "--align-on", "box:1,2,3"}).code, 2);
+  // One plane determines three motions, and says so.
+  EXPECT_THAT(map({"--align", "--align-on", "datum"}).out, HasSubstr("do not determine"));
+}
+
+TEST_F(AlignOption, ByPrimarySecondaryAndTertiaryPoints) {
+  const std::string file = folder / "points.txt";
+  std::ofstream(file) << "# of O1, and on O2\n0 0 1  0 0 2\n1 0 1, 1 0 2\n0 1 1; 0 1 2\n"
+                         "0 -1 0  0 -1 1\n1 -1 0  1 -1 1\n1 0 0  1.5 0 1\n";
+  const Outcome run = map({"--align-321", file, "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json alignment = Json::parse(run.out)["alignment"];
+  EXPECT_EQ(alignment["from"], "321");
+  EXPECT_EQ(alignment["points"], file);
+  const Transform expected = Transform::translation({0.5, 0, 1});
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(alignment["matrix"][i][k], expected.rows[i][k], 1e-15);
+  EXPECT_EQ(map({"--align-321", file, "--align"}).code, 2);
+  std::ofstream(file) << "0 0 1  0 0 2\n";
+  EXPECT_THAT(map({"--align-321", file}).err, HasSubstr("needs six rows"));
+  std::ofstream(file) << "0 0 1  0 0\n";
+  EXPECT_THAT(map({"--align-321", file}).err, HasSubstr("line 1 is not six numbers"));
+  EXPECT_THAT(map({"--align-321", folder / "none.txt"}).err, HasSubstr("no such file"));
+}
+
+TEST_F(AlignOption, AMirroredPartIsDoubtful) {
+  o1 = write_obj(folder / "mirrored.obj", placed(joined(cube(1), ring(16, 0.5, {0.9, 0.4, 0.2})), ""));
+  const std::string file = folder / "mirror.txt";
+  std::ofstream(file) << "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  const std::string mirror = "matrix:" + file;
+  const Outcome run = map({"--transform-o1", mirror, "--align", "--tolerance", "2", "--json"});
+  EXPECT_EQ(run.code, 5) << run.out;
+  const Json report = Json::parse(run.out);
+  ASSERT_FALSE(report["doubts"].empty());
+  EXPECT_EQ(report["doubts"][0]["reason"], "mirrored");
+  EXPECT_LT(report["alignment"]["mirrored"]["misfit"],
+            0.25 * report["alignment"]["mirrored"]["misfit_as_given"].get<double>());
+  EXPECT_THAT(map({"--transform-o1", mirror, "--align"}).out, HasSubstr("far better mirrored"));
+}
+
+TEST_F(AlignOption, AScaledPartIsNoted) {
+  const Outcome run = map({"--transform-o1", "scale:0.98", "--align", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_NEAR(report["alignment"]["scale"]["factor"], 1 / 0.98, 1e-6);
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("times as large"));
+  EXPECT_TRUE(Json::parse(map({"--align", "--json"}).out)["alignment"]["scale"].is_null());
+}
+
 TEST_F(AlignOption, FaultsOfTheMatrix) {
   const std::string file = folder / "pose.txt";
   const auto fault = [&](const std::vector<std::string>& options) {

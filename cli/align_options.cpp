@@ -1,0 +1,194 @@
+#include "align_options.h"
+
+#include <fmt/format.h>
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+
+namespace {
+
+constexpr std::string_view kBox = "box:", kAxes = "xyz";
+
+/// The numbers of a text; nothing if something else is in it.
+std::optional<std::vector<double>> numbers_in(std::string_view text, std::string_view separators) {
+  std::vector<double> numbers;
+  for (std::size_t at; (at = text.find_first_not_of(separators)) != std::string_view::npos;) {
+    text.remove_prefix(at);
+    std::string_view word = text.substr(0, text.find_first_of(separators));
+    text.remove_prefix(word.size());
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0;
+    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (fault != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+      return std::nullopt;
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+std::optional<sdm::Box> box_of(std::string_view text) {
+  const auto numbers = numbers_in(text.substr(kBox.size()), ",");
+  if (!numbers || numbers->size() != 6) return std::nullopt;
+  sdm::Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = (*numbers)[k], box.hi[k] = (*numbers)[k + 3];
+    if (!(box.lo[k] <= box.hi[k])) return std::nullopt;
+  }
+  return box;
+}
+
+/// Reads "xyz,rz": translations along these axes, and after r, rotations about them.
+std::optional<sdm::AlignFreedoms> freedoms_of(const std::string& text) {
+  sdm::AlignFreedoms result{.translations = {}, .rotations = {}};
+  for (std::string_view word : CLI::detail::split(text, ',')) {
+    const bool turns = word.starts_with('r');
+    if (turns) word.remove_prefix(1);
+    if (word.empty()) return std::nullopt;
+    for (const char letter : word) {
+      const std::size_t axis = kAxes.find(letter);
+      if (axis == std::string_view::npos) return std::nullopt;
+      (turns ? result.rotations : result.translations)[axis] = true;
+    }
+  }
+  return result;
+}
+
+CLI::Validator checked(const std::string& needed, bool (*accepts)(const std::string&)) {
+  return CLI::Validator(
+      [needed, accepts](const std::string& text) {
+        return accepts(text) ? std::string() : fmt::format("'{}' is not {}", text, needed);
+      },
+      "");
+}
+
+void add_freedom_options(CLI::App& app, AlignCommand& command, CLI::Option* align) {
+  CLI::Option* free =
+      app.add_option_function<std::string>(
+             "--align-free",
+             [&command](const std::string& text) {
+               const sdm::Vec3 about = command.freedoms.about;
+               command.freedoms = *freedoms_of(text);
+               command.freedoms.about = about;
+             },
+             "The motions that the alignment may use, the others are locked: xyz,rz for translations along "
+             "x, "
+             "y and z and a rotation about z, or any of x, y, z, rx, ry, rz; axes of O2's coordinates")
+          ->check(checked("a list of x, y, z, rx, ry and rz",
+                          [](const std::string& text) { return freedoms_of(text).has_value(); }))
+          ->type_name("MOTION,...")
+          ->needs(align);
+  app.add_option_function<std::string>(
+         "--align-about",
+         [&command](const std::string& text) {
+           const auto numbers = numbers_in(text, ",");
+           std::copy_n(numbers->begin(), 3, command.freedoms.about.begin());
+         },
+         "The point that the axes of these rotations go through; by default the origin")
+      ->check(checked("three numbers, X,Y,Z",
+                      [](const std::string& text) {
+                        const auto numbers = numbers_in(text, ",");
+                        return numbers && numbers->size() == 3;
+                      }))
+      ->type_name("X,Y,Z")
+      ->needs(free);
+}
+
+}  // namespace
+
+void add_align_options(CLI::App& app, AlignCommand& command) {
+  CLI::Option* align = app.add_flag(
+      "--align", command.on, "First move O1 onto O2, by a rotation and a translation that fit the surfaces");
+  app.add_option(
+         "--align-from", command.from,
+         "Where the alignment starts: none, O1 as it is placed; pca, where the principal axes agree; or a "
+         "file with a 4x4 matrix, such as alignment.json")
+      ->type_name("none|pca|FILE")
+      ->needs(align)
+      ->check(
+          CLI::Validator([](const std::string& text) { return text.empty() ? "the name is empty" : ""; }, ""))
+      ->capture_default_str();
+  app.add_option("--align-on", command.region,
+                 "Fit O1 to this part of O2: a group, object or material of its file, or a box in its "
+                 "coordinates, box:X0,Y0,Z0,X1,Y1,Z1; may be repeated")
+      ->check(checked(
+          "the name of a group, or box:X0,Y0,Z0,X1,Y1,Z1",
+          [](const std::string& text) { return !text.empty() && (!text.starts_with(kBox) || box_of(text)); }))
+      ->type_name("GROUP|box:...")
+      ->allow_extra_args(false)
+      ->needs(align);
+  add_freedom_options(app, command, align);
+  app.add_option_function<std::string>(
+         "--align-321", [&command](const std::string& file) { command.on = true, command.points_321 = file; },
+         "Instead of --align, move O1 by six of its points and their places on O2: a file with a row of two "
+         "points for each, three primary, two secondary and one tertiary")
+      ->type_name("FILE")
+      ->excludes(align);
+}
+
+std::vector<std::string> names_of(const sdm::AlignFreedoms& freedoms) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (freedoms.translations[k]) names.emplace_back(1, kAxes[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    if (freedoms.rotations[k]) names.push_back(std::string("r") + kAxes[k]);
+  return names;
+}
+
+sdm::AlignRegion region_of(const AlignCommand& command, const Input& o2) {
+  sdm::AlignRegion region;
+  for (const std::string& text : command.region) {
+    if (text.starts_with(kBox)) {
+      region.boxes.push_back(*box_of(text));
+      continue;
+    }
+    region.faces.resize(o2.mesh.triangles.size());
+    bool found = false;
+    std::vector<std::string> known;
+    for (const sdm::FaceNames& kind : o2.names)
+      for (std::size_t f = 0; f < kind.of_face.size(); ++f)
+        if (const std::uint32_t name = kind.of_face[f]; name != sdm::kNone && kind.names[name] == text)
+          region.faces[f] = 1, found = true;
+    if (found) continue;
+    for (const sdm::FaceNames& kind : o2.names)
+      known.insert(known.end(), kind.names.begin(), kind.names.end());
+    constexpr std::size_t kShown = 8;
+    const bool more = known.size() > kShown;
+    known.resize(std::min(known.size(), kShown));
+    throw sdm::Error(fmt::format("{}: no face has the name '{}' of --align-on{}{}{}", o2.file, text,
+                                 known.empty() ? "; the file names no faces" : "; there are ",
+                                 fmt::join(known, ", "), more ? ", ..." : ""));
+  }
+  return region;
+}
+
+sdm::Transform read_321(const std::string& file) {
+  constexpr std::size_t kRows = 6;
+  std::ifstream in(file);
+  if (!in) throw sdm::Error(file + ": there is no such file, or it cannot be read");
+  std::vector<sdm::Vec3> points, places;
+  std::string line;
+  for (int row = 1; std::getline(in, line) && points.size() <= kRows; ++row) {
+    const auto numbers = numbers_in(std::string_view(line).substr(0, line.find('#')), " \t\r,;");
+    if (numbers && numbers->empty()) continue;
+    if (!numbers || numbers->size() != 6)
+      throw sdm::Error(
+          fmt::format("{}: line {} is not six numbers, a point on O1 and its place on O2", file, row));
+    const auto& n = *numbers;
+    points.push_back({n[0], n[1], n[2]}), places.push_back({n[3], n[4], n[5]});
+  }
+  if (points.size() != kRows)
+    throw sdm::Error(
+        fmt::format("{}: a 3-2-1 alignment needs six rows, a point on O1 and its place on O2 each: "
+                    "three primary, two secondary and one tertiary",
+                    file));
+  try {
+    return sdm::align_321(points, places);
+  } catch (const sdm::Error& error) {
+    throw sdm::Error(file + ": " + error.what());
+  }
+}
