@@ -101,6 +101,59 @@ def test_align_points():
     np.testing.assert_allclose(with_normals.transform @ pose, np.eye(4), atol=1e-4)
 
 
+def test_align_locks_freedoms():
+    vertices, faces = lumpy()
+    pose = rigid(0.1, (0, 0, 1), (0.05, -0.04, 0))
+    moved = (vertices @ pose[:3, :3].T + pose[:3, 3], faces)
+    alignment = sdm.align(moved, (vertices, faces), free="xy,rz")
+    np.testing.assert_allclose(alignment.transform @ pose, np.eye(4), atol=1e-9)
+    assert [f.locked for f in alignment.freedoms] == [False] * 3 + [True] * 3
+    along_x = sdm.align_points(moved[0], (vertices, faces), free="x").transform
+    np.testing.assert_allclose(along_x[:, :3], np.eye(4)[:, :3], atol=1e-12)
+    assert along_x[1, 3] == along_x[2, 3] == 0
+    about = sdm.align(moved, (vertices, faces), free="rz", about=(1, 0, 5)).transform
+    np.testing.assert_allclose(about @ [1, 0, 5, 1], [1, 0, 5, 1], atol=1e-12)
+    with pytest.raises(sdm.Error, match="not a list of x, y, z"):
+        sdm.align(moved, (vertices, faces), free="xw")
+    with pytest.raises(sdm.Error, match="about needs three numbers"):
+        sdm.align(moved, (vertices, faces), free="x", about=[[0, 0, 0], [1, 1, 1]])
+
+
+def test_align_on_a_region():
+    vertices, faces = lumpy()
+    pose = rigid(0.03, (1, 2, 3), (0.02, -0.01, 0.01))
+    bent = vertices + np.where(vertices[:, :1] < 0, [[0, 0, 0.05]], 0) * vertices[:, :1] ** 2
+    moved = (bent @ pose[:3, :3].T + pose[:3, 3], faces)
+    right = sdm.align(moved, (vertices, faces), on_boxes=[[0.05, -9, -9], [9, 9, 9]])
+    chosen = np.nonzero((vertices[faces][:, :, 0] > 0.05).all(axis=1))[0]
+    by_faces = sdm.align(moved, (vertices, faces), on_faces=chosen)
+    for alignment in (right, by_faces):
+        np.testing.assert_allclose(alignment.transform @ pose, np.eye(4), atol=1e-6)
+        assert alignment.samples < 32768 and alignment.fraction_fitting > 0.9
+    with pytest.raises(sdm.Error, match="no face of O2"):
+        sdm.align(moved, (vertices, faces), on_faces=[len(faces)])
+    with pytest.raises(sdm.Error, match="two corners"):
+        sdm.align(moved, (vertices, faces), on_boxes=[[0, 0, 0]])
+
+
+def test_align_321():
+    places = np.array([[0, 0, 0], [4, 0, 0], [0, 3, 0], [0, 0, 1], [4, 0, 1], [0, 2, 2.0]])
+    pose = rigid(1.1, (1, 2, 3), (5, 6, 7))
+    found = sdm.align_321(places @ pose[:3, :3].T + pose[:3, 3], places)
+    np.testing.assert_allclose(found @ pose, np.eye(4), atol=1e-12)
+    with pytest.raises(sdm.Error, match="six points"):
+        sdm.align_321(places[:5], places)
+
+
+def test_align_doubts_a_mirrored_part():
+    vertices, faces = lumpy()
+    vertices = np.asarray(vertices) * [1, 0.7, 0.5] + 0.2 * np.asarray(vertices)[:, [1, 2, 0]] ** 2
+    mirrored = vertices * [-1, 1, 1]
+    alignment = sdm.align((mirrored, faces), (vertices, faces))
+    reasons = [d.reason for d in sdm.alignment_doubts((mirrored, faces), (vertices, faces), alignment)]
+    assert "mirrored" in reasons
+
+
 def test_align_errors():
     with pytest.raises(sdm.Error, match="there is no start centres"):
         sdm.align(meshes.box(), meshes.box(), start="centres")

@@ -47,9 +47,10 @@ Affine rigid(const Transform& pose) {
 
 Fit from_principal_axes(const CentredSamples& o1, const Target& target, const AlignOptions& options) {
   constexpr std::size_t kSamples = 4096;
+  constexpr int kSteps = 15;
   const AxisMatches candidates =
       axis_matches(o1.samples.points, surface_source(target.sites.mesh())(kSamples).points);
-  return best_match_of_axes(o1, candidates, target, [&](std::size_t i) {
+  return best_match_of_axes(o1, candidates, target, kSteps, [&](std::size_t i) {
     check_progress(options, static_cast<double>(i) / static_cast<double>(candidates.poses.size()));
   });
 }

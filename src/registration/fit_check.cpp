@@ -43,14 +43,18 @@ void mirror(Samples& samples) {
 double misfit_by_axes(const CentredSamples& few, const CentredSamples& some, std::span<const Vec3> o2,
                       const Target& target) {
   constexpr StepLimits kLimits{.most = 10, .tolerance = 1e-3};
+  constexpr int kSteps = 8;
   AxisMatches candidates = axis_matches(some.samples.points, o2);
   candidates.poses.resize(candidates.likely);
-  const Fit fit = best_match_of_axes(few, candidates, target, [](std::size_t) {});
+  const Fit fit = best_match_of_axes(few, candidates, target, kSteps, [](std::size_t) {});
   return mismatch(some, refine(some, fit, target, kLimits).pose, target);
 }
 
 std::optional<MirroredFit> mirrored_fit(const SampleSource& source, const Sites& o2, const Alignment& found) {
-  constexpr double kFits = 0.002, kMuchBetter = 0.25;
+  constexpr double kFits = 0.002, kMuchBetter = 0.25, kFitting = 0.9, kTrimmed = 0.01;
+  // Outliers of a scan are no reason to look further.
+  if (found.fraction_fitting >= kFitting && found.after.trimmed_rms <= kTrimmed * found.gyration_radius)
+    return std::nullopt;
   const Target target(o2);
   Aligned some = aligned(source, kSome, found);
   const double radius = some.o1.radius, as_given = mismatch(some.o1, some.pose, target);

@@ -43,19 +43,19 @@ struct StepLimits {
 /// of a nearly symmetric part, and outliers do not.
 [[nodiscard]] double mismatch(const CentredSamples& o1, const Affine& pose, const Target& target);
 
-/// Of poses refined by few steps, the one with the least mismatch: of the likely ones, or of all if none of
-/// these is good. `progress` is called with the number of each pose, before it is refined.
+/// Of poses refined by at most so many steps, the one with the least mismatch: of the likely ones, or of all
+/// if none of these is good. `progress` is called with the number of each pose, before it is refined.
 template <class Progress>
 [[nodiscard]] Fit best_match_of_axes(const CentredSamples& o1, const AxisMatches& candidates,
-                                     const Target& target, Progress&& progress) {
-  constexpr StepLimits kLimits{.most = 15, .tolerance = 1e-3};
+                                     const Target& target, int steps, Progress&& progress) {
+  const StepLimits limits{.most = steps, .tolerance = 1e-3};
   constexpr double kGood = 0.01;
   double least = kEverything;
   Fit best;
   for (std::size_t i = 0; i < candidates.poses.size(); ++i) {
     if (i >= candidates.likely && least < kGood * o1.radius) break;
     progress(i);
-    const Fit fit = refine(o1, {candidates.poses[i]}, target, kLimits);
+    const Fit fit = refine(o1, {candidates.poses[i]}, target, limits);
     if (const double found = mismatch(o1, fit.pose, target); found < least) least = found, best = fit;
   }
   return best;
