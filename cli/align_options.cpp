@@ -124,8 +124,9 @@ void add_align_options(CLI::App& app, AlignCommand& command) {
   add_freedom_options(app, command, align);
   app.add_option_function<std::string>(
          "--align-321", [&command](const std::string& file) { command.on = true, command.points_321 = file; },
-         "Instead of --align, move O1 by six of its points and their places on O2: a file with a row of two "
-         "points for each, three primary, two secondary and one tertiary")
+         "Move O1 by six of its points and their places on O2, without a fit: a file with a row of two "
+         "points for "
+         "each, three primary, two secondary and one tertiary")
       ->type_name("FILE")
       ->excludes(align);
 }

@@ -5,6 +5,7 @@
 #include "exit_codes.h"
 #include "format.h"
 #include "input_pair.h"
+#include "islands.h"
 #include "map_files.h"
 #include "map_options.h"
 #include "map_result.h"
@@ -101,6 +102,7 @@ int run(MapCommand command) {
   progress.step("import");
   const bool vertices = command.output.files.any_vertices();
   InputPair pair = load_pair(command, {.vertices = {vertices, vertices && command.both}});
+  if (command.islands) pair.o1.islands = ignore_islands(pair.o1, *command.islands);
   std::optional<AlignOutcome> aligned;
   std::vector<MeshMaps> meshes;
   out.fill([&] {

@@ -15,6 +15,7 @@
 #include "common_options.h"
 #include "doubts.h"
 #include "input_pair.h"
+#include "islands.h"
 #include "map_files.h"
 #include "report_fields.h"
 #include "unit_options.h"
@@ -35,6 +36,7 @@ struct MapOutput {
 struct MapCommand : PairFiles, RunOptions {
   bool both = false;
   UnitOptions file_units;
+  std::optional<sdm::IslandLimits> islands{};  ///< of O1
   AlignCommand align;
   DoubtCommand doubts;
   MapLayout layout;

@@ -12,6 +12,7 @@
 
 #include "atlas_cache.h"
 #include "format.h"
+#include "islands.h"
 #include "map_files.h"
 #include "notes.h"
 #include "output_folder.h"
@@ -139,6 +140,8 @@ Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& co
                                               .time_ms = outcome.time},
                                              *computed.surface, outcome.summary));
   put_fields(report, command.fields);
+  for (const Input* input : {&task.on, &task.to})
+    if (input->islands) report[input->role]["ignored_islands"] = to_json(*input->islands);
   if (task.aligned) report["alignment"] = to_json(*task.aligned);
   if (outcome.raster) report["raster"] = to_json(*outcome.raster);
   return report;

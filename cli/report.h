@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/io.h>
+#include <sdm/islands.h>
 #include <sdm/report.h>
 #include <sdm/sdm.h>
 
@@ -19,6 +20,7 @@ struct Input {
   sdm::Mesh mesh;
   std::optional<sdm::MeshInfo> info{};  ///< once inspected
   std::optional<sdm::WeldReport> weld{};
+  std::optional<sdm::IslandReport> islands{};  ///< that were left out
   std::vector<sdm::FaceNames> names{};
   std::vector<std::string> notes{};             ///< on the file
   std::optional<sdm::FileVertices> vertices{};  ///< of the file, without the transform, if requested

@@ -21,6 +21,7 @@
 #include <sdm/fit_check.h>
 #include <sdm/gl.h>
 #include <sdm/hausdorff.h>
+#include <sdm/islands.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>

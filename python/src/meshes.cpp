@@ -1,6 +1,7 @@
 // Meshes from Python objects and files.
 #include <nanobind/stl/optional.h>
 #include <sdm/io.h>
+#include <sdm/islands.h>
 #include <sdm/weld.h>
 
 #include "arrays.h"
@@ -140,6 +141,44 @@ sides of a thin wall. Raises Error for a tolerance that is not positive.
 )");
 }
 
+void bind_islands(nb::module_& module) {
+  nb::class_<IslandReport>(module, "IslandReport", "What remove_islands() removed.")
+      .def_ro("islands", &IslandReport::islands, "The number of components.")
+      .def_ro("faces", &IslandReport::faces, "The number of their faces.")
+      .def_ro("area", &IslandReport::area, "Their area.")
+      .def_ro("area_fraction", &IslandReport::area_fraction, "That as a fraction of the area of the mesh.")
+      .def("__repr__", [](const IslandReport& self) {
+        return nb::str("sdm.IslandReport(islands={}, faces={}, area={:.3g})")
+            .format(self.islands, self.faces, self.area);
+      });
+  module.def(
+      "remove_islands",
+      [](nb::handle mesh, std::size_t faces, double area, double area_fraction) {
+        const Mesh given = mesh_of(mesh, nb::none());
+        WithoutIslands rest;
+        run(nb::none(), [&](const Progress&) {
+          rest = remove_islands(given, {.faces = faces, .area = area, .area_fraction = area_fraction});
+        });
+        const IslandReport report = rest;
+        return nb::make_tuple(nb::cast(new PyMesh{std::move(rest.mesh)}, nb::rv_policy::take_ownership),
+                              report);
+      },
+      nb::arg("mesh").none(), nb::kw_only(), nb::arg("faces") = 0, nb::arg("area") = 0.0,
+      nb::arg("area_fraction") = 0.0,
+      nb::sig("def remove_islands(mesh: object, *, faces: int = 0, area: float = 0.0, area_fraction: float = "
+              "0.0) -> tuple[Mesh, IslandReport]"),
+      R"(Returns a mesh without its islands, such as the floating specks of a scan, and what was removed: the
+components with less than ``faces`` faces, less than ``area``, or less than ``area_fraction`` of the area of the
+mesh. A limit of 0 has no effect. Vertices keep their numbers.
+
+Raises Error if nothing would be left, and for limits out of range.
+
+>>> vertices, faces = sdm.Mesh(box)
+>>> speck = (np.vstack([vertices, [[9, 0, 0], [9, 1, 0], [9, 0, 1]]]), np.vstack([faces, [[8, 9, 10]]]))
+>>> sdm.remove_islands(speck, faces=2)[1].islands
+1)");
+}
+
 void bind_meshes(nb::module_& module) {
   nb::class_<PyMesh> type(
       module, "Mesh",
@@ -193,6 +232,7 @@ Traceback (most recent call last):
 sdm.Error: ...
 )");
   bind_weld(module);
+  bind_islands(module);
 }
 
 }  // namespace sdm::python
