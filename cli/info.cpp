@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sdm/io.h>
 #include <sdm/mesh.h>
+#include <sdm/report.h>
 #include <sdm/self_intersections.h>
 #include <sdm/solid.h>
 
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cad_options.h"
 #include "format.h"
 #include "notes.h"
 #include "output_folder.h"
@@ -25,6 +27,7 @@ namespace {
 struct Options {
   std::string file;
   std::string self_intersections;  ///< file for the pairs; empty: none
+  sdm::TessellationOptions tessellation{};
   bool json = false;
 };
 
@@ -32,6 +35,7 @@ using FacePairs = std::vector<std::array<std::uint32_t, 2>>;
 
 struct Info {
   sdm::MeshInfo mesh;
+  std::optional<sdm::Tessellation> tessellation{};
   Notes notes{};
   std::uint64_t budget = 0;                       ///< of the search for self-intersections, in pairs of faces
   std::optional<FacePairs> self_intersections{};  ///< unless it takes more
@@ -40,9 +44,11 @@ struct Info {
   [[nodiscard]] bool is_solid() const { return mesh.closed && mesh.orientable; }
 };
 
-Info collect(const std::string& file) {
-  Input input = load_input("mesh", file, "");
-  Info info{.mesh = sdm::inspect(input.mesh), .notes = std::move(input.notes)};
+Info collect(const Options& options) {
+  Input input = load_input("mesh", options.file, "", {.tessellation = options.tessellation});
+  check_deflection(options.tessellation, {&input});
+  Info info{
+      .mesh = sdm::inspect(input.mesh), .tessellation = input.tessellation, .notes = std::move(input.notes)};
   const sdm::Sites sites(std::move(input.mesh));
   info.budget = sdm::self_intersection_budget(sites);
   info.self_intersections = sdm::self_intersections(sites, info.budget);
@@ -85,6 +91,9 @@ nlohmann::ordered_json info_json(const std::string& file, const Info& all) {
       {"volume", all.volume
                      ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
                      : nlohmann::ordered_json()},
+      {"tessellation", all.tessellation
+                           ? nlohmann::ordered_json::parse(sdm::tessellation_json(*all.tessellation))
+                           : nlohmann::ordered_json()},
       {"notes", all.notes}};
 }
 
@@ -143,6 +152,9 @@ void print_table(std::ostream& out, const std::string& file, const Info& all) {
   row("uvs", text(info.has_uvs));
   row("area", text(info.area));
   row("volume", volume_text(all));
+  if (all.tessellation) {
+    for (const auto& [name, value] : rows_of(*all.tessellation)) row(name, value);
+  }
   for (const std::string& note : all.notes) row("note", note);
 }
 
@@ -154,7 +166,7 @@ std::string to_csv(const FacePairs& pairs) {
 }
 
 void run(const Options& options) {
-  const Info info = collect(options.file);
+  const Info info = collect(options);
   if (!options.self_intersections.empty()) {
     if (!info.self_intersections)
       throw sdm::Error(fmt::format("{}: the self-intersections are {}; cut the mesh into parts", options.file,
@@ -177,6 +189,7 @@ void add_info_command(CLI::App& app) {
   command->add_option("MESH", options->file, fmt::format("The mesh ({})", sdm::mesh_format_names()))
       ->required();
   command->add_flag("--json", options->json, "Print JSON");
+  add_deflection_option(*command, options->tessellation);
   command
       ->add_option("--self-intersections", options->self_intersections,
                    "Write all pairs of faces that intersect, numbered from 0, to this CSV file; an error "

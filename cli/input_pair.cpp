@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cad_options.h"
 #include "common_options.h"
 #include "format.h"
 #include "stopwatch.h"
@@ -19,6 +20,7 @@ void add_pair_transforms(CLI::App& app, PairFiles& files) {
   add_transform_option(app, "--transform-o1", "O1", files.transform_o1);
   add_transform_option(app, "--transform-o2", "O2", files.transform_o2);
   add_weld_option(app, files.weld, "both meshes");
+  add_deflection_option(app, files.tessellation);
 }
 
 InputPair load_pair(const PairFiles& files, const PairReading& reading) {
@@ -26,12 +28,13 @@ InputPair load_pair(const PairFiles& files, const PairReading& reading) {
   InputPair pair;
   const auto load = [&](Input& input, const char* role, const std::string& file, const std::string& transform,
                         bool vertices) {
-    input = load_input(role, file, transform, {vertices});
+    input = load_input(role, file, transform, {vertices, files.tessellation});
     if (files.weld) weld(input, *files.weld);
     if (reading.inspects) inspect(input);
   };
   sdm::run_concurrently({[&] { load(pair.o1, "o1", files.o1, files.transform_o1, reading.vertices[0]); },
                          [&] { load(pair.o2, "o2", files.o2, files.transform_o2, reading.vertices[1]); }});
+  check_deflection(files.tessellation, {&pair.o1, &pair.o2});
   pair.import_ms = watch.lap();
   return pair;
 }

@@ -13,11 +13,12 @@
 struct PairFiles {
   std::string o1, o2, transform_o1, transform_o2;
   std::optional<sdm::WeldOptions> weld{};
+  sdm::TessellationOptions tessellation{};
 };
 
 /// Adds O1 and O2, both required, with these descriptions.
 void add_pair_arguments(CLI::App& app, PairFiles& files, const std::array<std::string, 2>& descriptions);
-/// Adds --transform-o1, --transform-o2 and --weld.
+/// Adds --transform-o1, --transform-o2, --weld and --deflection.
 void add_pair_transforms(CLI::App& app, PairFiles& files);
 
 /// Both meshes, after their transforms.

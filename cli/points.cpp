@@ -11,6 +11,7 @@
 #include <string>
 
 #include "alignment.h"
+#include "cad_options.h"
 #include "common_options.h"
 #include "doubts.h"
 #include "exit_codes.h"
@@ -38,6 +39,7 @@ struct PointsCommand : RunOptions {
   std::filesystem::path out;
   UnitOptions file_units;
   std::optional<sdm::WeldOptions> weld{};  ///< of O2
+  sdm::TessellationOptions tessellation{};
   AlignCommand align;
   DoubtCommand doubts;
   sdm::MapOptions map;
@@ -211,7 +213,8 @@ int run(PointsCommand command) {
   progress.step("import");
   sdm::PointDistancesOptions options{.map = command.map, .picture = command.picture, .text = command.text};
   options.placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1));
-  Input o2 = load_input("o2", command.o2, command.transform_o2);
+  Input o2 = load_input("o2", command.o2, command.transform_o2, {.tessellation = command.tessellation});
+  check_deflection(command.tessellation, {&o2});
   if (command.weld) weld(o2, *command.weld);
   PointsOutcome outcome;
   Json report;
@@ -317,6 +320,7 @@ void add_points_command(CLI::App& app) {
   add_transform_option(*points, "--transform-o2", "O2", c.transform_o2);
   add_unit_options(*points, c.file_units);
   add_weld_option(*points, c.weld, "O2");
+  add_deflection_option(*points, c.tessellation);
   add_align_options(*points, c.align);
   points->add_option("--max-distance", c.map.max_distance, "Points farther than this have no value")
       ->check(positive_number())

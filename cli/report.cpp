@@ -66,6 +66,8 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   Input input{.role = role, .file = file, .transform = transform, .mesh = std::move(read.mesh)};
   input.names = std::move(read.names);
   input.vertices = std::move(read.vertices);
+  input.tessellation = std::move(read.tessellation);
+  if (input.tessellation) input.notes.push_back(sdm::note_on(*input.tessellation, file));
   for (const std::string& note : read.notes) input.notes.push_back(fmt::format("{}: {}", file, note));
   if (const auto note = note_on_precision(file, input.mesh.positions, size_of(sdm::bounds(input.mesh))))
     input.notes.push_back(*note);
@@ -78,7 +80,11 @@ void inspect(Input& input) {
 }
 
 sdm::ReportedMesh reported(const Input& input) {
-  return {.file = input.file, .transform = input.transform, .info = *input.info, .weld = input.weld};
+  return {.file = input.file,
+          .transform = input.transform,
+          .info = *input.info,
+          .weld = input.weld,
+          .tessellation = input.tessellation};
 }
 
 Json to_json(const Input& input) {

@@ -7,16 +7,22 @@
 
 namespace {
 
-bool is_gltf(const std::string& file) {
-  const std::string extension = std::filesystem::path(file).extension().string();
-  return extension == ".glb" || extension == ".gltf";
+/// That of all files of a format, by the extension; empty if there is none. CAD is converted when it is read.
+std::string unit_of_format(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  if (extension == ".glb" || extension == ".gltf") return "m";
+  for (const char* cad : {".step", ".stp", ".iges", ".igs"})
+    if (extension == cad) return "mm";
+  return {};
 }
 
 /// The unit of a file: as given, as its format has it, or that of all lengths.
 std::string unit_of(const std::string& given, const std::string& file, const std::string& units,
                     const char* option) {
   if (!given.empty()) return given;
-  if (is_gltf(file)) return "m";
+  if (std::string unit = unit_of_format(file); !unit.empty()) return unit;
   if (units.empty())
     throw CLI::ValidationError(option, fmt::format("is needed, as {} does not state its units", file));
   return units;
@@ -32,11 +38,11 @@ void scale_first(std::string& transform, double factor) {
 
 void add_unit_options(CLI::App& app, UnitOptions& units) {
   const auto add = [&](const char* option, const char* mesh, std::string& unit) {
-    app.add_option(
-           option, unit,
-           fmt::format("The unit of the coordinates in the file of {}, m, cm, mm, um, in or ft: both "
-                       "files are converted to the unit of --units or else to that of O2; glTF is in m",
-                       mesh))
+    app.add_option(option, unit,
+                   fmt::format("The unit of the coordinates in the file of {}, m, cm, mm, um, in or ft: both "
+                               "files are converted to the unit of --units or else to that of O2; glTF is "
+                               "in m, STEP and IGES are read in mm",
+                               mesh))
         ->check(CLI::Validator(
             [](const std::string& text) {
               return sdm::metres_per(text) ? std::string() : text + " is not one of m, cm, mm, um, in, ft";

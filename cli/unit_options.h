@@ -18,6 +18,6 @@ struct ConvertedPair {
 };
 
 /// If one of the options is given: scales both files, before their transforms, to `units`, by default that of
-/// O2, which is then set. glTF is in metres; another file without its option is in `units`. Throws
-/// CLI::ValidationError for a file whose unit is not known.
+/// O2, which is then set. glTF is in metres, and CAD in millimetres; another file without its option is in
+/// `units`. Throws CLI::ValidationError for a file whose unit is not known.
 void convert_units(const UnitOptions& options, const ConvertedPair& pair);

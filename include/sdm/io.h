@@ -11,6 +11,7 @@
 #include <sdm/summary.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
+#include <sdm/tessellation.h>
 #include <sdm/tolerance.h>
 #include <sdm/transform.h>
 
@@ -24,11 +25,14 @@
 
 namespace sdm {
 
-/// Reads OBJ, PLY, STL, OFF, glTF/GLB or 3DS. The format is detected from the content, then from the
-/// extension. Polygons are triangulated, all meshes of the file are merged into one, and glTF's nodes,
-/// instances, default morph weights and skins are applied. Vertices used by faces keep their order;
-/// bit-identical positions are welded. The result is valid in the sense of validate(). It has texture
-/// coordinates if every corner of the file has; what else was left out is in MeshFile::notes.
+/// Reads OBJ, PLY, STL, OFF, glTF/GLB, 3DS, or STEP and IGES if sdm was built with SDM_BUILD_CAD. The format
+/// is detected from the content, then from the extension. Polygons are triangulated, all meshes of the file
+/// are merged into one, and glTF's nodes, instances, default morph weights and skins are applied. Vertices
+/// used by faces keep their order; bit-identical positions are welded. The result is valid in the sense of
+/// validate(). It has texture coordinates if every corner of the file has; what else was left out is in
+/// MeshFile::notes. STEP and IGES are tessellated as MeshFileOptions has it, in millimetres, see
+/// MeshFile::tessellation; one such file is read at a time, and a deflection or an angle that is not positive
+/// is an error, too.
 [[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
 
 /// The vertices and polygons of a file as they are stored, before welding and triangulation. Those of the
@@ -48,11 +52,13 @@ struct MeshFile {
   /// that is not that of the file, text without its end.
   std::vector<std::string> notes{};
   std::optional<FileVertices> vertices{};
+  std::optional<Tessellation> tessellation{};  ///< of STEP and IGES
 };
 
 /// Options of read_mesh_file().
 struct MeshFileOptions {
   bool vertices = false;  ///< keep the vertices of the file: up to six times the memory of the mesh for STL
+  TessellationOptions tessellation{};  ///< of STEP and IGES; other files consist of polygons
 };
 
 /// Reads a mesh as read_mesh() does, with the names of its faces.

@@ -20,9 +20,11 @@
 namespace sdm {
 
 /// Names that a file gives to faces: those of objects (OBJ o, glTF meshes, solids of STL text, 3DS), of
-/// groups (OBJ g; several of one face, as in "g a b", are one name) or of materials (OBJ usemtl, glTF).
+/// groups (OBJ g; several of one face, as in "g a b", are one name) or of materials (OBJ usemtl, glTF). CAD
+/// has objects, the instances of its parts, faces, "face 7" for the seventh if it has no name, and colors,
+/// such as "#c0ffee".
 struct FaceNames {
-  std::string kind;                    ///< "object", "group" or "material"
+  std::string kind;                    ///< "object", "group", "material", "face" or "color"
   std::vector<std::string> names;      ///< each once, in the order of the file
   std::vector<std::uint32_t> of_face;  ///< for each triangle of the mesh, an index into names or kNone
 };

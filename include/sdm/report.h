@@ -9,6 +9,7 @@
 #include <sdm/mesh.h>
 #include <sdm/summary.h>
 #include <sdm/surface.h>
+#include <sdm/tessellation.h>
 #include <sdm/weld.h>
 
 #include <cstddef>
@@ -21,7 +22,8 @@ namespace sdm {
 struct ReportedMesh {
   std::string file, transform{};
   MeshInfo info{};
-  std::optional<WeldReport> weld{};  ///< if it was welded
+  std::optional<WeldReport> weld{};            ///< if it was welded
+  std::optional<Tessellation> tessellation{};  ///< if its file is CAD
 };
 
 /// Wall-clock times in milliseconds; nothing where none was taken.
@@ -49,5 +51,7 @@ struct MapReport {
 [[nodiscard]] SDM_API std::string summary_json(const Summary& summary);
 /// Returns the value of `o1`, `o2` or `mesh`.
 [[nodiscard]] SDM_API std::string mesh_json(const ReportedMesh& mesh);
+/// Returns the value of `tessellation`.
+[[nodiscard]] SDM_API std::string tessellation_json(const Tessellation& tessellation);
 
 }  // namespace sdm

@@ -41,6 +41,7 @@
 #include <sdm/summary.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
+#include <sdm/tessellation.h>
 #include <sdm/thickness.h>
 #include <sdm/threads.h>
 #include <sdm/time_of_contact.h>

@@ -187,7 +187,7 @@ void bind_meshes(nb::module_& module) {
 Accepts the same forms of a mesh as every function of this package:
 
 - two arrays ``(vertices, faces)``: n × 3 numbers of any dtype, m × 3 integers
-- the path of an OBJ, PLY, STL, OFF, glTF, GLB or 3DS file
+- the path of an OBJ, PLY, STL, OFF, glTF, GLB, 3DS, STEP or IGES file
 - ``Mesh``, ``Sites``, ``Surface``
 - ``trimesh.Trimesh``, ``open3d.geometry.TriangleMesh``, ``open3d.t.geometry.TriangleMesh``,
   ``pyvista.PolyData``, ``meshio.Mesh``
@@ -212,19 +212,26 @@ array([ 0.5,  0. ,  0. , -0.5]))");
 
   module.def(
       "read",
-      [](nb::handle file) {
+      [](nb::handle file, std::optional<double> deflection) {
         const std::filesystem::path name = path_of(file);
         Mesh mesh;
-        run(nb::none(), [&](const Progress&) { mesh = read_mesh(name); });
+        run(nb::none(), [&](const Progress&) {
+          mesh = read_mesh_file(name, {.tessellation = {.deflection = deflection}}).mesh;
+        });
         return new PyMesh{std::move(mesh)};
       },
-      nb::rv_policy::take_ownership, nb::arg("file").none(),
-      nb::sig("def read(file: str | os.PathLike[str]) -> Mesh"),
-      R"(Reads a mesh file: OBJ, PLY, STL, OFF, glTF, GLB or 3DS.
+      nb::rv_policy::take_ownership, nb::arg("file").none(), nb::arg("deflection") = nb::none(),
+      nb::sig("def read(file: str | os.PathLike[str], deflection: float | None = None) -> Mesh"),
+      R"(Reads a mesh file: OBJ, PLY, STL, OFF, glTF, GLB, 3DS, or STEP and IGES if the package was built with
+SDM_BUILD_CAD.
 
 The format is detected from the content, then from the extension. Polygons are triangulated, node
 transforms are applied, and all meshes of the file are merged into one. Vertices used by faces keep their
 order; bit-identical positions become one vertex. Raises Error, naming the file and the fault.
+
+deflection: of STEP and IGES, whose coordinates are in millimetres: the distance that triangles may have
+from the exact surface, as OpenCASCADE keeps it; by default 1/2000 of the diagonal. Other files consist of
+polygons, and do not use it. Raises Error unless it is positive.
 
 >>> sdm.read('no such file.ply')
 Traceback (most recent call last):

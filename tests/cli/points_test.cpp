@@ -496,6 +496,7 @@ TEST_F(PointsCommand, BadFilesAreOneSentence) {
   refused("a.las", good_las.substr(0, 200), "the header of the LAS file is cut off");
   refused("a.las", good_las.substr(0, 5000), "more than the file can hold");
   refused("a.las", las(points, 2, 128 + 1), "LAZ, compressed LAS, is not supported");
+  refused("a.e57", "ASTM-E57" + std::string(40, '\0'), "E57 is not supported; convert the cloud to LAS");
   refused("a.las", las(points, 5), "does not exist up to LAS 1.4");
   std::string flat = good_las;
   std::fill_n(flat.begin() + 131, 8, '\0');

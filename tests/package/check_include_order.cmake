@@ -51,6 +51,8 @@ set(order
   io/mesh
   io/mesh/frames
   io/mesh/gltf
+  io/mesh/cad
+  io/mesh/cad/opencascade
   io/image/pictures
   io/mesh/model
   io/image/views
@@ -94,6 +96,9 @@ foreach(file ${files})
     endif()
     if("${included}" MATCHES "^gl(/|$)" AND NOT "${folder}" MATCHES "^(gl(/|$)|engines$)")
       message(SEND_ERROR "src/${file} may not have ${include}: only the table of engines includes the gl engine")
+    endif()
+    if("${included}" MATCHES "^io/mesh/cad/" AND NOT "${folder}" MATCHES "^io/mesh/cad/")
+      message(SEND_ERROR "src/${file} may not have ${include}: only the module includes OpenCASCADE")
     endif()
     if(NOT included STREQUAL folder)
       string(MAKE_C_IDENTIFIER "${folder}" key)

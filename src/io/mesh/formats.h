@@ -2,6 +2,8 @@
 // does not name the file.
 #pragma once
 
+#include <sdm/tessellation.h>
+
 #include <filesystem>
 #include <string_view>
 
@@ -39,5 +41,16 @@ namespace sdm::io {
 
 /// Reads Autodesk 3DS: all meshes, in the coordinates of the scene, as they are stored.
 [[nodiscard]] PolygonMesh read_3ds(std::string_view bytes);
+
+/// Reads STEP (ISO 10303-21) and IGES as text: the faces of all solids, shells and surfaces, in millimetres,
+/// assemblies with their instances, with the names and colours of faces. Faces that share an edge share the
+/// vertices on it. Also throws sdm::Error where the module that has OpenCASCADE is not installed.
+[[nodiscard]] PolygonMesh read_step(std::string_view bytes, const std::filesystem::path& file,
+                                    const TessellationOptions& options);
+[[nodiscard]] PolygonMesh read_iges(std::string_view bytes, const std::filesystem::path& file,
+                                    const TessellationOptions& options);
+/// Returns whether the data begin as STEP, or as IGES: its first line has the letter S in column 73.
+[[nodiscard]] bool is_step(std::string_view bytes);
+[[nodiscard]] bool is_iges(std::string_view bytes);
 
 }  // namespace sdm::io

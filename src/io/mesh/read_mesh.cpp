@@ -43,7 +43,7 @@ Mesh read_mesh(const std::filesystem::path& file) try {
 
 MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions& options) try {
   return io::with_error_prefix(file.string(), [&] {
-    io::PolygonMesh polygons = io::read_polygons(io::read_bytes(file).view(), file);
+    io::PolygonMesh polygons = io::read_polygons(io::read_bytes(file).view(), file, options.tessellation);
     std::vector<std::uint32_t> renumbered, triangle_ends;
     MeshFile result{.mesh = io::to_mesh(polygons, renumbered, triangle_ends),
                     .names = {},
@@ -53,6 +53,9 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
     add_names("object", polygons.objects, triangle_ends, result.names);
     add_names("group", polygons.groups, triangle_ends, result.names);
     add_names("material", polygons.materials, triangle_ends, result.names);
+    add_names("face", polygons.faces, triangle_ends, result.names);
+    add_names("color", polygons.colors, triangle_ends, result.names);
+    result.tessellation = std::move(polygons.tessellation);
     if (options.vertices)
       result.vertices = FileVertices{.positions = std::move(polygons.positions),
                                      .mesh_vertex = std::move(renumbered),

@@ -47,7 +47,8 @@ struct Format {
   std::array<std::string_view, 2> extensions;  ///< in lower case
   bool text_only;
   bool (*matches)(const Content& content);
-  PolygonMesh (*read)(std::string_view bytes, const std::filesystem::path& file);
+  PolygonMesh (*read)(std::string_view bytes, const std::filesystem::path& file,
+                      const TessellationOptions& options);
 };
 
 // The table of formats. The first that matches the content is taken, else the one with the extension.
@@ -56,28 +57,34 @@ constexpr Format kFormats[] = {
      {".gltf", ".glb"},
      false,
      [](const Content& c) { return c.bytes.starts_with("glTF") || c.first_word.starts_with('{'); },
-     read_gltf},
+     [](std::string_view bytes, const auto& file, const auto&) { return read_gltf(bytes, file); }},
+    {"STEP", {".step", ".stp"}, true, [](const Content& c) { return is_step(c.bytes); }, read_step},
+    {"IGES", {".iges", ".igs"}, true, [](const Content& c) { return is_iges(c.bytes); }, read_iges},
     {"STL",
      {".stl"},
      false,
      [](const Content& c) { return is_stl_binary(c.bytes) || same_word(c.first_word, "solid"); },
-     [](std::string_view bytes, const auto&) { return read_stl(bytes); }},
+     [](std::string_view bytes, const auto&, const auto&) { return read_stl(bytes); }},
     {"PLY",
      {".ply"},
      false,
      [](const Content& c) { return TextScanner(c.bytes).accept("ply"); },
-     [](std::string_view bytes, const auto&) { return read_ply(bytes); }},
+     [](std::string_view bytes, const auto&, const auto&) { return read_ply(bytes); }},
     {"OFF",
      {".off"},
      true,
      [](const Content& c) { return is_off_header(c.first_word); },
-     [](std::string_view bytes, const auto&) { return read_off(bytes); }},
-    {"OBJ", {".obj"}, true, is_obj, [](std::string_view bytes, const auto&) { return read_obj(bytes); }},
+     [](std::string_view bytes, const auto&, const auto&) { return read_off(bytes); }},
+    {"OBJ",
+     {".obj"},
+     true,
+     is_obj,
+     [](std::string_view bytes, const auto&, const auto&) { return read_obj(bytes); }},
     {"3DS",
      {".3ds"},
      false,
      [](const Content& c) { return !c.text && c.bytes.starts_with("MM"); },
-     [](std::string_view bytes, const auto&) { return read_3ds(bytes); }},
+     [](std::string_view bytes, const auto&, const auto&) { return read_3ds(bytes); }},
 };
 
 const Format* format_of_extension(std::string_view extension) {
@@ -118,13 +125,14 @@ std::string_view mesh_format_of(std::string_view begin) {
   return format == std::end(kFormats) ? std::string_view() : format->names;
 }
 
-PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file) {
+PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file,
+                          const TessellationOptions& options) {
   const Content content(without_byte_order_mark(bytes));
   const Format* format = find_format(content, file);
   if (format == nullptr) throw Error(fmt::format("unknown format; {} are supported", mesh_format_names()));
   if (format->text_only && !content.text)
     throw Error("holds binary data where text is expected; it is damaged or has another format");
-  return format->read(content.bytes, file);
+  return format->read(content.bytes, file, options);
 }
 
 }  // namespace sdm::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/error.h>
+#include <sdm/tessellation.h>
 
 #include <filesystem>
 #include <new>
@@ -24,7 +25,8 @@ namespace sdm::io {
 [[nodiscard]] std::string_view mesh_format_of(std::string_view begin);
 
 /// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.
-[[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file);
+[[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file,
+                                        const TessellationOptions& options = {});
 
 /// Calls `read`. If it throws sdm::Error or runs out of memory, throws an sdm::Error whose message begins
 /// with `name`, unless that is empty. It is printable(), whatever the file contains.

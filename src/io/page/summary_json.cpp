@@ -27,6 +27,18 @@ Json to_json(const WeldReport& weld) {
           {"t_junctions", weld.t_junctions}};
 }
 
+Json to_json(const Tessellation& t) {
+  return {{"format", t.format},
+          {"file_unit", t.file_unit.empty() ? Json() : Json(t.file_unit)},
+          {"unit", "mm"},
+          {"faces", t.faces},
+          {"omitted_faces", t.omitted_faces},
+          {"deflection", t.deflection},
+          {"angle", t.angle},
+          {"largest_deviation",
+           {{"value", t.largest_deviation}, {"kind", "estimate"}, {"points", t.measured_points}}}};
+}
+
 Json to_json(const ReportedMesh& mesh) {
   Json json{{"file", mesh.file},
             {"transform", mesh.transform},
@@ -36,6 +48,7 @@ Json to_json(const ReportedMesh& mesh) {
             {"degenerate_faces", mesh.info.degenerate_faces},
             {"duplicate_faces", mesh.info.duplicate_faces}};
   if (mesh.weld) json["weld"] = to_json(*mesh.weld);
+  if (mesh.tessellation) json["tessellation"] = to_json(*mesh.tessellation);
   return json;
 }
 
@@ -249,6 +262,10 @@ Json to_json(const ReportTimes& t) {
 }
 
 }  // namespace
+
+std::string tessellation_json(const Tessellation& tessellation) {
+  return text_of(to_json(tessellation));
+}
 
 std::string mesh_json(const ReportedMesh& mesh) {
   return text_of(to_json(mesh));

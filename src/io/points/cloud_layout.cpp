@@ -179,6 +179,8 @@ bool is_pcd(std::string_view bytes) {
 }  // namespace
 
 std::optional<CloudLayout> cloud_layout(std::string_view bytes) {
+  if (bytes.starts_with("ASTM-E57"))
+    throw Error("E57 is not supported; convert the cloud to LAS or PLY, for example with CloudCompare");
   if (bytes.starts_with("LASF")) return las_layout(bytes);
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || bytes.starts_with("ply "))
     return ply_layout(bytes);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <sdm/mesh.h>
+#include <sdm/tessellation.h>
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,8 +37,9 @@ struct PolygonMesh {
   std::vector<std::uint32_t> corners;     ///< the vertex of each corner, polygon after polygon
   std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; may be empty
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
-  PolygonNames objects, groups, materials;
-  std::vector<std::string> notes;  ///< what was left out, or may be wrong; see MeshFile::notes
+  PolygonNames objects, groups, materials, faces, colors;
+  std::optional<Tessellation> tessellation;  ///< of CAD
+  std::vector<std::string> notes;            ///< what was left out, or may be wrong; see MeshFile::notes
 
   /// Ends a polygon of the corners added since the last one. Polygons of fewer than three corners are
   /// dropped.

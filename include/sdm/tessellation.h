@@ -1,0 +1,40 @@
+/// How the surfaces of a CAD file became triangles.
+///
+/// Threads: plain values; the functions may be called concurrently.
+#pragma once
+
+#include <sdm/api.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace sdm {
+
+/// What is asked of the triangles of a CAD file.
+struct TessellationOptions {
+  /// The distance from the triangles to the exact surface that is aimed at, in millimetres. Nothing: 1/2000
+  /// of the diagonal of the part's box.
+  std::optional<double> deflection{};
+  double angle =
+      0.2;  ///< the angle in radians between the normals of neighbouring triangles that is aimed at
+};
+
+/// The tessellation of a CAD file. Coordinates are in millimetres, whatever the unit of the file.
+struct Tessellation {
+  std::string format;                ///< "STEP" or "IGES"
+  std::string file_unit;             ///< as the file has it, such as "INCH"; empty if it has none
+  std::size_t faces = 0;             ///< of all instances of all parts
+  std::size_t omitted_faces = 0;     ///< of them, without a triangle, since they could not be tessellated
+  double deflection = 0, angle = 0;  ///< that were aimed at
+  /// An estimate: the largest distance from a point of the exact surfaces and edges to the triangles, over
+  /// points inside of each triangle and of each side on an edge. Other points may be farther.
+  double largest_deviation = 0;
+  std::size_t measured_points = 0;
+};
+
+/// Returns a sentence that distances and verdicts hold for the triangles, which may deviate from the surface
+/// of `file`, and by how much they were found to.
+[[nodiscard]] SDM_API std::string note_on(const Tessellation& tessellation, const std::string& file);
+
+}  // namespace sdm

@@ -1,0 +1,182 @@
+#include "io/mesh/cad/opencascade/document.h"
+
+#include <BRep_Builder.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Interface_Static.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_AsciiString.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <istream>
+#include <map>
+#include <stdexcept>
+#include <streambuf>
+
+namespace sdm::io::cad {
+namespace {
+
+constexpr const char* kDamaged = "OpenCASCADE cannot read it; it is damaged or has another format";
+
+/// Bytes as a stream, without a copy.
+class BytesBuffer : public std::streambuf {
+ public:
+  explicit BytesBuffer(std::string_view bytes) {
+    char* const begin = const_cast<char*>(bytes.data());
+    setg(begin, begin, begin + bytes.size());
+  }
+};
+
+/// An open document, which is closed with what it holds.
+class OpenDocument {
+ public:
+  OpenDocument() { XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document); }
+  ~OpenDocument() { XCAFApp_Application::GetApplication()->Close(document); }
+  OpenDocument(const OpenDocument&) = delete;
+  OpenDocument& operator=(const OpenDocument&) = delete;
+
+  Handle(TDocStd_Document) document;
+};
+
+/// Of all units of a file, each once.
+std::string unit_names(const TColStd_SequenceOfAsciiString& names) {
+  std::string all;
+  for (const TCollection_AsciiString& name : names) {
+    const std::string one = name.ToCString();
+    if (all.find(one) == std::string::npos) all += (all.empty() ? "" : ", ") + one;
+  }
+  return all;
+}
+
+std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & document,
+                      const Message_ProgressRange& progress) {
+  STEPCAFControl_Reader reader;
+  Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
+  BytesBuffer buffer(request.bytes);
+  std::istream stream(&buffer);
+  if (reader.ChangeReader().ReadStream("file", stream) != IFSelect_RetDone)
+    throw std::runtime_error(kDamaged);
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
+  if (!reader.Transfer(document, progress)) throw std::runtime_error(kDamaged);
+  return unit_names(lengths);
+}
+
+std::string read_iges(const CadRequest& request, Handle(TDocStd_Document) & document,
+                      const Message_ProgressRange& progress) {
+  IGESCAFControl_Reader reader;
+  if (reader.ReadFile(request.file) != IFSelect_RetDone) throw std::runtime_error(kDamaged);
+  std::string unit;
+  if (const auto name = reader.IGESModel()->GlobalSection().UnitName(); !name.IsNull())
+    unit = name->ToCString();
+  if (!reader.Transfer(document, progress)) throw std::runtime_error(kDamaged);
+  return unit;
+}
+
+std::string name_of(const TDF_Label& label) {
+  Handle(TDataStd_Name) name;
+  if (label.IsNull() || !label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+  return TCollection_AsciiString(name->Get()).ToCString();
+}
+
+/// Collects the faces of all instances, from the assemblies down.
+class FaceCollector {
+ public:
+  explicit FaceCollector(const Handle(TDocStd_Document) & document)
+      : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+        colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())) {}
+
+  void collect(Document& result) {
+    result_ = &result;
+    BRep_Builder builder;
+    TopoDS_Compound whole;
+    builder.MakeCompound(whole);
+    TDF_LabelSequence roots;
+    shapes_->GetFreeShapes(roots);
+    for (const TDF_Label& root : roots) {
+      builder.Add(whole, XCAFDoc_ShapeTool::GetShape(root));
+      visit(root, TopLoc_Location(), {}, {});
+    }
+    result.whole = whole;
+  }
+
+ private:
+  // `name` and `color`: those that an instance has from the assembly.
+  void visit(const TDF_Label& label, const TopLoc_Location& place, const std::string& name,
+             const std::string& color) {
+    const std::string own = color.empty() ? color_of(label) : color;
+    if (XCAFDoc_ShapeTool::IsAssembly(label)) {
+      TDF_LabelSequence parts;
+      XCAFDoc_ShapeTool::GetComponents(label, parts);
+      for (const TDF_Label& part : parts) visit(part, place, {}, own);
+    } else if (TDF_Label part; XCAFDoc_ShapeTool::GetReferredShape(label, part)) {
+      visit(part, place * XCAFDoc_ShapeTool::GetLocation(label), name_of(label), own);
+    } else {
+      add_part(label, place, name, own);
+    }
+  }
+
+  void add_part(const TDF_Label& label, const TopLoc_Location& place, const std::string& instance,
+                const std::string& color) {
+    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+    const std::string part = name_of(label);
+    const std::uint32_t object = add_object(part.empty() ? instance : part);
+    for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
+      TDF_Label own;
+      const bool has_own = shapes_->FindSubShape(label, face.Current(), own);
+      std::string own_color = has_own ? color_of(own) : std::string();
+      result_->faces.push_back({.face = TopoDS::Face(face.Current().Moved(place)),
+                                .name = has_own ? name_of(own) : std::string(),
+                                .color = own_color.empty() ? color : std::move(own_color),
+                                .object = object});
+    }
+  }
+
+  // Instances of one part are numbered from the second on.
+  std::uint32_t add_object(const std::string& name) {
+    const std::size_t number = ++instances_[name];
+    const std::string shown = name.empty() ? "part" : name;
+    result_->objects.push_back(number == 1 ? shown : shown + " (" + std::to_string(number) + ")");
+    return static_cast<std::uint32_t>(result_->objects.size() - 1);
+  }
+
+  std::string color_of(const TDF_Label& label) const {
+    Quantity_Color color;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
+      if (colors_->GetColor(label, type, color)) {
+        std::string hex = Quantity_Color::ColorToHex(color).ToCString();
+        for (char& c : hex)
+          if (c >= 'A' && c <= 'F') c = static_cast<char>(c - 'A' + 'a');
+        return hex;
+      }
+    return {};
+  }
+
+  Handle(XCAFDoc_ShapeTool) shapes_;
+  Handle(XCAFDoc_ColorTool) colors_;
+  Document* result_ = nullptr;
+  std::map<std::string, std::size_t> instances_;
+};
+
+}  // namespace
+
+Document read_document(const CadRequest& request, const Message_ProgressRange& progress) {
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  OpenDocument open;
+  Document result;
+  result.unit = request.format == CadFormat::step ? read_step(request, open.document, progress)
+                                                  : read_iges(request, open.document, progress);
+  FaceCollector(open.document).collect(result);
+  return result;
+}
+
+}  // namespace sdm::io::cad

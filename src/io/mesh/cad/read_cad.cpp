@@ -1,0 +1,164 @@
+// STEP and IGES, by the module that has OpenCASCADE.
+#include <fmt/format.h>
+#include <sdm/closest_points.h>
+#include <sdm/error.h>
+#include <sdm/sites.h>
+
+#include <array>
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <span>
+
+#include "core/cancellation.h"
+#include "io/mesh/cad/load_module.h"
+#include "io/mesh/formats.h"
+
+namespace sdm::io {
+namespace {
+
+using cad::CadFormat;
+using cad::CadShape;
+
+constexpr std::size_t kIgesLine = 80, kIgesSection = 72;  // characters; the column of the section's letter
+constexpr double kMostAngle = std::numbers::pi / 2;
+
+PolygonMesh to_polygons(const CadShape& shape) {
+  PolygonMesh mesh;
+  mesh.positions = shape.positions;
+  mesh.corners.reserve(3 * shape.triangles.size());
+  mesh.ends.reserve(shape.triangles.size());
+  for (const auto& triangle : shape.triangles) {
+    mesh.corners.insert(mesh.corners.end(), triangle.begin(), triangle.end());
+    mesh.end_polygon();
+  }
+  for (std::size_t i = 0; i < shape.faces.size(); ++i) {
+    const CadShape::Face& face = shape.faces[i];
+    mesh.objects.begin(face.first_triangle, shape.objects[face.object]);
+    mesh.faces.begin(face.first_triangle, face.name.empty() ? fmt::format("face {}", i + 1) : face.name);
+    mesh.colors.begin(face.first_triangle, face.color);
+  }
+  return mesh;
+}
+
+/// Measures distances to the triangles, and hands cancellation on.
+class Client final : public cad::CadClient {
+ public:
+  bool stopped() noexcept override {
+    return failed_ || (token_.flag != nullptr && *token_.flag) ||
+           (token_.progress != nullptr && *token_.progress);
+  }
+
+  bool tessellated(const CadShape& shape) noexcept override {
+    return safely([&] { sites_ = std::make_unique<Sites>(to_mesh(to_polygons(shape))); });
+  }
+
+  double distance(const Vec3& point) noexcept override {
+    double result = 0;
+    safely([&] { result = closest_points(*sites_, std::span(&point, 1)).front().distance; });
+    return result;
+  }
+
+  void rethrow() const {
+    if (fault_) std::rethrow_exception(fault_);
+  }
+
+ private:
+  template <class Work>
+  bool safely(const Work& work) noexcept {
+    try {
+      work();
+      return true;
+    } catch (...) {
+      fault_ = std::current_exception(), failed_ = true;
+      return false;
+    }
+  }
+
+  CancelToken token_ = cancel_token();
+  std::unique_ptr<Sites> sites_;
+  std::exception_ptr fault_;
+  std::atomic<bool> failed_ = false;
+};
+
+// OpenCASCADE reads what is there of a file that was cut.
+void require_end(std::string_view bytes, bool there) {
+  if (!there)
+    throw Error(fmt::format("has {} bytes and no end; the file is truncated or damaged", bytes.size()));
+}
+
+bool has_iges_end(std::string_view bytes) {
+  const std::size_t last = bytes.find_last_not_of(" \t\r\n\0\x1a");
+  if (last == std::string_view::npos) return false;
+  const std::size_t begin = bytes.substr(0, last).find_last_of("\r\n") + 1;
+  return last - begin >= kIgesSection && bytes[begin + kIgesSection] == 'T';
+}
+
+PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadFormat format,
+                 const TessellationOptions& options) {
+  const char* const name = format == CadFormat::step ? "STEP" : "IGES";
+  if (!(options.deflection.value_or(1) > 0) || !(options.angle > 0) || !(options.angle < kMostAngle))
+    throw Error("the deflection must be positive, and the angle too and below 90°");
+  cad::ReadCad* const read_cad = cad::load_module(name);
+  static std::mutex one;  // OpenCASCADE keeps the parameters of its readers in static variables
+  CadShape shape;
+  {
+    const std::scoped_lock lock(one);
+    Client client;
+    read_cad({.bytes = bytes,
+              .file = file.c_str(),
+              .format = format,
+              .deflection = options.deflection.value_or(0),
+              .angle = options.angle},
+             shape, client);
+    poll();
+    client.rethrow();
+    if (!shape.fault.empty()) throw Error(shape.fault);
+  }
+  PolygonMesh mesh = to_polygons(shape);
+  mesh.tessellation = Tessellation{.format = name,
+                                   .file_unit = shape.unit,
+                                   .faces = shape.faces.size() + shape.omitted_faces,
+                                   .omitted_faces = shape.omitted_faces,
+                                   .deflection = shape.deflection,
+                                   .angle = options.angle,
+                                   .largest_deviation = shape.largest_deviation,
+                                   .measured_points = shape.measured_points};
+  if (shape.omitted_faces > 0)
+    mesh.notes.push_back(fmt::format("{} of {} faces could not be tessellated and are missing",
+                                     shape.omitted_faces, mesh.tessellation->faces));
+  return mesh;
+}
+
+}  // namespace
+
+bool is_step(std::string_view bytes) {
+  return bytes.substr(0, bytes.find_first_of(" ;\r\n")) == "ISO-10303-21";
+}
+
+bool is_iges(std::string_view bytes) {
+  if (bytes.size() <= kIgesLine || bytes[kIgesSection] != 'S') return false;
+  const std::string_view line = bytes.substr(0, kIgesLine), number = line.substr(kIgesSection + 1);
+  return line.find_first_of("\r\n") == std::string_view::npos &&
+         number.find_first_not_of(" 0") == number.size() - 1 && number.back() == '1' &&
+         (bytes[kIgesLine] == '\r' || bytes[kIgesLine] == '\n');
+}
+
+PolygonMesh read_step(std::string_view bytes, const std::filesystem::path& file,
+                      const TessellationOptions& options) {
+  if (!is_step(bytes)) throw Error("does not begin with ISO-10303-21; it is not STEP");
+  require_end(bytes, bytes.rfind("END-ISO-10303-21") != std::string_view::npos);
+  return read(bytes, file, CadFormat::step, options);
+}
+
+PolygonMesh read_iges(std::string_view bytes, const std::filesystem::path& file,
+                      const TessellationOptions& options) {
+  if (!is_iges(bytes))
+    throw Error("has no start section of IGES as text; compressed and binary IGES are not read");
+  require_end(bytes, has_iges_end(bytes));
+  return read(bytes, file, CadFormat::iges, options);
+}
+
+}  // namespace sdm::io

@@ -1,0 +1,18 @@
+#include <sdm/tessellation.h>
+
+#include <array>
+#include <cstdio>
+
+namespace sdm {
+
+std::string note_on(const Tessellation& t, const std::string& file) {
+  std::array<char, 256> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "was tessellated with a deflection of %.4g mm: distances and verdicts hold for its triangles, "
+      "from which its surface was found to deviate by up to %.4g mm (an estimate, from %zu points)",
+      t.deflection, t.largest_deviation, t.measured_points);
+  return file + " " + text.data();
+}
+
+}  // namespace sdm

@@ -1,0 +1,85 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/io.h>
+#include <sdm/transform.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/run_sdm.h"
+#include "support/temporary_folder.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::string cad_part(const std::string& name) {
+  return std::string(SDM_CAD_FILES) + "/" + name;
+}
+
+nlohmann::json cad_json(std::vector<std::string> arguments, int code = 0) {
+  arguments.emplace_back("--json");
+  const Outcome outcome = run_sdm(arguments);
+  EXPECT_EQ(outcome.code, code) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  return nlohmann::json::parse(outcome.out, nullptr, false);
+}
+
+TEST(CadCommand, InfoSaysWhatWasTessellated) {
+  const Outcome text = run_sdm({"info", cad_part("tube.step")});
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.err, IsEmpty());
+  EXPECT_THAT(text.out, HasSubstr("estimate"));
+  EXPECT_THAT(run_sdm({"info", cad_part("assembly.step")}).out,
+              HasSubstr("INCH in the file, converted to mm"));
+  const nlohmann::json info = cad_json({"info", cad_part("tube.step"), "--deflection", "0.01"});
+  EXPECT_EQ(info["closed"], true);
+  EXPECT_EQ(info["tessellation"]["deflection"], 0.01);
+  EXPECT_EQ(info["tessellation"]["largest_deviation"]["kind"], "estimate");
+  EXPECT_LE(info["tessellation"]["largest_deviation"]["value"], 0.01);
+}
+
+TEST(CadCommand, MapToAPartHasItsTessellationAndANote) {
+  const TemporaryFolder folder;
+  const std::string scan = folder / "scan.ply", out = folder / "out";
+  write_ply(scan, read_mesh(cad_part("tube.step")));
+  const nlohmann::json report = cad_json({"map", scan, cad_part("tube.step"), "-o", out, "--resolution", "64",
+                                          "--write", "none", "--tolerance", "0.1"});
+  EXPECT_EQ(report["tolerance"]["verdict"], "PASS");
+  EXPECT_EQ(report["sign"]["method"], "exact");
+  EXPECT_EQ(report["o2"]["tessellation"]["format"], "STEP");
+  EXPECT_FALSE(report["o1"].contains("tessellation"));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("hold for its triangles"));
+}
+
+// A scan in inches, of a part whose file is in inches too but read in millimetres.
+TEST(CadCommand, UnitsOfAPartAreMillimetres) {
+  const TemporaryFolder folder;
+  const std::string scan = folder / "scan.ply", out = folder / "out";
+  Mesh mesh = read_mesh(cad_part("assembly.step"));
+  for (Vec3& p : mesh.positions) p = (1 / 25.4) * p;
+  write_ply(scan, mesh);
+  const nlohmann::json report =
+      cad_json({"map", scan, cad_part("assembly.step"), "-o", out, "--resolution", "64", "--write", "none",
+                "--units-o1", "in", "--tolerance", "0.001"});
+  EXPECT_EQ(report["tolerance"]["verdict"], "PASS");
+  EXPECT_EQ(report["units"], "mm");
+}
+
+TEST(CadCommand, FaultsAreOneSentence) {
+  const TemporaryFolder folder;
+  const Outcome none = run_sdm({"info", cad_part("line.step")});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.out, IsEmpty());
+  EXPECT_THAT(none.err, HasSubstr("line.step: has no faces\n"));
+  const std::string mesh = folder / "box.ply";
+  write_ply(mesh, read_mesh(cad_part("box.step")));
+  const Outcome unused = run_sdm({"info", mesh, "--deflection", "0.1"});
+  EXPECT_EQ(unused.code, 2);
+  EXPECT_THAT(unused.err, HasSubstr("applies to STEP and IGES"));
+}
+
+}  // namespace
+}  // namespace sdm::test

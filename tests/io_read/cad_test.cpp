@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/sites.h>
+#include <sdm/solid.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "support/error_of.h"
+#include "support/temporary_folder.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string cad_file(const std::string& name) {
+  return std::string(SDM_CAD_FILES) + "/" + name;
+}
+
+std::string contents(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+double volume_of(const Mesh& mesh) {
+  return solid_volume(Sites(mesh), {.embedded = true}).value;
+}
+
+const FaceNames& names_of_kind(const MeshFile& file, const std::string& kind) {
+  for (const FaceNames& names : file.names)
+    if (names.kind == kind) return names;
+  throw Error("no names of kind " + kind);
+}
+
+TEST(Cad, SolidsAreClosedAndOriented) {
+  for (const char* name : {"box.step", "cylinder.step", "tube.step", "sphere.step", "tube.igs"}) {
+    const MeshFile file = read_mesh_file(cad_file(name));
+    const MeshInfo info = inspect(file.mesh);
+    EXPECT_TRUE(info.closed && info.oriented && info.manifold) << name;
+    EXPECT_EQ(info.components, 1u) << name;
+    EXPECT_EQ(info.degenerate_faces, 0u) << name;
+    EXPECT_GT(volume_of(file.mesh), 0) << name;
+  }
+}
+
+TEST(Cad, BoxIsExact) {
+  const MeshFile file = read_mesh_file(cad_file("box.step"));
+  EXPECT_EQ(file.mesh.triangles.size(), 12u);
+  EXPECT_EQ(file.mesh.positions.size(), 8u);
+  EXPECT_DOUBLE_EQ(volume_of(file.mesh), 6000);
+  ASSERT_TRUE(file.tessellation);
+  EXPECT_EQ(file.tessellation->largest_deviation, 0);
+  EXPECT_EQ(file.tessellation->faces, 6u);
+  EXPECT_EQ(file.tessellation->format, "STEP");
+  EXPECT_EQ(names_of_kind(file, "face").names.size(), 6u);
+  EXPECT_THAT(names_of_kind(file, "object").names, ElementsAre("box"));
+}
+
+// The arc over a chord with the angle a between its ends rises by r (1 − cos a/2).
+TEST(Cad, DeviationOfACylinderIsThatOfItsPolygon) {
+  for (const double deflection : {0.5, 0.05, 0.005}) {
+    const MeshFile file =
+        read_mesh_file(cad_file("cylinder.step"), {.tessellation = {.deflection = deflection, .angle = 1}});
+    std::set<double> angles;
+    for (const Vec3& p : file.mesh.positions) {
+      EXPECT_NEAR(std::hypot(p[0], p[1]), 10, 1e-9);
+      if (p[2] == 0) angles.insert(std::atan2(p[1], p[0]));
+    }
+    double widest = *angles.begin() + 2 * std::numbers::pi - *angles.rbegin();
+    for (auto a = angles.begin(); std::next(a) != angles.end(); ++a)
+      widest = std::max(widest, *std::next(a) - *a);
+    EXPECT_NEAR(file.tessellation->largest_deviation, 10 * (1 - std::cos(widest / 2)), 1e-9);
+    EXPECT_LE(file.tessellation->largest_deviation, deflection);
+    EXPECT_EQ(file.tessellation->deflection, deflection);
+    EXPECT_GT(file.tessellation->measured_points, angles.size());
+  }
+}
+
+TEST(Cad, DefaultDeflectionFollowsTheSize) {
+  const MeshFile file = read_mesh_file(cad_file("tube.step"));
+  const double diagonal = std::sqrt(20. * 20 + 20. * 20 + 30. * 30);
+  EXPECT_NEAR(file.tessellation->deflection, diagonal / 2000, 1e-4 * diagonal);
+  EXPECT_LE(file.tessellation->largest_deviation, file.tessellation->deflection);
+  EXPECT_GT(file.tessellation->largest_deviation, 0);
+  const double exact = std::numbers::pi * (100 - 64) * 30;
+  EXPECT_NEAR(volume_of(file.mesh), exact, 2 * std::numbers::pi * 18 * 30 * file.tessellation->deflection);
+}
+
+TEST(Cad, AssembliesAreConvertedToMillimetresAndNamed) {
+  const MeshFile file = read_mesh_file(cad_file("assembly.step"));
+  const MeshInfo info = inspect(file.mesh);
+  EXPECT_EQ(info.components, 2u);
+  EXPECT_TRUE(info.closed && info.oriented);
+  EXPECT_NEAR(info.bounds.hi[0], 50.8, 1e-9);
+  EXPECT_NEAR(info.bounds.hi[2], 10.5 * 25.4, 1e-9);
+  EXPECT_EQ(file.tessellation->file_unit, "INCH");
+  EXPECT_THAT(names_of_kind(file, "object").names, ElementsAre("plate", "plate (2)"));
+
+  const FaceNames &faces = names_of_kind(file, "face"), &colors = names_of_kind(file, "color");
+  EXPECT_EQ(file.tessellation->faces, 12u);
+  std::size_t on_top = 0;
+  for (std::size_t f = 0; f < file.mesh.triangles.size(); ++f) {
+    double lowest = 1e9;
+    for (const std::uint32_t v : file.mesh.triangles[f])
+      lowest = std::min(lowest, std::fmod(file.mesh.positions[v][2] + 1e-6, 254));
+    const bool top = lowest > 12;
+    on_top += top;
+    EXPECT_EQ(faces.names[faces.of_face[f]] == "datum A", top) << f;
+    EXPECT_EQ(colors.names[colors.of_face[f]], top ? "#ff0000" : "#0000ff") << f;
+  }
+  EXPECT_EQ(on_top, 4u);
+}
+
+TEST(Cad, IgesHasTheSameTube) {
+  const MeshFile step = read_mesh_file(cad_file("tube.step")), iges = read_mesh_file(cad_file("tube.igs"));
+  EXPECT_EQ(iges.tessellation->format, "IGES");
+  EXPECT_EQ(iges.tessellation->file_unit, "INCH");
+  EXPECT_NEAR(volume_of(iges.mesh), volume_of(step.mesh), 1e-3 * volume_of(step.mesh));
+}
+
+TEST(Cad, FormatsAreRecognisedByTheirContent) {
+  const TemporaryFolder folder;
+  for (const auto& [name, format] : {std::pair("box.step", "STEP"), std::pair("tube.igs", "IGES")}) {
+    const std::string file = folder / "part.txt";
+    std::ofstream(file, std::ios::binary) << contents(cad_file(name));
+    EXPECT_EQ(read_mesh_file(file).tessellation->format, format);
+  }
+}
+
+TEST(Cad, FilesThatAreCutAreRefused) {
+  const TemporaryFolder folder;
+  for (const char* name : {"tube.step", "tube.igs"}) {
+    const std::string whole = contents(cad_file(name)), file = folder / name;
+    for (int part = 1; part < 12; ++part) {
+      std::ofstream(file, std::ios::binary) << whole.substr(0, whole.size() * part / 12);
+      EXPECT_THAT(error_of([&] { (void)read_mesh(file); }), HasSubstr("truncated")) << name << " " << part;
+    }
+  }
+}
+
+// The end is there, but not what comes before it.
+TEST(Cad, DamagedFilesAreRefusedOrRead) {
+  const TemporaryFolder folder;
+  const std::string whole = contents(cad_file("tube.step")), file = folder / "damaged.step";
+  const std::size_t data = whole.find("DATA;"), end = whole.find("ENDSEC;", data);
+  for (int part = 0; part < 8; ++part) {
+    const std::size_t cut = data + 5 + (end - data) * part / 8;
+    std::ofstream(file, std::ios::binary) << whole.substr(0, cut) << whole.substr(end);
+    try {
+      EXPECT_FALSE(read_mesh(file).triangles.empty());
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("damaged.step: "));
+    }
+  }
+}
+
+TEST(Cad, FilesWithoutFacesAreRefused) {
+  EXPECT_THAT(error_of([] { (void)read_mesh(cad_file("line.step")); }), HasSubstr("line.step: has no faces"));
+}
+
+}  // namespace
+}  // namespace sdm::test
