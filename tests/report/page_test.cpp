@@ -205,6 +205,9 @@ TEST_F(Page, JudgesAsTheLibrary) {
                       .error_bound = any_of({0, 0.01, 0.1, 0.5}),
                       .is_signed = random() % 4 != 0};
     if (evidence.lowest == kInfinity) evidence.lowest.reset(), evidence.highest.reset();
+    evidence.unmatched = !evidence.complete && random() % 2 == 0;
+    evidence.samples_only = random() % 4 == 0;
+    if (evidence.samples_only) evidence.error_bound = kInfinity;
     if (evidence.lowest > evidence.highest) continue;
     const double lower = any_of({-2.1, -1, -0.5, 0, 0.001, 0.5}),
                  upper = lower + any_of({0, 0.5, 1, 2.2, 4.2});
@@ -215,6 +218,8 @@ TEST_F(Page, JudgesAsTheLibrary) {
                        {"highest", evidence.highest ? Json(*evidence.highest) : Json()},
                        {"complete", evidence.complete},
                        {"estimated_signs", evidence.estimated_signs},
+                       {"unmatched", evidence.unmatched},
+                       {"samples_only", evidence.samples_only},
                        {"accuracy", evidence.accuracy},
                        {"error_bound", evidence.error_bound},
                        {"signed", evidence.is_signed},
