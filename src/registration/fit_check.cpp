@@ -51,7 +51,7 @@ double misfit_by_axes(const CentredSamples& few, const CentredSamples& some, std
 }
 
 std::optional<MirroredFit> mirrored_fit(const SampleSource& source, const Sites& o2, const Alignment& found) {
-  constexpr double kFits = 0.002, kMuchBetter = 0.25, kFitting = 0.9, kTrimmed = 0.01;
+  constexpr double kFits = 0.002, kMuchBetter = 0.25, kFitting = 0.75, kTrimmed = 0.01;
   // Outliers of a scan are no reason to look further.
   if (found.fraction_fitting >= kFitting && found.after.trimmed_rms <= kTrimmed * found.gyration_radius)
     return std::nullopt;
