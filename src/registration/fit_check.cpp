@@ -39,19 +39,21 @@ void mirror(Samples& samples) {
   for (Vec3& n : samples.normals) n[0] = -n[0];
 }
 
-/// The misfit from where the principal axes agree, as a length.
+/// The misfit from where the principal axes agree, as a length; infinite if few samples are far from `most`.
 double misfit_by_axes(const CentredSamples& few, const CentredSamples& some, std::span<const Vec3> o2,
-                      const Target& target) {
+                      const Target& target, double most) {
   constexpr StepLimits kLimits{.most = 10, .tolerance = 1e-3};
-  constexpr int kSteps = 8;
+  constexpr int kSteps = 6;
+  constexpr double kFar = 2;
   AxisMatches candidates = axis_matches(some.samples.points, o2);
   candidates.poses.resize(candidates.likely);
   const Fit fit = best_match_of_axes(few, candidates, target, kSteps, [](std::size_t) {});
+  if (!(mismatch(few, fit.pose, target) <= kFar * most)) return kEverything;
   return mismatch(some, refine(some, fit, target, kLimits).pose, target);
 }
 
 std::optional<MirroredFit> mirrored_fit(const SampleSource& source, const Sites& o2, const Alignment& found) {
-  constexpr double kFits = 0.002, kMuchBetter = 0.25, kFitting = 0.75, kTrimmed = 0.01;
+  constexpr double kFits = 0.002, kMuchBetter = 0.25, kFitting = 0.9, kTrimmed = 0.01;
   // Outliers of a scan are no reason to look further.
   if (found.fraction_fitting >= kFitting && found.after.trimmed_rms <= kTrimmed * found.gyration_radius)
     return std::nullopt;
@@ -63,13 +65,16 @@ std::optional<MirroredFit> mirrored_fit(const SampleSource& source, const Sites&
   constexpr std::size_t kOfO2 = 4096;
   const std::vector<Vec3> o2_points = surface_source(o2.mesh())(kOfO2).points;
   Aligned few = aligned(source, kFew, found);
-  const auto by_axes = [&] { return misfit_by_axes(few.o1, some.o1, o2_points, target); };
+  const double most = kMuchBetter * as_given;
+  const auto by_axes = [&](double enough) {
+    return misfit_by_axes(few.o1, some.o1, o2_points, target, enough);
+  };
   mirror(few.o1.samples), mirror(some.o1.samples);
-  const double mirrored = by_axes();
-  if (!(mirrored <= kMuchBetter * as_given)) return std::nullopt;
+  const double mirrored = by_axes(most);
+  if (!(mirrored <= most)) return std::nullopt;
   // A part that is symmetric to a plane fits both ways.
   mirror(few.o1.samples), mirror(some.o1.samples);
-  if (!(mirrored <= kMuchBetter * by_axes())) return std::nullopt;
+  if (!(mirrored <= kMuchBetter * by_axes(kEverything))) return std::nullopt;
   return MirroredFit{mirrored / radius, as_given / radius};
 }
 
