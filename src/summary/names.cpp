@@ -84,18 +84,6 @@ const char* name_of(DistanceKind kind) {
   return "";
 }
 
-const char* name_of(DistanceKind kind) {
-  switch (kind) {
-    case DistanceKind::closest:
-      return "closest";
-    case DistanceKind::facing:
-      return "facing";
-    case DistanceKind::along:
-      return "along";
-  }
-  return "";
-}
-
 const char* name_of(AtlasKind kind) {
   switch (kind) {
     case AtlasKind::charts:
