@@ -1,5 +1,7 @@
 #include "map.h"
 
+#include <sdm/tolerance_table.h>
+
 #include "alignment.h"
 #include "common_options.h"
 #include "exit_codes.h"
@@ -100,9 +102,14 @@ int run(MapCommand command) {
   command.map.engine = make_engine(command.engine, command.gl, command.layout.atlas);
 
   progress.step("import");
+  if (!command.groups.file.empty()) command.groups.rows = sdm::read_tolerance_table(command.groups.file);
   const bool vertices = command.output.files.any_vertices();
   InputPair pair = load_pair(command, {.vertices = {vertices, vertices && command.both}});
   if (command.islands) pair.o1.islands = ignore_islands(pair.o1, *command.islands);
+  if (command.both)
+    check_groups(command.groups, {&pair.o1, &pair.o2});
+  else
+    check_groups(command.groups, {&pair.o1});
   std::optional<AlignOutcome> aligned;
   std::vector<MeshMaps> meshes;
   out.fill([&] {
@@ -110,7 +117,7 @@ int run(MapCommand command) {
     if (command.align.on) {
       progress.step("align");
       task.sites = std::make_unique<sdm::Sites>(pair.o2.mesh);
-      command.align.judged = command.picture.tolerance.has_value();
+      command.align.judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
       aligned = align_mesh(pair.o1.mesh, *task.sites, pair.o2, command.align, progress.callback());
       write_text(out.staging() / kAlignmentFile, to_text(to_json(*aligned)));
     }
@@ -128,9 +135,12 @@ int run(MapCommand command) {
       command, [&] { return report_of(meshes); },
       [&] { return text_of(command, meshes, pair, aligned, total.lap()); });
   sdm::Verdict verdict = sdm::Verdict::pass;
-  for (const MeshMaps& mesh : meshes)
+  for (const MeshMaps& mesh : meshes) {
     if (const auto& tolerance = mesh.whole().outcome.summary.tolerance)
       verdict = worse(verdict, tolerance->verdict);
+    for (const MapResult& map : mesh.results)
+      if (map.outcome.groups) verdict = worse(verdict, map.outcome.groups->verdict);
+  }
   return exit_code(verdict);
 }
 

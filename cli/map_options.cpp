@@ -72,6 +72,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       "--no-bound-culling", [&c] { c.gl.bound_culling = false; },
       "gl: do not cull sites by upper bounds on the distance; the map is unchanged");
   add_tolerance_option(app, c.picture.tolerance);
+  add_tolerance_table_option(app, c.groups);
   add_doubt_options(app, c.doubts);
   app.add_option(
          "--bands", c.bands,

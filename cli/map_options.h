@@ -14,6 +14,7 @@
 #include "along_option.h"
 #include "common_options.h"
 #include "doubts.h"
+#include "group_tolerances.h"
 #include "input_pair.h"
 #include "islands.h"
 #include "map_files.h"
@@ -45,6 +46,7 @@ struct MapCommand : PairFiles, RunOptions {
   sdm::EngineInfo engine = sdm::engines().front();
   sdm::GlOptions gl;
   sdm::PictureOptions picture;
+  GroupTolerances groups;
   std::vector<double> bands;
   ReportFields fields;
   MapOutput output;

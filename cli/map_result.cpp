@@ -114,6 +114,11 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
       },
       [&] { outcome.summary = sdm::summarize(surface, *task.sites, map, computed.at_vertices, options); },
   });
+  if (!command.groups.rows.empty())
+    outcome.groups = sdm::certify_groups(
+        surface, *task.sites, map, computed.at_vertices, names_of_part(task.on.names, part.source_face),
+        command.groups.rows,
+        {.accuracy = computed.accuracy, .doubted = !task.doubts.empty() && !command.doubts.accept});
 }
 
 /// What users probably did not intend, and what a summary does not know of.
@@ -143,6 +148,7 @@ Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& co
   for (const Input* input : {&task.on, &task.to})
     if (input->islands) report[input->role]["ignored_islands"] = to_json(*input->islands);
   if (task.aligned) report["alignment"] = to_json(*task.aligned);
+  if (outcome.groups) report["group_tolerances"] = to_json(*outcome.groups);
   if (outcome.raster) report["raster"] = to_json(*outcome.raster);
   return report;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "format.h"
+#include "group_tolerances.h"
 #include "notes.h"
 #include "scenes/placement.h"
 
@@ -200,6 +201,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
     add("  error     at most {}{} between the texels, whose values are exact\n",
         number(s.evidence.error_bound), unit);
   if (s.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
+  if (outcome.groups) text += group_lines(*outcome.groups, s.units);
   text += coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,

@@ -40,6 +40,7 @@ struct Outcome {
   std::uint32_t resolution = 0, rows = 0;  ///< of the map
   double size = 0;                         ///< of the mesh that is measured: the diagonal of its box
   std::optional<bool> embedded{};          ///< the other mesh does not intersect itself; if it has an inside
+  std::optional<sdm::GroupVerdicts> groups{};  ///< if there is a table of tolerances
   std::optional<sdm::GlReport> raster;
   sdm::ReportTimes time;
 };

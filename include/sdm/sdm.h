@@ -20,6 +20,7 @@
 #include <sdm/facing.h>
 #include <sdm/fit_check.h>
 #include <sdm/gl.h>
+#include <sdm/group_verdicts.h>
 #include <sdm/hausdorff.h>
 #include <sdm/islands.h>
 #include <sdm/map.h>

@@ -81,6 +81,10 @@ export interface Report {
     exceeded_area_fraction?: number;
     exceeded_point_fraction?: number;
   };
+  group_tolerances?: {
+    verdict: string;
+    groups: { kind: string; group: string; lower: number; upper: number; verdict: string; lowest: number | null; highest: number | null }[];
+  };
   doubts?: { reason: string; text: string; remedy: string }[];
   notes?: string[];
   time_ms?: Record<string, number | null>;

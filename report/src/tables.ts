@@ -163,6 +163,15 @@ export function showMethod(report: Report): void {
         `${count(report.boundary_texels)} points are nearest to an open edge of the reference: they may lie beside the part of the surface that it covers.`,
       ),
     );
+  const byGroup = report.group_tolerances;
+  if (byGroup) out.push(sentence(`Verdict on the groups of the table of tolerances: ${byGroup.verdict}.`));
+  for (const g of byGroup?.groups ?? [])
+    out.push(
+      sentence(
+        `${g.group} (${g.kind}): ${g.verdict}. Limits ${text(g.lower)} to ${text(g.upper)}${unit}.`,
+        g.lowest !== null && g.highest !== null && `Measured ${text(g.lowest)} to ${text(g.highest)}${unit}.`,
+      ),
+    );
   for (const note of report.notes ?? []) out.push(make('p', { class: 'note' }, `Note: ${note}.`));
   const total = report.time_ms?.total;
   out.push(
@@ -215,7 +224,7 @@ function omittedPoints(shown: number, { points, picked, normals }: NonNullable<P
 const kShown = new Set([
   'version', 'fields', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'measured', 'sign',
   'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance', 'without_match',
-  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'notes', 'time_ms', 'histogram',
+  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'group_tolerances', 'notes', 'time_ms', 'histogram',
 ]);
 
 function isScalar(value: unknown): boolean {

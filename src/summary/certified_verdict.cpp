@@ -1,6 +1,8 @@
 #include <sdm/certified_verdict.h>
 #include <sdm/summary.h>
 
+#include "summary/certify.h"
+
 namespace sdm {
 namespace {
 
@@ -40,17 +42,22 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
   return result;
 }
 
+CertifiedVerdict summary::certify(const ToleranceVerdict& verdict, const Mesh& surface, const Sites& sites,
+                                  DistanceKind measured, const ToleranceProofOptions& options) {
+  CertifiedVerdict result{verdict, {}};
+  if (!is_open(result) || measured != DistanceKind::closest) return result;
+  result.proof = prove_tolerance(surface, sites, verdict.tolerance, options);
+  static_cast<Judgement&>(result) = judge(result, *result.proof);
+  return result;
+}
+
 CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                    std::span<const float> vertex_distances, const Tolerance& tolerance,
                                    const CertifyOptions& options) {
-  CertifiedVerdict result{
-      check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance)};
-  if (!is_open(result) || map.measured.kind != DistanceKind::closest) return result;
-  result.proof =
-      prove_tolerance(surface.mesh(), sites, tolerance,
-                      {.sign = map.sign.method, .accuracy = options.accuracy, .progress = options.progress});
-  static_cast<Judgement&>(result) = judge(result, *result.proof);
-  return result;
+  return summary::certify(
+      check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance),
+      surface.mesh(), sites, map.measured.kind,
+      {.sign = map.sign.method, .accuracy = options.accuracy, .progress = options.progress});
 }
 
 void withhold_pass(Summary& summary, bool accept_doubts) {

@@ -3,6 +3,7 @@
 #include <sdm/io.h>
 #include <sdm/transform.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -66,6 +67,27 @@ TEST(CadCommand, UnitsOfAPartAreMillimetres) {
                 "--units-o1", "in", "--tolerance", "0.001"});
   EXPECT_EQ(report["tolerance"]["verdict"], "PASS");
   EXPECT_EQ(report["units"], "mm");
+}
+
+// The part to a scan without it: a face that is off fails, the others pass.
+TEST(CadCommand, FacesHaveTolerancesOfTheirOwn) {
+  const TemporaryFolder folder;
+  const std::string scan = folder / "scan.ply", table = folder / "table.csv";
+  Mesh mesh = read_mesh(cad_part("assembly.step"));
+  for (Vec3& p : mesh.positions)
+    if (p[2] > 12 && p[2] < 13) p[2] += 0.3;
+  write_ply(scan, mesh);
+  std::ofstream(table) << "group,lower,upper\nplate (2),-0.01,0.01\ndatum A,-0.1,0.1\n";
+  const nlohmann::json report =
+      cad_json({"map", cad_part("assembly.step"), scan, "-o", folder / "out", "--resolution", "64", "--write",
+                "none", "--tolerance-table", table},
+               3);
+  const nlohmann::json& groups = report["group_tolerances"]["groups"];
+  EXPECT_EQ(groups[0]["kind"], "object");
+  EXPECT_EQ(groups[0]["verdict"], "PASS");
+  EXPECT_EQ(groups[1]["kind"], "face");
+  EXPECT_EQ(groups[1]["verdict"], "FAIL");
+  EXPECT_NEAR(groups[1]["lowest"].get<double>(), -0.3, 1e-3);
 }
 
 TEST(CadCommand, FaultsAreOneSentence) {

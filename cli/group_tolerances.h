@@ -1,0 +1,33 @@
+// --tolerance-table: groups of the measured mesh with a tolerance each.
+#pragma once
+
+#include <sdm/group_verdicts.h>
+
+#include <CLI/CLI.hpp>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "report.h"
+
+/// The file, and what it has once it was read.
+struct GroupTolerances {
+  std::string file;
+  std::vector<sdm::GroupTolerance> rows{};
+};
+
+/// Adds --tolerance-table.
+void add_tolerance_table_option(CLI::App& app, GroupTolerances& table);
+
+/// Throws sdm::Error for a row whose group none of the meshes has, naming groups that they have.
+void check_groups(const GroupTolerances& table, std::initializer_list<const Input*> meshes);
+
+/// The names of the faces of a part of a mesh. `source_face`: of each, its face of the mesh; empty: the same.
+[[nodiscard]] std::vector<sdm::FaceNames> names_of_part(const std::vector<sdm::FaceNames>& names,
+                                                        const std::vector<std::uint32_t>& source_face);
+
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::GroupVerdicts& verdicts);
+
+/// One line for each group.
+[[nodiscard]] std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units);

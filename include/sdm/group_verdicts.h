@@ -1,0 +1,63 @@
+/// Verdicts on the named groups of a surface, each with a tolerance of its own.
+///
+/// Threads: the functions may be called concurrently, also with the same map.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/certified_verdict.h>
+#include <sdm/map.h>
+#include <sdm/part_statistics.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+#include <sdm/tolerance.h>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sdm {
+
+/// The tolerance of a group, by its name.
+struct GroupTolerance {
+  std::string group;
+  Tolerance tolerance{};
+};
+
+/// The verdict on a group.
+struct GroupVerdict {
+  std::string kind, group;                    ///< the kind of the name, as FaceNames::kind, and the name
+  std::size_t faces = 0;                      ///< of the surface
+  std::optional<double> lowest{}, highest{};  ///< of the distances of its texels and vertices
+  CertifiedVerdict verdict;                   ///< shares are those of the area of the group
+};
+
+/// The verdicts on all groups of a table.
+struct GroupVerdicts {
+  std::vector<GroupVerdict> groups;  ///< in the order of the table
+  /// Verdict::fail if that of one group is, else Verdict::not_decided if that of one is, else Verdict::pass,
+  /// or Verdict::doubtful instead if there are doubts.
+  Verdict verdict = Verdict::pass;
+};
+
+/// Options of certify_groups().
+struct CertifyGroupsOptions {
+  double accuracy = 0;   ///< of the distances: engine_accuracy(); infinite if unknown
+  bool doubted = false;  ///< there are doubts that withhold a pass
+  Progress progress{};
+};
+
+/// Judges each group of `table` that `names`, those of the surface's faces, have: by its texels and vertices,
+/// and where these are within the tolerance by prove_tolerance() of its faces, so that Verdict::pass holds
+/// for every point of the group. A name of several kinds is that of the first. Faces that no row names are
+/// not judged. Throws sdm::Error for a tolerance that needs a sign if the map is unsigned, and as
+/// certify_tolerance() does. Cost: for each group that of certify_tolerance().
+[[nodiscard]] SDM_API GroupVerdicts certify_groups(const Surface& surface, const Sites& sites,
+                                                   const DistanceMap& map,
+                                                   std::span<const float> vertex_distances,
+                                                   std::span<const FaceNames> names,
+                                                   std::span<const GroupTolerance> table,
+                                                   const CertifyGroupsOptions& options);
+
+}  // namespace sdm

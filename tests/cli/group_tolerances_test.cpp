@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <sdm/tolerance_table.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/error_of.h"
+#include "support/run_sdm.h"
+#include "support/temporary_folder.h"
+
+namespace sdm {
+namespace {
+
+using test::error_of;
+using test::run_sdm;
+using ::testing::HasSubstr;
+
+// A cube with named faces, and one that is higher by 0.1: the top is up to 0.1 inside it, the rest on it.
+class GroupTolerancesOption : public testing::Test {
+ protected:
+  GroupTolerancesOption() { write_cube(part, 1), write_cube(higher, 1.1); }
+
+  static void write_cube(const std::string& file, double height) {
+    std::ofstream out(file);
+    for (const double z : {0.0, height})
+      for (const char* xy : {"0 0", "1 0", "1 1", "0 1"}) out << "v " << xy << ' ' << z << '\n';
+    out << "g bottom\nf 1 4 3 2\ng top, red\nf 5 6 7 8\ng sides\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 "
+           "8\n";
+  }
+  std::string table(const std::string& text, const std::string& name = "table.csv") const {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  }
+  test::Outcome map(const std::string& file, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{
+        "map", part, higher, "-o", out, "--resolution", "64", "--write", "none", "--tolerance-table", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+
+  const test::TemporaryFolder folder;
+  const std::string part = folder / "part.obj", higher = folder / "higher.obj", out = folder / "out";
+};
+
+TEST_F(GroupTolerancesOption, JudgesEachGroupAndTakesTheWorst) {
+  const std::string file = table("group,lower,upper\nbottom,-0.001,0.001\n\"top, red\",-0.05,0.05\n");
+  const test::Outcome outcome = map(file, {"--json"});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  const auto report = nlohmann::json::parse(outcome.out, nullptr, false);
+  const auto& all = report["group_tolerances"];
+  EXPECT_EQ(all["verdict"], "FAIL");
+  ASSERT_EQ(all["groups"].size(), 2u);
+  const auto &bottom = all["groups"][0], &top = all["groups"][1];
+  EXPECT_EQ(bottom["group"], "bottom");
+  EXPECT_EQ(bottom["kind"], "group");
+  EXPECT_EQ(bottom["verdict"], "PASS");
+  EXPECT_EQ(bottom["certified"], true);
+  EXPECT_EQ(bottom["triangles"], 2);
+  EXPECT_EQ(top["verdict"], "FAIL");
+  EXPECT_NEAR(top["lowest"].get<double>(), -0.1, 1e-6);
+  EXPECT_GT(top["exceeded_area_fraction"], 0.5);
+  EXPECT_FALSE(report.contains("tolerance") && !report["tolerance"].is_null());
+
+  const std::string text = map(file).out;
+  EXPECT_THAT(text, HasSubstr("  groups    FAIL\n"));
+  EXPECT_THAT(text, HasSubstr("bottom (group): PASS, ±0.001"));
+  EXPECT_THAT(text, HasSubstr("top, red (group): FAIL, ±0.05"));
+}
+
+TEST_F(GroupTolerancesOption, PassesWhereEachGroupDoes) {
+  const std::string csv = table("group,lower,upper\n\"top, red\",-0.11,0.01\nsides,-0.001,0.001\n");
+  EXPECT_EQ(map(csv).code, 0);
+  const std::string json = table(R"([{"group": "top, red", "lower": -0.11, "upper": 0.01}])", "table.json");
+  EXPECT_EQ(map(json).code, 0);
+  // The tolerance of all faces is judged too.
+  EXPECT_EQ(map(json, {"--tolerance", "0.05"}).code, 3);
+}
+
+// The limit is exceeded by less than the accuracy of the engine.
+TEST_F(GroupTolerancesOption, WithinTheAccuracyNothingIsDecided) {
+  const test::Outcome outcome = map(table("group,lower,upper\n\"top, red\",-0.0999999,0.01\n"), {"--json"});
+  EXPECT_EQ(outcome.code, 4);
+  const auto group = nlohmann::json::parse(outcome.out, nullptr, false)["group_tolerances"]["groups"][0];
+  EXPECT_EQ(group["verdict"], "NOT DECIDED");
+  EXPECT_LT(group["undecided_by"], 1e-5);
+}
+
+TEST_F(GroupTolerancesOption, UnknownGroupsAreNamed) {
+  const test::Outcome outcome = map(table("group,lower,upper\nlid,-1,1\n"));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("lid is no group of"));
+  EXPECT_THAT(outcome.err, HasSubstr("which has bottom, top, red, sides"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(GroupTolerancesOption, TablesAreChecked) {
+  const auto fault = [&](const std::string& text) {
+    const std::string file = table(text);
+    return error_of([&] { (void)read_tolerance_table(file); });
+  };
+  EXPECT_THAT(fault("name,min,max\na,1,2\n"), HasSubstr("table.csv: a table of tolerances has the header"));
+  EXPECT_THAT(fault("group,lower,upper\n"), HasSubstr("has no rows"));
+  EXPECT_THAT(fault("group,lower,upper\na,1,x\n"), HasSubstr("line 2: 'x' is not a number"));
+  EXPECT_THAT(fault("group,lower,upper\n\na,2,1\n"), HasSubstr("line 3: the limits 2 and 1"));
+  EXPECT_THAT(fault("group,lower,upper\na,1\n"), HasSubstr("line 2: has 2 fields"));
+  EXPECT_THAT(fault("group,lower,upper\na,1,2\na,1,3\n"), HasSubstr("group a has two rows"));
+  EXPECT_THAT(fault("group,lower,upper\n,1,2\n"), HasSubstr("the group has no name"));
+  EXPECT_THAT(fault("group,lower,upper\na,-inf,2\n"), HasSubstr("not finite"));
+  EXPECT_THAT(fault("[{\"group\": \"a\", \"lower\": \"1\", \"upper\": 2}]"), HasSubstr("row 1"));
+  EXPECT_THAT(fault("{}"), HasSubstr("JSON array"));
+  EXPECT_THAT(error_of([&] { (void)read_tolerance_table(folder / "none.csv"); }),
+              HasSubstr("cannot be read"));
+}
+
+}  // namespace
+}  // namespace sdm
