@@ -172,7 +172,30 @@ void add_choices(Json& json, const AlignOutcome& outcome) {
 
 }  // namespace
 
-Json to_json(const AlignOutcome& outcome) {
+namespace {
+
+/// What was done, in clauses.
+std::vector<std::string> in_words(const AlignOutcome& outcome, const std::string& units) {
+  const sdm::Alignment& a = outcome.alignment;
+  const std::string unit = unit_suffix(units);
+  const auto [degrees, shift] = sizes(a);
+  std::vector<std::string> words{
+      fmt::format("turned O1 by {}° and moved it by {}{}; residual rms {} -> {}{} ({} % of samples)",
+                  number(degrees, 4), number(shift, 4), unit, number(a.before.trimmed_rms, 3),
+                  number(a.after.trimmed_rms, 3), unit, number(100 * a.fraction_used, 4))};
+  const AlignCommand& command = outcome.command;
+  if (!command.points_321.empty()) words.push_back("by the six points of " + command.points_321);
+  if (!command.region.empty())
+    words.push_back(fmt::format("on {} ({} samples)", fmt::join(command.region, ", "), a.samples));
+  if (!command.freedoms.all())
+    words.push_back(
+        fmt::format("by {} only; the rest is locked", fmt::join(names_of(command.freedoms), ", ")));
+  return words;
+}
+
+}  // namespace
+
+Json to_json(const AlignOutcome& outcome, const std::string& units) {
   const sdm::Alignment& a = outcome.alignment;
   const auto [degrees, shift] = sizes(a);
   const auto residuals = [](const sdm::AlignResiduals& r) {
@@ -204,31 +227,21 @@ Json to_json(const AlignOutcome& outcome) {
             {"gyration_radius", a.gyration_radius},
             {"degrees_of_freedom", freedoms}};
   add_choices(json, outcome);
+  json["text"] = fmt::format("{}", fmt::join(in_words(outcome, units), ", "));
   json["time_ms"] = outcome.time_ms;
   return json;
 }
 
 std::string summary(const AlignOutcome& outcome, const std::string& units) {
-  const sdm::Alignment& a = outcome.alignment;
-  const std::string unit = unit_suffix(units);
-  const auto [degrees, shift] = sizes(a);
-  std::string text = fmt::format(
-      "  aligned   turned O1 by {}° and moved it by {}{}; residual rms {} -> {}{} ({} % of samples)\n",
-      number(degrees, 4), number(shift, 4), unit, number(a.before.trimmed_rms, 3),
-      number(a.after.trimmed_rms, 3), unit, number(100 * a.fraction_used, 4));
-  const AlignCommand& command = outcome.command;
-  if (!command.points_321.empty()) text += "            by the six points of " + command.points_321 + "\n";
-  if (!command.region.empty())
-    text += fmt::format("            on {} ({} samples)\n", fmt::join(command.region, ", "), a.samples);
-  if (!command.freedoms.all())
-    text += fmt::format("            by {} only; the rest is locked\n",
-                        fmt::join(names_of(command.freedoms), ", "));
+  std::string text;
+  for (const std::string& words : in_words(outcome, units))
+    text += (text.empty() ? "  aligned   " : "            ") + words + "\n";
   constexpr std::size_t kShown = 8;
   const auto groups = named_residuals(outcome);
   for (std::size_t i = 0; i < std::min(groups.size(), kShown); ++i)
     text += fmt::format("            {} {}: residual rms {}, largest {}{} (of samples)\n", outcome.group_kind,
                         groups[i].first, number(groups[i].second.rms, 3), number(groups[i].second.largest, 3),
-                        unit);
+                        unit_suffix(units));
   if (groups.size() > kShown)
     text += fmt::format("            and {} more with smaller residuals\n", groups.size() - kShown);
   return text;

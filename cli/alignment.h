@@ -39,8 +39,8 @@ struct AlignOutcome {
 [[nodiscard]] std::vector<sdm::Doubt> doubts_of(const AlignOutcome& outcome);
 
 /// The object of alignment.json, and of the key `alignment` of reports. sdm::read_matrix reads both.
-[[nodiscard]] nlohmann::ordered_json to_json(const AlignOutcome& outcome);
-/// One line.
+[[nodiscard]] nlohmann::ordered_json to_json(const AlignOutcome& outcome, const std::string& units);
+/// What was done and what is left between the surfaces, in lines.
 [[nodiscard]] std::string summary(const AlignOutcome& outcome, const std::string& units);
 /// What may be wrong with the alignment.
 [[nodiscard]] std::vector<std::string> notes(const AlignOutcome& outcome);

@@ -34,8 +34,8 @@ void add_along_option(CLI::App& app, std::optional<sdm::AlongOptions>& along) {
            if (text != kNormal) along->direction = parse_direction(text);
          },
          "Measure along a line, the normal of each texel's face or the direction X,Y,Z, to both sides: to "
-         "the nearest face of O2 that faces the same way. Along 0,0,1: the change of height of terrain. Positive "
-         "on the side to which the normal of that face points. Between texels, an estimate")
+         "the nearest face of O2 that faces the same way. Along 0,0,1: the change of height of terrain. "
+         "Positive on the side to which the normal of that face points. Between texels, an estimate")
       ->check([](const std::string& text) {
         return text == kNormal || parse_direction(text)
                    ? std::string()

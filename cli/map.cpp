@@ -119,7 +119,7 @@ int run(MapCommand command) {
       task.sites = std::make_unique<sdm::Sites>(pair.o2.mesh);
       command.align.judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
       aligned = align_mesh(pair.o1.mesh, *task.sites, pair.o2, command.align, progress.callback());
-      write_text(out.staging() / kAlignmentFile, to_text(to_json(*aligned)));
+      write_text(out.staging() / kAlignmentFile, to_text(to_json(*aligned, command.picture.units)));
     }
     if (aligned && command.align.judged) task.doubts = doubts_of(*aligned);
     const std::vector<sdm::Doubt> doubts = task.doubts;

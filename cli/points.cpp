@@ -95,7 +95,7 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
   report["o1"]["text"] = text_json(found.text);
   report["o2"] = to_json(o2);
   report["measured_on"] = "o1";
-  if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned);
+  if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned, command.picture.units);
   report["engine"] = "cpu";
   report.update(Json::parse(sdm::summary_json(outcome.summary)));
   put_fields(report, command.fields);
@@ -228,7 +228,7 @@ int run(PointsCommand command) {
       command.align.judged = command.picture.tolerance.has_value();
       outcome.aligned = align_sample(command, options.placement, sites, o2, progress.callback());
       options.placement = outcome.aligned->alignment.transform * options.placement;
-      write_text(out.staging() / "alignment.json", to_text(to_json(*outcome.aligned)));
+      write_text(out.staging() / "alignment.json", to_text(to_json(*outcome.aligned, command.picture.units)));
     }
     outcome.align_ms = watch.lap();
     const std::filesystem::path ply = out.staging() / "points.ply";

@@ -42,7 +42,7 @@ void run(const PairCommand& command, const AlignCommand& align) {
 
   const auto report = [&] {
     Json json = report_on(pair, command.units);
-    if (aligned) json["alignment"] = to_json(*aligned);
+    if (aligned) json["alignment"] = to_json(*aligned, command.units);
     json["notes"] = all_notes;
     json.update(answers);
     json["time_ms"] = {{"import", pair.import_ms}, {"build", build_ms}, {"query", query_ms}};

@@ -20,7 +20,7 @@ struct Input {
   sdm::Mesh mesh;
   std::optional<sdm::MeshInfo> info{};  ///< once inspected
   std::optional<sdm::WeldReport> weld{};
-  std::optional<sdm::IslandReport> islands{};  ///< that were left out
+  std::optional<sdm::IslandReport> islands{};       ///< that were left out
   std::optional<sdm::Tessellation> tessellation{};  ///< of CAD
   std::vector<sdm::FaceNames> names{};
   std::vector<std::string> notes{};             ///< on the file

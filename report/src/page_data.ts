@@ -49,6 +49,7 @@ export interface Report {
   thickness?: { method: string; text: string };
   measured_on?: 'o1' | 'o2';
   units?: string;
+  alignment?: { text: string };
   fields?: Record<string, string>; ///< as the author of the report named them
   atlas?: { kind: string; resolution: number; rows?: number; udim?: number | null; charts: number; texels: number };
   engine?: string;

@@ -97,6 +97,8 @@ export function showInputs(report: Report): void {
     ]
       .filter(Boolean)
       .join(', ') || 'none';
+  const moved = (i: Input) =>
+    [i.transform, report.alignment && i === report.o1 ? 'the alignment' : ''].filter(Boolean).join(', then ') || 'nothing';
   byId('inputs-table').replaceChildren(
     table(
       head,
@@ -107,10 +109,11 @@ export function showInputs(report: Report): void {
         row('Vertices', (i) => number(i.vertices)),
         row('Watertight', (i) => (i.closed === undefined ? '–' : i.closed ? 'yes' : 'no')),
         row('Faults', faults),
-        row('Moved by', (i) => i.transform || 'nothing'),
+        row('Moved by', moved),
       ],
       'The inputs',
     ),
+    ...(report.alignment ? [make('p', {}, `Alignment: ${report.alignment.text}.`)] : []),
   );
 }
 

@@ -142,6 +142,14 @@ TEST_F(Page, SavesItsNumbers) {
   EXPECT_TRUE(passes("csv", page(), {out + "/report.json"}));
 }
 
+TEST_F(Page, SaysHowThePartWasAligned) {
+  o2 = write_obj(folder / "moved.obj", moved(ring(24), {0.05, 0, 0}));
+  const Json report = map({"--resolution", "64", "--align", "--units", "mm"});
+  const auto words = report["alignment"]["text"].get<std::string>();
+  EXPECT_THAT(words, HasSubstr("and moved it by 0.05 mm"));
+  EXPECT_TRUE(passes("says", page(), {"Alignment: " + words, "the alignment\tnothing"}));
+}
+
 TEST_F(Page, EveryControlHasAName) {
   map({"--resolution", "128", "--tolerance", "3"});
   EXPECT_TRUE(passes("names", page()));
