@@ -7,8 +7,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
+
+#include "option_checks.h"
+
+#include "option_checks.h"
 
 namespace {
 
@@ -109,8 +114,7 @@ void add_align_options(CLI::App& app, AlignCommand& command) {
          "file with a 4x4 matrix, such as alignment.json")
       ->type_name("none|pca|FILE")
       ->needs(align)
-      ->check(
-          CLI::Validator([](const std::string& text) { return text.empty() ? "the name is empty" : ""; }, ""))
+      ->check(non_empty())
       ->capture_default_str();
   app.add_option("--align-on", command.region,
                  "Fit O1 to this part of O2: a group, object or material of its file, or a box in its "
@@ -125,8 +129,8 @@ void add_align_options(CLI::App& app, AlignCommand& command) {
   app.add_option_function<std::string>(
          "--align-321", [&command](const std::string& file) { command.on = true, command.points_321 = file; },
          "Move O1 by six of its points and their places on O2, without a fit: a file with a row of two "
-         "points for "
-         "each, three primary, two secondary and one tertiary")
+         "points for each, three primary, two secondary and one tertiary")
+      ->check(non_empty())
       ->type_name("FILE")
       ->excludes(align);
 }
@@ -170,7 +174,8 @@ sdm::AlignRegion region_of(const AlignCommand& command, const Input& o2) {
 sdm::Transform read_321(const std::string& file) {
   constexpr std::size_t kRows = 6;
   std::ifstream in(file);
-  if (!in) throw sdm::Error(file + ": there is no such file, or it cannot be read");
+  if (!in || std::filesystem::is_directory(file))
+    throw sdm::Error(file + ": there is no such file, or it cannot be read");
   std::vector<sdm::Vec3> points, places;
   std::string line;
   for (int row = 1; std::getline(in, line) && points.size() <= kRows; ++row) {

@@ -179,10 +179,11 @@ std::vector<std::string> in_words(const AlignOutcome& outcome, const std::string
   const sdm::Alignment& a = outcome.alignment;
   const std::string unit = unit_suffix(units);
   const auto [degrees, shift] = sizes(a);
+  const auto rms = [](double value) { return std::isnan(value) ? "unknown" : number(value, 3); };
   std::vector<std::string> words{
       fmt::format("turned O1 by {}° and moved it by {}{}; residual rms {} -> {}{} ({} % of samples)",
-                  number(degrees, 4), number(shift, 4), unit, number(a.before.trimmed_rms, 3),
-                  number(a.after.trimmed_rms, 3), unit, number(100 * a.fraction_used, 4))};
+                  number(degrees, 4), number(shift, 4), unit, rms(a.before.trimmed_rms),
+                  rms(a.after.trimmed_rms), unit, number(100 * a.fraction_used, 4))};
   const AlignCommand& command = outcome.command;
   if (!command.points_321.empty()) words.push_back("by the six points of " + command.points_321);
   if (!command.region.empty())
@@ -263,10 +264,9 @@ std::vector<std::string> notes(const AlignOutcome& outcome) {
   else if (a.fraction_fitting < kMany)
     notes.push_back(fmt::format("{} % of the samples do not fit O2 and were taken for outliers; {}",
                                 number(100 * (1 - a.fraction_fitting), 3), question));
-  if (outcome.mirrored && !outcome.command.judged)
-    notes.push_back(fmt::format("O1 fits O2 far better mirrored (to {} % of its size, instead of {} %)",
-                                number(100 * outcome.mirrored->misfit, 2),
-                                number(100 * outcome.mirrored->misfit_as_given, 2)));
+  if (!outcome.command.judged)  // otherwise it is a doubt
+    for (const sdm::Doubt& doubt : doubts_of(outcome))
+      if (doubt.reason == sdm::DoubtReason::mirrored) notes.push_back(doubt.text);
   if (const auto& s = outcome.scale)
     notes.push_back(fmt::format(
         "O1 fits O2 better {} (standard error {}) times as large: residual rms {} instead of {}, estimates",

@@ -6,14 +6,18 @@
 #include <algorithm>
 
 #include "format.h"
+#include "option_checks.h"
 
 using Json = nlohmann::ordered_json;
 
 namespace {
 
+/// Whether a face has the name: those of islands that were left out may be all of a group.
 bool has_group(const Input& mesh, const std::string& group) {
-  return std::ranges::any_of(
-      mesh.names, [&](const sdm::FaceNames& kind) { return std::ranges::count(kind.names, group) > 0; });
+  return std::ranges::any_of(mesh.names, [&](const sdm::FaceNames& kind) {
+    const auto name = static_cast<std::uint32_t>(std::ranges::find(kind.names, group) - kind.names.begin());
+    return std::ranges::count(kind.of_face, name) > 0;
+  });
 }
 
 std::string some_groups(std::initializer_list<const Input*> meshes) {
@@ -38,6 +42,10 @@ std::string group_text(const sdm::GroupVerdict& g, const std::string& units) {
   std::string text = fmt::format("{} ({}): {}, {}", g.group, g.kind, sdm::name_of(g.verdict.verdict),
                                  sdm::limits_text(g.verdict.tolerance, units));
   if (g.lowest) text += fmt::format(", measured {} to {}{}", number(*g.lowest), number(*g.highest), unit);
+  if (g.verdict.reason == sdm::VerdictReason::without_match ||
+      g.verdict.reason == sdm::VerdictReason::beyond_max_distance ||
+      g.verdict.verdict == sdm::Verdict::not_decided)
+    text += fmt::format(", {}", sdm::name_of(g.verdict.reason));
   if (g.verdict.verdict == sdm::Verdict::fail)
     text += fmt::format(", {} % of its area is out", number(100 * g.verdict.exceeded_area_fraction));
   if (g.verdict.proof && g.verdict.proof->witness)
@@ -54,6 +62,7 @@ void add_tolerance_table_option(CLI::App& app, GroupTolerances& table) {
                  "Judge groups of the measured mesh, by the exit code too: CSV with the header "
                  "group,lower,upper, or JSON with these keys. A group is an object, group, material, face or "
                  "color of its file. Faces of no row are judged by --tolerance only")
+      ->check(non_empty())
       ->type_name("FILE");
 }
 

@@ -59,9 +59,12 @@ sdm::IslandReport ignore_islands(Input& input, const sdm::IslandLimits& limits) 
     for (const std::uint32_t face : rest.face) of_face.push_back(kind.of_face[face]);
     kind.of_face = std::move(of_face);
   }
-  input.notes.push_back(fmt::format("{}: {} islands with {} faces, {} % of the area, were left out",
-                                    input.file, rest.islands, rest.faces,
-                                    number(100 * rest.area_fraction, 3)));
+  if (rest.islands > 0)
+    input.notes.push_back(
+        fmt::format("{}: {} with {}, {} % of the area, left out", input.file,
+                    rest.islands == 1 ? "1 island" : fmt::format("{} islands", rest.islands),
+                    rest.faces == 1 ? "1 face" : fmt::format("{} faces", rest.faces),
+                    number(100 * rest.area_fraction, 3)));
   return rest;
 } catch (const sdm::Error& error) {
   throw sdm::Error(input.file + ": " + error.what());

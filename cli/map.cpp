@@ -33,7 +33,7 @@ constexpr const char* kAlignmentFile = "alignment.json";
 
 /// All files that any run of the command writes, with the UDIM tiles that there are in the folder.
 std::vector<std::filesystem::path> stale_files(const std::filesystem::path& out) {
-  std::vector<std::filesystem::path> files{kAlignmentFile};
+  std::vector<std::filesystem::path> files{kAlignmentFile, "ball.exr", "ray.exr"};  // and of sdm thickness
   for (const std::filesystem::path mesh : {"", "o1", "o2"}) {
     std::vector<std::filesystem::path> folders{mesh};
     std::error_code ignored;

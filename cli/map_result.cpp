@@ -114,11 +114,13 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
       },
       [&] { outcome.summary = sdm::summarize(surface, *task.sites, map, computed.at_vertices, options); },
   });
-  if (!command.groups.rows.empty())
-    outcome.groups = sdm::certify_groups(
+  if (!command.groups.rows.empty()) {
+    sdm::GroupVerdicts groups = sdm::certify_groups(
         surface, *task.sites, map, computed.at_vertices, names_of_part(task.on.names, part.source_face),
         command.groups.rows,
         {.accuracy = computed.accuracy, .doubted = !task.doubts.empty() && !command.doubts.accept});
+    if (!groups.groups.empty()) outcome.groups = std::move(groups);  // none is of this mesh or tile
+  }
 }
 
 /// What users probably did not intend, and what a summary does not know of.

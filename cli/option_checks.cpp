@@ -53,6 +53,12 @@ CLI::Validator positive_number() {
 CLI::Validator no_negative_number() {
   return number("a number, 0 or more", [](double x) { return x >= 0; });
 }
+CLI::Validator non_empty() {
+  return CLI::Validator(
+      [](const std::string& text) { return text.empty() ? std::string("the name is empty") : std::string(); },
+      "");
+}
+
 CLI::Validator any_number() {
   return number("a number", [](double) { return true; });
 }

@@ -19,6 +19,8 @@
 [[nodiscard]] CLI::Validator positive_number();
 [[nodiscard]] CLI::Validator no_negative_number();
 [[nodiscard]] CLI::Validator any_number();
+/// Requires a name: a variable of a script that is not set would switch an option off.
+[[nodiscard]] CLI::Validator non_empty();
 /// Requires a whole number in base 10, and removes its leading zeros: CLI11 would read 010 in base 8. To be
 /// passed to CLI::Option::transform().
 [[nodiscard]] CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest);

@@ -8,10 +8,19 @@ namespace {
 
 constexpr const char* kFieldOption = "--field";
 
+bool is_utf8(const std::string& text) {
+  try {
+    return !nlohmann::ordered_json(text).dump().empty();
+  } catch (const nlohmann::ordered_json::type_error&) {
+    return false;
+  }
+}
+
 void add_field(ReportFields& fields, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
     throw CLI::ValidationError(kFieldOption, fmt::format("{} is not of the form NAME=TEXT", text));
+  if (!is_utf8(text)) throw CLI::ValidationError(kFieldOption, "a text is not UTF-8");
   std::string name = text.substr(0, equals);
   if (std::ranges::count(fields, name, &ReportFields::value_type::first) > 0)
     throw CLI::ValidationError(kFieldOption, fmt::format("{} is given twice", name));

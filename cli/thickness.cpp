@@ -63,10 +63,11 @@ std::string text_of_method(const ThicknessCommand& command) {
       number(command.thickness.angle));
 }
 
-/// The limits. No thickness exceeds the diagonal of the part.
+/// The limits. No thickness exceeds the diagonal of the part, which the lower limit may.
 std::optional<sdm::Tolerance> limits_of(const ThicknessCommand& command, double diagonal) {
   if (!command.least && !command.most) return std::nullopt;
-  return sdm::Tolerance(command.least.value_or(0), command.most.value_or(diagonal));
+  return sdm::Tolerance(command.least.value_or(0),
+                        command.most.value_or(std::max(diagonal, 2 * command.least.value_or(0))));
 }
 
 /// The limits in words, without one that was not given.
@@ -179,7 +180,7 @@ std::string tolerance_text(const ThicknessCommand& command, const sdm::Summary& 
     text += fmt::format("every texel has {}; between the texels, an estimate", limits_in_words(command));
   } else if (verdict.verdict == sdm::Verdict::fail && summary.extremes) {
     const sdm::Extreme most = decisive_extreme(summary).value_or(sdm::Extreme{});
-    text += fmt::format("{} % of the area do not have {}; {}{} at {}",
+    text += fmt::format("{} % of the area does not have {}; {}{} at {}",
                         number(100 * verdict.exceeded_area_fraction), limits_in_words(command),
                         number(most.distance), unit_suffix(summary.units), place(most.point, size));
   } else {

@@ -29,7 +29,7 @@ void TileTotals::add(int udim, const Outcome& outcome, const sdm::Surface& surfa
 Outcome TileTotals::finish() const {
   Outcome total = first_;
   total.summary = combined_.summary();
-  total.raster.reset();
+  total.raster.reset(), total.groups.reset();  // those of the first tile
   return total;
 }
 

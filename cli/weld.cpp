@@ -64,6 +64,10 @@ std::optional<std::string> note_on_welding(const sdm::SignUsed& used, sdm::SignM
 void check_closed(const Input& input, const std::string& what) {
   if (input.info->closed) return;
   const std::string advice = weld_advice(input);
+  if (input.info->boundary_edges == 0)
+    throw sdm::Error(
+        fmt::format("{}: {} needs a closed mesh, and {} edges of this one have more than two faces",
+                    input.file, what, input.info->nonmanifold_edges));
   throw sdm::Error(fmt::format("{}: {} needs a closed mesh, and this one is open; {}", input.file, what,
                                advice.empty() ? "close its holes" : advice));
 }

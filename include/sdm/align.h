@@ -45,6 +45,7 @@ struct AlignRegion {
   std::vector<std::uint8_t> faces{};  ///< one entry for each face of O2, other than 0 if it belongs; or empty
   std::vector<Box> boxes{};           ///< whatever of O2 is within
 
+  /// Whether it is all of O2.
   [[nodiscard]] bool whole() const { return faces.empty() && boxes.empty(); }
 };
 

@@ -21,8 +21,6 @@ export interface Evidence {
   unmatched?: boolean; ///< a sample has no match
   samples_only?: boolean; ///< nothing bounds the distances between samples
   signed?: boolean; ///< false: no distance is negative
-  unmatched?: boolean; ///< not complete, as nothing faces some sample
-  samples_only?: boolean; ///< nothing is known between samples
 }
 /// A mesh, or a cloud, which has points.
 export interface Input {
@@ -44,8 +42,6 @@ export interface Report {
   o1?: Input;
   o2?: Input;
   mesh?: Input;
-  measured?: { kind: string; text: string };
-  without_match?: number;
   thickness?: { method: string; text: string };
   measured_on?: 'o1' | 'o2';
   units?: string;

@@ -105,8 +105,6 @@ function failure(report: Report, limits: Limits): string {
     return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
       report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
     }.`;
-  if (t.reason === 'without match')
-    return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} have no face of the reference that faces as they do.`;
   const between = t.proof?.witness;
   const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
   const share =
@@ -114,18 +112,53 @@ function failure(report: Report, limits: Limits): string {
   return `A distance of ${text(most)}${unit} was found${between ? ' between the measured points' : ''}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
 }
 
-/// The verdict of the report, in words.
-export function verdictOf(report: Report): { verdict: Verdict; sentence: string } {
+interface Stated {
+  verdict: Verdict;
+  sentence: string;
+}
+
+/// The verdict by the tolerance for the whole part, in words.
+function ofPart(report: Report): Stated | null {
   const limits = limitsOf(report);
   const t = report.tolerance;
-  if (!limits || !t?.verdict || !report.evidence)
-    return {
-      verdict: 'MEASURED',
-      sentence: 'No tolerance was given (--tolerance), so nothing was judged. The slider below shows what would be.',
-    };
+  if (!limits || !t?.verdict || !report.evidence) return null;
   const verdict = t.verdict as Verdict;
   if (verdict === 'FAIL') return { verdict, sentence: failure(report, limits) };
   if (verdict === 'PASS' && !report.evidence.samples_only)
     return { verdict, sentence: `Every point of the ${isCloud(report) ? 'cloud' : 'surface'} is within the tolerance of ${limitsText(limits, report)}.` };
   return { verdict, sentence: sentence(t.text ?? '') };
+}
+
+/// The verdict by the table of tolerances, in words.
+function ofGroups(report: Report): Stated | null {
+  const table = report.group_tolerances;
+  if (!table) return null;
+  const verdict = table.verdict as Verdict;
+  const some = table.groups.filter((g) => g.verdict === verdict).map((g) => g.group);
+  const kMost = 5;
+  const names = some.slice(0, kMost).join(', ') + (some.length > kMost ? ' and others' : '');
+  const count = `${some.length} of ${table.groups.length} groups`;
+  const words: Partial<Record<Verdict, string>> = {
+    FAIL: `${count} of the table of tolerances fail: ${names}.`,
+    'NOT DECIDED': `${count} of the table of tolerances are not decided: ${names}.`,
+    DOUBTFUL: `Every group of the table of tolerances is within its limits, but ${report.doubts?.map((d) => d.text).join('; ') ?? 'in doubt'}.`,
+    PASS: 'Every group of the table of tolerances is within its limits.',
+  };
+  return { verdict, sentence: words[verdict] ?? '' };
+}
+
+const kFromBestToWorst: Verdict[] = ['MEASURED', 'PASS', 'DOUBTFUL', 'NOT DECIDED', 'FAIL'];
+
+/// The verdict of the report, in words: the worse one of those of the part and of its groups, as the exit code is.
+export function verdictOf(report: Report): Stated {
+  const stated = [ofPart(report), ofGroups(report)].filter((s): s is Stated => s !== null);
+  if (stated.length === 0)
+    return {
+      verdict: 'MEASURED',
+      sentence: 'No tolerance was given (--tolerance), so nothing was judged. The slider below shows what would be.',
+    };
+  const rank = ({ verdict }: Stated) => kFromBestToWorst.indexOf(verdict);
+  const worst = Math.max(...stated.map(rank));
+  const decisive = stated.filter((s) => rank(s) === worst);
+  return { verdict: decisive[0].verdict, sentence: decisive.map((s) => s.sentence).join(' ') };
 }

@@ -13,10 +13,12 @@
 
 namespace sdm {
 
-DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOptions& options) {
+DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOptions& options) try {
   DistanceMap map;
   compute_map(surface, sites, options, map);
   return map;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map");
 }
 
 void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,

@@ -88,8 +88,8 @@ TEST_F(AlongOption, WrongUsageLeavesNoTrace) {
     EXPECT_EQ(outcome.code, 2) << direction;
     EXPECT_THAT(outcome.err, HasSubstr("--along")) << direction;
   }
-  for (const std::vector<std::string>& other :
-       std::vector<std::vector<std::string>>{{"--sign", "none"}, {"--engine", "reference"}, {"--facing", "60"}}) {
+  for (const std::vector<std::string>& other : std::vector<std::vector<std::string>>{
+           {"--sign", "none"}, {"--engine", "reference"}, {"--facing", "60"}}) {
     const Outcome outcome = run({"--along", "normal", other[0], other[1]});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr(other[0] + ": does not apply to --along"));

@@ -97,6 +97,26 @@ TEST_F(GroupTolerancesOption, UnknownGroupsAreNamed) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+// A part whose group was left out as an island would pass.
+TEST_F(GroupTolerancesOption, AGroupWithoutFacesIsUnknown) {
+  std::ofstream(part, std::ios::app) << "v 9 9 9\nv 9 9.01 9\nv 9.01 9 9\ng speck\nf 9 10 11\n";
+  const std::string file = table("group,lower,upper\nspeck,-0.1,0.1\n");
+  EXPECT_EQ(map(file).code, 3);
+  const test::Outcome outcome = map(file, {"--ignore-islands", "2"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("speck is no group of"));
+}
+
+// The other mesh has the group: this one is not judged.
+TEST_F(GroupTolerancesOption, BothMeshesAreJudgedByTheGroupsThatTheyHave) {
+  std::ofstream(higher, std::ios::app) << "v 0.5 0.5 1.1\nv 0.6 0.5 1.1\nv 0.5 0.6 1.1\ng mark\nf 9 10 11\n";
+  const test::Outcome outcome = map(table("group,lower,upper\nmark,-0.2,0.2\n"), {"--both", "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const auto report = nlohmann::json::parse(outcome.out, nullptr, false);
+  EXPECT_FALSE(report["o1"].contains("group_tolerances"));
+  EXPECT_EQ(report["o2"]["group_tolerances"]["verdict"], "PASS");
+}
+
 TEST_F(GroupTolerancesOption, TablesAreChecked) {
   const auto fault = [&](const std::string& text) {
     const std::string file = table(text);
@@ -114,6 +134,9 @@ TEST_F(GroupTolerancesOption, TablesAreChecked) {
   EXPECT_THAT(fault("{}"), HasSubstr("JSON array"));
   EXPECT_THAT(error_of([&] { (void)read_tolerance_table(folder / "none.csv"); }),
               HasSubstr("cannot be read"));
+  EXPECT_THAT(error_of([&] { (void)read_tolerance_table(folder.path()); }), HasSubstr("is a folder"));
+  EXPECT_THAT(fault(std::string("group,lower,upper\na\0b,1,2\n", 25)), HasSubstr("byte 0"));
+  EXPECT_EQ(map("").code, 2) << "an unset variable of a script";
 }
 
 }  // namespace

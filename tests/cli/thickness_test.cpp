@@ -114,5 +114,29 @@ TEST_F(ThicknessCommandTest, WrongUsageLeavesNoTrace) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST_F(ThicknessCommandTest, ALimitAboveTheDiagonalFails) {
+  const Outcome outcome = run(part, {"--min", "200"});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_EQ(run(part, {"--min", "1e300"}).code, 3);
+}
+
+TEST_F(ThicknessCommandTest, ConnectedSolidsAreNotCalledOpen) {
+  Mesh two = plate;
+  for (const Vec3& p : plate.positions) two.positions.push_back(p + Vec3{0, 0, 0.5});
+  const auto count = static_cast<std::uint32_t>(plate.positions.size());
+  for (const Triangle& t : plate.triangles)
+    two.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+  // The upper plate stands on vertices of the lower one.
+  for (Triangle& t : two.triangles)
+    for (std::uint32_t& v : t)
+      for (std::uint32_t w = 0; w < count; ++w)
+        if (two.positions[v] == two.positions[w]) v = w;
+  const std::string file = folder / "two.ply";
+  write_ply(file, two);
+  const Outcome outcome = run(file);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("4 edges of this one have more than two faces"));
+}
+
 }  // namespace
 }  // namespace sdm::test

@@ -183,6 +183,8 @@ TEST(Usage, WrongUsageEndsWithTwo) {
                                                           {"--bands", "1,1"},
                                                           {"--field", "part"},
                                                           {"--field", "=4711"},
+                                                          {"--field", "a\xff=1"},
+                                                          {"--align-321", ""},
                                                           {"--field", "a=1", "--field", "a=2"},
                                                           {"--bands", "0,x"},
                                                           {"--range", "1"},

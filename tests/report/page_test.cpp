@@ -150,6 +150,20 @@ TEST_F(Page, SaysHowThePartWasAligned) {
   EXPECT_TRUE(passes("says", page(), {"Alignment: " + words, "the alignment\tnothing"}));
 }
 
+// The exit code is that of the worse one.
+TEST_F(Page, StatesTheWorseVerdictOfPartAndGroups) {
+  std::string text = contents(o1);
+  std::ofstream(o1) << "g ring\n" << text;
+  const std::string passes_table = folder / "wide.csv", fails_table = folder / "tight.csv";
+  std::ofstream(passes_table) << "group,lower,upper\nring,0,3\n";
+  std::ofstream(fails_table) << "group,lower,upper\nring,0,1\n";
+  map({"--resolution", "64", "--tolerance-table", passes_table});
+  EXPECT_TRUE(
+      passes("says", page(), {"PASS", "Every group of the table of tolerances is within its limits."}));
+  map({"--resolution", "64", "--tolerance", "3", "--tolerance-table", fails_table});
+  EXPECT_TRUE(passes("says", page(), {"FAIL", "1 of 1 groups of the table of tolerances fail: ring."}));
+}
+
 TEST_F(Page, EveryControlHasAName) {
   map({"--resolution", "128", "--tolerance", "3"});
   EXPECT_TRUE(passes("names", page()));

@@ -102,10 +102,12 @@ std::vector<GroupTolerance> table_in_json(std::string_view text) {
 }  // namespace
 
 std::vector<GroupTolerance> read_tolerance_table(const std::filesystem::path& file) try {
+  if (std::filesystem::is_directory(file)) throw Error("is a folder");
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (in.fail() && text.empty()) throw Error("cannot be read");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the UTF-8 byte order mark
+  if (text.find('\0') != std::string::npos) throw Error("is not text: it has a byte 0");
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   std::vector<GroupTolerance> table = first != std::string::npos && (text[first] == '[' || text[first] == '{')
                                           ? table_in_json(text)

@@ -257,10 +257,12 @@ std::size_t MultiBodyQuery::candidate_pairs() const {
   return impl_->candidates;
 }
 
-NearestMap MultiBodyQuery::nearest_map(std::size_t body) const {
+NearestMap MultiBodyQuery::nearest_map(std::size_t body) const try {
   NearestMap nearest;
   nearest_map(body, nearest);
   return nearest;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map of the nearest bodies");
 }
 
 void MultiBodyQuery::nearest_map(std::size_t body, NearestMap& nearest) const try {
