@@ -33,10 +33,12 @@ struct AlongOptions {
 ///   (n·u) (m·u) > 0           along a direction: seen along it, both show the same side
 /// by more than 1e-12. Along the vertical, the distance of terrain is its change of height; both surfaces
 /// must be oriented alike. `distance` is positive where the sample is on the side of the hit face to which n
-/// points: outside or, of terrain with upward normals, above. `vector` leads to the hit, on the face `site`.
+/// points: outside or, of terrain with upward normals, above; its SignMethod is `side`.
+/// `vector` leads to the hit, on the face `site`.
 ///
 /// Normals of O2 are outward if it is closed and orientable; otherwise those of its file, made consistent
-/// within each component. Those of O1 are as its triangles are oriented in its file.
+/// within each component. Those of O1 are outward if it is closed and orientable, otherwise as its triangles
+/// are oriented in its file.
 ///
 /// Distances are exact to 1e-11 of the size of the meshes and the rounding to float, at the texels. They are
 /// not 1-Lipschitz: nothing bounds them in between. Owned texels without a hit have no value, and count as

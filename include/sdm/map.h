@@ -47,6 +47,7 @@ struct DistanceMap {
   MeasuredDistance measured;
   std::size_t beyond_max_distance = 0;  ///< owned texels without a value, besides the next ones
   std::size_t without_match = 0;        ///< owned texels that no face of O2 is allowed for
+  std::vector<std::uint8_t> unmatched;  ///< flags of these texels; empty if there are none
 
   /// Texels per column, as Surface::rows().
   [[nodiscard]] std::uint32_t rows() const {

@@ -69,7 +69,8 @@ class DistanceMap(_core.MapChannels):
 
     @property
     def measured(self) -> str:
-        """What the distances are to, in words, such as 'distance to faces that face within 90°'."""
+        """What the distances are to, in words, such as
+        'distance to the closest of the faces that face the same way, within 90°'."""
         return self._core.measured
 
     @property
@@ -285,12 +286,13 @@ def map(
     its normals do not point, an estimate, with no sign (>= 0) at its boundary.
     along: None: to the closest point. 'normal' or a direction: along the normal of each texel's face, or that direction,
     to both sides, to the nearest face of ``b`` that faces the same way; positive on the side to which its normal points.
-    Exact at the texels, and an estimate in between: such a map has no ``bounds`` or hausdorff(), check() judges the texels,
-    and ``sign``, ``engine`` and ``facing`` must be the defaults.
+    Normals of closed meshes are outward. Exact at the texels, and an estimate in between: such a map has no ``bounds`` or
+    hausdorff(), check() judges the texels, and ``sign``, ``engine`` and ``facing`` must be the defaults.
     max_distance: > 0; texels farther away have no value.
     facing: an angle in degrees, above 0 and up to 180: distances are to the closest of the faces of ``b`` whose normal is
-    within it (for 90: less than that) of the normal of the texel's face, with the sign of the side of that face. Texels
-    without such a face have no value. The map has no ``bounds`` and hausdorff(), and a 'pass' of check() is not certified.
+    within it (for 90: less than that) of the normal of the texel's face, with the sign of the side of that face. Normals of
+    closed meshes are outward. Texels without such a face have no value. The map has no ``bounds`` and hausdorff(), and a
+    'pass' of check() is not certified.
     progress: called as progress(step, fraction), on this thread; False cancels.
 
     The site is closest to within 1e-6 (cpu) or 2e-6 (gl) of the diagonal of both meshes, or to double rounding

@@ -447,7 +447,7 @@ def test_facing_finds_the_skin_that_faces_the_texel():
     plain = sdm.map(dented, (plate, faces), resolution=16)
     facing = sdm.map(dented, (plate, faces), resolution=16, facing=90)
     assert plain.statistics().max_abs == pytest.approx(0.1) and plain.measured == "distance to the closest point"
-    assert facing.statistics().min == pytest.approx(-0.4) and facing.measured == "distance to faces that face within 90°"
+    assert facing.statistics().min == pytest.approx(-0.4) and facing.measured == "distance to the closest of the faces that face the same way, within 90°"
     assert facing.without_match == 0 and facing.check(0.3).verdict == "fail"
     passed = facing.check(0.5)
     assert passed.verdict == "pass" and not passed.certified

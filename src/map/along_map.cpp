@@ -15,6 +15,7 @@
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
+#include "map/outward_normals.h"
 #include "query/rays/trace.h"
 #include "sites/sites_data.h"
 #include "surface/tiles.h"
@@ -31,7 +32,7 @@ Vec3 unit_or_zero(const Vec3& v) {
   return size > 0 ? (1 / size) * v : Vec3{};
 }
 
-Vec3 face_normal(const Mesh& mesh, std::uint32_t face) {
+Vec3 normal_by_corners(const Mesh& mesh, std::uint32_t face) {
   const auto [a, b, c] = corners_of(mesh, face);
   return unit_or_zero(cross(b - a, c - a));
 }
@@ -105,7 +106,7 @@ class LineSearch {
 
  private:
   [[nodiscard]] Vec3 normal_of(std::uint32_t face) const {
-    const Vec3 n = face_normal(sites_.mesh, face);
+    const Vec3 n = normal_by_corners(sites_.mesh, face);
     return sites_.inverted[face] != 0 ? -1.0 * n : n;
   }
 
@@ -124,6 +125,7 @@ void store_hit(const OnLine& hit, std::uint32_t texel, DistanceMap& map) {
   for (int k = 0; k < 3; ++k) map.vector[texel][k] = found ? static_cast<float>(hit.vector[k]) : kNoDistance;
   map.site[texel] = found ? hit.face : kNone;
   map.site_type[texel] = found ? SiteType::face : SiteType::none;
+  map.unmatched[texel] = hit.end == LineEnd::none ? 1 : 0;
 }
 
 }  // namespace
@@ -133,10 +135,12 @@ DistanceMap along_map(const Surface& surface, const Sites& sites, const AlongOpt
   const sites::SitesData& data = internals(sites);
   DistanceMap map;
   map::clear(map, surface);
-  map.sign = {SignMethod::exact, "the side of the face that the line hits"};
+  map.unmatched.assign(map.distance.size(), 0);
+  map.sign = {SignMethod::side, "the side of the face that the line hits"};
   map.measured = {DistanceKind::along, text_of(options)};
   const surface::Tiles tiles(surface);
   std::atomic<std::size_t> none{0}, too_far{0};
+  const std::vector<Vec3> normals = map::outward_normals(surface.mesh());
   parallel_for(tiles.count(), kTilesAtOnce, options.progress, "map", [&](std::size_t begin, std::size_t end) {
     LineSearch search(data, options);
     std::vector<Vec3> points;
@@ -145,7 +149,7 @@ DistanceMap along_map(const Surface& surface, const Sites& sites, const AlongOpt
       const std::span<const std::uint32_t> texels = tiles.of(static_cast<std::uint32_t>(tile));
       points.clear();
       for (const std::uint32_t texel : texels) points.push_back(surface.texel_point(texel));
-      search.search(face_normal(surface.mesh(), tiles.faces[tile]), points);
+      search.search(normals[tiles.faces[tile]], points);
       for (std::size_t i = 0; i < texels.size(); ++i) {
         const OnLine& hit = search.hits()[i];
         store_hit(hit, texels[i], map);
@@ -155,6 +159,7 @@ DistanceMap along_map(const Surface& surface, const Sites& sites, const AlongOpt
     none += none_here, too_far += too_far_here;
   });
   map.without_match = none, map.beyond_max_distance = too_far;
+  if (none == 0) map.unmatched.clear();
   return map;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the distances along lines");
@@ -166,11 +171,12 @@ std::vector<float> distances_along_at_vertices(const Mesh& mesh, const Sites& si
   const sites::SitesData& data = internals(sites);
   std::vector<std::array<float, 3>> at_corners(mesh.triangles.size(),
                                                {kNoDistance, kNoDistance, kNoDistance});
+  const std::vector<Vec3> normals = map::outward_normals(mesh);
   const auto work = [&](std::size_t begin, std::size_t end) {
     LineSearch search(data, options);
     for (std::size_t f = begin; f < end; ++f) {
       if (is_removed(mesh.triangles[f])) continue;
-      search.search(face_normal(mesh, static_cast<std::uint32_t>(f)), corners_of(mesh, f));
+      search.search(normals[f], corners_of(mesh, f));
       for (std::size_t k = 0; k < 3; ++k)
         if (const OnLine& hit = search.hits()[k]; hit.end == LineEnd::hit)
           at_corners[f][k] = static_cast<float>(hit.distance);

@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
+#include "map/outward_normals.h"
 #include "query/facing/facing_search.h"
 
 namespace sdm {
@@ -40,28 +41,18 @@ class SampleCounts {
   std::array<Counter, 64> counters_;
 };
 
-std::vector<Vec3> unit_normals(const Mesh& mesh) {
-  constexpr std::size_t kFaces = 4096;
-  std::vector<Vec3> normals(mesh.triangles.size());
-  parallel_for(normals.size(), kFaces, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f)
-      if (!is_removed(mesh.triangles[f]))
-        normals[f] = facing::unit_normal(mesh, static_cast<std::uint32_t>(f));
-  });
-  return normals;
-}
-
 }  // namespace
 
 void compute_facing_map(const Surface& surface, const Sites& sites, const MapOptions& options,
                         const Engine& engine, DistanceMap& map) {
   const facing::FacingSearch search(internals(sites), *options.facing);
-  const std::vector<Vec3> normals = unit_normals(surface.mesh());
+  const std::vector<Vec3> normals = outward_normals(surface.mesh());
   const std::span<const std::uint32_t> texels = surface.sample_texels(), faces = surface.texel_faces();
   map.sign = choose_sign(sites, options);
   map.measured = measured_distance(options);
   const bool is_signed = map.sign.method != SignMethod::none;
   const MapWriter writer(map, surface);
+  map.unmatched.assign(map.distance.size(), 0);
   SampleCounts counts;
   engine.map(surface, sites, {options.max_distance, options.progress},
              [&](std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest) {
@@ -73,6 +64,7 @@ void compute_facing_map(const Surface& surface, const Sites& sites, const MapOpt
                  const facing::Match match =
                      search.match(points[i], normals[faces[texels[first + i]]], options.max_distance, near);
                  behind |= static_cast<std::uint32_t>(is_signed && match.behind) << i;
+                 map.unmatched[texels[first + i]] = match.unmatched ? 1 : 0;
                  unmatched += match.unmatched;
                  const ClosestPoint& found = match.closest;
                  if (found.type != near.type || found.site != near.site) matches.set(i, points[i], found);
@@ -81,6 +73,7 @@ void compute_facing_map(const Surface& surface, const Sites& sites, const MapOpt
                if (without > 0) counts.add(first, without - unmatched, unmatched);
              });
   counts.store(map);
+  if (map.without_match == 0) map.unmatched.clear();
 }
 
 }  // namespace map
@@ -90,7 +83,9 @@ MeasuredDistance measured_distance(const MapOptions& options) {
   facing::check_angle(*options.facing);
   std::array<char, 32> angle{};
   std::snprintf(angle.data(), angle.size(), "%.6g", *options.facing);
-  return {DistanceKind::facing, std::string("distance to faces that face within ") + angle.data() + "°"};
+  return {DistanceKind::facing,
+          std::string("distance to the closest of the faces that face the same way, within ") + angle.data() +
+              "°"};
 }
 
 SignUsed choose_sign(const Sites& sites, const MapOptions& options) {

@@ -29,6 +29,7 @@ void clear(DistanceMap& map, const Surface& surface) {
     require_memory(faces.size() * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
                    "a map of " + atlas::size_text(surface.resolution(), surface.rows()) + " texels");
   map.resolution = surface.resolution();
+  map.unmatched.clear();
   map.distance.resize(faces.size());
   map.vector.resize(faces.size());
   map.site.resize(faces.size());

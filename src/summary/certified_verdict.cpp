@@ -2,6 +2,7 @@
 #include <sdm/summary.h>
 
 #include "summary/certify.h"
+#include "summary/missing_signs.h"
 
 namespace sdm {
 namespace {
@@ -54,9 +55,12 @@ CertifiedVerdict summary::certify(const ToleranceVerdict& verdict, const Mesh& s
 CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                    std::span<const float> vertex_distances, const Tolerance& tolerance,
                                    const CertifyOptions& options) {
+  ToleranceVerdict sampled =
+      check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance);
+  summary::withhold_failure_by_missing_signs(sampled, surface, sites, map, vertex_distances, {},
+                                             options.accuracy);
   return summary::certify(
-      check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance),
-      surface.mesh(), sites, map.measured.kind,
+      sampled, surface.mesh(), sites, map.measured.kind,
       {.sign = map.sign.method, .accuracy = options.accuracy, .progress = options.progress});
 }
 

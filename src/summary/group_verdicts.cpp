@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "summary/certify.h"
+#include "summary/missing_signs.h"
 
 namespace sdm {
 namespace {
@@ -41,17 +42,24 @@ Evidence evidence_of_faces(const Surface& surface, const DistanceMap& map,
                     .error_bound = std::numeric_limits<double>::infinity(),
                     .is_signed = map.sign.method != SignMethod::none};
   const auto add = [&](double d) {
-    if (!std::isfinite(d)) {
-      evidence.complete = false, evidence.unmatched = !is_closest && map.beyond_max_distance == 0;
-      return;
-    }
     evidence.lowest = std::fmin(evidence.lowest.value_or(d), d);
     evidence.highest = std::fmax(evidence.highest.value_or(d), d);
   };
+  summary::WithoutValue without(map);
   for (const std::uint32_t texel : surface.sample_texels())
-    if (in_group[surface.texel_faces()[texel]] != 0) add(map.distance[texel]);
+    if (in_group[surface.texel_faces()[texel]] != 0) {
+      if (std::isfinite(map.distance[texel]))
+        add(map.distance[texel]);
+      else
+        without.add_texel(texel);
+    }
   for (const std::uint32_t face : faces)
-    for (const std::uint32_t vertex : surface.mesh().triangles[face]) add(vertex_distances[vertex]);
+    for (const std::uint32_t vertex : surface.mesh().triangles[face])
+      if (std::isfinite(vertex_distances[vertex]))
+        add(vertex_distances[vertex]);
+      else
+        without.add_vertex();
+  evidence.complete = !without.any(), evidence.unmatched = without.unmatched();
   return evidence;
 }
 
@@ -92,6 +100,8 @@ GroupVerdicts certify_groups(const Surface& surface, const Sites& sites, const D
         sampled.shares.below + sampled.shares.above + sampled.shares.without_value;
     if (evidence.complete && evidence.lowest)
       sampled.largest = std::max({0.0, -*evidence.lowest, *evidence.highest});
+    summary::withhold_failure_by_missing_signs(sampled, surface, sites, map, vertex_distances, in_group,
+                                               options.accuracy);
     result.groups.push_back({.kind = named.kind,
                              .group = group,
                              .faces = named.faces.size(),

@@ -7,6 +7,7 @@
 
 #include "geometry/vec.h"
 #include "map/statistics/tolerance_limits.h"
+#include "summary/certify.h"
 
 namespace sdm {
 
@@ -17,7 +18,6 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
     throw Error("a verdict needs one distance for each vertex of the surface's mesh");
   const bool is_closest = map.measured.kind == DistanceKind::closest;
   Evidence evidence{.complete = map.beyond_max_distance == 0 && map.without_match == 0,
-                    .unmatched = map.without_match > 0,
                     .estimated_signs = is_closest && is_estimate(map.sign.method),
                     .samples_only = !is_closest,
                     .accuracy = accuracy,
@@ -27,8 +27,12 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
     evidence.lowest = std::fmin(evidence.lowest.value_or(d), d);
     evidence.highest = std::fmax(evidence.highest.value_or(d), d);
   };
+  summary::WithoutValue without(map);
   for (const std::uint32_t texel : surface.sample_texels())
-    if (std::isfinite(map.distance[texel])) add(map.distance[texel]);
+    if (std::isfinite(map.distance[texel]))
+      add(map.distance[texel]);
+    else
+      without.add_texel(texel);
   for (const Triangle& triangle : surface.mesh().triangles) {
     if (is_removed(triangle)) continue;
     for (const std::uint32_t vertex : triangle) {
@@ -36,9 +40,10 @@ Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<c
       if (std::isfinite(d))
         add(d);
       else
-        evidence.complete = false, evidence.unmatched |= !is_closest && map.beyond_max_distance == 0;
+        without.add_vertex();
     }
   }
+  evidence.complete = evidence.complete && !without.any(), evidence.unmatched = without.unmatched();
   return evidence;
 }
 

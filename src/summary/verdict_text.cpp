@@ -69,7 +69,9 @@ std::string verdict_text(const Summary& summary) {
              ", or --accept-doubts";
     case Verdict::fail:
       if (verdict.reason == VerdictReason::without_match)
-        return "no face of the reference faces as a point does";
+        return summary.measured.kind == DistanceKind::along
+                   ? "no face of the reference that faces the same way is on the line of a point"
+                   : "no face of the reference faces as a point does";
       return verdict.reason == VerdictReason::beyond_max_distance
                  ? "a point is farther than the maximum distance"
                  : "a point is out of " + limits;

@@ -124,6 +124,27 @@ TEST(Along, ASurfaceAgainstItselfIsZeroAndIsJudgedByItsSamples) {
   EXPECT_FALSE(summary.hausdorff.lower);
 }
 
+TEST(Along, AClosedSurfaceThatIsWoundInwardHasOutwardNormals) {
+  Mesh sheet = test::cube();
+  for (Vec3& p : sheet.positions) p = {10 * p[0], 10 * p[1], 0.5 * p[2]};
+  for (const Mesh& o1 : {sheet, test::flipped(sheet)})
+    for (const Mesh& o2 : {sheet, test::flipped(sheet)}) {
+      const Surface surface(o1, {.resolution = 64});
+      const Sites sites(o2);
+      const DistanceMap map = along_map(surface, sites);
+      EXPECT_EQ(map.without_match, 0u);
+      for (const std::uint32_t texel : surface.sample_texels()) ASSERT_NEAR(map.distance[texel], 0, 1e-6);
+      for (const float d : distances_along_at_vertices(o1, sites)) EXPECT_NEAR(d, 0, 1e-6);
+    }
+}
+
+TEST(Along, SignsAreThoseOfTheSideOfTheFace) {
+  const Surface surface(terrain(4, [](double, double) { return 0.5; }), {.resolution = 64});
+  const Sites open(terrain(4, [](double, double) { return 0.0; }));
+  EXPECT_EQ(along_map(surface, open).sign.method, SignMethod::side);
+  EXPECT_EQ(along_map(surface, Sites(test::cube())).sign.method, SignMethod::side);
+}
+
 TEST(Along, RefusesOptionsOutOfRange) {
   const Surface surface(test::cube(), {.resolution = 64});
   const Sites sites(test::cube());

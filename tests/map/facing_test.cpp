@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sdm/certified_verdict.h>
 #include <sdm/facing.h>
+#include <sdm/group_verdicts.h>
 #include <sdm/summary.h>
 #include <sdm/vertex_distances.h>
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -117,6 +119,69 @@ TEST(Facing, CountsWhatIsBeyondTheMaximumApartFromWhatHasNoMatch) {
   EXPECT_EQ(far.without_match, 0U);
   EXPECT_EQ(turned.without_match, down.sample_texels().size());
   EXPECT_EQ(turned.beyond_max_distance, 0U);
+}
+
+/// 10 × 10 × 1 units.
+Mesh slab() {
+  Mesh mesh = cube(0.5);
+  for (Vec3& p : mesh.positions) p = {10 * p[0], 10 * p[1], p[2]};
+  return mesh;
+}
+
+// The mean normal of a corner is farther than 30° from each of its faces.
+TEST(Facing, VerticesAreMeasuredByEachOfTheirFaces) {
+  for (const double angle : {1.0, 30.0, 54.0, 90.0})
+    for (const float d : distances_at_vertices(slab(), Sites(slab()), {.facing = angle})) EXPECT_EQ(d, 0);
+  // Of the distances by the faces, 2 by the upper one and none by the others, the least.
+  const Sites lower(square(40, -1.5));
+  std::size_t matched = 0;
+  for (const float d : distances_at_vertices(slab(), lower, {.facing = 30})) {
+    matched += !std::isnan(d);
+    if (!std::isnan(d)) {
+      EXPECT_NEAR(d, 2, 1e-5);
+    }
+  }
+  EXPECT_EQ(matched, 4U);
+}
+
+TEST(Facing, AClosedSurfaceThatIsWoundInwardHasOutwardNormals) {
+  Mesh both = slab(), cavity = placed(slab(), "scale:0.5");
+  const auto first = static_cast<std::uint32_t>(both.positions.size());
+  both.positions.insert(both.positions.end(), cavity.positions.begin(), cavity.positions.end());
+  for (const auto& [a, b, c] : cavity.triangles) both.triangles.push_back({first + a, first + c, first + b});
+  for (const Mesh& mesh : {slab(), both}) {
+    const Mesh inward = flipped(mesh);
+    for (const Mesh& o2 : {mesh, inward})
+      for (const Mesh& o1 : {mesh, inward}) {
+        const Surface surface(o1, {.resolution = 64});
+        const Sites sites(o2);
+        const DistanceMap map = compute_map(surface, sites, {.facing = 90});
+        EXPECT_EQ(map.without_match, 0U);
+        for (const std::uint32_t texel : surface.sample_texels()) ASSERT_NEAR(map.distance[texel], 0, 1e-5);
+        for (const float d : distances_at_vertices(o1, sites, {.facing = 90})) EXPECT_EQ(d, 0);
+      }
+  }
+}
+
+TEST(Facing, EachGroupStatesWhatItsOwnSamplesLack) {
+  const Surface surface(slab(), {.resolution = 64});
+  const Sites sites(square(40, -1.5));  // 2 below the upper side; no other side has a match
+  const MapOptions options{.max_distance = 1, .facing = 30};
+  const DistanceMap map = compute_map(surface, sites, options);
+  FaceNames sides{.kind = "group", .names = {"top", "rest"}, .of_face = {}};
+  for (std::uint32_t f = 0; f < surface.mesh().triangles.size(); ++f)
+    sides.of_face.push_back(normal_of(surface.mesh(), f)[2] > 0.5 ? 0 : 1);
+  const std::vector<GroupTolerance> table{{"top", 0.1}, {"rest", 0.1}};
+  const std::vector<float> vertices = distances_at_vertices(surface.mesh(), sites, options);
+  const GroupVerdicts verdicts =
+      certify_groups(surface, sites, map, vertices, std::span(&sides, 1), table, {.accuracy = 1e-6});
+  ASSERT_EQ(verdicts.groups.size(), 2U);
+  EXPECT_EQ(verdicts.groups[0].verdict.reason, VerdictReason::beyond_max_distance);
+  EXPECT_EQ(verdicts.groups[1].verdict.reason, VerdictReason::without_match);
+  const CertifiedVerdict whole =
+      certify_tolerance(surface, sites, map, vertices, 0.1, {.error_bound = 0.1, .accuracy = 1e-6});
+  EXPECT_EQ(whole.reason, VerdictReason::without_match);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(map.unmatched, 1)), map.without_match);
 }
 
 /// A plate over [−5, 25]² from −t to 0.

@@ -4,6 +4,7 @@
 #include <sdm/map.h>
 #include <sdm/vertex_distances.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -76,6 +77,31 @@ TEST(SideOfAnOpenMesh, IsAnEstimateInVerdicts) {
   EXPECT_TRUE(verdict(0.1).certified);
   EXPECT_EQ(verdict({-0.01, 0.1}).verdict, Verdict::not_decided);
   EXPECT_EQ(verdict({-0.01, 0.1}).reason, VerdictReason::estimated_signs);
+}
+
+// Samples beside O2 have no sign: their |d| decides only where either sign would.
+TEST(SideOfAnOpenMesh, SamplesAtTheBoundaryFailOnlyByBothSigns) {
+  const Sites sites(square(1, 0));
+  // Behind O2 by 0.05, and up to 0.05 beside it: at most 0.0866 away.
+  const Surface surface(square(1.1, -0.05), {.resolution = 32});
+  const MapOptions options{.sign = SignMethod::side};
+  const DistanceMap map = compute_map(surface, sites, options);
+  const std::vector<float> vertices = distances_at_vertices(surface.mesh(), sites, options);
+  const auto verdict = [&](const Tolerance& tolerance) {
+    return certify_tolerance(surface, sites, map, vertices, tolerance,
+                             {.error_bound = 0.05, .accuracy = 1e-6});
+  };
+  for (const Tolerance& tolerance : {Tolerance(-0.1, 0.01), Tolerance(-0.1, 0)}) {
+    EXPECT_EQ(verdict(tolerance).verdict, Verdict::not_decided);
+    EXPECT_EQ(verdict(tolerance).reason, VerdictReason::estimated_signs);
+    EXPECT_TRUE(verdict(tolerance).within);
+    EXPECT_FALSE(verdict(tolerance).certified);
+  }
+  EXPECT_EQ(verdict({-0.06, 0.01}).verdict, Verdict::fail);  // with either sign
+  EXPECT_EQ(verdict({-0.01, 0.1}).verdict, Verdict::fail);   // behind, where there are signs
+  const std::vector<std::uint8_t> boundary = boundary_vertices(surface.mesh(), sites);
+  EXPECT_EQ(std::ranges::count(boundary, 1), 4);
+  EXPECT_EQ(std::ranges::count(boundary_vertices(square(0.5, 1), sites), 1), 0);
 }
 
 }  // namespace

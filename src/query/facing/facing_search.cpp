@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "geometry/rounding.h"
-#include "geometry/triangle.h"
 #include "geometry/vec.h"
 #include "query/closest/reference.h"
 #include "tree/visit.h"
@@ -94,11 +93,6 @@ Match FacingSearch::match(const Vec3& query, const Vec3& normal, double max_dist
   else
     result.behind = dot(query - result.closest.point, outward) < 0;
   return result;
-}
-
-Vec3 unit_normal(const Mesh& mesh, std::uint32_t face) {
-  const Corners c = corners_of(mesh, face);
-  return normalized(cross(c[1] - c[0], c[2] - c[0]));
 }
 
 }  // namespace sdm::facing

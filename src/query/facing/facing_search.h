@@ -53,7 +53,4 @@ class FacingSearch {
   double least_cosine_;
 };
 
-/// The unit normal of a face of a mesh by the order of its corners; 0 for a face without area.
-[[nodiscard]] Vec3 unit_normal(const Mesh& mesh, std::uint32_t face);
-
 }  // namespace sdm::facing
