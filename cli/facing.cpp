@@ -15,7 +15,7 @@ void add_facing_option(CLI::App& app, sdm::MapOptions& options, const std::strin
              sample))
       ->expected(0, 1)
       ->check(number("an angle above 0 and up to 180", [](double x) { return x > 0 && x <= 180; }))
-      ->type_name("ANGLE");
+      ->type_name("[ANGLE]");
 }
 
 void check_facing(const sdm::MapOptions& options) {

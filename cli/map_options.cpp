@@ -94,6 +94,11 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
   check_layout(c.layout.atlas);
   check_facing(c.map);
   check_along(app, c.along);
+  if (c.layout.precision && (c.map.facing || c.along))
+    throw CLI::ValidationError(
+        "--precision",
+        "does not apply to --facing and --along: nothing bounds their distances between "
+        "texels");
   check_doubts(c.doubts, c.picture.tolerance);
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");

@@ -194,6 +194,11 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
   outcome.time.map = watch.lap();
   outcome.resolution = map.resolution, outcome.rows = map.rows();
   computed.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), task.on.mesh, task.to.mesh);
+  if (map.sign.method == sdm::SignMethod::side && map.measured.kind == sdm::DistanceKind::closest) {
+    const std::vector<std::uint8_t> at_boundary =
+        sdm::boundary_vertices(mesh, *task.sites, {.max_distance = command.map.max_distance});
+    outcome.boundary_vertices = static_cast<std::size_t>(std::ranges::count(at_boundary, 1));
+  }
   outcome.raster = sdm::gl_report(*command.map.engine);
   computed.ms = total.lap();
   return computed;

@@ -115,6 +115,10 @@ std::string farthest(const Outcome& outcome, const std::string& unit) {
                      place(most->point, outcome.size));
 }
 
+bool is_along(const sdm::Summary& summary) {
+  return summary.measured.kind == sdm::DistanceKind::along;
+}
+
 std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
   const sdm::CertifiedVerdict& verdict = *outcome.summary.tolerance;
   const std::string word = sdm::name_of(verdict.verdict);
@@ -126,6 +130,12 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
     return fmt::format("{}: a point between the texels is out of {}: {}{} at {}", word, limits,
                        number(verdict.proof->witness->distance), unit,
                        place(verdict.proof->witness->point, outcome.size));
+  if (verdict.reason == sdm::VerdictReason::without_match ||
+      verdict.reason == sdm::VerdictReason::beyond_max_distance) {
+    const std::string what =
+        shares.without_value > 0 ? number(100 * shares.without_value) + " % of the area has" : "a vertex has";
+    return fmt::format("{}: {} no value, as {}", word, what, sdm::verdict_text(outcome.summary));
+  }
   std::string text = fmt::format("{}: {} % of the area is out of {}", word,
                                  number(100 * verdict.exceeded_area_fraction), limits);
   if (outcome.summary.sign.method != sdm::SignMethod::none)
@@ -174,8 +184,9 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   };
   text += measured_line(s);
   if (d.texels == 0 || !s.extremes) {
-    add("  distance  no texel {}\n",
-        s.without_match > 0 ? "has a face that faces it" : "is within the maximum distance");
+    add("  distance  no texel {}\n", s.without_match == 0 ? "is within the maximum distance"
+                                     : is_along(s)        ? "has such a face on its line"
+                                                          : "has a face that faces it");
   } else {
     const auto& [min, max] = *s.extremes;
     add("  distance  min {}   mean {}   max {}{}\n", number(min.distance), number(d.mean),
@@ -191,10 +202,12 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   if (s.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", s.sign.reason);
   if (s.beyond_max_distance > 0)
     add("            {} texels are farther than --max-distance\n", s.beyond_max_distance);
-  if (s.without_match > 0) add("            {} texels have no face that faces them\n", s.without_match);
+  if (s.without_match > 0)
+    add("            {} texels have no {}\n", s.without_match,
+        is_along(s) ? "such face on their line" : "face that faces them");
   if (s.sign.method == sdm::SignMethod::side && s.measured.kind == sdm::DistanceKind::closest)
-    add("            signs are estimates ({} texels at the boundary of O2 have none: |d|)\n",
-        s.boundary_texels);
+    add("            signs are estimates ({} texels and {} vertices at the boundary of O2 have none: |d|)\n",
+        s.boundary_texels, outcome.boundary_vertices);
   if (s.evidence.samples_only)
     add("  error     unknown between the texels, whose values are exact: there, all is an estimate\n");
   else

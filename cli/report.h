@@ -39,6 +39,7 @@ struct Outcome {
   sdm::Summary summary;
   std::uint32_t resolution = 0, rows = 0;  ///< of the map
   double size = 0;                         ///< of the mesh that is measured: the diagonal of its box
+  std::size_t boundary_vertices = 0;       ///< that have no sign, as of sdm::boundary_vertices()
   std::optional<bool> embedded{};          ///< the other mesh does not intersect itself; if it has an inside
   std::optional<sdm::GroupVerdicts> groups{};  ///< if there is a table of tolerances
   std::optional<sdm::GlReport> raster;

@@ -21,7 +21,10 @@ sdm::PictureOptions TileScale::texture(const sdm::PictureOptions& picture) const
 
 void TileTotals::add(int udim, const Outcome& outcome, const sdm::Surface& surface,
                      const sdm::DistanceMap& map) {
-  if (tiles_.empty()) first_ = outcome;
+  if (tiles_.empty())
+    first_ = outcome;
+  else
+    first_.boundary_vertices += outcome.boundary_vertices;
   tiles_.push_back({udim, outcome.summary.extremes});
   combined_.add(surface, map, outcome.summary);
 }

@@ -74,6 +74,16 @@ TEST_F(AlongOption, IsJudgedByItsSamplesWithSigns) {
   EXPECT_EQ(fail.code, 3) << fail.out;
 }
 
+TEST_F(AlongOption, SaysBehindAndNamesTheLine) {
+  EXPECT_THAT(run({"--along", "0,0,1"}).out, HasSubstr("is behind (negative)"));
+  write_ply(after, flipped(read_mesh(after)));
+  const Outcome turned = run({"--along", "0,0,1", "--tolerance", "0.1"});
+  EXPECT_EQ(turned.code, 3);
+  EXPECT_THAT(turned.out, HasSubstr("no texel has such a face on its line"));
+  EXPECT_THAT(turned.out, HasSubstr("texels have no such face on their line"));
+  EXPECT_THAT(turned.out, HasSubstr("FAIL: 100 % of the area has no value, as no face of the reference"));
+}
+
 TEST_F(AlongOption, NormalsMayBeTheLines) {
   const Outcome outcome = run({"--along", "normal", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -94,6 +104,10 @@ TEST_F(AlongOption, WrongUsageLeavesNoTrace) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr(other[0] + ": does not apply to --along"));
   }
+  const Outcome bounded =
+      run_sdm({"map", after, before, "-o", out, "--precision", "0.1", "--along", "normal"});
+  EXPECT_EQ(bounded.code, 2);
+  EXPECT_THAT(bounded.err, HasSubstr("--precision: does not apply to --facing and --along"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

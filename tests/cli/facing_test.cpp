@@ -50,11 +50,13 @@ TEST_F(FacingJobs, StateWhatIsMeasured) {
   EXPECT_THAT(plain.out, Not(HasSubstr("measured")));
   const Outcome facing = run("map", dent, {"--tolerance", "0.3", "--facing"});
   EXPECT_EQ(facing.code, 3) << facing.err;
-  EXPECT_THAT(facing.out, HasSubstr("distance to faces that face within 90°"));
+  EXPECT_THAT(facing.out,
+              HasSubstr("distance to the closest of the faces that face the same way, within 90°"));
   EXPECT_THAT(facing.out, HasSubstr("-0.45"));
   const Json report = Json::parse(run("map", dent, {"--tolerance", "0.5", "--facing", "60", "--json"}).out);
   EXPECT_EQ(report["measured"]["kind"], "facing");
-  EXPECT_EQ(report["measured"]["text"], "distance to faces that face within 60°");
+  EXPECT_EQ(report["measured"]["text"],
+            "distance to the closest of the faces that face the same way, within 60°");
   EXPECT_EQ(report["tolerance"]["verdict"], "PASS");
   EXPECT_EQ(report["tolerance"]["certified"], false);
   EXPECT_THAT(report["tolerance"]["text"].get<std::string>(), HasSubstr("estimate"));
@@ -66,6 +68,9 @@ TEST_F(FacingJobs, FailWithoutAMatch) {
   const Outcome result = run("map", turned, {"--tolerance", "1", "--facing", "10"});
   EXPECT_EQ(result.code, 3) << result.err;
   EXPECT_THAT(result.out, HasSubstr("no face that faces them"));
+  EXPECT_THAT(
+      result.out,
+      HasSubstr("FAIL: 100 % of the area has no value, as no face of the reference faces as a point"));
 }
 
 TEST_F(FacingJobs, OfCloudsNeedNormals) {
@@ -74,7 +79,7 @@ TEST_F(FacingJobs, OfCloudsNeedNormals) {
   EXPECT_THAT(without.err, HasSubstr("the cloud has no normals"));
   const Outcome with = run("points", cloud(true), {"--facing", "--tolerance", "0.3"});
   EXPECT_EQ(with.code, 3) << with.err;
-  EXPECT_THAT(with.out, HasSubstr("distance to faces that face within 90°"));
+  EXPECT_THAT(with.out, HasSubstr("distance to the closest of the faces that face the same way, within 90°"));
   EXPECT_THAT(with.out, HasSubstr("-0.45"));
 }
 
@@ -82,6 +87,10 @@ TEST_F(FacingJobs, RefuseOtherSignsAndAngles) {
   EXPECT_EQ(run("map", dent, {"--facing", "--sign", "exact"}).code, 2);
   EXPECT_EQ(run("map", dent, {"--facing", "0"}).code, 2);
   EXPECT_EQ(run("map", dent, {"--facing", "181"}).code, 2);
+  const Outcome bounded = run_sdm({"map", dent, plate, "-o", out, "--facing", "--precision", "0.1"});
+  EXPECT_EQ(bounded.code, 2);
+  EXPECT_THAT(bounded.err, HasSubstr("--precision: does not apply to --facing and --along"));
+  EXPECT_THAT(run_sdm({"map", "--help"}).out, HasSubstr("--facing [ANGLE]"));
 }
 
 TEST_F(FacingJobs, SideGivesOpenReferencesSigns) {
@@ -89,7 +98,12 @@ TEST_F(FacingJobs, SideGivesOpenReferencesSigns) {
   const Json report = Json::parse(run("map", dent, {"--sign", "side", "--json"}).out);
   EXPECT_EQ(report["sign"]["method"], "side");
   EXPECT_NEAR(report["distance"]["max"].get<double>(), -0.2, 1e-6);
-  EXPECT_THAT(run("map", dent, {"--sign", "side"}).out, HasSubstr("signs are estimates"));
+  EXPECT_THAT(run("map", dent, {"--sign", "side"}).out,
+              HasSubstr("signs are estimates (0 texels and 0 vertices at the boundary of O2"));
+  const std::string wide = write_obj(folder / "wide.obj", square(11, -0.2));
+  const Outcome beside = run("map", wide, {"--sign", "side", "--tolerance", "-1:0.1"});
+  EXPECT_EQ(beside.code, 4) << beside.out;
+  EXPECT_THAT(beside.out, HasSubstr("and 4 vertices at the boundary"));
 }
 
 }  // namespace
