@@ -28,3 +28,14 @@ def test_parts_are_meshes_by_their_path():
 def test_a_deflection_must_be_positive():
     with pytest.raises(sdm.Error, match="must be positive"):
         sdm.read(f"{FILES}/box.step", deflection=0)
+
+
+def test_a_crash_of_opencascade_is_an_error(tmp_path):
+    with open(f"{FILES}/box.step", encoding="latin-1") as part:
+        text = part.read().replace("FACE_BOUND", "FACE_BUNND")
+    bad = tmp_path / "bad.step"
+    bad.write_text(text, encoding="latin-1")
+    sdm.Sites(f"{FILES}/box.step").closest_points(np.zeros((1000, 3)))  # has started threads
+    with pytest.raises(sdm.Error, match="bad.step: OpenCASCADE cannot read it; it is damaged"):
+        sdm.read(bad)
+    assert len(sdm.read(f"{FILES}/box.step").faces) == 12

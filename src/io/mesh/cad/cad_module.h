@@ -1,6 +1,6 @@
-// What the readers of meshes and the module libsdm_cad.so exchange. The module, which is loaded when the
-// first CAD file is read, alone sees and links OpenCASCADE: its 60 shared libraries would delay the start of
-// every command.
+// What the readers of meshes and the module libsdm_cad.so exchange. The module, which is loaded by the
+// process that reads a CAD file, alone sees and links OpenCASCADE: its 60 shared libraries would delay the
+// start of every command.
 #pragma once
 
 #include <sdm/vec.h>
@@ -46,20 +46,18 @@ struct CadShape {
   double largest_deviation = 0;
 };
 
-/// The side of the readers. No function throws.
+/// The side of the readers.
 class CadClient {
  public:
   virtual ~CadClient() = default;
-  /// Whether to give up; called by any thread.
-  virtual bool stopped() noexcept = 0;
-  /// Called once, before distance(). Returns whether to measure.
-  virtual bool tessellated(const CadShape& shape) noexcept = 0;
+  /// Called once, before distance().
+  virtual void tessellated(const CadShape& shape) = 0;
   /// The distance from a point to the triangles.
-  virtual double distance(const Vec3& point) noexcept = 0;
+  virtual double distance(const Vec3& point) = 0;
 };
 
 /// Reads and tessellates a file, measures how far its surfaces are from the triangles, and sets `shape`. Not
-/// by two threads at a time.
+/// by two threads at a time. Uses the calling thread only, and does not throw.
 using ReadCad = void(const CadRequest& request, CadShape& shape, CadClient& client);
 
 // The names by which the module is found; both are of type extern "C".

@@ -5,15 +5,11 @@
 #include <sdm/sites.h>
 
 #include <array>
-#include <atomic>
-#include <exception>
 #include <memory>
-#include <mutex>
 #include <numbers>
 #include <span>
 
-#include "core/cancellation.h"
-#include "io/mesh/cad/load_module.h"
+#include "io/mesh/cad/read_in_child.h"
 #include "io/mesh/formats.h"
 
 namespace sdm::io {
@@ -43,44 +39,19 @@ PolygonMesh to_polygons(const CadShape& shape) {
   return mesh;
 }
 
-/// Measures distances to the triangles, and hands cancellation on.
+/// Measures distances to the triangles.
 class Client final : public cad::CadClient {
  public:
-  bool stopped() noexcept override {
-    return failed_ || (token_.flag != nullptr && *token_.flag) ||
-           (token_.progress != nullptr && *token_.progress);
+  void tessellated(const CadShape& shape) override {
+    sites_ = std::make_unique<Sites>(to_mesh(to_polygons(shape)));
   }
 
-  bool tessellated(const CadShape& shape) noexcept override {
-    return safely([&] { sites_ = std::make_unique<Sites>(to_mesh(to_polygons(shape))); });
-  }
-
-  double distance(const Vec3& point) noexcept override {
-    double result = 0;
-    safely([&] { result = closest_points(*sites_, std::span(&point, 1)).front().distance; });
-    return result;
-  }
-
-  void rethrow() const {
-    if (fault_) std::rethrow_exception(fault_);
+  double distance(const Vec3& point) override {
+    return closest_points(*sites_, std::span(&point, 1)).front().distance;
   }
 
  private:
-  template <class Work>
-  bool safely(const Work& work) noexcept {
-    try {
-      work();
-      return true;
-    } catch (...) {
-      fault_ = std::current_exception(), failed_ = true;
-      return false;
-    }
-  }
-
-  CancelToken token_ = cancel_token();
   std::unique_ptr<Sites> sites_;
-  std::exception_ptr fault_;
-  std::atomic<bool> failed_ = false;
 };
 
 // OpenCASCADE reads what is there of a file that was cut.
@@ -101,26 +72,17 @@ PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadF
   const char* const name = format == CadFormat::step ? "STEP" : "IGES";
   if (!(options.deflection.value_or(1) > 0) || !(options.angle > 0) || !(options.angle < kMostAngle))
     throw Error("the deflection must be positive, and the angle too and below 90°");
-  cad::ReadCad* const read_cad = cad::load_module(name);
-  static std::mutex one;  // OpenCASCADE keeps the parameters of its readers in static variables
-  CadShape shape;
-  {
-    const std::scoped_lock lock(one);
-    Client client;
-    read_cad({.bytes = bytes,
-              .file = file.c_str(),
-              .format = format,
-              .deflection = options.deflection.value_or(0),
-              .angle = options.angle},
-             shape, client);
-    poll();
-    client.rethrow();
-    if (!shape.fault.empty()) throw Error(shape.fault);
-  }
+  Client client;
+  const CadShape shape = cad::read_in_child({.bytes = bytes,
+                                             .file = file.c_str(),
+                                             .format = format,
+                                             .deflection = options.deflection.value_or(0),
+                                             .angle = options.angle},
+                                            name, client);
   PolygonMesh mesh = to_polygons(shape);
   mesh.tessellation = Tessellation{.format = name,
                                    .file_unit = shape.unit,
-                                   .faces = shape.faces.size() + shape.omitted_faces,
+                                   .faces = shape.faces.size(),
                                    .omitted_faces = shape.omitted_faces,
                                    .deflection = shape.deflection,
                                    .angle = options.angle,

@@ -57,8 +57,7 @@ std::string unit_names(const TColStd_SequenceOfAsciiString& names) {
   return all;
 }
 
-std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & document,
-                      const Message_ProgressRange& progress) {
+std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & document) {
   STEPCAFControl_Reader reader;
   Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
   BytesBuffer buffer(request.bytes);
@@ -67,18 +66,17 @@ std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & docu
     throw std::runtime_error(kDamaged);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
-  if (!reader.Transfer(document, progress)) throw std::runtime_error(kDamaged);
+  if (!reader.Transfer(document)) throw std::runtime_error(kDamaged);
   return unit_names(lengths);
 }
 
-std::string read_iges(const CadRequest& request, Handle(TDocStd_Document) & document,
-                      const Message_ProgressRange& progress) {
+std::string read_iges(const CadRequest& request, Handle(TDocStd_Document) & document) {
   IGESCAFControl_Reader reader;
   if (reader.ReadFile(request.file) != IFSelect_RetDone) throw std::runtime_error(kDamaged);
   std::string unit;
   if (const auto name = reader.IGESModel()->GlobalSection().UnitName(); !name.IsNull())
     unit = name->ToCString();
-  if (!reader.Transfer(document, progress)) throw std::runtime_error(kDamaged);
+  if (!reader.Transfer(document)) throw std::runtime_error(kDamaged);
   return unit;
 }
 
@@ -169,12 +167,12 @@ class FaceCollector {
 
 }  // namespace
 
-Document read_document(const CadRequest& request, const Message_ProgressRange& progress) {
+Document read_document(const CadRequest& request) {
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   OpenDocument open;
   Document result;
-  result.unit = request.format == CadFormat::step ? read_step(request, open.document, progress)
-                                                  : read_iges(request, open.document, progress);
+  result.unit = request.format == CadFormat::step ? read_step(request, open.document)
+                                                  : read_iges(request, open.document);
   FaceCollector(open.document).collect(result);
   return result;
 }

@@ -1,7 +1,6 @@
 // A CAD file as OpenCASCADE reads it: parts with their places, names and colours.
 #pragma once
 
-#include <Message_ProgressRange.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
@@ -28,6 +27,6 @@ struct Document {
 };
 
 /// Throws std::runtime_error with a clause, or Standard_Failure.
-[[nodiscard]] Document read_document(const CadRequest& request, const Message_ProgressRange& progress);
+[[nodiscard]] Document read_document(const CadRequest& request);
 
 }  // namespace sdm::io::cad

@@ -39,14 +39,14 @@ class Largest {
 };
 
 // Of parametric triangles, whose union is the face but for strips along its edges.
-void measure_surface(const TopoDS_Face& face, CadClient& client, Largest& largest) {
+void measure_surface(const TopoDS_Face& face, Largest& largest) {
   constexpr int kParts = 4;  // of each side
   TopLoc_Location place;
   const Handle(Poly_Triangulation) triangles = BRep_Tool::Triangulation(face, place);
   if (triangles.IsNull() || !triangles->HasUVNodes()) return;
   const BRepAdaptor_Surface surface(face, false);
   if (surface.GetType() == GeomAbs_Plane) return;
-  for (int t = 1; t <= triangles->NbTriangles() && !client.stopped(); ++t) {
+  for (int t = 1; t <= triangles->NbTriangles(); ++t) {
     int node[3];
     triangles->Triangle(t).Get(node[0], node[1], node[2]);
     Corners corners;
@@ -65,12 +65,12 @@ void measure_surface(const TopoDS_Face& face, CadClient& client, Largest& larges
 }
 
 // Of the curves of the edges, between the nodes on them.
-void measure_edges(const TopoDS_Face& face, CadClient& client, Largest& largest) {
+void measure_edges(const TopoDS_Face& face, Largest& largest) {
   constexpr int kParts = 4;
   TopLoc_Location place;
   const Handle(Poly_Triangulation) triangles = BRep_Tool::Triangulation(face, place);
   if (triangles.IsNull()) return;
-  for (TopExp_Explorer at(face, TopAbs_EDGE); at.More() && !client.stopped(); at.Next()) {
+  for (TopExp_Explorer at(face, TopAbs_EDGE); at.More(); at.Next()) {
     const TopoDS_Edge edge = TopoDS::Edge(at.Current());
     if (BRep_Tool::Degenerated(edge)) continue;
     const Handle(Poly_PolygonOnTriangulation) polygon =
@@ -95,9 +95,8 @@ void measure_edges(const TopoDS_Face& face, CadClient& client, Largest& largest)
 void measure(const Document& document, CadShape& shape, CadClient& client) {
   Largest largest(shape, client);
   for (const PlacedFace& placed : document.faces) {
-    measure_surface(placed.face, client, largest);
-    measure_edges(placed.face, client, largest);
-    if (client.stopped()) return;
+    measure_surface(placed.face, largest);
+    measure_edges(placed.face, largest);
   }
 }
 

@@ -6,7 +6,6 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
-#include <Message_ProgressIndicator.hxx>
 #include <Standard_Failure.hxx>
 #include <cmath>
 #include <exception>
@@ -17,19 +16,6 @@
 namespace sdm::io::cad {
 namespace {
 
-/// Lets OpenCASCADE ask whether to go on.
-class StopIndicator : public Message_ProgressIndicator {
- public:
-  explicit StopIndicator(CadClient& client) : client_(client) {}
-
- protected:
-  Standard_Boolean UserBreak() override { return client_.stopped(); }
-  void Show(const Message_ProgressScope&, const Standard_Boolean) override {}
-
- private:
-  CadClient& client_;
-};
-
 double default_deflection(const TopoDS_Shape& whole) {
   Bnd_Box box;
   BRepBndLib::AddOptimal(whole, box, false, false);
@@ -38,17 +24,14 @@ double default_deflection(const TopoDS_Shape& whole) {
 
 std::string read(const CadRequest& request, CadShape& shape, CadClient& client) {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
-  const Handle(Message_ProgressIndicator) indicator = new StopIndicator(client);
-  Message_ProgressScope progress(indicator->Start(), "", 2);
-  const Document document = read_document(request, progress.Next());
-  if (client.stopped()) return {};
+  const Document document = read_document(request);
   if (document.faces.empty()) return "has no faces";
   const double deflection = request.deflection > 0 ? request.deflection : default_deflection(document.whole);
   if (!(deflection > 0) || !std::isfinite(deflection)) return "its faces have no size";
-  tessellate(document, deflection, request.angle, progress.Next(), shape);
-  if (client.stopped()) return {};
+  tessellate(document, deflection, request.angle, shape);
   if (shape.triangles.empty()) return "none of its faces could be tessellated";
-  if (client.tessellated(shape)) measure(document, shape, client);
+  client.tessellated(shape);
+  measure(document, shape, client);
   return {};
 }
 

@@ -105,13 +105,12 @@ class Joiner {
 
 }  // namespace
 
-void tessellate(const Document& document, double deflection, double angle,
-                const Message_ProgressRange& progress, CadShape& shape) {
+void tessellate(const Document& document, double deflection, double angle, CadShape& shape) {
   IMeshTools_Parameters parameters;
   parameters.Deflection = deflection;
   parameters.Angle = angle;
-  parameters.InParallel = true;
-  BRepMesh_IncrementalMesh(document.whole, parameters, progress);
+  parameters.InParallel = false;  // oneTBB would wait for threads that a forked process does not have
+  BRepMesh_IncrementalMesh(document.whole, parameters);
   shape.deflection = deflection;
   shape.objects = document.objects;
   shape.unit = document.unit;

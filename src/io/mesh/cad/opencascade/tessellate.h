@@ -6,10 +6,9 @@
 namespace sdm::io::cad {
 
 /// Sets all of `shape` but what measure() does. `deflection` must be positive.
-void tessellate(const Document& document, double deflection, double angle,
-                const Message_ProgressRange& progress, CadShape& shape);
+void tessellate(const Document& document, double deflection, double angle, CadShape& shape);
 
-/// Measures how far the exact surfaces are from the triangles. Returns early if the client has stopped.
+/// Measures how far the exact surfaces are from the triangles.
 void measure(const Document& document, CadShape& shape, CadClient& client);
 
 }  // namespace sdm::io::cad

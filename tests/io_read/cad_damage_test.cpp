@@ -1,0 +1,134 @@
+// Damaged CAD files are read or refused, whatever OpenCASCADE makes of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/cancellation.h>
+#include <sdm/error.h>
+#include <sdm/io.h>
+
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/error_of.h"
+#include "support/temporary_folder.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string whole_part(const std::string& name) {
+  std::ifstream in(std::string(SDM_CAD_FILES) + "/" + name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+/// Numbers below a limit, the same everywhere.
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : random_(seed) {}
+  std::size_t operator()(std::size_t limit) { return limit == 0 ? 0 : random_() % limit; }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// The places of `#` and a digit: references of STEP.
+std::vector<std::size_t> references(const std::string& text) {
+  std::vector<std::size_t> found;
+  for (std::size_t at = text.find("DATA;"); at < text.size(); at = text.find('#', at + 1))
+    if (text[at] == '#') found.push_back(at + 1);
+  return found;
+}
+
+std::string number_at(const std::string& text, std::size_t at) {
+  return text.substr(at, text.find_first_not_of("0123456789", at) - at);
+}
+
+/// Changes bytes, exchanges references, or removes lines; never the first or last lines.
+std::string damaged(std::string text, unsigned seed) {
+  Dice dice(seed);
+  const std::size_t first = text.size() / 8, last = text.size() - 200;
+  for (std::size_t left = 1 + dice(4); left > 0; --left) {
+    const std::size_t at = first + dice(last - first);
+    const std::vector<std::size_t> numbers = references(text);
+    if (const std::size_t kind = dice(3); kind == 0) {
+      text[at] = static_cast<char>(text[at] ^ (1 << dice(7)));
+    } else if (kind == 1 && !numbers.empty()) {
+      const std::string other = number_at(text, numbers[dice(numbers.size())]);
+      const std::size_t place = numbers[dice(numbers.size())];
+      text.replace(place, number_at(text, place).size(), other);
+    } else if (const std::size_t begin = text.find('\n', at), end = text.find('\n', begin + 1); end < last) {
+      text.erase(begin, end - begin);
+    }
+  }
+  return text;
+}
+
+TEST(CadDamage, EveryFileIsReadOrRefused) {
+  const TemporaryFolder folder;
+  std::size_t refused = 0, read = 0;
+  for (const char* name : {"box.step", "tube.step", "assembly.step", "tube.igs"}) {
+    const std::string file = folder / name, whole = whole_part(name);
+    for (unsigned seed = 0; seed < 60; ++seed) {
+      std::ofstream(file, std::ios::binary) << damaged(whole, seed);
+      try {
+        EXPECT_FALSE(read_mesh(file).triangles.empty()) << name << " " << seed;
+        ++read;
+      } catch (const Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr(std::string(name) + ": ")) << seed;
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 10u);
+  EXPECT_GT(read, 10u);
+}
+
+// OpenCASCADE follows a null pointer.
+TEST(CadDamage, ACrashIsAnError) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "bad.step";
+  std::string text = whole_part("box.step");
+  replace_all(text, "FACE_BOUND", "FACE_BUNND");
+  std::ofstream(file, std::ios::binary) << text;
+  const std::string error = error_of([&] { (void)read_mesh(file); });
+  EXPECT_THAT(error, HasSubstr("bad.step: OpenCASCADE cannot read it; it is damaged"));
+  EXPECT_FALSE(read_mesh(std::string(SDM_CAD_FILES) + "/box.step").triangles.empty());
+}
+
+// Triangles as fine as these take a minute.
+TEST(CadDamage, ReadingIsCancelled) {
+  std::atomic<bool> cancelled = false;
+  std::jthread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    cancelled = true;
+  });
+  const CancelScope scope(cancelled);
+  const MeshFileOptions fine{.tessellation = {.deflection = 1e-4}};
+  EXPECT_THROW((void)read_mesh_file(std::string(SDM_CAD_FILES) + "/sphere.step", fine), Cancelled);
+}
+
+TEST(CadDamage, FilesAreReadByManyThreads) {
+  std::atomic<int> good = 0;
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&] {
+      const Mesh mesh = read_mesh(std::string(SDM_CAD_FILES) + "/box.step");
+      if (mesh.triangles.size() == 12) ++good;
+    });
+  threads.clear();
+  EXPECT_EQ(good, 4);
+}
+
+}  // namespace
+}  // namespace sdm::test
