@@ -21,6 +21,7 @@
 #include "progress_line.h"
 #include "report.h"
 #include "stopwatch.h"
+#include "unit_options.h"
 
 namespace {
 
@@ -201,5 +202,8 @@ void add_bodies_command(CLI::App& app) {
       "  sdm bodies gear.stl gear.stl gear.stl --poses poses.txt --margin 0.1 --json");
   const auto command = std::make_shared<BodiesCommand>();
   add_options(*bodies, *command);
-  bodies->callback([command] { run(*command); });
+  bodies->callback([command] {
+    for (const std::string& file : command->files) check_units(command->units, file, "");
+    run(*command);
+  });
 }

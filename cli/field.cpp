@@ -12,6 +12,7 @@
 #include "format.h"
 #include "option_checks.h"
 #include "report.h"
+#include "unit_options.h"
 
 namespace {
 
@@ -95,6 +96,7 @@ void check_field_options(const FieldCommand& command) {
   for (std::size_t k = 0; k < 3 && !command.bounds.empty(); ++k)
     if (!(command.bounds[k] <= command.bounds[k + 3]))
       throw CLI::ValidationError("--bounds", "the first three numbers are the lowest coordinates");
+  check_units(command.units, command.o2, command.transform_o2);
   if (command.out.empty()) return;
   try {
     sdm::check_field_format(command.out);

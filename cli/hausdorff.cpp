@@ -18,6 +18,7 @@
 #include "progress_line.h"
 #include "proximity_report.h"
 #include "stopwatch.h"
+#include "unit_options.h"
 
 namespace {
 
@@ -192,6 +193,8 @@ void add_hausdorff_command(CLI::App& app) {
   hausdorff->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
   add_run_options(*hausdorff, c, "JSON instead of a summary");
   hausdorff->callback([command] {
+    check_units(command->units, command->o1, command->transform_o1);
+    check_units(command->units, command->o2, command->transform_o2);
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
   });
 }

@@ -18,6 +18,7 @@
 #include "progress_line.h"
 #include "proximity_report.h"
 #include "stopwatch.h"
+#include "unit_options.h"
 
 namespace {
 
@@ -68,5 +69,9 @@ void add_proximity_command(CLI::App& app) {
   add_options(*proximity, *command, {fmt::format("A mesh ({})", sdm::mesh_format_names()), "The other mesh"});
   const auto align = std::make_shared<AlignCommand>();
   add_align_options(*proximity, *align);
-  proximity->callback([command, align] { run(*command, *align); });
+  proximity->callback([command, align] {
+    check_units(command->units, command->o1, command->transform_o1);
+    check_units(command->units, command->o2, command->transform_o2);
+    run(*command, *align);
+  });
 }

@@ -14,6 +14,7 @@
 #include "proximity_report.h"
 #include "report.h"
 #include "stopwatch.h"
+#include "unit_options.h"
 
 #include <memory>
 
@@ -167,6 +168,7 @@ void add_self_command(CLI::App& app) {
   add_run_options(*self, c, "the report (report.json) instead of a summary");
   self->callback([command] {
     check_layout(command->atlas);
+    check_units(command->picture.units, command->file, command->transform);
     run(*command);
   });
 }

@@ -4,6 +4,7 @@
 #include <sdm/io.h>
 #include <sdm/thickness.h>
 
+#include "cad_options.h"
 #include "common_options.h"
 #include "exit_codes.h"
 #include "format.h"
@@ -15,6 +16,7 @@
 #include "progress_line.h"
 #include "report.h"
 #include "stopwatch.h"
+#include "unit_options.h"
 #include "weld.h"
 
 #include <algorithm>
@@ -29,6 +31,7 @@ using sdm::ThicknessMethod;
 struct ThicknessCommand : RunOptions {
   std::string file, transform;
   std::optional<sdm::WeldOptions> weld{};
+  sdm::TessellationOptions tessellation{};
   std::filesystem::path out;
   sdm::AtlasOptions atlas;
   sdm::ThicknessOptions thickness;
@@ -224,7 +227,9 @@ int run(ThicknessCommand command) {
 
   progress.step("import");
   Stopwatch import;
-  Input input = load_input("mesh", command.file, command.transform, {command.files.any_vertices()});
+  Input input = load_input("mesh", command.file, command.transform,
+                           {command.files.any_vertices(), command.tessellation});
+  check_deflection(command.tessellation, {&input});
   if (command.weld) weld(input, *command.weld);
   inspect(input);
   check_closed(input, "wall thickness");
@@ -289,6 +294,7 @@ void add_thickness_command(CLI::App& app) {
   add_output_option(*thickness, c.out);
   add_transform_option(*thickness, "--transform", "The part", c.transform);
   add_weld_option(*thickness, c.weld, "the part");
+  add_deflection_option(*thickness, c.tessellation);
   add_limits(*thickness, c);
   add_resolution_option(*thickness, c.atlas);
   add_layout_options(*thickness, c.atlas, "the part");
@@ -297,6 +303,7 @@ void add_thickness_command(CLI::App& app) {
   add_run_options(*thickness, c, "the report (report.json) instead of a summary");
   thickness->callback([command] {
     check_layout(command->atlas);
+    check_units(command->picture.units, command->file, command->transform);
     if (command->least && command->most && *command->least > *command->most)
       throw CLI::ValidationError("--min", "must not exceed --max");
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);

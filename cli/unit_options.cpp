@@ -7,6 +7,8 @@
 
 namespace {
 
+constexpr const char* kCad = "mm";
+
 /// That of all files of a format, by the extension; empty if there is none. CAD is converted when it is read.
 std::string unit_of_format(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
@@ -14,7 +16,7 @@ std::string unit_of_format(const std::string& file) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   if (extension == ".glb" || extension == ".gltf") return "m";
   for (const char* cad : {".step", ".stp", ".iges", ".igs"})
-    if (extension == cad) return "mm";
+    if (extension == cad) return kCad;
   return {};
 }
 
@@ -34,7 +36,21 @@ void scale_first(std::string& transform, double factor) {
   transform = fmt::format("scale:{:.{}g}{}{}", factor, kExact, transform.empty() ? "" : ",", transform);
 }
 
+// Steps but these keep lengths.
+bool may_scale(const std::string& transform) {
+  for (const char* step : {"fit", "scale", "matrix"})
+    if (transform.find(step) != std::string::npos) return true;
+  return false;
+}
+
 }  // namespace
+
+void check_units(const std::string& units, const std::string& file, const std::string& transform,
+                 const char* advice) {
+  if (units.empty() || units == kCad || may_scale(transform) || unit_of_format(file) != kCad) return;
+  throw CLI::ValidationError("--units",
+                             fmt::format("must be mm, not {}, as {} is read in mm{}", units, file, advice));
+}
 
 void add_unit_options(CLI::App& app, UnitOptions& units) {
   const auto add = [&](const char* option, const char* mesh, std::string& unit) {
@@ -55,7 +71,12 @@ void add_unit_options(CLI::App& app, UnitOptions& units) {
 }
 
 void convert_units(const UnitOptions& options, const ConvertedPair& pair) {
-  if (options.o1.empty() && options.o2.empty()) return;
+  if (options.o1.empty() && options.o2.empty()) {
+    constexpr const char* kAdvice = "; with --units-o1 or --units-o2, both files are converted";
+    check_units(pair.units, pair.file_o1, pair.transform_o1, kAdvice);
+    check_units(pair.units, pair.file_o2, pair.transform_o2, kAdvice);
+    return;
+  }
   const std::string o1 = unit_of(options.o1, pair.file_o1, pair.units, "--units-o1");
   const std::string o2 = unit_of(options.o2, pair.file_o2, pair.units, "--units-o2");
   if (pair.units.empty()) pair.units = o2;

@@ -1,4 +1,4 @@
-// --units-o1 and --units-o2: the coordinates of files in other units of length are converted.
+// --units-o1 and --units-o2: the coordinates of files in other units of length are converted. --units of CAD.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,6 +11,11 @@ struct UnitOptions {
 /// Adds both options.
 void add_unit_options(CLI::App& app, UnitOptions& units);
 
+/// Throws CLI::ValidationError if `file` is CAD, which is read in millimetres, and `units`, that of --units,
+/// is another unit, unless the transform may convert it. `advice` ends the message.
+void check_units(const std::string& units, const std::string& file, const std::string& transform,
+                 const char* advice = "");
+
 /// The files and placements that are converted, and the unit of all lengths, empty if it is not known.
 struct ConvertedPair {
   const std::string &file_o1, &file_o2;
@@ -18,6 +23,6 @@ struct ConvertedPair {
 };
 
 /// If one of the options is given: scales both files, before their transforms, to `units`, by default that of
-/// O2, which is then set. glTF is in metres, and CAD in millimetres; another file without its option is in
-/// `units`. Throws CLI::ValidationError for a file whose unit is not known.
+/// O2, which is then set. Else as check_units() for both. glTF is in metres, and CAD in millimetres; another
+/// file without its option is in `units`. Throws CLI::ValidationError for a file whose unit is not known.
 void convert_units(const UnitOptions& options, const ConvertedPair& pair);

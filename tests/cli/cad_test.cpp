@@ -3,6 +3,7 @@
 #include <sdm/io.h>
 #include <sdm/transform.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -101,6 +102,59 @@ TEST(CadCommand, FaultsAreOneSentence) {
   const Outcome unused = run_sdm({"info", mesh, "--deflection", "0.1"});
   EXPECT_EQ(unused.code, 2);
   EXPECT_THAT(unused.err, HasSubstr("applies to STEP and IGES"));
+}
+
+// They would be printed beside numbers in millimetres.
+TEST(CadCommand, OtherUnitsAreRefusedUnlessConverted) {
+  const TemporaryFolder folder;
+  const std::string box = cad_part("box.step"), out = folder / "out";
+  const std::vector<std::vector<std::string>> commands{{"map", box, box, "-o", out},
+                                                       {"hausdorff", box, box},
+                                                       {"proximity", box, box},
+                                                       {"thickness", box, "-o", out},
+                                                       {"self", box, "-o", out},
+                                                       {"bodies", box, box},
+                                                       {"volume", box, "-o", out, "--spacing", "5"}};
+  for (std::vector<std::string> command : commands) {
+    command.insert(command.end(), {"--units", "m"});
+    const Outcome refused = run_sdm(command);
+    EXPECT_EQ(refused.code, 2) << command[0];
+    EXPECT_THAT(refused.err, HasSubstr("--units: must be mm, not m, as " + box + " is read in mm"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const nlohmann::json scaled = cad_json({"hausdorff", box, box, "--units", "m", "--transform-o1",
+                                          "scale:0.001", "--transform-o2", "scale:0.001"});
+  EXPECT_EQ(scaled["units"], "m");
+  const nlohmann::json converted = cad_json({"map", box, box, "-o", out, "--resolution", "64", "--write",
+                                             "none", "--units", "m", "--units-o1", "mm"});
+  EXPECT_EQ(converted["units"], "m");
+}
+
+TEST(CadCommand, ThicknessFollowsTheDeflection) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> command{
+      "thickness", cad_part("tube.step"), "-o", folder / "out", "--resolution", "64", "--write", "none"};
+  std::vector<std::string> fine = command;
+  fine.insert(fine.end(), {"--deflection", "0.001"});
+  const nlohmann::json by_default = cad_json(command), finer = cad_json(fine);
+  EXPECT_EQ(finer["mesh"]["tessellation"]["deflection"], 0.001);
+  EXPECT_GT(finer["mesh"]["triangles"], by_default["mesh"]["triangles"]);
+}
+
+TEST(CadCommand, ACrashOfOpenCascadeIsOneSentence) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "bad.step";
+  std::ifstream in(cad_part("box.step"));
+  std::ofstream damaged(file);
+  for (std::string line; std::getline(in, line);) {
+    if (const std::size_t at = line.find("FACE_BOUND"); at != std::string::npos) line[at + 7] = 'N';
+    damaged << line << "\n";
+  }
+  damaged.close();
+  const Outcome outcome = run_sdm({"info", file});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, HasSubstr("bad.step: OpenCASCADE cannot read it; it is damaged\n"));
 }
 
 }  // namespace
