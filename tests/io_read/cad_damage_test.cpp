@@ -20,6 +20,7 @@
 namespace sdm::test {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 
 std::string whole_part(const std::string& name) {
@@ -104,6 +105,22 @@ TEST(CadDamage, ACrashIsAnError) {
   const std::string error = error_of([&] { (void)read_mesh(file); });
   EXPECT_THAT(error, HasSubstr("bad.step: OpenCASCADE cannot read it; it is damaged"));
   EXPECT_FALSE(read_mesh(std::string(SDM_CAD_FILES) + "/box.step").triangles.empty());
+}
+
+// The plane of a face has a point in place of its normal.
+TEST(CadDamage, MissingFacesAreCountedOnce) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "five.step";
+  std::string text = whole_part("box.step");
+  const std::size_t plane = text.find(" PLANE("), point = text.find(",#", text.find("3D(", plane)),
+                    normal = text.find(",#", point + 1), end = text.find(",#", normal + 1);
+  ASSERT_LT(end, text.size());
+  text.replace(normal, end - normal, text.substr(point, normal - point));
+  std::ofstream(file, std::ios::binary) << text;
+  const MeshFile read = read_mesh_file(file);
+  EXPECT_EQ(read.tessellation->faces, 6u);
+  EXPECT_EQ(read.tessellation->omitted_faces, 1u);
+  EXPECT_THAT(read.notes, Contains(HasSubstr("1 of 6 faces could not be tessellated")));
 }
 
 // Triangles as fine as these take a minute.
