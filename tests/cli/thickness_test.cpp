@@ -73,7 +73,7 @@ TEST_F(ThicknessCommandTest, JudgesLimitsByItsTexels) {
               HasSubstr("PASS: every texel has at least 0.4 mm; between the texels, an estimate"));
   outcome = run(part, {"--min", "0.6"});
   EXPECT_EQ(outcome.code, 3);
-  EXPECT_THAT(outcome.out, HasSubstr("do not have at least 0.6; 0.5 at ("));
+  EXPECT_THAT(outcome.out, HasSubstr("does not have at least 0.6; 0.5 at ("));
   EXPECT_EQ(run(part, {"--min", "0.5"}).code, 4);
   EXPECT_EQ(run(part, {"--max", "6.1"}).code, 0);
   outcome = run(part, {"--min", "0.4", "--max", "5", "--json"});
