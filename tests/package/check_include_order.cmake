@@ -45,6 +45,7 @@ set(order
   proximity/self
   proximity/thickness
   proximity
+  summary/verdict
   summary
   io/file
   io/mesh/polygons

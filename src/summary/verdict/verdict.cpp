@@ -7,7 +7,7 @@
 
 #include "geometry/vec.h"
 #include "map/statistics/tolerance_limits.h"
-#include "summary/certify.h"
+#include "summary/verdict/certify.h"
 
 namespace sdm {
 

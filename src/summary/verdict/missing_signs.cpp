@@ -1,4 +1,4 @@
-#include "summary/missing_signs.h"
+#include "summary/verdict/missing_signs.h"
 
 #include <sdm/vertex_distances.h>
 

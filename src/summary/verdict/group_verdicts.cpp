@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "summary/certify.h"
-#include "summary/missing_signs.h"
+#include "summary/verdict/certify.h"
+#include "summary/verdict/missing_signs.h"
 
 namespace sdm {
 namespace {

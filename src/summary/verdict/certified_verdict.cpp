@@ -1,8 +1,8 @@
 #include <sdm/certified_verdict.h>
 #include <sdm/summary.h>
 
-#include "summary/certify.h"
-#include "summary/missing_signs.h"
+#include "summary/verdict/certify.h"
+#include "summary/verdict/missing_signs.h"
 
 namespace sdm {
 namespace {
