@@ -170,6 +170,24 @@ SDM_API void write_views_png(const std::filesystem::path& file, const Surface& s
                              const DistanceMap& map, std::span<const float> vertex_distances,
                              const Mesh* other = nullptr, const PictureOptions& options = {});
 
+/// Where a view is seen from, and what else it shows.
+struct ViewOptions {
+  /// From the part to the viewer: to the right, up (PictureOptions::up) and to the front. Not zero.
+  Vec3 towards{0.7, 0.5, 1};
+  std::uint32_t width = 1200, height = 900;  ///< pixels of the view, from 64 to 8192; the legend is beside it
+  const Mesh* other = nullptr;               ///< O2, which is drawn pale; null: O1 only
+  /// One distance per vertex of O2, for the colours of O2 at the same scale; empty: O2 is pale.
+  std::span<const float> other_distances{};
+  bool legend = true;
+};
+
+/// One shaded view of O1, coloured by distance, with its legend; all of O1 and of O2 fits. Drawn without
+/// OpenGL. Errors as of write_views_png(), also for a zero direction, another size, and distances of another
+/// mesh. Cost: linear in texels, faces and pixels.
+SDM_API void write_view_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                            std::span<const float> vertex_distances, const ViewOptions& view = {},
+                            const PictureOptions& options = {});
+
 /// The distances of the darkest and the brightest value of a texture.
 struct TextureRange {
   double lower = 0, upper = 1;

@@ -229,6 +229,43 @@ class DistanceMap(_core.MapChannels):
             progress=progress,
         )
 
+    def save_view(
+        self,
+        file: "str | os.PathLike[str]",
+        towards: "tuple[float, float, float]" = (0.7, 0.5, 1.0),
+        *,
+        other: "DistanceMap | None" = None,
+        colormap: str = "automatic",
+        range: "tuple[float, float] | None" = None,
+        tolerance: "float | tuple[float, float] | None" = None,
+        units: str = "",
+        size: int = 1200,
+        up: str = "y",
+        legend: bool = True,
+    ) -> None:
+        """Writes a picture of the surface in the colours of the distances, as PNG.
+
+        towards: from the surface to the viewer: right, up, front. O2 is pale beside it, or coloured as well, at the same
+        scale, with other: the map from O2. The options are those of save(); size: the pixels of the width, 86 to 8192, of
+        which the height is three quarters; legend: beside the view. Raises Error, naming the fault.
+        """
+        name = os.fsdecode(file)
+        if not name.lower().endswith(".png"):
+            raise Error(f"{name}: a view is saved as .png")
+        self._core.write_view(
+            name,
+            self.at_vertices(),
+            tuple(towards),
+            None if other is None else other.at_vertices(),
+            colormap=colormap,
+            range=range,
+            tolerance=tolerance,
+            units=units,
+            size=size,
+            up=up,
+            legend=legend,
+        )
+
     def plot(self, ax: object = None, *, kind: str = "surface", cmap: "str | None" = None, units: str = "") -> Any:
         """Draws the map with matplotlib, which ``pip install sdm[viz]`` installs, and returns the axes.
 

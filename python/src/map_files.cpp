@@ -1,4 +1,5 @@
 // The files of a map, and the numbers of its page.
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -87,6 +88,32 @@ std::span<const float> span_of(const VertexDistances& values) {
   return {values.data(), values.shape(0)};
 }
 
+UpAxis up_axis_of(const std::string& up) {
+  if (up != "y" && up != "z") throw Error("up must be 'y' or 'z', not '" + up + "'");
+  return up == "z" ? UpAxis::z : UpAxis::y;
+}
+
+void write_view(const PyMap& self, nb::handle file, const VertexDistances& at_vertices,
+                const std::array<double, 3>& towards, const std::optional<VertexDistances>& other,
+                const std::string& colormap, std::optional<std::pair<double, double>> range,
+                nb::handle tolerance, const std::string& units, std::uint32_t size, const std::string& up,
+                bool legend) {
+  const auto lock = self.use_surface();
+  const auto sites_lock = self.use_sites();
+  PictureOptions picture = picture_of(self, {colormap, range, tolerance, units});
+  picture.up = up_axis_of(up);
+  const std::filesystem::path path = path_of(file);
+  ViewOptions view{.towards = {towards[0], towards[1], towards[2]},
+                   .width = size,
+                   .height = size / 4 * 3,
+                   .legend = legend};
+  if (!self.of_itself()) view.other = &self.to->sites.mesh();
+  if (other) view.other_distances = span_of(*other);
+  run(nb::none(), [&](const Progress&) {
+    write_view_png(path, self.on->surface, self.map, span_of(at_vertices), view, picture);
+  });
+}
+
 // The text of report.json.
 std::string report(const PyMap& self, const VertexDistances& at_vertices, const std::string& colormap,
                    std::optional<std::pair<double, double>> range, nb::handle tolerance,
@@ -143,7 +170,7 @@ void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_ve
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   HtmlOptions options{.other = self.of_itself() ? nullptr : &self.to->sites.mesh(),
-                      .up = up == "z" ? UpAxis::z : UpAxis::y,
+                      .up = up_axis_of(up),
                       .thinnest = self.thickness.has_value(),
                       .largest = largest,
                       .triangles = triangles};
@@ -186,6 +213,14 @@ void bind_map_files(nb::module_& module, nb::class_<PyMap>& map) {
                    "tuple[float, float] | None = None, tolerance: float | tuple[float, float] | None = None, "
                    "units: str = '') -> str"))
       .def("colors", &colors, nb::sig("def colors(self) -> tuple[str, float, float]"))
+      .def(
+          "write_view", &write_view, nb::arg("file"), nb::arg("at_vertices"), nb::arg("towards"),
+          nb::arg("other").none(), nb::kw_only(), nb::arg("colormap"), nb::arg("range").none(),
+          nb::arg("tolerance").none(), nb::arg("units"), nb::arg("size"), nb::arg("up"), nb::arg("legend"),
+          nb::sig("def write_view(self, file: str, at_vertices: numpy.ndarray, towards: tuple[float, float, "
+                  "float], other: numpy.ndarray | None, *, colormap: str, range: tuple[float, float] | None, "
+                  "tolerance: float | tuple[float, float] | None, units: str, size: int, up: str, legend: "
+                  "bool) -> None"))
       .def("write_page", &write_page, nb::arg("file"), nb::arg("at_vertices"), nb::arg("report"),
            nb::kw_only(), nb::arg("up") = "y", nb::arg("largest") = HtmlOptions{}.largest,
            nb::arg("triangles") = HtmlOptions{}.triangles,

@@ -506,3 +506,26 @@ def test_distances_along_lines():
             sdm.map(dent, (vertices, faces), along=wrong, resolution=64)
     with pytest.raises(sdm.Error, match="do not apply"):
         sdm.map(dent, (vertices, faces), along="normal", sign="none", resolution=64)
+
+
+def test_views(tmp_path):
+    """The near ends of two cubes side by side, and the far ones, in the colours of their distances."""
+    import matplotlib.pyplot as plt
+
+    cube, other = meshes.box((-1, -1, -1), (1, 1, 1)), meshes.box((3, -1, -1), (5, 1, 1))
+    there, back = sdm.map(cube, other, resolution=128), sdm.map(other, cube, resolution=128)
+    there.save_view(tmp_path / "both.png", (0, 0, 1), other=back, range=(1, 5), size=400, legend=False)
+    picture = plt.imread(tmp_path / "both.png")
+    assert picture.shape[:2] == (300, 400)
+    # Viridis: far is yellow, near is purple.
+    yellow = picture[150, :, 1] - picture[150, :, 2]
+    assert yellow[40] > yellow[120] and yellow[360] > yellow[280]
+    there.save_view(tmp_path / "pale.png", (0, 0, 1), size=400, legend=False)
+    assert np.ptp(plt.imread(tmp_path / "pale.png")[150, 300, :3]) < 0.1
+    another = sdm.map(meshes.sphere(), cube, resolution=64)
+    for options in ({"towards": (0, 0, 0)}, {"size": 80}, {"up": "x"}, {"other": another}):
+        with pytest.raises(sdm.Error):
+            there.save_view(tmp_path / "no.png", **options)
+    with pytest.raises(sdm.Error, match="no.jpg"):
+        there.save_view(tmp_path / "no.jpg")
+    assert not (tmp_path / "no.png").exists()

@@ -200,6 +200,41 @@ TEST(Views, MarkExtremesThatNoSideShows) {
   EXPECT_NE(picture({0.5, 0.5, 0.5}), picture({-0.5, -0.5, 0.5}));
 }
 
+// A single view has the colours of the sides that it shows, and O2 in its own colours where these are given.
+TEST(Views, OneIsSeenFromAnyDirection) {
+  const CubeScene scene;
+  const TemporaryFolder folder;
+  const Mesh other = moved(cube(), {4, 0, 0});
+  const std::vector<float> distances(other.positions.size(), 1);
+  const PictureOptions options{.colormap = Colormap::diverging, .range = {{-1, 1}}};
+  const auto written = [&](const ViewOptions& view) {
+    write_view_png(folder / "view.png", scene.surface, scene.map, scene.vertices, view, options);
+    return read_png(folder / "view.png");
+  };
+  // The distance is x: red on the right, blue on the left. The cube fills the middle of the picture.
+  const Pixels right = written({.towards = {1, 0, 0}, .width = 400, .height = 300});
+  const Pixels left = written({.towards = {-1, 0, 0}, .width = 400, .height = 300});
+  EXPECT_GT(redness(right.at(200, 150)), 20);
+  EXPECT_LT(redness(left.at(200, 150)), -20);
+  // From the front, O2 is a quarter from the right border: pale, or red as the right of the cube.
+  ViewOptions both{.towards = {0, 0, 1}, .width = 400, .height = 300, .other = &other};
+  EXPECT_LT(std::abs(redness(written(both).at(330, 150))), 20);
+  both.other_distances = distances;
+  EXPECT_GT(redness(written(both).at(330, 150)), 20);
+  // Nothing is cut off: the border is background from any direction.
+  for (const Vec3& towards : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{1, 1, 1}, Vec3{-3, 0.2, -1}}) {
+    both.towards = towards;
+    const Pixels pixels = written(both);
+    for (std::size_t x = 0; x < 400; ++x) {
+      EXPECT_EQ(redness(pixels.at(x, 5)), redness(pixels.at(0, 0)));
+      EXPECT_EQ(redness(pixels.at(x, 294)), redness(pixels.at(0, 0)));
+    }
+  }
+  EXPECT_THROW(written({.towards = {0, 0, 0}}), Error);
+  EXPECT_THROW(written({.width = 63}), Error);
+  EXPECT_THROW(written({.other_distances = distances}), Error);
+}
+
 TEST(Views, AreDrawnOfAnyMesh) {
   const TemporaryFolder folder;
   std::mt19937 random(5);

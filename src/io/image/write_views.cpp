@@ -212,4 +212,38 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
   throw out_of_memory("writing " + file.string());
 }
 
+void write_view_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
+                    std::span<const float> vertex_distances, const ViewOptions& view,
+                    const PictureOptions& options) try {
+  constexpr std::uint32_t kLeastSize = 64, kMostSize = 8192;
+  if (std::min(view.width, view.height) < kLeastSize || std::max(view.width, view.height) > kMostSize)
+    throw Error("a view has from 64 to 8192 pixels a side");
+  if (const double length = norm(view.towards); !(length > 0 && std::isfinite(length)))
+    throw Error("the direction of a view must be finite and not zero");
+  if (!view.other_distances.empty() &&
+      (view.other == nullptr || view.other_distances.size() != view.other->positions.size()))
+    throw Error("the distances that colour O2 are not one per vertex of it");
+  const std::optional<Extremes> found = extremes(surface, map, vertex_distances);
+  const ColorScale scale = color_scale(surface, map, options);
+  std::vector<Box> boxes{bounds(surface.mesh())};
+  if (view.other != nullptr) boxes.push_back(bounds(*view.other));
+  ViewScene scene = scene_of(surface, map, vertex_distances, scale, view.other);
+  scene.other_distances = view.other_distances;
+  const Projection projection = view_from(boxes, view.towards, options.up, view.width, view.height);
+  const Picture picture = render_view(scene, projection, {}).picture;
+  if (!view.legend) return write_picture(file, picture);
+
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  LegendText text = legend_text(map, found ? found->min.distance : kNan, found ? found->max.distance : kNan,
+                                scale, options.units);
+  if (view.other != nullptr && view.other_distances.empty()) text.notes.emplace_back("pale: O2");
+  const Picture legend = draw_legend(scale, text, view.height);
+  Canvas canvas(view.width + legend.width, std::max(view.height, legend.height), 1);
+  canvas.image(0, 0, picture);
+  canvas.image(view.width, 0, legend);
+  write_picture(file, canvas.picture("the view"));
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
+}
+
 }  // namespace sdm

@@ -142,11 +142,10 @@ class Renderer {
   [[nodiscard]] Color sample_color(std::size_t sample) const {
     const std::uint32_t face = part_.face(sample);
     const std::uint32_t ghost_face = ghost_ ? ghost_->face(sample) : kNone;
-    Color ghost{};
-    if (ghost_face != kNone) {
-      const Vec3 weights = ghost_->weights(sample, scene_.other->triangles[ghost_face]);
-      ghost = light_(*scene_.other, scene_.other_normals, ghost_face, weights) * color(kGhost);
-    }
+    const Color ghost = ghost_face != kNone ? other_color(sample, ghost_face) : Color{};
+    if (!scene_.other_distances.empty() && ghost_face != kNone &&
+        (face == kNone || ghost_->depth(sample) > part_.depth(sample)))
+      return ghost;
     if (face == kNone)
       return ghost_face == kNone ? color(kViewBackground) : mix(color(kViewBackground), ghost, 0.75);
     const Vec3 weights = part_.weights(sample, mesh().triangles[face]);
@@ -156,10 +155,23 @@ class Renderer {
     return veiled ? mix(part, ghost, kVeil) : part;
   }
 
-  /// Whether O1 ends at a pixel, or steps back behind it.
+  [[nodiscard]] Color other_color(std::size_t sample, std::uint32_t face) const {
+    const Triangle& t = scene_.other->triangles[face];
+    const Vec3 weights = ghost_->weights(sample, t);
+    const double light = light_(*scene_.other, scene_.other_normals, face, weights);
+    if (scene_.other_distances.empty()) return light * color(kGhost);
+    double distance = 0;
+    for (int k = 0; k < 3; ++k) distance += weights[k] * scene_.other_distances[t[k]];
+    return light * color(scene_.scale(distance));
+  }
+
+  /// Whether a body ends at a pixel, or steps back behind it: O1, or O2 if it has distances.
   [[nodiscard]] bool is_outline(std::uint32_t x, std::uint32_t y) const {
+    const bool both = ghost_ && !scene_.other_distances.empty();
     const auto depth = [&](std::uint32_t column, std::uint32_t row) {
-      return projection_.scale * part_.depth(sample_at(column, row));
+      const std::size_t sample = sample_at(column, row);
+      return projection_.scale *
+             (both ? std::max(part_.depth(sample), ghost_->depth(sample)) : part_.depth(sample));
     };
     const double here = depth(x, y);
     if (!std::isfinite(here)) return false;

@@ -25,6 +25,7 @@ struct ViewScene {
   ColorScale scale{};
   const Mesh* other = nullptr;  ///< O2, or null
   ShadingNormals other_normals{};
+  std::span<const float> other_distances{};  ///< of O2's vertices, which colour it; or empty: it is pale
 };
 
 struct View {
@@ -34,7 +35,8 @@ struct View {
       in_front;  ///< of each: how far what hides it is in front of it; ∞ outside of the picture
 };
 
-/// Draws O1 shaded, with outlines, and O2 pale: behind O1 and beside it as a body, in front of it as a veil.
+/// Draws O1 shaded, with outlines, and O2 pale: behind O1 and beside it as a body, in front of it as a veil;
+/// or both as bodies, if O2 has distances.
 /// `places`: points of O1. Cost: linear in faces and pixels; memory for 16 bytes a sample and 24 a vertex.
 [[nodiscard]] View render_view(const ViewScene& scene, const Projection& projection,
                                std::span<const Vec3> places);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/vec.h"
 
@@ -14,6 +15,13 @@ constexpr double kMargin = 30;    // between a part and the border of its cell
 constexpr double kBeside = 0.5;   // of O1's diagonal: how much of O2 is shown beside O1
 constexpr double kLeast = 0.002;  // of the diagonal: the least extent, of plane meshes
 
+// The axes of the mesh that are seen to the right, up and towards the viewer of the front. It is seen against
+// the direction in which a right-handed frame has its third axis.
+std::array<Vec3, 3> front_frame(UpAxis axis) {
+  const Vec3 right{1, 0, 0}, up = axis == UpAxis::z ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+  return {right, up, cross(right, up)};
+}
+
 // The extent of a box along an axis of the mesh, to either side.
 double extent(const Vec3& size, const Vec3& axis) {
   return std::abs(axis[0]) * size[0] + std::abs(axis[1]) * size[1] + std::abs(axis[2]) * size[2];
@@ -25,9 +33,7 @@ ViewLayout layout_views(const Box& box, UpAxis up_axis) {
   const double diagonal = std::max(core::diagonal(box), 1e-300);
   Vec3 size = box.hi - box.lo;
   for (double& length : size) length = std::max(length, kLeast * diagonal);
-  // The front is seen against the direction in which a right-handed frame has its third axis.
-  const Vec3 right{1, 0, 0}, up = up_axis == UpAxis::z ? Vec3{0, 0, 1} : Vec3{0, 1, 0},
-                             front = cross(right, up);
+  const auto [right, up, front] = front_frame(up_axis);
 
   ViewLayout layout;
   const std::array<std::array<Vec3, 3>, 6> frames{{{right, up, front},
@@ -72,6 +78,32 @@ ViewLayout layout_views(const Box& box, UpAxis up_axis) {
   }
   layout.width = x, layout.height = 2 * height + 3 * kViewGap;
   return layout;
+}
+
+Projection view_from(std::span<const Box> boxes, const Vec3& towards, UpAxis up_axis, std::uint32_t width,
+                     std::uint32_t height) {
+  const auto [right, up, front] = front_frame(up_axis);
+  Projection view{.width = width, .height = height};
+  view.towards = normalized(towards[0] * right + towards[1] * up + towards[2] * front);
+  // From straight above or below, the front is at the bottom or the top, as in the views of both.
+  const bool vertical = std::hypot(towards[0], towards[2]) < 1e-6 * std::abs(towards[1]);
+  view.right = vertical ? right : normalized(cross(up, view.towards));
+  view.up = cross(view.towards, view.right);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<double, 3> least{kInfinity, kInfinity, kInfinity}, most{-kInfinity, -kInfinity, -kInfinity};
+  for (const Box& box : boxes)
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3 p;
+      for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];
+      const Vec3 seen{dot(p, view.right), dot(p, view.up), dot(p, view.towards)};
+      for (int k = 0; k < 3; ++k)
+        least[k] = std::min(least[k], seen[k]), most[k] = std::max(most[k], seen[k]);
+    }
+  const double wide = std::max(most[0] - least[0], 1e-300), tall = std::max(most[1] - least[1], 1e-300);
+  view.scale = std::min((width - 2 * kMargin) / wide, (height - 2 * kMargin) / tall);
+  view.centre = 0.5 * (least[0] + most[0]) * view.right + 0.5 * (least[1] + most[1]) * view.up +
+                0.5 * (least[2] + most[2]) * view.towards;
+  return view;
 }
 
 Box shown_box(const Box& part, const Box& other) {

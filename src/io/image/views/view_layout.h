@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "io/image/views/depth_buffer.h"
 
@@ -27,6 +28,11 @@ inline constexpr std::uint32_t kViewTitle = 34;  ///< above the part in each cel
 
 /// Opposite views above each other: front and back, left and right, top and bottom. `box`: what they show.
 [[nodiscard]] ViewLayout layout_views(const Box& box, UpAxis up);
+
+/// A view of all of the boxes' corners from a direction, given by its parts to the right, up and to the
+/// front.
+[[nodiscard]] Projection view_from(std::span<const Box> boxes, const Vec3& towards, UpAxis up,
+                                   std::uint32_t width, std::uint32_t height);
 
 /// The box of O1, with what there is of O2 beside it at a distance of up to half of O1's size.
 [[nodiscard]] Box shown_box(const Box& part, const Box& other);
