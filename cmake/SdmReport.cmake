@@ -43,6 +43,13 @@ function(sdm_npm_ci folder)
     VERBATIM)
 endfunction()
 
+# All packages, those for tests and the documentation site included: the target sdm_dev_packages installs them.
+set(SDM_DEV_PACKAGES ${PROJECT_BINARY_DIR}/dev_packages)
+if(SDM_BUILD_TESTS OR SDM_BUILD_DOCS)
+  sdm_npm_ci(${SDM_DEV_PACKAGES})
+  add_custom_target(sdm_dev_packages DEPENDS ${SDM_DEV_PACKAGES}/packages)
+endif()
+
 # sdm_embed_report(<target> <header>): builds the pages and embeds them (see sdm_embed_files).
 function(sdm_embed_report target header)
   sdm_npm_ci(${SDM_REPORT_FOLDER} --omit=dev)

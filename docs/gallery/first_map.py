@@ -18,7 +18,7 @@ distance_map = sdm.map(bunny, horse.transformed(beside), transform=sdm.fit_to_un
 
 # %%
 # The distances on the bunny:
-distance_map.plot().view_init(vertical_axis="y")
+distance_map.save_view("first_map.png")
 
 # %%
 # A map has a value for each texel of a texture that covers the bunny. In a notebook it shows this texture,

@@ -80,6 +80,6 @@ print(f"rms distance {history[0]:.4f} -> {history[-1]:.4f}; the noise is 0.005")
 # %%
 # The fitted mesh, with its distance from the sphere that it was:
 sphere = vertices / np.linalg.norm(vertices, axis=1, keepdims=True)
-sdm.map(sdm.Mesh(vertices, faces), (sphere, faces), precision=0.03).plot()
+sdm.map(sdm.Mesh(vertices, faces), (sphere, faces), precision=0.03).save_view("fitting.png")
 
 assert history[-1] < 0.01 < history[0]

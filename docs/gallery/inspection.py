@@ -87,8 +87,7 @@ print(verdict)
 
 # %%
 # Where it fails:
-ax = distance_map.plot(cmap="RdBu_r", units="mm")
-ax.view_init(elev=20, azim=-10)
+distance_map.save_view("inspection.png", (1, 0.4, 0.3), tolerance=tolerance, units="mm", up="z")
 
 # %%
 # How the distances are distributed. The bars are noise; the tail on the left is the dent.

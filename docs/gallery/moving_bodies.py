@@ -12,6 +12,8 @@ import numpy as np
 
 import sdm
 
+# sphinx_gallery_thumbnail_number = 3
+
 
 def ring(radius, thickness, around=96, across=48):
     u, v = (2 * np.pi * np.arange(n) / n for n in (around, across))
@@ -24,7 +26,8 @@ def ring(radius, thickness, around=96, across=48):
     return sdm.Mesh(vertices.reshape(-1, 3), np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3))
 
 
-query = sdm.ProximityQuery(ring(1.0, 0.25), ring(1.0, 0.25))
+one, other = ring(1.0, 0.25), ring(1.0, 0.25)
+query = sdm.ProximityQuery(one, other)
 
 # %%
 # A pose is a 4 × 4 matrix; moving a body costs nothing. The second ring is upright and moves along x.
@@ -72,5 +75,11 @@ print(len(contacts.depth), "contacts in", len(np.unique(contacts.patch)), "patch
 pose[0, 3] = 1.0
 query.set_pose(1, pose)
 print(query.separation(), query.colliding())
+
+# %%
+# What both see of each other there: two maps, in one picture.
+upright_ring = other.transformed(pose)
+there, back = sdm.map(one, upright_ring), sdm.map(upright_ring, one)
+there.save_view("moving_bodies.png", (0.5, 0.6, 1), other=back)
 
 assert all((s.value == 0) == (d.value > 0) for s, d in zip(separation, depth))

@@ -12,8 +12,6 @@ import numpy as np
 
 import sdm
 
-# sphinx_gallery_thumbnail_number = 2
-
 count = 80
 line = np.linspace(-1.5, 1.5, count)
 x, y = np.meshgrid(line, line, indexing="ij")
@@ -43,8 +41,10 @@ times = np.linspace(0, 2 * np.pi, 48)
 frames = []
 for time in times:
     surface.refit(sheet(time))
-    frames.append(sdm.map(surface, sites).distance)
+    last = sdm.map(surface, sites)
+    frames.append(last.distance)
 frames = np.array(frames)
+last.save_view("sequence.png", up="z")
 
 # %%
 # The distances over time: the smallest, the mean and the largest of each frame.

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Builds the documentation site.
 
-build.py SOURCE_DIR BUILD_DIR SDM: stages the pages in BUILD_DIR/source, where links between them are those of the
-repository; generates the references of the command SDM and of the C++ headers; has Sphinx run the gallery and write
-BUILD_DIR/html; and checks the links. Warnings are errors. Nothing is fetched.
+build.py SOURCE_DIR BUILD_DIR SDM NODE_MODULES: stages the pages in BUILD_DIR/source, where links between them are those of
+the repository; generates the references of the command SDM and of the C++ headers; has Sphinx run the gallery and write
+BUILD_DIR/html, with MathJax of NODE_MODULES; and checks the links, and the pages in headless Chromium. Warnings are
+errors. Nothing is fetched.
 """
 
 import os
@@ -35,12 +36,13 @@ def staged_files(source: Path) -> dict[str, Path]:
 
 
 def main() -> None:
-    source, build, sdm = (Path(argument).resolve() for argument in sys.argv[1:])
+    source, build, sdm, node_modules = (Path(argument).resolve() for argument in sys.argv[1:])
     listed = (SITE / "python.rst").read_text()
     if missing := [name for name in sdm_module.__all__ if name != "NONE" and f"sdm.{name}\n" not in listed]:
         sys.exit(f"python.rst: add {', '.join(missing)}")
     staged, html = build / "source", build / "html"
-    shutil.rmtree(build, ignore_errors=True)
+    for folder in ("source", "static", "programs", "doxygen", "doctrees", "html"):
+        shutil.rmtree(build / folder, ignore_errors=True)
 
     pages: dict[str, bytes | str] = {name: path.read_bytes() for name, path in staged_files(source).items()}
     pages |= command_pages.pages(subprocess.check_output([sdm, "help", "--man"], text=True))
@@ -51,9 +53,15 @@ def main() -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
 
+    shutil.copytree(source / "docs/gallery", build / "programs")  # they write their pictures beside them
+    (build / "static").mkdir()
+    shutil.copy(node_modules / "mathjax/es5/tex-svg.js", build / "static/mathjax.js")
+
     environment = os.environ | {
+        "NODE_PATH": str(node_modules),
         "SDM_DOXYGEN_XML": str(xml),
-        "SDM_GALLERY": str(source / "docs/gallery"),
+        "SDM_STATIC": str(build / "static"),
+        "SDM_GALLERY": str(build / "programs"),
         "MPLBACKEND": "agg",
     }
     built = subprocess.run(
@@ -63,6 +71,8 @@ def main() -> None:
     if built.returncode != 0:
         sys.exit("Sphinx has warnings")
     check_links.check(html)
+    if subprocess.run(["node", SITE / "check_pages.cjs", html], env=environment).returncode != 0:
+        sys.exit("the pages have faults")
     print(f"{html}/index.html")
 
 

@@ -8,6 +8,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 import sdm
+import search_summaries
+import view_scraper
 from sphinx.ext.autodoc import ClassDocumenter, MethodDocumenter
 
 project = "sdm"
@@ -19,7 +21,9 @@ extensions = [
     "breathe",
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
     "sphinx_copybutton",
+    "sphinx_design",
     "sphinx_gallery.gen_gallery",
 ]
 root_doc = "index"
@@ -31,6 +35,7 @@ smartquotes = False  # options begin with two hyphens
 
 # Markdown: anchors of headings are those of GitHub.
 myst_heading_anchors = 4
+myst_enable_extensions = ["dollarmath"]  # $…$ and $$…$$, as on GitHub
 suppress_warnings = ["myst.header"]  # pages that begin at a deeper heading, such as the gallery's
 
 # The C++ reference, from the XML that Doxygen makes of the headers.
@@ -59,6 +64,7 @@ sphinx_gallery_conf = {
     "show_signature": False,
     "remove_config_comments": True,
     "within_subsection_order": __import__("gallery_order").Listed,
+    "image_scrapers": (view_scraper.scrape, "matplotlib"),
     "image_srcset": ["2x"],
     "thumbnail_size": (400, 300),
     "capture_repr": ("_repr_html_", "__repr__"),
@@ -66,12 +72,15 @@ sphinx_gallery_conf = {
 
 html_theme = "furo"
 html_title = f"sdm {release}"
-html_static_path = [str(Path(__file__).parent / "static")]
+html_static_path = [str(Path(__file__).parent / "static"), os.environ["SDM_STATIC"]]
 html_css_files = ["site.css"]
+html_js_files = ["search_summaries.js"]
+mathjax_path = "mathjax.js"
+mathjax3_config = {"options": {"enableMenu": False}}  # its menu loads further files
 html_copy_source = False
 html_show_sphinx = False
 html_show_copyright = False
-# Pages open from files as well, where a browser loads no page into another.
+# Pages open from files as well, where a browser loads no page into another: search_summaries.js does without.
 html_show_search_summary = False
 templates_path = []
 copybutton_exclude = ".linenos, .gp, .go"
@@ -110,6 +119,12 @@ def in_list(lines):
     return False
 
 
+def hide_empty_contents(app, pagename, templatename, context, doctree):
+    """Furo shows "On this page" for a page that has nothing but a list of pages, and its script then fails."""
+    if context.get("toc", "").count("<li>") <= 1:
+        context["furo_hide_toc"] = True
+
+
 class BoundClass(ClassDocumenter):
     """A class in its own order."""
 
@@ -142,6 +157,8 @@ def bound_signature(app, what, name, obj, options, signature, return_annotation)
 
 
 def setup(app):
+    app.connect("build-finished", search_summaries.write)
+    app.connect("html-page-context", hide_empty_contents, priority=900)  # after the theme's
     app.add_autodocumenter(BoundClass, override=True)
     app.add_autodocumenter(BoundMethod)
     app.connect("autodoc-process-docstring", list_parameters)

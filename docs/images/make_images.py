@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Makes the pictures of the front page: make_images.py MESHES, the folder of CGAL's data/meshes."""
+
+import contextlib
+import runpy
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import sdm
+
+FOLDER = Path(__file__).resolve().parent
+MESHES = Path(sys.argv[1])
+
+
+def placed(mesh: sdm.Mesh, scale: float, shift: tuple[float, float, float], turn: float = 0) -> sdm.Mesh:
+    """The mesh on the ground, its middle over the origin, turned about the vertical axis and then shifted."""
+    fit = sdm.fit_to_unit(mesh)
+    matrix = np.diag([scale, scale, scale, 1.0]) @ fit
+    mesh = mesh.transformed(matrix)
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    centre = np.eye(4)
+    centre[:3, 3] = -(low + high) / 2
+    centre[1, 3] = -low[1]
+    c, s = np.cos(turn), np.sin(turn)
+    rotation = np.array([[c, 0, s, shift[0]], [0, 1, 0, shift[1]], [-s, 0, c, shift[2]], [0, 0, 0, 1]])
+    return mesh.transformed(rotation @ centre)
+
+
+def bunny_and_armadillo() -> None:
+    bunny = placed(sdm.read("/usr/share/glmark2/models/bunny.obj"), 1, (0, 0, 0))
+    armadillo = placed(sdm.read(MESHES / "armadillo.off"), 1.35, (0.86, 0, 0), np.pi)
+    there, back = (sdm.map(*pair, resolution=2048) for pair in ((bunny, armadillo), (armadillo, bunny)))
+    there.save_view(FOLDER / "bunny-and-armadillo.png", (0.1, 0.1, 1), other=back, range=(0, 1), size=1440)
+
+
+def python_card() -> None:
+    """A sheet with a wave above a sphere."""
+    line = np.linspace(-1.5, 1.5, 161)
+    x, y = np.meshgrid(line, line, indexing="ij")
+    z = 0.95 + 0.22 * np.sin(4 * x) * np.cos(3 * y)
+    i, j = np.meshgrid(np.arange(160), np.arange(160), indexing="ij")
+    a = (161 * i + j).ravel()
+    faces = np.concatenate([np.stack([a, a + 161, a + 162], 1), np.stack([a, a + 162, a + 1], 1)])
+    sheet = sdm.Mesh(np.stack([x.ravel(), z.ravel(), y.ravel()], 1), faces[:, ::-1])
+    phi, theta = np.meshgrid(np.linspace(0, 2 * np.pi, 129), np.linspace(0, np.pi, 65), indexing="ij")
+    ball = np.stack([np.sin(theta) * np.cos(phi), np.cos(theta), np.sin(theta) * np.sin(phi)], -1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(128), np.arange(64), indexing="ij")
+    a = (65 * i + j).ravel()
+    round_faces = np.concatenate([np.stack([a, a + 65, a + 66], 1), np.stack([a, a + 66, a + 1], 1)])
+    sdm.map(sheet, sdm.Mesh(0.72 * ball, round_faces)).save_view(FOLDER / "card-python.png", (0.6, 0.55, 1), size=640, legend=False)
+
+
+def proximity_card() -> None:
+    """Two rings, linked."""
+    u, v = np.meshgrid(2 * np.pi * np.arange(192) / 192, 2 * np.pi * np.arange(96) / 96, indexing="ij")
+    r = 1 + 0.22 * np.cos(v)
+    vertices = np.stack([r * np.cos(u), r * np.sin(u), 0.22 * np.sin(v)], -1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(192), np.arange(96), indexing="ij")
+    corner = lambda di, dj: ((i + di) % 192 * 96 + (j + dj) % 96).ravel()
+    faces = np.concatenate([np.stack([corner(0, 0), corner(1, 0), corner(1, 1)], 1),
+                            np.stack([corner(0, 0), corner(1, 1), corner(0, 1)], 1)])  # fmt: skip
+    one = sdm.Mesh(vertices, faces)
+    other = sdm.Mesh(vertices[:, [0, 2, 1]] * [1, 1, -1] + [0.75, 0, 0], faces)
+    there, back = sdm.map(one, other), sdm.map(other, one)
+    there.save_view(FOLDER / "card-proximity.png", (0.5, 0.6, 1), other=back, size=640, legend=False)
+
+
+def inspection_card() -> None:
+    """The part of the gallery."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        names = runpy.run_path(str(FOLDER.parent / "gallery/inspection.py"))
+    names["distance_map"].save_view(
+        FOLDER / "card-inspection.png", (1, 0.4, 0.3), tolerance=names["tolerance"], units="mm", up="z", size=640,
+        legend=False)  # fmt: skip
+
+
+bunny_and_armadillo()
+inspection_card()
+python_card()
+proximity_card()
