@@ -71,15 +71,16 @@ Deforming run_frames(Run& run, const Recording& recording, std::uint32_t resolut
   return result;
 }
 
-void show_frames(Figure& figure, Run& run, const Recording& recording, const Deforming& result,
+void show_frames(Figure& figure, const Recording& recording, const Deforming& result,
                  std::uint32_t resolution, bool directions) {
-  const std::uint32_t width = run.choose(480u, 240u), height = run.choose(300u, 150u);
+  constexpr std::uint32_t kPictureWidth = 366, kPictureHeight = 244;
   Pair pair(recording.first, resolution);
-  const View view = view_of(recording.bounds_of(0), {0.25, -3, 0.7}, width, height);
+  const View view = view_of(recording.bounds_of(0), {0.25, -3, 0.7}, kPictureWidth, kPictureHeight);
   const io::Picture before = paint_bodies(pair, view);
   pair.refit(recording.frames[result.shown]);
   pair.compute();
-  const View near = view_of(recording.bounds_of(result.shown), {0.25, -3, 0.7}, width, height);
+  const View near =
+      view_of(recording.bounds_of(result.shown), {0.25, -3, 0.7}, kPictureWidth, kPictureHeight);
   const MapPictures pictures = paint(pair, near);
   const std::string frame = fmt::format("frame {}", result.shown);
   figure.html.push_back(row({panel(before, "(a) The bodies, frame 0"),

@@ -24,7 +24,7 @@ struct Deforming {
 [[nodiscard]] Deforming run_frames(Run& run, const Recording& recording, std::uint32_t resolution);
 
 /// Two frames of the bodies, the maps of the second, and the separation over time; `figure` has its texts.
-void show_frames(Figure& figure, Run& run, const Recording& recording, const Deforming& result,
+void show_frames(Figure& figure, const Recording& recording, const Deforming& result,
                  std::uint32_t resolution, bool directions);
 
 [[nodiscard]] Json measured_json(const Run& run, const Deforming& result, std::uint32_t resolution);

@@ -22,8 +22,8 @@ Figure figure1(Run& run) {
   pair.compute();
   const double error = pair.error_at_samples();
 
-  const std::uint32_t width = run.choose(275u, 185u), height = run.choose(440u, 296u);
-  const View view = view_of(bounds(scene.bodies()[1].mesh), {1.3, -3.1, 0.95}, width, height);
+  constexpr std::uint32_t kPictureWidth = 320, kPictureHeight = 512;
+  const View view = view_of(bounds(scene.bodies()[1].mesh), {1.3, -3.1, 0.95}, kPictureWidth, kPictureHeight);
   const MapPictures pictures = paint(pair, view, true);
 
   Figure figure{

@@ -36,7 +36,7 @@ Figure figure3(Run& run) {
                     "The letters of the paper are not public; those of `sdm scene letters` stand in for "
                     "them. " +
                     measured_text(result, resolution)};
-  show_frames(figure, run, run.letters(), result, resolution, true);
+  show_frames(figure, run.letters(), result, resolution, true);
   figure.comparisons = {{fmt::format("Letters, both maps, {}²", resolution), "100 ms (512²)",
                          both_engines(result.maps, result.gl_maps, run.machine)},
                         {"Letters, proximity queries", "10 ms", result.queries.median_text()}};
@@ -59,7 +59,7 @@ Figure figure7(Run& run) {
           "The bunny of glmark2-data, simplified and simulated by `sdm scene bunnies`, stands in for the "
           "paper's. " +
           measured_text(result, resolution)};
-  show_frames(figure, run, run.bunnies(), result, resolution, false);
+  show_frames(figure, run.bunnies(), result, resolution, false);
   figure.comparisons = {{fmt::format("Bunnies, both maps, {}²", resolution), "300–320 ms with queries (512²)",
                          both_engines(result.maps, result.gl_maps, run.machine)},
                         {"Bunnies, proximity queries", "included", result.queries.median_text()}};

@@ -174,7 +174,7 @@ Figure literal_algorithm(Run& run) {
     const double ratio = 1 / relative_time(printed, results);
     least_ratio = std::min(least_ratio, ratio), most_ratio = std::max(most_ratio, ratio);
 
-    const View view = view_of(bounds(c.o1), {0.4, -3, 0.6}, run.choose(330u, 165u), run.choose(330u, 165u));
+    const View view = view_of(bounds(c.o1), {0.4, -3, 0.6}, 360, 360);
     figure.html.push_back(paragraph(fmt::format("{} ({} and {} triangles), {}²:", c.name,
                                                 c.o1.triangles.size(), c.o2.triangles.size(), resolution)));
     figure.html.push_back(row(

@@ -22,8 +22,15 @@ std::string points_of(std::span<const Vec2> points) {
   return result;
 }
 
+// The colours of text, axes and grids are those of the page, which is light or dark.
+std::string of_page(io::Rgb color) {
+  if (color == kText) return "var(--ink)";
+  if (color == kAxisColor) return "var(--axis)";
+  return color == kGridColor ? "var(--grid)" : css(color);
+}
+
 std::string attributes(const Stroke& stroke) {
-  return fmt::format(R"(stroke="{}" stroke-width="{}"{})", css(stroke.color), coordinate(stroke.width),
+  return fmt::format(R"(stroke="{}" stroke-width="{}"{})", of_page(stroke.color), coordinate(stroke.width),
                      stroke.dashed ? R"( stroke-dasharray="7 5")" : "");
 }
 
@@ -84,7 +91,7 @@ void Svg::dot(const Vec2& centre, double radius, io::Rgb fill) {
   fmt::format_to(std::back_inserter(text_),
                  R"(<circle cx="{}" cy="{}" r="{}" fill="{}"/>)"
                  "\n",
-                 coordinate(centre[0]), coordinate(centre[1]), coordinate(radius), css(fill));
+                 coordinate(centre[0]), coordinate(centre[1]), coordinate(radius), of_page(fill));
 }
 
 void Svg::arrow(const Vec2& from, const Vec2& to, const Stroke& stroke) {
@@ -96,7 +103,10 @@ void Svg::arrow(const Vec2& from, const Vec2& to, const Stroke& stroke) {
   if (length > kHead) line(from, neck, stroke);
   const Vec2 head[] = {
       to, {neck[0] + aside[0], neck[1] + aside[1]}, {neck[0] - aside[0], neck[1] - aside[1]}};
-  polygon(head, stroke.color, 1, {stroke.color, 0.5});
+  fmt::format_to(std::back_inserter(text_),
+                 R"(<polygon fill="{}" points="{}" {}/>)"
+                 "\n",
+                 of_page(stroke.color), points_of(head), attributes({stroke.color, 0.5}));
 }
 
 void Svg::text(const Vec2& at, std::string_view text, double size, std::string_view align, bool bold,
@@ -109,7 +119,7 @@ void Svg::text(const Vec2& at, std::string_view text, double size, std::string_v
                  R"(<text x="{}" y="{}" font-size="{}" text-anchor="{}"{}{} fill="{}">{}</text>)"
                  "\n",
                  coordinate(at[0]), coordinate(at[1]), coordinate(size), align,
-                 bold ? R"( font-weight="600")" : "", turn, css(kText), escaped(text));
+                 bold ? R"( font-weight="600")" : "", turn, of_page(kText), escaped(text));
 }
 
 std::string Svg::finished() && {
