@@ -73,7 +73,7 @@ Deforming run_frames(Run& run, const Recording& recording, std::uint32_t resolut
 
 void show_frames(Figure& figure, const Recording& recording, const Deforming& result,
                  std::uint32_t resolution, bool directions) {
-  constexpr std::uint32_t kPictureWidth = 366, kPictureHeight = 244;
+  constexpr std::uint32_t kPictureWidth = 320, kPictureHeight = 213;
   Pair pair(recording.first, resolution);
   const View view = view_of(recording.bounds_of(0), {0.25, -3, 0.7}, kPictureWidth, kPictureHeight);
   const io::Picture before = paint_bodies(pair, view);
@@ -83,14 +83,16 @@ void show_frames(Figure& figure, const Recording& recording, const Deforming& re
       view_of(recording.bounds_of(result.shown), {0.25, -3, 0.7}, kPictureWidth, kPictureHeight);
   const MapPictures pictures = paint(pair, near);
   const std::string frame = fmt::format("frame {}", result.shown);
-  figure.html.push_back(row({panel(before, "(a) The bodies, frame 0"),
-                             panel(paint_bodies(pair, near), "(b) The bodies, " + frame)}));
+  std::vector<std::string> panels{panel(before, "(a) The bodies, frame 0"),
+                                  panel(paint_bodies(pair, near), "(b) The bodies, " + frame)};
   if (directions) {
-    figure.html.push_back(row({panel(pictures.direction, "(c) Direction to the closest point, " + frame)}));
+    panels.push_back(panel(pictures.direction, "(c) Direction to the closest point, " + frame));
+    figure.html.push_back(row(panels));
     figure.html.push_back(direction_legend());
   } else {
-    figure.html.push_back(
-        row({panel(pictures.distance, "(c) Distance, " + frame), panel(pictures.legend, "Distance")}));
+    panels.push_back(panel(pictures.distance, "(c) Distance, " + frame));
+    panels.push_back(panel(pictures.legend, "Distance"));
+    figure.html.push_back(row(panels));
   }
   std::vector<double> frames(result.frames);
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i] = static_cast<double>(i);
