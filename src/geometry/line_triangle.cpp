@@ -66,13 +66,21 @@ double ratio(const Integer& above, const Integer& below, int unit) {
   return std::ldexp(a.mantissa / b.mantissa, a.exponent - b.exponent + unit) + 0.0;  // not -0
 }
 
+// The component of a vector of largest magnitude, the first of several.
+template <class Vector>
+std::size_t largest_component(const Vector& v) {
+  using std::abs;
+  std::size_t largest = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (abs(v[k]) > abs(v[largest])) largest = k;
+  return largest;
+}
+
 // The line lies in the plane of the triangle, or meets the line of a triangle without area. Nonzero cross
 // products of the direction and a corner are then parallel: a component of them is the side of the line on
 // which the corner lies.
 std::optional<LineHit> meet_in_plane(const ExactLine& line) {
-  std::size_t along = 0;
-  for (std::size_t k = 1; k < 3; ++k)
-    if (abs(line.direction[k]) > abs(line.direction[along])) along = k;
+  const std::size_t along = largest_component(line.direction);
   Integers side;
   for (std::size_t k = 0; k < 3 && side[0].is_zero() && side[1].is_zero() && side[2].is_zero(); ++k)
     for (std::size_t i = 0; i < 3; ++i) side[i] = minor(line.direction, line.corner[i], k);
@@ -90,18 +98,32 @@ std::optional<LineHit> meet_in_plane(const ExactLine& line) {
   return hit;
 }
 
+// The corner at which two sides of a triangle meet that the line passes through: the sides 0, 1, 2 are
+// opposite to their corners. Nothing unless there are two.
+std::optional<std::size_t> corner_between(const std::array<bool, 3>& sides) {
+  if (sides[0] + sides[1] + sides[2] != 2) return std::nullopt;
+  return !sides[0] ? 0 : !sides[1] ? 1 : 2;
+}
+
 std::optional<LineHit> meet_exactly(const Vec3& origin, const Vec3& direction, const Corners& corners) {
   const ExactLine line(origin, direction, corners);
   Integer volume = 0;
   bool left = false, right = false;
+  std::array<bool, 3> through{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Integer edge = determinant(line.direction, line.corner[(k + 1) % 3], line.corner[(k + 2) % 3]);
+    through[k] = edge.is_zero();
     left |= edge.sign() > 0;
     right |= edge.sign() < 0;
     volume += edge;
   }
   if (left && right) return std::nullopt;
   if (!left && !right) return meet_in_plane(line);
+  if (const auto corner = corner_between(through)) {
+    const std::size_t k = largest_component(line.direction);
+    const double t = ratio(line.corner[*corner][k], line.direction[k], line.unit);
+    return LineHit{t, t};
+  }
   const double t = ratio(determinant(line.corner[0], line.corner[1], line.corner[2]), volume, line.unit);
   return LineHit{t, t};
 }
@@ -118,8 +140,27 @@ struct Determinant {
       magnitude += std::abs(a[k]) * (std::abs(plus) + std::abs(minus));
     }
   }
+  // Whether each term has a factor of 0, and all are exact then: a difference of numbers is 0 only of equal
+  // ones.
+  static bool vanishes(const Vec3& a, const Vec3& b, const Vec3& c) {
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      if (a[k] != 0 && ((b[i] != 0 && c[j] != 0) || (b[j] != 0 && c[i] != 0))) return false;
+    }
+    return true;
+  }
   [[nodiscard]] bool certain() const { return std::abs(value) > kError3 * magnitude + kUnderflow; }
 };
+
+// The parameter of a corner that the line passes through; nothing if the difference to the origin rounds. The
+// same number as of meet_exactly().
+std::optional<LineHit> meet_corner(const Vec3& origin, const Vec3& direction, const Vec3& corner) {
+  const std::size_t k = largest_component(direction);
+  const double difference = corner[k] - origin[k], back = corner[k] - difference;
+  if (back != origin[k] || (back + difference != corner[k])) return std::nullopt;
+  const double t = difference / direction[k] + 0.0;  // not -0
+  return LineHit{t, t};
+}
 
 }  // namespace
 
@@ -132,14 +173,20 @@ std::optional<LineHit> line_meets_triangle(const Vec3& origin, const Vec3& direc
   const auto& [a, b, c] = corners;
   const Vec3 from[3] = {a - origin, b - origin, c - origin};
   bool left = false, right = false, certain = true;
+  std::array<bool, 3> through{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const Determinant edge(direction, from[(k + 1) % 3], from[(k + 2) % 3]);
-    if (!edge.certain())
-      certain = false;
-    else
+    const Vec3 &first = from[(k + 1) % 3], &second = from[(k + 2) % 3];
+    const Determinant edge(direction, first, second);
+    if (edge.certain())
       (edge.value > 0 ? left : right) = true;
+    else
+      certain = false, through[k] = Determinant::vanishes(direction, first, second);
   }
   if (left && right) return std::nullopt;
+  // Where meshes share a grid, lines from vertices of the one pass through those of the other.
+  if (left || right)
+    if (const auto corner = corner_between(through))
+      if (const auto hit = meet_corner(origin, direction, corners[*corner])) return hit;
   if (!certain) return meet_exactly(origin, direction, corners);
 
   // t = n·(a − origin) / n·direction with n = (b − a) × (c − a), unless much of n·direction cancels.

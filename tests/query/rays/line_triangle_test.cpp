@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "geometry/line_triangle.h"
@@ -58,6 +59,34 @@ TEST(LineTriangle, AgreesWithRationalsNearDegeneracy) {
     if (to == origin) continue;
     expect_agreement(origin, to - origin, {a, b, c});
     if (testing::Test::HasFailure()) return;
+  }
+}
+
+// Lines through a corner of several triangles, along an axis and not.
+TEST(LineTriangle, TrianglesAtACornerHaveOneParameterThere) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 corner{u(random), u(random), u(random)};
+    Vec3 origin = corner, direction{};
+    const auto axis = static_cast<std::size_t>(i % 3);
+    origin[axis] += u(random);
+    direction[axis] = u(random) > 0 ? 1 : -3;
+    if (i % 4 == 0) {  // along a diagonal, of numbers with few digits
+      origin = {1, 2, 3}, direction = {1, -1, 2};
+    }
+    const Vec3 at = i % 4 == 0 ? origin + static_cast<double>(i % 16 + 1) * direction : corner;
+    std::optional<double> first;
+    for (int k = 0; k < 6; ++k) {
+      const auto hit = line_meets_triangle(
+          origin, direction,
+          {at, at + Vec3{u(random), u(random), u(random)}, at + Vec3{u(random), u(random), u(random)}});
+      ASSERT_TRUE(hit);
+      ASSERT_EQ(hit->first, hit->last);
+      if (!first) first = hit->first;
+      ASSERT_EQ(hit->first, *first);
+    }
+    ASSERT_NEAR(norm(origin + *first * direction - at), 0, 1e-14);
   }
 }
 
