@@ -4,6 +4,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/facing.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/progress.h>
@@ -13,13 +14,15 @@
 
 #include <limits>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace sdm {
 
-/// Options of along_map() and distances_along_at_vertices().
+/// Options of along_map(), distances_along_at_vertices() and closest_points_along().
 struct AlongOptions {
-  /// The direction of all lines, of any length. Nothing: the normal of each sample's face.
+  /// The direction of all lines, of any length. Nothing: the normal of each sample's face, or of each point.
   std::optional<Vec3> direction{};
   /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
   double max_distance = std::numeric_limits<double>::infinity();
@@ -47,6 +50,19 @@ struct AlongOptions {
 /// memory; Cancelled. Cost: two rays for each texel, all cores.
 [[nodiscard]] SDM_API DistanceMap along_map(const Surface& surface, const Sites& sites,
                                             const AlongOptions& options = {});
+
+/// The same from points with normals, of any length: `closest` are the hits, of SiteType::face, with the
+/// distance without its sign, which is − where `behind`. `unmatched` are the points without a hit at any
+/// distance. Without normals, along a direction, all faces count. A point with a normal of 0, or one at a
+/// right angle to the direction, has no hit. Also throws for points that are not finite, and unless there is
+/// a normal for each point, or none along a direction. Cost: two rays for each point, all cores.
+[[nodiscard]] SDM_API FacingPoints closest_points_along(const Sites& sites, std::span<const Vec3> points,
+                                                        std::span<const Vec3> normals,
+                                                        const AlongOptions& options);
+
+/// What the distances are, in words; `sample` is what they are measured from, such as "sample's face".
+[[nodiscard]] SDM_API MeasuredDistance measured_distance(const AlongOptions& options,
+                                                         const std::string& sample = "sample's face");
 
 /// The same at the vertices of a mesh: of the distances by its faces, each with its own normal, the one of
 /// least absolute value. NaN for a vertex without a value. Errors and cost as of along_map(), for each corner

@@ -10,6 +10,7 @@
 #include <sdm/sites.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -22,6 +23,11 @@ struct HausdorffOptions {
   /// rounding permits no less.
   std::optional<double> precision{};
   static constexpr double kPrecision = 1e-6;
+  /// In degrees, above 0 and at most 180: points are measured only to the closed faces of the other surface
+  /// whose normal is within this angle of that of their own face; at 90 less than that. Without it, to all.
+  /// Normals are outward of closed, orientable meshes, otherwise by the order of corners; allowed is what
+  /// closest_facing_points() allows, decided in double precision.
+  std::optional<double> facing{};
   Progress progress{};
 };
 
@@ -32,6 +38,10 @@ struct HausdorffDistance {
   /// most 1e-12 of the diagonal of the box of both meshes.
   BoundedLength distance{};
   std::array<std::uint32_t, 2> faces{kNone, kNone};  ///< a face of A and one of B that contain the witness
+  /// With HausdorffOptions::facing: the faces of A that have an area, but no allowed face of B, and their
+  /// share of A's area, in [0, 1]. They have no distance, and are left out.
+  std::size_t faces_without_match = 0;
+  double area_without_match = 0;
 };
 
 /// Distances in both directions; the symmetric Hausdorff distance is the larger one.
@@ -51,10 +61,15 @@ struct SymmetricHausdorff {
 /// options ask. Where triangles would have to be divided beyond the precision of double, the bounds stay
 /// farther apart. The result does not depend on the number of threads.
 ///
-/// Throws sdm::Error if A is unusable (see validate), for a precision that is not positive, or if there is
-/// not enough memory; Cancelled. Cost: sorting the vertices of A in space, and one search for each of those
-/// near which the maximum may lie, at most all of them; then some searches for each doubling of the
-/// precision. More where the largest distance is attained, nearly, on a large part of the surface.
+/// With options.facing, the largest distance of a point of any face of A to the faces of B that are allowed
+/// for that face. Faces of A without area have no normal, and are left out. As fewer faces are allowed, it is
+/// never smaller, and not 0 for a surface with sharp folds to one with the same points but other faces.
+///
+/// Throws sdm::Error if A is unusable (see validate), for a precision that is not positive, an angle out of
+/// range or one that leaves no face of A with a match, or if there is not enough memory; Cancelled. Cost:
+/// sorting the vertices of A in space, and one search for each of those near which the maximum may lie, at
+/// most all of them; then some searches for each doubling of the precision; with options.facing, up to three
+/// for each face of A. More where the largest distance is attained, nearly, on a large part of the surface.
 [[nodiscard]] SDM_API HausdorffDistance one_sided_hausdorff(const Mesh& a, const Sites& b,
                                                             const HausdorffOptions& options = {});
 

@@ -36,8 +36,8 @@ struct ToleranceWitness {
 /// The answer of prove_tolerance().
 struct ToleranceProof {
   Proof proof = Proof::undecided;
-  /// A point out of the tolerance: of Proof::outside always; if undecided, one that is out of it by no more
-  /// than the accuracy, if one was found.
+  /// A point out of the tolerance: of Proof::outside, unless the only reason is that faces have no match; if
+  /// undecided, one that is out of it by no more than the accuracy, if one was found.
   std::optional<ToleranceWitness> witness{};
   bool at_lower = false;  ///< the limit that the witness exceeds or, without one, that was not proven
   /// If undecided: no point is out of the tolerance by more than this. At most the accuracy, unless the
@@ -46,6 +46,9 @@ struct ToleranceProof {
   /// Undecided because it depends on signs that are estimates (is_estimate()): some point
   /// is within the tolerance with one sign and out of it with the other.
   bool depends_on_signs = false;
+  /// With ToleranceProofOptions::facing: the faces of the surface with an area, but without an allowed face
+  /// of O2. They have no distance, so that nothing is proven to be inside.
+  std::size_t faces_without_match = 0;
 };
 
 /// Options of prove_tolerance().
@@ -54,6 +57,10 @@ struct ToleranceProofOptions {
   /// Distances that exceed a limit by no more than this, in units of the meshes, are not out of the
   /// tolerance, as rounding may be the reason; but nothing with such a distance is proven to be inside. ≥ 0
   double accuracy = 0;
+  /// Distances are those of maps with MapOptions::facing, to the faces of O2 that face the same way. They are
+  /// 1-Lipschitz within each face of the surface, so that symmetric limits are decided for every point.
+  /// Others are decided as with estimated signs, by |d| alone.
+  std::optional<double> facing{};
   /// The faces of the surface that matter; by default all.
   std::optional<std::span<const std::uint32_t>> faces{};
   /// The search ends, undecided, after so many parts of the surface were examined in one step of the proof.
@@ -74,8 +81,9 @@ struct ToleranceProofOptions {
 ///
 /// Throws sdm::Error if the surface is unusable (see validate), for a face that it does not have, a tolerance
 /// that is not finite and ordered, an accuracy that is negative or NaN, a sign method that O2 does not
-/// permit, a tolerance that needs a sign where distances have none, or if there is not enough memory;
-/// Cancelled. Cost: as of one_sided_hausdorff(), but only near the points that may be out of the tolerance.
+/// permit or that distances with `facing` do not have, an angle out of range, a tolerance that needs a sign
+/// where distances have none, or if there is not enough memory; Cancelled. Cost: as of one_sided_hausdorff(),
+/// but only near the points that may be out of the tolerance.
 [[nodiscard]] SDM_API ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites,
                                                      const Tolerance& tolerance,
                                                      const ToleranceProofOptions& options = {});

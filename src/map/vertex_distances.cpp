@@ -9,8 +9,8 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/rows.h"
-#include "map/outward_normals.h"
 #include "query/facing/facing_search.h"
+#include "query/facing/outward_normals.h"
 #include "query/inside/boundary_sites.h"
 #include "sites/sites_data.h"
 
@@ -36,7 +36,7 @@ std::vector<float> facing_distances(const Mesh& mesh, const Sites& sites, MapOpt
   const bool is_signed = choose_sign(sites, options).method != SignMethod::none;
   options.facing.reset();
   const std::vector<ClosestPoint> closest = closest_points(sites, mesh.positions, options);
-  const std::vector<Vec3> normals = map::outward_normals(mesh);
+  const std::vector<Vec3> normals = facing::outward_normals(mesh);
   const auto faces_at = make_rows<std::uint32_t>(mesh.positions.size(), [&](const auto& put) {
     for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
       if (!is_removed(mesh.triangles[f]))

@@ -138,6 +138,51 @@ TEST(Along, AClosedSurfaceThatIsWoundInwardHasOutwardNormals) {
     }
 }
 
+TEST(Along, OfPointsItIsThatOfTheVerticesOfOneFace) {
+  const Mesh before = terrain(12, ground);
+  const Mesh after = terrain(12, [](double x, double y) { return ground(x, y) + change(x, y); });
+  const Sites sites(before);
+  const Vec3 up{0, 0, 2};
+  const std::vector<Vec3> normals(after.positions.size(), up), down(after.positions.size(), -1.0 * up);
+  const std::vector<float> expected = distances_along_at_vertices(after, sites, {.direction = up});
+  const FacingPoints facing = closest_points_along(sites, after.positions, normals, {.direction = up}),
+                     turned = closest_points_along(sites, after.positions, down, {.direction = up}),
+                     any = closest_points_along(sites, after.positions, {}, {.direction = -1.0 * up}),
+                     near = closest_points_along(sites, after.positions, {},
+                                                 {.direction = up, .max_distance = 0.05});
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const double signed_distance = (facing.behind[i] ? -1 : 1) * facing.closest[i].distance;
+    ASSERT_EQ(static_cast<float>(signed_distance), expected[i]);
+    ASSERT_EQ(facing.closest[i].type, SiteType::face);
+    ASSERT_NEAR(norm(facing.closest[i].point - after.positions[i]), facing.closest[i].distance, 1e-12);
+    ASSERT_EQ(turned.unmatched[i], 1);
+    ASSERT_EQ(any.closest[i].distance, facing.closest[i].distance);
+    ASSERT_EQ(any.behind[i], facing.behind[i]);
+    ASSERT_EQ(near.closest[i].type == SiteType::none, facing.closest[i].distance > 0.05);
+    ASSERT_EQ(near.unmatched[i], 0);
+  }
+  const FacingPoints along_normals = closest_points_along(sites, after.positions, normals, {});
+  EXPECT_EQ(along_normals.closest[0].distance, facing.closest[0].distance);
+  EXPECT_NE(test::error_of([&] { (void)closest_points_along(sites, after.positions, {}, {}); }), "");
+  EXPECT_NE(
+      test::error_of([&] {
+        (void)closest_points_along(sites, std::vector<Vec3>{{std::nan(""), 0, 0}}, {}, {.direction = up});
+      }),
+      "");
+}
+
+TEST(Along, VerticesOfASolidAreMeasuredToTheSkinThatFacesTheSameWay) {
+  const Mesh o1 = test::cube(), o2 = test::cube(2);  // half sides
+  const Sites sites(o2);
+  const Vec3 direction{0, 0, 1};
+  const std::vector<float> at = distances_along_at_vertices(o1, sites, {.direction = direction});
+  for (std::size_t v = 0; v < at.size(); ++v) ASSERT_EQ(at[v], -1.0f);
+  const Mesh raised = test::moved(o1, {0, 0, 0.25});
+  const std::vector<float> moved_at = distances_along_at_vertices(raised, sites, {.direction = direction});
+  for (std::size_t v = 0; v < at.size(); ++v)
+    ASSERT_EQ(moved_at[v], o1.positions[v][2] > 0 ? -0.75f : -1.25f);
+}
+
 TEST(Along, SignsAreThoseOfTheSideOfTheFace) {
   const Surface surface(terrain(4, [](double, double) { return 0.5; }), {.resolution = 64});
   const Sites open(terrain(4, [](double, double) { return 0.0; }));

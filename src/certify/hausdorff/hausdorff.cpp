@@ -1,14 +1,18 @@
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
+#include <sdm/mesh_edit.h>
 
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 
 #include "certify/hausdorff/largest_distance.h"
+#include "certify/hausdorff/matching.h"
 #include "core/memory.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
+#include "query/facing/outward_normals.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
@@ -19,13 +23,37 @@ void check(const HausdorffOptions& options) {
     throw Error("the precision of a Hausdorff distance must be greater than 0");
 }
 
+double area(const Mesh& mesh, std::uint32_t face) {
+  const auto [a, b, c] = corners_of(mesh, face);
+  return norm(cross(b - a, c - a)) / 2;
+}
+
+/// States what was left out. Throws if that is all.
+void report_unmatched(const Mesh& a, const hausdorff::LargestDistance& found, HausdorffDistance& result) {
+  if (found.lower.faces[0] == kNone)
+    throw Error(
+        "no face of the measured surface has one of the other surface that faces the same way, within the "
+        "angle: there is no distance");
+  result.faces_without_match = found.unmatched.size();
+  if (found.unmatched.empty()) return;
+  double without = 0, all = 0;
+  for (const std::uint32_t face : found.unmatched) without += area(a, face);
+  for (std::uint32_t face = 0; face < a.triangles.size(); ++face)
+    if (!is_removed(a.triangles[face])) all += area(a, face);
+  result.area_without_match = std::min(1.0, without / all);
+}
+
 HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const HausdorffOptions& options) {
   const hausdorff::Scale scale = hausdorff::scale_of(a, b);
   const double asked = options.precision.value_or(HausdorffOptions::kPrecision * scale.size);
-  const auto [lower, upper] =
-      hausdorff::largest_distance(a, b, scale, {.precision = asked}, options.progress);
+  std::optional<hausdorff::Matching> matching;
+  if (options.facing) matching.emplace(b, *options.facing, facing::outward_normals(a));
+  const hausdorff::LargestDistance found = hausdorff::largest_distance(
+      a, b, scale, {.precision = asked, .matching = matching ? &*matching : nullptr}, options.progress);
+  const auto& [lower, upper, unmatched] = found;
 
   HausdorffDistance result{.faces = lower.faces};
+  if (options.facing) report_unmatched(a, found, result);
   BoundedLength& distance = result.distance;
   distance.value = norm(lower.closest - lower.point);
   distance.lower = std::min(lower.value, distance.value);

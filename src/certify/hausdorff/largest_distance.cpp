@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "certify/hausdorff/matched_parts.h"
 #include "certify/hausdorff/part_search.h"
 #include "certify/hausdorff/vertex_search.h"
 #include "geometry/rounding.h"
@@ -32,10 +34,17 @@ LargestDistance largest_distance(const Mesh& a, const sites::SitesData& b, const
   LargestDistance result{.lower = {.side = question.side}};
   LowerBound& lower = result.lower;
   if (question.decision) lower.value = question.decision->limit;
-  const auto vertices = search_vertices(a, b, progress, lower);
   const double precision = std::max(question.precision, scale.precision);
-  PartSearch parts(b, {precision, scale.coordinate, question.decision, question.most_parts}, lower);
-  result.upper = parts(a, vertices, progress);
+  PartSearch parts(
+      b, {precision, scale.coordinate, question.decision, question.most_parts, question.matching}, lower);
+  if (question.matching != nullptr) {
+    MatchedParts first = matched_parts(a, b, *question.matching, precision, progress, lower);
+    result.unmatched = std::move(first.unmatched);
+    result.upper = parts(first, progress);
+  } else {
+    const auto vertices = search_vertices(a, b, progress, lower);
+    result.upper = parts(a, vertices, progress);
+  }
   return result;
 }
 

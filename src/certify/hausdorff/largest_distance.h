@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "certify/hausdorff/lower_bound.h"
+#include "certify/hausdorff/matching.h"
 
 namespace sdm::hausdorff {
 
@@ -32,7 +34,8 @@ struct Decision {
 struct Question {
   double precision = 0;  ///< of the bounds; that of the scale is the least
   std::optional<Decision> decision{};
-  const Side* side = nullptr;  ///< null: points on both sides of B count
+  const Side* side = nullptr;          ///< null: points on both sides of B count
+  const Matching* matching = nullptr;  ///< null: all faces of B count
   std::size_t most_parts = std::numeric_limits<std::size_t>::max();  ///< to examine
 };
 
@@ -41,6 +44,7 @@ struct Question {
 struct LargestDistance {
   LowerBound lower;
   double upper = 0;
+  std::vector<std::uint32_t> unmatched{};  ///< faces of A that are left out, as no face of B counts for them
 };
 
 [[nodiscard]] LargestDistance largest_distance(const Mesh& a, const sites::SitesData& b, const Scale& scale,

@@ -1,6 +1,7 @@
 // The face of B that is closest to a point, in double precision, with bounds that hold in spite of rounding.
 #pragma once
 
+#include "certify/hausdorff/matching.h"
 #include "geometry/triangle.h"
 #include "sites/sites_data.h"
 
@@ -15,5 +16,10 @@ struct NearestFace {
 
 /// `start` is a face of B: the closer it is, the less of the tree is searched.
 [[nodiscard]] NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint32_t start);
+
+/// The same of the faces that a face of A is measured to; kNone and infinite bounds if there is none. `start`
+/// is one of these, or kNone.
+[[nodiscard]] NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint32_t start,
+                                       const Matching& matching, std::uint32_t face);
 
 }  // namespace sdm::hausdorff

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "certify/hausdorff/first_parts.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
 
@@ -23,12 +22,14 @@ constexpr double kEqual = 1.0 / 16;
 double PartSearch::operator()(const Mesh& a, std::span<const VertexDistance> vertices,
                               const Progress& progress) {
   forgive();
+  return (*this)(first_parts(a, b_, vertices, lower_.value, precision_), progress);
+}
+
+double PartSearch::operator()(const FirstParts& first, const Progress& progress) {
+  forgive();
   parts_.start(lower_.value, precision_);
-  {
-    const FirstParts first = first_parts(a, b_, vertices, lower_.value, precision_);
-    parts_.settle(first.settled);
-    for (const Part& part : first.parts) parts_.put(part);
-  }
+  parts_.settle(first.settled);
+  for (const Part& part : first.parts) parts_.put(part);
   search::branch_and_bound(*this, parts_, progress);
   return parts_.upper();
 }
@@ -72,7 +73,8 @@ void PartSearch::evaluate(const Part& part, Found& found) const {
     const double about = part.weights[0] * d[0] + part.weights[1] * d[1] + part.weights[2] * d[2];
     if (about < least) least = about, start = part.near[k];
   }
-  const NearestFace nearest = nearest_face(b_, highest, start);
+  const NearestFace nearest = matching_ == nullptr ? nearest_face(b_, highest, start)
+                                                   : nearest_face(b_, highest, start, *matching_, part.face);
   found.lower.raise(highest, part.depth == 0 && part.support() == 1 ? 0 : rounding(part), part.face, nearest);
   Part better = part;
   double reach = 0;  // of the part, from the point

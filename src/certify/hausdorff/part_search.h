@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "certify/hausdorff/first_parts.h"
 #include "certify/hausdorff/largest_distance.h"
 #include "certify/hausdorff/lower_bound.h"
 #include "certify/hausdorff/part.h"
@@ -30,6 +31,7 @@ class PartSearch : public search::Policy {
     double precision, coordinate;  ///< of the bounds; the largest coordinate of A
     std::optional<Decision> decision{};
     std::size_t most_parts = std::numeric_limits<std::size_t>::max();
+    const Matching* matching = nullptr;
   };
 
   /// `lower` is raised; with a decision, it is at least its limit.
@@ -39,11 +41,13 @@ class PartSearch : public search::Policy {
         coordinate_(limits.coordinate),
         decision_(limits.decision),
         most_parts_(limits.most_parts),
+        matching_(limits.matching),
         lower_(lower) {}
 
   /// Returns the upper bound. It is farther than the precision from the lower bound only if parts were
   /// divided to the precision of double, if the search ended at the decision, or after the most parts.
   double operator()(const Mesh& a, std::span<const VertexDistance> vertices, const Progress& progress);
+  double operator()(const FirstParts& first, const Progress& progress);
 
   void evaluate(std::span<const Part> run, Found& found) const;
   void learn(std::span<const Part> run, const Found& found);
@@ -62,6 +66,7 @@ class PartSearch : public search::Policy {
   const double precision_, coordinate_;
   const std::optional<Decision> decision_;
   const std::size_t most_parts_;
+  const Matching* matching_;  // null: all faces of B count
   LowerBound& lower_;
   std::size_t examined_ = 0;
   search::Parts<Part, Found> parts_;

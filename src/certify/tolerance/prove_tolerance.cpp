@@ -1,4 +1,5 @@
 #include <sdm/error.h>
+#include <sdm/map.h>
 #include <sdm/tolerance_proof.h>
 
 #include <algorithm>
@@ -6,9 +7,11 @@
 #include <limits>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "certify/hausdorff/largest_distance.h"
+#include "certify/hausdorff/matching.h"
 #include "certify/hausdorff/nearest_face.h"
 #include "certify/hausdorff/vertex_search.h"
 #include "certify/tolerance/least_distance.h"
@@ -17,6 +20,7 @@
 #include "geometry/vec.h"
 #include "mesh/validate.h"
 #include "query/closest/reference.h"
+#include "query/facing/outward_normals.h"
 #include "query/inside/inside.h"
 
 namespace sdm {
@@ -39,24 +43,43 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> faces) {
   return part;
 }
 
+std::vector<Vec3> of_faces(const std::vector<Vec3>& normals, std::span<const std::uint32_t> faces) {
+  std::vector<Vec3> some;
+  some.reserve(faces.size());
+  for (const std::uint32_t face : faces) some.push_back(normals[face]);
+  return some;
+}
+
 /// All answers together.
 ToleranceProof operator&(const ToleranceProof& a, const ToleranceProof& b) {
   if (a.proof == Proof::outside || b.proof == Proof::inside) return a;
   if (b.proof == Proof::outside || a.proof == Proof::inside) return b;
   ToleranceProof worse = a.undecided_by < b.undecided_by ? b : a;
   worse.depends_on_signs = a.depends_on_signs || b.depends_on_signs;
+  worse.faces_without_match = std::max(a.faces_without_match, b.faces_without_match);
   return worse;
 }
 
 /// Answers questions on a surface and O2.
 class Prover {
  public:
-  Prover(const Mesh& a, const sites::SitesData& b, SignMethod sign, const ToleranceProofOptions& options)
-      : a_(a), b_(b), sign_(sign), options_(options), scale_(hausdorff::scale_of(a, b)) {}
+  /// `matching`: null without options.facing.
+  Prover(const Mesh& a, const sites::SitesData& b, SignMethod sign, const ToleranceProofOptions& options,
+         const hausdorff::Matching* matching)
+      : a_(a),
+        b_(b),
+        sign_(sign),
+        options_(options),
+        matching_(matching),
+        scale_(hausdorff::scale_of(a, b)) {}
 
   ToleranceProof operator()(const Tolerance& tolerance) const {
     const auto [lo, hi] = tolerance;
     const double least = std::max({lo, -hi, 0.0}), most = std::max(-lo, hi), tight = std::min(-lo, hi);
+    if (matching_ != nullptr) {
+      const bool has_one_limit = lo == -hi || (sign_ == SignMethod::none && lo <= 0);
+      return has_one_limit ? at_most(hi) : by_either_sign(tight, most);
+    }
     if (sign_ == SignMethod::none) return at_least(least, true) & at_most(hi);
     if (is_estimate(sign_) && lo != -hi) return by_either_sign(tight, most);
     if (tight < 0) {
@@ -72,11 +95,13 @@ class Prover {
     std::optional<Side> side;
     if (inside) side.emplace(b_, *inside);
     const hausdorff::Decision decision{.limit = limit, .forgiven = limit + options_.accuracy};
-    const hausdorff::LargestDistance found = hausdorff::largest_distance(
-        a_, b_, scale_,
-        {.decision = decision, .side = side ? &*side : nullptr, .most_parts = options_.most_parts},
-        options_.progress);
-    ToleranceProof result{.at_lower = inside.value_or(false)};
+    const hausdorff::LargestDistance found = hausdorff::largest_distance(a_, b_, scale_,
+                                                                         {.decision = decision,
+                                                                          .side = side ? &*side : nullptr,
+                                                                          .matching = matching_,
+                                                                          .most_parts = options_.most_parts},
+                                                                         options_.progress);
+    ToleranceProof result{.at_lower = inside.value_or(false), .faces_without_match = found.unmatched.size()};
     if (found.lower.faces[0] != kNone) {
       result.witness = witness(found.lower);
       result.at_lower = result.witness->distance < 0;
@@ -84,7 +109,7 @@ class Prover {
     if (result.witness && norm(found.lower.closest - found.lower.point) > decision.forgiven)
       result.proof = Proof::outside;
     else if (!result.witness && found.upper <= limit + scale_.precision)
-      result.proof = Proof::inside;
+      result.proof = found.unmatched.empty() ? Proof::inside : Proof::outside;
     else
       result.undecided_by = std::max(found.upper - limit, 0.0);
     return result;
@@ -142,6 +167,10 @@ class Prover {
 
   ToleranceWitness witness(const LowerBound& at) const {
     const double distance = norm(at.closest - at.point);
+    if (matching_ != nullptr) {
+      const bool behind = sign_ != SignMethod::none && matching_->behind(at.faces[0], at.point);
+      return {at.point, at.closest, at.faces[0], at.faces[1], behind ? -distance : distance};
+    }
     constexpr double kAnywhere = std::numeric_limits<double>::infinity();
     const auto estimate = [&] {
       return inside::InsideTest(b_, sign_)(at.point, closest::reference_closest(b_, at.point, kAnywhere));
@@ -155,6 +184,7 @@ class Prover {
   const sites::SitesData& b_;
   SignMethod sign_;
   const ToleranceProofOptions& options_;
+  const hausdorff::Matching* matching_;
   hausdorff::Scale scale_;
 };
 
@@ -173,14 +203,23 @@ ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites, const To
     mesh::validate_edited(surface);
   else
     validate(surface);
-  const SignUsed sign = choose_sign(sites, options.sign);
+  const SignUsed sign = choose_sign(sites, MapOptions{.sign = options.sign, .facing = options.facing});
   if (sign.method == SignMethod::none && tolerance.needs_sign())
     throw Error("a tolerance that differs by sign needs signed distances, but these are unsigned: " +
                     sign.reason + "; choose another sign method or a symmetric tolerance",
                 Remedy::sign_method);
-  if (!options.faces) return Prover(surface, internals(sites), sign.method, options)(tolerance);
+  const sites::SitesData& b = internals(sites);
+  std::vector<Vec3> normals;  // outward, which those of a part of a solid would not be
+  if (options.facing) normals = facing::outward_normals(surface);
+  std::optional<hausdorff::Matching> matching;
+  const auto prove = [&](const Mesh& mesh) {
+    if (options.facing) matching.emplace(b, *options.facing, std::move(normals));
+    return Prover(mesh, b, sign.method, options, matching ? &*matching : nullptr)(tolerance);
+  };
+  if (!options.faces) return prove(surface);
   const Mesh part = part_of(surface, *options.faces);
-  ToleranceProof result = Prover(part, internals(sites), sign.method, options)(tolerance);
+  if (options.facing) normals = of_faces(normals, *options.faces);
+  ToleranceProof result = prove(part);
   if (result.witness) result.witness->face = (*options.faces)[result.witness->face];
   return result;
 } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "query/facing/outward_normals.h"
 #include "tree/fold.h"
 #include "tree/visit.h"
 
@@ -22,14 +23,6 @@ double product_of_turn(double angle) {
   return -std::cos(std::min(angle + kSlackOfTurn, 180.0) * std::numbers::pi / 180);
 }
 
-Vec3 outward_normal(const sites::SitesData& sites, std::uint32_t face) {
-  const auto [a, b, c] = corners_of(sites.mesh, face);
-  const Vec3 normal = cross(b - a, c - a);
-  const double size = norm(normal);
-  if (!(size > 0)) return {};
-  return (sites.inverted[face] ? -1 : 1) / size * normal;
-}
-
 }  // namespace
 
 Walls::Walls(const sites::SitesData& sites, double angle)
@@ -42,7 +35,7 @@ Walls::Walls(const sites::SitesData& sites, double angle)
   constexpr std::size_t kGrain = 4096;
   parallel_for(outward_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f)
-      outward_[f] = outward_normal(sites, static_cast<std::uint32_t>(f));
+      outward_[f] = facing::outward_normal(sites, static_cast<std::uint32_t>(f));
   });
   Box box;
   double largest = 0;

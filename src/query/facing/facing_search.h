@@ -29,6 +29,11 @@ class FacingSearch {
     return has_normal(sites_, face) && allows(dot(sites_.normals.face[face], normal));
   }
 
+  /// Whether there may be an allowed face below a node of the tree.
+  [[nodiscard]] bool may_allow(std::uint32_t node, const Vec3& normal) const {
+    return allows(largest_cosine(cones_[node], normal));
+  }
+
   /// `normal`: of the query, unit length or 0. `closest`: the closest point of all faces, which is the result
   /// if it lies on an allowed one; none if nothing is within max_distance.
   [[nodiscard]] Match match(const Vec3& query, const Vec3& normal, double max_distance,
@@ -37,9 +42,6 @@ class FacingSearch {
  private:
   [[nodiscard]] bool allows(double cosine) const {
     return right_angle_ ? cosine > 0 : cosine >= least_cosine_;
-  }
-  [[nodiscard]] bool may_allow(std::uint32_t node, const Vec3& normal) const {
-    return allows(largest_cosine(cones_[node], normal));
   }
   [[nodiscard]] bool allows_any(const Vec3& normal) const;
   /// The faces around the site of a point.

@@ -1,4 +1,4 @@
-#include "map/outward_normals.h"
+#include "query/facing/outward_normals.h"
 
 #include <sdm/mesh_edit.h>
 
@@ -10,7 +10,7 @@
 #include "sites/regions.h"
 #include "tree/aabb_tree.h"
 
-namespace sdm::map {
+namespace sdm::facing {
 namespace {
 
 /// A tree over the faces with edges, which tells shells inside others from those outside of them.
@@ -58,4 +58,4 @@ std::vector<Vec3> outward_normals(const Mesh& mesh) {
   return normals;
 }
 
-}  // namespace sdm::map
+}  // namespace sdm::facing

@@ -1,0 +1,103 @@
+#include "certify/hausdorff/matched_parts.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "certify/hausdorff/face_distance.h"
+#include "certify/hausdorff/nearest_face.h"
+#include "core/parallel.h"
+#include "geometry/rounding.h"
+
+namespace sdm::hausdorff {
+namespace {
+
+// Bounds faces of A that are near each other, one after the other.
+class MatchedFaces {
+ public:
+  MatchedFaces(const Mesh& a, const sites::SitesData& b, const Matching& matching, double precision,
+               const LowerBound& lower)
+      : a_(a), b_(b), matching_(matching), precision_(precision), lower_(lower) {}
+
+  void bound(std::uint32_t face) {
+    if (repeats_corner(a_.triangles[face]) || !matching_.has_normal(face)) return;
+    Part part{.at = corners_of(a_, face), .face = face};
+    if (last_ != kNone && matching_.allows(face, last_)) {
+      part.add(b_, last_, 0);
+      part.bound();
+    }
+    std::array<bool, 3> searched{};
+    while (part.count == 0 || part.upper > enough()) {
+      const std::optional<int> corner = highest_corner(part, searched);
+      if (!corner) break;
+      searched[*corner] = true;
+      const NearestFace nearest = nearest_face(
+          b_, part.at[*corner], part.count == 0 ? kNone : part.near[part.closest(*corner)], matching_, face);
+      if (nearest.face == kNone) return found.unmatched.push_back(face);
+      lower_.raise(part.at[*corner], 0, face, nearest);
+      last_ = nearest.face;
+      if (part.add(b_, nearest.face, 0)) part.bound();
+    }
+    if (part.upper <= enough())
+      found.settled = std::max(found.settled, part.upper);
+    else
+      found.parts.push_back(part);
+  }
+
+  [[nodiscard]] const LowerBound& lower() const { return lower_; }
+
+  MatchedParts found;
+
+ private:
+  [[nodiscard]] double enough() const { return lower_.value + precision_; }
+
+  // Of those that were not searched from, the corner that is farthest from its closest face.
+  static std::optional<int> highest_corner(const Part& part, const std::array<bool, 3>& searched) {
+    std::optional<int> highest;
+    double most = -1;
+    for (int i = 0; i < 3; ++i) {
+      if (searched[i]) continue;
+      const double distance = part.count == 0 ? 0 : part.distances[part.closest(i)][i];
+      if (distance > most) most = distance, highest = i;
+    }
+    return highest;
+  }
+
+  const Mesh& a_;
+  const sites::SitesData& b_;
+  const Matching& matching_;
+  double precision_;
+  LowerBound lower_;
+  std::uint32_t last_ = kNone;  // the face of B that was found last
+};
+
+}  // namespace
+
+MatchedParts matched_parts(const Mesh& a, const sites::SitesData& b, const Matching& matching,
+                           double precision, const Progress& progress, LowerBound& lower) {
+  constexpr std::size_t kBlock = 1 << 12;
+  const std::size_t count = a.triangles.size();
+  // The faces of a sample raise the lower bound first, so that few of all are searched from.
+  constexpr std::size_t kSample = 64;
+  MatchedParts all;
+  for (const std::size_t stride : {kSample, std::size_t{1}}) {
+    const std::size_t step = kBlock * stride, blocks = (count + step - 1) / step;
+    std::vector<MatchedFaces> work(blocks, MatchedFaces(a, b, matching, precision, lower));
+    const auto bound = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t f = step * i; f < std::min(step * (i + 1), count); f += stride)
+          work[i].bound(static_cast<std::uint32_t>(f));
+    };
+    parallel_for(blocks, 1, stride > 1 ? Progress() : progress, "vertices", bound);
+    for (const MatchedFaces& block : work) lower.raise(block.lower());
+    if (stride > 1) continue;
+    for (const MatchedFaces& block : work) {
+      const MatchedParts& found = block.found;
+      all.parts.insert(all.parts.end(), found.parts.begin(), found.parts.end());
+      all.settled = std::max(all.settled, found.settled);
+      all.unmatched.insert(all.unmatched.end(), found.unmatched.begin(), found.unmatched.end());
+    }
+  }
+  return all;
+}
+
+}  // namespace sdm::hausdorff
