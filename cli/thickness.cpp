@@ -81,6 +81,22 @@ std::string limits_in_words(const ThicknessCommand& command) {
   return fmt::format("{} to {}{}", number(*command.least), number(*command.most), unit);
 }
 
+/// The verdict as a clause: that of sdm::verdict_text(), but of the limits that were given.
+std::string verdict_in_words(const ThicknessCommand& command, const sdm::Summary& summary) {
+  switch (summary.tolerance->verdict) {
+    case sdm::Verdict::pass:
+      return fmt::format("every texel has {}; between the texels, an estimate", limits_in_words(command));
+    case sdm::Verdict::fail:
+      return summary.tolerance->reason == sdm::VerdictReason::exceeded
+                 ? fmt::format("a texel does not have {}", limits_in_words(command))
+                 : sdm::verdict_text(summary);
+    default:
+      return fmt::format("some texel is as close to the limit, {}, as a thickness is accurate, {}{}",
+                         limits_in_words(command), number(summary.evidence.accuracy, 2),
+                         unit_suffix(summary.units));
+  }
+}
+
 /// Without an upper limit, the colours end where the thickness does, and not at the diagonal.
 std::optional<sdm::ColorRange> colors_of(const ThicknessCommand& command, const sdm::DistanceStatistics& d) {
   const bool bands = command.picture.colormap == sdm::Colormap::automatic && command.least;
@@ -167,6 +183,8 @@ ThicknessResult measure(ThicknessCommand& command, const Input& input, double im
   result.report = Json::parse(
       sdm::report_json({.on = reported(input), .engine = "cpu", .time_ms = times}, surface, result.summary));
   result.report["thickness"] = thickness_json(command, surface, map, of_other);
+  if (result.summary.tolerance)
+    result.report["tolerance"]["text"] = verdict_in_words(command, result.summary);
   const std::string text = to_text(result.report);
   if (command.files.html)
     sdm::write_html(folder / "report.html", surface, map, at_vertices, text,
@@ -179,15 +197,13 @@ std::string tolerance_text(const ThicknessCommand& command, const sdm::Summary& 
   if (!summary.tolerance) return {};
   const sdm::CertifiedVerdict& verdict = *summary.tolerance;
   std::string text = fmt::format("  limits      {}: ", sdm::name_of(verdict.verdict));
-  if (verdict.verdict == sdm::Verdict::pass) {
-    text += fmt::format("every texel has {}; between the texels, an estimate", limits_in_words(command));
-  } else if (verdict.verdict == sdm::Verdict::fail && summary.extremes) {
+  if (verdict.verdict == sdm::Verdict::fail && summary.extremes) {
     const sdm::Extreme most = decisive_extreme(summary).value_or(sdm::Extreme{});
     text += fmt::format("{} % of the area does not have {}; {}{} at {}",
                         number(100 * verdict.exceeded_area_fraction), limits_in_words(command),
                         number(most.distance), unit_suffix(summary.units), place(most.point, size));
   } else {
-    text += sdm::verdict_text(summary);
+    text += verdict_in_words(command, summary);
   }
   return text + "\n";
 }

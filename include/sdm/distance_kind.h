@@ -11,9 +11,10 @@ namespace sdm {
 /// What the distance of a sample is measured to. Only `closest` is a distance of points: it is 1-Lipschitz
 /// along O1, so that samples bound it everywhere. The others hold at the samples and are estimates between.
 enum class DistanceKind : std::uint8_t {
-  closest,  ///< the closest point of O2
-  facing,   ///< the closest point of the faces of O2 that face the same way as the sample
-  along,    ///< the nearest point of O2 on a line through the sample
+  closest,    ///< the closest point of O2
+  facing,     ///< the closest point of the faces of O2 that face the same way as the sample
+  along,      ///< the nearest point of O2 on a line through the sample
+  thickness,  ///< of the wall below the sample, which is of the part itself
 };
 
 /// What was measured, for reports.

@@ -194,6 +194,13 @@ class SDM_API CombinedSummary {
 /// Returns both notes, if there are; none for a box that is empty.
 [[nodiscard]] SDM_API std::vector<std::string> notes_on(const Box& a, const Box& b);
 
+/// Returns a sentence if walls of a solid are thinner than twice the largest limit: a point is then closer to
+/// the one or the other skin, never farther from both than half a wall, so that defects of that size do not
+/// show. By estimate_walls(), at least 1 % of the area counts. Nothing for a mesh that bounds no solid.
+/// Throws sdm::Error if there is not enough memory. Cost: that of estimate_walls().
+[[nodiscard]] SDM_API std::optional<std::string> note_on_walls(const Sites& sites, const Tolerance& tolerance,
+                                                               const std::string& units);
+
 /// Withholds a pass because of the doubts of the summary, unless they are accepted.
 SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 
@@ -211,7 +218,7 @@ SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 [[nodiscard]] SDM_API const char* name_of(Colormap colormap);
 /// "none", "exact", "winding" or "side"; "automatic" before the choice.
 [[nodiscard]] SDM_API const char* name_of(SignMethod method);
-/// "closest", "facing" or "along".
+/// "closest", "facing", "along" or "thickness".
 [[nodiscard]] SDM_API const char* name_of(DistanceKind kind);
 /// "charts", "triangles" or "uv".
 [[nodiscard]] SDM_API const char* name_of(AtlasKind kind);

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace sdm {
@@ -66,6 +67,19 @@ struct ThicknessMaps {
 /// thickness_maps(). Cost: a ray and a search for each corner of a face, all cores.
 [[nodiscard]] SDM_API std::vector<float> thickness_at_vertices(const Sites& sites, ThicknessMethod method,
                                                                const ThicknessOptions& options = {});
+
+/// The walls of a solid, by rays from a sample of its surface. An estimate.
+struct WallEstimate {
+  double thin = 0;    ///< the share of the area, in [0, 1], below which the wall is thinner than asked
+  double median = 0;  ///< of those walls; 0 if there are none
+  std::size_t samples = 0;
+};
+
+/// Estimates where the walls of a solid are thinner than a length, by ThicknessMethod::ray at points that are
+/// evenly distributed over its area. Nothing if the mesh is open or cannot be oriented. Throws sdm::Error if
+/// there is not enough memory. Cost: linear in the faces, and a ray for each sample, all cores.
+[[nodiscard]] SDM_API std::optional<WallEstimate> estimate_walls(const Sites& sites, double thin,
+                                                                 std::size_t samples = 4096);
 
 /// Returns the texels of least value, the least first, each at least 6 % of the diagonal of the mesh from
 /// those before it; at most `count`. Throws sdm::Error if the map belongs to another surface. Cost:

@@ -42,7 +42,7 @@ export interface Report {
   o1?: Input;
   o2?: Input;
   mesh?: Input;
-  thickness?: { method: string; text: string };
+  thickness?: { method: string; text: string; min?: number | null; max?: number | null };
   measured_on?: 'o1' | 'o2';
   units?: string;
   alignment?: { text: string };

@@ -42,6 +42,9 @@ export function limitsOf(report: Report): Limits | null {
 
 export function limitsText({ lower, upper }: Limits, report: Report): string {
   const unit = unitOf(report);
+  const { thickness, tolerance } = report;
+  if (thickness && thickness.max === null && upper === tolerance?.upper) return `at least ${text(lower)}${unit}`;
+  if (thickness && thickness.min === null && lower === tolerance?.lower) return `at most ${text(upper)}${unit}`;
   if (lower === -upper) return isSigned(report) ? `±${text(upper)}${unit}` : `${text(upper)}${unit}`;
   return `${text(lower)} to ${text(upper)}${unit}`;
 }

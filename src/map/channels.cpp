@@ -42,14 +42,28 @@ class map::TexelBlock {
       fill(closest_, [&](std::size_t k) {
         const SiteType type = map.site_type[texels_[k]];
         const std::uint32_t site = map.site[texels_[k]];
-        return map.measured.kind == DistanceKind::closest
-                   ? point_on_face(*source_.sites, type, site, point(k))
-                   : point_on_site(type, site, point(k));
+        switch (map.measured.kind) {
+          case DistanceKind::closest:
+            return point_on_face(*source_.sites, type, site, point(k));
+          case DistanceKind::facing:
+            return point_on_site(type, site, point(k));
+          default:
+            return end_of_vector(site, k);
+        }
       });
     return closest_[i];
   }
 
  private:
+  /// Where the vector ends, on a face that need not be closest there.
+  [[nodiscard]] SurfacePoint end_of_vector(std::uint32_t face, std::size_t k) const {
+    if (face == kNone) return {};
+    const auto [p, q, r] = corners_of(internals(*source_.sites).mesh, face);
+    const auto& vector = source_.map->vector[texels_[k]];
+    Vec3 end = point(k);
+    for (int i = 0; i < 3; ++i) end[i] += vector[i];
+    return {face, barycentric(p, q, r, end)};
+  }
   /// The closest point of a site that need not be the closest one of O2.
   [[nodiscard]] SurfacePoint point_on_site(SiteType type, std::uint32_t site, const Vec3& query) const {
     if (type == SiteType::none) return {};

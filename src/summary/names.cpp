@@ -80,6 +80,8 @@ const char* name_of(DistanceKind kind) {
       return "facing";
     case DistanceKind::along:
       return "along";
+    case DistanceKind::thickness:
+      return "thickness";
   }
   return "";
 }

@@ -1,4 +1,5 @@
 #include <sdm/summary.h>
+#include <sdm/thickness.h>
 
 #include <algorithm>
 #include <array>
@@ -49,6 +50,21 @@ std::optional<std::string> note_on_places(const Box& a, const Box& b) {
   if (!(apart > kFar * size)) return std::nullopt;
   return "the meshes are " + text_of(apart / size, 2) +
          " times their size apart; are both in the same place?";
+}
+
+std::optional<std::string> note_on_walls(const Sites& sites, const Tolerance& tolerance,
+                                         const std::string& units) {
+  constexpr double kLeastShare = 0.01;  // less may be edges that are sharper than a right angle
+  const double limit = std::max(std::abs(tolerance.lo), std::abs(tolerance.hi));
+  const std::optional<WallEstimate> walls = estimate_walls(sites, 2 * limit);
+  if (!walls || walls->thin < kLeastShare) return std::nullopt;
+  const std::string unit = units.empty() ? "" : " " + units;
+  return "about " + text_of(100 * walls->thin, 2) +
+         " % of O2's walls are thinner than twice the tolerance, " + text_of(2 * limit, 5) + unit +
+         " (an estimate: half of these are below " + text_of(walls->median, 3) + unit +
+         "), so that the closest point may be on the other skin, and a defect does not show; measure to "
+         "faces that "
+         "face the same way (--facing)";
 }
 
 std::vector<std::string> notes_on(const Box& a, const Box& b) {

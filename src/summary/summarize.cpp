@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "summary/distribution.h"
 #include "summary/largest_distance.h"
@@ -46,6 +47,9 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
   if (const std::size_t texels = surface.overlapping_texels(); texels > 0)
     notes.push_back(std::to_string(texels) +
                     " texels are covered by several faces, and have the value of one of them");
+  if (options.tolerance && summary.measured.kind == DistanceKind::closest)
+    if (auto note = note_on_walls(sites, *options.tolerance, options.units))
+      notes.push_back(std::move(*note));
   return notes;
 }
 
@@ -108,7 +112,7 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
 Summary summarize_thickness(const Surface& surface, const DistanceMap& map, const SummaryOptions& options) {
   const std::vector<float> unknown(surface.mesh().positions.size(), std::numeric_limits<float>::quiet_NaN());
   Summary result = summarize_self(surface, map, options);
-  result.of_thickness = true;
+  result.of_thickness = true, result.measured = map.measured;
   result.extremes = extremes(surface, map, unknown);
   result.distribution = summary::distribution_of(surface, map, result.distance, options);
   Evidence& evidence = result.evidence;

@@ -54,6 +54,8 @@ TEST_F(ThicknessCommandTest, WritesTheNumbersOfTheLibrary) {
     EXPECT_EQ(report["distance"]["min"], (is_ball ? ball : ray).min);
     EXPECT_EQ(report["distance"]["p95"], (is_ball ? ball : ray).p95);
     EXPECT_EQ(report["thickness"]["method"], method);
+    EXPECT_EQ(report["measured"]["kind"], "thickness");
+    EXPECT_EQ(report["measured"]["text"], (is_ball ? maps.ball : maps.ray).measured.text);
     EXPECT_EQ(report["thickness"]["other"]["method"], is_ball ? "ray" : "ball");
     EXPECT_EQ(report["thickness"]["other"]["distance"]["mean"], (is_ball ? ray : ball).mean);
     EXPECT_EQ(report["thickness"]["thinnest"][0]["thickness"], (is_ball ? ball : ray).min);
@@ -74,7 +76,11 @@ TEST_F(ThicknessCommandTest, JudgesLimitsByItsTexels) {
   outcome = run(part, {"--min", "0.6"});
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.out, HasSubstr("does not have at least 0.6; 0.5 at ("));
-  EXPECT_EQ(run(part, {"--min", "0.5"}).code, 4);
+  outcome = run(part, {"--min", "0.5"});
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_THAT(outcome.out, HasSubstr("NOT DECIDED: some texel is as close to the limit, at least 0.5, as"));
+  EXPECT_EQ(Json::parse(run(part, {"--min", "0.4", "--json"}).out)["tolerance"]["text"],
+            "every texel has at least 0.4; between the texels, an estimate");
   EXPECT_EQ(run(part, {"--max", "6.1"}).code, 0);
   outcome = run(part, {"--min", "0.4", "--max", "5", "--json"});
   EXPECT_EQ(outcome.code, 3);

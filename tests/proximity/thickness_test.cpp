@@ -275,5 +275,30 @@ TEST(Thickness, JudgesItsTexelsAndCertifiesNoPass) {
   for (const std::uint32_t texel : places) EXPECT_NEAR(map.maps.ball.distance[texel], 0.5, 1e-6);
 }
 
+TEST(EstimateWalls, FindsTheShareOfThinWalls) {
+  Mesh plate = test::cube();
+  for (Vec3& p : plate.positions) p = {10 * p[0], 10 * p[1], 0.5 * p[2]};  // 20 × 20 × 1
+  const std::optional<WallEstimate> walls = estimate_walls(Sites(plate), 1.2);
+  ASSERT_TRUE(walls);
+  EXPECT_NEAR(walls->thin, 800.0 / 880, 0.01) << "all but the sides";
+  EXPECT_NEAR(walls->median, 1, 1e-9);
+  const std::optional<WallEstimate> none = estimate_walls(Sites(plate), 0.9);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->thin, 0);
+  EXPECT_EQ(none->median, 0);
+  EXPECT_EQ(estimate_walls(Sites(test::cube(10)), 1.2)->thin, 0);
+  EXPECT_FALSE(estimate_walls(Sites(test::height_field(8)), 1.2)) << "an open mesh has no walls";
+}
+
+TEST(Thickness, MapsStateWhatTheyMeasure) {
+  const Mesh mesh = test::cube();
+  const Surface surface(mesh, {.resolution = 32});
+  const ThicknessMaps maps = thickness_maps(surface, Sites(mesh));
+  EXPECT_EQ(maps.ball.measured.kind, DistanceKind::thickness);
+  EXPECT_EQ(maps.ray.measured.kind, DistanceKind::thickness);
+  EXPECT_NE(maps.ball.measured.text, maps.ray.measured.text);
+  EXPECT_STREQ(name_of(maps.ray.measured.kind), "thickness");
+}
+
 }  // namespace
 }  // namespace sdm

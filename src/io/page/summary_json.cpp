@@ -229,8 +229,7 @@ Json to_json(const Summary& summary) {
     json["notes"] = summary.notes;
     return json;
   }
-  if (!summary.of_thickness)
-    json["measured"] = {{"kind", name_of(summary.measured.kind)}, {"text", summary.measured.text}};
+  json["measured"] = {{"kind", name_of(summary.measured.kind)}, {"text", summary.measured.text}};
   json["sign"] = {{"method", name_of(summary.sign.method)}, {"reason", summary.sign.reason}};
   json["distance"] = to_json(d);
   if (summary.of_points) json["distance"]["kind"] = "bounded", json["distance"]["weights"] = "points";

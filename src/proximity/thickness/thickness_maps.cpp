@@ -33,9 +33,10 @@ bool store_end(const thickness::WallEnd& end, const Vec3& p, std::uint32_t texel
   return found;
 }
 
-void clear_thickness(DistanceMap& map, const Surface& surface) {
+void clear_thickness(DistanceMap& map, const Surface& surface, const char* text) {
   map::clear(map, surface);
   map.sign.reason = "a thickness has no sign";
+  map.measured = {DistanceKind::thickness, text};
 }
 
 }  // namespace
@@ -46,7 +47,8 @@ ThicknessMaps thickness_maps(const Surface& surface, const Sites& sites,
     throw Error("surface and sites belong to different meshes: their numbers of faces differ");
   const thickness::Walls walls(internals(sites), options.angle);
   ThicknessMaps maps;
-  clear_thickness(maps.ball, surface), clear_thickness(maps.ray, surface);
+  clear_thickness(maps.ball, surface, "wall thickness, the diameter of the largest ball in the part");
+  clear_thickness(maps.ray, surface, "wall thickness, the length of the ray along the normal into the part");
   const surface::Tiles tiles(surface);
   std::atomic<std::size_t> no_ball{0}, no_ray{0};
   parallel_for(tiles.count(), kTilesAtOnce, options.progress, "map", [&](std::size_t begin, std::size_t end) {
