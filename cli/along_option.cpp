@@ -1,5 +1,6 @@
 #include "along_option.h"
 
+#include <fmt/format.h>
 #include <sdm/vec.h>
 
 #include <sstream>
@@ -26,16 +27,18 @@ std::optional<sdm::Vec3> parse_direction(const std::string& text) {
 
 }  // namespace
 
-void add_along_option(CLI::App& app, std::optional<sdm::AlongOptions>& along) {
+void add_along_option(CLI::App& app, std::optional<sdm::AlongOptions>& along, const std::string& sample,
+                      const std::string& remark) {
   app.add_option_function<std::string>(
          "--along",
          [&along](const std::string& text) {
            along.emplace();
            if (text != kNormal) along->direction = parse_direction(text);
          },
-         "Measure along a line, the normal of each texel's face or the direction X,Y,Z, to both sides: to "
-         "the nearest face of O2 that faces the same way. Along 0,0,1: the change of height of terrain. "
-         "Positive on the side to which the normal of that face points. Between texels, an estimate")
+         fmt::format("Measure along a line, the normal of each {} or the direction X,Y,Z, to both sides: to "
+                     "the nearest face of O2 that faces the same way. Along 0,0,1: the change of height of "
+                     "terrain. Positive on the side to which the normal of that face points. {}",
+                     sample, remark))
       ->check([](const std::string& text) {
         return text == kNormal || parse_direction(text)
                    ? std::string()
@@ -47,5 +50,6 @@ void add_along_option(CLI::App& app, std::optional<sdm::AlongOptions>& along) {
 void check_along(const CLI::App& app, const std::optional<sdm::AlongOptions>& along) {
   if (!along) return;
   for (const char* option : {"--sign", "--engine", "--facing"})
-    if (app.count(option) > 0) throw CLI::ValidationError(option, "does not apply to --along");
+    if (const CLI::Option* given = app.get_option_no_throw(option); given != nullptr && given->count() > 0)
+      throw CLI::ValidationError(option, "does not apply to --along");
 }

@@ -4,10 +4,11 @@
 #include <sdm/map.h>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 /// Adds --facing; `sample`: what has the normal, for the help text.
-void add_facing_option(CLI::App& app, sdm::MapOptions& options, const std::string& sample);
+void add_facing_option(CLI::App& app, std::optional<double>& facing, const std::string& sample);
 
 /// Throws CLI::ValidationError for a --sign that such distances do not have.
 void check_facing(const sdm::MapOptions& options);

@@ -10,6 +10,7 @@
 
 #include "common_options.h"
 #include "exit_codes.h"
+#include "facing.h"
 #include "format.h"
 #include "input_pair.h"
 #include "notes.h"
@@ -51,11 +52,16 @@ HausdorffAnswer measure(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o
 }
 
 struct HausdorffVerdict {
-  bool within = true;     // as far as the bounds tell
-  bool certified = true;  // by both bounds
+  bool within = true;      // as far as the bounds tell
+  bool certified = true;   // by both bounds
+  bool unmatched = false;  // not within, as there are faces without a distance
 };
 
-HausdorffVerdict verdict(const sdm::BoundedLength& d, double tolerance) {
+HausdorffVerdict verdict(const HausdorffAnswer& answer, double tolerance) {
+  const sdm::BoundedLength& d = answer.distance.distance;
+  const bool unmatched =
+      std::ranges::any_of(answer.directions, [](const auto& h) { return h.faces_without_match > 0; });
+  if (unmatched) return {.within = false, .unmatched = true};
   return {d.lower <= tolerance, d.lower > tolerance || d.upper <= tolerance};
 }
 
@@ -66,7 +72,7 @@ HausdorffAnswer decide(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1
   sdm::HausdorffOptions options = command.options;
   options.progress = progress;
   HausdorffAnswer answer = measure(sites, o1, options);
-  while (command.tolerance && !verdict(answer.distance.distance, *command.tolerance).certified) {
+  while (command.tolerance && !verdict(answer, *command.tolerance).certified) {
     const double gap = answer.distance.distance.upper - answer.distance.distance.lower;
     if (!(gap > 0)) break;
     options.precision = kCloser * gap;
@@ -83,6 +89,15 @@ Json hausdorff_json(const sdm::HausdorffDistance& h) {
   return json;
 }
 
+/// Of a single direction, whose measured mesh may have faces without a match.
+Json direction_json(const HausdorffCommand& command, const sdm::HausdorffDistance& h) {
+  Json json = hausdorff_json(h);
+  if (!command.options.facing) return json;
+  json["faces_without_match"] = h.faces_without_match;
+  json["area_without_match"] = h.area_without_match;
+  return json;
+}
+
 std::string distance_line(const std::string& what, const sdm::HausdorffDistance& h, const std::string& unit) {
   const sdm::BoundedLength& d = h.distance;
   constexpr int kDigits = 9;
@@ -94,10 +109,32 @@ std::string distance_line(const std::string& what, const sdm::HausdorffDistance&
                      name(d.certainty));
 }
 
+/// The faces that are left out.
+std::string unmatched_lines(const HausdorffAnswer& answer) {
+  std::string text;
+  for (std::size_t i = 0; i < answer.directions.size(); ++i) {
+    const sdm::HausdorffDistance& h = answer.directions[i];
+    if (h.faces_without_match == 0) continue;
+    text += fmt::format(
+        "             left out: {} faces of O{}, {} % of its area, as no face of O{} faces as they do\n",
+        h.faces_without_match, i + 1, number(100 * h.area_without_match, 3), 2 - i);
+  }
+  return text;
+}
+
+std::string tolerance_line(const HausdorffVerdict& v) {
+  if (v.unmatched) return "  tolerance  exceeded: faces without a match have no distance\n";
+  return fmt::format("  tolerance  {}\n", !v.within     ? "exceeded"
+                                          : v.certified ? "met"
+                                                        : "equal to the distance, to the precision");
+}
+
 std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAnswer& answer) {
   const std::string unit = unit_suffix(command.units);
   std::string text = fmt::format("{} -> {}\n", command.o1, command.o2);
   if (command.both) text = fmt::format("{}, {}\n", command.o1, command.o2);
+  if (command.options.facing)
+    text += fmt::format("  measured   {}\n", sdm::measured_distance({.facing = command.options.facing}).text);
   text += distance_line("hausdorff", answer.distance, unit);
   const auto& [p, q] = *answer.distance.distance.witness;
   const char* const names[2] = {"O1", "O2"};
@@ -108,23 +145,20 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
     text += distance_line("O1 -> O2", answer.directions[0], unit);
     text += distance_line("O2 -> O1", answer.directions[1], unit);
   }
-  if (command.tolerance) {
-    const HausdorffVerdict v = verdict(answer.distance.distance, *command.tolerance);
-    text += fmt::format("  tolerance  {}\n", !v.within     ? "exceeded"
-                                             : v.certified ? "met"
-                                                           : "equal to the distance, to the precision");
-  }
+  text += unmatched_lines(answer);
+  if (command.tolerance) text += tolerance_line(verdict(answer, *command.tolerance));
   return text;
 }
 
 Json report_of(const HausdorffCommand& command, const InputPair& pair, const HausdorffAnswer& answer) {
   Json json = report_on(pair, command.units);
+  if (command.options.facing) json["facing"] = *command.options.facing;
   json["hausdorff"] = hausdorff_json(answer.distance);
   json["from"] = answer.from == 0 ? "o1" : "o2";
-  json["o1_to_o2"] = hausdorff_json(answer.directions[0]);
-  json["o2_to_o1"] = command.both ? hausdorff_json(answer.directions[1]) : Json(nullptr);
+  json["o1_to_o2"] = direction_json(command, answer.directions[0]);
+  json["o2_to_o1"] = command.both ? direction_json(command, answer.directions[1]) : Json(nullptr);
   if (command.tolerance) {
-    const HausdorffVerdict v = verdict(answer.distance.distance, *command.tolerance);
+    const HausdorffVerdict v = verdict(answer, *command.tolerance);
     json["tolerance"] = {{"value", *command.tolerance}, {"within", v.within}, {"certified", v.certified}};
   }
   json["notes"] = answer.notes;
@@ -155,7 +189,7 @@ int run(const HausdorffCommand& command) {
   print(command, report, [&] { return hausdorff_summary(command, answer) + note_lines(answer.notes, 13); });
   const auto& tolerance = command.tolerance;
   if (!tolerance) return kSuccess;
-  const HausdorffVerdict v = verdict(answer.distance.distance, *tolerance);
+  const HausdorffVerdict v = verdict(answer, *tolerance);
   return !v.certified ? kNotDecided : v.within ? kSuccess : kToleranceExceeded;
 }
 
@@ -184,6 +218,7 @@ void add_hausdorff_command(CLI::App& app) {
       ->check(positive_number())
       ->type_name("EPS");
   hausdorff->add_flag("--both", c.both, "Measure in both directions");
+  add_facing_option(*hausdorff, c.options.facing, "point's face");
   hausdorff
       ->add_option(
           "--tolerance", c.tolerance,

@@ -54,8 +54,8 @@ void add_options(CLI::App& app, MapCommand& c) {
       ->check(positive_number())
       ->type_name("D");
   add_sign_option(app, c.map.sign);
-  add_facing_option(app, c.map, "texel's face");
-  add_along_option(app, c.along);
+  add_facing_option(app, c.map.facing, "texel's face");
+  add_along_option(app, c.along, "texel's face", "Between texels, an estimate");
   add_engine_option(app, c.engine);
   app.add_option("--gl-device", c.gl.device,
                  "gl: the device, by its number in `sdm devices` or part of its name")

@@ -9,8 +9,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "alignment.h"
+#include "along_option.h"
 #include "cad_options.h"
 #include "common_options.h"
 #include "doubts.h"
@@ -43,6 +45,7 @@ struct PointsCommand : RunOptions {
   AlignCommand align;
   DoubtCommand doubts;
   sdm::MapOptions map;
+  std::optional<sdm::AlongOptions> along{};
   sdm::PictureOptions picture;
   sdm::TextDialect text;
   ReportFields fields;
@@ -142,7 +145,9 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   if (s.beyond_max_distance > 0)
     text += fmt::format("            {} points are farther than --max-distance\n", s.beyond_max_distance);
   if (s.without_match > 0)
-    text += fmt::format("            {} points have no face that faces them\n", s.without_match);
+    text += fmt::format("            {} points have no face {}\n", s.without_match,
+                        s.measured.kind == sdm::DistanceKind::along ? "on their line that faces the same way"
+                                                                    : "that faces them");
   if (s.sign.method == sdm::SignMethod::side && s.measured.kind == sdm::DistanceKind::closest)
     text += "            signs are estimates; points closest to the boundary of O2 have none: |d|\n";
   if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
@@ -185,7 +190,8 @@ std::optional<std::string> precision_note(const PointsCommand& command, const sd
 }
 
 /// What users probably did not intend.
-void add_notes(const PointsCommand& command, const Input& o2, PointsOutcome& outcome) {
+void add_notes(const PointsCommand& command, const Input& o2, const sdm::Sites& sites,
+               PointsOutcome& outcome) {
   Notes& all = outcome.summary.notes;
   const sdm::Box& box = outcome.found.bounds;
   if (const auto note = precision_note(command, box)) all.push_back(*note);
@@ -193,6 +199,10 @@ void add_notes(const PointsCommand& command, const Input& o2, PointsOutcome& out
   if (const auto note = note_on_welding(outcome.found.sign, command.map.sign, o2)) all.push_back(*note);
   std::ranges::copy(sdm::notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(all));
   if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
+  const auto& tolerance = command.picture.tolerance;
+  if (tolerance && outcome.found.measured.kind == sdm::DistanceKind::closest)
+    if (auto note = sdm::note_on_walls(sites, *tolerance, command.picture.units))
+      all.push_back(std::move(*note));
 }
 
 std::string files(const PointsCommand& command) {
@@ -211,7 +221,8 @@ int run(PointsCommand command) {
   command.map.progress = progress.callback();
 
   progress.step("import");
-  sdm::PointDistancesOptions options{.map = command.map, .picture = command.picture, .text = command.text};
+  sdm::PointDistancesOptions options{
+      .map = command.map, .along = command.along, .picture = command.picture, .text = command.text};
   options.placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1));
   Input o2 = load_input("o2", command.o2, command.transform_o2, {.tessellation = command.tessellation});
   check_deflection(command.tessellation, {&o2});
@@ -221,7 +232,7 @@ int run(PointsCommand command) {
   out.fill([&] {
     const sdm::Sites sites(o2.mesh);
     inspect(o2);
-    check_sign(command.picture.tolerance, sdm::choose_sign(sites, command.map), o2);
+    if (!command.along) check_sign(command.picture.tolerance, sdm::choose_sign(sites, command.map), o2);
     outcome.import_ms = watch.lap();
     if (command.align.on) {
       progress.step("align");
@@ -238,7 +249,7 @@ int run(PointsCommand command) {
     if (command.doubts.min_coverage)
       measure_cloud_coverage(command, options.placement, o2.mesh, outcome.summary, progress);
     sdm::withhold_pass(outcome.summary, command.doubts.accept);
-    add_notes(command, o2, outcome);
+    add_notes(command, o2, sites, outcome);
     outcome.points_ms = watch.lap();
     report = report_of(command, o2, outcome);
     if (command.html) {
@@ -326,7 +337,9 @@ void add_points_command(CLI::App& app) {
       ->check(positive_number())
       ->type_name("D");
   add_sign_option(*points, c.map.sign);
-  add_facing_option(*points, c.map, "point");
+  add_facing_option(*points, c.map.facing, "point");
+  add_along_option(*points, c.along, "point",
+                   "Along a direction, points without normals are measured to any face");
   add_tolerance_option(*points, c.picture.tolerance);
   add_doubt_options(*points, c.doubts);
   add_color_options(*points, c.picture);
@@ -336,7 +349,7 @@ void add_points_command(CLI::App& app) {
   add_up_option(*points, c.picture.up, "report.html");
   add_field_option(*points, c.fields);
   add_run_options(*points, c, "the report (report.json) instead of a summary");
-  points->callback([command] {
+  points->callback([command, points] {
     try {
       sdm::validate(command->text);
     } catch (const sdm::Error& fault) {
@@ -347,6 +360,7 @@ void add_points_command(CLI::App& app) {
       throw CLI::ValidationError(
           "--tolerance", "must not be greater than --max-distance, beyond which points have no value");
     check_facing(command->map);
+    check_along(*points, command->along);
     check_doubts(command->doubts, command->picture.tolerance);
     convert_units(command->file_units, {command->cloud, command->o2, command->transform_o1,
                                         command->transform_o2, command->picture.units});

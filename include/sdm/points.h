@@ -4,6 +4,7 @@
 /// used by one thread at a time.
 #pragma once
 
+#include <sdm/along.h>
 #include <sdm/api.h>
 #include <sdm/io.h>
 #include <sdm/map.h>
@@ -117,6 +118,10 @@ struct PointSample {
 /// Options of measure_points().
 struct PointDistancesOptions {
   MapOptions map{};
+  /// Instead of to the closest point, along lines: as of closest_points_along(), with the normals of the
+  /// cloud if it has any, which AlongOptions without a direction need. The maximum distance and the progress
+  /// are those of `map`, whose sign, engine and facing have to be as by default.
+  std::optional<AlongOptions> along{};
   Transform placement{};        ///< of the points, before they are measured and written; not singular
   PictureOptions picture{};     ///< colours; `accuracy` and `largest` have no meaning here
   std::size_t chunk = 1 << 18;  ///< points in memory at a time, greater than 0

@@ -314,8 +314,8 @@ def map(
 
     a, b: meshes in any form (see Mesh). A Surface for ``a`` and a Sites for ``b`` are used as they are.
     resolution: texels per side, 1024 by default; with atlas='uv' also two integers, the texels per row and the rows.
-    precision: instead, the largest distance from a point of the surface to the nearest texel's centre. atlas, max_stretch,
-    gutter: as of Surface.
+    precision: instead, the largest distance from a point of the surface to the nearest texel's centre; not with facing or
+    along, whose distances it does not bound. atlas, max_stretch, gutter: as of Surface.
     engine: 'cpu', 'gl' (on OpenGL) or 'reference' (simple and slow).
     transform: a 4 × 4 affine matrix that moves ``a`` first, for column vectors; a reflection also reverses the faces.
     sign: 'automatic': negative inside a closed, orientable ``b``, else unsigned; 'none'; 'exact'; 'winding': by generalised
@@ -340,6 +340,8 @@ def map(
     >>> distance_map.statistics().max <= distance_map.bounds.upper
     True
     """
+    if precision is not None and (facing is not None or along is not None):
+        raise Error("precision does not apply to facing and along, whose distances nothing bounds between texels; use resolution")
     surface, sites = _core.prepare(
         a,
         b,
@@ -429,7 +431,6 @@ def thickness(
     method: str = "ball",
     angle: float = 90.0,
     resolution: "int | tuple[int, int] | None" = None,
-    precision: "float | None" = None,
     atlas: str = "charts",
     max_stretch: float = 1.3,
     gutter: int = 1,
@@ -442,7 +443,7 @@ def thickness(
     along the inward normal of the texel's face until it leaves the part.
     angle: in degrees, between 0 and 180; the ball is stopped only by faces whose normal turns by more than this from that of
     the texel's face, and where the ray ends. The ray does not depend on it.
-    resolution, precision, atlas, max_stretch, gutter: as of Surface.
+    resolution, atlas, max_stretch, gutter: as of Surface.
     progress: called as progress(step, fraction), on this thread; False cancels.
 
     Returns a DistanceMap: ``distance`` is the thickness, in units of the mesh, exact at the texels; ``vector`` leads to the
@@ -461,7 +462,6 @@ def thickness(
         mesh,
         mesh,
         resolution=resolution,
-        precision=precision,
         atlas=atlas,
         max_stretch=max_stretch,
         gutter=gutter,

@@ -66,16 +66,6 @@ std::unique_ptr<PyMap> compute_self(nb::handle surface, nb::handle sites, nb::ha
   return result;
 }
 
-// 'normal', or the three components of a direction.
-AlongOptions along_of(nb::handle value) {
-  if (nb::isinstance<nb::str>(value)) {
-    if (nb::cast<std::string>(value) == "normal") return {};
-  } else if (nb::isinstance<nb::sequence>(value) && nb::len(value) == 3) {
-    return {.direction = Vec3{real_of(value[0]), real_of(value[1]), real_of(value[2])}};
-  }
-  throw Error("along must be 'normal' or a direction of three numbers");
-}
-
 std::unique_ptr<PyMap> compute_along(nb::handle surface, nb::handle sites, nb::handle along,
                                      double max_distance, nb::handle progress) {
   const AlongOptions options = along_of(along);
@@ -118,6 +108,15 @@ std::unique_ptr<PyMap> compute_thickness(nb::handle surface, nb::handle sites, c
 }
 
 }  // namespace
+
+AlongOptions along_of(nb::handle value) {
+  if (nb::isinstance<nb::str>(value)) {
+    if (nb::cast<std::string>(value) == "normal") return {};
+  } else if (nb::isinstance<nb::sequence>(value) && nb::len(value) == 3) {
+    return {.direction = Vec3{real_of(value[0]), real_of(value[1]), real_of(value[2])}};
+  }
+  throw Error("along must be 'normal' or a direction of three numbers");
+}
 
 std::vector<float> PyMap::vertex_distances(const Progress& progress) const {
   if (along) {

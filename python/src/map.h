@@ -96,6 +96,8 @@ struct PyMap {
 /// The accepted distances: a number, or the least and the most. Throws sdm::Error for others, and for a
 /// tolerance that needs signs if distances have none.
 [[nodiscard]] Tolerance tolerance_of(nb::handle value, SignMethod sign);
+/// 'normal', or the three components of a direction. Throws sdm::Error for others.
+[[nodiscard]] AlongOptions along_of(nb::handle value);
 [[nodiscard]] Colormap colormap_of(const std::string& name);
 [[nodiscard]] std::optional<std::array<double, 2>> range_of(
     const std::optional<std::pair<double, double>>& range);

@@ -154,16 +154,22 @@ void bind_points(nb::module_& module) {
   module.def(
       "measure_points",
       [](nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion, const char* engine,
-         const char* sign, double max_distance, std::optional<double> facing, nb::handle tolerance,
-         const std::string& colormap, std::optional<std::pair<double, double>> range, nb::handle progress,
-         const std::optional<std::vector<std::string>>& columns, const std::string& separator,
-         const std::string& decimal) {
+         const char* sign, double max_distance, std::optional<double> facing, nb::handle along,
+         nb::handle tolerance, const std::string& colormap, std::optional<std::pair<double, double>> range,
+         nb::handle progress, const std::optional<std::vector<std::string>>& columns,
+         const std::string& separator, const std::string& decimal) {
         const std::filesystem::path from = path_of(cloud), ply = path_of(output);
         SitesInUse to(o2);
         PointDistancesOptions options{.map = {.engine = engine_of(engine),
                                               .sign = sign_of(sign),
                                               .max_distance = max_distance,
                                               .facing = facing}};
+        if (!along.is_none()) {
+          if (facing || std::string_view(engine) != "cpu" || std::string_view(sign) != "automatic")
+            throw Error("sign, engine and facing do not apply to measure_points() with along");
+          options.map.engine = {};
+          options.along = along_of(along);
+        }
         options.text = dialect_of(columns, separator, decimal);
         if (!motion.is_none()) options.placement = transform(motion, "transform");
         options.picture.colormap = colormap_of(colormap);
@@ -171,7 +177,8 @@ void bind_points(nb::module_& module) {
         PointDistances result;
         run(nb::none(), [&](const Progress&) { (void)to.get(); });
         if (!tolerance.is_none())
-          options.picture.tolerance = tolerance_of(tolerance, choose_sign(to.get(), options.map).method);
+          options.picture.tolerance = tolerance_of(
+              tolerance, options.along ? SignMethod::side : choose_sign(to.get(), options.map).method);
         run(progress, [&](const Progress& report) {
           options.map.progress = report;
           result = measure_points(from, to.get(), ply, options);
@@ -181,13 +188,14 @@ void bind_points(nb::module_& module) {
       nb::arg("cloud").none(), nb::arg("o2").none(), nb::arg("output").none(), nb::kw_only(),
       nb::arg("transform") = nb::none(), nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
       nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("facing") = nb::none(),
-      nb::arg("tolerance") = nb::none(), nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(),
-      nb::arg("progress") = nb::none(), nb::arg("columns") = nb::none(), nb::arg("separator") = "automatic",
-      nb::arg("decimal") = "automatic",
+      nb::arg("along") = nb::none(), nb::arg("tolerance") = nb::none(), nb::arg("colormap") = "automatic",
+      nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(), nb::arg("columns") = nb::none(),
+      nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
       nb::sig(
           "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
           "transform: object = None, engine: str = 'cpu', sign: str = 'automatic', max_distance: float = "
-          "..., facing: float | None = None, tolerance: float | tuple[float, float] | None = None, colormap: "
+          "..., facing: float | None = None, along: str | tuple[float, float, float] | None = None, "
+          "tolerance: float | tuple[float, float] | None = None, colormap: "
           "str = 'automatic', range: "
           "tuple[float, float] | None = None, progress: collections.abc.Callable[[str, float], bool | "
           "None] | None = None, columns: collections.abc.Sequence[str] | None = None, separator: str = "
@@ -201,7 +209,8 @@ o2: any form of a mesh (see Mesh); Sites are used as they are.
 output: a PLY file to write, with the points in their order: x, y, z, the normals if there are any, distance,
 face and colours.
 transform: a 4 × 4 affine matrix that moves the points first, such as Alignment.transform.
-engine, sign, max_distance, facing: as of map(); facing needs the normals of the cloud. tolerance, colormap, range: of the colours, as of DistanceMap.save();
+engine, sign, max_distance, facing, along: as of map(); facing and along='normal' need the normals of the cloud.
+Along a direction, a cloud without normals is measured to any face. tolerance, colormap, range: of the colours, as of DistanceMap.save();
 the tolerance also of ``beyond_tolerance``.
 progress: called as progress(step, fraction), on this thread; False cancels.
 

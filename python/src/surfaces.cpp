@@ -15,20 +15,32 @@
 namespace sdm::python {
 namespace {
 
+/// Warns of faces that a distance leaves out, as it is no statement about them.
+void warn_of_unmatched(const HausdorffDistance& distance, const char* from, const char* to) {
+  if (distance.faces_without_match == 0) return;
+  const std::string text = std::to_string(distance.faces_without_match) + " faces of " + from +
+                           " are left out: no face of " + to + " faces as they do";
+  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) < 0) throw nb::python_error();
+}
+
 BoundedLength hausdorff(nb::handle a, nb::handle b, std::optional<double> precision, bool one_sided,
-                        nb::handle progress) {
+                        std::optional<double> facing, nb::handle progress) {
   SitesInUse on(a), to(b);
   BoundedLength result;
+  SymmetricHausdorff both;
   run(progress, [&](const Progress& report) {
-    const HausdorffOptions options{.precision = precision, .progress = report};
+    const HausdorffOptions options{.precision = precision, .facing = facing, .progress = report};
     if (one_sided) {
-      result = one_sided_hausdorff(on.get().mesh(), to.get(), options).distance;
+      both.from[0] = one_sided_hausdorff(on.get().mesh(), to.get(), options);
+      result = both.from[0].distance;
     } else {
-      const SymmetricHausdorff both = symmetric_hausdorff(on.get(), to.get(), options);
+      both = symmetric_hausdorff(on.get(), to.get(), options);
       result = both.larger.distance;
       if (both.larger_from == 1 && result.witness) std::swap((*result.witness)[0], (*result.witness)[1]);
     }
   });
+  warn_of_unmatched(both.from[0], "a", "b");
+  warn_of_unmatched(both.from[1], "b", "a");
   return result;
 }
 
@@ -161,12 +173,13 @@ constexpr const char* kProgress =
     "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> ";
 
 void bind_hausdorff(nb::module_& module) {
-  static const std::string hausdorff_signature = std::string(
-                                                     "def hausdorff(a: object, b: object, *, precision: "
-                                                     "float | None = None, one_sided: bool = False, ") +
-                                                 kProgress + "BoundedLength";
+  static const std::string hausdorff_signature =
+      std::string(
+          "def hausdorff(a: object, b: object, *, precision: "
+          "float | None = None, one_sided: bool = False, facing: float | None = None, ") +
+      kProgress + "BoundedLength";
   module.def("hausdorff", &hausdorff, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
-             nb::arg("precision") = nb::none(), nb::arg("one_sided") = false,
+             nb::arg("precision") = nb::none(), nb::arg("one_sided") = false, nb::arg("facing") = nb::none(),
              nb::arg("progress") = nb::none(), nb::sig(hausdorff_signature.c_str()),
              R"(Returns the Hausdorff distance of two surfaces, with certified bounds.
 
@@ -175,6 +188,9 @@ precision: the bounds are at most this far apart, > 0, in units of the meshes; N
 box of both.
 one_sided: only the largest distance from a point of a to the closest point of b, which is 0 where a is a part
 of b; otherwise the larger one of both directions.
+facing: an angle in degrees, above 0 and at most 180: points are measured only to faces of the other surface whose
+normal is within this angle of that of their own face, as sdm.map(facing=) does. Faces without such a face are left
+out, with a RuntimeWarning.
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 The witness is a point of a and a point of b that are ``value`` apart. Nothing is sampled: lower ≤ truth ≤

@@ -94,6 +94,11 @@ def test_clouds(tmp_path):
     assert s.texels == 2000 and s.mean == pytest.approx(truth.mean(), abs=1e-6)
     written, _ = sdm.read_points(tmp_path / "out.ply")
     np.testing.assert_array_equal(written, points)
+    lines = sdm.measure_points(tmp_path / "cloud.xyz", sites, tmp_path / "out.ply", along=(0, 0, 1))
+    assert lines.measured.startswith("distance along the direction (0 0 1)") and lines.sign == "side"
+    for refused in ({"along": "normal"}, {"along": (0, 0, 1), "facing": 90}, {"along": "up"}):
+        with pytest.raises(sdm.Error):
+            sdm.measure_points(tmp_path / "cloud.xyz", sites, tmp_path / "bad.ply", **refused)
     # Moved onto the box, by a matrix.
     matrix = np.diag([1e-9, 1e-9, 1e-9, 1])
     near = sdm.measure_points(tmp_path / "cloud.xyz", meshes.box(), tmp_path / "out.ply", transform=matrix, sign="none")

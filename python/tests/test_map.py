@@ -457,6 +457,9 @@ def test_facing_finds_the_skin_that_faces_the_texel():
             refused()
     with pytest.raises(sdm.Error):
         sdm.map(dented, (plate, faces), resolution=16, facing=200)
+    for other in ({"facing": 90}, {"along": "normal"}):
+        with pytest.raises(sdm.Error, match="precision does not apply"):
+            sdm.map(dented, (plate, faces), precision=0.1, **other)
 
 
 def test_side_of_an_open_mesh_is_a_sign():
@@ -473,7 +476,8 @@ def test_thickness_of_walls():
         up = m.valid & (np.abs(m.normal[..., 2]) > 0.9)
         np.testing.assert_allclose(m.distance[up], 0.5, atol=1e-6)
         np.testing.assert_allclose(m.at_vertices(), 0.5, atol=1e-6)
-        assert m.sign == "none"
+        assert m.sign == "none" and m.measured.startswith("wall thickness, the ")
+        assert m.report()["measured"]["kind"] == "thickness"
         passed, failed = m.check((0.4, 20)), m.check((0.6, 20))
         assert (passed.verdict, passed.certified, failed.verdict) == ("pass", False, "fail")
         assert m.report(tolerance=(0.4, 20))["evidence"]["samples_only"] is True

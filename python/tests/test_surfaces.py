@@ -42,6 +42,17 @@ def test_hausdorff_of_boxes():
     assert sdm.hausdorff(sdm.Sites(large), sdm.Sites(small), one_sided=True).value == pytest.approx(np.sqrt(3))
 
 
+def test_hausdorff_to_faces_that_face_the_same_way():
+    plate = meshes.box((0, 0, 0), (10, 10, 1))
+    dent = np.array([[1, 1, 0.21], [9, 1, 0.21], [9, 9, 0.21], [1, 9, 0.21]]), [[0, 1, 2], [0, 2, 3]]
+    assert sdm.hausdorff(dent, plate, one_sided=True).value == pytest.approx(0.21)
+    assert sdm.hausdorff(dent, plate, one_sided=True, facing=90).value == pytest.approx(0.79)
+    with pytest.warns(RuntimeWarning, match="10 faces of b are left out"):
+        assert sdm.hausdorff(dent, plate, facing=45).value > 0.79
+    with pytest.raises(sdm.Error, match="angle"):
+        sdm.hausdorff(dent, plate, facing=0)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_hausdorff_bounds_hold_for_soups(seed):
     a, b = meshes.soup(seed), meshes.soup(seed + 100)

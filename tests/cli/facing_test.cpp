@@ -63,6 +63,57 @@ TEST_F(FacingJobs, StateWhatIsMeasured) {
   EXPECT_TRUE(report["error_bound"].is_null());
 }
 
+TEST_F(FacingJobs, BoundTheLargestDistance) {
+  const auto hausdorff = [&](const std::string& o1, std::vector<std::string> more) {
+    more.insert(more.begin(), {"hausdorff", o1, plate});
+    return run_sdm(more);
+  };
+  EXPECT_EQ(hausdorff(dent, {"--tolerance", "0.3"}).code, 0);
+  const Outcome facing = hausdorff(dent, {"--tolerance", "0.3", "--facing"});
+  EXPECT_EQ(facing.code, 3) << facing.err;
+  EXPECT_THAT(
+      facing.out,
+      HasSubstr("measured   distance to the closest of the faces that face the same way, within 90°"));
+  EXPECT_THAT(facing.out, HasSubstr("hausdorff  0.45 "));
+  const Json report = Json::parse(hausdorff(dent, {"--facing", "60", "--both", "--json"}).out);
+  EXPECT_EQ(report["facing"], 60);
+  EXPECT_NEAR(report["o1_to_o2"]["value"].get<double>(), 0.45, 1e-6);
+  EXPECT_EQ(report["o1_to_o2"]["faces_without_match"], 0);
+  EXPECT_EQ(report["o2_to_o1"]["faces_without_match"], 10);
+  EXPECT_FALSE(Json::parse(hausdorff(dent, {"--json"}).out).contains("facing"));
+  // The walls have no match, and so no distance.
+  const Outcome both = hausdorff(dent, {"--facing", "--both", "--tolerance", "100"});
+  EXPECT_EQ(both.code, 3) << both.err;
+  EXPECT_THAT(both.out, HasSubstr("left out: 10 faces of O2"));
+  EXPECT_THAT(both.out, HasSubstr("exceeded: faces without a match have no distance"));
+  const std::string turned = write_obj(folder / "turned.obj", placed(square(1, 0), "rotate:45:0:0"));
+  const Outcome none = hausdorff(turned, {"--facing", "10"});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.err, HasSubstr("faces the same way"));
+  EXPECT_EQ(hausdorff(dent, {"--facing", "0"}).code, 2);
+}
+
+// Where the other skin is nearer than a defect is deep, the closest point says nothing.
+TEST_F(FacingJobs, ThinWallsHaveANote) {
+  const std::string note = "% of O2's walls are thinner than twice the tolerance, 0.6";
+  const Outcome thin = run("map", dent, {"--tolerance", "0.3"});
+  EXPECT_THAT(thin.out, HasSubstr(note));
+  EXPECT_THAT(thin.out, HasSubstr("--facing"));
+  const Json report = Json::parse(run("map", dent, {"--tolerance", "0.3", "--json"}).out);
+  EXPECT_THAT(report["notes"].dump(), HasSubstr(note));
+  EXPECT_THAT(run("points", cloud(false), {"--tolerance", "0.3"}).out, HasSubstr(note));
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{"--tolerance", "0.3", "--facing"},
+                                             {"--tolerance", "0.3", "--along", "0,0,1"},
+                                             {"--tolerance", "0.2"},
+                                             {}})
+    EXPECT_THAT(run("map", dent, more).out, Not(HasSubstr("thinner than")));
+  plate = write_obj(folder / "block.obj", cube(10));
+  EXPECT_THAT(run("map", dent, {"--tolerance", "0.6"}).out, Not(HasSubstr("thinner than")));
+  plate = write_obj(folder / "open.obj", square(10, 0));
+  EXPECT_THAT(run("map", dent, {"--tolerance", "0.6"}).out, Not(HasSubstr("thinner than")));
+}
+
 TEST_F(FacingJobs, FailWithoutAMatch) {
   const std::string turned = write_obj(folder / "side.obj", placed(square(1, 0), "rotate:45:0:0"));
   const Outcome result = run("map", turned, {"--tolerance", "1", "--facing", "10"});
@@ -81,6 +132,30 @@ TEST_F(FacingJobs, OfCloudsNeedNormals) {
   EXPECT_EQ(with.code, 3) << with.err;
   EXPECT_THAT(with.out, HasSubstr("distance to the closest of the faces that face the same way, within 90°"));
   EXPECT_THAT(with.out, HasSubstr("-0.45"));
+}
+
+TEST_F(FacingJobs, CloudsAreMeasuredAlongLines) {
+  const Outcome without = run("points", cloud(false), {"--along", "normal"});
+  EXPECT_EQ(without.code, 1);
+  EXPECT_THAT(without.err, HasSubstr("the cloud has no normals to measure along; give a direction"));
+  // 0.05 above the lower skin, which only points without normals may be measured to.
+  const Outcome any = run("points", cloud(false), {"--along", "0,0,1", "--tolerance", "0.1"});
+  EXPECT_EQ(any.code, 0) << any.err;
+  EXPECT_THAT(any.out, HasSubstr("measured  distance along the direction (0 0 1), to both sides"));
+  EXPECT_THAT(any.out, HasSubstr("min -0.05"));
+  for (const std::string line : {"normal", "0,0,1"}) {
+    const Outcome with = run("points", cloud(true), {"--along", line, "--tolerance", "0.3"});
+    EXPECT_EQ(with.code, 3) << with.err;
+    EXPECT_THAT(with.out, HasSubstr("min -0.45"));
+  }
+  const Json report = Json::parse(run("points", cloud(true), {"--along", "normal", "--json"}).out);
+  EXPECT_EQ(report["measured"]["kind"], "along");
+  EXPECT_EQ(report["measured"]["text"], "distance along the normal of the point, to both sides");
+  EXPECT_EQ(report["sign"]["method"], "side");
+  const Json beside = Json::parse(run("points", cloud(true), {"--along", "1,0,0", "--json"}).out);
+  EXPECT_EQ(beside["without_match"], 8) << "at a right angle to the normals";
+  EXPECT_EQ(run("points", cloud(true), {"--along", "normal", "--facing"}).code, 2);
+  EXPECT_EQ(run("points", cloud(true), {"--along", "normal", "--sign", "none"}).code, 2);
 }
 
 TEST_F(FacingJobs, RefuseOtherSignsAndAngles) {

@@ -1,3 +1,4 @@
+#include <sdm/along.h>
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
 #include <sdm/facing.h>
@@ -48,10 +49,7 @@ class Measurement {
     result_.has_normals = reader_.has_normals();
     result_.format = reader_.format();
     result_.text = reader_.dialect();
-    if (options.map.facing && !result_.has_normals)
-      throw Error(cloud_ + ": the cloud has no normals, by which the faces that face its points are chosen");
-    result_.sign = choose_sign(sites, options.map);
-    result_.measured = measured_distance(options.map);
+    choose_distance();
     if (options.picture.tolerance && options.picture.tolerance->needs_sign() &&
         result_.sign.method == SignMethod::none)
       throw Error("the tolerance depends on the sign of the distances, which are unsigned: " +
@@ -76,6 +74,24 @@ class Measurement {
   }
 
  private:
+  // What is measured, and its sign.
+  void choose_distance() {
+    const MapOptions& map = options_.map;
+    if (map.facing && !result_.has_normals)
+      throw Error(cloud_ + ": the cloud has no normals, by which the faces that face its points are chosen");
+    if (!options_.along) {
+      result_.sign = choose_sign(sites_, map), result_.measured = measured_distance(map);
+      return;
+    }
+    if (map.facing || map.engine || map.sign != SignMethod::automatic)
+      throw Error(
+          "distances along lines have a sign and an engine of their own, and do not combine with facing");
+    if (!options_.along->direction && !result_.has_normals)
+      throw Error(cloud_ + ": the cloud has no normals to measure along; give a direction");
+    result_.sign = {SignMethod::side, "the side of the face that the line hits"};
+    result_.measured = measured_distance(*options_.along, "point");
+  }
+
   // Text without a header has to be read for its number of points, which the header of the result needs.
   void count_points() {
     PointReader again(cloud_, options_.text);
@@ -139,6 +155,11 @@ class Measurement {
   // The matches of the points, and whether their distances are negative.
   [[nodiscard]] FacingPoints find(std::span<const Vec3> queries, std::span<const Vec3> normals,
                                   const MapOptions& map) const {
+    if (options_.along) {
+      AlongOptions along = *options_.along;
+      along.max_distance = map.max_distance, along.progress = {};
+      return closest_points_along(sites_, queries, normals, along);
+    }
     if (map.facing) {
       FacingPoints found = closest_facing_points(sites_, queries, normals, map);
       if (result_.sign.method == SignMethod::none) std::ranges::fill(found.behind, std::uint8_t{0});
