@@ -9,6 +9,7 @@
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
+#include "part_file.h"
 #include "print.h"
 #include "progress_line.h"
 #include "proximity_report.h"
@@ -23,7 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct SelfCommand : RunOptions {
-  std::string file, transform;
+  PartFile part;
   std::filesystem::path out;
   sdm::AtlasOptions atlas;
   sdm::SelfProximityOptions self;
@@ -86,7 +87,7 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
 
 std::string self_summary(const SelfCommand& command, const Json& report) {
   const std::string unit = unit_suffix(command.picture.units);
-  std::string text = fmt::format("{} -> itself\n", command.file);
+  std::string text = fmt::format("{} -> itself\n", command.part.file);
   const Json &d = report["distance"], &separation = report["separation"];
   const auto number_of = [](const Json& value) { return number(value.get<double>()); };
   if (separation.is_null())
@@ -107,21 +108,14 @@ std::string self_summary(const SelfCommand& command, const Json& report) {
 void run(SelfCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.out, [] {
-    std::vector<std::filesystem::path> earlier{"report.json"};
-    for (const std::string& file : all_names()) earlier.emplace_back(file);
-    return earlier;
-  });
+  OutputFolder out(command.out, files_of_part);
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.self.progress = progress.callback();
 
   progress.step("import");
-  Stopwatch import;
-  Input input = load_input("mesh", command.file, command.transform, {command.files.any_vertices()});
-  inspect(input);
-  const double import_ms = import.lap();
+  const LoadedPart part = load_part(command.part, command.files.any_vertices());
   Json report;
-  out.fill([&] { report = measure(command, input, import_ms, out.staging(), progress); });
+  out.fill([&] { report = measure(command, part.input, part.import_ms, out.staging(), progress); });
 
   print(
       command, [&] { return report; },
@@ -144,9 +138,9 @@ void add_self_command(CLI::App& app) {
       "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
   const auto command = std::make_shared<SelfCommand>();
   SelfCommand& c = *command;
-  self->add_option("MESH", c.file, fmt::format("The mesh ({})", sdm::mesh_format_names()))->required();
+  self->add_option("MESH", c.part.file, fmt::format("The mesh ({})", sdm::mesh_format_names()))->required();
   add_output_option(*self, c.out);
-  add_transform_option(*self, "--transform", "The mesh", c.transform);
+  add_transform_option(*self, "--transform", "The mesh", c.part.transform);
   CLI::Option* rings =
       self->add_option("--rings", c.self.exclusion.rings,
                        "Each face excludes itself and K rings of neighbours, which share vertices")
@@ -168,7 +162,7 @@ void add_self_command(CLI::App& app) {
   add_run_options(*self, c, "the report (report.json) instead of a summary");
   self->callback([command] {
     check_layout(command->atlas);
-    check_units(command->picture.units, command->file, command->transform);
+    check_units(command->picture.units, command->part.file, command->part.transform);
     run(*command);
   });
 }

@@ -12,6 +12,7 @@
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
+#include "part_file.h"
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
@@ -29,9 +30,7 @@ using Json = nlohmann::ordered_json;
 using sdm::ThicknessMethod;
 
 struct ThicknessCommand : RunOptions {
-  std::string file, transform;
-  std::optional<sdm::WeldOptions> weld{};
-  sdm::TessellationOptions tessellation{};
+  PartFile part;
   std::filesystem::path out;
   sdm::AtlasOptions atlas;
   sdm::ThicknessOptions thickness;
@@ -211,7 +210,7 @@ std::string tolerance_text(const ThicknessCommand& command, const sdm::Summary& 
 std::string thickness_summary(const ThicknessCommand& command, const ThicknessResult& result, double size) {
   const sdm::Summary& s = result.summary;
   const std::string unit = unit_suffix(s.units), name = name_of_method(command.method);
-  std::string text = fmt::format("{}: wall thickness\n", command.file);
+  std::string text = fmt::format("{}: wall thickness\n", command.part.file);
   if (!s.extremes) {
     text += "  thickness   no texel has a value\n";
   } else {
@@ -233,27 +232,19 @@ std::string thickness_summary(const ThicknessCommand& command, const ThicknessRe
 int run(ThicknessCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.out, [] {
-    std::vector<std::filesystem::path> earlier{"report.json", "ball.exr", "ray.exr"};
-    for (const std::string& file : all_names()) earlier.emplace_back(file);
-    return earlier;
-  });
+  OutputFolder out(command.out, files_of_part);
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.thickness.progress = progress.callback();
 
   progress.step("import");
-  Stopwatch import;
-  Input input = load_input("mesh", command.file, command.transform,
-                           {command.files.any_vertices(), command.tessellation});
-  check_deflection(command.tessellation, {&input});
-  if (command.weld) weld(input, *command.weld);
-  inspect(input);
+  const LoadedPart part = load_part(command.part, command.files.any_vertices());
+  const Input& input = part.input;
   check_closed(input, "wall thickness");
-  const double import_ms = import.lap(), size = size_of(sdm::bounds(input.mesh));
+  const double size = size_of(sdm::bounds(input.mesh));
   command.picture.accuracy = sdm::thickness_accuracy(input.mesh);
   command.picture.tolerance = limits_of(command, size);
   ThicknessResult result;
-  out.fill([&] { result = measure(command, input, import_ms, out.staging(), progress); });
+  out.fill([&] { result = measure(command, input, part.import_ms, out.staging(), progress); });
 
   print(
       command, [&] { return result.report; },
@@ -304,13 +295,13 @@ void add_thickness_command(CLI::App& app) {
   const auto command = std::make_shared<ThicknessCommand>();
   ThicknessCommand& c = *command;
   thickness
-      ->add_option("PART", c.file,
+      ->add_option("PART", c.part.file,
                    fmt::format("The mesh ({}), which must be closed", sdm::mesh_format_names()))
       ->required();
   add_output_option(*thickness, c.out);
-  add_transform_option(*thickness, "--transform", "The part", c.transform);
-  add_weld_option(*thickness, c.weld, "the part");
-  add_deflection_option(*thickness, c.tessellation);
+  add_transform_option(*thickness, "--transform", "The part", c.part.transform);
+  add_weld_option(*thickness, c.part.weld, "the part");
+  add_deflection_option(*thickness, c.part.tessellation);
   add_limits(*thickness, c);
   add_resolution_option(*thickness, c.atlas);
   add_layout_options(*thickness, c.atlas, "the part");
@@ -319,7 +310,7 @@ void add_thickness_command(CLI::App& app) {
   add_run_options(*thickness, c, "the report (report.json) instead of a summary");
   thickness->callback([command] {
     check_layout(command->atlas);
-    check_units(command->picture.units, command->file, command->transform);
+    check_units(command->picture.units, command->part.file, command->part.transform);
     if (command->least && command->most && *command->least > *command->most)
       throw CLI::ValidationError("--min", "must not exceed --max");
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);

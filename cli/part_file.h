@@ -1,0 +1,31 @@
+// The mesh of a command that measures one mesh by itself.
+#pragma once
+
+#include <sdm/tessellation.h>
+#include <sdm/weld.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report.h"
+
+/// The options on its file.
+struct PartFile {
+  std::string file, transform;
+  std::optional<sdm::WeldOptions> weld{};
+  sdm::TessellationOptions tessellation{};
+};
+
+struct LoadedPart {
+  Input input;
+  double import_ms = 0;
+};
+
+/// Reads the mesh, places it, welds it as asked for and inspects it. `vertices`: keeps those of the file, for
+/// files of values at vertices. Throws sdm::Error as load_input() and weld() do.
+[[nodiscard]] LoadedPart load_part(const PartFile& part, bool vertices);
+
+/// All files that any run of such a command writes.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_part();
