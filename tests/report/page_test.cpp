@@ -130,6 +130,15 @@ TEST_F(Page, CalloutsStay) {
   EXPECT_TRUE(passes("callouts", page()));
 }
 
+// A lower limit alone has no upper one.
+TEST_F(Page, StatesTheLimitsOfWallsThatWereGiven) {
+  const Outcome run = run_sdm({"thickness", o1, "-o", out, "--write", "html", "--resolution", "64", "--min",
+                               "0.001", "--units", "mm"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(passes("says", page(),
+                     {"PASS", "Every texel has at least 0.001 mm; between the texels, an estimate."}));
+}
+
 TEST_F(Page, IsSavedAsItIsShown) {
   map({"--resolution", "128", "--tolerance", "3"});
   EXPECT_TRUE(passes("saves", page(), {folder / "saved.html"}));
