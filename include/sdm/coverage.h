@@ -8,8 +8,11 @@
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 namespace sdm {
 
@@ -20,7 +23,20 @@ struct Coverage {
   double reach = 0;
 };
 
-/// Options of coverage().
+/// A part of a face of O2.
+struct CoveragePiece {
+  std::uint32_t face = 0;
+  std::array<Vec3, 3> corners{};  ///< in the order of the face
+  bool covered = false;
+};
+
+/// Where O2 is covered: as bounds say, and where these do not decide, as the centroids of faces and pieces.
+struct CoverageMap : Coverage {
+  std::vector<float> of_face{};  ///< of each face of O2, the covered share of its area; NaN without area
+  std::vector<CoveragePiece> pieces{};  ///< those of the faces that are covered in part, by face
+};
+
+/// Options of coverage() and coverage_map().
 struct CoverageOptions {
   double precision = 0.002;                        ///< ends as soon as the bounds are so close; ≥ 0
   std::size_t most_pieces = std::size_t{1} << 19;  ///< ends before so many pieces of O2 would be measured
@@ -41,5 +57,11 @@ struct CoverageOptions {
 /// infinite.
 [[nodiscard]] SDM_API Coverage coverage(const Mesh& o2, std::span<const Vec3> measured, double reach,
                                         const CoverageOptions& options = {});
+
+/// The same with the places, for pictures. Cost: that of coverage(), and memory for each piece.
+[[nodiscard]] SDM_API CoverageMap coverage_map(const Mesh& o2, const Sites& measured, double reach,
+                                               const CoverageOptions& options = {});
+[[nodiscard]] SDM_API CoverageMap coverage_map(const Mesh& o2, std::span<const Vec3> measured, double reach,
+                                               const CoverageOptions& options = {});
 
 }  // namespace sdm

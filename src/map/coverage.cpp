@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <limits>
+#include <memory>
 #include <new>
 #include <span>
 #include <utility>
@@ -20,9 +23,16 @@
 namespace sdm {
 namespace {
 
+double area_of_piece(const Corners& t) {
+  return 0.5 * norm(cross(t[1] - t[0], t[2] - t[0]));
+}
+
 struct CoveredPiece {
   Corners at;
   double area;
+  std::uint32_t face;
+  bool whole = true;    // the face, undivided
+  bool within = false;  // its centroid is within reach
 };
 
 /// The distances of points to what was measured; those above twice the reach may be rounded down to that.
@@ -78,12 +88,14 @@ class CoverageSearch {
       : distances_(std::move(distances)), options_(options), reach_(reach), accuracy_(accuracy) {
     for (std::size_t f = 0; f < o2.triangles.size(); ++f) {
       const Corners at = corners_of(o2, f);
-      const double area = 0.5 * norm(cross(at[1] - at[0], at[2] - at[0]));
-      if (area > 0) pieces_.push_back({at, area}), total_ += area;
+      const double area = area_of_piece(at);
+      if (area > 0) pieces_.push_back({at, area, static_cast<std::uint32_t>(f)}), total_ += area;
     }
   }
 
-  Coverage operator()() {
+  /// Also fills the places of `map`, unless null.
+  Coverage operator()(CoverageMap* map = nullptr) {
+    map_ = map;
     std::size_t count = 0;
     double guessed = 0, open = total_;
     while (true) {
@@ -94,6 +106,7 @@ class CoverageSearch {
       if (open <= options_.precision * total_ || count + 4 * pieces_.size() > options_.most_pieces) break;
       divide();
     }
+    for (const CoveredPiece& p : pieces_) record(p, p.within);
     const double lower = covered_ / total_;
     return {std::clamp((covered_ + guessed) / total_, 0.0, 1.0), lower, std::min(1.0, lower + open / total_),
             reach_};
@@ -116,10 +129,14 @@ class CoverageSearch {
         radius = std::max(radius, norm(corner - centroids[i]) + accuracy_);
       if (d + radius <= reach_) {
         covered_ += pieces_[i].area;
+        record(pieces_[i], true);
       } else if (d - radius <= reach_) {
+        pieces_[i].within = d <= reach_;
         open.push_back(pieces_[i]);
         area += pieces_[i].area;
         if (d <= reach_) guessed += pieces_[i].area;
+      } else {
+        record(pieces_[i], false);
       }
     }
     pieces_ = std::move(open);
@@ -129,21 +146,60 @@ class CoverageSearch {
   void divide() {
     std::vector<CoveredPiece> quarters;
     quarters.reserve(4 * pieces_.size());
-    for (const auto& [at, area] : pieces_) {
+    for (const CoveredPiece& p : pieces_) {
+      const Corners& at = p.at;
       const Corners middle{0.5 * (at[0] + at[1]), 0.5 * (at[1] + at[2]), 0.5 * (at[2] + at[0])};
-      quarters.push_back({{at[0], middle[0], middle[2]}, 0.25 * area});
-      quarters.push_back({{middle[0], at[1], middle[1]}, 0.25 * area});
-      quarters.push_back({{middle[2], middle[1], at[2]}, 0.25 * area});
-      quarters.push_back({middle, 0.25 * area});
+      for (const Corners& corners :
+           {Corners{at[0], middle[0], middle[2]}, Corners{middle[0], at[1], middle[1]},
+            Corners{middle[2], middle[1], at[2]}, middle})
+        quarters.push_back({corners, 0.25 * p.area, p.face, false});
     }
     pieces_ = std::move(quarters);
+  }
+
+  void record(const CoveredPiece& piece, bool covered) {
+    if (!map_) return;
+    if (piece.whole)
+      map_->of_face[piece.face] = covered ? 1 : 0;
+    else
+      map_->pieces.push_back({piece.face, piece.at, covered});
   }
 
   Distances distances_;
   const CoverageOptions& options_;
   double reach_, accuracy_, total_ = 0, covered_ = 0;
   std::vector<CoveredPiece> pieces_;
+  CoverageMap* map_ = nullptr;
 };
+
+/// Sorts the pieces by face and sums them up; those of a face that all agree are the face.
+void sum_up_pieces(CoverageMap& map) {
+  std::ranges::stable_sort(map.pieces, {}, &CoveragePiece::face);
+  std::vector<CoveragePiece> mixed;
+  for (auto begin = map.pieces.begin(); begin != map.pieces.end();) {
+    const auto end =
+        std::find_if(begin, map.pieces.end(), [&](const CoveragePiece& p) { return p.face != begin->face; });
+    double area = 0, covered = 0;
+    bool all = true, none = true;
+    for (auto p = begin; p != end; ++p) {
+      area += area_of_piece(p->corners);
+      if (p->covered) covered += area_of_piece(p->corners);
+      (p->covered ? none : all) = false;
+    }
+    if (!all && !none) mixed.insert(mixed.end(), begin, end);
+    map.of_face[begin->face] = all ? 1.F : none ? 0.F : static_cast<float>(covered / area);
+    begin = end;
+  }
+  map.pieces = std::move(mixed);
+}
+
+CoverageMap mapped(const Mesh& o2, CoverageSearch search) {
+  CoverageMap map;
+  map.of_face.assign(o2.triangles.size(), std::numeric_limits<float>::quiet_NaN());
+  static_cast<Coverage&>(map) = search(&map);
+  sum_up_pieces(map);
+  return map;
+}
 
 void check_coverage(const Mesh& o2, double reach, const CoverageOptions& options) {
   if (!(reach > 0)) throw Error("the reach of a coverage must be greater than 0");
@@ -151,37 +207,69 @@ void check_coverage(const Mesh& o2, double reach, const CoverageOptions& options
   validate(o2);
 }
 
-}  // namespace
-
-Coverage coverage(const Mesh& o2, const Sites& measured, double reach, const CoverageOptions& options) try {
+CoverageSearch search_of(const Mesh& o2, const Sites& measured, double reach,
+                         const CoverageOptions& options) {
   check_coverage(o2, reach, options);
-  const auto distances = [&](std::span<const Vec3> points) {
+  const auto distances = [&measured](std::span<const Vec3> points) {
     std::vector<double> result;
     result.reserve(points.size());
     for (const ClosestPoint& c : closest_points(measured, points)) result.push_back(c.distance);
     return result;
   };
   const double accuracy = engine_accuracy(engines().front(), o2, measured.mesh());
-  return CoverageSearch(o2, distances, accuracy, reach, options)();
+  return {o2, distances, accuracy, reach, options};
+}
+
+CoverageSearch search_of(const Mesh& o2, std::span<const Vec3> measured, double reach,
+                         const CoverageOptions& options) {
+  check_coverage(o2, reach, options);
+  if (measured.empty()) throw Error("a coverage needs measured points");
+  const auto grid = std::make_shared<const PointGrid>(measured, 2 * reach);
+  const auto distances = [grid](std::span<const Vec3> points) {
+    std::vector<double> result(points.size());
+    parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) result[i] = (*grid)(points[i]);
+    });
+    return result;
+  };
+  return {o2, distances, 0, reach, options};
+}
+
+template <class Measured>
+Coverage coverage_of(const Mesh& o2, const Measured& measured, double reach,
+                     const CoverageOptions& options) try {
+  return search_of(o2, measured, reach, options)();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the coverage");
 }
 
-Coverage coverage(const Mesh& o2, std::span<const Vec3> measured, double reach,
-                  const CoverageOptions& options) try {
-  check_coverage(o2, reach, options);
-  if (measured.empty()) throw Error("a coverage needs measured points");
-  const PointGrid grid(measured, 2 * reach);
-  const auto distances = [&](std::span<const Vec3> points) {
-    std::vector<double> result(points.size());
-    parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) result[i] = grid(points[i]);
-    });
-    return result;
-  };
-  return CoverageSearch(o2, distances, 0, reach, options)();
+template <class Measured>
+CoverageMap coverage_map_of(const Mesh& o2, const Measured& measured, double reach,
+                            const CoverageOptions& options) try {
+  return mapped(o2, search_of(o2, measured, reach, options));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the coverage");
+}
+
+}  // namespace
+
+Coverage coverage(const Mesh& o2, const Sites& measured, double reach, const CoverageOptions& options) {
+  return coverage_of(o2, measured, reach, options);
+}
+
+Coverage coverage(const Mesh& o2, std::span<const Vec3> measured, double reach,
+                  const CoverageOptions& options) {
+  return coverage_of(o2, measured, reach, options);
+}
+
+CoverageMap coverage_map(const Mesh& o2, const Sites& measured, double reach,
+                         const CoverageOptions& options) {
+  return coverage_map_of(o2, measured, reach, options);
+}
+
+CoverageMap coverage_map(const Mesh& o2, std::span<const Vec3> measured, double reach,
+                         const CoverageOptions& options) {
+  return coverage_map_of(o2, measured, reach, options);
 }
 
 }  // namespace sdm
