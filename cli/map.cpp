@@ -54,8 +54,8 @@ void measure_coverage(MapTask& task, ProgressLine& progress) {
   progress.step("coverage");
   const DoubtCommand& doubts = task.command.doubts;
   const sdm::Sites measured(task.on.mesh);
-  task.coverage = sdm::coverage(task.to.mesh, measured, reach_of(doubts, task.command.picture.tolerance),
-                                {.progress = progress.callback()});
+  task.coverage = sdm::coverage_map(task.to.mesh, measured, reach_of(doubts, task.command.picture.tolerance),
+                                    {.progress = progress.callback()});
   if (auto doubt = sdm::doubt_of(*task.coverage, *doubts.min_coverage))
     task.doubts.push_back(std::move(*doubt));
 }

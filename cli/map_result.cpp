@@ -220,7 +220,9 @@ MapResult write_part(const MapTask& task, const AtlasPart& part, const ComputedM
   const std::string text = to_text(result.report);
   if (command.output.files.html)
     sdm::write_html(folder / "report.html", *computed.surface, computed.map, computed.at_vertices, text,
-                    {.other = &task.to.mesh, .up = command.picture.up});
+                    {.other = &task.to.mesh,
+                     .up = command.picture.up,
+                     .coverage = task.coverage ? &*task.coverage : nullptr});
   write_text(folder / "report.json", text);
   return result;
 }

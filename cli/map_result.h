@@ -27,7 +27,7 @@ struct MapTask {
   const std::optional<AlignOutcome>& aligned;  ///< how O1 was, if it was
   double import_ms;
   std::vector<sdm::Doubt> doubts{};
-  std::optional<sdm::Coverage> coverage{};
+  std::optional<sdm::CoverageMap> coverage{};
   std::unique_ptr<sdm::Sites> sites{};  ///< of `to`; null: the first map builds them
   std::optional<SharedScale> shared{};
 };

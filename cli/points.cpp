@@ -55,6 +55,7 @@ struct PointsCommand : RunOptions {
 struct PointsOutcome {
   sdm::PointDistances found;
   sdm::Summary summary;
+  std::optional<sdm::CoverageMap> coverage;
   std::optional<AlignOutcome> aligned;
   double import_ms = 0, align_ms = 0, points_ms = 0;
 
@@ -156,16 +157,17 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
 
 // How much of O2 was measured, by up to 2^20 of the points, which may be a doubt.
 void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& placement,
-                            const sdm::Mesh& o2, sdm::Summary& summary, ProgressLine& progress) {
+                            const sdm::Mesh& o2, PointsOutcome& outcome, ProgressLine& progress) {
   constexpr std::size_t kSample = std::size_t{1} << 20;
   progress.step("coverage");
   sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, {command.text, progress.callback()});
   if (sample.points.empty()) return;
   sdm::transform(sample.points, placement);
-  summary.coverage = sdm::coverage(o2, sample.points, reach_of(command.doubts, command.picture.tolerance),
-                                   {.progress = progress.callback()});
-  if (auto doubt = sdm::doubt_of(*summary.coverage, *command.doubts.min_coverage))
-    summary.doubts.push_back(std::move(*doubt));
+  outcome.coverage = sdm::coverage_map(o2, sample.points, reach_of(command.doubts, command.picture.tolerance),
+                                       {.progress = progress.callback()});
+  outcome.summary.coverage = *outcome.coverage;
+  if (auto doubt = sdm::doubt_of(*outcome.coverage, *command.doubts.min_coverage))
+    outcome.summary.doubts.push_back(std::move(*doubt));
 }
 
 // The alignment of a sample of the points, after their placement.
@@ -247,7 +249,7 @@ int run(PointsCommand command) {
     outcome.summary = sdm::summarize(outcome.found, options);
     if (outcome.aligned && command.align.judged) outcome.summary.doubts = doubts_of(*outcome.aligned);
     if (command.doubts.min_coverage)
-      measure_cloud_coverage(command, options.placement, o2.mesh, outcome.summary, progress);
+      measure_cloud_coverage(command, options.placement, o2.mesh, outcome, progress);
     sdm::withhold_pass(outcome.summary, command.doubts.accept);
     add_notes(command, o2, sites, outcome);
     outcome.points_ms = watch.lap();
@@ -255,7 +257,9 @@ int run(PointsCommand command) {
     if (command.html) {
       progress.step("page");
       sdm::write_points_html(out.staging() / "report.html", ply, outcome.found, to_text(report),
-                             {.other = &o2.mesh, .up = command.picture.up});
+                             {.other = &o2.mesh,
+                              .up = command.picture.up,
+                              .coverage = outcome.coverage ? &*outcome.coverage : nullptr});
     }
     if (!command.ply) std::filesystem::remove(ply);
     write_text(out.staging() / "report.json", to_text(report));

@@ -5,6 +5,7 @@
 
 #include <sdm/api.h>
 #include <sdm/channels.h>
+#include <sdm/coverage.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/statistics.h>
@@ -233,9 +234,10 @@ SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface
 
 /// Options of write_html().
 struct HtmlOptions {
-  const Mesh* other = nullptr;  ///< O2, shown as a ghost; none: O1 only
-  UpAxis up = UpAxis::y;        ///< the axis of the meshes that points up
-  bool thinnest = false;        ///< the list of places is of the least values, not of the largest
+  const Mesh* other = nullptr;            ///< O2, shown as a ghost; none: O1 only
+  UpAxis up = UpAxis::y;                  ///< the axis of the meshes that points up
+  const CoverageMap* coverage = nullptr;  ///< of `other`, on which it is drawn
+  bool thinnest = false;                  ///< the list of places is of the least values, not of the largest
   // The size of the page, which grows with what it shows:
   std::uint32_t largest = 1024;              ///< the most texels a side, at least 1
   std::size_t triangles = 400'000;           ///< the most of O1; others are shown by a coarser copy

@@ -10,6 +10,7 @@ export interface State {
   scale: Scale;
   section: { axis: 0 | 1 | 2 | null; at: number; flipped: boolean }; ///< at: 0 to 1 along the box
   ghost: boolean;
+  coverage: boolean; ///< of the reference, in place of the part
   width: number; ///< of the points of a cloud, relative to the usual one
 }
 
@@ -84,6 +85,7 @@ export function makeControls(
   report: Report,
   area: AreaByValue,
   hasGhost: boolean,
+  hasCoverage: boolean,
   ghostShown: boolean,
   isCloud: boolean,
   saved: State | null,
@@ -109,6 +111,7 @@ export function makeControls(
     },
     section: { axis: null, at: 0.5, flipped: false },
     ghost: ghostShown,
+    coverage: false,
     width: 1,
   });
   let state = start();
@@ -208,6 +211,7 @@ export function makeControls(
   const [flipRow, flipBox] = check('section-flip', 'Other side', false, (value) => { state.section.flipped = value; changed(); });
   const sectionDetails = make('div', { class: 'slider', hidden: true }, make('label', { for: 'section-at' }, 'Section at'), sectionRange, flipRow);
   const [ghostRow, ghostBox] = check('ghost', 'Show the reference as a ghost', ghostShown, (value) => { state.ghost = value; changed(); });
+  const [coverageRow, coverageBox] = check('coverage', 'Show where the reference was measured, without the part', false, (value) => { state.coverage = value; changed(); });
   const widthRange = make('input', {
     type: 'range', id: 'width', min: 0, max: kSteps, value: kSteps / 2,
     input: () => { state.width = 4 ** (Number(widthRange.value) / (kSteps / 2) - 1); changed(); },
@@ -219,13 +223,14 @@ export function makeControls(
     '', (value) => { if (value) look(value); viewSelect.value = ''; },
   );
   const showState = () => {
-    const { scale, section, ghost, width } = state;
+    const { scale, section, ghost, coverage, width } = state;
     modeSelect.value = scale.mode;
     sectionSelect.value = section.axis === null ? '' : String(section.axis);
     sectionRange.value = String(kSteps * section.at);
     flipBox.checked = section.flipped;
     sectionDetails.hidden = section.axis === null;
     ghostBox.checked = ghost;
+    coverageBox.checked = coverage;
     widthRange.value = String((kSteps / 2) * (1 + Math.log(width) / Math.log(4)));
     for (const slider of [sliders.tolerance, sliders.upper]) slider.show(scale.upper);
     sliders.lower.show(scale.lower);
@@ -237,8 +242,8 @@ export function makeControls(
     click: () => {
       state = start();
       showState();
-      look('corner');
       changed();
+      look('corner');
     },
   }, 'Reset');
 
@@ -247,7 +252,7 @@ export function makeControls(
     sliders.reach.element, sliders.lo.element, sliders.hi.element,
     ...(oneTolerance ? [sliders.tolerance.element] : [sliders.lower.element, sliders.upper.element]),
     make('p', { id: 'what-if', role: 'status', 'aria-live': 'polite' }),
-    viewRow, sectionRow, sectionDetails, ...(isCloud ? [widthRow] : []), ...(hasGhost ? [ghostRow] : []),
+    viewRow, sectionRow, sectionDetails, ...(isCloud ? [widthRow] : []), ...(hasGhost ? [ghostRow] : []), ...(hasCoverage ? [coverageRow] : []),
     resetButton,
   );
   byId('form').addEventListener('submit', (event) => event.preventDefault());

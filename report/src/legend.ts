@@ -12,7 +12,7 @@ export function ends(scale: Scale): [number, number] {
   return [-reach, reach];
 }
 
-export function drawLegend(scale: Scale, colors: Colors, unit: string, noValue: boolean): void {
+export function drawLegend(scale: Scale, colors: Colors, quantity: string, unit: string, noValue: boolean): void {
   const [lo, hi] = ends(scale);
   const stops = Array.from({ length: kSteps }, (_, i) => {
     const color = css(colorOf(scale, colors, lo + ((i + 0.5) / kSteps) * (hi - lo)));
@@ -28,7 +28,7 @@ export function drawLegend(scale: Scale, colors: Colors, unit: string, noValue: 
     for (const limit of [scale.lower, scale.upper])
       if (limit > lo && limit < hi) bar.append(make('span', { class: 'limit', style: `bottom: ${at(limit)}` }));
   const legend = byId('legend');
-  legend.replaceChildren(make('p', { class: 'unit' }, unit ? `distance in ${unit}` : 'distance'), bar);
+  legend.replaceChildren(make('p', { class: 'unit' }, unit ? `${quantity} in ${unit}` : quantity), bar);
   if (noValue)
     legend.append(
       make('p', { class: 'missing' }, make('span', { style: `background: ${css(colors.no_value[0])}` }), 'no value'),

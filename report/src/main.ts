@@ -1,8 +1,10 @@
 // The page of report.html: the text first, then the part.
 import { Callouts } from './callouts';
 import { Cloud } from './cloud';
+import { drawCoverageLegend } from './coverage';
 import { makeControls, State } from './controls';
 import { byId, make, table } from './dom';
+import { showGroups } from './group_table';
 import { drawHistogram } from './histogram';
 import { drawLegend } from './legend';
 import { count, exactText, percent, place, signedText } from './numbers';
@@ -14,6 +16,7 @@ import { Surface } from './surface';
 import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
 import { isCloud, isSigned, limitsText, unitOf, verdictFor, verdictOf, wholeOf } from './verdict';
 import { View } from './view';
+import { capital, quantityOf } from './words';
 
 function showVerdict(report: Report): void {
   const { verdict, sentence } = verdictOf(report);
@@ -28,6 +31,7 @@ function showVerdict(report: Report): void {
 
 /// Words of page.html that differ for clouds.
 function nameSubject(report: Report): void {
+  byId('canvas').setAttribute('aria-label', `The part, coloured by ${quantityOf(report)}`);
   if (report.thickness) byId('worst-title').textContent = 'Thinnest places';
   if (!isCloud(report)) return;
   byId('part-title').textContent = 'The cloud in 3D';
@@ -62,6 +66,7 @@ class Page {
       report,
       data.area,
       data.ghost !== null,
+      data.ghost?.covered != null,
       ghostShown,
       data.cloud !== null,
       saved?.state ?? null,
@@ -71,7 +76,7 @@ class Page {
     this.apply(this.state);
     this.listen();
     this.showWorst();
-    showOmissions(data);
+    showOmissions(report, data);
     this.addSaveButtons();
     if (!saved) return;
     for (const callout of saved.callouts) this.callouts.add(callout);
@@ -112,6 +117,7 @@ class Page {
     const { colors } = this.data.page;
     this.view.setScale(scale, colors);
     this.view.setGhost(ghost);
+    this.view.setCoverage(state.coverage);
     this.cloud?.setWidth(state.width);
     if (section.axis === null) {
       this.view.setCut(null);
@@ -123,7 +129,8 @@ class Page {
       this.view.setCut({ normal, offset: sign * (least + section.at * (most - least)) });
     }
     const hasGaps = (this.report.beyond_max_distance ?? 0) > 0 || (this.report.without_match ?? 0) > 0 || ((this.report.texels_without_value as number) ?? 0) > 0;
-    drawLegend(scale, colors, this.report.units ?? '', hasGaps);
+    if (state.coverage) drawCoverageLegend(this.report);
+    else drawLegend(scale, colors, quantityOf(this.report), this.report.units ?? '', hasGaps);
     this.drawHistogram();
     this.showWhatIf(state);
   }
@@ -215,7 +222,7 @@ class Page {
       make('div', {}, make('dt', {}, label), make('dd', { id }, text));
     const distance = Number.isNaN(found.distance) ? 'none in range' : `${exactText(found.distance)}${this.unit}`;
     values.replaceChildren(
-      row('Distance', distance, 'probe-distance'),
+      row(capital(quantityOf(this.report)), distance, 'probe-distance'),
       row('Position', place(toFile(this.subject, found.at), this.subject.size), 'probe-position'),
       ...found.rows.map(([label, text, id]) => row(label, text, id)),
     );
@@ -273,5 +280,6 @@ showFields(report);
 showNumbers(report);
 showInputs(report);
 showMethod(report);
+showGroups(report);
 showMore(report);
 void openPage('sdmPage', 'part', 'The numbers are complete.', async () => new Page(report, await readData(), copy, saved));

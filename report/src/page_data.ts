@@ -80,8 +80,21 @@ export interface Report {
   };
   group_tolerances?: {
     verdict: string;
-    groups: { kind: string; group: string; lower: number; upper: number; verdict: string; lowest: number | null; highest: number | null }[];
+    groups: {
+      kind: string;
+      group: string;
+      lower: number;
+      upper: number;
+      verdict: string;
+      certified?: boolean;
+      lowest: number | null;
+      highest: number | null;
+      exceeded_area_fraction?: number;
+      undecided_by?: number | null;
+      witness?: { distance: number; point: Vec } | null;
+    }[];
   };
+  coverage?: { value: number; lower: number; upper: number; reach: number };
   doubts?: { reason: string; text: string; remedy: string }[];
   notes?: string[];
   time_ms?: Record<string, number | null>;
@@ -154,6 +167,7 @@ export interface Model {
 export interface Ghost {
   position: Float32Array;
   triangle: Uint32Array;
+  covered: Uint32Array | null; ///< of each triangle, 1 if it is covered; null: unknown
   trianglesOfMesh: number;
   isBox: boolean;
 }
@@ -342,6 +356,7 @@ function readGhost(page: PageJson, arrays: Arrays, { centre, size }: { centre: V
     return {
       position: toCentre(summed(steps, 3), ghost, centre, size),
       triangle: cornersOfCodes(arrays.get('ghost_triangle')!),
+      covered: arrays.get('ghost_covered') ?? null,
       trianglesOfMesh: ghost.triangles_of_mesh,
       isBox: false,
     };
@@ -353,7 +368,7 @@ function readGhost(page: PageJson, arrays: Arrays, { centre, size }: { centre: V
   const triangle: number[] = [];
   for (let s = 0; s < sides.length; s += 4)
     triangle.push(sides[s], sides[s + 1], sides[s + 2], sides[s], sides[s + 2], sides[s + 3]);
-  return { position, triangle: Uint32Array.from(triangle), trianglesOfMesh: ghost.triangles_of_mesh, isBox: true };
+  return { position, triangle: Uint32Array.from(triangle), covered: null, trianglesOfMesh: ghost.triangles_of_mesh, isBox: true };
 }
 
 function floats(numbers: Uint32Array): Float32Array {

@@ -90,7 +90,7 @@ class Player {
     const { page, bodies } = this.data;
     this.view.setScale(this.scale, page.colors);
     const missing = bodies.some(({ distances }) => distances?.includes(65535));
-    drawLegend(this.scale, page.colors, page.units, missing);
+    drawLegend(this.scale, page.colors, 'distance', page.units, missing);
   }
 
   private makeForm(): void {

@@ -1,8 +1,10 @@
 // The text of the page: numbers, inputs and method.
 import { byId, make, table } from './dom';
+import { coverageRow } from './coverage';
 import { count, percent, signedText, text } from './numbers';
 import { Input, PageData, Report, reportText } from './page_data';
 import { isCloud, isSigned, unitOf } from './verdict';
+import { capital, endsOf, isThickness, quantityOf } from './words';
 
 function fileName(path: string): string {
   return path.split(/[\\/]/).pop() || path;
@@ -22,7 +24,7 @@ export function titleOf(report: Report): string {
   const tile = report.atlas?.udim ? `, tile ${report.atlas.udim}` : '';
   return reference
     ? `${fileName(measured.file)}${tile} compared with ${fileName(reference.file)}`
-    : `${fileName(measured.file)}: ${report.thickness ? 'wall thickness' : 'distance to itself'}`;
+    : `${fileName(measured.file)}: ${isThickness(report) ? 'wall thickness' : 'distance to itself'}`;
 }
 
 /// What the author of the report says about it, below the title.
@@ -36,7 +38,7 @@ export function showFields(report: Report): void {
 function otherDistance(report: Report): string | null {
   const measured = report.measured;
   if (!measured || measured.kind === 'closest') return null;
-  return measured.text.charAt(0).toUpperCase() + measured.text.slice(1);
+  return capital(measured.text);
 }
 
 export function showNumbers(report: Report): void {
@@ -50,8 +52,10 @@ export function showNumbers(report: Report): void {
     if (x !== null) rows.push([label, `${signedText(x, withSign && signs)}${unit}`, kind]);
   };
   const extremes = report.extremes;
+  const ends = endsOf(report);
   const bound = report.error_bound;
   const cloud = isCloud(report);
+  const compared = signs && !isThickness(report);
   const sampled =
     report.evidence?.samples_only ? 'at the points; an estimate in between'
     : typeof bound === 'number' ? `measured; at most ${text(bound, 3)}${unit} more in between` : 'measured';
@@ -59,20 +63,20 @@ export function showNumbers(report: Report): void {
   const shown = (x: number) =>
     Math.abs(x) <= (report.accuracy ?? 0) ? `0${unit}` : `${signedText(x, signs)}${unit}`;
   if (extremes?.max)
-    rows.push([signs ? 'Largest (most outside)' : 'Largest', shown(extremes.max.distance), sampled]);
+    rows.push([ends.largest, shown(extremes.max.distance), sampled]);
   else add('Largest', 'max', 'measured', true);
   if (extremes?.min)
-    rows.push([signs ? 'Smallest (most inside)' : 'Smallest', shown(extremes.min.distance), sampled.replace('more', 'less')]);
+    rows.push([ends.smallest, shown(extremes.min.distance), sampled.replace('more', 'less')]);
   else add('Smallest', 'min', 'measured', true);
   const estimate = cloud ? 'of all points' : 'estimate over the area';
   const share = cloud ? 'points are' : 'area is';
   add('Mean', 'mean', estimate, true);
-  if (signs) add('Mean of the absolute distance', 'mean_abs', estimate);
+  if (compared) add('Mean of the absolute distance', 'mean_abs', estimate);
   add('Root mean square', 'rms', estimate);
   add('Standard deviation', 'stddev', estimate);
   add('Median', 'p50', estimate, true);
-  add(signs ? `95 % of the ${share} closer than` : '95th percentile', 'p95_abs', estimate);
-  add(signs ? `99 % of the ${share} closer than` : '99th percentile', 'p99_abs', estimate);
+  add(compared ? `95 % of the ${share} closer than` : '95th percentile', 'p95_abs', estimate);
+  add(compared ? `99 % of the ${share} closer than` : '99th percentile', 'p99_abs', estimate);
   const samples = report.texels_with_value ?? report.points_with_value;
   if (samples !== undefined) rows.push(['Measured points', count(samples), 'exact']);
   if ((report.beyond_max_distance ?? 0) > 0)
@@ -80,7 +84,8 @@ export function showNumbers(report: Report): void {
   if ((report.without_match ?? 0) > 0) rows.push(['Points that no face of the reference matches', count(report.without_match!), 'exact']);
   if (cloud && (report.o1?.invalid_points ?? 0) > 0)
     rows.push(['Points without coordinates', count(report.o1!.invalid_points!), 'exact']);
-  byId('numbers-table').replaceChildren(table([otherDistance(report) ?? 'Distance', 'Value', 'Kind'], rows, 'Distances'));
+  rows.push(...coverageRow(report));
+  byId('numbers-table').replaceChildren(table([otherDistance(report) ?? capital(quantityOf(report)), 'Value', 'Kind'], rows, 'The numbers'));
 }
 
 export function showInputs(report: Report): void {
@@ -136,7 +141,7 @@ export function showMethod(report: Report): void {
         : otherDistance(report)
         ? `Measured is the ${report.measured!.text}. What lies between the measured points is an estimate.`
         : `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
-      typeof accuracy === 'number' && `Each of these ${report.thickness ? 'values' : 'distances'} is exact to ${text(accuracy, 2)}${unit}.`,
+      typeof accuracy === 'number' && `Each of these ${isThickness(report) ? 'values' : 'distances'} is exact to ${text(accuracy, 2)}${unit}.`,
     ),
   );
   if (typeof bound === 'number')
@@ -147,13 +152,13 @@ export function showMethod(report: Report): void {
         `This is proven, not estimated; --precision makes it as small as needed.`,
       ),
     );
-  if (sign && !report.thickness)
+  if (sign && !isThickness(report))
     out.push(
       sentence(
         sign.method === 'none'
           ? `Distances have no sign (${sign.reason}).`
-          : report.measured?.kind === 'along'
-            ? 'Positive is on the side to which the normal of that face points: outside, or above.'
+          : report.measured && report.measured.kind !== 'closest'
+            ? 'Positive is in front of the face that is measured to, the side to which its normal points: outside, or above. Negative is behind it.'
           : sign.method === 'side'
             ? `Positive is in front of ${reference}, negative is behind (${sign.reason}).`
             : `Positive is outside ${reference}, negative is inside (${sign.reason}).`,
@@ -164,15 +169,6 @@ export function showMethod(report: Report): void {
     out.push(
       sentence(
         `${count(report.boundary_texels)} points are nearest to an open edge of the reference: they may lie beside the part of the surface that it covers.`,
-      ),
-    );
-  const byGroup = report.group_tolerances;
-  if (byGroup) out.push(sentence(`Verdict on the groups of the table of tolerances: ${byGroup.verdict}.`));
-  for (const g of byGroup?.groups ?? [])
-    out.push(
-      sentence(
-        `${g.group} (${g.kind}): ${g.verdict}. Limits ${text(g.lower)} to ${text(g.upper)}${unit}.`,
-        g.lowest !== null && g.highest !== null && `Measured ${text(g.lowest)} to ${text(g.highest)}${unit}.`,
       ),
     );
   for (const note of report.notes ?? []) out.push(make('p', { class: 'note' }, `Note: ${note}.`));
@@ -187,7 +183,7 @@ export function showMethod(report: Report): void {
 }
 
 /// What this page leaves out of large inputs.
-export function showOmissions({ page, surface, cloud, ghost }: PageData): void {
+export function showOmissions(report: Report, { page, surface, cloud, ghost }: PageData): void {
   const out: HTMLElement[] = [];
   if (surface && surface.map.step > 1)
     out.push(
@@ -203,7 +199,7 @@ export function showOmissions({ page, surface, cloud, ghost }: PageData): void {
     );
   if (cloud && page.cloud) out.push(...omittedPoints(cloud.distance.length, page.cloud));
   if (ghost?.isBox)
-    out.push(sentence(`The reference has ${count(ghost.trianglesOfMesh)} triangles; the 3D view shows only its box.`));
+    out.push(sentence(`The reference has ${count(ghost.trianglesOfMesh)} triangles; the 3D view shows only its box${report.coverage ? ', without its coverage' : ''}.`));
   byId('method-text').append(...out);
 }
 
@@ -227,7 +223,7 @@ function omittedPoints(shown: number, { points, picked, normals }: NonNullable<P
 const kShown = new Set([
   'version', 'fields', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'measured', 'sign',
   'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance', 'without_match',
-  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'group_tolerances', 'notes', 'time_ms', 'histogram',
+  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'group_tolerances', 'coverage', 'notes', 'time_ms', 'histogram',
 ]);
 
 function isScalar(value: unknown): boolean {

@@ -2,6 +2,7 @@
 // the rule of judge() in include/sdm/tolerance.h, on the evidence of the samples.
 import type { Evidence, Report } from './page_data';
 import { text } from './numbers';
+import { capital, isThickness, quantityOf } from './words';
 
 export type Verdict = 'PASS' | 'FAIL' | 'NOT DECIDED' | 'DOUBTFUL' | 'MEASURED';
 
@@ -94,7 +95,14 @@ export function verdictFor(report: Report, limits: Limits): Verdict | null {
 
 /// A clause as a sentence.
 function sentence(clause: string): string {
-  return `${clause.charAt(0).toUpperCase()}${clause.slice(1)}.`;
+  return `${capital(clause)}.`;
+}
+
+/// What is said where nothing is judged.
+function unjudged(report: Report): string {
+  if (isThickness(report)) return 'No limits were given (--min, --max), so nothing was judged. The slider below shows what would be.';
+  if (!report.evidence) return 'Nothing was judged.';
+  return 'No tolerance was given (--tolerance), so nothing was judged. The slider below shows what would be.';
 }
 
 /// Why the verdict is FAIL.
@@ -112,7 +120,7 @@ function failure(report: Report, limits: Limits): string {
   const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
   const share =
     outside === null || between ? '' : `, and ${cloud ? '' : 'about '}${text(100 * outside, 3)}\u00a0% of the ${cloud ? 'points are' : 'area is'} out of tolerance`;
-  return `A distance of ${text(most)}${unit} was found${between ? ' between the measured points' : ''}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
+  return `A ${quantityOf(report)} of ${text(most)}${unit} was found${between ? ' between the measured points' : ''}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
 }
 
 interface Stated {
@@ -158,7 +166,7 @@ export function verdictOf(report: Report): Stated {
   if (stated.length === 0)
     return {
       verdict: 'MEASURED',
-      sentence: 'No tolerance was given (--tolerance), so nothing was judged. The slider below shows what would be.',
+      sentence: unjudged(report),
     };
   const rank = ({ verdict }: Stated) => kFromBestToWorst.indexOf(verdict);
   const worst = Math.max(...stated.map(rank));

@@ -2,7 +2,9 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, ShaderMaterial, Vector3 } from 'three';
 import type { Colors, Scale } from './color_scale';
 import { setScale } from './color_uniforms';
+import { coverageOf } from './coverage';
 import type { Ghost, Vec } from './page_data';
+import type { Camera } from './saved';
 import type { Found, HalfSpace, Subject } from './subject';
 import { Viewer } from './viewer';
 
@@ -34,6 +36,8 @@ const kNoCut: HalfSpace = { normal: [0, 0, 0], offset: 1 };
 export class View extends Viewer {
   private readonly ghostMaterial: ShaderMaterial;
   private readonly ghost: Mesh | null = null;
+  private readonly coverage: ReturnType<typeof coverageOf> = null;
+  private before: Camera | null = null; // the view of the part, while the reference is shown
   private cut: HalfSpace | null = null;
 
   constructor(
@@ -65,6 +69,8 @@ export class View extends Viewer {
     this.ghost.frustumCulled = false;
     this.ghost.visible = false;
     this.scene.add(this.ghost);
+    this.coverage = coverageOf(ghost);
+    if (this.coverage) this.scene.add(this.coverage.object);
   }
 
   override drawNow(): void {
@@ -81,6 +87,7 @@ export class View extends Viewer {
     this.cut = cut;
     const { normal, offset } = cut ?? kNoCut;
     this.subject.uniforms.cut.value = this.ghostMaterial.uniforms.cut.value = [...normal, offset];
+    this.coverage?.setCut([...normal, offset]);
     this.draw();
   }
 
@@ -89,9 +96,23 @@ export class View extends Viewer {
     this.draw();
   }
 
+  /// Shows where the reference was measured, in place of the part.
+  setCoverage(visible: boolean): void {
+    if (!this.coverage || this.coverage.object.visible === visible) return;
+    this.coverage.object.visible = visible;
+    this.subject.object.visible = !visible;
+    if (visible) {
+      this.before = this.pose;
+      this.frame(this.coverage.centre, this.coverage.radius);
+    } else if (this.before) {
+      this.pose = this.before;
+    }
+    this.draw();
+  }
+
   /// What is seen at a place of the canvas, in CSS pixels from its upper left corner.
   find(x: number, y: number): Found | null {
-    return this.subject.find(this, x, y, this.cut);
+    return this.subject.object.visible ? this.subject.find(this, x, y, this.cut) : null;
   }
 
   isHidden(point: Vec): boolean {

@@ -18,6 +18,7 @@ export class Viewer {
   private readonly renderer: WebGLRenderer;
   private readonly controls: OrbitControls;
   private scheduled = false;
+  private radius = 1; // of what is shown
 
   /// `onChange` is called after every picture.
   constructor(container: HTMLElement, private readonly up: 'y' | 'z', private readonly onChange = () => {}) {
@@ -56,7 +57,7 @@ export class Viewer {
     const away = this.camera.position.length();
     const toTarget = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = Math.max(1e-4, Math.min(Math.max((away - 4) / 2, away / 1000), toTarget / 10));
-    this.camera.far = Math.max(away, toTarget) + 8;
+    this.camera.far = Math.max(away, toTarget) + 8 * this.radius;
     this.camera.updateProjectionMatrix();
     this.renderer.render(this.scene, this.camera);
     this.onChange();
@@ -74,8 +75,7 @@ export class Viewer {
       const sides = kSides[this.up];
       direction = new Vector3(...(sides[from] ?? sides.corner)).normalize();
       this.controls.target.set(0, 0, 0);
-      const half = Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect);
-      away = 1.02 / Math.sin(Math.atan(half));
+      away = this.toFit(1);
     } else {
       direction = new Vector3(...from.normal).normalize();
       // Not along the vertical axis, where the view could turn to any side.
@@ -86,6 +86,22 @@ export class Viewer {
     this.camera.position.copy(this.controls.target).addScaledVector(direction, away);
     this.controls.update();
     this.draw();
+  }
+
+  /// Looks at all of a ball, from the same direction.
+  frame(centre: Vec, radius: number): void {
+    this.radius = Math.max(1, radius);
+    const direction = this.camera.position.clone().sub(this.controls.target).normalize();
+    this.controls.target.set(...centre);
+    this.camera.position.copy(this.controls.target).addScaledVector(direction, this.toFit(radius));
+    this.controls.update();
+    this.draw();
+  }
+
+  /// How far away a ball fits into the picture.
+  private toFit(radius: number): number {
+    const half = Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect);
+    return (1.02 * radius) / Math.sin(Math.atan(half));
   }
 
   /// Where the camera is and what it looks at.

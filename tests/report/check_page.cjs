@@ -221,6 +221,8 @@ const checks = {
       of.evaluate(() => ({
         callouts: [...document.querySelectorAll('#callout-list li')].map((item) => item.textContent),
         section: ['section', 'section-at', 'mode'].map((id) => document.getElementById(id).value),
+        fields: document.getElementById('fields').innerText,
+        verdict: document.getElementById('verdict').textContent,
         inside: window.sdmPage.inspect(300, 200),
         rest: JSON.parse(window.sdmPage.text().match(/id="saved">(.*?)<\/script>/)[1]),
       }));
@@ -421,6 +423,52 @@ const checks = {
     for (let i = 0; i < rows.length; i += 2) assert.strictEqual(plain(await page.textContent(`#${rows[i]}`)), rows[i + 1]);
   },
 
+  // The reference in two colours: the share of the area of the triangles that are covered, and of the pixels in a view
+  // that is perpendicular to it. A picture of it is written.
+  async covers(page, share, picture) {
+    const near = (found, what, error) => assert(Math.abs(found - Number(share)) < error, `${found} ${what}, not ${share}`);
+    near(
+      await page.evaluate(() => {
+        const { position, triangle, covered } = window.sdmPage.data.ghost;
+        const corner = (i) => position.subarray(3 * triangle[i], 3 * triangle[i] + 3);
+        const areas = [0, 0];
+        covered.forEach((c, t) => {
+          const [a, b, d] = [0, 1, 2].map((k) => corner(3 * t + k));
+          const [u, v] = [b, d].map((p) => p.map((x, k) => x - a[k]));
+          areas[c] += Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
+        });
+        return areas[1] / (areas[0] + areas[1]);
+      }),
+      'of the area',
+      0.003,
+    );
+    await page.selectOption('#side', 'top');
+    await page.click('#coverage');
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    near(
+      await page.evaluate(() => {
+        const canvas = document.getElementById('canvas');
+        const copy = document.createElement('canvas');
+        [copy.width, copy.height] = [canvas.width, canvas.height];
+        const context = copy.getContext('2d');
+        context.drawImage(canvas, 0, 0);
+        const { data } = context.getImageData(0, 0, copy.width, copy.height);
+        const pixels = [0, 0]; // warm, cool
+        for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 250) ++pixels[data[i] > data[i + 2] ? 0 : 1];
+        return pixels[1] / (pixels[0] + pixels[1]);
+      }),
+      'of the pixels',
+      0.01,
+    );
+    const legend = plain(await page.innerText('#legend'));
+    assert.match(legend, /covered 5\d(\.\d+)? %/);
+    assert.match(legend, /not covered 4\d(\.\d+)? %/);
+    assert.match(plain(await page.innerText('#numbers-table')), /Coverage of the reference\s+5\d/);
+    if (picture) await page.screenshot({ path: picture });
+    await page.click('#reset');
+    assert.ok(!(await page.innerText('#legend')).includes('covered'));
+  },
+
   // Other limits are judged in the page as by the library: what judge() in include/sdm/tolerance.h says in `cases`.
   async judges(page, cases) {
     const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
@@ -440,6 +488,33 @@ const checks = {
     const scale = await page.evaluate(() => window.sdmPage.state.scale);
     assert.deepStrictEqual([scale.mode, scale.lo, scale.hi], [colours, Number(lo), Number(hi)]);
     assert.ok((await page.textContent('#what-if')).includes(verdict));
+  },
+
+  // Writes what the page shows, as JSON: the words of its tables, the colour scale, and of each texel of its map the colour.
+  async tells(page, out) {
+    const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
+    const entry = join(__dirname, '../../report/src/color_scale.ts');
+    const { outputFiles } = buildSync({ entryPoints: [entry], bundle: true, write: false, format: 'iife', globalName: 'colorScale' });
+    await page.evaluate(outputFiles[0].text.replace('var colorScale', 'window.colorScale'));
+    const told = await page.evaluate(() => {
+      const rows = (id) =>
+        [...document.querySelectorAll(`#${id} tbody tr`)].map((row) => [...row.children].map((cell) => cell.textContent));
+      const { data, state } = window.sdmPage;
+      const { width, height, chart, distance } = data.surface.map;
+      const colors = Array.from(distance, (d, i) =>
+        chart[i] === 0 ? null : window.colorScale.colorOf(state.scale, data.page.colors, d).map(Math.round),
+      );
+      const words = ['verdict', 'sentence', 'what-if', 'inputs-table', 'legend'].map((id) => [id, document.getElementById(id).innerText]);
+      return {
+        ...Object.fromEntries(words),
+        numbers: rows('numbers-table'),
+        groups: rows('groups-table'),
+        worst: rows('worst-table'),
+        scale: state.scale,
+        map: { width, height, distance: Array.from(distance, (d) => (Number.isNaN(d) ? null : d)), colors },
+      };
+    });
+    writeFileSync(out, JSON.stringify(told));
   },
 
   // Opens, and says these words; any words if none are given.

@@ -140,8 +140,9 @@ TEST_F(Page, StatesTheLimitsOfWallsThatWereGiven) {
 }
 
 TEST_F(Page, IsSavedAsItIsShown) {
-  map({"--resolution", "128", "--tolerance", "3"});
+  map({"--resolution", "128", "--tolerance", "3", "--field", "part=4711", "--field", "order=A-12"});
   EXPECT_TRUE(passes("saves", page(), {folder / "saved.html"}));
+  EXPECT_TRUE(passes("says", folder / "saved.html", {"4711", "A-12", "PASS"}));
 }
 
 TEST_F(Page, SavesItsNumbers) {
@@ -171,6 +172,48 @@ TEST_F(Page, StatesTheWorseVerdictOfPartAndGroups) {
       passes("says", page(), {"PASS", "Every group of the table of tolerances is within its limits."}));
   map({"--resolution", "64", "--tolerance", "3", "--tolerance-table", fails_table});
   EXPECT_TRUE(passes("says", page(), {"FAIL", "1 of 1 groups of the table of tolerances fail: ring."}));
+}
+
+// Half of the square is below the part, and 0.1 around it.
+TEST_F(Page, DrawsTheCoverageOfTheReference) {
+  Mesh half = square(2, 0.01);
+  for (Vec3& p : half.positions) p[0] = 0.5 * p[0] - 0.5;
+  o1 = write_obj(folder / "half.obj", half), o2 = write_obj(folder / "whole.obj", square(2, 0));
+  const Json report = map({"--resolution", "64", "--tolerance", "0.1", "--min-coverage", "0.5", "--up", "z"});
+  const std::string share = report["coverage"]["value"].dump();
+  EXPECT_TRUE(passes("covers", page(), {share, folder / "coverage.png"}));
+
+  std::ofstream cloud(folder / "cloud.xyz");
+  for (int i = 0; i <= 50; ++i)
+    for (int j = 0; j <= 100; ++j) cloud << -1 + 0.02 * i << ' ' << -1 + 0.02 * j << " 0\n";
+  cloud.close();
+  const Outcome points = run_sdm({"points", folder / "cloud.xyz", o2, "-o", out, "--tolerance", "0.1",
+                                  "--min-coverage", "0.5", "--up", "z", "--json"});
+  ASSERT_EQ(points.code, 0) << points.err;
+  EXPECT_TRUE(passes("covers", page(), {Json::parse(points.out)["coverage"]["value"].dump()}));
+}
+
+TEST_F(Page, StatesTheVerdictOfEachGroup) {
+  const std::string text = contents(o1), table = folder / "table.csv";
+  std::ofstream(o1) << "g ring\n" << text;
+  std::ofstream(table) << "group,lower,upper\nring,0,1\n";
+  map({"--resolution", "64", "--tolerance-table", table, "--units", "mm"});
+  EXPECT_TRUE(passes("says", page(),
+                     {"Verdicts by group", "ring\tgroup\t0 to 1 mm\tFAIL\t", "\t2.4 mm\t", "\tcertified"}));
+}
+
+TEST_F(Page, NamesWhatIsMeasured) {
+  o2 = write_obj(folder / "ball.obj", sphere(3));
+  map({"--resolution", "64", "--units", "mm"});
+  EXPECT_TRUE(passes("says", page(), {"Largest (most outside)", "Smallest (most inside)", "distance in mm"}));
+  map({"--resolution", "64", "--facing"});
+  EXPECT_TRUE(passes("says", page(), {"Largest (most in front)", "Smallest (most behind)"}));
+  map({"--resolution", "64", "--along", "normal"});
+  EXPECT_TRUE(passes("says", page(), {"Largest (most in front)", "Smallest (most behind)"}));
+  const Outcome walls = run_sdm({"thickness", o1, "-o", out, "--resolution", "64", "--units", "mm"});
+  ASSERT_EQ(walls.code, 0) << walls.err;
+  EXPECT_TRUE(passes("says", page(),
+                     {"thickness in mm", "Thickness\tValue\tKind", "No limits were given (--min, --max)"}));
 }
 
 TEST_F(Page, EveryControlHasAName) {

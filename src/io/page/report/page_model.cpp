@@ -46,23 +46,6 @@ std::vector<std::uint32_t> differences_of_map(std::span<const std::uint32_t> cha
   return result;
 }
 
-// How many vertices the vertex of each corner was before the first one that has not occurred yet: 0 for
-// that one. Vertices must be numbered in the order of their first use.
-std::vector<std::uint32_t> corner_codes(std::span<const Triangle> triangles) {
-  std::vector<std::uint32_t> codes;
-  std::uint32_t next = 0;
-  for (const Triangle& triangle : triangles)
-    for (const std::uint32_t vertex : triangle) {
-      codes.push_back(next - vertex);
-      if (vertex == next) ++next;
-    }
-  return codes;
-}
-
-bool is_visible(const Triangle& t) {
-  return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-}
-
 // The visible faces, those of a chart together: neighbours in the atlas are neighbours in the file.
 std::vector<std::uint32_t> faces_by_chart(const Surface& surface) {
   const auto charts = surface.face_charts();
@@ -165,31 +148,6 @@ Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const flo
   std::vector<std::uint32_t> charts;
   for (const std::uint32_t face : faces) charts.push_back(surface.face_charts()[face] + 1);
   arrays.add_differences("triangle_chart", charts);
-  return json;
-}
-
-Json add_ghost(PackedArrays& arrays, const Mesh& mesh, std::size_t most) {
-  const Box box = bounds(mesh);
-  const Steps steps(box);
-  Json json = steps.json();
-  json["box"] = {{"lo", box.lo}, {"hi", box.hi}};
-  std::vector<Triangle> triangles;
-  for (const Triangle& triangle : mesh.triangles)
-    if (is_visible(triangle)) triangles.push_back(triangle);
-  json["triangles_of_mesh"] = triangles.size();
-  if (triangles.size() > most) return json;
-  std::vector<std::uint32_t> number(mesh.positions.size(), kNone), position;
-  std::uint32_t count = 0;
-  for (Triangle& triangle : triangles)
-    for (std::uint32_t& vertex : triangle) {
-      if (number[vertex] == kNone) {
-        number[vertex] = count++;
-        for (int k = 0; k < 3; ++k) position.push_back(steps(mesh.positions[vertex], k));
-      }
-      vertex = number[vertex];
-    }
-  arrays.add_differences("ghost_position", position, 3);
-  arrays.add("ghost_triangle", corner_codes(triangles));
   return json;
 }
 

@@ -29,8 +29,4 @@ namespace sdm::io {
                                                std::span<const float> vertex_distances, std::uint32_t largest,
                                                std::size_t most);
 
-/// Adds the other mesh: `ghost_position` and `ghost_triangle`; nothing but its box if there are more than
-/// `most` triangles. Returns its measures.
-[[nodiscard]] nlohmann::ordered_json add_ghost(PackedArrays& arrays, const Mesh& mesh, std::size_t most);
-
 }  // namespace sdm::io

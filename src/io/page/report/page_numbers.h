@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <vector>
 
 namespace sdm::io {
 
@@ -47,6 +49,24 @@ struct Steps {
     return static_cast<std::uint32_t>(std::clamp(127.5f * c + 128, 0.f, 255.f));
   };
   return byte(x) | byte(y) << 8;
+}
+
+/// How many vertices the vertex of each corner was before the first one that has not occurred yet: 0 for
+/// that one. Vertices must be numbered in the order of their first use.
+[[nodiscard]] inline std::vector<std::uint32_t> corner_codes(std::span<const Triangle> triangles) {
+  std::vector<std::uint32_t> codes;
+  std::uint32_t next = 0;
+  for (const Triangle& triangle : triangles)
+    for (const std::uint32_t vertex : triangle) {
+      codes.push_back(next - vertex);
+      if (vertex == next) ++next;
+    }
+  return codes;
+}
+
+/// Whether a face does not repeat a corner.
+[[nodiscard]] inline bool is_visible(const Triangle& t) {
+  return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
 }
 
 }  // namespace sdm::io

@@ -13,6 +13,7 @@
 #include "io/page/report/area_by_value.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/page_file.h"
+#include "io/page/report/page_ghost.h"
 #include "io/page/report/page_model.h"
 #include "io/page/report/worst_places.h"
 
@@ -36,6 +37,13 @@ Json worst_json(const Surface& surface, std::span<const Place> places) {
   return json;
 }
 
+/// Throws if the coverage is of another mesh.
+void check_coverage_of(const std::filesystem::path& file, const HtmlOptions& options) {
+  if (options.coverage &&
+      (!options.other || options.coverage->of_face.size() != options.other->triangles.size()))
+    throw Error("cannot write " + file.string() + ": the coverage belongs to another mesh");
+}
+
 std::vector<Place> thinnest(const Surface& surface, const DistanceMap& map) {
   std::vector<Place> places;
   for (const std::uint32_t texel : thinnest_texels(surface, map))
@@ -55,6 +63,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   if (map.distance.size() != surface.texel_faces().size() ||
       vertex_distances.size() != surface.mesh().positions.size())
     throw Error("cannot write " + file.string() + ": the map or the distances belong to another surface");
+  check_coverage_of(file, options);
   AtomicFile out(file);
 
   Json page, map_json, model, ghost;
@@ -67,7 +76,8 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
          model = add_model(model_arrays, surface, vertex_distances, options.largest, options.triangles);
        },
        [&] {
-         if (options.other) ghost = add_ghost(ghost_arrays, *options.other, options.triangles_of_other);
+         if (options.other)
+           ghost = add_ghost(ghost_arrays, *options.other, options.coverage, options.triangles_of_other);
        },
        [&] {
          worst = options.thinnest ? thinnest(surface, map) : worst_places(surface, map, vertex_distances);

@@ -14,7 +14,7 @@
 #include "io/file/atomic_file.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/page_file.h"
-#include "io/page/report/page_model.h"
+#include "io/page/report/page_ghost.h"
 #include "io/page/report/page_numbers.h"
 #include "io/page/report/worst_places.h"
 #include "io/points/measured_rows.h"
@@ -175,7 +175,8 @@ void write_points_html(const std::filesystem::path& file, const std::filesystem:
   page["cloud"]["points"] = found.points - found.invalid;
   page["cloud"]["picked"] = contents.picked;
   page["cloud"]["normals"] = found.has_normals;
-  if (options.other) page["ghost"] = add_ghost(arrays, *options.other, options.triangles_of_other);
+  if (options.other)
+    page["ghost"] = add_ghost(arrays, *options.other, options.coverage, options.triangles_of_other);
   page["worst"] = Json::array();
   for (const Place& place : contents.worst)
     page["worst"].push_back({{"distance", place.distance}, {"point", place.point}, {"number", place.sample}});

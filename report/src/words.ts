@@ -1,0 +1,25 @@
+// What is measured, in words.
+import type { Report } from './page_data';
+import { isSigned } from './verdict';
+
+export function isThickness(report: Report): boolean {
+  return report.thickness !== undefined || report.measured?.kind === 'thickness';
+}
+
+export function quantityOf(report: Report): string {
+  return isThickness(report) ? 'thickness' : 'distance';
+}
+
+export function capital(words: string): string {
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/// What the signs of the largest and of the smallest distance mean: of the closest point of a solid that of its
+/// inside, otherwise that of the side of the face that is measured to.
+export function endsOf(report: Report): { largest: string; smallest: string } {
+  if (!isSigned(report) || isThickness(report)) return { largest: 'Largest', smallest: 'Smallest' };
+  const byFace = report.sign?.method === 'side' || (report.measured && report.measured.kind !== 'closest');
+  return byFace
+    ? { largest: 'Largest (most in front)', smallest: 'Smallest (most behind)' }
+    : { largest: 'Largest (most outside)', smallest: 'Smallest (most inside)' };
+}
