@@ -20,16 +20,3 @@ def box():
 @pytest.fixture(scope="session")
 def sphere():
     return meshes.sphere()
-
-
-@pytest.fixture
-def map_in_file(tmp_path):
-    """Saves a mesh as PLY and returns its path."""
-    import sdm
-
-    def save(mesh, name="mesh.ply"):
-        path = tmp_path / name
-        sdm.map(mesh, mesh, resolution=64).save(path)
-        return path
-
-    return save

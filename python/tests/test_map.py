@@ -2,7 +2,6 @@
 
 import html
 import json
-import os
 import re
 import struct
 import subprocess
@@ -291,29 +290,6 @@ def test_pages(distance_map, tmp_path):
     assert not (tmp_path / "n.html").exists()
 
 
-@needs_pages
-@pytest.mark.skipif("SDM_COMMAND" not in os.environ, reason="the command is not built")
-def test_the_report_is_that_of_the_command(distance_map, map_in_file, tmp_path):
-    o1, o2 = map_in_file(meshes.sphere(), "o1.ply"), map_in_file(meshes.box(), "o2.ply")
-    command = [os.environ["SDM_COMMAND"], "map", o1, o2, "-o", tmp_path / "out", "--resolution", "256", "--tolerance", "0.5", "--quiet"]
-    assert subprocess.run(command).returncode == 3
-    theirs = json.loads((tmp_path / "out" / "report.json").read_text())
-    ours = json.loads(json.dumps(sdm.map(o1, o2, resolution=256).report(tolerance=0.5)))
-    assert set(ours) == set(theirs) and set(ours["time_ms"]) == set(theirs["time_ms"])
-    for key, value in ours.items():
-        if key in ("o1", "o2"):
-            value["file"] = theirs[key]["file"]
-        assert key == "time_ms" or value == theirs[key], key
-    # The page and the plots, too, have these numbers, this verdict and these colours.
-    assert page_data((tmp_path / "out" / "report.html").read_text(encoding="utf-8"), "report") == theirs
-    plain = sdm.map(o1, o2, resolution=256)
-    assert list(plain._core.colors()) == [plain.report()["colors"]["map"], *plain.report()["colors"]["range"]]
-    verdict = plain.check(0.5)
-    assert (verdict.verdict.upper(), verdict.reason, verdict.margin) == tuple(
-        theirs["tolerance"][k] for k in ("verdict", "reason", "margin")
-    )
-
-
 def test_notebooks(distance_map):
     text = distance_map._repr_html_()
     assert "data:image/png;base64," in text and "exact" in text
@@ -370,6 +346,9 @@ def test_coverage():
     assert everything.value == everything.lower == everything.upper == 1 and everything.reach == 0.1
     some = sdm.coverage(box, meshes.box((0, 0, 0), (1, 1, 0.5)), 0.05)
     assert 0 < some.lower <= some.value <= some.upper < 1
+    # All faces have the same area.
+    assert some.of_face.shape == (12,) and some.of_face.mean() == pytest.approx(some.value, abs=1e-6)
+    assert set(some.of_face) > {0, 1}
     with pytest.raises(sdm.Error):
         sdm.coverage(box, box, 0)
 

@@ -247,18 +247,6 @@ Json report_in(const std::string& page) {
   return Json::parse(text.substr(from, text.find("</script>", from) - from));
 }
 
-TEST_F(Page, ShowsTheVerdictAndTheColoursOfTheReport) {
-  for (const char* tolerance : {"3", "2.41", "2.399999", "2", "0.5:2.4", "2:3"}) {
-    const Json report = map({"--resolution", "64", "--tolerance", tolerance});
-    EXPECT_EQ(report_in(page()), report);
-    const Json& colors = report["colors"];
-    EXPECT_TRUE(passes("shows", page(),
-                       {report["tolerance"]["verdict"], colors["map"], colors["range"][0].dump(),
-                        colors["range"][1].dump()}))
-        << tolerance;
-  }
-}
-
 TEST_F(Page, JudgesAsTheLibrary) {
   map({"--resolution", "64"});
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
