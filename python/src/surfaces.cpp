@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "arrays.h"
 #include "sites_in_use.h"
@@ -360,12 +361,24 @@ its samples fit; and that the surfaces do not determine all freedoms. Errors as 
 }
 
 void bind_coverage(nb::module_& module) {
-  nb::class_<Coverage>(module, "Coverage", "The share of the area of O2 that has a measured point near it.")
-      .def_ro("value", &Coverage::value, "In [0, 1]; an estimate within the bounds.")
-      .def_ro("lower", &Coverage::lower, "Certified.")
-      .def_ro("upper", &Coverage::upper, "Certified.")
-      .def_ro("reach", &Coverage::reach, "How near.")
-      .def("__repr__", [](const Coverage& self) {
+  using C = CoverageMap;
+  nb::class_<C>(module, "Coverage", "The share of the area of O2 that has a measured point near it.")
+      .def_prop_ro(
+          "value", [](const C& self) { return self.value; }, "In [0, 1]; an estimate within the bounds.")
+      .def_prop_ro(
+          "lower", [](const C& self) { return self.lower; }, "Certified.")
+      .def_prop_ro(
+          "upper", [](const C& self) { return self.upper; }, "Certified.")
+      .def_prop_ro(
+          "reach", [](const C& self) { return self.reach; }, "How near.")
+      .def_prop_ro(
+          "of_face",
+          [](const C& self) {
+            return array_of<float>(std::vector<float>(self.of_face), {self.of_face.size()});
+          },
+          nb::sig("def of_face(self) -> numpy.ndarray"),
+          "Of each face of O2, the share of its area, (m,) float32: an estimate; NaN without area.")
+      .def("__repr__", [](const C& self) {
         return nb::str("sdm.Coverage({:.4g}, from {:.4g} to {:.4g})")
             .format(self.value, self.lower, self.upper);
       });
@@ -376,9 +389,10 @@ void bind_coverage(nb::module_& module) {
       [](nb::handle o2, nb::handle measured, double reach, nb::handle progress) {
         const Mesh mesh = mesh_of(o2, nb::none());
         SitesInUse on(measured);
-        Coverage result;
-        run(progress,
-            [&](const Progress& report) { result = coverage(mesh, on.get(), reach, {.progress = report}); });
+        CoverageMap result;
+        run(progress, [&](const Progress& report) {
+          result = coverage_map(mesh, on.get(), reach, {.progress = report});
+        });
         return result;
       },
       nb::arg("o2").none(), nb::arg("measured").none(), nb::arg("reach"), nb::kw_only(),
