@@ -123,6 +123,17 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   }
 }
 
+/// The kinds of names that groups with a verdict have.
+std::vector<sdm::FaceNames> judged_names(const MapTask& task, const AtlasPart& part, const Outcome& outcome) {
+  if (!outcome.groups) return {};
+  std::vector<sdm::FaceNames> names = names_of_part(task.on.names, part.source_face);
+  std::erase_if(names, [&](const sdm::FaceNames& kind) {
+    return std::ranges::none_of(outcome.groups->groups,
+                                [&](const sdm::GroupVerdict& g) { return g.kind == kind.kind; });
+  });
+  return names;
+}
+
 /// What users probably did not intend, and what a summary does not know of.
 Notes all_notes(const MapTask& task, const AtlasPart& part, const sdm::Summary& summary) {
   Notes all = file_notes(task.on, task.to);
@@ -218,11 +229,13 @@ MapResult write_part(const MapTask& task, const AtlasPart& part, const ComputedM
 
   result.report = report_of(task, part, computed, outcome);
   const std::string text = to_text(result.report);
+  const std::vector<sdm::FaceNames> judged = judged_names(task, part, outcome);
   if (command.output.files.html)
     sdm::write_html(folder / "report.html", *computed.surface, computed.map, computed.at_vertices, text,
                     {.other = &task.to.mesh,
                      .up = command.picture.up,
-                     .coverage = task.coverage ? &*task.coverage : nullptr});
+                     .coverage = task.coverage ? &*task.coverage : nullptr,
+                     .names = judged});
   write_text(folder / "report.json", text);
   return result;
 }

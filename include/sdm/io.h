@@ -8,6 +8,7 @@
 #include <sdm/coverage.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/part_statistics.h>
 #include <sdm/statistics.h>
 #include <sdm/summary.h>
 #include <sdm/surface.h>
@@ -237,6 +238,7 @@ struct HtmlOptions {
   const Mesh* other = nullptr;            ///< O2, shown as a ghost; none: O1 only
   UpAxis up = UpAxis::y;                  ///< the axis of the meshes that points up
   const CoverageMap* coverage = nullptr;  ///< of `other`, on which it is drawn
+  std::span<const FaceNames> names{};     ///< of the faces of O1: what a click on a group shows apart
   bool thinnest = false;                  ///< the list of places is of the least values, not of the largest
   // The size of the page, which grows with what it shows:
   std::uint32_t largest = 1024;              ///< the most texels a side, at least 1

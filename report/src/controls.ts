@@ -10,6 +10,7 @@ export interface State {
   scale: Scale;
   section: { axis: 0 | 1 | 2 | null; at: number; flipped: boolean }; ///< at: 0 to 1 along the box
   ghost: boolean;
+  group?: { kind: string; group: string } | null; ///< alone in colours
   coverage: boolean; ///< of the reference, in place of the part
   width: number; ///< of the points of a cloud, relative to the usual one
 }

@@ -5,6 +5,10 @@ import type { Report } from './page_data';
 import { isSigned, limitsText, unitOf } from './verdict';
 import { capital, quantityOf } from './words';
 
+export interface GroupName {
+  kind: string;
+  group: string;
+}
 type Row = NonNullable<Report['group_tolerances']>['groups'][number];
 
 /// What the verdict of a group rests on.
@@ -13,7 +17,8 @@ function kindOf({ verdict, certified, undecided_by: by }: Row, unit: string): st
   return certified ? 'certified' : 'estimate';
 }
 
-export function showGroups(report: Report): void {
+/// `show`, if given, is called with a group that is chosen, or null for one that was.
+export function showGroups(report: Report, chosen: GroupName | null = null, show?: (group: GroupName | null) => void): void {
   const groups = report.group_tolerances?.groups ?? [];
   byId('groups').hidden = groups.length === 0;
   if (groups.length === 0) return;
@@ -21,8 +26,17 @@ export function showGroups(report: Report): void {
   // A distance below the accuracy may as well be 0.
   const value = (x: number | null) =>
     x === null ? 'none' : `${Math.abs(x) <= (report.accuracy ?? 0) ? '0' : signedText(x, isSigned(report))}${unit}`;
-  const rows = groups.map((g) => [
-    g.group,
+  const name = (g: Row, i: number): Node | string => {
+    if (!show) return g.group;
+    const pressed = chosen?.kind === g.kind && chosen.group === g.group;
+    const click = () => {
+      show(pressed ? null : { kind: g.kind, group: g.group });
+      byId('groups-table').querySelectorAll('button')[i].focus(); // the table is made again
+    };
+    return make('button', { type: 'button', class: 'link', 'aria-pressed': String(pressed), click }, g.group);
+  };
+  const rows = groups.map((g, i) => [
+    name(g, i),
     g.kind,
     limitsText(g, report),
     make('b', { class: g.verdict.toLowerCase().replace(' ', '-') }, g.verdict),
@@ -34,6 +48,6 @@ export function showGroups(report: Report): void {
   const what = capital(quantityOf(report));
   byId('groups-table').replaceChildren(
     table(['Group', 'Named as', 'Limits', 'Verdict', `Least ${quantityOf(report)}`, `Largest ${quantityOf(report)}`, 'Area out of tolerance', 'Kind'], rows, `${what} by group`),
-    make('p', { class: 'hint' }, `Of all groups: ${report.group_tolerances!.verdict}. Shares are estimates from the samples of each group. The verdict at the top is the worse one of those of the part and of its groups.`),
+    make('p', { class: 'hint' }, `${show ? 'Choose a group to see it alone in colours. ' : ''}Of all groups: ${report.group_tolerances!.verdict}. Shares are estimates from the samples of each group. The verdict at the top is the worse one of those of the part and of its groups.`),
   );
 }

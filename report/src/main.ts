@@ -4,7 +4,7 @@ import { Cloud } from './cloud';
 import { drawCoverageLegend } from './coverage';
 import { makeControls, State } from './controls';
 import { byId, make, table } from './dom';
-import { showGroups } from './group_table';
+import { GroupName, showGroups } from './group_table';
 import { drawHistogram } from './histogram';
 import { drawLegend } from './legend';
 import { count, exactText, percent, place, signedText } from './numbers';
@@ -46,6 +46,7 @@ class Page {
   private readonly signs: boolean;
   private readonly unit: string;
   private state: State;
+  private highlighted: GroupName | null | undefined;
 
   constructor(
     private readonly report: Report,
@@ -118,6 +119,7 @@ class Page {
     this.view.setScale(scale, colors);
     this.view.setGhost(ghost);
     this.view.setCoverage(state.coverage);
+    this.showGroup(state);
     this.cloud?.setWidth(state.width);
     if (section.axis === null) {
       this.view.setCut(null);
@@ -133,6 +135,19 @@ class Page {
     else drawLegend(scale, colors, quantityOf(this.report), this.report.units ?? '', hasGaps);
     this.drawHistogram();
     this.showWhatIf(state);
+  }
+
+  private showGroup(state: State): void {
+    const { subject } = this;
+    if (!(subject instanceof Surface) || !this.report.group_tolerances?.groups.some((g) => subject.hasGroup(g.kind, g.group))) return;
+    const chosen = state.group ?? null;
+    if (chosen === this.highlighted) return;
+    this.highlighted = chosen;
+    subject.highlight(chosen);
+    showGroups(this.report, chosen, (group) => {
+      state.group = group;
+      this.apply(state);
+    });
   }
 
   private drawHistogram(): void {

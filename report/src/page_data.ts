@@ -126,7 +126,7 @@ interface PageJson {
   up: 'y' | 'z';
   colors: Record<'viridis' | 'diverging' | 'paper2006' | 'within' | 'above' | 'below' | 'no_value', Color[]>;
   map?: { width: number; height: number; step: number; channels?: ChannelJson[] };
-  model?: Placement & { triangles_of_mesh: number };
+  model?: Placement & { triangles_of_mesh: number; names?: { kind: string; names: string[] }[] };
   cloud?: Placement & { points: number; picked: number; normals: boolean }; ///< in place of map and model
   ghost?: Placement & { box: { lo: Vec; hi: Vec }; triangles_of_mesh: number };
   worst: Worst[];
@@ -150,6 +150,13 @@ export interface Channel extends ChannelJson {
   values: (Float32Array | Uint32Array)[]; ///< of each component, for each texel
 }
 
+/// Names of one kind, such as groups.
+interface NamedTriangles {
+  kind: string;
+  names: string[];
+  ofTriangle: Uint32Array; ///< 1 + the number of its name, 0 without one
+}
+
 /// The triangles of the part. Positions are relative to `centre` in units of `size`, so that they fit single
 /// precision for parts of any size and place.
 export interface Model {
@@ -161,6 +168,7 @@ export interface Model {
   triangle: Uint32Array;
   place: Float32Array | null; ///< in texels of the page; null: a coarser copy, with values at its vertices
   chart: Uint32Array | null; ///< of each triangle
+  names: NamedTriangles[]; ///< for each kind of names
   trianglesOfMesh: number;
 }
 
@@ -301,6 +309,7 @@ function readModel(page: PageJson, arrays: Arrays): Model {
     triangle: cornersOfCodes(arrays.get('triangle')!),
     place: places ? Float32Array.from(summed(places, 2), (x) => x / 64) : null,
     chart: charts ? summed(charts) : null,
+    names: (placement.names ?? []).map((kind, k) => ({ ...kind, ofTriangle: summed(arrays.get(`triangle_name_${k}`)!) })),
     trianglesOfMesh: placement.triangles_of_mesh,
   };
 }

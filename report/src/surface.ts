@@ -30,7 +30,7 @@ const kPartShader = `
   precision highp float;
   precision highp sampler2D;
   uniform sampler2D values;
-  uniform bool byVertex, showBacks;
+  uniform bool byVertex, showBacks, faded;
   uniform vec4 cut;
   uniform vec3 cutColor;
   in vec3 vPoint, vNormal;
@@ -66,6 +66,10 @@ const kPartShader = `
     }
     vec3 n = normalize(vNormal);
     float light = 0.62 + 0.38 * abs(n.z) + 0.08 * n.y;
+    if (faded) {
+      outColor = vec4(vec3(0.8) * min(light, 1.0), 1.0);
+      return;
+    }
     float value = valueHere();
     outColor = vec4((value > 1e38 ? noValue : colorOf(value)) * min(light, 1.0), 1.0);
   }
@@ -92,6 +96,7 @@ export class Surface implements Subject {
   readonly hi: Vec;
   readonly uniforms: Uniforms;
   readonly object: Mesh;
+  private readonly rest: Mesh; // the triangles that are not highlighted
 
   constructor(
     private readonly model: Model,
@@ -120,17 +125,47 @@ export class Surface implements Subject {
     const values = Float32Array.from(model.distance, (d) => (Number.isNaN(d) ? kNoValue : d));
     geometry.setAttribute('value', new BufferAttribute(values, 1));
     geometry.setIndex(new BufferAttribute(model.triangle, 1));
-    this.object = new Mesh(
-      geometry,
-      new ShaderMaterial({
-        glslVersion: '300 es',
-        vertexShader: kVertexShader,
-        fragmentShader: kPartShader,
-        side: DoubleSide,
-        uniforms: this.uniforms,
-      }),
-    );
-    this.object.frustumCulled = false;
+    const meshOf = (shape: BufferGeometry, faded: boolean) => {
+      const mesh = new Mesh(
+        shape,
+        new ShaderMaterial({
+          glslVersion: '300 es',
+          vertexShader: kVertexShader,
+          fragmentShader: kPartShader,
+          side: DoubleSide,
+          uniforms: { ...this.uniforms, faded: { value: faded } },
+        }),
+      );
+      mesh.frustumCulled = false;
+      return mesh;
+    };
+    this.object = meshOf(geometry, false);
+    const others = new BufferGeometry();
+    for (const [name, attribute] of Object.entries(geometry.attributes)) others.setAttribute(name, attribute);
+    this.rest = meshOf(others, true);
+    this.rest.visible = false;
+    this.object.add(this.rest);
+  }
+
+  /// Whether the triangles of a group are known.
+  hasGroup(kind: string, group: string): boolean {
+    return this.model.names.some((n) => n.kind === kind && n.names.includes(group));
+  }
+
+  /// Shows all but the triangles of a group in grey; null: all in colours.
+  highlight(group: { kind: string; group: string } | null): void {
+    const { triangle } = this.model;
+    const named = group && this.model.names.find((n) => n.kind === group.kind);
+    const number = named ? named.names.indexOf(group.group) + 1 : 0;
+    this.rest.visible = number > 0;
+    if (number === 0) {
+      this.object.geometry.setIndex(new BufferAttribute(triangle, 1));
+      return;
+    }
+    const corners: [number[], number[]] = [[], []]; // of the group, and of the rest
+    named!.ofTriangle.forEach((n, t) => corners[n === number ? 0 : 1].push(...triangle.subarray(3 * t, 3 * t + 3)));
+    this.object.geometry.setIndex(new BufferAttribute(Uint32Array.from(corners[0]), 1));
+    this.rest.geometry.setIndex(new BufferAttribute(Uint32Array.from(corners[1]), 1));
   }
 
   prepare(): void {}

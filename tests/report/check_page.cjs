@@ -469,6 +469,41 @@ const checks = {
     assert.ok(!(await page.innerText('#legend')).includes('covered'));
   },
 
+  // A group that is chosen is alone in colours, also in the saved page, until it is chosen again.
+  async highlights(page, saved) {
+    const settle = (of) => of.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    const greys = (of) =>
+      of.evaluate(() => {
+        const canvas = document.getElementById('canvas');
+        const copy = document.createElement('canvas');
+        [copy.width, copy.height] = [canvas.width, canvas.height];
+        const context = copy.getContext('2d');
+        context.drawImage(canvas, 0, 0);
+        const { data } = context.getImageData(0, 0, copy.width, copy.height);
+        const pixels = [0, 0]; // coloured, grey
+        for (let i = 0; i < data.length; i += 4)
+          if (data[i + 3] > 250) ++pixels[Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) < 4 ? 1 : 0];
+        return pixels[1] / (pixels[0] + pixels[1]);
+      });
+    await settle(page);
+    assert(await greys(page) < 0.01);
+    await page.click('#groups-table tbody tr:first-child button');
+    await settle(page);
+    const share = await greys(page);
+    assert(share > 0.2 && share < 0.8, `${share} of the part is grey`);
+    assert.strictEqual(await page.getAttribute('#groups-table button >> nth=0', 'aria-pressed'), 'true');
+    assert(await page.evaluate(() => document.activeElement.getAttribute('aria-pressed')), 'the button keeps the focus');
+    writeFileSync(saved, await page.evaluate(() => window.sdmPage.text()));
+    const again = await page.context().browser().newPage({ viewport: page.viewportSize() });
+    await again.goto(pathToFileURL(saved).href);
+    await again.waitForSelector('html[data-ready]');
+    await settle(again);
+    assert(Math.abs((await greys(again)) - share) < 0.01);
+    await page.click('#groups-table tbody tr:first-child button');
+    await settle(page);
+    assert(await greys(page) < 0.01);
+  },
+
   // Other limits are judged in the page as by the library: what judge() in include/sdm/tolerance.h says in `cases`.
   async judges(page, cases) {
     const { buildSync } = createRequire(process.cwd() + '/')('esbuild');

@@ -194,10 +194,14 @@ TEST_F(Page, DrawsTheCoverageOfTheReference) {
 }
 
 TEST_F(Page, StatesTheVerdictOfEachGroup) {
-  const std::string text = contents(o1), table = folder / "table.csv";
-  std::ofstream(o1) << "g ring\n" << text;
+  std::string text = contents(o1);
+  const std::string table = folder / "table.csv";
+  const std::size_t faces = text.find("\nf "), middle = text.find("\nf ", faces + (text.size() - faces) / 2);
+  text.insert(middle, "\ng rest"), text.insert(faces, "\ng ring");
+  std::ofstream(o1) << text;
   std::ofstream(table) << "group,lower,upper\nring,0,1\n";
   map({"--resolution", "64", "--tolerance-table", table, "--units", "mm"});
+  EXPECT_TRUE(passes("highlights", page(), {folder / "saved.html"}));
   EXPECT_TRUE(passes("says", page(),
                      {"Verdicts by group", "ring\tgroup\t0 to 1 mm\tFAIL\t", "\t2.4 mm\t", "\tcertified"}));
 }

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 #include "core/parallel.h"
 #include "geometry/vec.h"
@@ -119,7 +120,7 @@ Json add_map(PackedArrays& arrays, const Surface& surface, const DistanceMap& ma
 }
 
 Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const float> vertex_distances,
-               std::uint32_t largest, std::size_t most) {
+               std::span<const FaceNames> names, std::uint32_t largest, std::size_t most) {
   const Mesh& mesh = surface.mesh();
   const Steps steps(bounds(mesh));
   Json json = steps.json();
@@ -148,6 +149,12 @@ Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const flo
   std::vector<std::uint32_t> charts;
   for (const std::uint32_t face : faces) charts.push_back(surface.face_charts()[face] + 1);
   arrays.add_differences("triangle_chart", charts);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    std::vector<std::uint32_t> numbers;
+    for (const std::uint32_t face : faces) numbers.push_back(names[k].of_face[face] + 1);  // kNone + 1 is 0
+    arrays.add_differences("triangle_name_" + std::to_string(k), numbers);
+    json["names"].push_back({{"kind", names[k].kind}, {"names", names[k].names}});
+  }
   return json;
 }
 

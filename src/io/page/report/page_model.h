@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/map.h>
+#include <sdm/part_statistics.h>
 #include <sdm/surface.h>
 
 #include <nlohmann/json.hpp>
@@ -22,11 +23,13 @@ namespace sdm::io {
 /// Adds the triangles of the measured mesh. Arrays: `position` (three a vertex, in steps from the origin),
 /// `place` (two, its atlas coordinates in 1/64 of a texel of the page), `normal` (octahedral, two bytes),
 /// `vertex_distance`, `triangle` (for each corner, how many vertices its vertex was before the first one that
-/// has not occurred yet), `triangle_chart` (1 + the chart of each triangle). If there are more than `most`
-/// triangles, the vertices are fewer ones of the mesh, and without `place` and `triangle_chart`. `largest`:
-/// as for add_map(). Returns its measures.
+/// has not occurred yet), `triangle_chart` (1 + the chart of each triangle), and `triangle_name_0` and so on
+/// for each kind of names (1 + the name of each triangle, 0 without one). If there are more than `most`
+/// triangles, the vertices are fewer ones of the mesh, and without `place` and what belongs to triangles.
+/// `largest`: as for add_map(). Returns its measures.
 [[nodiscard]] nlohmann::ordered_json add_model(PackedArrays& arrays, const Surface& surface,
-                                               std::span<const float> vertex_distances, std::uint32_t largest,
+                                               std::span<const float> vertex_distances,
+                                               std::span<const FaceNames> names, std::uint32_t largest,
                                                std::size_t most);
 
 }  // namespace sdm::io

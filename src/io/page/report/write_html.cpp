@@ -37,8 +37,11 @@ Json worst_json(const Surface& surface, std::span<const Place> places) {
   return json;
 }
 
-/// Throws if the coverage is of another mesh.
-void check_coverage_of(const std::filesystem::path& file, const HtmlOptions& options) {
+/// Throws if the coverage or the names are of another mesh.
+void check_meshes_of(const std::filesystem::path& file, const Surface& surface, const HtmlOptions& options) {
+  for (const FaceNames& kind : options.names)
+    if (kind.of_face.size() != surface.mesh().triangles.size())
+      throw Error("cannot write " + file.string() + ": the names belong to another mesh");
   if (options.coverage &&
       (!options.other || options.coverage->of_face.size() != options.other->triangles.size()))
     throw Error("cannot write " + file.string() + ": the coverage belongs to another mesh");
@@ -63,7 +66,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   if (map.distance.size() != surface.texel_faces().size() ||
       vertex_distances.size() != surface.mesh().positions.size())
     throw Error("cannot write " + file.string() + ": the map or the distances belong to another surface");
-  check_coverage_of(file, options);
+  check_meshes_of(file, surface, options);
   AtomicFile out(file);
 
   Json page, map_json, model, ghost;
@@ -73,7 +76,8 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   run_concurrently(
       {[&] { map_json = add_map(arrays, surface, map, options.largest); },
        [&] {
-         model = add_model(model_arrays, surface, vertex_distances, options.largest, options.triangles);
+         model = add_model(model_arrays, surface, vertex_distances, options.names, options.largest,
+                           options.triangles);
        },
        [&] {
          if (options.other)
