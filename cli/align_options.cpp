@@ -11,6 +11,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "group_tolerances.h"
 #include "option_checks.h"
 
 #include "option_checks.h"
@@ -152,21 +153,9 @@ sdm::AlignRegion region_of(const AlignCommand& command, const Input& o2) {
       continue;
     }
     region.faces.resize(o2.mesh.triangles.size());
-    bool found = false;
-    std::vector<std::string> known;
-    for (const sdm::FaceNames& kind : o2.names)
-      for (std::size_t f = 0; f < kind.of_face.size(); ++f)
-        if (const std::uint32_t name = kind.of_face[f]; name != sdm::kNone && kind.names[name] == text)
-          region.faces[f] = 1, found = true;
-    if (found) continue;
-    for (const sdm::FaceNames& kind : o2.names)
-      known.insert(known.end(), kind.names.begin(), kind.names.end());
-    constexpr std::size_t kShown = 8;
-    const bool more = known.size() > kShown;
-    known.resize(std::min(known.size(), kShown));
-    throw sdm::Error(fmt::format("{}: no face has the name '{}' of --align-on{}{}{}", o2.file, text,
-                                 known.empty() ? "; the file names no faces" : "; there are ",
-                                 fmt::join(known, ", "), more ? ", ..." : ""));
+    const sdm::NamedFaces named = sdm::faces_named(o2.names, text);
+    if (named.faces.empty()) throw sdm::Error(fmt::format("--align-on: {}", no_group(text, o2)));
+    for (const std::uint32_t face : named.faces) region.faces[face] = 1;
   }
   return region;
 }

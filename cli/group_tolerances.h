@@ -17,8 +17,14 @@ struct GroupTolerances {
   std::vector<sdm::GroupTolerance> rows{};
 };
 
-/// Adds --tolerance-table.
-void add_tolerance_table_option(CLI::App& app, GroupTolerances& table);
+/// Adds --tolerance-table; `what` it judges begins its help.
+void add_tolerance_table_option(CLI::App& app, GroupTolerances& table,
+                                const std::string& what =
+                                    "Judge groups of the measured mesh, by the exit "
+                                    "code too");
+
+/// States that no face of a mesh has the name, and which names there are.
+[[nodiscard]] std::string no_group(const std::string& name, const Input& mesh);
 
 /// Throws sdm::Error for a row whose group none of the meshes has, naming groups that they have.
 void check_groups(const GroupTolerances& table, std::initializer_list<const Input*> meshes);
@@ -27,7 +33,8 @@ void check_groups(const GroupTolerances& table, std::initializer_list<const Inpu
 [[nodiscard]] std::vector<sdm::FaceNames> names_of_part(const std::vector<sdm::FaceNames>& names,
                                                         const std::vector<std::uint32_t>& source_face);
 
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::GroupVerdicts& verdicts);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::GroupVerdicts& verdicts, bool of_points = false);
 
 /// One line for each group.
-[[nodiscard]] std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units);
+[[nodiscard]] std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units,
+                                      bool of_points = false);

@@ -60,7 +60,7 @@ MeshMaps measure_mesh(MapTask task, OutputFolder& out, ProgressLine& progress) {
                                  task.on.file, all.parts.size()));
   KeptMaps kept = share_scale(task, all.parts);
   const std::filesystem::path folder = command.both ? task.on.role : "";
-  TileTotals totals;
+  TileTotals totals(command.groups.rows, !task.doubts.empty() && !command.doubts.accept);
   for (std::size_t i = 0; i < all.parts.size(); ++i) {
     const AtlasPart& part = all.parts[i];
     ComputedMap computed = kept[i] ? std::move(*kept[i]) : compute_part(task, part);

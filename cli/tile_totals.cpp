@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "group_tolerances.h"
+
 using Json = nlohmann::ordered_json;
 
 void TileScale::add(const sdm::Surface& surface, const sdm::DistanceMap& map, double accuracy) {
@@ -25,6 +27,7 @@ void TileTotals::add(int udim, const Outcome& outcome, const sdm::Surface& surfa
     first_ = outcome;
   else
     first_.boundary_vertices += outcome.boundary_vertices;
+  if (outcome.groups) groups_.push_back(*outcome.groups);
   tiles_.push_back({udim, outcome.summary.extremes});
   combined_.add(surface, map, outcome.summary);
 }
@@ -32,7 +35,9 @@ void TileTotals::add(int udim, const Outcome& outcome, const sdm::Surface& surfa
 Outcome TileTotals::finish() const {
   Outcome total = first_;
   total.summary = combined_.summary();
-  total.raster.reset(), total.groups.reset();  // those of the first tile
+  total.raster.reset();  // that of the first tile
+  total.groups.reset();
+  if (!groups_.empty()) total.groups = sdm::combined_groups(groups_, table_, doubted_);
   return total;
 }
 
@@ -41,6 +46,7 @@ Json TileTotals::report() const {
   report["tiles"] = Json::array();
   for (const Tile& tile : tiles_) report["tiles"].push_back(tile.udim);
   report.update(Json::parse(sdm::summary_json(combined_.summary())));
+  if (const Outcome total = finish(); total.groups) report["group_tolerances"] = to_json(*total.groups);
   std::vector<Tile> worst = tiles_;
   std::erase_if(worst, [](const Tile& tile) { return !tile.extremes; });
   std::ranges::stable_sort(worst, std::ranges::greater(),

@@ -23,6 +23,10 @@ class TileScale {
 
 class TileTotals {
  public:
+  /// `table`: of tolerances of groups, which outlives this; `doubted`: there are doubts about a pass.
+  TileTotals(const std::vector<sdm::GroupTolerance>& table, bool doubted)
+      : table_(table), doubted_(doubted) {}
+
   /// Adds the numbers of a tile and its map, which need not be kept.
   void add(int udim, const Outcome& outcome, const sdm::Surface& surface, const sdm::DistanceMap& map);
   /// As sdm::CombinedSummary has it.
@@ -37,7 +41,10 @@ class TileTotals {
     std::optional<sdm::Extremes> extremes;
   };
 
+  const std::vector<sdm::GroupTolerance>& table_;
+  bool doubted_;
   std::vector<Tile> tiles_;
+  std::vector<sdm::GroupVerdicts> groups_;
   sdm::CombinedSummary combined_;
   Outcome first_;
 };

@@ -12,6 +12,7 @@
 #include <sdm/tolerance.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,9 +29,11 @@ struct GroupTolerance {
 /// The verdict on a group.
 struct GroupVerdict {
   std::string kind, group;                    ///< the kind of the name, as FaceNames::kind, and the name
-  std::size_t faces = 0;                      ///< of the surface
+  std::size_t faces = 0;                      ///< of the surface, or of O2 for a cloud
+  std::uint64_t points = 0;                   ///< of a cloud: with a value, closest to these faces
+  double area = 0;                            ///< of its texels, in squared units of the surface
   std::optional<double> lowest{}, highest{};  ///< of the distances of its texels and vertices
-  CertifiedVerdict verdict;                   ///< shares are those of the area of the group
+  CertifiedVerdict verdict;                   ///< shares are those of the area of the group, or of its points
 };
 
 /// The verdicts on all groups of a table.
@@ -52,12 +55,19 @@ struct CertifyGroupsOptions {
 /// and where these are within the tolerance by prove_tolerance() of its faces, so that Verdict::pass holds
 /// for every point of the group. A name of several kinds is that of the first. Faces that no row names are
 /// not judged. Throws sdm::Error for a tolerance that needs a sign if the map is unsigned, and as
-/// certify_tolerance() does. Cost: for each group that of certify_tolerance().
+/// certify_tolerance() does. Cost: linear in texels and
+/// faces for all groups together, and for each group that of its proof.
 [[nodiscard]] SDM_API GroupVerdicts certify_groups(const Surface& surface, const Sites& sites,
                                                    const DistanceMap& map,
                                                    std::span<const float> vertex_distances,
                                                    std::span<const FaceNames> names,
                                                    std::span<const GroupTolerance> table,
                                                    const CertifyGroupsOptions& options);
+
+/// The verdicts on maps of parts of a surface, such as UDIM tiles, as of one map, in the order of the table:
+/// that on a group is Verdict::fail if that of one of its parts is, and so on, as of all groups; fractions
+/// are weighted by area. Cost: linear.
+[[nodiscard]] SDM_API GroupVerdicts combined_groups(std::span<const GroupVerdicts> parts,
+                                                    std::span<const GroupTolerance> table, bool doubted);
 
 }  // namespace sdm

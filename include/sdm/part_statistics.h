@@ -29,6 +29,20 @@ struct FaceNames {
   std::vector<std::uint32_t> of_face;  ///< for each triangle of the mesh, an index into names or kNone
 };
 
+/// The faces that have a name.
+struct NamedFaces {
+  std::string kind;                  ///< as FaceNames::kind
+  std::vector<std::uint32_t> faces;  ///< ascending
+};
+
+/// Returns the faces with a name: those of the first kind of which a face has it. None if no face has the
+/// name, as where all of them were left out. Cost: linear in faces.
+[[nodiscard]] SDM_API NamedFaces faces_named(std::span<const FaceNames> names, const std::string& name);
+
+/// Returns the kinds and names of all faces as a clause for messages: "its names are a, b, ..." with the
+/// first 20 of them, or "its faces have no names". Cost: linear in names.
+[[nodiscard]] SDM_API std::string known_names(std::span<const FaceNames> names);
+
 /// Returns, for each face, the number of its component: the faces that are connected by shared vertices.
 /// Components are numbered from 0 in the order of their first faces; removed faces (see MeshEdit) have kNone.
 /// Cost: linear.

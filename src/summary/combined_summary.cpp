@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/vec.h"
+#include "summary/combined_verdict.h"
 #include "summary/largest_distance.h"
 
 namespace sdm {
@@ -67,7 +68,10 @@ const CertifiedVerdict& decisive(std::span<const CertifiedVerdict> verdicts) {
   return *std::ranges::min_element(verdicts, {}, rank);
 }
 
-CertifiedVerdict combined(std::span<const CertifiedVerdict> verdicts, std::span<const double> areas) {
+}  // namespace
+
+CertifiedVerdict summary::combined_verdict(std::span<const CertifiedVerdict> verdicts,
+                                           std::span<const double> areas) {
   CertifiedVerdict total = decisive(verdicts);
   total.shares = {}, total.largest.reset(), total.margin.reset();
   double area = 0, margin = std::numeric_limits<double>::infinity();
@@ -93,8 +97,6 @@ CertifiedVerdict combined(std::span<const CertifiedVerdict> verdicts, std::span<
   return total;
 }
 
-}  // namespace
-
 void CombinedSummary::add(const Surface& surface, const DistanceMap& map, const Summary& summary) {
   statistics_.add(surface, map);
   const bool first = areas_.empty();
@@ -117,7 +119,7 @@ Summary CombinedSummary::summary() const {
   total.distance = statistics_.statistics();
   total.hausdorff = summary::largest_distance(total);
   if (!verdicts_.empty()) {
-    total.tolerance = combined(verdicts_, areas_);
+    total.tolerance = summary::combined_verdict(verdicts_, areas_);
     if (!total.tolerance->proof)
       total.tolerance->nearest_is_lower = judge(total.evidence, total.tolerance->tolerance).nearest_is_lower;
   }

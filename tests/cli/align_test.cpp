@@ -162,7 +162,7 @@ TEST_F(AlignOption, OnGroupsAndBoxes) {
   EXPECT_THAT(map({"--align"}).out, HasSubstr("group datum: residual rms"));
   const Outcome unknown = map({"--align", "--align-on", "datums"});
   EXPECT_EQ(unknown.code, 1);
-  EXPECT_THAT(unknown.err, HasSubstr("no face has the name 'datums' of --align-on; there are datum, rest"));
+  EXPECT_THAT(unknown.err, HasSubstr("has the name 'datums'; its names are datum, rest"));
   EXPECT_EQ(map({"--align", "--align-on", "box:1,2,3"}).code, 2);
   // One plane determines three motions, and says so.
   EXPECT_THAT(map({"--align", "--align-on", "datum"}).out, HasSubstr("do not determine"));

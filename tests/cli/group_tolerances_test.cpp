@@ -92,8 +92,8 @@ TEST_F(GroupTolerancesOption, WithinTheAccuracyNothingIsDecided) {
 TEST_F(GroupTolerancesOption, UnknownGroupsAreNamed) {
   const test::Outcome outcome = map(table("group,lower,upper\nlid,-1,1\n"));
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("lid is no group of"));
-  EXPECT_THAT(outcome.err, HasSubstr("which has bottom, top, red, sides"));
+  EXPECT_THAT(outcome.err, HasSubstr("has the name 'lid'; its names are"));
+  EXPECT_THAT(outcome.err, HasSubstr("its names are bottom, top, red, sides"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
@@ -104,7 +104,7 @@ TEST_F(GroupTolerancesOption, AGroupWithoutFacesIsUnknown) {
   EXPECT_EQ(map(file).code, 3);
   const test::Outcome outcome = map(file, {"--ignore-islands", "2"});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("speck is no group of"));
+  EXPECT_THAT(outcome.err, HasSubstr("has the name 'speck'"));
 }
 
 // The other mesh has the group: this one is not judged.

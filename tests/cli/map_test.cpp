@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -206,6 +207,28 @@ TEST_F(MapCommand, TotalsOfUdimTilesAreThoseOfAllTexels) {
   EXPECT_EQ(reports["o1"]["total"]["hausdorff"]["symmetric"], reports["o2"]["hausdorff"]["symmetric"]);
   EXPECT_EQ(reports["o1"]["total"], Json::parse(contents(out + "/o1/report.json")));
   EXPECT_EQ(reports["o2"], Json::parse(contents(out + "/o2/report.json")));
+}
+
+// A group is judged over all tiles.
+TEST_F(MapCommand, TotalsOfUdimTilesHaveTheVerdictsOnGroups) {
+  o2 = write_obj(folder / "cube.obj", moved(cube(0.4), {0.2, 0.3, 0.1}));
+  write_obj_with_uvs(o1, 2, 0);
+  const std::string faces = contents(o1);
+  std::ofstream(o1) << "g all\n" << faces;
+  const auto run = [&](const std::string& limits) {
+    std::ofstream(folder / "table.csv") << "group,lower,upper\nall," << limits << "\n";
+    return run_sdm(map({"--atlas", "uv", "--resolution", "64", "--json", "--tolerance", "0.3", "--write",
+                        "none", "--tolerance-table", folder / "table.csv"}));
+  };
+  const Json failed = Json::parse(run("-0.3,0.3").out)["total"];
+  ASSERT_EQ(failed["group_tolerances"]["groups"].size(), 1u);
+  const Json& group = failed["group_tolerances"]["groups"][0];
+  EXPECT_EQ(failed["group_tolerances"]["verdict"], "FAIL");
+  EXPECT_EQ(group["verdict"], "FAIL");
+  EXPECT_NEAR(group["exceeded_area_fraction"], failed["tolerance"]["exceeded_area_fraction"], 1e-6);
+  EXPECT_EQ(group["lowest"], failed["extremes"]["min"]["distance"]);
+  EXPECT_EQ(group["highest"], failed["extremes"]["max"]["distance"]);
+  EXPECT_EQ(Json::parse(run("-5,5").out)["total"]["group_tolerances"]["verdict"], "PASS");
 }
 
 TEST_F(MapCommand, MapsNeedNotBeSquare) {

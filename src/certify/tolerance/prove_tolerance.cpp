@@ -15,6 +15,7 @@
 #include "certify/hausdorff/nearest_face.h"
 #include "certify/hausdorff/vertex_search.h"
 #include "certify/tolerance/least_distance.h"
+#include "certify/tolerance/prove_valid.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
@@ -30,16 +31,24 @@ using hausdorff::LowerBound;
 using hausdorff::NearestFace;
 using hausdorff::Side;
 
-/// The faces of a mesh that matter.
+/// The faces of a mesh that matter, with their vertices in the order that they have. Cost: by these faces,
+/// and not by the mesh, of which there may be many parts.
 Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> faces) {
   Mesh part;
-  part.positions = mesh.positions;
   part.triangles.reserve(faces.size());
+  std::vector<std::uint32_t> vertices;
   for (const std::uint32_t face : faces) {
     if (face >= mesh.triangles.size())
       throw Error("the surface has no face " + std::to_string(face) + " for a tolerance to be proven of");
     part.triangles.push_back(mesh.triangles[face]);
+    vertices.insert(vertices.end(), part.triangles.back().begin(), part.triangles.back().end());
   }
+  std::ranges::sort(vertices);
+  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+  for (const std::uint32_t vertex : vertices) part.positions.push_back(mesh.positions[vertex]);
+  for (Triangle& triangle : part.triangles)
+    for (std::uint32_t& vertex : triangle)
+      vertex = static_cast<std::uint32_t>(std::ranges::lower_bound(vertices, vertex) - vertices.begin());
   return part;
 }
 
@@ -196,13 +205,9 @@ void check_question(const Tolerance& tolerance, const ToleranceProofOptions& opt
 
 }  // namespace
 
-ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,
-                               const ToleranceProofOptions& options) try {
+ToleranceProof tolerance::prove_valid(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,
+                                      const ToleranceProofOptions& options) try {
   check_question(tolerance, options);
-  if (std::ranges::any_of(surface.triangles, is_removed))
-    mesh::validate_edited(surface);
-  else
-    validate(surface);
   const SignUsed sign = choose_sign(sites, MapOptions{.sign = options.sign, .facing = options.facing});
   if (sign.method == SignMethod::none && tolerance.needs_sign())
     throw Error("a tolerance that differs by sign needs signed distances, but these are unsigned: " +
@@ -224,6 +229,16 @@ ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites, const To
   return result;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the proof of a tolerance");
+}
+
+ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,
+                               const ToleranceProofOptions& options) {
+  check_question(tolerance, options);
+  if (std::ranges::any_of(surface.triangles, is_removed))
+    mesh::validate_edited(surface);
+  else
+    validate(surface);
+  return tolerance::prove_valid(surface, sites, tolerance, options);
 }
 
 }  // namespace sdm

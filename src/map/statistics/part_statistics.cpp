@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <string>
 #include <vector>
 
 #include "core/disjoint_sets.h"
@@ -94,6 +95,30 @@ void measure(std::span<const Sample> samples, double all_area, const std::option
 }
 
 }  // namespace
+
+NamedFaces faces_named(std::span<const FaceNames> names, const std::string& name) {
+  for (const FaceNames& kind : names) {
+    const auto number = static_cast<std::uint32_t>(std::ranges::find(kind.names, name) - kind.names.begin());
+    NamedFaces result{.kind = kind.kind, .faces = {}};
+    if (number < kind.names.size())
+      for (std::uint32_t f = 0; f < kind.of_face.size(); ++f)
+        if (kind.of_face[f] == number) result.faces.push_back(f);
+    if (!result.faces.empty()) return result;
+  }
+  return {};
+}
+
+std::string known_names(std::span<const FaceNames> names) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  std::size_t count = 0;
+  for (const FaceNames& kind : names)
+    for (const std::string& name : kind.names) {
+      if (++count > kMost) return "its names are " + text + ", ...";
+      text += (text.empty() ? "" : ", ") + name;
+    }
+  return text.empty() ? "its faces have no names" : "its names are " + text;
+}
 
 std::vector<std::uint32_t> face_components(const Mesh& mesh) try {
   DisjointSets sets(mesh.positions.size());

@@ -1,6 +1,7 @@
 #include <sdm/certified_verdict.h>
 #include <sdm/summary.h>
 
+#include "certify/tolerance/prove_valid.h"
 #include "summary/verdict/certify.h"
 #include "summary/verdict/missing_signs.h"
 
@@ -47,7 +48,7 @@ CertifiedVerdict summary::certify(const ToleranceVerdict& verdict, const Mesh& s
                                   DistanceKind measured, const ToleranceProofOptions& options) {
   CertifiedVerdict result{verdict, {}};
   if (!is_open(result) || measured != DistanceKind::closest) return result;
-  result.proof = prove_tolerance(surface, sites, verdict.tolerance, options);
+  result.proof = tolerance::prove_valid(surface, sites, verdict.tolerance, options);
   static_cast<Judgement&>(result) = judge(result, *result.proof);
   return result;
 }
@@ -57,8 +58,8 @@ CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, c
                                    const CertifyOptions& options) {
   ToleranceVerdict sampled =
       check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance);
-  summary::withhold_failure_by_missing_signs(sampled, surface, sites, map, vertex_distances, {},
-                                             options.accuracy);
+  summary::withhold_failures_by_missing_signs({&sampled, 1}, {}, surface, sites, map, vertex_distances,
+                                              options.accuracy);
   return summary::certify(
       sampled, surface.mesh(), sites, map.measured.kind,
       {.sign = map.sign.method, .accuracy = options.accuracy, .progress = options.progress});

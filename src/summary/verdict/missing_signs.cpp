@@ -4,37 +4,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "map/statistics/tolerance_limits.h"
+#include "summary/verdict/sample_evidence.h"
 
 namespace sdm::summary {
 
-void withhold_failure_by_missing_signs(ToleranceVerdict& verdict, const Surface& surface, const Sites& sites,
-                                       const DistanceMap& map, std::span<const float> vertex_distances,
-                                       std::span<const std::uint8_t> in_set, double accuracy) {
-  if (verdict.reason != VerdictReason::exceeded || verdict.certified ||
-      map.measured.kind != DistanceKind::closest || map.sign.method != SignMethod::side)
-    return;
-  const map::ToleranceLimits limits(verdict.tolerance, accuracy);
-  const auto is_out = [&](float d) { return limits.below(d) || limits.above(d); };
-  const auto decides = [&](float d, bool has_sign) {
-    return std::isfinite(d) && is_out(d) && (has_sign || is_out(-d));
+void withhold_failures_by_missing_signs(std::span<ToleranceVerdict> verdicts, const FaceGroups& groups,
+                                        const Surface& surface, const Sites& sites, const DistanceMap& map,
+                                        std::span<const float> vertex_distances, double accuracy) {
+  const auto in_question = [&](const ToleranceVerdict& verdict) {
+    return may_lack_signs(verdict, map.measured.kind, map.sign.method);
   };
-  const auto has_face = [&](std::uint32_t face) { return in_set.empty() || in_set[face] != 0; };
+  if (std::ranges::none_of(verdicts, in_question)) return;
+  std::vector<SignedSamples> samples(groups.count);
   const std::vector<std::uint8_t> texels = boundary_mask(sites, map);
-  if (std::ranges::any_of(surface.sample_texels(), [&](std::uint32_t texel) {
-        return has_face(surface.texel_faces()[texel]) && decides(map.distance[texel], texels[texel] == 0);
-      }))
-    return;
+  for (const std::uint32_t texel : surface.sample_texels())
+    if (const std::uint32_t group = groups.group(surface.texel_faces()[texel]);
+        group != kNone && std::isfinite(map.distance[texel]))
+      samples[group].add(map.distance[texel], texels[texel] == 0);
   const std::vector<std::uint8_t> vertices = boundary_vertices(surface.mesh(), sites);
-  for (std::uint32_t face = 0; face < surface.mesh().triangles.size(); ++face) {
-    const Triangle& triangle = surface.mesh().triangles[face];
-    if (is_removed(triangle) || !has_face(face)) continue;
-    for (const std::uint32_t vertex : triangle)
-      if (decides(vertex_distances[vertex], vertices[vertex] == 0)) return;
+  const auto& triangles = surface.mesh().triangles;
+  for (std::uint32_t face = 0; face < triangles.size(); ++face) {
+    const std::uint32_t group = groups.group(face);
+    if (is_removed(triangles[face]) || group == kNone) continue;
+    for (const std::uint32_t vertex : triangles[face])
+      if (std::isfinite(vertex_distances[vertex]))
+        samples[group].add(vertex_distances[vertex], vertices[vertex] == 0);
   }
-  verdict.verdict = Verdict::not_decided, verdict.reason = VerdictReason::estimated_signs;
-  verdict.within = true;
+  for (std::size_t g = 0; g < verdicts.size(); ++g)
+    if (in_question(verdicts[g]) && !samples[g].any_out(verdicts[g].tolerance, accuracy))
+      withhold_failure(verdicts[g]);
 }
 
 }  // namespace sdm::summary

@@ -7,45 +7,8 @@
 
 #include "geometry/vec.h"
 #include "map/statistics/tolerance_limits.h"
-#include "summary/verdict/certify.h"
 
 namespace sdm {
-
-Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
-                     double error_bound, double accuracy) {
-  if (map.distance.size() != surface.texel_faces().size()) throw Error("the map belongs to another surface");
-  if (vertex_distances.size() != surface.mesh().positions.size())
-    throw Error("a verdict needs one distance for each vertex of the surface's mesh");
-  const bool is_closest = map.measured.kind == DistanceKind::closest;
-  Evidence evidence{.complete = map.beyond_max_distance == 0 && map.without_match == 0,
-                    .estimated_signs = is_closest && is_estimate(map.sign.method),
-                    .samples_only = !is_closest,
-                    .accuracy = accuracy,
-                    .error_bound = is_closest ? error_bound : std::numeric_limits<double>::infinity(),
-                    .is_signed = map.sign.method != SignMethod::none};
-  const auto add = [&](double d) {
-    evidence.lowest = std::fmin(evidence.lowest.value_or(d), d);
-    evidence.highest = std::fmax(evidence.highest.value_or(d), d);
-  };
-  summary::WithoutValue without(map);
-  for (const std::uint32_t texel : surface.sample_texels())
-    if (std::isfinite(map.distance[texel]))
-      add(map.distance[texel]);
-    else
-      without.add_texel(texel);
-  for (const Triangle& triangle : surface.mesh().triangles) {
-    if (is_removed(triangle)) continue;
-    for (const std::uint32_t vertex : triangle) {
-      const double d = vertex_distances[vertex];
-      if (std::isfinite(d))
-        add(d);
-      else
-        without.add_vertex();
-    }
-  }
-  evidence.complete = evidence.complete && !without.any(), evidence.unmatched = without.unmatched();
-  return evidence;
-}
 
 namespace {
 

@@ -1,0 +1,112 @@
+#include "summary/verdict/evidence.h"
+
+#include <sdm/error.h>
+
+#include <cmath>
+#include <limits>
+
+#include "map/statistics/tolerance_limits.h"
+#include "map/statistics/weighted_texels.h"
+#include "summary/verdict/sample_evidence.h"
+
+namespace sdm {
+namespace summary {
+namespace {
+
+/// The samples of a group that have no value, and whether one of them has none for want of a match, which is
+/// the reason then, rather than since its match is beyond the maximum distance.
+struct WithoutValue {
+  bool unmatched = false, beyond = false, vertex = false;
+
+  void add_texel(const DistanceMap& map, std::uint32_t texel) {
+    (map.unmatched.empty() || map.unmatched[texel] == 0 ? beyond : unmatched) = true;
+  }
+  [[nodiscard]] bool any() const { return unmatched || beyond || vertex; }
+  /// Vertices do not say what they lack: they count as the texels of the group or, if these have values, of
+  /// the map.
+  [[nodiscard]] bool is_unmatched(const DistanceMap& map) const {
+    if (unmatched || beyond || !vertex || map.measured.kind == DistanceKind::closest) return unmatched;
+    return map.without_match > 0 || map.beyond_max_distance == 0;
+  }
+};
+
+}  // namespace
+
+std::vector<Evidence> evidence_of_groups(const Surface& surface, const DistanceMap& map,
+                                         std::span<const float> vertex_distances, const FaceGroups& groups,
+                                         double accuracy) {
+  if (map.distance.size() != surface.texel_faces().size()) throw Error("the map belongs to another surface");
+  if (vertex_distances.size() != surface.mesh().positions.size())
+    throw Error("a verdict needs one distance for each vertex of the surface's mesh");
+  std::vector<DistanceRange> ranges(groups.count);
+  std::vector<WithoutValue> without(groups.count);
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    const std::uint32_t group = groups.group(surface.texel_faces()[texel]);
+    if (group == kNone) continue;
+    if (std::isfinite(map.distance[texel]))
+      ranges[group].add(map.distance[texel]);
+    else
+      without[group].add_texel(map, texel);
+  }
+  const auto& triangles = surface.mesh().triangles;
+  for (std::uint32_t face = 0; face < triangles.size(); ++face) {
+    const std::uint32_t group = groups.group(face);
+    if (is_removed(triangles[face]) || group == kNone) continue;
+    for (const std::uint32_t vertex : triangles[face])
+      if (const double d = vertex_distances[vertex]; std::isfinite(d))
+        ranges[group].add(d);
+      else
+        without[group].vertex = true;
+  }
+  const bool is_closest = map.measured.kind == DistanceKind::closest;
+  std::vector<Evidence> result;
+  for (std::size_t g = 0; g < groups.count; ++g)
+    result.push_back({.lowest = ranges[g].lowest,
+                      .highest = ranges[g].highest,
+                      .complete = !without[g].any(),
+                      .unmatched = without[g].is_unmatched(map),
+                      .estimated_signs = is_closest && is_estimate(map.sign.method),
+                      .samples_only = !is_closest,
+                      .accuracy = accuracy,
+                      .error_bound = std::numeric_limits<double>::infinity(),
+                      .is_signed = map.sign.method != SignMethod::none});
+  return result;
+}
+
+std::vector<GroupArea> areas_of_groups(const Surface& surface, const DistanceMap& map,
+                                       const FaceGroups& groups, std::span<const Tolerance> tolerances,
+                                       double accuracy) {
+  const map::WeightedTexels texels(surface, map);
+  std::vector<map::ToleranceLimits> limits;
+  for (const Tolerance& tolerance : tolerances) limits.emplace_back(tolerance, accuracy);
+  std::vector<GroupArea> result(groups.count);
+  for (std::size_t part = 0; part < map::WeightedTexels::kParts; ++part)
+    texels.for_each(part, [&](float d, float weight, std::uint32_t face) {
+      const std::uint32_t group = groups.group(face);
+      if (group == kNone) return;
+      auto& [shares, area] = result[group];
+      area += weight;
+      (!std::isfinite(d)        ? shares.without_value
+       : limits[group].below(d) ? shares.below
+       : limits[group].above(d) ? shares.above
+                                : shares.within) += weight;
+    });
+  for (auto& [shares, area] : result) {
+    if (area > 0)
+      for (double* share : {&shares.below, &shares.within, &shares.above, &shares.without_value})
+        *share /= area;
+    area *= texels.largest_area();
+  }
+  return result;
+}
+
+}  // namespace summary
+
+Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
+                     double error_bound, double accuracy) {
+  Evidence evidence = summary::evidence_of_groups(surface, map, vertex_distances, {}, accuracy).front();
+  if (map.measured.kind == DistanceKind::closest) evidence.error_bound = error_bound;
+  return evidence;
+}
+
+}  // namespace sdm
