@@ -37,11 +37,12 @@ std::optional<sdm::IslandLimits> limits_of(std::string_view text) {
 
 }  // namespace
 
-void add_island_option(CLI::App& app, std::optional<sdm::IslandLimits>& limits) {
+namespace {
+
+void add_mesh_islands(CLI::App& app, const char* name, const char* help,
+                      std::optional<sdm::IslandLimits>& limits) {
   app.add_option_function<std::string>(
-         "--ignore-islands", [&limits](const std::string& text) { limits = limits_of(text); },
-         "Leave out the components of O1 with less than COUNT faces, less than SHARE % of its area, or less "
-         "than the area A, before the alignment: floating specks of a scan. Their number is reported")
+         name, [&limits](const std::string& text) { limits = limits_of(text); }, help)
       ->check(CLI::Validator(
           [](const std::string& text) {
             return limits_of(text) ? std::string()
@@ -49,6 +50,48 @@ void add_island_option(CLI::App& app, std::optional<sdm::IslandLimits>& limits) 
           },
           ""))
       ->type_name("COUNT|SHARE%|area:A");
+}
+
+}  // namespace
+
+void add_island_option(CLI::App& app, std::optional<sdm::IslandLimits>& limits) {
+  add_mesh_islands(
+      app, "--ignore-islands",
+      "Leave out the components of O1 with less than COUNT faces, less than SHARE % of its area, or less "
+      "than the area A, before the alignment: floating specks of a scan. Their number is reported",
+      limits);
+}
+
+void add_island_option_o2(CLI::App& app, std::optional<sdm::IslandLimits>& limits) {
+  add_mesh_islands(app, "--ignore-islands-o2",
+                   "The same of O2: its islands are no closest points, and nothing is aligned to them",
+                   limits);
+}
+
+void add_point_island_option(CLI::App& app, std::uint64_t& points) {
+  app.add_option(
+         "--ignore-islands", points,
+         "Leave out the clusters of the cloud with less than COUNT points: floating points of a scan. "
+         "They have no distance and count for no number; how many they are is reported")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+      ->type_name("COUNT");
+}
+
+std::optional<std::string> note_on_islands(const std::string& cloud, const sdm::PointDistances& found) {
+  if (!found.islands || found.islands->islands == 0) return std::nullopt;
+  const auto& [islands, points, reach] = *found.islands;
+  return fmt::format("{}: {} with {}, {} % of all, left out; islands are at least {} from other points",
+                     cloud, islands == 1 ? "1 island" : fmt::format("{} islands", islands),
+                     points == 1 ? "1 point" : fmt::format("{} points", points),
+                     number(100 * static_cast<double>(points) / static_cast<double>(found.points), 3),
+                     number(reach / (2 * std::sqrt(3.0)), 3));
+}
+
+nlohmann::ordered_json to_json(const sdm::PointIslands& islands, std::uint64_t points) {
+  return {{"islands", islands.islands},
+          {"points", islands.points},
+          {"point_fraction", static_cast<double>(islands.points) / static_cast<double>(points)},
+          {"reach", islands.reach}};
 }
 
 sdm::IslandReport ignore_islands(Input& input, const sdm::IslandLimits& limits) try {

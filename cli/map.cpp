@@ -106,6 +106,7 @@ int run(MapCommand command) {
   const bool vertices = command.output.files.any_vertices();
   InputPair pair = load_pair(command, {.vertices = {vertices, vertices && command.both}});
   if (command.islands) pair.o1.islands = ignore_islands(pair.o1, *command.islands);
+  if (command.islands_o2) pair.o2.islands = ignore_islands(pair.o2, *command.islands_o2);
   if (command.both)
     check_groups(command.groups, {&pair.o1, &pair.o2});
   else

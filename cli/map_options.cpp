@@ -47,6 +47,7 @@ void add_options(CLI::App& app, MapCommand& c) {
   add_pair_transforms(app, c);
   add_unit_options(app, c.file_units);
   add_island_option(app, c.islands);
+  add_island_option_o2(app, c.islands_o2);
   add_align_options(app, c.align);
   add_map_layout(app, c.layout, both);
 

@@ -37,7 +37,7 @@ struct MapOutput {
 struct MapCommand : PairFiles, RunOptions {
   bool both = false;
   UnitOptions file_units;
-  std::optional<sdm::IslandLimits> islands{};  ///< of O1
+  std::optional<sdm::IslandLimits> islands{}, islands_o2{};
   AlignCommand align;
   DoubtCommand doubts;
   MapLayout layout;

@@ -2,6 +2,7 @@
 
 #include <sdm/points.h>
 #include <sdm/sdm.h>
+#include <sdm/tolerance_table.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +20,13 @@
 #include "exit_codes.h"
 #include "facing.h"
 #include "format.h"
+#include "group_tolerances.h"
+#include "islands.h"
 #include "map_files.h"
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
+#include "places.h"
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
@@ -44,6 +48,9 @@ struct PointsCommand : RunOptions {
   sdm::TessellationOptions tessellation{};
   AlignCommand align;
   DoubtCommand doubts;
+  GroupTolerances groups;
+  std::uint64_t island_points = 0;
+  std::optional<sdm::IslandLimits> islands_o2{};
   sdm::MapOptions map;
   std::optional<sdm::AlongOptions> along{};
   sdm::PictureOptions picture;
@@ -60,7 +67,9 @@ struct PointsOutcome {
   double import_ms = 0, align_ms = 0, points_ms = 0;
 
   [[nodiscard]] ExitCode code() const {
-    return summary.tolerance ? exit_code(summary.tolerance->verdict) : kSuccess;
+    sdm::Verdict verdict = summary.tolerance ? summary.tolerance->verdict : sdm::Verdict::pass;
+    if (found.groups) verdict = worse(verdict, found.groups->verdict);
+    return exit_code(verdict);
   }
 };
 
@@ -95,13 +104,16 @@ Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcom
                   {"points", found.points},
                   {"invalid_points", found.invalid},
                   {"normals", found.has_normals}};
+  if (found.islands) report["o1"]["ignored_islands"] = to_json(*found.islands, found.points);
   report["o1"]["format"] = found.format;
   report["o1"]["text"] = text_json(found.text);
   report["o2"] = to_json(o2);
+  if (o2.islands) report["o2"]["ignored_islands"] = to_json(*o2.islands);
   report["measured_on"] = "o1";
   if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned, command.picture.units);
   report["engine"] = "cpu";
   report.update(Json::parse(sdm::summary_json(outcome.summary)));
+  if (found.groups) report["group_tolerances"] = to_json(*found.groups, true);
   put_fields(report, command.fields);
   report["time_ms"] = {
       {"import", outcome.import_ms}, {"align", outcome.align_ms}, {"points", outcome.points_ms}};
@@ -144,7 +156,8 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   if (s.sign.method == sdm::SignMethod::none)
     text += fmt::format("            unsigned: {}\n", s.sign.reason);
   if (s.beyond_max_distance > 0)
-    text += fmt::format("            {} points are farther than --max-distance\n", s.beyond_max_distance);
+    text += fmt::format("            {} points, {} % of them, are farther than --max-distance\n",
+                        s.beyond_max_distance, number(100 * s.beyond_fraction));
   if (s.without_match > 0)
     text += fmt::format("            {} points have no face {}\n", s.without_match,
                         s.measured.kind == sdm::DistanceKind::along ? "on their line that faces the same way"
@@ -152,6 +165,8 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   if (s.sign.method == sdm::SignMethod::side && s.measured.kind == sdm::DistanceKind::closest)
     text += "            signs are estimates; points closest to the boundary of O2 have none: |d|\n";
   if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
+  text += place_lines(s, size_of(found.bounds));
+  if (found.groups) text += group_lines(*found.groups, s.units, true);
   return text + coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
 }
 
@@ -198,6 +213,7 @@ void add_notes(const PointsCommand& command, const Input& o2, const sdm::Sites& 
   const sdm::Box& box = outcome.found.bounds;
   if (const auto note = precision_note(command, box)) all.push_back(*note);
   std::ranges::copy(o2.notes, std::back_inserter(all));
+  if (const auto note = note_on_islands(command.cloud, outcome.found)) all.push_back(*note);
   if (const auto note = note_on_welding(outcome.found.sign, command.map.sign, o2)) all.push_back(*note);
   std::ranges::copy(sdm::notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(all));
   if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
@@ -229,6 +245,11 @@ int run(PointsCommand command) {
   Input o2 = load_input("o2", command.o2, command.transform_o2, {.tessellation = command.tessellation});
   check_deflection(command.tessellation, {&o2});
   if (command.weld) weld(o2, *command.weld);
+  if (command.islands_o2) o2.islands = ignore_islands(o2, *command.islands_o2);
+  if (!command.groups.file.empty()) command.groups.rows = sdm::read_tolerance_table(command.groups.file);
+  check_groups(command.groups, {&o2});
+  options.names = o2.names, options.table = command.groups.rows;
+  options.island_points = command.island_points;
   PointsOutcome outcome;
   Json report;
   out.fill([&] {
@@ -238,7 +259,7 @@ int run(PointsCommand command) {
     outcome.import_ms = watch.lap();
     if (command.align.on) {
       progress.step("align");
-      command.align.judged = command.picture.tolerance.has_value();
+      command.align.judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
       outcome.aligned = align_sample(command, options.placement, sites, o2, progress.callback());
       options.placement = outcome.aligned->alignment.transform * options.placement;
       write_text(out.staging() / "alignment.json", to_text(to_json(*outcome.aligned, command.picture.units)));
@@ -251,6 +272,8 @@ int run(PointsCommand command) {
     if (command.doubts.min_coverage)
       measure_cloud_coverage(command, options.placement, o2.mesh, outcome, progress);
     sdm::withhold_pass(outcome.summary, command.doubts.accept);
+    if (outcome.found.groups && !outcome.summary.doubts.empty() && !command.doubts.accept)
+      sdm::withhold_pass(*outcome.found.groups);
     add_notes(command, o2, sites, outcome);
     outcome.points_ms = watch.lap();
     report = report_of(command, o2, outcome);
@@ -335,6 +358,8 @@ void add_points_command(CLI::App& app) {
   add_transform_option(*points, "--transform-o2", "O2", c.transform_o2);
   add_unit_options(*points, c.file_units);
   add_weld_option(*points, c.weld, "O2");
+  add_point_island_option(*points, c.island_points);
+  add_island_option_o2(*points, c.islands_o2);
   add_deflection_option(*points, c.tessellation);
   add_align_options(*points, c.align);
   points->add_option("--max-distance", c.map.max_distance, "Points farther than this have no value")
@@ -345,6 +370,10 @@ void add_points_command(CLI::App& app) {
   add_along_option(*points, c.along, "point",
                    "Along a direction, points without normals are measured to any face");
   add_tolerance_option(*points, c.picture.tolerance);
+  add_tolerance_table_option(
+      *points, c.groups,
+      "Judge the points by groups of O2, those of their closest faces, by the exit code "
+      "too");
   add_doubt_options(*points, c.doubts);
   add_color_options(*points, c.picture);
   points->add_option("--units", c.picture.units, "Units of the cloud and the mesh, for printed values")

@@ -5,6 +5,7 @@
 #include "format.h"
 #include "group_tolerances.h"
 #include "notes.h"
+#include "places.h"
 #include "scenes/placement.h"
 
 using Json = nlohmann::ordered_json;
@@ -201,7 +202,8 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   }
   if (s.sign.method == sdm::SignMethod::none) add("            unsigned: {}\n", s.sign.reason);
   if (s.beyond_max_distance > 0)
-    add("            {} texels are farther than --max-distance\n", s.beyond_max_distance);
+    add("            {} texels, {} % of the area, are farther than --max-distance\n", s.beyond_max_distance,
+        number(100 * s.beyond_fraction));
   if (s.without_match > 0)
     add("            {} texels have no {}\n", s.without_match,
         is_along(s) ? "such face on their line" : "face that faces them");
@@ -214,6 +216,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
     add("  error     at most {}{} between the texels, whose values are exact\n",
         number(s.evidence.error_bound), unit);
   if (s.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
+  text += place_lines(s, outcome.size);
   if (outcome.groups) text += group_lines(*outcome.groups, s.units);
   text += coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
   if (outcome.raster)

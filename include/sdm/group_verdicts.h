@@ -44,6 +44,17 @@ struct GroupVerdicts {
   Verdict verdict = Verdict::pass;
 };
 
+/// What the points of a cloud show of a group, which are those that are closest to its faces.
+struct GroupPoints {
+  std::string kind;
+  GroupTolerance row;
+  std::size_t faces = 0;
+  std::uint64_t points = 0;            ///< with a value
+  std::uint64_t below = 0, above = 0;  ///< out of the tolerance by more than the accuracy
+  bool out_with_either_sign = true;    ///< a point is out whatever its sign, if it has none
+  Evidence evidence{};                 ///< with error bound 0
+};
+
 /// Options of certify_groups().
 struct CertifyGroupsOptions {
   double accuracy = 0;   ///< of the distances: engine_accuracy(); infinite if unknown
@@ -63,6 +74,14 @@ struct CertifyGroupsOptions {
                                                    std::span<const FaceNames> names,
                                                    std::span<const GroupTolerance> table,
                                                    const CertifyGroupsOptions& options);
+
+/// Judges groups of points, whose distances have this sign and kind. Fractions are of the points of the
+/// group. Cost: linear in groups.
+[[nodiscard]] SDM_API GroupVerdicts judge_groups(std::span<const GroupPoints> groups, SignMethod sign,
+                                                 DistanceKind measured);
+
+/// Makes Verdict::doubtful of a pass on all groups, as there are doubts.
+SDM_API void withhold_pass(GroupVerdicts& verdicts);
 
 /// The verdicts on maps of parts of a surface, such as UDIM tiles, as of one map, in the order of the table:
 /// that on a group is Verdict::fail if that of one of its parts is, and so on, as of all groups; fractions

@@ -6,8 +6,11 @@
 
 #include <sdm/along.h>
 #include <sdm/api.h>
+#include <sdm/group_verdicts.h>
 #include <sdm/io.h>
 #include <sdm/map.h>
+#include <sdm/part_statistics.h>
+#include <sdm/places.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
@@ -18,6 +21,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -122,10 +126,23 @@ struct PointDistancesOptions {
   /// cloud if it has any, which AlongOptions without a direction need. The maximum distance and the progress
   /// are those of `map`, whose sign, engine and facing have to be as by default.
   std::optional<AlongOptions> along{};
-  Transform placement{};        ///< of the points, before they are measured and written; not singular
-  PictureOptions picture{};     ///< colours; `accuracy` and `largest` have no meaning here
-  std::size_t chunk = 1 << 18;  ///< points in memory at a time, greater than 0
-  TextDialect text{};           ///< of a cloud in text, as of PointReader
+  Transform placement{};               ///< of the points, before they are measured and written; not singular
+  PictureOptions picture{};            ///< colours; `accuracy` and `largest` have no meaning here
+  std::size_t chunk = 1 << 18;         ///< points in memory at a time, greater than 0
+  TextDialect text{};                  ///< of a cloud in text, as of PointReader
+  std::span<const FaceNames> names{};  ///< of the faces of O2
+  std::span<const GroupTolerance> table{};  ///< tolerances of these names
+  /// Clusters of fewer points are *islands*, which have no value and count for nothing but their number; 0:
+  /// there are none. Points are of one cluster if they are in cells of a grid that touch. These are four
+  /// times as wide as points would be apart if they were spread evenly over the box of all but the outermost
+  /// of them, and at least 1/512 of its diagonal. Finding them reads the cloud twice more.
+  std::uint64_t island_points = 0;
+};
+
+/// The islands of a cloud.
+struct PointIslands {
+  std::uint64_t islands = 0, points = 0;
+  double reach = 0;  ///< points farther apart are in separate clusters, unless others are between them
 };
 
 /// The distance of a point and the place of that point in the file, from 0.
@@ -152,8 +169,19 @@ struct PointDistances {
   /// Points whose distance is out of picture.tolerance by more than the accuracy, or that are beyond the
   /// maximum distance.
   std::uint64_t beyond_tolerance = 0;
+  /// SignMethod::side: some point is out of picture.tolerance whatever its sign. Points that are closest to
+  /// the boundary of an open O2 have no side, and |d|.
+  bool beyond_with_either_sign = true;
+  std::optional<PointIslands> islands;  ///< if they were looked for
+  std::optional<Places> places;         ///< nothing if no point has a value
+  /// The verdicts on the groups of options.table: each point with a value is of the groups of its closest
+  /// face. Doubts are not considered.
+  std::optional<GroupVerdicts> groups;
   double accuracy = 0;  ///< of a distance: that of the engine for the box of O2 and the points
   Box bounds;           ///< of the finite points
+
+  /// All points but those of islands: what fractions of points are of.
+  [[nodiscard]] std::uint64_t counted() const { return points - (islands ? islands->points : 0); }
 };
 
 /// Computes the distance of each point of a file to O2, and writes the points in their order as binary PLY:

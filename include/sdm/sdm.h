@@ -28,6 +28,7 @@
 #include <sdm/mesh_edit.h>
 #include <sdm/multi_body_query.h>
 #include <sdm/part_statistics.h>
+#include <sdm/places.h>
 #include <sdm/progress.h>
 #include <sdm/proximity_query.h>
 #include <sdm/rays.h>

@@ -15,6 +15,7 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/part_statistics.h>
+#include <sdm/places.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
@@ -113,12 +114,14 @@ struct Summary {
   std::optional<Extremes> extremes{};             ///< nothing without a value
   std::array<std::uint64_t, 2> extreme_points{};  ///< of a cloud: their places in the file, from 0
   std::size_t beyond_max_distance = 0;
+  double beyond_fraction = 0;       ///< theirs of the area of all texels, an estimate; or of all points
   std::size_t without_match = 0;    ///< samples without a value, as no face of O2 faces as they do
   std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh
   double max_distance = std::numeric_limits<double>::infinity();  ///< infinite if there is no limit
   Evidence evidence{};                                            ///< with the accuracy and the error bound
   LargestDistance hausdorff{};  ///< of a map: the one-sided Hausdorff distance
   std::optional<CertifiedVerdict> tolerance{};
+  std::optional<Places> places{};              ///< where it deviates most; nothing of wall thickness
   std::optional<Coverage> coverage{};          ///< of O2, if it was asked for
   std::vector<Doubt> doubts{};                 ///< which make a pass Verdict::doubtful, unless accepted
   std::uint64_t exceeding_points = 0;          ///< of a cloud: out of the tolerance, or without a value
@@ -182,7 +185,8 @@ class SDM_API CombinedSummary {
  private:
   CombinedStatistics statistics_;
   Summary total_;
-  std::vector<double> areas_;
+  std::vector<double> areas_, beyond_;
+  std::vector<Places> places_;
   std::vector<CertifiedVerdict> verdicts_;
 };
 

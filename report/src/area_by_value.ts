@@ -1,6 +1,6 @@
 import { floatOfKey } from './arrays';
 
-/// The fraction of the area up to a distance: of src/io/page/report/area_by_value.h.
+/// The fraction of the area, that without a value included, up to a distance: of src/io/page/report/area_by_value.h.
 export class AreaByValue {
   private readonly edges: number[] = []; ///< of the bins of floats: [from, to) of each
   private readonly sums = [0];
@@ -12,6 +12,7 @@ export class AreaByValue {
     keys: Uint32Array,
     areaOfKey: Float32Array,
     areaOfBin: Float32Array,
+    readonly withoutValue: number,
   ) {
     keys.forEach((key, i) => {
       this.edges.push(floatOfKey(key), floatOfKey(key + 1));
@@ -20,10 +21,10 @@ export class AreaByValue {
     areaOfBin.forEach((area, i) => this.binSums.push(this.binSums[i] + area));
   }
 
-  /// The fraction of the area with a value whose distance is at most d.
+  /// The fraction of the area whose distance is at most d.
   upTo(d: number): number {
     if (this.edges.length === 0 || d < this.lo) return 0;
-    if (d >= this.hi) return 1;
+    if (d >= this.hi) return 1 - this.withoutValue;
     const bins = this.binSums.length - 1;
     const width = (this.hi - this.lo) / bins;
     // The bin of floats with d, or the one before it.

@@ -60,11 +60,13 @@ export function drawHistogram(area: AreaByValue, whole: 'area' | 'points', scale
   svg.append(makeSvg('line', { class: 'axis', x1: kLeft, x2: plotWidth - kRight, y1: y(0), y2: y(0) }));
 
   const below = area.upTo(lo - width * 1e-9);
-  const above = 1 - area.upTo(hi);
+  const above = Math.max(0, 1 - area.withoutValue - area.upTo(hi));
+  const without = area.withoutValue;
   const sentence =
-    `${percent(Math.max(0, 1 - below - above))} of the ${whole} ${whole === 'area' ? 'is' : 'are'} between ${text(lo)} and ${text(hi)}${unit ? ` ${unit}` : ''}` +
+    `${percent(Math.max(0, 1 - without - below - above))} of the ${whole} ${whole === 'area' ? 'is' : 'are'} between ${text(lo)} and ${text(hi)}${unit ? ` ${unit}` : ''}` +
     (below > 0 ? `, ${percent(below)} below` : '') +
     (above > 0 ? `, ${percent(above)} above` : '') +
+    (without > 0 ? `, ${percent(without)} without a value` : '') +
     (whole === 'area' ? '. Areas are estimates from the samples.' : '. All points of the cloud were counted.');
   byId('histogram-chart').replaceChildren(
     make('div', { role: 'img', class: 'chart', 'aria-label': `Histogram of the ${whole} by distance. ${sentence}` }, svg),

@@ -3,18 +3,19 @@ import { Callouts } from './callouts';
 import { Cloud } from './cloud';
 import { drawCoverageLegend } from './coverage';
 import { makeControls, State } from './controls';
-import { byId, make, table } from './dom';
+import { byId, make } from './dom';
 import { GroupName, showGroups } from './group_table';
 import { drawHistogram } from './histogram';
 import { drawLegend } from './legend';
-import { count, exactText, percent, place, signedText } from './numbers';
+import { exactText, percent, place } from './numbers';
 import { openPage } from './open_page';
-import { PageData, readData, readReport, Report, Vec, Worst } from './page_data';
+import { showPlaces } from './places';
+import { PageData, readData, readReport, Report, Vec } from './page_data';
 import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved';
 import { boxOf, Subject, toFile, toScene } from './subject';
 import { Surface } from './surface';
 import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
-import { isCloud, isSigned, limitsText, unitOf, verdictFor, verdictOf, wholeOf } from './verdict';
+import { isCloud, isSigned, limitsText, outsideOf, unitOf, verdictFor, verdictOf, wholeOf } from './verdict';
 import { View } from './view';
 import { capital, quantityOf } from './words';
 
@@ -33,6 +34,7 @@ function showVerdict(report: Report): void {
 function nameSubject(report: Report): void {
   byId('canvas').setAttribute('aria-label', `The part, coloured by ${quantityOf(report)}`);
   if (report.thickness) byId('worst-title').textContent = 'Thinnest places';
+  else if (report.places?.limits_from === 'tolerance') byId('worst-title').textContent = 'Places out of tolerance';
   if (!isCloud(report)) return;
   byId('part-title').textContent = 'The cloud in 3D';
   byId('histogram-title').textContent = 'How the points are distributed';
@@ -156,7 +158,7 @@ class Page {
   }
 
   private showWhatIf({ scale }: State): void {
-    const outside = 1 - this.data.area.within(scale.lower - scale.accuracy, scale.upper + scale.accuracy);
+    const outside = outsideOf(this.report, scale, this.data.area);
     const verdict = verdictFor(this.report, scale);
     byId('what-if').replaceChildren(
       `With ${limitsText(scale, this.report)}: `,
@@ -256,27 +258,18 @@ class Page {
   }
 
   private showWorst(): void {
-    const { worst } = this.data.page;
-    const rows = worst.map((w: Worst, i: number) => {
-      const value = `${signedText(w.distance, this.signs)}${this.unit}`;
-      const show = () => {
-        const at = toScene(this.subject, w.point);
-        this.callouts.add({ distance: w.distance, point: w.point, at, detail: '' });
-        this.lookAt(at);
-      };
-      return [
-        String(i + 1),
-        make('button', { type: 'button', class: 'link', click: show, 'aria-label': `Show place ${i + 1}, ${value}` }, value),
-        place(w.point, this.subject.size),
-        w.number !== undefined ? `point ${count(w.number)}` : w.texel ? 'measured point' : 'vertex of the part',
-      ];
+    showPlaces(this.report, this.data.page.thinnest ?? null, this.subject.size, (place) => {
+      const at = toScene(this.subject, place.point);
+      this.callouts.add({ distance: place.distance, point: place.point, at, detail: place.group ?? '' });
+      this.lookAt(at);
     });
-    byId('worst-table').replaceChildren(
-      rows.length === 0
-        ? make('p', {}, 'No point of the part has a distance other than 0.')
-        : table(['', 'Distance', 'Position', 'At'], rows, this.report.thickness ? 'The thinnest places' : 'The places with the largest distances'),
-      make('p', { class: 'hint' }, `${this.report.thickness ? 'The least values, at texels' : 'The largest distances by size, at places'} that are at least 6 % of the part\u2019s size apart. Choose one to see it.`),
-    );
+  }
+
+  /// The fraction out of the limits as it is shown, and by the bins alone; for tests.
+  outside() {
+    const { scale } = this.state;
+    const binned = 1 - this.data.area.within(scale.lower - scale.accuracy, scale.upper + scale.accuracy);
+    return { stated: outsideOf(this.report, scale, this.data.area), binned };
   }
 
   /// What is under a place of the canvas; for tests.

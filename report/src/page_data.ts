@@ -95,17 +95,42 @@ export interface Report {
     }[];
   };
   coverage?: { value: number; lower: number; upper: number; reach: number };
+  places?: Places | null;
   doubts?: { reason: string; text: string; remedy: string }[];
   notes?: string[];
   time_ms?: Record<string, number | null>;
   [key: string]: unknown;
 }
 
-export interface Worst {
+/// A region that deviates, by its sample that is farthest beyond the limit.
+export interface Place {
   distance: number;
   point: Vec;
-  texel?: [number, number];
-  number?: number; ///< of a point of a cloud
+  at: 'texel' | 'vertex' | 'point';
+  index?: number; ///< of a point of a cloud
+  area?: number;
+  points?: number; ///< of a cloud
+  group: string | null;
+  small: boolean;
+}
+
+interface PlaceTotals {
+  count: number;
+  points?: number;
+  area?: number;
+  area_fraction?: number;
+  point_fraction?: number;
+}
+
+export interface Places {
+  lower: number | null;
+  upper: number | null;
+  limits_from: 'tolerance' | 'p99_abs';
+  least_area_fraction?: number;
+  least_point_fraction?: number;
+  large: PlaceTotals;
+  small: PlaceTotals;
+  largest: Place[];
 }
 
 interface Placement {
@@ -129,8 +154,8 @@ interface PageJson {
   model?: Placement & { triangles_of_mesh: number; names?: { kind: string; names: string[] }[] };
   cloud?: Placement & { points: number; picked: number; normals: boolean }; ///< in place of map and model
   ghost?: Placement & { box: { lo: Vec; hi: Vec }; triangles_of_mesh: number };
-  worst: Worst[];
-  area: { lo: number; hi: number };
+  thinnest?: Pick<Place, 'distance' | 'point' | 'at'>[]; ///< of wall thickness, in place of the report's places
+  area: { lo: number; hi: number; without_value: number };
   arrays: ArrayIndex;
 }
 
@@ -395,6 +420,7 @@ export async function readData(): Promise<PageData> {
     arrays.get('area_key')!,
     floats(arrays.get('area_of_key')!),
     floats(arrays.get('area_of_bin')!),
+    page.area.without_value,
   );
   return { page, surface, cloud, ghost: readGhost(page, arrays, surface?.model ?? cloud!), area };
 }

@@ -223,7 +223,7 @@ function omittedPoints(shown: number, { points, picked, normals }: NonNullable<P
 const kShown = new Set([
   'version', 'fields', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'measured', 'sign',
   'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance', 'without_match',
-  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'group_tolerances', 'coverage', 'notes', 'time_ms', 'histogram',
+  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'places', 'group_tolerances', 'coverage', 'notes', 'time_ms', 'histogram',
 ]);
 
 function isScalar(value: unknown): boolean {

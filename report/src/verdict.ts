@@ -1,7 +1,8 @@
 // Whether a part is within a tolerance: as the report says, where a proof may have decided, and for other limits by
 // the rule of judge() in include/sdm/tolerance.h, on the evidence of the samples.
 import type { Evidence, Report } from './page_data';
-import { text } from './numbers';
+import { percent, text } from './numbers';
+import type { AreaByValue } from './area_by_value';
 import { capital, isThickness, quantityOf } from './words';
 
 export type Verdict = 'PASS' | 'FAIL' | 'NOT DECIDED' | 'DOUBTFUL' | 'MEASURED';
@@ -93,6 +94,15 @@ export function verdictFor(report: Report, limits: Limits): Verdict | null {
   return judge(evidence, limits).verdict;
 }
 
+/// The fraction of the area, or of the points, that is out of limits: as the report says, and for other limits by the
+/// distribution, whose bins make it an estimate.
+export function outsideOf(report: Report, limits: Limits & { accuracy: number }, area: AreaByValue): number {
+  const judged = limitsOf(report);
+  const stated = report.tolerance?.exceeded_area_fraction ?? report.tolerance?.exceeded_point_fraction;
+  if (stated !== undefined && judged && judged.lower === limits.lower && judged.upper === limits.upper) return stated;
+  return Math.max(0, 1 - area.within(limits.lower - limits.accuracy, limits.upper + limits.accuracy));
+}
+
 /// A clause as a sentence.
 function sentence(clause: string): string {
   return `${capital(clause)}.`;
@@ -111,15 +121,17 @@ function failure(report: Report, limits: Limits): string {
   const cloud = isCloud(report);
   const t = report.tolerance!;
   const outside = t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null;
-  if (t.reason === 'without match') return sentence(t.text ?? '');
+  const whole = cloud ? 'points are' : 'area is';
+  const lacking = outside === null ? '' : `: ${percent(outside)} of the ${whole} out of tolerance or without a value`;
+  if (t.reason === 'without match') return sentence(`${t.text ?? ''}${lacking}`);
   if (t.reason === 'beyond max distance')
     return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
       report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
-    }.`;
+    }${lacking}.`;
   const between = t.proof?.witness;
   const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
   const share =
-    outside === null || between ? '' : `, and ${cloud ? '' : 'about '}${text(100 * outside, 3)}\u00a0% of the ${cloud ? 'points are' : 'area is'} out of tolerance`;
+    outside === null || between ? '' : `, and ${cloud ? '' : 'about '}${percent(outside)} of the ${whole} out of tolerance`;
   return `A ${quantityOf(report)} of ${text(most)}${unit} was found${between ? ' between the measured points' : ''}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
 }
 

@@ -101,6 +101,8 @@ void CombinedSummary::add(const Surface& surface, const DistanceMap& map, const 
   statistics_.add(surface, map);
   const bool first = areas_.empty();
   areas_.push_back(area_of(surface));
+  beyond_.push_back(summary.beyond_fraction);
+  if (summary.places) places_.push_back(*summary.places);
   if (summary.tolerance) verdicts_.push_back(*summary.tolerance);
   if (first) {
     total_ = summary;
@@ -118,6 +120,11 @@ Summary CombinedSummary::summary() const {
   Summary total = total_;
   total.distance = statistics_.statistics();
   total.hausdorff = summary::largest_distance(total);
+  double area = 0, beyond = 0;
+  for (std::size_t i = 0; i < areas_.size(); ++i) area += areas_[i], beyond += areas_[i] * beyond_[i];
+  total.beyond_fraction = area > 0 ? beyond / area : 0;
+  total.places.reset();
+  if (places_.size() == areas_.size()) total.places = combined_places(places_, areas_);
   if (!verdicts_.empty()) {
     total.tolerance = summary::combined_verdict(verdicts_, areas_);
     if (!total.tolerance->proof)

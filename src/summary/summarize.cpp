@@ -53,6 +53,39 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
   return notes;
 }
 
+/// The share of the area whose texels are beyond the maximum distance, and not without a match.
+double beyond_fraction(const Surface& surface, const DistanceMap& map) {
+  if (map.beyond_max_distance == 0) return 0;
+  if (map.without_match == 0)
+    return area_fraction_beyond(surface, map, std::numeric_limits<double>::infinity());
+  DistanceMap matched;
+  matched.distance = map.distance;
+  for (std::size_t texel = 0; texel < map.unmatched.size(); ++texel)
+    if (map.unmatched[texel] != 0) matched.distance[texel] = 0;
+  return area_fraction_beyond(surface, matched, std::numeric_limits<double>::infinity());
+}
+
+/// The names of the faces of the surface, which may be a part of the mesh that has them.
+std::vector<FaceNames> names_of(const SummaryOptions& options) {
+  std::vector<FaceNames> names(options.names.begin(), options.names.end());
+  if (options.whole_face.empty()) return names;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    names[k].of_face.clear();
+    for (const std::uint32_t face : options.whole_face)
+      names[k].of_face.push_back(options.names[k].of_face[face]);
+  }
+  return names;
+}
+
+Places places_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
+                 const DistanceStatistics& distance, const SummaryOptions& options) {
+  return find_places(surface, map, vertex_distances,
+                     {.tolerance = options.tolerance,
+                      .accuracy = std::isfinite(options.accuracy) ? options.accuracy : 0,
+                      .p99_abs = distance.p99_abs,
+                      .names = names_of(options)});
+}
+
 }  // namespace
 
 const Extreme& farthest(const Extremes& extremes) {
@@ -95,6 +128,8 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
   run_concurrently(
       {[&] { error_bound = covering_radius(surface); },
        [&] { result.boundary_texels = boundary_texels(sites, map, options.boundary); },
+       [&] { result.places = places_of(surface, map, vertex_distances, result.distance, options); },
+       [&] { result.beyond_fraction = beyond_fraction(surface, map); },
        [&] { result.distribution = summary::distribution_of(surface, map, result.distance, options); }});
   result.evidence = evidence_of(surface, map, vertex_distances, error_bound, options.accuracy);
   result.hausdorff = summary::largest_distance(result);
@@ -112,7 +147,7 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
 Summary summarize_thickness(const Surface& surface, const DistanceMap& map, const SummaryOptions& options) {
   const std::vector<float> unknown(surface.mesh().positions.size(), std::numeric_limits<float>::quiet_NaN());
   Summary result = summarize_self(surface, map, options);
-  result.of_thickness = true, result.measured = map.measured;
+  result.of_thickness = true, result.measured = map.measured, result.places.reset();
   result.extremes = extremes(surface, map, unknown);
   result.distribution = summary::distribution_of(surface, map, result.distance, options);
   Evidence& evidence = result.evidence;
@@ -141,6 +176,7 @@ Summary summarize_self(const Surface& surface, const DistanceMap& map, const Sum
                  .beyond_max_distance = map.beyond_max_distance,
                  .max_distance = options.max_distance};
   result.colors = colors_of(options, result.distance);
+  result.places = places_of(surface, map, {}, result.distance, options);
   return result;
 }
 

@@ -32,6 +32,7 @@ set(order
   gl
   engines
   map/statistics
+  map/places
   map
   registration
   certify/hausdorff

@@ -552,6 +552,18 @@ const checks = {
     writeFileSync(out, JSON.stringify(told));
   },
 
+  // The fraction out of tolerance is one number, in the banner and below the sliders, and by the bins nearly the same.
+  async percentages(page, fraction) {
+    const percents = (text) => [...plain(text).matchAll(/([\d.]+).%/g)].map((match) => Number(match[1]));
+    const [stated] = percents(await page.textContent('#sentence'));
+    const [below] = percents(await page.textContent('#what-if'));
+    assert.strictEqual(below, stated);
+    assert(Math.abs(stated - 100 * fraction) <= 0.0051 * Math.max(1, stated), `${stated} for ${100 * fraction}`);
+    const { stated: number, binned } = await page.evaluate(() => window.sdmPage.outside());
+    assert.strictEqual(number, Number(fraction));
+    assert(Math.abs(binned - fraction) < 0.01, `${binned} by bins for ${fraction}`);
+  },
+
   // Opens, and says these words; any words if none are given.
   async says(page, ...words) {
     const text = plain(await page.innerText('body'));

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sdm/tolerance.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,8 +12,8 @@
 #include "geometry/vec.h"
 #include "io/page/report/area_by_value.h"
 #include "io/page/report/fewer_vertices.h"
+#include "io/page/report/largest_by_cell.h"
 #include "io/page/report/packed_arrays.h"
-#include "io/page/report/worst_places.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
 
@@ -22,29 +24,20 @@ using namespace io;
 
 const Field kBump = [](const Vec3& p) { return p[0] - 3 * std::exp(-40 * squared_norm(p - Vec3{0, 1, 0})); };
 
-TEST(WorstPlaces, StartAtTheLargestAndAreApart) {
-  const Surface surface(ring(40), {.resolution = 256});
-  const auto vertices = at_vertices(surface.mesh(), kBump);
-  const DistanceMap map = map_of(surface, kBump);
-  const std::vector<Place> places = worst_places(surface, map, vertices);
-  ASSERT_GE(places.size(), 3u);
-  ASSERT_LE(places.size(), 10u);
-  const Extremes all = extremes(surface, map, vertices).value();
-  EXPECT_EQ(std::abs(places[0].distance), std::max(std::abs(all.min.distance), std::abs(all.max.distance)));
-  const double apart = 0.06 * diagonal(bounds(surface.mesh()));
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    EXPECT_NEAR(places[i].distance, kBump(places[i].point), 1e-5);
-    EXPECT_LE(std::abs(places[i].distance), std::abs(places[i > 0 ? i - 1 : 0].distance));
-    for (std::size_t j = 0; j < i; ++j) EXPECT_GE(norm(places[i].point - places[j].point), apart);
-    if (places[i].sample == kNone) continue;
-    EXPECT_EQ(places[i].point, surface.texel_point(static_cast<std::uint32_t>(places[i].sample)));
+TEST(LargestByCell, IsTheLargestOfEachNeighbourhood) {
+  LargestByCell cells({{0, 0, 0}, {1, 1, 1}});
+  for (int i = 0; i < 1000; ++i) {
+    const double x = i / 1000.0;
+    cells.add({i % 2 == 0 ? x : -x, {x, x, x}, static_cast<std::uint64_t>(i)});
   }
-}
-
-TEST(WorstPlaces, NeedAValue) {
-  const Field none = [](const Vec3&) { return std::nan(""); };
-  const Surface surface(ring(6), {.resolution = 64});
-  EXPECT_TRUE(worst_places(surface, map_of(surface, none), at_vertices(surface.mesh(), none)).empty());
+  cells.add({std::nan(""), {0.5, 0.5, 0.5}, 1000});
+  const std::vector<CellPlace> places = cells.largest();
+  ASSERT_GT(places.size(), 9u);
+  EXPECT_EQ(places[0].sample, 999u);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    EXPECT_LT(std::abs(places[i].distance), std::abs(places[i - 1].distance));
+    EXPECT_EQ(std::abs(places[i].distance), places[i].point[0]);
+  }
 }
 
 /// The fraction of the area below a limit by both sets of bins, at edges of these.
@@ -69,6 +62,19 @@ TEST(AreaByValue, AgreesWithAreasBeyondLimits) {
     EXPECT_NEAR(by_key, 1 - area_fraction_beyond(surface, map, std::nextafter(next, 0.f)), 1e-5);
   }
   EXPECT_NEAR(by_key, 1, 1e-5);
+}
+
+// Fractions are of all of the area, as those of a verdict are.
+TEST(AreaByValue, CountsWhatHasNoValue) {
+  const Surface surface(ring(20), {.resolution = 256});
+  const DistanceMap map =
+      map_of(surface, [](const Vec3& p) { return p[0] > 0.5 ? std::nan("") : std::abs(p[0]); });
+  const AreaByValue area = area_by_value(surface, map);
+  double sum = 0;
+  for (const float bin : area.area) sum += bin;
+  EXPECT_GT(area.without_value, 0.1);
+  EXPECT_NEAR(sum + area.without_value, 1, 1e-5);
+  EXPECT_NEAR(area.without_value, tolerance_shares(surface, map, Tolerance(9), 0).without_value, 1e-6);
 }
 
 TEST(FewerVertices, AreVerticesWithTheirDistances) {

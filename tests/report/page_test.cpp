@@ -251,6 +251,29 @@ Json report_in(const std::string& page) {
   return Json::parse(text.substr(from, text.find("</script>", from) - from));
 }
 
+TEST_F(Page, StatesOneFractionOutOfTolerance) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--tolerance", "2.1"},
+                                               {"--tolerance", "1.9", "--max-distance", "2.2"},
+                                               {"--sign", "side", "--tolerance=0:2.05"}}) {
+    const Json report = map(more);
+    const double fraction = report["tolerance"]["exceeded_area_fraction"];
+    ASSERT_GT(fraction, 0.05);
+    EXPECT_TRUE(passes("percentages", page(), {fmt::format("{}", fraction)}));
+    const std::vector<std::string> places{
+        report["places"]["limits_from"] == "tolerance" ? "Places out of tolerance" : "Largest distances"};
+    EXPECT_TRUE(passes("says", page(), places));
+  }
+}
+
+TEST_F(Page, ListsThePlacesOfTheReport) {
+  const Json report = map({"--tolerance", "2.3"});
+  const Json& places = report["places"];
+  ASSERT_GT(places["large"]["count"], 0);
+  EXPECT_TRUE(passes("says", page(),
+                     {"Places out of tolerance", "Connected regions out of the tolerance of",
+                      fmt::format("{}, together", places["large"]["count"].get<int>())}));
+}
+
 TEST_F(Page, JudgesAsTheLibrary) {
   map({"--resolution", "64"});
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -121,6 +121,44 @@ Json to_json(const ToleranceShares& shares) {
           {"without_value", shares.without_value}};
 }
 
+/// Keys are those of a surface; a cloud has points in place of texels and areas.
+Json to_json(const Place& place, bool of_points) {
+  Json json{{"distance", place.distance},
+            {"point", place.point},
+            {"at", of_points               ? "point"
+                   : place.sample == kNone ? "vertex"
+                                           : "texel"}};
+  if (of_points) json["index"] = place.sample;
+  json["triangle"] = place.face == kNone ? Json() : Json(place.face);
+  json[of_points ? "points" : "texels"] = place.samples;
+  if (!of_points) json["area"] = place.area;
+  json[of_points ? "point_fraction" : "area_fraction"] = place.fraction;
+  json["kind"] = place.kind.empty() ? Json() : Json(place.kind);
+  json["group"] = place.group.empty() ? Json() : Json(place.group);
+  json["small"] = place.small;
+  return json;
+}
+
+Json totals_json(const PlaceTotals& totals, bool of_points) {
+  Json json{{"count", totals.count}, {of_points ? "points" : "texels", totals.samples}};
+  if (!of_points) json["area"] = totals.area;
+  json[of_points ? "point_fraction" : "area_fraction"] = totals.fraction;
+  return json;
+}
+
+Json to_json(const Places& places, bool of_points) {
+  Json largest = Json::array();
+  for (const Place& place : places.largest) largest.push_back(to_json(place, of_points));
+  return {{"kind", "estimate"},
+          {"lower", places.limits.lo},
+          {"upper", places.limits.hi},
+          {"limits_from", places.by_tolerance ? "tolerance" : "p99_abs"},
+          {of_points ? "least_point_fraction" : "least_area_fraction", places.least_fraction},
+          {"large", totals_json(places.large, of_points)},
+          {"small", totals_json(places.small, of_points)},
+          {"largest", std::move(largest)}};
+}
+
 /// What was proven where the samples did not decide.
 Json to_json(const ToleranceProof& proof) {
   Json json{{"witness", nullptr},
@@ -226,6 +264,7 @@ Json to_json(const Summary& summary) {
     json["distance"] = to_json(d);
     json["texels_with_value"] = d.texels;
     json["texels_without_value"] = summary.beyond_max_distance;
+    if (summary.places) json["places"] = to_json(*summary.places, false);
     json["notes"] = summary.notes;
     return json;
   }
@@ -237,12 +276,16 @@ Json to_json(const Summary& summary) {
   json[summary.of_points ? "points_with_value" : "texels_with_value"] = d.texels;
   json[summary.of_points ? "negative_points" : "negative_texels"] = d.negative_texels;
   json["beyond_max_distance"] = summary.beyond_max_distance;
+  json[summary.of_points ? "beyond_max_distance_point_fraction" : "beyond_max_distance_area_fraction"] =
+      summary.beyond_fraction;
   json["without_match"] = summary.without_match;
   json["accuracy"] = summary.evidence.accuracy;  // null: unknown
   json["accuracy_kind"] = std::isfinite(summary.evidence.accuracy) ? "bounded" : "unknown";
   if (!summary.of_points && !summary.of_thickness) add_surface(json, summary);
   json["evidence"] = to_json(summary.evidence);
   if (summary.tolerance) json["tolerance"] = tolerance_json(summary);
+  if (!summary.of_thickness)
+    json["places"] = summary.places ? to_json(*summary.places, summary.of_points) : Json();
   json["doubts"] = to_json(summary.doubts);
   if (const auto& c = summary.coverage)
     json["coverage"] = {{"value", c->value},

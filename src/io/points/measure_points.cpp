@@ -19,9 +19,14 @@
 #include "io/file/byte_scanner.h"
 #include "io/file/little_endian.h"
 #include "io/image/pictures/color_scale.h"
+#include "io/points/cloud_groups.h"
+#include "io/points/cloud_islands.h"
+#include "io/points/cloud_places.h"
 #include "io/points/measured_rows.h"
+#include "io/points/point_cells.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_percentiles.h"
+#include "summary/verdict/sample_evidence.h"
 
 namespace sdm {
 
@@ -37,6 +42,8 @@ struct Chunk {
   std::vector<float> distances;
   std::vector<std::uint32_t> faces;
   std::vector<std::uint8_t> unmatched;
+  std::vector<std::uint8_t> island;    // empty: none is of one
+  std::vector<std::uint8_t> has_sign;  // empty: all have one, or none has
 };
 
 class Measurement {
@@ -55,10 +62,17 @@ class Measurement {
       throw Error("the tolerance depends on the sign of the distances, which are unsigned: " +
                   result_.sign.reason);
     row_.has_normals = result_.has_normals;
+    if (!options.table.empty())
+      groups_.emplace(options.names, options.table, sites.mesh().triangles.size(), result_.sign,
+                      result_.measured.kind);
   }
 
   PointDistances write(const std::filesystem::path& ply) {
     if (!reader_.count()) count_points();
+    if (options_.island_points > 0) {
+      islands_.emplace(cloud_, options_);
+      result_.islands = islands_->found();
+    }
     AtomicFile file(ply);
     write_header(file.stream());
     const auto rows_begin = static_cast<std::uint64_t>(file.stream().tellp());
@@ -74,6 +88,10 @@ class Measurement {
   }
 
  private:
+  struct Sums {
+    double distance = 0, square = 0, magnitude = 0;
+  };
+
   // What is measured, and its sign.
   void choose_distance() {
     const MapOptions& map = options_.map;
@@ -130,6 +148,9 @@ class Measurement {
   }
 
   void measure(Chunk& chunk) const {
+    chunk.island.clear();
+    if (islands_)
+      for (const Vec3& p : chunk.points) chunk.island.push_back(islands_->has(p) ? 1 : 0);
     for (Vec3& p : chunk.points) p = options_.placement(p);
     for (Vec3& n : chunk.normals) n = options_.placement.normal(n);
     // Points without a measurement are replaced by a point of O2, which costs nothing.
@@ -143,13 +164,30 @@ class Measurement {
     const std::vector<ClosestPoint>& closest = found.closest;
     const std::vector<std::uint8_t>& inside = found.behind;
     chunk.unmatched = found.unmatched;
+    chunk.has_sign = signs_of(closest);
     chunk.distances.assign(queries.size(), static_cast<float>(kNan));
     chunk.faces.assign(queries.size(), kNone);
     for (std::size_t i = 0; i < queries.size(); ++i) {
-      if (!finite(chunk.points[i]) || closest[i].type == SiteType::none) continue;
+      if (!finite(chunk.points[i]) || closest[i].type == SiteType::none || is_island(chunk, i)) continue;
       chunk.distances[i] = static_cast<float>(inside[i] ? -closest[i].distance : closest[i].distance);
       chunk.faces[i] = closest[i].face;
     }
+  }
+
+  static bool is_island(const Chunk& chunk, std::size_t i) {
+    return !chunk.island.empty() && chunk.island[i] != 0;
+  }
+
+  // Whether the points have a sign, which those that are closest to the boundary of O2 lack.
+  [[nodiscard]] std::vector<std::uint8_t> signs_of(std::span<const ClosestPoint> closest) const {
+    if (result_.sign.method != SignMethod::side || result_.measured.kind != DistanceKind::closest) return {};
+    DistanceMap map;
+    map.site.resize(closest.size()), map.site_type.resize(closest.size());
+    for (std::size_t i = 0; i < closest.size(); ++i)
+      map.site[i] = closest[i].site, map.site_type[i] = closest[i].type;
+    std::vector<std::uint8_t> flags = boundary_mask(sites_, map);
+    for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
+    return flags;
   }
 
   // The matches of the points, and whether their distances are negative.
@@ -175,7 +213,7 @@ class Measurement {
     std::string bytes;
     bytes.reserve(chunk.points.size() * row_.size());
     for (std::size_t i = 0; i < chunk.points.size(); ++i) {
-      add(chunk.points[i], chunk.distances[i], chunk.unmatched[i] != 0);
+      add(chunk, i);
       for (const double x : chunk.points[i]) append_little_endian(bytes, x);
       if (result_.has_normals)
         for (const double x : chunk.normals[i]) append_little_endian(bytes, static_cast<float>(x));
@@ -186,17 +224,26 @@ class Measurement {
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
 
-  void add(const Vec3& point, float d, bool unmatched) {
+  void add(const Chunk& chunk, std::size_t i) {
     const std::uint64_t index = result_.points++;
-    const bool valid = finite(point), has_value = !std::isnan(d);
-    if (valid) extend(result_.bounds, point);
+    const Vec3& point = chunk.points[i];
+    const float d = chunk.distances[i];
+    const bool valid = finite(point), has_value = !std::isnan(d), unmatched = chunk.unmatched[i] != 0;
     result_.invalid += !valid;
+    if (is_island(chunk, i)) {
+      ++result_.islands->points;
+      return;
+    }
+    if (valid) extend(result_.bounds, point), usual_.add(point);
     result_.beyond_max_distance += valid && !has_value && !unmatched;
     result_.without_match += valid && unmatched;
     if (!has_value) return;
+    const bool has_sign = chunk.has_sign.empty() || chunk.has_sign[i] != 0;
+    signs_.add(d, has_sign);
+    if (groups_) groups_->add(chunk.faces[i], d, has_sign);
     DistanceStatistics& s = result_.distance;
     ++s.texels, s.negative_texels += d < 0;
-    sum_ += d, square_ += double{d} * d, magnitude_ += std::abs(d);
+    sums_.distance += d, sums_.square += double{d} * d, sums_.magnitude += std::abs(d);
     if (!result_.min || d < result_.min->distance) result_.min = {d, point, index};
     if (!result_.max || d > result_.max->distance) result_.max = {d, point, index};
   }
@@ -232,8 +279,9 @@ class Measurement {
     s.min = result_.min->distance, s.max = result_.max->distance;
     s.max_abs = std::max(std::abs(s.min), std::abs(s.max));
     s.negative_area_fraction = static_cast<double>(s.negative_texels) / count;
-    s.mean = sum_ / count, s.rms = std::sqrt(square_ / count), s.mean_abs = magnitude_ / count;
-    s.stddev = std::sqrt(std::max(0.0, square_ / count - s.mean * s.mean));
+    s.mean = sums_.distance / count, s.rms = std::sqrt(sums_.square / count),
+    s.mean_abs = sums_.magnitude / count;
+    s.stddev = std::sqrt(std::max(0.0, sums_.square / count - s.mean * s.mean));
     constexpr std::size_t kParts = 16;
     constexpr std::array kShares{0.01, 0.05, 0.50, 0.95, 0.99};
     const auto find = [&](bool magnitudes) {
@@ -260,16 +308,26 @@ class Measurement {
     return engine.relative_error * diagonal(box);
   }
 
-  // Colours the rows, and counts those out of the tolerance.
+  // Colours the rows, counts those out of the tolerance, and finds the places where they are.
   void finish(const std::filesystem::path& written, std::uint64_t rows_begin) {
     PictureOptions picture = options_.picture;
     picture.accuracy = result_.accuracy;
     const ColorScale scale = color_scale(fixed_colors(picture, result_.distance));
     const map::ToleranceLimits limits(picture.tolerance.value_or(Tolerance()), result_.accuracy);
     if (picture.tolerance) result_.beyond_tolerance = result_.beyond_max_distance + result_.without_match;
+    CloudPlaces places(result_, picture.tolerance, usual_.box());
+    std::uint64_t number = 0;
     std::fstream file(written, std::ios::binary | std::ios::in | std::ios::out);
     for_each_row(file, rows_begin, 0, result_.points, [&](char* row) {
       const auto d = load<float>(row + row_.distance_at());
+      const auto face = load<std::int32_t>(row + row_.face_at());
+      if (groups_ && !std::isnan(d)) groups_->count(static_cast<std::uint32_t>(face), d, result_.accuracy);
+      places.add({.point = {load<double>(row), load<double>(row + sizeof(double)),
+                            load<double>(row + 2 * sizeof(double))},
+                  .distance = d,
+                  .face = static_cast<std::uint32_t>(face)},
+                 number);
+      ++number;
       const Rgb rgb = std::isnan(d) ? kNoValue : scale(d);
       result_.beyond_tolerance += picture.tolerance && (limits.below(d) || limits.above(d));
       row[row_.colour_at()] = static_cast<char>(rgb.r);
@@ -277,6 +335,10 @@ class Measurement {
       row[row_.colour_at() + 2] = static_cast<char>(rgb.b);
     });
     file.close();
+    if (picture.tolerance)
+      result_.beyond_with_either_sign = signs_.any_out(*picture.tolerance, result_.accuracy);
+    if (groups_) result_.groups = groups_->verdicts(result_.accuracy);
+    if (result_.min) result_.places = places.places(options_.names);
     if (!file) throw Error(cloud_ + ": the colours cannot be written; the disk may be full");
   }
 
@@ -286,8 +348,12 @@ class Measurement {
   const PointDistancesOptions& options_;
   RowLayout row_;
   PointDistances result_;
+  UsualBox usual_;
+  summary::SignedSamples signs_;
+  std::optional<CloudIslands> islands_;
+  std::optional<CloudGroups> groups_;
   std::uint64_t counted_ = 0;
-  double sum_ = 0, square_ = 0, magnitude_ = 0;
+  Sums sums_;
 };
 
 }  // namespace
@@ -297,39 +363,6 @@ PointDistances measure_points(const std::filesystem::path& cloud, const Sites& s
   return Measurement(cloud, sites, options).write(ply);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the points of " + cloud.string());
-}
-
-Summary summarize(const PointDistances& found, const PointDistancesOptions& options) {
-  PictureOptions picture = options.picture;
-  picture.accuracy = found.accuracy;
-  Summary summary{.units = picture.units,
-                  .of_points = true,
-                  .sign = found.sign,
-                  .measured = found.measured,
-                  .distance = found.distance,
-                  .beyond_max_distance = found.beyond_max_distance,
-                  .without_match = found.without_match,
-                  .max_distance = options.map.max_distance,
-                  .evidence = {.complete = found.beyond_max_distance + found.without_match == 0,
-                               .unmatched = found.without_match > 0,
-                               .estimated_signs = found.measured.kind == DistanceKind::closest &&
-                                                  is_estimate(found.sign.method),
-                               .accuracy = found.accuracy,
-                               .is_signed = found.sign.method != SignMethod::none},
-                  .colors = color_range(color_choice(picture), found.distance)};
-  if (found.min) {
-    summary.extremes = {{found.min->distance, found.min->point}, {found.max->distance, found.max->point}};
-    summary.extreme_points = {found.min->index, found.max->index};
-    summary.evidence.lowest = found.min->distance, summary.evidence.highest = found.max->distance;
-  }
-  if (!picture.tolerance) return summary;
-  const Judgement judgement = judge(summary.evidence, *picture.tolerance);
-  summary.tolerance = CertifiedVerdict{{judgement, *picture.tolerance, {}, 0, {}}};
-  if (found.min && summary.evidence.complete) summary.tolerance->largest = found.distance.max_abs;
-  summary.exceeding_points = found.beyond_tolerance;
-  summary.exceeding_point_fraction =
-      static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.points);
-  return summary;
 }
 
 }  // namespace sdm

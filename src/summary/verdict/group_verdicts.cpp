@@ -7,6 +7,7 @@
 #include "summary/verdict/evidence.h"
 #include "summary/verdict/group_rows.h"
 #include "summary/verdict/missing_signs.h"
+#include "summary/verdict/sample_evidence.h"
 
 namespace sdm {
 namespace {
@@ -79,6 +80,37 @@ GroupVerdicts certify_groups(const Surface& surface, const Sites& sites, const D
   }
   result.verdict = summary::worst_of(result.groups, options.doubted);
   return result;
+}
+
+GroupVerdicts judge_groups(std::span<const GroupPoints> groups, SignMethod sign, DistanceKind measured) {
+  GroupVerdicts result;
+  for (const GroupPoints& g : groups) {
+    Judgement judgement = judge(g.evidence, g.row.tolerance);
+    if (summary::may_lack_signs(judgement, measured, sign) && !g.out_with_either_sign)
+      summary::withhold_failure(judgement);
+    CertifiedVerdict verdict{{judgement, g.row.tolerance, {}, 0, {}}, {}};
+    if (g.points > 0) {
+      const auto all = static_cast<double>(g.points);
+      verdict.shares.below = static_cast<double>(g.below) / all;
+      verdict.shares.above = static_cast<double>(g.above) / all;
+      verdict.shares.within = static_cast<double>(g.points - g.below - g.above) / all;
+      verdict.exceeded_area_fraction = static_cast<double>(g.below + g.above) / all;
+      verdict.largest = std::max({0.0, -*g.evidence.lowest, *g.evidence.highest});
+    }
+    result.groups.push_back({.kind = g.kind,
+                             .group = g.row.group,
+                             .faces = g.faces,
+                             .points = g.points,
+                             .lowest = g.evidence.lowest,
+                             .highest = g.evidence.highest,
+                             .verdict = verdict});
+  }
+  result.verdict = summary::worst_of(result.groups, false);
+  return result;
+}
+
+void withhold_pass(GroupVerdicts& verdicts) {
+  verdicts.verdict = summary::worst_of(verdicts.groups, true);
 }
 
 }  // namespace sdm

@@ -55,6 +55,7 @@ void AreaSums::add(float distance, double area) {
 }
 
 void AreaSums::add(const AreaSums& other) {
+  without_value_ += other.without_value_;
   std::ranges::transform(by_key_, other.by_key_, by_key_.begin(), std::plus());
   std::ranges::transform(by_bin_, other.by_bin_, by_bin_.begin(), std::plus());
 }
@@ -62,9 +63,10 @@ void AreaSums::add(const AreaSums& other) {
 AreaByValue AreaSums::fractions() const {
   AreaByValue result;
   result.lo = lo_, result.hi = hi_;
-  double total = 0;
+  double total = without_value_;
   for (const double area : by_bin_) total += area;
   result.area = fractions_of(by_bin_, total);
+  result.without_value = total > 0 ? without_value_ / total : 0;
   std::vector<double> used;
   for (std::uint32_t key = 0; key < kKeys; ++key)
     if (by_key_[key] > 0) result.keys.push_back(key), used.push_back(by_key_[key]);
@@ -87,6 +89,8 @@ AreaByValue area_by_value(const Surface& surface, const DistanceMap& map) {
       for (std::size_t i = part * samples.size() / kParts; i < (part + 1) * samples.size() / kParts; ++i)
         if (const float d = map.distance[samples[i]]; std::isfinite(d))
           parts[part].add(d, areas[owners[samples[i]]]);
+        else
+          parts[part].add_without_value(areas[owners[samples[i]]]);
   });
   for (std::size_t part = 1; part < kParts; ++part) parts[0].add(parts[part]);
   return parts[0].fractions();

@@ -9,14 +9,16 @@
 
 namespace sdm::io {
 
-/// The area of the texels with a value, in two sets of bins: those of floats that agree in their upper 16
-/// bits (1/128 of their size wide), which are fine near 0, and bins of equal width, which are fine anywhere
-/// else. The area between two edges of bins is exact but for rounding.
+/// The area of the texels, as fractions of that of all, those without a value included, in two sets of bins:
+/// those of floats that agree in their upper 16 bits (1/128 of their size wide), which are fine near 0, and
+/// bins of equal width, which are fine anywhere else. The area between two edges of bins is exact but for
+/// rounding.
 struct AreaByValue {
   std::vector<std::uint32_t> keys;  ///< of the bins that are not empty, ascending: see below
   std::vector<float> area_of_key;   ///< fraction of the area
   double lo = 0, hi = 0;            ///< the least and the largest distance
   std::vector<float> area;          ///< the same of kBins bins of equal width from lo to hi
+  double without_value = 0;         ///< fraction of the area
 
   static constexpr std::size_t kBins = 2048;
 };
@@ -28,11 +30,12 @@ class AreaSums {
   /// `lo` and `hi`: the least and the largest distance that will be added.
   AreaSums(double lo, double hi);
   void add(float distance, double area);
+  void add_without_value(double area) { without_value_ += area; }
   void add(const AreaSums& other);
   [[nodiscard]] AreaByValue fractions() const;
 
  private:
-  double lo_, hi_, bins_per_unit_;
+  double lo_, hi_, bins_per_unit_, without_value_ = 0;
   std::vector<double> by_key_, by_bin_;
 };
 

@@ -15,7 +15,6 @@
 #include "io/page/report/page_file.h"
 #include "io/page/report/page_ghost.h"
 #include "io/page/report/page_model.h"
-#include "io/page/report/worst_places.h"
 
 namespace sdm {
 
@@ -25,15 +24,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json worst_json(const Surface& surface, std::span<const Place> places) {
+Json thinnest(const Surface& surface, const DistanceMap& map) {
   Json json = Json::array();
-  for (const Place& place : places) {
-    Json& entry = json.emplace_back();
-    entry["distance"] = place.distance;
-    entry["point"] = place.point;
-    if (place.sample != kNone)
-      entry["texel"] = {place.sample % surface.resolution(), place.sample / surface.resolution()};
-  }
+  for (const std::uint32_t texel : thinnest_texels(surface, map))
+    json.push_back(
+        {{"distance", map.distance[texel]}, {"point", surface.texel_point(texel)}, {"at", "texel"}});
   return json;
 }
 
@@ -45,13 +40,6 @@ void check_meshes_of(const std::filesystem::path& file, const Surface& surface, 
   if (options.coverage &&
       (!options.other || options.coverage->of_face.size() != options.other->triangles.size()))
     throw Error("cannot write " + file.string() + ": the coverage belongs to another mesh");
-}
-
-std::vector<Place> thinnest(const Surface& surface, const DistanceMap& map) {
-  std::vector<Place> places;
-  for (const std::uint32_t texel : thinnest_texels(surface, map))
-    places.push_back({map.distance[texel], surface.texel_point(texel), texel});
-  return places;
 }
 
 }  // namespace
@@ -71,7 +59,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
 
   Json page, map_json, model, ghost;
   PackedArrays arrays, model_arrays, ghost_arrays;
-  std::vector<Place> worst;
+  Json thin;
   AreaByValue area;
   run_concurrently(
       {[&] { map_json = add_map(arrays, surface, map, options.largest); },
@@ -84,7 +72,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
            ghost = add_ghost(ghost_arrays, *options.other, options.coverage, options.triangles_of_other);
        },
        [&] {
-         worst = options.thinnest ? thinnest(surface, map) : worst_places(surface, map, vertex_distances);
+         if (options.thinnest) thin = thinnest(surface, map);
        },
        [&] { area = area_by_value(surface, map); }});
   arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
@@ -93,7 +81,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   page["map"] = map_json;
   page["model"] = model;
   if (options.other) page["ghost"] = ghost;
-  page["worst"] = worst_json(surface, worst);
+  if (options.thinnest) page["thinnest"] = thin;
   put_page(out.stream(), kPageHtml.bytes, page, &report, arrays);
   out.commit();
 } catch (const std::bad_alloc&) {

@@ -13,10 +13,10 @@
 #include "geometry/vec.h"
 #include "io/file/atomic_file.h"
 #include "io/page/report/embedded_page.h"
+#include "io/page/report/largest_by_cell.h"
 #include "io/page/report/page_file.h"
 #include "io/page/report/page_ghost.h"
 #include "io/page/report/page_numbers.h"
-#include "io/page/report/worst_places.h"
 #include "io/points/measured_rows.h"
 
 namespace sdm {
@@ -70,7 +70,6 @@ struct Contents {
   std::vector<Shown> shown;  ///< by their numbers
   std::size_t picked = 0;    ///< of them, in the random sample
   AreaByValue by_value;
-  std::vector<Place> worst;
 };
 
 /// The box of all but the outermost 1 % of the points along each axis, and what is near it: outliers may be
@@ -104,13 +103,13 @@ Contents contents_of(MeasuredRows& rows, const PointDistances& found) {
   rows.for_each([&](std::uint64_t number, const MeasuredPoint& p) {
     if (finite(p.point)) cells.add({p.distance, p.point, number});
   });
+  sums.add_without_value(static_cast<double>(found.counted() - found.distance.texels));
   result.picked = result.shown.size();
   result.by_value = sums.fractions();
-  result.worst = worst_places(cells);
 
   // The largest of each neighbourhood, and the extremes.
   std::vector<std::uint64_t> more;
-  for (const Place& place : cells.largest()) more.push_back(place.sample);
+  for (const CellPlace& place : cells.largest()) more.push_back(place.sample);
   if (found.min && found.max) more.insert(more.end(), {found.min->index, found.max->index});
   std::ranges::sort(more);
   more.erase(std::ranges::unique(more).begin(), more.end());
@@ -177,9 +176,6 @@ void write_points_html(const std::filesystem::path& file, const std::filesystem:
   page["cloud"]["normals"] = found.has_normals;
   if (options.other)
     page["ghost"] = add_ghost(arrays, *options.other, options.coverage, options.triangles_of_other);
-  page["worst"] = Json::array();
-  for (const Place& place : contents.worst)
-    page["worst"].push_back({{"distance", place.distance}, {"point", place.point}, {"number", place.sample}});
   page["area"] = add_area(arrays, contents.by_value);
   put_page(out.stream(), kPageHtml.bytes, page, &report, arrays);
   out.commit();

@@ -1,0 +1,55 @@
+// The list of the places that deviate most.
+import { byId, make, table } from './dom';
+import { count, percent, place, signedText, text } from './numbers';
+import type { Place, Places, Report } from './page_data';
+import { isCloud, isSigned, limitsText, unitOf } from './verdict';
+
+type Listed = Pick<Place, 'distance' | 'point' | 'at'> & Partial<Place>;
+
+function extentOf(report: Report, p: Listed): string {
+  if (p.points !== undefined) return p.points === 1 ? '1 point' : `${count(p.points)} points`;
+  if (!p.area) return 'vertex of the part';
+  return report.units ? `${text(p.area, 3)}\u00a0${report.units}²` : text(p.area, 3);
+}
+
+/// What all places are, and how many are not in the list.
+function hintOf(report: Report, places: Places): string {
+  const unit = report.units ? `\u00a0${report.units}²` : '';
+  const limits = { lower: places.lower ?? -Infinity, upper: places.upper ?? Infinity };
+  const whole = isCloud(report) ? 'points' : 'area';
+  const total = ({ count: n, points, area, area_fraction: ofArea, point_fraction: ofPoints }: Places['large']) =>
+    `${count(n)}, together ${points !== undefined && isCloud(report) ? `${count(points)} points` : `${text(area ?? 0, 3)}${unit}`} (${percent(ofArea ?? ofPoints ?? 0)})`;
+  const least = percent(places.least_area_fraction ?? places.least_point_fraction ?? 0);
+  return (
+    `Connected regions ${places.limits_from === 'tolerance' ? 'out of the tolerance of' : 'at or beyond the 99th percentile,'} ${limitsText(limits, report)}: ${total(places.large)}; ` +
+    `and small ones, below ${least} of the ${whole} each: ${total(places.small)}. ` +
+    `Listed are the ten largest, small ones last. ${isCloud(report) ? '' : 'Areas are estimates from the samples. '}Choose one to see it.`
+  );
+}
+
+/// Fills the list; `thinnest`: the places of a report on wall thickness.
+export function showPlaces(report: Report, thinnest: Listed[] | null, size: number, show: (place: Listed) => void): void {
+  const signs = isSigned(report);
+  const listed: Listed[] = thinnest ?? report.places?.largest ?? [];
+  const grouped = listed.some((p) => p.group);
+  const rows = listed.map((p, i) => {
+    const value = `${signedText(p.distance, signs)}${unitOf(report)}`;
+    return [
+      String(i + 1),
+      make('button', { type: 'button', class: 'link', click: () => show(p), 'aria-label': `Show place ${i + 1}, ${value}` }, value),
+      place(p.point, size),
+      ...(thinnest ? [] : [`${extentOf(report, p)}${p.small ? ', small' : ''}`]),
+      ...(grouped ? [p.group ?? ''] : []),
+    ];
+  });
+  const head = ['', 'Distance', 'Position', ...(thinnest ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
+  const hint = thinnest
+    ? 'The least values, at texels that are at least 6 % of the part\u2019s size apart. Choose one to see it.'
+    : report.places ? hintOf(report, report.places) : '';
+  byId('worst-table').replaceChildren(
+    rows.length === 0
+      ? make('p', {}, 'No point of the part has a distance beyond the accuracy.')
+      : table(head, rows, thinnest ? 'The thinnest places' : 'The places with the largest distances'),
+    make('p', { class: 'hint' }, hint),
+  );
+}

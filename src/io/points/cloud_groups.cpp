@@ -1,0 +1,65 @@
+#include "io/points/cloud_groups.h"
+
+#include "map/statistics/tolerance_limits.h"
+
+namespace sdm::io {
+
+CloudGroups::CloudGroups(std::span<const FaceNames> names, std::span<const GroupTolerance> table,
+                         std::size_t faces, const SignUsed& sign, DistanceKind measured)
+    : rows_(names, table, faces),
+      row_of_(rows_.layers.size()),
+      found_(rows_.rows.size()),
+      sign_(sign.method),
+      measured_(measured) {
+  for (std::size_t r = 0; r < rows_.rows.size(); ++r) {
+    row_of_[rows_.rows[r].layer].push_back(r);
+    summary::check_sign(rows_.rows[r].group, sign);
+  }
+}
+
+template <class Visit>
+void CloudGroups::for_each_row(std::uint32_t face, const Visit& visit) {
+  if (face == kNone) return;
+  for (std::size_t l = 0; l < rows_.layers.size(); ++l)
+    if (const std::uint32_t number = rows_.layers[l].of_face[face]; number != kNone)
+      visit(row_of_[l][number]);
+}
+
+void CloudGroups::add(std::uint32_t face, double d, bool has_sign) {
+  for_each_row(face, [&](std::size_t r) {
+    ++found_[r].points;
+    found_[r].range.add(d);
+    found_[r].signs.add(d, has_sign);
+  });
+}
+
+void CloudGroups::count(std::uint32_t face, double d, double accuracy) {
+  for_each_row(face, [&](std::size_t r) {
+    const map::ToleranceLimits limits(rows_.rows[r].group.tolerance, accuracy);
+    found_[r].below += limits.below(d), found_[r].above += limits.above(d);
+  });
+}
+
+GroupVerdicts CloudGroups::verdicts(double accuracy) const {
+  std::vector<GroupPoints> groups;
+  for (std::size_t r = 0; r < found_.size(); ++r) {
+    const summary::GroupRows::Row& row = rows_.rows[r];
+    const Found& found = found_[r];
+    groups.push_back(
+        {.kind = row.named.kind,
+         .row = row.group,
+         .faces = row.named.faces.size(),
+         .points = found.points,
+         .below = found.below,
+         .above = found.above,
+         .out_with_either_sign = found.signs.any_out(row.group.tolerance, accuracy),
+         .evidence = {.lowest = found.range.lowest,
+                      .highest = found.range.highest,
+                      .estimated_signs = measured_ == DistanceKind::closest && is_estimate(sign_),
+                      .accuracy = accuracy,
+                      .is_signed = sign_ != SignMethod::none}});
+  }
+  return judge_groups(groups, sign_, measured_);
+}
+
+}  // namespace sdm::io

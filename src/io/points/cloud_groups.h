@@ -1,0 +1,47 @@
+// The points of a cloud by the named groups of their closest faces.
+#pragma once
+
+#include <sdm/group_verdicts.h>
+#include <sdm/sign.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "summary/verdict/group_rows.h"
+#include "summary/verdict/sample_evidence.h"
+
+namespace sdm::io {
+
+/// Judges the groups of O2 by the points that are closest to their faces.
+class CloudGroups {
+ public:
+  /// `faces`: the number of O2's. Throws sdm::Error for a tolerance that needs a sign where there is none.
+  CloudGroups(std::span<const FaceNames> names, std::span<const GroupTolerance> table, std::size_t faces,
+              const SignUsed& sign, DistanceKind measured);
+
+  /// First, each point with a value.
+  void add(std::uint32_t face, double d, bool has_sign);
+  /// Then, each once more, when the accuracy is known.
+  void count(std::uint32_t face, double d, double accuracy);
+  [[nodiscard]] GroupVerdicts verdicts(double accuracy) const;
+
+ private:
+  /// What is found of a row.
+  struct Found {
+    std::uint64_t points = 0, below = 0, above = 0;
+    summary::DistanceRange range;
+    summary::SignedSamples signs;
+  };
+
+  template <class Visit>
+  void for_each_row(std::uint32_t face, const Visit& visit);
+
+  summary::GroupRows rows_;
+  std::vector<std::vector<std::size_t>> row_of_;  ///< of each layer and number in it
+  std::vector<Found> found_;
+  SignMethod sign_;
+  DistanceKind measured_;
+};
+
+}  // namespace sdm::io

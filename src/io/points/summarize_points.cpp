@@ -1,0 +1,48 @@
+#include <sdm/points.h>
+
+#include <algorithm>
+
+#include "summary/verdict/sample_evidence.h"
+
+namespace sdm {
+
+Summary summarize(const PointDistances& found, const PointDistancesOptions& options) {
+  PictureOptions picture = options.picture;
+  picture.accuracy = found.accuracy;
+  Summary summary{.units = picture.units,
+                  .of_points = true,
+                  .sign = found.sign,
+                  .measured = found.measured,
+                  .distance = found.distance,
+                  .beyond_max_distance = found.beyond_max_distance,
+                  .beyond_fraction = static_cast<double>(found.beyond_max_distance) /
+                                     static_cast<double>(std::max<std::uint64_t>(found.counted(), 1)),
+                  .without_match = found.without_match,
+                  .max_distance = options.map.max_distance,
+                  .evidence = {.complete = found.beyond_max_distance + found.without_match == 0,
+                               .unmatched = found.without_match > 0,
+                               .estimated_signs = found.measured.kind == DistanceKind::closest &&
+                                                  is_estimate(found.sign.method),
+                               .accuracy = found.accuracy,
+                               .is_signed = found.sign.method != SignMethod::none},
+                  .places = found.places,
+                  .colors = color_range(color_choice(picture), found.distance)};
+  if (found.min) {
+    summary.extremes = {{found.min->distance, found.min->point}, {found.max->distance, found.max->point}};
+    summary.extreme_points = {found.min->index, found.max->index};
+    summary.evidence.lowest = found.min->distance, summary.evidence.highest = found.max->distance;
+  }
+  if (!picture.tolerance) return summary;
+  Judgement judgement = judge(summary.evidence, *picture.tolerance);
+  if (summary::may_lack_signs(judgement, found.measured.kind, found.sign.method) &&
+      !found.beyond_with_either_sign)
+    summary::withhold_failure(judgement);
+  summary.tolerance = CertifiedVerdict{{judgement, *picture.tolerance, {}, 0, {}}};
+  if (found.min && summary.evidence.complete) summary.tolerance->largest = found.distance.max_abs;
+  summary.exceeding_points = found.beyond_tolerance;
+  summary.exceeding_point_fraction =
+      static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.counted());
+  return summary;
+}
+
+}  // namespace sdm

@@ -1,0 +1,166 @@
+// Places, islands and shares, as `sdm map` and `sdm points` state them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "cli/samples.h"
+#include "geometry/vec.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+/// A plate of 10 x 10 at z = 0 in two named halves, and clouds of it.
+struct PlacesOutput : ::testing::Test {
+  TemporaryFolder folder;
+  std::string out = folder / "out", plate = folder / "plate.obj";
+  std::mt19937 random{1};
+
+  PlacesOutput() {
+    std::ofstream(plate) << "v 0 0 0\nv 5 0 0\nv 10 0 0\nv 0 10 0\nv 5 10 0\nv 10 10 0\n"
+                            "g left\nf 1 2 5 4\ng right\nf 2 3 6 5\n";
+  }
+  double any(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); }
+
+  /// 20000 points with two bumps: 0.5 high at (2, 2), 0.3 deep at (8, 8); and `floating` points far above.
+  std::string cloud(int floating) {
+    std::string text;
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 p{any(0, 10), any(0, 10), 0};
+      const double up = std::hypot(p[0] - 2, p[1] - 2), down = std::hypot(p[0] - 8, p[1] - 8);
+      const double z = up < 0.8 ? 0.5 * (1 - up * up) : down < 0.8 ? -0.3 * (1 - down * down) : 0;
+      text += fmt::format("{:.6} {:.6} {:.6}\n", p[0], p[1], z);
+    }
+    for (int i = 0; i < floating; ++i)
+      text += fmt::format("{:.6} {:.6} {:.6}\n", any(0, 10), any(0, 10), any(4, 9));
+    std::ofstream(folder / "cloud.xyz") << text;
+    return folder / "cloud.xyz";
+  }
+  Outcome points(const std::string& file, std::vector<std::string> more) const {
+    more.insert(more.begin(), {"points", file, plate, "-o", out, "--sign", "side"});
+    return run_sdm(more);
+  }
+};
+
+TEST_F(PlacesOutput, OfACloudAreClustersBeforeFloatingPoints) {
+  const Outcome run = points(cloud(60), {"--tolerance", "0.1", "--json"});
+  EXPECT_EQ(run.code, 3) << run.err;
+  const Json places = Json::parse(run.out)["places"];
+  EXPECT_EQ(places["limits_from"], "tolerance");
+  EXPECT_EQ(places["large"]["count"], 2);
+  EXPECT_GT(places["small"]["count"], 40);
+  EXPECT_EQ(places["small"]["points"], 60);
+  const Json& largest = places["largest"];
+  ASSERT_EQ(largest.size(), 10u);
+  EXPECT_NEAR(largest[0]["distance"], 0.5, 0.05);
+  EXPECT_NEAR(largest[0]["point"][0], 2, 0.5);
+  EXPECT_EQ(largest[0]["group"], "left");
+  EXPECT_NEAR(largest[1]["distance"], -0.3, 0.05);
+  EXPECT_EQ(largest[1]["group"], "right");
+  EXPECT_EQ(largest[1]["at"], "point");
+  EXPECT_FALSE(largest[1]["small"]);
+  EXPECT_TRUE(largest[2]["small"]);
+  EXPECT_THAT(points(folder / "cloud.xyz", {"--tolerance", "0.1"}).out,
+              HasSubstr("places    2 out of tolerance"));
+}
+
+TEST_F(PlacesOutput, IslandsOfACloudCountForNothing) {
+  const std::string with = cloud(60);
+  const Outcome run = points(with, {"--tolerance", "0.6", "--ignore-islands", "10", "--json"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  const Json& islands = report["o1"]["ignored_islands"];
+  EXPECT_EQ(islands["points"], 60);
+  EXPECT_GT(islands["islands"], 40);
+  EXPECT_EQ(report["points_with_value"], 20000);
+  EXPECT_LT(report["distance"]["max"], 0.6);
+  EXPECT_EQ(report["beyond_max_distance"], 0);
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("with 60 points"));
+  EXPECT_EQ(points(with, {"--tolerance", "0.6"}).code, 3);
+  EXPECT_EQ(points(with, {"--ignore-islands", "0"}).code, 2);
+}
+
+TEST_F(PlacesOutput, GroupsOfTheReferenceJudgeACloud) {
+  std::ofstream(folder / "table.csv") << "group,lower,upper\nleft,-0.1,0.6\nright,-0.1,0.1\n";
+  const Outcome run = points(cloud(0), {"--tolerance-table", folder / "table.csv", "--json"});
+  EXPECT_EQ(run.code, 3) << run.err;
+  const Json all = Json::parse(run.out)["group_tolerances"];
+  EXPECT_EQ(all["verdict"], "FAIL");
+  ASSERT_EQ(all["groups"].size(), 2u);
+  const Json &left = all["groups"][0], &right = all["groups"][1];
+  EXPECT_EQ(left["verdict"], "NOT DECIDED") << "signs are estimates: -0.5 would be out";
+  EXPECT_EQ(left["reason"], "estimated signs");
+  EXPECT_EQ(right["verdict"], "FAIL");
+  EXPECT_NEAR(right["lowest"], -0.3, 0.05);
+  EXPECT_EQ(left["points"].get<int>() + right["points"].get<int>(), 20000);
+  EXPECT_GT(right["exceeded_point_fraction"], 0.01);
+  EXPECT_THAT(points(folder / "cloud.xyz", {"--tolerance-table", folder / "table.csv"}).out,
+              HasSubstr("of its points are out"));
+  std::ofstream(folder / "lid.csv") << "group,lower,upper\nlid,-0.1,0.6\n";
+  EXPECT_THAT(points(folder / "cloud.xyz", {"--tolerance-table", folder / "lid.csv"}).err,
+              HasSubstr("has the name 'lid'; its names are left, right"));
+}
+
+// Points beside an open reference have no side: only |d| is known.
+TEST_F(PlacesOutput, OneSidedTolerancesOfCloudsNeedSigns) {
+  std::ofstream(folder / "beside.xyz") << "5 5 0.1\n5 10.3 0.2\n";
+  const auto verdict = [&](const std::string& tolerance) {
+    return Json::parse(
+        points(folder / "beside.xyz", {"--tolerance=" + tolerance, "--json"}).out)["tolerance"];
+  };
+  EXPECT_EQ(verdict("-1:0.2")["verdict"], "NOT DECIDED");
+  EXPECT_EQ(verdict("-1:0.2")["reason"], "estimated signs");
+  EXPECT_EQ(verdict("-0.2:0.2")["verdict"], "FAIL");
+  EXPECT_EQ(verdict("-1:0.05")["verdict"], "FAIL");
+  EXPECT_EQ(verdict("-1:1")["verdict"], "PASS");
+}
+
+TEST_F(PlacesOutput, TheShareBeyondTheMaximumDistanceIsStated) {
+  const Outcome run = points(cloud(5), {"--max-distance", "1", "--json"});
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["beyond_max_distance"], 5);
+  EXPECT_NEAR(report["beyond_max_distance_point_fraction"], 5.0 / 20005, 1e-12);
+  const std::string high = write_obj(folder / "high.obj", square(3, 2));
+  const std::vector<std::string> map{"map", plate,          high,  "-o",      out,   "--max-distance",
+                                     "3",   "--resolution", "128", "--write", "none"};
+  std::vector<std::string> json = map;
+  json.emplace_back("--json");
+  const Json shares = Json::parse(run_sdm(json).out);
+  const double share = shares["beyond_max_distance_area_fraction"];
+  EXPECT_GT(share, 0.1);
+  EXPECT_LT(share, 0.95);
+  EXPECT_THAT(run_sdm(map).out, HasSubstr(fmt::format("{:.5g} % of the area, are farther", 100 * share)));
+}
+
+TEST_F(PlacesOutput, IslandsOfTheReferenceAttractNothing) {
+  // A speck of one face floats above the plate, nearer to O1 than the plate is.
+  const std::string o1 = write_obj(folder / "o1.obj", square(2, 0.5)), o2 = folder / "o2.obj";
+  write_obj(o2, joined(joined(square(3, 0), square(3, -4)), moved(single_triangle(), {0, 0, 0.6})));
+  const std::vector<std::string> map{"map",          o1,   o2,        "-o",   out,
+                                     "--resolution", "64", "--write", "none", "--json"};
+  std::vector<std::string> without = map;
+  without.insert(without.end(), {"--ignore-islands-o2", "2"});
+  EXPECT_LT(Json::parse(run_sdm(map).out)["distance"]["min"], 0.45);
+  const Outcome run = run_sdm(without);
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_NEAR(report["distance"]["min"], 0.5, 1e-5);
+  EXPECT_NEAR(report["distance"]["max"], 0.5, 1e-5);
+  EXPECT_EQ(report["o2"]["ignored_islands"]["islands"], 1);
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("o2.obj: 1 island with 1 face"));
+}
+
+}  // namespace
+}  // namespace sdm::test

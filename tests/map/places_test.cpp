@@ -1,0 +1,168 @@
+// The places where a map deviates most.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <sdm/places.h>
+#include <sdm/statistics.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "support/made_up_maps.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+struct Cap {
+  Vec3 centre;
+  double angle, value;
+};
+
+/// 0 but for caps of the unit sphere.
+Field caps_field(const std::vector<Cap>& caps) {
+  return [=](const Vec3& p) {
+    for (const Cap& cap : caps)
+      if (dot(normalized(p), normalized(cap.centre)) > std::cos(cap.angle)) return cap.value;
+    return 0.0;
+  };
+}
+
+/// Two caps at corners of an octahedron and one between, where charts meet.
+const std::vector<Cap> kCaps{{{0, 0, 1}, 0.3, 2}, {{1, 1, 1}, 0.2, -3}, {{-1, 0, 0.2}, 0.25, 1}};
+
+double area_of(const Cap& cap) {
+  return 2 * std::numbers::pi * (1 - std::cos(cap.angle));
+}
+
+TEST(Places, AreRegionsAcrossTheChartsOfAnyAtlas) {
+  for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
+    const Surface surface(sphere(4), {.kind = kind, .resolution = 512});
+    ASSERT_GT(surface.chart_count(), 1u);
+    const Field field = caps_field(kCaps);
+    const Places places = find_places(surface, map_of(surface, field), at_vertices(surface.mesh(), field),
+                                      {.tolerance = Tolerance(0.5), .accuracy = 1e-6});
+    EXPECT_TRUE(places.by_tolerance);
+    EXPECT_EQ(places.limits, Tolerance(0.5));
+    EXPECT_EQ(places.large.count, 3u);
+    EXPECT_EQ(places.small.count, 0u);
+    ASSERT_EQ(places.largest.size(), 3u);
+    const std::vector<std::size_t> order{1, 0, 2};
+    double fractions = 0, area = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Cap& cap = kCaps[order[i]];
+      const Place& place = places.largest[i];
+      EXPECT_EQ(place.distance, cap.value);
+      EXPECT_NEAR(place.area, area_of(cap), 0.06 * area_of(cap));
+      EXPECT_NEAR(place.fraction, area_of(cap) / (4 * std::numbers::pi), 0.001);
+      EXPECT_GT(dot(normalized(place.point), normalized(cap.centre)), std::cos(cap.angle) - 0.02);
+      fractions += place.fraction, area += place.area;
+    }
+    EXPECT_NEAR(places.large.fraction, fractions, 1e-12);
+    EXPECT_NEAR(places.large.area, area, 1e-12);
+  }
+}
+
+TEST(Places, BeyondOppositeLimitsAreSeparate) {
+  const Surface surface(sphere(4), {.resolution = 256});
+  const Field field = [](const Vec3& p) { return std::abs(p[2]) < 0.3 ? (p[0] > 0 ? 1.0 : -1.0) : 0.0; };
+  const Places places = find_places(surface, map_of(surface, field), at_vertices(surface.mesh(), field),
+                                    {.tolerance = Tolerance(0.5)});
+  EXPECT_EQ(places.large.count, 2u);
+  // Above the upper limit only.
+  EXPECT_EQ(find_places(surface, map_of(surface, field), at_vertices(surface.mesh(), field),
+                        {.tolerance = Tolerance(-2, 0.5)})
+                .large.count,
+            1u);
+}
+
+// What single points have is no place of the list before regions, whatever its distance.
+TEST(Places, SingleVerticesAreSmallAndCounted) {
+  const Surface surface(sphere(5), {.resolution = 512});
+  const Field field = caps_field(kCaps);
+  std::vector<float> vertices = at_vertices(surface.mesh(), field);
+  std::size_t spikes = 0;
+  for (std::size_t v = 0; v < vertices.size(); v += 97)
+    if (std::ranges::all_of(kCaps, [&](const Cap& cap) {
+          return dot(normalized(surface.mesh().positions[v]), normalized(cap.centre)) <
+                 std::cos(cap.angle + 0.1);
+        }))
+      vertices[v] = 50, ++spikes;
+  ASSERT_GT(spikes, 20u);
+  const Places places = find_places(surface, map_of(surface, field), vertices, {.tolerance = Tolerance(0.5)});
+  EXPECT_EQ(places.large.count, 3u);
+  EXPECT_EQ(places.small.count, spikes);
+  EXPECT_EQ(places.small.area, 0);
+  ASSERT_EQ(places.largest.size(), Places::kListed);
+  for (std::size_t i = 0; i < places.largest.size(); ++i) {
+    EXPECT_EQ(places.largest[i].small, i >= 3);
+    EXPECT_EQ(places.largest[i].distance == 50, i >= 3);
+    EXPECT_EQ(places.largest[i].sample == kNone, i >= 3);
+  }
+}
+
+TEST(Places, AreBeyondThePercentileWhereNothingIsOutOfTolerance) {
+  const Surface surface(sphere(4), {.resolution = 256});
+  const Field field = [](const Vec3& p) { return p[2] > 0 ? p[2] : 0.1 * p[2]; };
+  const DistanceMap map = map_of(surface, field);
+  const double p99 = statistics(surface, map).p99_abs;
+  for (const std::optional<Tolerance>& tolerance :
+       {std::optional<Tolerance>(), std::optional(Tolerance(2))}) {
+    const Places places = find_places(surface, map, at_vertices(surface.mesh(), field),
+                                      {.tolerance = tolerance, .accuracy = 1e-6, .p99_abs = p99});
+    EXPECT_FALSE(places.by_tolerance);
+    EXPECT_EQ(places.limits, Tolerance(p99));
+    ASSERT_EQ(places.large.count, 1u);
+    EXPECT_NEAR(places.large.fraction, 0.01, 0.002);
+    EXPECT_EQ(places.largest[0].distance, 1);
+  }
+  const Field nothing = [](const Vec3&) { return 1e-7; };
+  EXPECT_EQ(
+      find_places(surface, map_of(surface, nothing), {}, {.accuracy = 1e-6, .p99_abs = 1e-7}).large.count,
+      0u);
+  const Field none = [](const Vec3&) { return std::nan(""); };
+  EXPECT_TRUE(
+      find_places(surface, map_of(surface, none), at_vertices(surface.mesh(), none), {}).largest.empty());
+}
+
+TEST(Places, HaveTheGroupOfTheirLargestSample) {
+  const Surface surface(sphere(3), {.resolution = 256});
+  FaceNames names{"group", {"north", "south"}, {}};
+  for (const Triangle& t : surface.mesh().triangles)
+    names.of_face.push_back(surface.mesh().positions[t[0]][2] > 0 ? 0 : 1);
+  const Field field = caps_field(kCaps);
+  const Places places =
+      find_places(surface, map_of(surface, field), {}, {.tolerance = Tolerance(0.5), .names = {&names, 1}});
+  ASSERT_EQ(places.largest.size(), 3u);
+  for (const Place& place : places.largest) EXPECT_EQ(place.group, names.names[names.of_face[place.face]]);
+  EXPECT_EQ(places.largest[1].group, "north");
+  EXPECT_EQ(places.largest[1].kind, "group");
+}
+
+TEST(Places, OfPartsAreAddedUp) {
+  const Surface surface(sphere(4), {.resolution = 256});
+  const Field field = caps_field(kCaps), flat = caps_field({});
+  const Places some = find_places(surface, map_of(surface, field), {}, {.tolerance = Tolerance(0.5)});
+  const Places none = find_places(surface, map_of(surface, flat), {}, {.tolerance = Tolerance(0.5)});
+  const auto all = combined_places(std::vector{some, none, some}, std::vector{1.0, 2.0, 1.0});
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->large.count, 6u);
+  EXPECT_NEAR(all->large.fraction, some.large.fraction / 2, 1e-12);
+  ASSERT_EQ(all->largest.size(), 6u);
+  EXPECT_EQ(all->largest[0].distance, -3);
+  EXPECT_EQ(all->largest[1].distance, -3);
+  EXPECT_FALSE(combined_places(std::vector{none}, std::vector{1.0}));
+}
+
+TEST(Places, AreOfTheSurfaceOfTheMap) {
+  const Surface surface(sphere(2), {.resolution = 64}), other(sphere(2), {.resolution = 128});
+  const Field field = caps_field(kCaps);
+  EXPECT_THROW((void)find_places(other, map_of(surface, field), {}, {}), Error);
+  EXPECT_THROW((void)find_places(surface, map_of(surface, field), std::vector<float>(3), {}), Error);
+}
+
+}  // namespace
+}  // namespace sdm::test
