@@ -9,7 +9,18 @@ import numpy as np
 
 from . import _core
 from ._closest_points import NONE
-from ._core import BoundedLength, DistanceStatistics, Error, Mesh, Sites, Surface, ToleranceVerdict
+from ._core import (
+    BoundedLength,
+    DistanceStatistics,
+    Error,
+    FaceNames,
+    GroupVerdicts,
+    Mesh,
+    Places,
+    Sites,
+    Surface,
+    ToleranceVerdict,
+)
 
 Progress = Callable[[str, float], "bool | None"]
 
@@ -127,6 +138,45 @@ class DistanceMap(_core.MapChannels):
         'pass'
         """
         return self._core.check(tolerance, progress)
+
+    def check_groups(
+        self,
+        tolerance_table: "str | os.PathLike[str] | dict[str, float | tuple[float, float]]",
+        names: "FaceNames | list[FaceNames]",
+        *,
+        progress: "Progress | None" = None,
+    ) -> GroupVerdicts:
+        """Returns whether the distances of all points of named groups of the surface are within tolerances of their own.
+
+        tolerance_table: a dict of tolerances, as of check(), by name; or a file with a row group,lower,upper for each, as of
+        ``sdm map --tolerance-table``. names: of the faces of the surface, as of read_face_names(). Raises Error as check()
+        does, and for a name that no face has; Cancelled. Cost: linear in texels for all groups together, and a proof for
+        each.
+
+        >>> halves = sdm.FaceNames('group', ['all'], np.zeros(len(sphere.faces), np.uint32))
+        >>> sdm.map(sphere, box, resolution=64).check_groups({'all': 2}, halves).verdict
+        'pass'
+        """
+        return self._core.check_groups(tolerance_table, names, progress)
+
+    def places(
+        self,
+        tolerance: "float | tuple[float, float] | None" = None,
+        *,
+        names: "FaceNames | list[FaceNames] | None" = None,
+        progress: "Progress | None" = None,
+    ) -> Places:
+        """Returns where the map deviates most: connected regions out of the tolerance, and not single points.
+
+        tolerance: as of check(); without one, or where nothing is out of it, regions at or beyond the 99th percentile of the
+        absolute distance. names: of the faces of the surface, for the groups of places. Regions below 1e-5 of the area, or
+        four texels, are small: they are listed last, and counted. Raises Error as ``statistics`` does; Cancelled. Cost:
+        linear, and one search per vertex.
+
+        >>> sdm.map(sphere, box, resolution=64).places().by_tolerance
+        False
+        """
+        return self._core.places(tolerance, names, progress)
 
     def free_distances(self) -> np.ndarray:
         """Returns, for each texel, a radius within which there is no point of O2, (H, W) float64; 0 without a value.

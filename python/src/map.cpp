@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "groups.h"
 #include "rays.h"
 
 namespace sdm::python {
@@ -161,6 +162,7 @@ void bind_map(nb::module_& module) {
           nb::arg("progress") = nb::none(),
           nb::sig("def at_vertices(self, progress: object = None) -> numpy.ndarray"));
   bind_map_numbers(module, map_class);
+  bind_map_groups(map_class);
   bind_map_files(module, map_class);
   bind_map_rays(map_class);
   bind_channels(module);

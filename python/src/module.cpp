@@ -14,6 +14,7 @@ NB_MODULE(_core, module) {
   bind_meshes(module);
   bind_sites(module);
   bind_surface(module);
+  bind_groups(module);
   bind_map(module);
   bind_parts(module);
   bind_proximity(module);

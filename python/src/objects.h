@@ -84,6 +84,7 @@ void bind_errors(nb::module_& module);
 void bind_meshes(nb::module_& module);
 void bind_sites(nb::module_& module);
 void bind_surface(nb::module_& module);
+void bind_groups(nb::module_& module);
 void bind_map(nb::module_& module);
 void bind_parts(nb::module_& module);
 void bind_proximity(nb::module_& module);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "groups.h"
 #include "map.h"
 #include "sites_in_use.h"
 
@@ -111,6 +112,17 @@ void bind_distances(nb::module_& module) {
           "sign_reason", [](const D& self) { return self.sign.reason; }, "Why, in words.")
       .def_ro("min", &D::min, "The point with the smallest distance; None if no point has one.")
       .def_ro("max", &D::max, "The point with the largest distance; None if no point has one.")
+      .def_ro("places", &D::places, "Where it deviates most; None if no point has a value.")
+      .def_ro("groups", &D::groups,
+              "The verdicts on the groups of the table of tolerances; None without one.")
+      .def_prop_ro(
+          "islands",
+          [](const D& self) -> nb::object {
+            if (!self.islands) return nb::none();
+            return nb::make_tuple(self.islands->islands, self.islands->points);
+          },
+          nb::sig("def islands(self) -> tuple[int, int] | None"),
+          "The number of islands that were left out and of their points; None if they were not looked for.")
       .def(
           "statistics", [](const D& self) { return self.distance; },
           "Returns statistics of the points with a value, each with the same weight; ``texels`` is their "
@@ -157,7 +169,8 @@ void bind_points(nb::module_& module) {
          const char* sign, double max_distance, std::optional<double> facing, nb::handle along,
          nb::handle tolerance, const std::string& colormap, std::optional<std::pair<double, double>> range,
          nb::handle progress, const std::optional<std::vector<std::string>>& columns,
-         const std::string& separator, const std::string& decimal) {
+         const std::string& separator, const std::string& decimal, nb::handle tolerance_table,
+         nb::handle names, nb::handle island_points) {
         const std::filesystem::path from = path_of(cloud), ply = path_of(output);
         SitesInUse to(o2);
         PointDistancesOptions options{.map = {.engine = engine_of(engine),
@@ -176,9 +189,18 @@ void bind_points(nb::module_& module) {
         options.picture.range = range_of(range);
         PointDistances result;
         run(nb::none(), [&](const Progress&) { (void)to.get(); });
-        if (!tolerance.is_none())
-          options.picture.tolerance = tolerance_of(
-              tolerance, options.along ? SignMethod::side : choose_sign(to.get(), options.map).method);
+        const SignMethod signs =
+            options.along ? SignMethod::side : choose_sign(to.get(), options.map).method;
+        if (!tolerance.is_none()) options.picture.tolerance = tolerance_of(tolerance, signs);
+        std::vector<GroupTolerance> table;
+        std::vector<FaceNames> kinds;
+        if (!names.is_none()) kinds = names_of(names, to.get().mesh().triangles.size());
+        if (!tolerance_table.is_none()) {
+          table = table_of(tolerance_table, signs);
+          check_table(table, kinds);
+        }
+        options.names = kinds, options.table = table;
+        options.island_points = static_cast<std::uint64_t>(integer_of(island_points, "island_points", 0));
         run(progress, [&](const Progress& report) {
           options.map.progress = report;
           result = measure_points(from, to.get(), ply, options);
@@ -191,6 +213,7 @@ void bind_points(nb::module_& module) {
       nb::arg("along") = nb::none(), nb::arg("tolerance") = nb::none(), nb::arg("colormap") = "automatic",
       nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(), nb::arg("columns") = nb::none(),
       nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
+      nb::arg("tolerance_table") = nb::none(), nb::arg("names") = nb::none(), nb::arg("island_points") = 0,
       nb::sig(
           "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
           "transform: object = None, engine: str = 'cpu', sign: str = 'automatic', max_distance: float = "
@@ -200,7 +223,9 @@ void bind_points(nb::module_& module) {
           "tuple[float, float] | None = None, progress: collections.abc.Callable[[str, float], bool | "
           "None] | None = None, columns: collections.abc.Sequence[str] | None = None, separator: str = "
           "'automatic', "
-          "decimal: str = 'automatic') -> PointDistances"),
+          "decimal: str = 'automatic', tolerance_table: object = None, names: object = None, island_points: "
+          "int = "
+          "0) -> PointDistances"),
       R"(Computes the distance of each point of a file to a mesh, in parts: the cloud may be larger than the
 memory. For points in memory, use Sites.closest_points().
 
@@ -212,6 +237,10 @@ transform: a 4 × 4 affine matrix that moves the points first, such as Alignment
 engine, sign, max_distance, facing, along: as of map(); facing and along='normal' need the normals of the cloud.
 Along a direction, a cloud without normals is measured to any face. tolerance, colormap, range: of the colours, as of DistanceMap.save();
 the tolerance also of ``beyond_tolerance``.
+tolerance_table: a file, or a dict of tolerances by name, of the groups of o2 (``groups``): each point is of those of its
+closest face. names: FaceNames of the faces of o2, or a list of them, as of read_face_names().
+island_points: clusters of fewer points are left out: they have no distance and count for nothing. Finding them reads the
+cloud twice more.
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 Raises Error, naming the file and the fault; Cancelled. Cost: a search per point, and reading the distances

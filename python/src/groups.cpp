@@ -1,0 +1,237 @@
+#include "groups.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/places.h>
+#include <sdm/tolerance_table.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "arrays.h"
+#include "map.h"
+#include "run.h"
+
+namespace sdm::python {
+namespace {
+
+std::string lower(std::string word) {
+  for (char& c : word) c = static_cast<char>(std::tolower(c));
+  return word;
+}
+
+nb::object tuple_of(const Vec3& p) {
+  return nb::make_tuple(p[0], p[1], p[2]);
+}
+
+void check(const FaceNames& names) {
+  for (const std::uint32_t name : names.of_face)
+    if (name != kNone && name >= names.names.size())
+      throw Error("of_face has a number of a name that there is not: " + std::to_string(name));
+}
+
+void bind_face_names(nb::module_& module) {
+  nb::class_<FaceNames>(module, "FaceNames", "The names of one kind that the faces of a mesh have.")
+      .def(
+          "__init__",
+          [](FaceNames* self, const std::string& kind, const std::vector<std::string>& names,
+             nb::handle of_face) {
+            FaceNames made{kind, names, indices(of_face, "of_face")};
+            check(made);
+            new (self) FaceNames(std::move(made));
+          },
+          nb::arg("kind"), nb::arg("names"), nb::arg("of_face"),
+          nb::sig("def __init__(self, kind: str, names: collections.abc.Sequence[str], of_face: object) -> "
+                  "None"),
+          "of_face: for each face the number of its name, or 0xFFFFFFFF. Raises Error for others.")
+      .def_ro("kind", &FaceNames::kind, "'object', 'group', 'material', 'face', 'color' or any other word.")
+      .def_ro("names", &FaceNames::names, "Each name once.")
+      .def_prop_ro(
+          "of_face",
+          [](const FaceNames& self) {
+            std::vector<std::uint32_t> copy = self.of_face;
+            const std::size_t count = copy.size();
+            return array_of<std::uint32_t>(std::move(copy), {count});
+          },
+          nb::sig("def of_face(self) -> numpy.ndarray"),
+          "For each face the number of its name, or 0xFFFFFFFF without one, (m,) uint32.")
+      .def("__repr__", [](const FaceNames& self) {
+        return nb::str("sdm.FaceNames({!r}, {} names)").format(self.kind, self.names.size());
+      });
+  module.def(
+      "read_face_names",
+      [](nb::handle file) {
+        const std::filesystem::path path = path_of(file);
+        std::vector<FaceNames> names;
+        run(nb::none(), [&](const Progress&) { names = read_mesh_file(path).names; });
+        return names;
+      },
+      nb::arg("file").none(), nb::sig("def read_face_names(file: str | os.PathLike[str]) -> list[FaceNames]"),
+      R"(Reads the names that a file gives to the faces of its mesh: of objects, groups, materials, CAD faces and colors.
+
+The faces are those that Mesh has of the same file. Raises Error, naming the file and the fault.
+
+>>> sdm.read_face_names('no such file.obj')
+Traceback (most recent call last):
+    ...
+sdm.Error: ...
+)");
+}
+
+void bind_places(nb::module_& module) {
+  nb::class_<Place>(module, "Place", "A region whose distances are all beyond the same limit.")
+      .def_ro("distance", &Place::distance, "Of its samples the one that is farthest beyond the limit.")
+      .def_prop_ro(
+          "point", [](const Place& self) { return tuple_of(self.point); },
+          nb::sig("def point(self) -> tuple[float, float, float]"), "Where that is.")
+      .def_ro("samples", &Place::samples, "The number of its texels, without vertices; or of its points.")
+      .def_ro("area", &Place::area, "An estimate of its area, in squared units; 0 of a cloud.")
+      .def_ro("fraction", &Place::fraction, "Of the area of all texels, or of all points.")
+      .def_ro("small", &Place::small, "Whether it is below Places.least_fraction.")
+      .def_ro("kind", &Place::kind, "The kind of ``group``.")
+      .def_ro("group", &Place::group, "The first name that its face has; empty without one.")
+      .def("__repr__", [](const Place& self) {
+        return nb::str("sdm.Place(distance={:.6g}, fraction={:.3g})").format(self.distance, self.fraction);
+      });
+  nb::class_<Places>(module, "Places", "Where a map or a cloud deviates most, as regions.")
+      .def_prop_ro(
+          "limits", [](const Places& self) { return nb::make_tuple(self.limits.lo, self.limits.hi); },
+          nb::sig("def limits(self) -> tuple[float, float]"), "Distances out of these belong to places.")
+      .def_ro(
+          "by_tolerance", &Places::by_tolerance,
+          "The limits are the tolerance; otherwise nothing is out of it, and they are the 99th percentile "
+          "of the absolute distance.")
+      .def_ro("least_fraction", &Places::least_fraction, "Places below it are small.")
+      .def_prop_ro(
+          "count", [](const Places& self) { return self.large.count; },
+          "The number of places that are not small.")
+      .def_prop_ro("small_count", [](const Places& self) { return self.small.count; })
+      .def_prop_ro(
+          "fraction", [](const Places& self) { return self.large.fraction; },
+          "Theirs of the area or the points, without the small ones.")
+      .def_prop_ro("small_fraction", [](const Places& self) { return self.small.fraction; })
+      .def_ro("largest", &Places::largest,
+              "At most ten: by how far they are beyond the limits, the small ones last.")
+      .def("__repr__", [](const Places& self) {
+        return nb::str("sdm.Places({} places, {} small ones)").format(self.large.count, self.small.count);
+      });
+}
+
+void bind_verdicts(nb::module_& module) {
+  nb::class_<GroupVerdict>(module, "GroupVerdict", "The verdict on a group of faces.")
+      .def_ro("kind", &GroupVerdict::kind, "Of the name.")
+      .def_ro("group", &GroupVerdict::group, "The name.")
+      .def_ro("faces", &GroupVerdict::faces, "The number of its faces.")
+      .def_ro("points", &GroupVerdict::points, "Of a cloud: the number of points closest to these faces.")
+      .def_ro("lowest", &GroupVerdict::lowest, "The least distance of its samples; None without a value.")
+      .def_ro("highest", &GroupVerdict::highest, "The largest one.")
+      .def_ro("verdict", &GroupVerdict::verdict,
+              "Fractions of the area are those of the group, or of its points.")
+      .def("__repr__", [](const GroupVerdict& self) {
+        return nb::str("sdm.GroupVerdict({!r}, {!r})")
+            .format(self.group, lower(sdm::name_of(self.verdict.verdict)));
+      });
+  nb::class_<GroupVerdicts>(module, "GroupVerdicts", "The verdicts on the groups of a table.")
+      .def_ro("groups", &GroupVerdicts::groups, "In the order of the table.")
+      .def_prop_ro(
+          "verdict", [](const GroupVerdicts& self) { return lower(sdm::name_of(self.verdict)); },
+          "'fail' if that of one group is, else 'not decided' if that of one is, else 'pass'.")
+      .def("__repr__", [](const GroupVerdicts& self) {
+        return nb::str("sdm.GroupVerdicts({!r}, {} groups)")
+            .format(lower(sdm::name_of(self.verdict)), self.groups.size());
+      });
+}
+
+GroupVerdicts check_groups(const PyMap& self, nb::handle table, nb::handle names, nb::handle progress) {
+  if (self.of_itself()) self.require_other_mesh();
+  const std::vector<GroupTolerance> rows = table_of(table, self.map.sign.method);
+  const auto lock = self.use_surface();
+  const auto sites_lock = self.use_sites();
+  const Surface& surface = self.on->surface;
+  const std::vector<FaceNames> kinds = names_of(names, surface.mesh().triangles.size());
+  check_table(rows, kinds);
+  GroupVerdicts result;
+  run(progress, [&](const Progress& report) {
+    result = certify_groups(surface, self.to->sites, self.map, self.vertex_distances(report), kinds, rows,
+                            {.accuracy = self.accuracy(), .progress = report});
+  });
+  return result;
+}
+
+Places places(const PyMap& self, nb::handle tolerance, nb::handle names, nb::handle progress) {
+  std::optional<Tolerance> accepted;
+  if (!tolerance.is_none()) accepted = tolerance_of(tolerance, self.map.sign.method);
+  const auto lock = self.use_surface();
+  const auto sites_lock = self.use_sites();
+  const Surface& surface = self.on->surface;
+  std::vector<FaceNames> kinds;
+  if (!names.is_none()) kinds = names_of(names, surface.mesh().triangles.size());
+  Places result;
+  run(progress, [&](const Progress& report) {
+    std::vector<float> at_vertices;
+    if (!self.thickness && !self.exclusion) at_vertices = self.vertex_distances(report);
+    const double accuracy = self.accuracy();
+    result = find_places(surface, self.map, at_vertices,
+                         {.tolerance = accepted,
+                          .accuracy = std::isfinite(accuracy) ? accuracy : 0,
+                          .p99_abs = statistics(surface, self.map).p99_abs,
+                          .names = kinds});
+  });
+  return result;
+}
+
+}  // namespace
+
+void check_table(std::span<const GroupTolerance> table, std::span<const FaceNames> names) {
+  for (const GroupTolerance& row : table)
+    if (faces_named(names, row.group).faces.empty())
+      throw Error("no face has the name '" + row.group + "' of the table of tolerances; " +
+                  known_names(names));
+}
+
+std::vector<GroupTolerance> table_of(nb::handle table, SignMethod sign) {
+  if (!nb::isinstance<nb::dict>(table)) return read_tolerance_table(path_of(table));
+  std::vector<GroupTolerance> rows;
+  for (const auto [name, tolerance] : nb::cast<nb::dict>(table)) {
+    std::string group;
+    if (!nb::try_cast(name, group) || group.empty())
+      throw Error("the names of a table of tolerances must be words that are not empty");
+    rows.push_back({std::move(group), tolerance_of(tolerance, sign)});
+  }
+  if (rows.empty()) throw Error("the table of tolerances is empty");
+  return rows;
+}
+
+std::vector<FaceNames> names_of(nb::handle names, std::size_t faces) {
+  std::vector<FaceNames> kinds;
+  if (nb::isinstance<FaceNames>(names))
+    kinds.push_back(nb::cast<FaceNames>(names));
+  else if (!nb::try_cast(names, kinds))
+    throw Error("names must be FaceNames, or a list of them");
+  for (const FaceNames& kind : kinds)
+    if (kind.of_face.size() != faces)
+      throw Error("names are of " + std::to_string(kind.of_face.size()) + " faces, but the mesh has " +
+                  std::to_string(faces));
+  return kinds;
+}
+
+void bind_groups(nb::module_& module) {
+  bind_face_names(module);
+  bind_places(module);
+  bind_verdicts(module);
+}
+
+void bind_map_groups(nb::class_<PyMap>& map) {
+  map.def("check_groups", &check_groups, nb::arg("table").none(), nb::arg("names").none(),
+          nb::arg("progress").none())
+      .def("places", &places, nb::arg("tolerance").none(), nb::arg("names").none(),
+           nb::arg("progress").none());
+}
+
+}  // namespace sdm::python

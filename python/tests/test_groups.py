@@ -1,0 +1,95 @@
+"""Places, and verdicts on named groups."""
+
+import numpy as np
+import pytest
+
+import meshes
+import sdm
+
+
+def plate(folder):
+    """A plate of two named halves."""
+    file = folder / "plate.obj"
+    file.write_text(
+        "v 0 0 0\nv 5 0 0\nv 10 0 0\nv 0 10 0\nv 5 10 0\nv 10 10 0\ng left\nf 1 2 5 4\ng right\nf 2 3 6 5\n"
+    )
+    return file
+
+
+def cloud(folder, floating):
+    """Points of the plate with a bump on the left half, and floating ones."""
+    random = np.random.default_rng(1)
+    points = np.c_[random.uniform(0, 10, (20000, 2)), np.zeros(20000)]
+    up = np.hypot(points[:, 0] - 2, points[:, 1] - 2)
+    points[:, 2] = np.where(up < 0.8, 0.5 * (1 - up**2), 0)
+    points = np.r_[points, random.uniform([0, 0, 4], [10, 10, 9], (floating, 3))]
+    file = folder / "cloud.xyz"
+    np.savetxt(file, points)
+    return file
+
+
+def test_names_of_a_file(tmp_path):
+    (names,) = sdm.read_face_names(plate(tmp_path))
+    assert (names.kind, names.names, names.of_face.tolist()) == ("group", ["left", "right"], [0, 0, 1, 1])
+    with pytest.raises(sdm.Error, match="a name that there is not"):
+        sdm.FaceNames("group", ["left"], [0, 1])
+
+
+def test_groups_of_a_map(tmp_path):
+    vertices, faces = meshes.sphere()
+    vertices = np.array(vertices)
+    top = vertices[np.asarray(faces)].mean(axis=1)[:, 2] > 0
+    names = sdm.FaceNames("group", ["bottom", "top"], top.astype(np.uint32))
+    moved = vertices + [0, 0, 0.25]
+    m = sdm.map((moved, faces), (vertices, faces), resolution=128)
+    verdicts = m.check_groups({"top": (-0.05, 0.3), "bottom": 0.1}, names)
+    assert verdicts.verdict == "fail"
+    assert [(g.group, g.verdict.verdict) for g in verdicts.groups] == [("top", "pass"), ("bottom", "fail")]
+    assert verdicts.groups[0].highest == pytest.approx(0.25, abs=1e-3)
+    assert verdicts.groups[0].verdict.certified
+    assert verdicts.groups[0].faces + verdicts.groups[1].faces == len(faces)
+    table = tmp_path / "table.csv"
+    table.write_text("group,lower,upper\ntop,-0.05,0.3\n")
+    assert m.check_groups(table, [names]).verdict == "pass"
+    with pytest.raises(sdm.Error, match="has the name 'lid'.*its names are bottom, top"):
+        m.check_groups({"lid": 1}, names)
+    with pytest.raises(sdm.Error, match="of 3 faces"):
+        m.check_groups({"a": 1}, sdm.FaceNames("group", ["a"], [0, 0, 0]))
+    with pytest.raises(sdm.Error, match="empty"):
+        m.check_groups({}, names)
+
+
+def test_places_of_a_map():
+    vertices, faces = meshes.sphere()
+    vertices = np.array(vertices)
+    top = vertices[np.asarray(faces)].mean(axis=1)[:, 2] > 0
+    names = sdm.FaceNames("group", ["bottom", "top"], top.astype(np.uint32))
+    m = sdm.map((vertices + [0, 0, 0.25], faces), (vertices, faces), resolution=128)
+    places = m.places(0.2, names=names)
+    assert places.by_tolerance and places.limits == (-0.2, 0.2)
+    assert places.count == 2 and [p.group for p in places.largest[:2]] in (["top", "bottom"], ["bottom", "top"])
+    assert places.fraction == pytest.approx(m.check(0.2).exceeded_area_fraction - places.small_fraction, abs=1e-6)
+    assert abs(places.largest[0].point[2] - 0.25) > 0.8
+    far = m.places()
+    assert not far.by_tolerance
+    assert far.limits[1] == pytest.approx(m.statistics().p99_abs)
+
+
+def test_clouds(tmp_path):
+    names = sdm.read_face_names(plate(tmp_path))
+    o2 = sdm.read(plate(tmp_path))
+    options = dict(sign="side", tolerance=0.6, tolerance_table={"left": 0.1, "right": 0.1}, names=names)
+    found = sdm.measure_points(cloud(tmp_path, 50), o2, tmp_path / "out.ply", island_points=10, **options)
+    assert found.islands[1] == 50
+    assert found.statistics().texels == 20000
+    assert found.groups.verdict == "fail"
+    left, right = found.groups.groups
+    assert (left.verdict.verdict, right.verdict.verdict) == ("fail", "pass")
+    assert left.points + right.points == 20000
+    assert not found.places.by_tolerance
+    found = sdm.measure_points(tmp_path / "cloud.xyz", o2, tmp_path / "out.ply", sign="side", tolerance=0.1, names=names)
+    assert found.islands is None and found.groups is None
+    assert found.places.by_tolerance and found.places.count == 1 and found.places.small_count > 30
+    assert found.places.largest[0].group == "left"
+    with pytest.raises(sdm.Error, match="has the name 'lid'"):
+        sdm.measure_points(tmp_path / "cloud.xyz", o2, tmp_path / "out.ply", tolerance_table={"lid": 1}, names=names)
