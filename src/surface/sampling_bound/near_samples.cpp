@@ -1,5 +1,7 @@
 #include "surface/sampling_bound/near_samples.h"
 
+#include <algorithm>
+
 #include "atlas/charts/face_geometry.h"
 #include "geometry/vec.h"
 
@@ -40,8 +42,12 @@ NearSamples::Choice NearSamples::choose(std::uint32_t face, double x, double y, 
   return best;
 }
 
-// A face with an opposite normal may be in contact now, but may move independently.
+// A face with an opposite normal may be in contact now, but may move independently, unless both have a
+// vertex.
 bool NearSamples::same_side(std::uint32_t face, std::uint32_t other) const {
+  for (const std::uint32_t v : surface_.mesh().triangles[face])
+    if (std::ranges::find(surface_.mesh().triangles[other], v) != surface_.mesh().triangles[other].end())
+      return true;
   const auto normal = [this](std::uint32_t f) {
     const auto& [a, b, c] = surface_.mesh().triangles[f];
     const std::vector<Vec3>& positions = surface_.mesh().positions;
