@@ -24,7 +24,10 @@ struct AtlasOptions {
   /// Texels per column, in [16, 32768]; by default as many as per row, as is necessary unless the kind is uv.
   /// Texels of an atlas of another shape are as high and as wide on the surface as the texture makes them.
   std::optional<std::uint32_t> rows{};
-  double max_stretch = 1.3;  ///< charts: bounds the growth of lengths from atlas to surface; in (1, 100]
+  /// charts: bounds the growth of lengths from atlas to surface; in (1, 100]. Where a mesh is so rough, as
+  /// scans are, that most of the atlas would be gutters, charts follow the smoothed surface, and faces are
+  /// stretched by up to 4.
+  double max_stretch = 1.3;
   /// charts, triangles: free texels around each chart, not shared. All: values of files extend at least this
   /// far beyond the charts (see write_exr).
   std::uint32_t gutter = 1;

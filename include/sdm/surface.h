@@ -112,7 +112,8 @@ class SDM_API Surface {
   [[nodiscard]] double utilisation() const;
   /// The largest factor by which a length grows from atlas to surface, relative to the atlas's own scale (for
   /// `uv`: the scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for
-  /// `charts`. Refers to the mesh that the atlas was laid out for, before any refit.
+  /// `charts` unless the mesh is rough (see AtlasOptions). Refers to the mesh that the atlas was laid out
+  /// for, before any refit.
   [[nodiscard]] double max_stretch() const;
 
  private:

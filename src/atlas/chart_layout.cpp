@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "atlas/charts/cluster.h"
 #include "atlas/charts/pairs.h"
+#include "atlas/charts/rough.h"
 #include "atlas/charts/shape.h"
 #include "atlas/charts/split.h"
 #include "atlas/layout.h"
@@ -49,11 +49,12 @@ double scale_of(const Placement& placement) {
   return std::hypot(placement.matrix[0][0], placement.matrix[0][1]);
 }
 
-std::vector<Chart> make_charts(const Mesh& mesh, const FaceGeometry& faces, const AtlasOptions& options) {
-  if (options.kind == AtlasKind::triangles) return pair_faces(mesh, faces);
-  std::vector<Chart> charts = cluster_faces(mesh, faces, 1 / std::min(options.max_stretch, kMaxStretch));
+Clusters make_charts(const Mesh& mesh, const FaceGeometry& faces, const AtlasOptions& options) {
+  if (options.kind == AtlasKind::triangles) return {pair_faces(mesh, faces)};
+  auto [charts, rough] =
+      cluster_rough_faces(mesh, faces, 1 / std::min(options.max_stretch, kMaxStretch), options.resolution);
   report(options.progress, kClustered);
-  return split_overlaps(mesh, faces, std::move(charts));
+  return {split_overlaps(mesh, faces, std::move(charts)), rough};
 }
 
 Layout placed_charts(const Mesh& mesh, const FaceGeometry& faces, std::vector<Chart> charts,
@@ -96,11 +97,11 @@ Layout placed_charts(const Mesh& mesh, const FaceGeometry& faces, std::vector<Ch
 Layout chart_layout(const Mesh& mesh, const AtlasOptions& options) {
   report(options.progress, 0);
   const FaceGeometry faces = face_geometry(mesh);
-  std::vector<Chart> charts = make_charts(mesh, faces, options);
+  auto [charts, rough] = make_charts(mesh, faces, options);
   report(options.progress, kSplit);
   const std::vector<Shape> shapes = chart_shapes(mesh, faces, charts);
   const std::vector<Placement> placements =
-      pack(shapes, options.resolution, options.gutter, packing_progress(options.progress));
+      pack(shapes, {options.resolution, options.gutter, rough}, packing_progress(options.progress));
   Layout layout = placed_charts(mesh, faces, std::move(charts), shapes, placements);
   layout.scale = scale_of(placements.front());
   report(options.progress, 1);
@@ -111,7 +112,7 @@ Layout added_layout(const Mesh& added, const AtlasOptions& options, double scale
   const FaceGeometry faces = face_geometry(added);
   std::vector<Chart> charts;
   if (std::ranges::any_of(faces.area, [](double area) { return area > 0; }))
-    charts = make_charts(added, faces, options);
+    charts = make_charts(added, faces, options).charts;
   const std::vector<Shape> shapes = chart_shapes(added, faces, charts);
   const std::vector<Placement> placements = fit(shapes, scale, room);
   Layout layout = placed_charts(added, faces, std::move(charts), shapes, placements);

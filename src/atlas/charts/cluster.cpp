@@ -72,8 +72,9 @@ class Clustering {
         label_(faces.normal.size(), kNone) {}
 
   // Lloyd's alternation: the axes from the clusters, the clusters from the axes.
-  std::vector<Chart> run() {
+  std::optional<std::vector<Chart>> run(std::size_t rough) {
     flood_rest();
+    if (axes_.size() >= rough) return std::nullopt;
     if (axes_.size() < kManyClusters) merge();
     for (int round = 0; round < kRounds; ++round) {
       regrow();
@@ -372,8 +373,9 @@ class Clustering {
 
 }  // namespace
 
-std::vector<Chart> cluster_faces(const Mesh& mesh, const FaceGeometry& faces, double cos_angle) {
-  return Clustering(mesh, faces, cos_angle).run();
+std::optional<std::vector<Chart>> cluster_faces(const Mesh& mesh, const FaceGeometry& faces, double cos_angle,
+                                                std::size_t rough) {
+  return Clustering(mesh, faces, cos_angle).run(rough);
 }
 
 }  // namespace sdm::atlas

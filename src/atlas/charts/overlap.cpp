@@ -106,10 +106,13 @@ class Buckets {
   CompressedRows<std::uint32_t, std::size_t> lists_;  // of each cell
 };
 
-}  // namespace
+using Pair = std::pair<std::size_t, std::size_t>;
 
-std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const GridTriangle> triangles,
-                                                                double slack, std::uint64_t budget) {
+// Passes pairs of triangles whose interiors intersect to `found`, until it returns true; after about `budget`
+// tests, an arbitrary pair to `exhausted`.
+template <class Found, class Exhausted>
+void for_each_overlap(std::span<const GridTriangle> triangles, double slack, std::uint64_t budget,
+                      const Found& found, const Exhausted& exhausted) {
   std::vector<std::size_t> solid;
   std::vector<Rectangle> boxes;
   for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -117,7 +120,7 @@ std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const 
       solid.push_back(i);
       boxes.push_back(bounds_of(triangles[i]));
     }
-  if (solid.size() < 2) return std::nullopt;
+  if (solid.size() < 2) return;
 
   const Buckets buckets(boxes);
   std::uint64_t pairs = 0;
@@ -128,7 +131,10 @@ std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const 
     // in the middle.
     for (std::size_t i = 0; i + 1 < list.size(); ++i) {
       due();
-      if ((pairs += list.size() - i) > budget) return std::pair(solid[list[i]], solid[list.back()]);
+      if ((pairs += list.size() - i) > budget) {
+        exhausted(Pair(solid[list[i]], solid[list.back()]));
+        return;
+      }
       for (std::size_t j = list.size() - 1; j > i; --j) {
         const Rectangle &a = boxes[list[i]], &b = boxes[list[j]];
         // Among the cells that two boxes share, only the one with the low corner of their intersection tests
@@ -136,11 +142,38 @@ std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const 
         if (!boxes_meet(a, b)) continue;
         if (buckets.cell_of(std::max(a.lo[0], b.lo[0]), std::max(a.lo[1], b.lo[1])) != cell) continue;
         const std::size_t first = solid[list[i]], second = solid[list[j]];
-        if (interiors_meet(triangles[first], triangles[second], slack)) return std::pair(first, second);
+        if (interiors_meet(triangles[first], triangles[second], slack) && found(Pair(first, second))) return;
       }
     }
   }
-  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::pair<std::size_t, std::size_t>> find_overlap(std::span<const GridTriangle> triangles,
+                                                                double slack, std::uint64_t budget) {
+  std::optional<Pair> result;
+  const auto take = [&](const Pair& pair) {
+    result = pair;
+    return true;
+  };
+  for_each_overlap(triangles, slack, budget, take, take);
+  return result;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> find_overlaps(std::span<const GridTriangle> triangles,
+                                                               std::size_t most, std::uint64_t budget) {
+  std::vector<Pair> pairs;
+  bool too_many = false;
+  for_each_overlap(
+      triangles, 0, budget,
+      [&](const Pair& pair) {
+        pairs.push_back(pair);
+        return too_many = pairs.size() > most;
+      },
+      [&](const Pair&) { too_many = true; });
+  if (too_many) pairs.clear();
+  return pairs;
 }
 
 }  // namespace sdm::atlas

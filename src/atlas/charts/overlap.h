@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace sdm::atlas {
 
@@ -28,5 +29,10 @@ constexpr std::int64_t orientation(const GridPoint& a, const GridPoint& b, const
 /// of similar size.
 [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> find_overlap(
     std::span<const GridTriangle> triangles, double slack = 0, std::uint64_t budget = UINT64_MAX);
+
+/// All such pairs, without slack; nothing if they are more than `most`, or after `budget` tests. Cost: as
+/// above.
+[[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> find_overlaps(
+    std::span<const GridTriangle> triangles, std::size_t most, std::uint64_t budget = UINT64_MAX);
 
 }  // namespace sdm::atlas

@@ -53,11 +53,12 @@ struct Packing {
 
 class Packer {
  public:
-  Packer(std::span<const Shape> shapes, std::uint32_t resolution, std::uint32_t gutter)
+  Packer(std::span<const Shape> shapes, const PackOptions& options)
       : shapes_(shapes),
-        resolution_(resolution),
-        gutter_(gutter),
-        cell_(texels_per_cell(resolution, shapes.size())) {
+        resolution_(options.resolution),
+        gutter_(options.gutter),
+        cell_(texels_per_cell(options.resolution, shapes.size())),
+        many_(options.many_small || shapes.size() > kManyCharts) {
     for (const Shape& s : shapes) longest_ = std::max({longest_, s.size[0], s.size[1]});
     order_.resize(shapes.size());
     std::iota(order_.begin(), order_.end(), 0u);
@@ -69,6 +70,7 @@ class Packer {
   [[nodiscard]] std::uint32_t rows() const {
     return static_cast<std::uint32_t>(std::ceil(kTallness * cells()));
   }
+  [[nodiscard]] bool many() const { return many_; }
   /// No packing needs to be tried at a larger scale.
   [[nodiscard]] double largest_scale() const {
     const double gutter = std::ceil(1.0 * gutter_ / cell_) * cell_;
@@ -102,7 +104,6 @@ class Packer {
     packing.placements.resize(shapes_.size());
     // A stamp rarely fits above the last one of about the same size: starting from there saves nearly all of
     // the search with many small charts.
-    const bool many = shapes_.size() > kManyCharts;
     std::unordered_map<std::uint64_t, std::uint32_t> first_rows;
     for (const std::uint32_t s : order_) {
       poll();
@@ -112,7 +113,7 @@ class Packer {
       const auto best = lowest_turn(footprint, rows(), [&](const Stamp& stamp, std::uint32_t end_y) {
         std::uint32_t& first_row = first_rows[size_class(stamp.width) << 32 | size_class(stamp.height)];
         const auto spot = bin.first_fit(stamp, first_row, end_y);
-        if (many) first_row = std::max(first_row, spot ? spot->y : end_y);
+        if (many_) first_row = std::max(first_row, spot ? spot->y : end_y);
         return spot;
       });
       if (!best) return std::nullopt;
@@ -127,6 +128,7 @@ class Packer {
  private:
   std::span<const Shape> shapes_;
   std::uint32_t resolution_, gutter_, cell_;
+  bool many_;                         // small charts
   double longest_ = 0;                // side of a shape's rectangle
   std::vector<std::uint32_t> order_;  // of placement
 };
@@ -169,16 +171,16 @@ Placement placement_of(const Footprint& footprint, unsigned turn, double scale, 
           turned(footprint, turn, footprint.shift) + corner};
 }
 
-std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolution, std::uint32_t gutter,
+std::vector<Placement> pack(std::span<const Shape> shapes, const PackOptions& options,
                             const Progress& progress) {
-  const Packer packer(shapes, resolution, gutter);
+  const Packer packer(shapes, options);
   require_memory(kTrials * BitmapBin::bytes(packer.cells(), packer.rows()), "packing the atlas");
   // Fractions of the atlas: once there is a best packing, `low` is known to fit; before, it does not even
   // hold the gutters. `high` is known not to fit, if it is below 1; it is `low` if no larger scale
   // needs to be tried.
   double low = 0, high = 1;
   std::optional<std::vector<Placement>> best;
-  const double precision = shapes.size() > kManyCharts ? kPrecisionOfMany : kPrecision;
+  const double precision = packer.many() ? kPrecisionOfMany : kPrecision;
   // Rounds divide the gap by about kTrials + 1, or by more. Those that achieve less report nothing new.
   const double first_gap = high - low;
   const auto done_at = [&](double gap) {
@@ -192,7 +194,7 @@ std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolut
   };
   double guess = 0;  // what should just fit; 0: unknown
   for (int round = 0; !best || high - low > precision; ++round) {
-    if (high - low < kPrecision) throw_too_small(shapes.size(), resolution, gutter);
+    if (high - low < kPrecision) throw_too_small(shapes.size(), options.resolution, options.gutter);
     const std::array<double, kTrials> shares = shares_of(round, low, high, guess, precision);
     std::array<std::optional<double>, kTrials> scales;
     std::array<std::optional<Packing>, kTrials> packings;

@@ -3,6 +3,7 @@
 
 #include <sdm/progress.h>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,11 +24,16 @@ struct Placement {
 [[nodiscard]] Placement placement_of(const Footprint& footprint, unsigned quarter_turns, double scale,
                                      const Vec2& corner);
 
+struct PackOptions {
+  std::uint32_t resolution = 0, gutter = 0;
+  bool many_small = false;  ///< prefers speed over filling the last gaps, as it does anyway for many shapes
+};
+
 /// Places all shapes at one scale, the largest that is found to fit, each with its own ring of `gutter` free
 /// texels and owning at least one texel. Throws sdm::Error if the resolution is too small for so many charts,
 /// or if there is not enough memory. Deterministic. `progress` receives fractions that never decrease. Cost:
 /// several packings, each about linear in texels and faces.
-[[nodiscard]] std::vector<Placement> pack(std::span<const Shape> shapes, std::uint32_t resolution,
-                                          std::uint32_t gutter, const Progress& progress);
+[[nodiscard]] std::vector<Placement> pack(std::span<const Shape> shapes, const PackOptions& options,
+                                          const Progress& progress);
 
 }  // namespace sdm::atlas
