@@ -59,7 +59,7 @@ void expect_radius(const Surface& surface) {
   std::mt19937 random(5);
   const std::vector<Vec3> samples = surface.sample_points();
   double seen = 0;
-  for (const Vec3& p : test::random_surface_points(surface.mesh(), 1000, random)) {
+  for (const Vec3& p : test::random_surface_points(surface.mesh(), 200, random)) {
     double nearest = radius * 1e3;
     for (const Vec3& s : samples) nearest = std::min(nearest, squared_norm(s - p));
     seen = std::max(seen, std::sqrt(nearest));
