@@ -276,6 +276,7 @@ std::vector<std::string> notes(const AlignOutcome& outcome) {
   for (const sdm::DegreeOfFreedom& f : a.freedoms)
     if (f.free) free += (free.empty() ? "" : ", ") + in_words(f, outcome.size);
   if (!free.empty())
-    notes.push_back("the surfaces do not determine the alignment; these motions are as before: " + free);
+    notes.push_back("the surfaces do not determine the alignment; after these motions O1 fits as well: " +
+                    free);
   return notes;
 }

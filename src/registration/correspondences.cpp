@@ -76,6 +76,21 @@ void select_region(const AlignRegion& region, Correspondences& pairs) {
   }
 }
 
+// The number of the part of the unit sphere that a direction is in: a square on a side of the cube around it.
+std::size_t direction_cell(const Vec3& direction) {
+  constexpr std::size_t kSquares = 4;  // along a side
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
+  const double depth = std::abs(direction[axis]);
+  const auto square = [&](std::size_t k) {
+    const double x = depth > 0 ? 0.5 * (direction[k] / depth + 1) : 0;
+    return std::min(kSquares - 1, static_cast<std::size_t>(x * kSquares));
+  };
+  const std::size_t side = 2 * axis + (direction[axis] < 0 ? 1 : 0);
+  return (side * kSquares + square((axis + 1) % 3)) * kSquares + square((axis + 2) % 3);
+}
+
 }  // namespace
 
 Target::Target(const Sites& o2) : sites(o2) {
@@ -127,10 +142,16 @@ Correspondences thinned(const Correspondences& pairs, std::size_t most) {
   std::vector<std::size_t> selected;
   for (std::size_t i = 0; i < pairs.points.size(); ++i)
     if (pairs.is_selected(i)) selected.push_back(i);
-  const std::size_t stride = std::max<std::size_t>((selected.size() + most - 1) / most, 1);
+  const std::size_t count = std::min(most, selected.size());
+  if (count < selected.size()) {
+    // Of samples sorted by the directions of their normals, equal steps take the share of each direction.
+    std::vector<std::size_t> cells(pairs.points.size());
+    for (const std::size_t i : selected) cells[i] = direction_cell(pairs.normals[i]);
+    std::ranges::stable_sort(selected, {}, [&](std::size_t i) { return cells[i]; });
+  }
   Correspondences result;
-  for (std::size_t k = 0; k < selected.size(); k += stride) {
-    const std::size_t i = selected[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = selected[(2 * k + 1) * selected.size() / (2 * count)];
     result.points.push_back(pairs.points[i]);
     result.closest.push_back(pairs.closest[i]);
     result.normals.push_back(pairs.normals[i]);

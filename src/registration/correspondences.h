@@ -40,7 +40,8 @@ struct Correspondences {
 [[nodiscard]] Correspondences find_correspondences(const Samples& samples, const Affine& pose,
                                                    const Target& target);
 
-/// Returns at most `most` of the pairs in the region, evenly spread.
+/// Returns at most `most` of the pairs in the region, of each direction of normals its share, in any order of
+/// the samples: a rim is not missed because of its place in the mesh.
 [[nodiscard]] Correspondences thinned(const Correspondences& pairs, std::size_t most);
 
 /// The normals of the surface that the faces of O2 approximate, at the closest points: interpolated between

@@ -195,6 +195,46 @@ TEST(Align, KeepsTheSamplesThatDetermineTheMotion) {
   EXPECT_LT(found.freedoms[5].determined, 0.2);
 }
 
+/// A plate of squares on both sides, and on its rim, which has 2 % of the area.
+Mesh thin_plate(std::uint32_t n) {
+  Mesh mesh;
+  const auto vertex = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return (z * (n + 1) + y) * (n + 1) + x;
+  };
+  for (const double z : {0.0, 0.01})
+    for (std::uint32_t y = 0; y <= n; ++y)
+      for (std::uint32_t x = 0; x <= n; ++x) mesh.positions.push_back({1.0 * x / n, 1.0 * y / n, z});
+  const auto square = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+  };
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t j = 0; j < n; ++j) {
+      square(vertex(i, j, 1), vertex(i + 1, j, 1), vertex(i + 1, j + 1, 1), vertex(i, j + 1, 1));
+      square(vertex(i, j, 0), vertex(i, j + 1, 0), vertex(i + 1, j + 1, 0), vertex(i + 1, j, 0));
+    }
+    square(vertex(i, 0, 0), vertex(i + 1, 0, 0), vertex(i + 1, 0, 1), vertex(i, 0, 1));
+    square(vertex(i + 1, n, 0), vertex(i, n, 0), vertex(i, n, 1), vertex(i + 1, n, 1));
+    square(vertex(0, i + 1, 0), vertex(0, i, 0), vertex(0, i, 1), vertex(0, i + 1, 1));
+    square(vertex(n, i, 0), vertex(n, i + 1, 0), vertex(n, i + 1, 1), vertex(n, i, 1));
+  }
+  return mesh;
+}
+
+// A motion along an axis in the plane moves the hundredth of the area that faces this way along its normals.
+TEST(Align, TheFreedomsOfAPlateDoNotDependOnItsTriangles) {
+  for (const std::uint32_t n : {1, 2, 8, 10, 32, 50}) {
+    SCOPED_TRACE(n);
+    Mesh plate = thin_plate(n);
+    std::mt19937 random(n);
+    for (int order = 0; order < 3; ++order) {
+      const Alignment found = align(plate, Sites(plate));
+      EXPECT_EQ(free_count(found), 0u) << order;
+      for (const DegreeOfFreedom& f : found.freedoms) EXPECT_GT(f.determined, 0.06) << order;
+      std::ranges::shuffle(plate.triangles, random);
+    }
+  }
+}
+
 TEST(Align, PrincipalAxesNeedNoStart) {
   for (const char* name : {"head.off", "elephant.off", "bracket"}) {
     const Mesh mesh = name == std::string("bracket") ? bracket() : load(name);
