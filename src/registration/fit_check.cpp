@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "core/memory.h"
 #include "geometry/vec.h"
@@ -39,6 +41,32 @@ void mirror(Samples& samples) {
   for (Vec3& n : samples.normals) n[0] = -n[0];
 }
 
+/// Every so many of the samples, which are in spatial order.
+CentredSamples every(std::size_t step, const CentredSamples& o1) {
+  CentredSamples part{{}, o1.radius};
+  for (std::size_t i = 0; i < o1.samples.points.size(); i += step) {
+    part.samples.points.push_back(o1.samples.points[i]);
+    if (!o1.samples.normals.empty()) part.samples.normals.push_back(o1.samples.normals[i]);
+  }
+  return part;
+}
+
+/// Leaves the most promising of many poses, by few steps of a quarter of the samples.
+void keep_promising(const CentredSamples& few, const Target& target, AxisMatches& candidates) {
+  constexpr StepLimits kLimits{.most = 3, .tolerance = 1e-2};
+  constexpr std::size_t kKept = 6, kShare = 4;
+  if (candidates.poses.size() <= kKept) return;
+  const CentredSamples part = every(kShare, few);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < candidates.poses.size(); ++i)
+    order.emplace_back(mismatch(part, refine(part, {candidates.poses[i]}, target, kLimits).pose, target), i);
+  std::ranges::sort(order);
+  std::vector<Affine> kept;
+  for (std::size_t k = 0; k < kKept; ++k) kept.push_back(candidates.poses[order[k].second]);
+  candidates.poses = std::move(kept);
+  candidates.likely = kKept;
+}
+
 /// The misfit from where the principal axes agree, as a length; infinite if few samples are far from `most`.
 double misfit_by_axes(const CentredSamples& few, const CentredSamples& some, std::span<const Vec3> o2,
                       const Target& target, double most) {
@@ -47,6 +75,7 @@ double misfit_by_axes(const CentredSamples& few, const CentredSamples& some, std
   constexpr double kFar = 2;
   AxisMatches candidates = axis_matches(some.samples.points, o2);
   candidates.poses.resize(candidates.likely);
+  keep_promising(few, target, candidates);
   const Fit fit = best_match_of_axes(few, candidates, target, kSteps, [](std::size_t) {});
   if (!(mismatch(few, fit.pose, target) <= kFar * most)) return kEverything;
   return mismatch(some, refine(some, fit, target, kLimits).pose, target);
