@@ -48,7 +48,7 @@ export function showPlaces(report: Report, thinnest: Listed[] | null, size: numb
     : report.places ? hintOf(report, report.places) : '';
   byId('worst-table').replaceChildren(
     rows.length === 0
-      ? make('p', {}, 'No point of the part has a distance beyond the accuracy.')
+      ? make('p', {}, thinnest || report.places ? 'No point of the part has a distance beyond the accuracy.' : 'This report lists no places.')
       : table(head, rows, thinnest ? 'The thinnest places' : 'The places with the largest distances'),
     make('p', { class: 'hint' }, hint),
   );
