@@ -4,9 +4,6 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -14,54 +11,19 @@
 #include "group_tolerances.h"
 #include "option_checks.h"
 
-#include "option_checks.h"
-
 namespace {
 
 constexpr std::string_view kBox = "box:", kAxes = "xyz";
 
-/// The numbers of a text; nothing if something else is in it.
-std::optional<std::vector<double>> numbers_in(std::string_view text, std::string_view separators) {
-  std::vector<double> numbers;
-  for (std::size_t at; (at = text.find_first_not_of(separators)) != std::string_view::npos;) {
-    text.remove_prefix(at);
-    std::string_view word = text.substr(0, text.find_first_of(separators));
-    text.remove_prefix(word.size());
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double value = 0;
-    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (fault != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      return std::nullopt;
-    numbers.push_back(value);
-  }
-  return numbers;
-}
-
 std::optional<sdm::Box> box_of(std::string_view text) {
-  const auto numbers = numbers_in(text.substr(kBox.size()), ",");
-  if (!numbers || numbers->size() != 6) return std::nullopt;
+  const auto numbers = parse_list(text.substr(kBox.size()), 6);
+  if (!numbers) return std::nullopt;
   sdm::Box box;
   for (int k = 0; k < 3; ++k) {
     box.lo[k] = (*numbers)[k], box.hi[k] = (*numbers)[k + 3];
     if (!(box.lo[k] <= box.hi[k])) return std::nullopt;
   }
   return box;
-}
-
-/// Reads "xyz,rz": translations along these axes, and after r, rotations about them.
-std::optional<sdm::AlignFreedoms> freedoms_of(const std::string& text) {
-  sdm::AlignFreedoms result{.translations = {}, .rotations = {}};
-  for (std::string_view word : CLI::detail::split(text, ',')) {
-    const bool turns = word.starts_with('r');
-    if (turns) word.remove_prefix(1);
-    if (word.empty()) return std::nullopt;
-    for (const char letter : word) {
-      const std::size_t axis = kAxes.find(letter);
-      if (axis == std::string_view::npos) return std::nullopt;
-      (turns ? result.rotations : result.translations)[axis] = true;
-    }
-  }
-  return result;
 }
 
 CLI::Validator checked(const std::string& needed, bool (*accepts)(const std::string&)) {
@@ -78,28 +40,25 @@ void add_freedom_options(CLI::App& app, AlignCommand& command, CLI::Option* alig
              "--align-free",
              [&command](const std::string& text) {
                const sdm::Vec3 about = command.freedoms.about;
-               command.freedoms = *freedoms_of(text);
+               command.freedoms = *sdm::parse_freedoms(text);
                command.freedoms.about = about;
              },
              "The motions that the alignment may use, the others are locked: xyz,rz for translations along "
              "x, "
              "y and z and a rotation about z, or any of x, y, z, rx, ry, rz; axes of O2's coordinates")
           ->check(checked("a list of x, y, z, rx, ry and rz",
-                          [](const std::string& text) { return freedoms_of(text).has_value(); }))
+                          [](const std::string& text) { return sdm::parse_freedoms(text).has_value(); }))
           ->type_name("MOTION,...")
           ->needs(align);
   app.add_option_function<std::string>(
          "--align-about",
          [&command](const std::string& text) {
-           const auto numbers = numbers_in(text, ",");
+           const auto numbers = parse_list(text, 3);
            std::copy_n(numbers->begin(), 3, command.freedoms.about.begin());
          },
          "The point that the axes of these rotations go through; by default the origin")
       ->check(checked("three numbers, X,Y,Z",
-                      [](const std::string& text) {
-                        const auto numbers = numbers_in(text, ",");
-                        return numbers && numbers->size() == 3;
-                      }))
+                      [](const std::string& text) { return parse_list(text, 3).has_value(); }))
       ->type_name("X,Y,Z")
       ->needs(free);
 }
@@ -168,7 +127,7 @@ sdm::Transform read_321(const std::string& file) {
   std::vector<sdm::Vec3> points, places;
   std::string line;
   for (int row = 1; std::getline(in, line) && points.size() <= kRows; ++row) {
-    const auto numbers = numbers_in(std::string_view(line).substr(0, line.find('#')), " \t\r,;");
+    const auto numbers = parse_row(std::string_view(line).substr(0, line.find('#')));
     if (numbers && numbers->empty()) continue;
     if (!numbers || numbers->size() != 6)
       throw sdm::Error(

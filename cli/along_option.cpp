@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <sdm/vec.h>
 
-#include <sstream>
+#include <cmath>
 #include <string>
 
 #include "option_checks.h"
@@ -12,17 +12,13 @@ namespace {
 
 constexpr const char* kNormal = "normal";
 
-/// The three numbers of X,Y,Z, or nothing.
+/// The direction X,Y,Z, of a length other than 0 that does not overflow; or nothing.
 std::optional<sdm::Vec3> parse_direction(const std::string& text) {
-  std::istringstream in(text);
-  sdm::Vec3 direction{};
-  std::string part;
-  for (double& component : direction) {
-    if (!std::getline(in, part, ',') || !any_number()(part).empty()) return std::nullopt;
-    component = std::stod(part);
-  }
-  if (std::getline(in, part, ',') || text.ends_with(',')) return std::nullopt;
-  return sdm::norm(direction) > 0 ? std::optional(direction) : std::nullopt;
+  const auto numbers = parse_list(text, 3);
+  if (!numbers) return std::nullopt;
+  const sdm::Vec3 direction{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+  const double length = sdm::norm(direction);
+  return length > 0 && std::isfinite(length) ? std::optional(direction) : std::nullopt;
 }
 
 }  // namespace

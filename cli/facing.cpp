@@ -6,7 +6,8 @@
 
 void add_facing_option(CLI::App& app, std::optional<double>& facing, const std::string& sample) {
   app.add_option_function<std::string>(
-         "--facing", [&facing](const std::string& angle) { facing = angle.empty() ? 90 : std::stod(angle); },
+         "--facing",
+         [&facing](const std::string& angle) { facing = angle.empty() ? 90 : *parse_number(angle); },
          fmt::format(
              "Measure to the closest of the faces of O2 that face the same way: whose normal is within "
              "ANGLE degrees of that of the {}, 90 unless given. For thin walls, where the closest "

@@ -2,13 +2,12 @@
 
 #include <sdm/error.h>
 
-#include <charconv>
-#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "format.h"
+#include "option_checks.h"
 
 namespace {
 
@@ -19,19 +18,14 @@ std::optional<sdm::IslandLimits> limits_of(std::string_view text) {
   const bool share = text.ends_with('%'), area = text.starts_with(kArea);
   if (share) text.remove_suffix(1);
   if (area) text.remove_prefix(kArea.size());
-  const auto read = [&]<class Number>(Number value) -> std::optional<Number> {
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-  };
   if (!share && !area) {
-    const auto count = read(std::size_t{});
-    return count && *count > 0 ? std::optional(sdm::IslandLimits{.faces = *count}) : std::nullopt;
+    const auto count = parse_whole_number(text);
+    return count && *count > 0 ? std::optional(sdm::IslandLimits{.faces = static_cast<std::size_t>(*count)})
+                               : std::nullopt;
   }
-  const auto value = read(0.0);
+  const auto value = parse_number(text);
   constexpr double kAll = 100;
-  if (!value || share == area || !std::isfinite(*value) || !(*value > 0) || (share && *value > kAll))
-    return std::nullopt;
+  if (!value || share == area || !(*value > 0) || (share && *value > kAll)) return std::nullopt;
   return share ? sdm::IslandLimits{.area_fraction = *value / kAll} : sdm::IslandLimits{.area = *value};
 }
 

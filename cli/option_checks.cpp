@@ -2,6 +2,7 @@
 
 #include <sdm/error.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -14,11 +15,16 @@ namespace {
 // All of the text as a number in base 10, with or without a sign.
 template <class Number>
 std::optional<Number> parse(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+    if (text.starts_with('-')) return std::nullopt;
+  }
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
+
+}  // namespace
 
 std::optional<std::int64_t> parse_whole_number(std::string_view text) {
   return parse<std::int64_t>(text);
@@ -29,7 +35,31 @@ std::optional<double> parse_number(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-}  // namespace
+std::optional<std::vector<double>> parse_row(std::string_view text) {
+  constexpr std::string_view kSeparators = " \t\r,;";
+  std::vector<double> numbers;
+  for (std::size_t at; (at = text.find_first_not_of(kSeparators)) != std::string_view::npos;) {
+    text.remove_prefix(at);
+    const std::string_view word = text.substr(0, text.find_first_of(kSeparators));
+    text.remove_prefix(word.size());
+    const std::optional<double> value = parse_number(word);
+    if (!value) return std::nullopt;
+    numbers.push_back(*value);
+  }
+  return numbers;
+}
+
+std::optional<std::vector<double>> parse_list(std::string_view text, std::size_t count) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::optional<double> value = parse_number(text.substr(begin, end - begin));
+    if (!value || numbers.size() == count) return std::nullopt;
+    numbers.push_back(*value);
+    begin = end + 1;
+  }
+  return numbers.size() == count ? std::optional(numbers) : std::nullopt;
+}
 
 std::string check_transform(const std::string& text) try {
   (void)sdm::scenes::parse_placement(text);

@@ -7,11 +7,22 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 /// Checks steps for sdm::scenes::parse_placement; returns an error message, or an empty string.
 [[nodiscard]] std::string check_transform(const std::string& text);
+
+/// Reads all of a text as a finite number in base 10, with at most one sign; nothing if it is none.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text);
+/// The same for a whole number.
+[[nodiscard]] std::optional<std::int64_t> parse_whole_number(std::string_view text);
+/// Reads a row of a file of numbers, with blanks, commas or semicolons between them; nothing if something
+/// else is in it.
+[[nodiscard]] std::optional<std::vector<double>> parse_row(std::string_view text);
+/// Reads numbers with one comma between two of them, and nothing else; nothing unless they are `count`.
+[[nodiscard]] std::optional<std::vector<double>> parse_list(std::string_view text, std::size_t count);
 
 /// Requires a finite number in base 10 for which `accepts` holds.
 [[nodiscard]] CLI::Validator number(const std::string& description, bool (*accepts)(double));

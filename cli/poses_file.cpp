@@ -4,10 +4,10 @@
 #include <sdm/error.h>
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <fstream>
 #include <string>
+
+#include "option_checks.h"
 
 namespace {
 
@@ -21,12 +21,10 @@ std::vector<double> numbers_in(std::string_view line) {
     if (first == std::string_view::npos) return numbers;
     line.remove_prefix(first);
     const std::string_view word = line.substr(0, line.find_first_of(kSeparators));
-    double number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(number))
-      throw sdm::Error(fmt::format("{} is not a number", word.substr(0, 40)));
+    const std::optional<double> number = parse_number(word);
+    if (!number) throw sdm::Error(fmt::format("{} is not a number", word.substr(0, 40)));
     if (numbers.size() == kMost) throw sdm::Error("more than 16 numbers");
-    numbers.push_back(number);
+    numbers.push_back(*number);
     line.remove_prefix(word.size());
   }
 }

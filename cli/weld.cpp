@@ -25,7 +25,7 @@ void add_weld_option(CLI::App& app, std::optional<sdm::WeldOptions>& weld, const
          "--weld",
          [&weld](const std::string& text) {
            weld.emplace();
-           if (text != kAutomatic) weld->tolerance = std::stod(text);
+           if (text != kAutomatic) weld->tolerance = *parse_number(text);
          },
          fmt::format(
              "Join boundary edges of {} whose ends are at most T apart, after the transforms; auto: at "

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace sdm {
@@ -39,6 +40,11 @@ struct AlignFreedoms {
     return translations == std::array{true, true, true} && rotations == std::array{true, true, true};
   }
 };
+
+/// Reads a list such as "xyz,rz": words, separated by commas, of x, y and z for translations along these
+/// axes, or, after r, for rotations about them. All others are locked; `about` is the origin. Nothing for any
+/// other text.
+[[nodiscard]] SDM_API std::optional<AlignFreedoms> parse_freedoms(std::string_view text);
 
 /// The part of O2 that O1 is fitted to: faces and boxes together; all of O2 if there are none.
 struct AlignRegion {

@@ -45,25 +45,9 @@ BoundedLength hausdorff(nb::handle a, nb::handle b, std::optional<double> precis
   return result;
 }
 
-/// "xyz,rz": translations along these axes, and after r, rotations about them.
-AlignFreedoms freedoms_of(std::string_view text) {
-  AlignFreedoms result{.translations = {}, .rotations = {}};
-  const auto fail = [&] {
-    throw Error("'" + std::string(text) + "' is not a list of x, y, z, rx, ry and rz, such as 'xyz,rz'");
-  };
-  bool turns = false, begun = false;
-  for (const char letter : text) {
-    if (letter == ',') {
-      turns = begun = false;
-    } else if (letter == 'r' && !begun) {
-      turns = begun = true;
-    } else {
-      if (letter < 'x' || letter > 'z') fail();
-      (turns ? result.rotations : result.translations)[static_cast<std::size_t>(letter - 'x')] = true;
-      begun = true;
-    }
-  }
-  return result;
+AlignFreedoms freedoms_of(const std::string& text) {
+  if (const auto freedoms = parse_freedoms(text)) return *freedoms;
+  throw Error("'" + text + "' is not a list of x, y, z, rx, ry and rz, such as 'xyz,rz'");
 }
 
 AlignOptions align_options(const char* start, nb::handle pose, std::size_t samples, int max_iterations) {

@@ -117,6 +117,24 @@ TEST_F(AlignOption, OfProximity) {
   EXPECT_THAT(run_sdm({"proximity", o1, o2, "--align"}).out, HasSubstr("aligned "));
 }
 
+TEST_F(AlignOption, NumbersAreReadStrictly) {
+  const auto code = [&](const std::vector<std::string>& options) { return map(options).code; };
+  for (const char* number : {"+-1", "-+1", "++1", "0x1", "1,", "nan", "1e999", "one"}) {
+    for (const char* option : {"--tolerance", "--weld", "--facing", "--max-distance", "--ignore-islands"})
+      EXPECT_EQ(code({option + std::string("=") + number}), 2) << option << " " << number;
+    EXPECT_EQ(code({"--along", std::string("1,0,") + number}), 2) << number;
+    EXPECT_EQ(code({"--align", "--align-free", "x", "--align-about", std::string("0,0,") + number}), 2)
+        << number;
+    EXPECT_EQ(code({"--align", "--align-on", std::string("box:0,0,0,1,1,") + number}), 2) << number;
+  }
+  for (const char* list : {"1e200,0,0", "0,0,0", "1,2", "1,2,3,4", "1,,2,3", ",1,2,3", "1;2;3"})
+    EXPECT_EQ(code({"--along", list}), 2) << list;
+  for (const char* list : {"1,2", "1,,2,3", "1,2,3,", "1 2 3"})
+    EXPECT_EQ(code({"--align", "--align-free", "x", "--align-about", list}), 2) << list;
+  EXPECT_EQ(code({"--along", "+1,-0,1e-3"}), 0);
+  EXPECT_EQ(code({"--align", "--align-free", "x", "--align-about", "+1,-2.5,1e3"}), 0);
+}
+
 TEST_F(AlignOption, LockedFreedomsAreNotUsed) {
   const Outcome run = map({"--align", "--align-free", "xy,rz", "--align-about", "0.1,0.2,-1", "--json"});
   ASSERT_EQ(run.code, 0) << run.err;

@@ -235,6 +235,18 @@ TEST(Align, TheFreedomsOfAPlateDoNotDependOnItsTriangles) {
   }
 }
 
+TEST(ParseFreedoms, ReadsLists) {
+  const auto parsed = parse_freedoms("xyz,rz");
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed->translations, (std::array{true, true, true}));
+  EXPECT_EQ(parsed->rotations, (std::array{false, false, true}));
+  EXPECT_EQ(parsed->about, Vec3{});
+  EXPECT_TRUE(parse_freedoms("x,y,z,rxyz")->all());
+  EXPECT_TRUE(parse_freedoms("rx,y"));
+  for (const char* text : {"", ",", "x,", ",x", "x,,y", "r", "xr", "X", "w", "rr", "x y"})
+    EXPECT_FALSE(parse_freedoms(text)) << text;
+}
+
 TEST(Align, PrincipalAxesNeedNoStart) {
   for (const char* name : {"head.off", "elephant.off", "bracket"}) {
     const Mesh mesh = name == std::string("bracket") ? bracket() : load(name);

@@ -3,7 +3,6 @@
 #include <sdm/tolerance_table.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -12,6 +11,7 @@
 #include <string_view>
 
 #include "core/excerpt.h"
+#include "core/parse_number.h"
 #include "core/printable.h"
 
 namespace sdm {
@@ -45,12 +45,9 @@ std::vector<std::string> fields_of(std::string_view line) {
 }
 
 double limit_of(const std::string& text, std::size_t line) {
-  double value = 0;
-  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto [end, fault] = std::from_chars(begin, text.data() + text.size(), value);
-  if (fault != std::errc() || end != text.data() + text.size())
-    throw Error(fmt::format("line {}: '{}' is not a number", line, excerpt(text)));
-  return value;
+  const std::optional<double> value = core::parse_number(text);
+  if (!value) throw Error(fmt::format("line {}: '{}' is not a number", line, excerpt(text)));
+  return *value;
 }
 
 void add_row(std::vector<GroupTolerance>& table, const std::string& group, double lower, double upper,

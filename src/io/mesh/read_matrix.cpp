@@ -3,13 +3,13 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
 
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/excerpt.h"
+#include "core/parse_number.h"
 #include "io/file/byte_scanner.h"
 #include "io/file/file_bytes.h"
 #include "io/file/npy_header.h"
@@ -33,15 +33,11 @@ std::vector<double> numbers_in_text(std::string_view text) {
     std::string_view rest = line.substr(0, line.find('#'));
     for (std::size_t at; (at = rest.find_first_not_of(kSeparators)) != std::string_view::npos;) {
       rest.remove_prefix(at);
-      std::string_view word = rest.substr(0, rest.find_first_of(kSeparators));
+      const std::string_view word = rest.substr(0, rest.find_first_of(kSeparators));
       rest.remove_prefix(word.size());
-      if (word.starts_with('+')) word.remove_prefix(1);
-      double number = 0;
-      const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
-      if (fault != std::errc() || end != word.data() + word.size()) {
-        throw Error(fmt::format("'{}' is not a number; {}", excerpt(word), kNeeded));
-      }
-      numbers.push_back(number);
+      const std::optional<double> number = core::parse_number(word);
+      if (!number) throw Error(fmt::format("'{}' is not a number; {}", excerpt(word), kNeeded));
+      numbers.push_back(*number);
     }
   }
   return numbers;
