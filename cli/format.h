@@ -41,10 +41,15 @@
   return units.empty() ? std::string() : fmt::format(" {}", units);
 }
 
-/// How long a command took, and the files of its report; the texts begin in the given column.
+/// How long a command took, the files of its report, and last, to be opened, the page if there is one; the
+/// texts begin in the given column. `page_folder`: that of the page, if it is another.
 [[nodiscard]] inline std::string result_lines(std::size_t column, double ms, const std::string& folder,
-                                              const std::string& files) {
+                                              const std::string& files, std::string page_folder = {}) {
   const std::size_t width = column - 2;
-  return fmt::format("  {:<{}}{} s\n  {:<{}}{}/: {}report.json\n", "time", width,
-                     number(std::round(ms) / 1000, 6), "results", width, folder, files);
+  std::string text = fmt::format("  {:<{}}{} s\n  {:<{}}{}/: {}report.json\n", "time", width,
+                                 number(std::round(ms) / 1000, 6), "results", width, folder, files);
+  if (page_folder.empty()) page_folder = folder;
+  if (files.find("report.html") != std::string::npos)
+    text += fmt::format("  {:<{}}{}/report.html\n", "page", width, page_folder);
+  return text;
 }

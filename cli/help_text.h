@@ -13,8 +13,7 @@
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width, std::size_t indent = 0);
 
 /// The columns of the terminal that standard output is; otherwise those of the environment variable COLUMNS,
-/// or
-/// 80. At least 40 and at most 120.
+/// or 80. At least 40 and at most 120.
 [[nodiscard]] std::size_t help_width();
 
 /// The formatter of the command, to be set before subcommands are added.

@@ -89,7 +89,10 @@ std::string text_of(const MapCommand& command, const std::vector<MeshMaps>& mesh
                   tiles.empty() ? "" : fmt::format("/{{{}}}", fmt::join(tiles, ",")));
   const std::string files =
       (aligned && !command.both ? kAlignmentFile + std::string(" ") : "") + listed(command.output.files);
-  return text + result_lines(12, ms, folder, files);
+  std::filesystem::path page = command.output.folder;
+  if (command.both) page /= "o1";
+  if (!tiles.empty()) page /= std::to_string(tiles.front());
+  return text + result_lines(12, ms, folder, files, page.string());
 }
 
 /// Returns the exit code.

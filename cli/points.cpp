@@ -67,9 +67,7 @@ struct PointsOutcome {
   double import_ms = 0, align_ms = 0, points_ms = 0;
 
   [[nodiscard]] ExitCode code() const {
-    sdm::Verdict verdict = summary.tolerance ? summary.tolerance->verdict : sdm::Verdict::pass;
-    if (found.groups) verdict = worse(verdict, found.groups->verdict);
-    return exit_code(verdict);
+    return exit_code(judged(summary, found.groups).value_or(sdm::Verdict::pass));
   }
 };
 
@@ -139,7 +137,7 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   const sdm::Summary& s = outcome.summary;
   const sdm::DistanceStatistics& d = s.distance;
   const std::string unit = unit_suffix(s.units);
-  std::string text = fmt::format("{} -> {}\n", command.cloud, command.o2);
+  std::string text = heading(fmt::format("{} -> {}", command.cloud, command.o2), judged(s, found.groups));
   if (outcome.aligned) text += summary(*outcome.aligned, s.units);
   if (found.text) text += text_summary(*found.text);
   text += fmt::format("  points    {}\n", found.points) + measured_line(s);

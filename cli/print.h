@@ -5,6 +5,7 @@
 
 #include "common_options.h"
 #include "report.h"
+#include "terminal_text.h"
 
 /// Prints what `report` returns, as JSON, or else, unless quiet, what `text` returns.
 template <class Report, class Text>
@@ -12,5 +13,5 @@ void print(const RunOptions& run, const Report& report, const Text& text) {
   if (run.json)
     std::cout << to_text(report());
   else if (!run.quiet)
-    std::cout << text();
+    print_for_people(text());
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "exit_codes.h"
 #include "format.h"
 #include "group_tolerances.h"
 #include "notes.h"
@@ -146,6 +147,18 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
 
 }  // namespace
 
+std::optional<sdm::Verdict> judged(const sdm::Summary& summary,
+                                   const std::optional<sdm::GroupVerdicts>& groups) {
+  std::optional<sdm::Verdict> verdict;
+  if (summary.tolerance) verdict = summary.tolerance->verdict;
+  if (groups) verdict = verdict ? worse(*verdict, groups->verdict) : groups->verdict;
+  return verdict;
+}
+
+std::string heading(const std::string& title, std::optional<sdm::Verdict> verdict) {
+  return verdict ? fmt::format("{}: {}\n", sdm::name_of(*verdict), title) : title + "\n";
+}
+
 std::string measured_line(const sdm::Summary& summary) {
   if (summary.measured.kind == sdm::DistanceKind::closest) return {};
   return fmt::format("  measured  {}\n", summary.measured.text);
@@ -179,7 +192,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   const sdm::Summary& s = outcome.summary;
   const sdm::DistanceStatistics& d = s.distance;
   const std::string unit = unit_suffix(s.units);
-  std::string text = fmt::format("{} -> {}\n", on.file, to.file);
+  std::string text = heading(fmt::format("{} -> {}", on.file, to.file), judged(s, outcome.groups));
   const auto add = [&]<class... Values>(fmt::format_string<Values...> line, Values&&... values) {
     fmt::format_to(std::back_inserter(text), line, std::forward<Values>(values)...);
   };

@@ -58,6 +58,11 @@ void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json&
 /// JSON text; drops invalid bytes of file names that are not UTF-8.
 [[nodiscard]] std::string to_text(const nlohmann::ordered_json& json);
 
+/// The verdict on all and on the groups, if anything was judged.
+[[nodiscard]] std::optional<sdm::Verdict> judged(const sdm::Summary& summary,
+                                                 const std::optional<sdm::GroupVerdicts>& groups);
+/// The first line of what is printed: what was measured, after the verdict if there is one.
+[[nodiscard]] std::string heading(const std::string& title, std::optional<sdm::Verdict> verdict);
 /// A line on what distances are to, unless it is the closest point.
 [[nodiscard]] std::string measured_line(const sdm::Summary& summary);
 /// "inside" or "behind": where distances are negative.

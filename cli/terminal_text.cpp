@@ -1,16 +1,85 @@
 #include "terminal_text.h"
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <iostream>
 #include <new>
 
+#include "help_text.h"
 #include "src/core/printable.h"
 
 namespace {
+
+// Where the text of a line begins: after a label, such as "  error     ", or after the indentation.
+std::size_t text_column(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(' ');
+  if (first == std::string_view::npos || first == 0) return 2;
+  if (first > 2) return first;
+  const std::size_t gap = line.find("  ", first);
+  const std::size_t text = gap == std::string_view::npos ? gap : line.find_first_not_of(' ', gap);
+  // A label of full width, such as "  tolerance ", has one blank after it.
+  return text == std::string_view::npos || text > 16 ? line.find(' ', first) + 1 : text;
+}
+
+std::size_t characters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+// Bold, and green, red or yellow, where the text of a line is a verdict.
+std::string colored(std::string line) {
+  struct Word {
+    std::string_view text, color;
+  };
+  constexpr std::array<Word, 4> kWords{
+      {{"PASS", "32"}, {"FAIL", "31"}, {"NOT DECIDED", "33"}, {"DOUBTFUL", "33"}}};
+  const std::size_t begin = line.starts_with("  ") ? text_column(line) : 0;
+  for (const auto& [word, color] : kWords)
+    if (std::string_view(line).substr(std::min(begin, line.size())).starts_with(word)) {
+      line.insert(begin + word.size(), "\x1b[0m");
+      line.insert(begin, "\x1b[1;" + std::string(color) + "m");
+      break;
+    }
+  return line;
+}
+
+std::string broken(std::string_view line, std::size_t width) {
+  const std::size_t indent = text_column(line);
+  std::string result;
+  std::size_t used = 0;
+  while (true) {
+    std::size_t end = line.find(' ', line.find_first_not_of(' ', 0));
+    const std::string_view word = line.substr(0, end);
+    const std::size_t size = characters(word);
+    if (used > indent && used + size > width) {
+      result += '\n' + std::string(indent, ' ');
+      const std::string_view bare = word.substr(std::min(word.find_first_not_of(' '), word.size()));
+      result += bare, used = indent + characters(bare);
+    } else {
+      result += word, used += size;
+    }
+    if (end == std::string_view::npos) return result;
+    line.remove_prefix(end);
+  }
+}
+
+bool has_colors() {
+  const char *off = std::getenv("NO_COLOR"), *kind = std::getenv("TERM");
+  return (off == nullptr || *off == '\0') && kind != nullptr && std::string_view(kind) != "dumb";
+}
 
 // Passes on whole lines, so that no character is cut; the last one when it is flushed.
 class LineBuffer : public std::streambuf {
  public:
   explicit LineBuffer(std::streambuf& target) : target_(target) {}
+
+  /// Prints printable lines as they are.
+  void put(std::string_view text) {
+    if (pass_on(line_.size())) target_.sputn(text.data(), static_cast<std::streamsize>(text.size()));
+  }
 
  protected:
   std::streamsize xsputn(const char* text, std::streamsize count) override {
@@ -49,6 +118,24 @@ std::string printable_lines(std::string_view text) {
     text.remove_prefix(end + 1);
   }
   return result;
+}
+
+void print_for_people(std::string_view text) {
+  auto* const lines = dynamic_cast<LineBuffer*>(std::cout.rdbuf());
+  if (lines == nullptr || isatty(STDOUT_FILENO) == 0) {
+    std::cout << text;
+    return;
+  }
+  const std::size_t width = help_width();
+  const bool colors = has_colors();
+  std::string result;
+  for (std::string printable = printable_lines(text); !printable.empty();) {
+    const std::size_t end = std::min(printable.find('\n'), printable.size());
+    const std::string line = broken(std::string_view(printable).substr(0, end), width);
+    result += (colors ? colored(line) : line) + "\n";
+    printable.erase(0, end + 1);
+  }
+  lines->put(result);
 }
 
 PrintableOutput::PrintableOutput()

@@ -210,7 +210,7 @@ std::string tolerance_text(const ThicknessCommand& command, const sdm::Summary& 
 std::string thickness_summary(const ThicknessCommand& command, const ThicknessResult& result, double size) {
   const sdm::Summary& s = result.summary;
   const std::string unit = unit_suffix(s.units), name = name_of_method(command.method);
-  std::string text = fmt::format("{}: wall thickness\n", command.part.file);
+  std::string text = heading(fmt::format("{}: wall thickness", command.part.file), judged(s, {}));
   if (!s.extremes) {
     text += "  thickness   no texel has a value\n";
   } else {

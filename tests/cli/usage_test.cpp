@@ -14,6 +14,7 @@
 #include <sstream>
 #include <vector>
 
+#include "cli/samples.h"
 #include "support/matches.h"
 #include "support/temporary_folder.h"
 
@@ -249,6 +250,47 @@ TEST(Usage, NoControlCharacterReachesTheTerminal) {
   const Outcome json = run_sdm({"info", other, "--json"});
   EXPECT_TRUE(all_printable(json.out)) << json.out;
   EXPECT_EQ(nlohmann::json::parse(json.out)["file"].get<std::string>(), other);
+}
+
+// What a terminal shows: the verdict first and in colour, lines that fit, and last the page to open.
+// Elsewhere, the same words without line breaks and colours.
+TEST(Terminal, ShowsVerdictsInColourAndLinesThatFit) {
+  const TemporaryFolder folder;
+  const std::string o1 = write_obj(folder / "part.obj", ring(24)),
+                    o2 = write_obj(folder / "plane.obj", square(8, -2));
+  const std::vector<std::string> arguments{"map",         o1, o2, "-o", folder / "out", "--resolution", "64",
+                                           "--tolerance", "1"};
+  const auto shown = [&](std::uint16_t columns, std::vector<std::string> environment) {
+    Outcome run = run_sdm(arguments, {.environment = std::move(environment), .columns = columns});
+    EXPECT_EQ(run.code, 3) << run.err;
+    std::erase(run.out, '\r');
+    return run.out;
+  };
+  const std::string plain = shown(0, {"TERM=xterm"});
+  EXPECT_TRUE(plain.starts_with("FAIL: " + o1));
+  EXPECT_EQ(plain.find('\x1b'), std::string::npos);
+  const std::string last = plain.substr(plain.rfind('\n', plain.size() - 2) + 1);
+  EXPECT_EQ(last, "  page      " + std::string(folder / "out") + "/report.html\n");
+
+  const std::string colored = shown(200, {"TERM=xterm", "NO_COLOR="});
+  EXPECT_TRUE(colored.starts_with("\x1b[1;31mFAIL\x1b[0m: " + o1)) << colored;
+  EXPECT_NE(colored.find("  tolerance \x1b[1;31mFAIL\x1b[0m: "), std::string::npos) << colored;
+  for (const auto& environment :
+       {std::vector<std::string>{"TERM=xterm", "NO_COLOR=1"}, {"TERM=dumb", "NO_COLOR="}})
+    EXPECT_EQ(shown(200, environment).find('\x1b'), std::string::npos);
+
+  const std::string narrow = shown(50, {"TERM=xterm", "NO_COLOR=1"});
+  const auto words = [](std::string text) {
+    std::erase_if(text, [](char c) { return c == ' ' || c == '\n'; });
+    return text.substr(0, text.find("time"));
+  };
+  EXPECT_EQ(words(narrow), words(plain));
+  std::istringstream lines(narrow);
+  for (std::string line; std::getline(lines, line);) {
+    const bool one_word = line.find(' ', line.find_first_not_of(' ')) == std::string::npos;
+    EXPECT_TRUE(line.size() <= 50 || one_word) << line;
+  }
+  EXPECT_NE(narrow.find("\n            "), std::string::npos);
 }
 
 }  // namespace

@@ -75,8 +75,9 @@ Outcome run_program(const char* program, const std::vector<std::string>& argumen
   argv.push_back(nullptr);
 
   std::array<int, 2> out, err;
+  const winsize window{.ws_row = 24, .ws_col = options.columns, .ws_xpixel = 0, .ws_ypixel = 0};
   const bool made =
-      pipe(out.data()) == 0 &&
+      (options.columns > 0 ? openpty(&out[0], &out[1], nullptr, nullptr, &window) : pipe(out.data())) == 0 &&
       (options.terminal ? openpty(&err[0], &err[1], nullptr, nullptr, nullptr) : pipe(err.data())) == 0;
   if (!made) throw std::runtime_error("no pipe");
   // A small pipe blocks a command that runs ahead, so that it cannot end before the signal is sent however

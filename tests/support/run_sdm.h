@@ -22,6 +22,7 @@ struct Conditions {
   std::optional<std::uint64_t> stack{};      ///< of the main thread
   std::vector<std::string> environment{};    ///< NAME=value, besides that of this program
   bool terminal = false;                     ///< stderr is a terminal
+  std::uint16_t columns = 0;                 ///< stdout is a terminal of that width, unless 0
   int interrupt_after_ms = 0;                ///< send `signal` then, unless 0
   int interrupt_after_lines = 0;             ///< send `signal` once stdout has that many, unless 0
   int signal = SIGINT;
