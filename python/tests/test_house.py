@@ -171,9 +171,12 @@ def test_numbers(told):
     assert f"Alignment: {told.json['alignment']['text']}." in told.page["inputs-table"]
     largest = max(extremes["max"]["distance"], -extremes["min"]["distance"])
     assert abs(first_number(told.page["worst"][0][1])) == rounded(largest, 4)
+    in_command = json.loads(json.dumps(told.json))
+    for place in in_command["places"]["largest"]:
+        place["kind"] = place["group"] = None  # arrays have no names of groups
     for key, value in told.python.items():
-        if key not in ("o1", "o2", "time_ms", "groups"):  # arrays have no names of groups
-            assert value == told.json[key], key
+        if key not in ("o1", "o2", "time_ms", "groups"):
+            assert value == in_command[key], key
     assert set(told.json) - set(told.python) == {"alignment", "group_tolerances"}
 
 

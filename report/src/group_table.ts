@@ -2,7 +2,7 @@
 import { byId, make, table } from './dom';
 import { percent, signedText, text } from './numbers';
 import type { Report } from './page_data';
-import { isSigned, limitsText, unitOf } from './verdict';
+import { isCloud, isSigned, limitsText, unitOf } from './verdict';
 import { capital, quantityOf } from './words';
 
 export interface GroupName {
@@ -31,7 +31,8 @@ export function showGroups(report: Report, chosen: GroupName | null = null, show
     const pressed = chosen?.kind === g.kind && chosen.group === g.group;
     const click = () => {
       show(pressed ? null : { kind: g.kind, group: g.group });
-      byId('groups-table').querySelectorAll('button')[i].focus(); // the table is made again
+      byId('part').scrollIntoView({ block: 'nearest' });
+      byId('groups-table').querySelectorAll('button')[i].focus({ preventScroll: true }); // the table is made again
     };
     return make('button', { type: 'button', class: 'link', 'aria-pressed': String(pressed), click }, g.group);
   };
@@ -40,14 +41,14 @@ export function showGroups(report: Report, chosen: GroupName | null = null, show
     g.kind,
     limitsText(g, report),
     make('b', { class: g.verdict.toLowerCase().replace(' ', '-') }, g.verdict),
-    value(g.lowest),
+    value(g.witness && g.witness.distance < (g.lowest ?? Infinity) ? g.witness.distance : g.lowest),
     value(g.witness && g.witness.distance > (g.highest ?? -Infinity) ? g.witness.distance : g.highest),
-    percent(g.exceeded_area_fraction ?? 0),
+    percent(g.exceeded_area_fraction ?? g.exceeded_point_fraction ?? 0),
     kindOf(g, unit),
   ]);
   const what = capital(quantityOf(report));
   byId('groups-table').replaceChildren(
-    table(['Group', 'Named as', 'Limits', 'Verdict', `Least ${quantityOf(report)}`, `Largest ${quantityOf(report)}`, 'Area out of tolerance', 'Kind'], rows, `${what} by group`),
-    make('p', { class: 'hint' }, `${show ? 'Choose a group to see it alone in colours. ' : ''}Of all groups: ${report.group_tolerances!.verdict}. Shares are estimates from the samples of each group. The verdict at the top is the worse one of those of the part and of its groups.`),
+    table(['Group', 'Named as', 'Limits', 'Verdict', `Least ${quantityOf(report)}`, `Largest ${quantityOf(report)}`, `${isCloud(report) ? 'Points' : 'Area'} out of tolerance`, 'Kind'], rows, `${what} by group`),
+    make('p', { class: 'hint' }, `${show ? 'Choose a group to see it alone in colours. ' : ''}Of all groups: ${report.group_tolerances!.verdict}. ${isCloud(report) ? 'A point is of the groups of its closest face.' : 'Shares are estimates from the samples of each group.'} The verdict at the top is the worse one of those of the part and of its groups.`),
   );
 }

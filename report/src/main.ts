@@ -25,7 +25,10 @@ function showVerdict(report: Report): void {
   byId('verdict').className = verdict.toLowerCase().replace(' ', '-');
   byId('verdict').replaceChildren(make('span', { 'aria-hidden': 'true' }, signs[verdict]), ` ${verdict}`);
   const tile = report.atlas?.udim ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.' : '';
-  byId('sentence').textContent = sentence + tile;
+  const doubts = verdict === 'FAIL' || verdict === 'NOT DECIDED' ? (report.doubts ?? []).map((doubt) => ` ${capital(doubt.text)}.`).join('') : '';
+  const notes = report.notes?.length ?? 0;
+  const link = notes === 0 ? '' : make('a', { href: '#method' }, notes === 1 ? 'One note' : `${notes} notes`);
+  byId('sentence').replaceChildren(sentence + doubts + tile, ...(link ? [' ', link, notes === 1 ? ' qualifies this.' : ' qualify this.'] : []));
   document.title = `${verdict}: ${titleOf(report)}`;
   byId('title').textContent = titleOf(report);
 }
@@ -81,9 +84,29 @@ class Page {
     this.showWorst();
     showOmissions(report, data);
     this.addSaveButtons();
-    if (!saved) return;
+    if (!saved) {
+      this.openOnEvidence(ghostShown);
+      return;
+    }
     for (const callout of saved.callouts) this.callouts.add(callout);
     this.view.pose = saved.camera;
+  }
+
+  /// The reference beside the part is in the picture; the worst place of a part that does not pass faces the viewer.
+  private openOnEvidence(ghostShown: boolean): void {
+    const { ghost } = this.data;
+    if (ghost && ghostShown) {
+      const { lo, hi } = boxOf(ghost.position);
+      const both = { lo: lo.map((x, k) => Math.min(x, this.subject.lo[k])) as Vec, hi: hi.map((x, k) => Math.max(x, this.subject.hi[k])) as Vec };
+      const kMost = 5; // half diagonals of the part: with a larger box, the part would be too small
+      if (Math.hypot(...both.hi.map((x, k) => x - both.lo[k])) <= kMost) this.view.setShown(both.lo, both.hi);
+      this.view.look('corner');
+    }
+    const { verdict } = verdictOf(this.report);
+    const worst = this.report.places?.largest?.[0];
+    if (!worst || (verdict !== 'FAIL' && verdict !== 'NOT DECIDED')) return;
+    const at = this.addPlace(worst);
+    this.view.lookFrom(at);
   }
 
   /// The page as it is shown, in one file.
@@ -197,6 +220,9 @@ class Page {
       byId('view').classList.toggle('printing', on);
       this.view.resize();
       this.view.drawNow();
+      // Browsers print the canvas as it was before, at the size that it has now: an image of it is what they print.
+      document.getElementById('printed')?.remove();
+      if (on) byId('canvas').after(make('img', { id: 'printed', alt: '', src: this.view.canvas.toDataURL() }));
     };
     window.addEventListener('beforeprint', () => print(true));
     window.addEventListener('afterprint', () => print(false));
@@ -258,11 +284,15 @@ class Page {
   }
 
   private showWorst(): void {
-    showPlaces(this.report, this.data.page.thinnest ?? null, this.subject.size, (place) => {
-      const at = toScene(this.subject, place.point);
+    showPlaces(this.report, this.data.page.thinnest ?? null, this.subject.size, (place) => this.lookAt(this.addPlace(place)));
+  }
+
+  /// A callout at a place of the list; where it is in the scene.
+  private addPlace(place: { distance: number; point: Vec; group?: string | null }): Vec {
+    const at = toScene(this.subject, place.point);
+    if (!this.callouts.all.some((c) => c.point.every((x, k) => x === place.point[k])))
       this.callouts.add({ distance: place.distance, point: place.point, at, detail: place.group ?? '' });
-      this.lookAt(at);
-    });
+    return at;
   }
 
   /// The fraction out of the limits as it is shown, and by the bins alone; for tests.

@@ -90,6 +90,7 @@ export interface Report {
       lowest: number | null;
       highest: number | null;
       exceeded_area_fraction?: number;
+      exceeded_point_fraction?: number;
       undecided_by?: number | null;
       witness?: { distance: number; point: Vec } | null;
     }[];

@@ -3,6 +3,7 @@ import { byId, make, table } from './dom';
 import { count, percent, place, signedText, text } from './numbers';
 import type { Place, Places, Report } from './page_data';
 import { isCloud, isSigned, limitsText, unitOf } from './verdict';
+import { capital, quantityOf } from './words';
 
 type Listed = Pick<Place, 'distance' | 'point' | 'at'> & Partial<Place>;
 
@@ -19,11 +20,11 @@ function hintOf(report: Report, places: Places): string {
   const whole = isCloud(report) ? 'points' : 'area';
   const total = ({ count: n, points, area, area_fraction: ofArea, point_fraction: ofPoints }: Places['large']) =>
     `${count(n)}, together ${points !== undefined && isCloud(report) ? `${count(points)} points` : `${text(area ?? 0, 3)}${unit}`} (${percent(ofArea ?? ofPoints ?? 0)})`;
-  const least = percent(places.least_area_fraction ?? places.least_point_fraction ?? 0);
+  const least = `${text(100 * (places.least_area_fraction ?? places.least_point_fraction ?? 0), 2)}\u00a0%`;
   return (
     `Connected regions ${places.limits_from === 'tolerance' ? 'out of the tolerance of' : 'at or beyond the 99th percentile,'} ${limitsText(limits, report)}: ${total(places.large)}; ` +
     `and small ones, below ${least} of the ${whole} each: ${total(places.small)}. ` +
-    `Listed are the ten largest, small ones last. ${isCloud(report) ? '' : 'Areas are estimates from the samples. '}Choose one to see it.`
+    `Listed are ${places.largest.length < 10 ? 'all' : 'the ten largest'}, small ones last. ${isCloud(report) ? '' : 'Areas are estimates from the samples. '}Choose one to see it.`
   );
 }
 
@@ -42,13 +43,13 @@ export function showPlaces(report: Report, thinnest: Listed[] | null, size: numb
       ...(grouped ? [p.group ?? ''] : []),
     ];
   });
-  const head = ['', 'Distance', 'Position', ...(thinnest ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
+  const head = ['', capital(quantityOf(report)), 'Position', ...(thinnest ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
   const hint = thinnest
     ? 'The least values, at texels that are at least 6 % of the part\u2019s size apart. Choose one to see it.'
     : report.places ? hintOf(report, report.places) : '';
   byId('worst-table').replaceChildren(
     rows.length === 0
-      ? make('p', {}, thinnest || report.places ? 'No point of the part has a distance beyond the accuracy.' : 'This report lists no places.')
+      ? make('p', {}, thinnest || report.places ? `No point of the ${isCloud(report) ? 'cloud' : 'part'} has a distance beyond the accuracy.` : 'This report lists no places.')
       : table(head, rows, thinnest ? 'The thinnest places' : 'The places with the largest distances'),
     make('p', { class: 'hint' }, hint),
   );

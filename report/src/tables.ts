@@ -37,7 +37,7 @@ export function showFields(report: Report): void {
 /// What is measured, as the head of a table, unless it is the closest point.
 function otherDistance(report: Report): string | null {
   const measured = report.measured;
-  if (!measured || measured.kind === 'closest') return null;
+  if (!measured || measured.kind === 'closest' || isThickness(report)) return null;
   return capital(measured.text);
 }
 

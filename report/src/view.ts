@@ -49,6 +49,8 @@ export class View extends Viewer {
   ) {
     super(container, up, onChange);
     this.scene.add(subject.object);
+    this.setShown(subject.lo, subject.hi);
+    this.look('corner');
     this.ghostMaterial = new ShaderMaterial({
       glslVersion: '300 es',
       vertexShader: kGhostVertexShader,
@@ -89,6 +91,17 @@ export class View extends Viewer {
     this.subject.uniforms.cut.value = this.ghostMaterial.uniforms.cut.value = [...normal, offset];
     this.coverage?.setCut([...normal, offset]);
     this.draw();
+  }
+
+  /// Shows all of the part from where a point of it is seen, and nothing hides it.
+  lookFrom(point: Vec): void {
+    const normal = this.subject.normalNear(point);
+    const from: Parameters<View['look']>[0][] = [{ normal }, 'corner', 'front', 'right', 'back', 'left', 'top', 'bottom'];
+    for (const side of from) {
+      this.look(side);
+      if (!this.isHidden(point)) return;
+    }
+    this.look({ normal });
   }
 
   setGhost(visible: boolean): void {

@@ -19,6 +19,7 @@ export class Viewer {
   private readonly controls: OrbitControls;
   private scheduled = false;
   private radius = 1; // of what is shown
+  private shown: { lo: Vec; hi: Vec } | null = null; // its box; without one, all of the ball is framed
 
   /// `onChange` is called after every picture.
   constructor(container: HTMLElement, private readonly up: 'y' | 'z', private readonly onChange = () => {}) {
@@ -67,25 +68,50 @@ export class Viewer {
     return this.renderer.getPixelRatio();
   }
 
-  /// Looks at all from a side, or at a point of it from outside.
-  look(from: string | { point: Vec; normal: Vec }): void {
+  /// Looks at all from a side, or from where a normal points to; or at a point of it from outside.
+  look(from: string | { point?: Vec; normal: Vec }): void {
     let direction: Vector3;
     let away = this.camera.position.distanceTo(this.controls.target);
     if (typeof from === 'string') {
       const sides = kSides[this.up];
       direction = new Vector3(...(sides[from] ?? sides.corner)).normalize();
-      this.controls.target.set(0, 0, 0);
-      away = this.toFit(1);
     } else {
       direction = new Vector3(...from.normal).normalize();
       // Not along the vertical axis, where the view could turn to any side.
       direction.addScaledVector(new Vector3(0.3, 0.25, 0.35), 0.6).normalize();
+    }
+    if (typeof from !== 'string' && from.point) {
       this.controls.target.set(...from.point);
       away = Math.min(away, 2.6);
+    } else {
+      const { lo, hi } = this.shown ?? { lo: [0, 0, 0], hi: [0, 0, 0] };
+      this.controls.target.set(...(lo.map((x, k) => (x + hi[k]) / 2) as Vec));
+      away = this.shown ? this.toFitBox(direction) : this.toFit(1);
     }
     this.camera.position.copy(this.controls.target).addScaledVector(direction, away);
     this.controls.update();
     this.draw();
+  }
+
+  /// The box that look() shows all of.
+  setShown(lo: Vec, hi: Vec): void {
+    this.shown = { lo, hi };
+  }
+
+  /// How far away all corners of the box fit into the picture, seen from a direction; beside the legend, on either side.
+  private toFitBox(direction: Vector3): number {
+    const kFree = 0.78; // of the width
+    const right = new Vector3().crossVectors(this.camera.up, direction).normalize();
+    const up = new Vector3().crossVectors(direction, right);
+    const tall = Math.tan((this.camera.fov * Math.PI) / 360);
+    const wide = tall * this.camera.aspect * kFree;
+    const { lo, hi } = this.shown!;
+    let away = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = new Vector3(...([0, 1, 2].map((k) => (corner & (1 << k) ? hi[k] : lo[k])) as Vec)).sub(this.controls.target);
+      away = Math.max(away, at.dot(direction) + 1.06 * Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(up)) / tall));
+    }
+    return Math.max(away, 1e-3);
   }
 
   /// Looks at all of a ball, from the same direction.

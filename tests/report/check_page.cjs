@@ -330,6 +330,32 @@ const checks = {
     assert.strictEqual(await page.getAttribute('html', 'lang'), 'en');
   },
 
+  // A part that fails opens with its worst place in front, with a callout, and all of the part beside the legend.
+  async opens(page) {
+    await page.waitForTimeout(400); // callouts behind the part fade
+    const [callout, ...more] = await page.evaluate(() =>
+      [...document.querySelectorAll('.callout')].map((label) => ({ text: label.textContent, hidden: label.classList.contains('behind') })),
+    );
+    assert(callout && more.length === 0, 'there is not one callout');
+    assert(!callout.hidden, 'the worst place is behind the part');
+    const { hits, width, height, worst, under } = await page.evaluate(() => {
+      const { clientWidth: width, clientHeight: height } = document.getElementById('canvas');
+      const dot = document.querySelector('#leaders circle');
+      const worst = window.sdmPage.report.places.largest[0].distance;
+      const under = window.sdmPage.inspect(Number(dot.getAttribute('cx')), Number(dot.getAttribute('cy')));
+      const hits = [];
+      for (let x = 1; x < width; x += 6) for (let y = 1; y < height; y += 6) if (window.sdmPage.inspect(x, y)) hits.push([x, y]);
+      return { hits, width, height, worst, under };
+    });
+    const stated = Number(plain(callout.text).split(' ')[1]);
+    assert(Math.abs(stated - worst) < 0.01 * Math.abs(worst), `${callout.text} for ${worst}`);
+    assert(Math.abs(under.distance - worst) < 0.02 * Math.abs(worst), `${under.distance} is shown, not ${worst}`);
+    const [x, y] = [0, 1].map((k) => hits.map((hit) => hit[k]));
+    const [left, right, top, bottom] = [Math.min(...x), Math.max(...x), Math.min(...y), Math.max(...y)];
+    assert(left > 5 && top > 5 && bottom < height - 5 && right < width - 60, `${[left, right, top, bottom]} of ${width} × ${height}`);
+    assert((bottom - top) / height > 0.6 || (right - left) / width > 0.5, `small: ${[left, right, top, bottom]} of ${width} × ${height}`);
+  },
+
   async prints(page) {
     const pdf = (await page.pdf({ preferCSSPageSize: true })).toString('latin1');
     const pages = pdf.match(/\/Type\s*\/Page\b(?!s)/g).length;

@@ -265,6 +265,11 @@ TEST_F(Page, StatesOneFractionOutOfTolerance) {
   }
 }
 
+TEST_F(Page, OpensOnTheWorstPlace) {
+  map({"--tolerance", "2.3"});
+  EXPECT_TRUE(passes("opens", page()));
+}
+
 TEST_F(Page, ListsThePlacesOfTheReport) {
   const Json report = map({"--tolerance", "2.3"});
   const Json& places = report["places"];
