@@ -12,13 +12,13 @@ namespace {
 
 constexpr const char* kNormal = "normal";
 
-/// The direction X,Y,Z, of a length other than 0 that does not overflow; or nothing.
+/// The direction X,Y,Z, whose length does not overflow, and which is not 0; or nothing.
 std::optional<sdm::Vec3> parse_direction(const std::string& text) {
   const auto numbers = parse_list(text, 3);
   if (!numbers) return std::nullopt;
   const sdm::Vec3 direction{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
-  const double length = sdm::norm(direction);
-  return length > 0 && std::isfinite(length) ? std::optional(direction) : std::nullopt;
+  return direction != sdm::Vec3{} && std::isfinite(sdm::norm(direction)) ? std::optional(direction)
+                                                                         : std::nullopt;
 }
 
 }  // namespace

@@ -302,10 +302,12 @@ class DistanceMap(_core.MapChannels):
         name = os.fsdecode(file)
         if not name.lower().endswith(".png"):
             raise Error(f"{name}: a view is saved as .png")
+        if other is not None and not isinstance(other, DistanceMap):
+            raise Error("other must be a DistanceMap, from O2")
         self._core.write_view(
             name,
             self.at_vertices(),
-            tuple(towards),
+            towards,
             None if other is None else other.at_vertices(),
             colormap=colormap,
             range=range,

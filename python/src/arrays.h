@@ -14,6 +14,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,9 @@ class Lengths {
 /// fraction. Throws sdm::Error for less than `least` or more than `most`.
 [[nodiscard]] std::int64_t integer_of(nb::handle value, const char* name, std::int64_t least,
                                       std::int64_t most = 0xFFFFFFFE);
+/// facing: an angle in degrees, or nothing for None. Throws a TypeError for anything else: True, which is 1
+/// elsewhere, is no angle.
+[[nodiscard]] std::optional<double> facing_of(nb::handle value);
 /// A number. Throws a TypeError for anything else, such as text.
 [[nodiscard]] double real_of(nb::handle value);
 

@@ -31,12 +31,14 @@ std::unique_ptr<PyMap> map_between(nb::handle surface, nb::handle sites) {
 }
 
 std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char* engine, const char* sign,
-                               double max_distance, std::optional<double> facing, nb::handle progress) {
+                               double max_distance, nb::handle facing, nb::handle progress) {
   const auto lock = nb::cast<const PySurface&>(surface).access.use();
   const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
   auto result = map_between(surface, sites);
-  result->options = {
-      .engine = engine_of(engine), .sign = sign_of(sign), .max_distance = max_distance, .facing = facing};
+  result->options = {.engine = engine_of(engine),
+                     .sign = sign_of(sign),
+                     .max_distance = max_distance,
+                     .facing = facing_of(facing)};
   result->engine = engine;
   run(progress, [&](const Progress& report) {
     const auto begin = std::chrono::steady_clock::now();
@@ -171,13 +173,13 @@ void bind_map(nb::module_& module) {
   module.def(
       "compute_map",
       [](nb::handle surface, nb::handle sites, const char* engine, const char* sign, double max_distance,
-         std::optional<double> facing, nb::handle progress) {
+         nb::handle facing, nb::handle progress) {
         return compute(surface, sites, engine, sign, max_distance, facing, progress).release();
       },
       nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(), nb::kw_only(),
       nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("facing") = nb::none(),
-      nb::arg("progress") = nb::none(),
+      nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+      nb::arg("facing").none() = nb::none(), nb::arg("progress") = nb::none(),
       nb::sig(
           "def compute_map(surface: Surface, sites: Sites, *, engine: str = 'cpu', sign: str = 'automatic', "
           "max_distance: float = ..., facing: float | None = None, progress: collections.abc.Callable[[str, "

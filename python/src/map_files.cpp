@@ -88,25 +88,31 @@ std::span<const float> span_of(const VertexDistances& values) {
   return {values.data(), values.shape(0)};
 }
 
+// Three numbers, in a tuple, a list or an array.
+Vec3 direction_of(nb::handle towards) {
+  if (!nb::isinstance<nb::sequence>(towards) && !nb::ndarray_check(towards))
+    throw Error("towards must be three numbers: right, up, front");
+  if (nb::len(towards) != 3) throw Error("towards must be three numbers: right, up, front");
+  return {real_of(towards[0]), real_of(towards[1]), real_of(towards[2])};
+}
+
 UpAxis up_axis_of(const std::string& up) {
   if (up != "y" && up != "z") throw Error("up must be 'y' or 'z', not '" + up + "'");
   return up == "z" ? UpAxis::z : UpAxis::y;
 }
 
-void write_view(const PyMap& self, nb::handle file, const VertexDistances& at_vertices,
-                const std::array<double, 3>& towards, const std::optional<VertexDistances>& other,
-                const std::string& colormap, std::optional<std::pair<double, double>> range,
-                nb::handle tolerance, const std::string& units, std::uint32_t size, const std::string& up,
-                bool legend) {
+void write_view(const PyMap& self, nb::handle file, const VertexDistances& at_vertices, nb::handle towards,
+                const std::optional<VertexDistances>& other, const std::string& colormap,
+                std::optional<std::pair<double, double>> range, nb::handle tolerance,
+                const std::string& units, nb::handle size, const std::string& up, bool legend) {
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   PictureOptions picture = picture_of(self, {colormap, range, tolerance, units});
   picture.up = up_axis_of(up);
   const std::filesystem::path path = path_of(file);
-  ViewOptions view{.towards = {towards[0], towards[1], towards[2]},
-                   .width = size,
-                   .height = size / 4 * 3,
-                   .legend = legend};
+  const auto width = static_cast<std::uint32_t>(integer_of(size, "size", 86, 8192));
+  ViewOptions view{
+      .towards = direction_of(towards), .width = width, .height = 3 * width / 4, .legend = legend};
   if (!self.of_itself()) view.other = &self.to->sites.mesh();
   if (other) view.other_distances = span_of(*other);
   run(nb::none(), [&](const Progress&) {

@@ -166,19 +166,19 @@ void bind_points(nb::module_& module) {
   module.def(
       "measure_points",
       [](nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion, const char* engine,
-         const char* sign, double max_distance, std::optional<double> facing, nb::handle along,
-         nb::handle tolerance, const std::string& colormap, std::optional<std::pair<double, double>> range,
-         nb::handle progress, const std::optional<std::vector<std::string>>& columns,
-         const std::string& separator, const std::string& decimal, nb::handle tolerance_table,
-         nb::handle names, nb::handle island_points) {
+         const char* sign, double max_distance, nb::handle facing, nb::handle along, nb::handle tolerance,
+         const std::string& colormap, std::optional<std::pair<double, double>> range, nb::handle progress,
+         const std::optional<std::vector<std::string>>& columns, const std::string& separator,
+         const std::string& decimal, nb::handle tolerance_table, nb::handle names, nb::handle island_points) {
         const std::filesystem::path from = path_of(cloud), ply = path_of(output);
         SitesInUse to(o2);
         PointDistancesOptions options{.map = {.engine = engine_of(engine),
                                               .sign = sign_of(sign),
                                               .max_distance = max_distance,
-                                              .facing = facing}};
+                                              .facing = facing_of(facing)}};
         if (!along.is_none()) {
-          if (facing || std::string_view(engine) != "cpu" || std::string_view(sign) != "automatic")
+          if (options.map.facing || std::string_view(engine) != "cpu" ||
+              std::string_view(sign) != "automatic")
             throw Error("sign, engine and facing do not apply to measure_points() with along");
           options.map.engine = {};
           options.along = along_of(along);
@@ -189,8 +189,7 @@ void bind_points(nb::module_& module) {
         options.picture.range = range_of(range);
         PointDistances result;
         run(nb::none(), [&](const Progress&) { (void)to.get(); });
-        const SignMethod signs =
-            options.along ? SignMethod::side : choose_sign(to.get(), options.map).method;
+        const SignMethod signs = options.along ? SignMethod::side : choose_sign(to.get(), options.map).method;
         if (!tolerance.is_none()) options.picture.tolerance = tolerance_of(tolerance, signs);
         std::vector<GroupTolerance> table;
         std::vector<FaceNames> kinds;
@@ -209,10 +208,10 @@ void bind_points(nb::module_& module) {
       },
       nb::arg("cloud").none(), nb::arg("o2").none(), nb::arg("output").none(), nb::kw_only(),
       nb::arg("transform") = nb::none(), nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("facing") = nb::none(),
-      nb::arg("along") = nb::none(), nb::arg("tolerance") = nb::none(), nb::arg("colormap") = "automatic",
-      nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(), nb::arg("columns") = nb::none(),
-      nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
+      nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+      nb::arg("facing").none() = nb::none(), nb::arg("along") = nb::none(), nb::arg("tolerance") = nb::none(),
+      nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(),
+      nb::arg("columns") = nb::none(), nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
       nb::arg("tolerance_table") = nb::none(), nb::arg("names") = nb::none(), nb::arg("island_points") = 0,
       nb::sig(
           "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "

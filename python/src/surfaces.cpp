@@ -25,12 +25,13 @@ void warn_of_unmatched(const HausdorffDistance& distance, const char* from, cons
 }
 
 BoundedLength hausdorff(nb::handle a, nb::handle b, std::optional<double> precision, bool one_sided,
-                        std::optional<double> facing, nb::handle progress) {
+                        nb::handle facing, nb::handle progress) {
+  const std::optional<double> angle = facing_of(facing);
   SitesInUse on(a), to(b);
   BoundedLength result;
   SymmetricHausdorff both;
   run(progress, [&](const Progress& report) {
-    const HausdorffOptions options{.precision = precision, .facing = facing, .progress = report};
+    const HausdorffOptions options{.precision = precision, .facing = angle, .progress = report};
     if (one_sided) {
       both.from[0] = one_sided_hausdorff(on.get().mesh(), to.get(), options);
       result = both.from[0].distance;
@@ -164,8 +165,9 @@ void bind_hausdorff(nb::module_& module) {
           "float | None = None, one_sided: bool = False, facing: float | None = None, ") +
       kProgress + "BoundedLength";
   module.def("hausdorff", &hausdorff, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
-             nb::arg("precision") = nb::none(), nb::arg("one_sided") = false, nb::arg("facing") = nb::none(),
-             nb::arg("progress") = nb::none(), nb::sig(hausdorff_signature.c_str()),
+             nb::arg("precision") = nb::none(), nb::arg("one_sided") = false,
+             nb::arg("facing").none() = nb::none(), nb::arg("progress") = nb::none(),
+             nb::sig(hausdorff_signature.c_str()),
              R"(Returns the Hausdorff distance of two surfaces, with certified bounds.
 
 a, b: any form of a mesh (see Mesh), or Sites. Any triangle soups.

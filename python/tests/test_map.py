@@ -506,9 +506,14 @@ def test_views(tmp_path):
     there.save_view(tmp_path / "pale.png", (0, 0, 1), size=400, legend=False)
     assert np.ptp(plt.imread(tmp_path / "pale.png")[150, 300, :3]) < 0.1
     another = sdm.map(meshes.sphere(), cube, resolution=64)
-    for options in ({"towards": (0, 0, 0)}, {"size": 80}, {"up": "x"}, {"other": another}):
+    for options in ({"towards": (0, 0, 0)}, {"size": 80}, {"up": "x"}, {"other": another}, {"other": 5}, {"towards": 5}, {"towards": (0, 1)}):
         with pytest.raises(sdm.Error):
             there.save_view(tmp_path / "no.png", **options)
+    there.save_view(tmp_path / "least.png", size=86, legend=False)
+    assert plt.imread(tmp_path / "least.png").shape[:2] == (64, 86)
+    for wrong in (100.5, True, "90"):
+        with pytest.raises(TypeError, match="size must be an integer|facing must be an angle"):
+            there.save_view(tmp_path / "no.png", size=wrong) if wrong == 100.5 else sdm.map(cube, other, facing=wrong)
     with pytest.raises(sdm.Error, match="no.jpg"):
         there.save_view(tmp_path / "no.jpg")
     assert not (tmp_path / "no.png").exists()

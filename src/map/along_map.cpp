@@ -51,7 +51,8 @@ class LineSearch {
     if (options.direction) {
       const Vec3& d = *options.direction;
       const double largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-      direction_ = normalized((1 / largest) * d);
+      for (int k = 0; k < 3; ++k) direction_[k] = d[k] / largest;
+      direction_ = normalized(direction_);
     }
   }
 

@@ -14,13 +14,8 @@ LargestByCell::LargestByCell(const Box& box)
 void LargestByCell::add(const CellPlace& place) {
   if (!std::isfinite(place.distance)) return;
   CellPlace& largest = places_[cell(place.point)];
-  // The first one of equals stays, so that the result does not depend on the number of threads.
+  // The first one of equals stays.
   if (largest.distance == 0 || std::abs(place.distance) > std::abs(largest.distance)) largest = place;
-}
-
-void LargestByCell::add(const LargestByCell& other) {
-  for (const CellPlace& place : other.places_)
-    if (place.distance != 0) add(place);
 }
 
 std::vector<CellPlace> LargestByCell::largest() const {

@@ -21,7 +21,6 @@ class LargestByCell {
   explicit LargestByCell(const Box& box);
   /// Ignores what is not finite.
   void add(const CellPlace& place);
-  void add(const LargestByCell& other);
   /// The places of all cells that have one other than 0, the largest |distance| first.
   [[nodiscard]] std::vector<CellPlace> largest() const;
 
