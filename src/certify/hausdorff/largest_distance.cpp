@@ -38,7 +38,8 @@ LargestDistance largest_distance(const Mesh& a, const sites::SitesData& b, const
   PartSearch parts(
       b, {precision, scale.coordinate, question.decision, question.most_parts, question.matching}, lower);
   if (question.matching != nullptr) {
-    MatchedParts first = matched_parts(a, b, *question.matching, precision, progress, lower);
+    MatchedParts first =
+        matched_parts(a, b, *question.matching, precision, question.decision.has_value(), progress, lower);
     result.unmatched = std::move(first.unmatched);
     result.upper = parts(first, progress);
   } else {

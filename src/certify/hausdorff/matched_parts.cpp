@@ -1,6 +1,7 @@
 #include "certify/hausdorff/matched_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "certify/hausdorff/face_distance.h"
@@ -15,17 +16,16 @@ namespace {
 class MatchedFaces {
  public:
   MatchedFaces(const Mesh& a, const sites::SitesData& b, const Matching& matching, double precision,
-               const LowerBound& lower)
-      : a_(a), b_(b), matching_(matching), precision_(precision), lower_(lower) {}
+               bool reuses, const LowerBound& lower)
+      : a_(a), b_(b), matching_(matching), precision_(precision), reuses_(reuses), lower_(lower) {}
 
   void bound(std::uint32_t face) {
     if (repeats_corner(a_.triangles[face]) || !matching_.has_normal(face)) return;
     Part part{.at = corners_of(a_, face), .face = face};
-    if (last_ != kNone && matching_.allows(face, last_)) {
-      part.add(b_, last_, 0);
-      part.bound();
-    }
+    consider(last_, part);
     std::array<bool, 3> searched{};
+    for (int i = 0; i < 3 && reuses_ && (part.count == 0 || part.upper > enough()); ++i)
+      searched[i] = consider(known_at(a_.triangles[face][i]), part);
     while (part.count == 0 || part.upper > enough()) {
       const std::optional<int> corner = highest_corner(part, searched);
       if (!corner) break;
@@ -35,6 +35,8 @@ class MatchedFaces {
       if (nearest.face == kNone) return found.unmatched.push_back(face);
       lower_.raise(part.at[*corner], 0, face, nearest);
       last_ = nearest.face;
+      if (const std::uint32_t vertex = a_.triangles[face][*corner]; reuses_)
+        known_[vertex % known_.size()] = {vertex, nearest.face};
       if (part.add(b_, nearest.face, 0)) part.bound();
     }
     if (part.upper <= enough())
@@ -48,6 +50,21 @@ class MatchedFaces {
   MatchedParts found;
 
  private:
+  // What was found at a vertex for a face around it: near the others too, if it is allowed for them.
+  struct Known {
+    std::uint32_t vertex = kNone, face = kNone;
+  };
+
+  [[nodiscard]] std::uint32_t known_at(std::uint32_t vertex) const {
+    const Known& known = known_[vertex % known_.size()];
+    return known.vertex == vertex ? known.face : kNone;
+  }
+  // Returns whether the face is allowed.
+  bool consider(std::uint32_t near, Part& part) const {
+    if (near == kNone || !matching_.allows(part.face, near)) return false;
+    if (part.add(b_, near, 0)) part.bound();
+    return true;
+  }
   [[nodiscard]] double enough() const { return lower_.value + precision_; }
 
   // Of those that were not searched from, the corner that is farthest from its closest face.
@@ -66,14 +83,16 @@ class MatchedFaces {
   const sites::SitesData& b_;
   const Matching& matching_;
   double precision_;
+  bool reuses_;
   LowerBound lower_;
   std::uint32_t last_ = kNone;  // the face of B that was found last
+  std::array<Known, 1024> known_{};
 };
 
 }  // namespace
 
 MatchedParts matched_parts(const Mesh& a, const sites::SitesData& b, const Matching& matching,
-                           double precision, const Progress& progress, LowerBound& lower) {
+                           double precision, bool decides, const Progress& progress, LowerBound& lower) {
   constexpr std::size_t kBlock = 1 << 12;
   const std::size_t count = a.triangles.size();
   // The faces of a sample raise the lower bound first, so that few of all are searched from.
@@ -81,7 +100,7 @@ MatchedParts matched_parts(const Mesh& a, const sites::SitesData& b, const Match
   MatchedParts all;
   for (const std::size_t stride : {kSample, std::size_t{1}}) {
     const std::size_t step = kBlock * stride, blocks = (count + step - 1) / step;
-    std::vector<MatchedFaces> work(blocks, MatchedFaces(a, b, matching, precision, lower));
+    std::vector<MatchedFaces> work(blocks, MatchedFaces(a, b, matching, precision, decides, lower));
     const auto bound = [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         for (std::size_t f = step * i; f < std::min(step * (i + 1), count); f += stride)

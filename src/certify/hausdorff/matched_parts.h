@@ -17,8 +17,11 @@ struct MatchedParts : FirstParts {
 };
 
 /// Bounds each face of A by allowed faces near its corners, and raises the lower bound. Faces without a
-/// normal are left out. Cost: at most three searches for each face of A; all cores.
+/// normal are left out. `decides`: the lower bound is a limit, below which any upper bound will do: faces
+/// that were found for others are tried before searches. Cost: at most three searches for each face of A; all
+/// cores.
 [[nodiscard]] MatchedParts matched_parts(const Mesh& a, const sites::SitesData& b, const Matching& matching,
-                                         double precision, const Progress& progress, LowerBound& lower);
+                                         double precision, bool decides, const Progress& progress,
+                                         LowerBound& lower);
 
 }  // namespace sdm::hausdorff
