@@ -81,8 +81,8 @@ struct DegreeOfFreedom {
   /// An estimate: the standard error of the motion, as a length, if residuals are independent noise.
   /// Nothing if free.
   std::optional<double> standard_error{};
-  /// `determined` is below 0.02: O2 is nearly unchanged by this motion. The alignment leaves it as at the
-  /// start.
+  /// `determined` is below 0.02: O2 is nearly unchanged by this motion, so that O1 fits as well after it. How
+  /// far the alignment moved O1 so is arbitrary.
   bool free = false;
   bool locked = false;  ///< AlignOptions::freedoms does not allow it; the alignment leaves it as at the start
 };

@@ -106,7 +106,7 @@ divided by its radius of gyration, in radians.)")
           "standard_error", &F::standard_error,
           "An estimate: the standard error of the motion, as a length, if residuals are independent noise; "
           "None if it is free.")
-      .def_ro("free", &F::free, "O2 is nearly unchanged by the motion, which the alignment leaves as it was.")
+      .def_ro("free", &F::free, "O2 is nearly unchanged by the motion: O1 fits as well after it.")
       .def_ro("locked", &F::locked, "The alignment was not allowed to use it.")
       .def("__repr__", [](const F& self) {
         return nb::str("sdm.DegreeOfFreedom(determined={:.3g}{})")
