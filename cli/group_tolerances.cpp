@@ -31,6 +31,8 @@ std::string group_text(const sdm::GroupVerdict& g, const std::string& units, boo
                         of_points ? "points are" : "area is");
   if (g.verdict.proof && g.verdict.proof->witness)
     text += fmt::format(", {}{} between the texels", number(g.verdict.proof->witness->distance), unit);
+  if (g.verdict.proof && g.verdict.reason == sdm::VerdictReason::without_match)
+    text += fmt::format(", of {} faces", g.verdict.proof->faces_without_match);
   if (g.verdict.proof && g.verdict.proof->undecided_by)
     text += fmt::format(", not decided by {}{}", number(*g.verdict.proof->undecided_by), unit);
   return text;

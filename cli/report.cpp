@@ -132,6 +132,12 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
     return fmt::format("{}: a point between the texels is out of {}: {}{} at {}", word, limits,
                        number(verdict.proof->witness->distance), unit,
                        place(verdict.proof->witness->point, outcome.size));
+  if (verdict.proof && verdict.reason == sdm::VerdictReason::without_match)
+    return fmt::format("{}: {} no texel and no value, as {}", word,
+                       verdict.proof->faces_without_match == 1
+                           ? "1 face has"
+                           : fmt::format("{} faces have", verdict.proof->faces_without_match),
+                       sdm::verdict_text(outcome.summary));
   if (verdict.reason == sdm::VerdictReason::without_match ||
       verdict.reason == sdm::VerdictReason::beyond_max_distance) {
     const std::string what =
@@ -224,7 +230,8 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
     add("            signs are estimates ({} texels and {} vertices at the boundary of O2 have none: |d|)\n",
         s.boundary_texels, outcome.boundary_vertices);
   if (s.evidence.samples_only)
-    add("  error     unknown between the texels, whose values are exact: there, all is an estimate\n");
+    add("  error     unknown between the texels, whose values are exact: there, all {} an estimate\n",
+        s.tolerance && s.tolerance->proof && s.tolerance->certified ? "but the verdict is" : "is");
   else
     add("  error     at most {}{} between the texels, whose values are exact\n",
         number(s.evidence.error_bound), unit);

@@ -29,14 +29,17 @@ struct CertifyOptions {
   Progress progress{};
 };
 
-/// Returns the judgement that a proof leads to, of samples that were judged as not decided.
+/// Returns the judgement that a proof leads to, of samples that alone decide nothing for every point.
 [[nodiscard]] SDM_API Judgement judge(const Judgement& of_samples, const ToleranceProof& proof);
 
 /// check_tolerance() and, where that does not decide because distances between the samples or the rounding of
 /// a sample leave it open, prove_tolerance(). Verdict::not_decided remains for an extreme distance within the
 /// accuracy of a limit, for what depends on signs that are estimates, where nothing was measured, and for an
-/// unknown accuracy. Of a map whose DistanceKind is not `closest`, samples decide alone. Errors as of both.
-/// Cost: that of check_tolerance() and, unless it decides, of the proof.
+/// unknown accuracy. Of DistanceKind::facing, where samples bound nothing, each pass of the samples is
+/// proven: a proof of prove_tolerance() with the angle of the map, and Verdict::fail with
+/// VerdictReason::without_match for a face that no face of O2 matches. Where asymmetric limits depend on
+/// signs, their pass stays an estimate. Of other kinds, samples decide alone. Errors as of both. Cost: that
+/// of check_tolerance() and, unless it decides, of the proof.
 [[nodiscard]] SDM_API CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites,
                                                          const DistanceMap& map,
                                                          std::span<const float> vertex_distances,

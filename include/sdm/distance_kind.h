@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace sdm {
 
 /// What the distance of a sample is measured to. Only `closest` is a distance of points: it is 1-Lipschitz
-/// along O1, so that samples bound it everywhere. The others hold at the samples and are estimates between.
+/// along O1, so that samples bound it everywhere. The others hold at the samples and are estimates between;
+/// of `facing`, prove_tolerance() decides limits for every point.
 enum class DistanceKind : std::uint8_t {
   closest,    ///< the closest point of O2
   facing,     ///< the closest point of the faces of O2 that face the same way as the sample
@@ -21,6 +23,7 @@ enum class DistanceKind : std::uint8_t {
 struct MeasuredDistance {
   DistanceKind kind = DistanceKind::closest;
   std::string text = "distance to the closest point";  ///< with the rule's numbers, such as an angle
+  std::optional<double> facing{};  ///< of DistanceKind::facing: the angle in degrees, MapOptions::facing
 };
 
 }  // namespace sdm

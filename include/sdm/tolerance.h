@@ -55,7 +55,7 @@ enum class VerdictReason {
   all_within,           ///< pass: no point can be out of the tolerance
   exceeded,             ///< fail: a sample is out of the tolerance by more than the accuracy
   beyond_max_distance,  ///< fail: a sample has no value, as it is farther than the maximum distance
-  without_match,        ///< fail: a sample has no value, as O2 has no face that faces as it does
+  without_match,        ///< fail: a sample, or a face, has no value, as O2 has no face that faces as it does
   between_samples,      ///< not decided: the error bound exceeds the margin
   within_rounding,      ///< not decided: a distance is closer to a limit than the accuracy
   estimated_signs,      ///< not decided: with the other sign, which is an estimate, a distance might be out
@@ -71,8 +71,8 @@ struct Evidence {
   bool complete = true;                       ///< every sample has a value
   bool unmatched = false;        ///< not complete, as O2 has no face that faces as some sample does
   bool estimated_signs = false;  ///< is_estimate(): between samples a distance may have the other sign
-  /// Nothing bounds the distances between samples, whose verdict then is an estimate for the surface: of maps
-  /// whose DistanceKind is not `closest`. The error bound is infinite.
+  /// Nothing bounds the distances between samples, whose verdict alone is an estimate for the surface: of
+  /// maps whose DistanceKind is not `closest`. The error bound is infinite.
   bool samples_only = false;
   double accuracy = 0;  ///< the error of a distance, as of engine_accuracy(); infinite if it has no bound
   /// Upper bound on how much a distance at any point can differ from those of the samples, without that

@@ -380,8 +380,9 @@ def map(
     max_distance: > 0; texels farther away have no value.
     facing: an angle in degrees, above 0 and up to 180: distances are to the closest of the faces of ``b`` whose normal is
     within it (for 90: less than that) of the normal of the texel's face, with the sign of the side of that face. Normals of
-    closed meshes are outward. Texels without such a face have no value. The map has no ``bounds`` and hausdorff(), and a
-    'pass' of check() is not certified.
+    closed meshes are outward. Texels without such a face have no value. The map has no ``bounds`` and hausdorff(). check()
+    searches the whole surface for symmetric tolerances, and a 'pass' is ``certified``; where other limits depend on the sign
+    it is an estimate.
     progress: called as progress(step, fraction), on this thread; False cancels.
 
     The site is closest to within 1e-6 (cpu) or 2e-6 (gl) of the diagonal of both meshes, or to double rounding

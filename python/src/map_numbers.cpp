@@ -198,7 +198,8 @@ void bind_verdict(nb::module_& module) {
       .def_ro("largest", &V::largest,
               "The largest absolute distance of all texels and vertices; None if one has no value.")
       .def_ro("within", &V::within, "No point is known to be out of the tolerance.")
-      .def_ro("certified", &V::certified, "The verdict holds for every point of the surface.")
+      .def_ro("certified", &V::certified,
+              "The verdict holds for every point of the surface; a 'pass' without it is an estimate.")
       .def_ro("exceeded_area_fraction", &V::exceeded_area_fraction,
               "An estimate: the fraction of the area that is out of the tolerance, in [0, 1].")
       .def_prop_ro(

@@ -428,8 +428,12 @@ def test_facing_finds_the_skin_that_faces_the_texel():
     assert plain.statistics().max_abs == pytest.approx(0.1) and plain.measured == "distance to the closest point"
     assert facing.statistics().min == pytest.approx(-0.4) and facing.measured == "distance to the closest of the faces that face the same way, within 90°"
     assert facing.without_match == 0 and facing.check(0.3).verdict == "fail"
-    passed = facing.check(0.5)
-    assert passed.verdict == "pass" and not passed.certified
+    passed, sided = facing.check(0.5), facing.check((-0.5, 0.1))
+    assert passed.verdict == sided.verdict == "pass" and passed.certified and not sided.certified
+    names = sdm.FaceNames("group", ["dent"], np.zeros(1, np.uint32))
+    assert facing.check_groups({"dent": 0.5}, names).groups[0].verdict.certified
+    report = facing.report(tolerance=0.5)["tolerance"]
+    assert report["certified"] and report["text"] == "every point of the surface is within ±0.5"
     assert facing.report(tolerance=0.5)["measured"]["kind"] == "facing"
     for refused in (lambda: facing.bounds, facing.hausdorff, facing.free_distances):
         with pytest.raises(sdm.Error):

@@ -74,7 +74,7 @@ export interface Report {
     reason?: string;
     nearest_limit?: 'lower' | 'upper';
     text?: string; ///< the verdict as a clause
-    proof?: { witness: { distance: number; point: Vec } | null } | null;
+    proof?: { witness: { distance: number; point: Vec } | null; faces_without_match?: number } | null;
     exceeded_area_fraction?: number;
     exceeded_point_fraction?: number;
   };

@@ -122,6 +122,9 @@ function failure(report: Report, limits: Limits): string {
   const t = report.tolerance!;
   const outside = t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null;
   const whole = cloud ? 'points are' : 'area is';
+  const faces = t.proof?.faces_without_match ?? 0;
+  if (t.reason === 'without match' && faces > 0)
+    return sentence(`${t.text ?? ''}: ${faces === 1 ? 'a face' : `${faces} faces`} between the measured points ${faces === 1 ? 'has' : 'have'} no value`);
   const lacking = outside === null ? '' : `: ${percent(outside)} of the ${whole} out of tolerance or without a value`;
   if (t.reason === 'without match') return sentence(`${t.text ?? ''}${lacking}`);
   if (t.reason === 'beyond max distance')
@@ -147,7 +150,7 @@ function ofPart(report: Report): Stated | null {
   if (!limits || !t?.verdict || !report.evidence) return null;
   const verdict = t.verdict as Verdict;
   if (verdict === 'FAIL') return { verdict, sentence: failure(report, limits) };
-  if (verdict === 'PASS' && !report.evidence.samples_only)
+  if (verdict === 'PASS' && (t.certified || !report.evidence.samples_only))
     return { verdict, sentence: `Every point of the ${isCloud(report) ? 'cloud' : 'surface'} is within the tolerance of ${limitsText(limits, report)}.` };
   return { verdict, sentence: sentence(t.text ?? '') };
 }

@@ -85,7 +85,8 @@ MeasuredDistance measured_distance(const MapOptions& options) {
   std::snprintf(angle.data(), angle.size(), "%.6g", *options.facing);
   return {DistanceKind::facing,
           std::string("distance to the closest of the faces that face the same way, within ") + angle.data() +
-              "°"};
+              "°",
+          options.facing};
 }
 
 SignUsed choose_sign(const Sites& sites, const MapOptions& options) {

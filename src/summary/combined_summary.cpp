@@ -78,6 +78,7 @@ CertifiedVerdict summary::combined_verdict(std::span<const CertifiedVerdict> ver
   bool complete = true;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     const CertifiedVerdict& v = verdicts[i];
+    if (total.verdict != Verdict::fail) total.certified = total.certified && v.certified;
     complete = complete && (v.largest || v.reason == VerdictReason::nothing_measured);
     if (v.largest) total.largest = std::max(total.largest.value_or(0), *v.largest);
     margin = std::min(margin, comparable_margin(v));

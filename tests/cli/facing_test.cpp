@@ -58,9 +58,44 @@ TEST_F(FacingJobs, StateWhatIsMeasured) {
   EXPECT_EQ(report["measured"]["text"],
             "distance to the closest of the faces that face the same way, within 60°");
   EXPECT_EQ(report["tolerance"]["verdict"], "PASS");
-  EXPECT_EQ(report["tolerance"]["certified"], false);
-  EXPECT_THAT(report["tolerance"]["text"].get<std::string>(), HasSubstr("estimate"));
+  EXPECT_EQ(report["tolerance"]["certified"], true);
+  EXPECT_EQ(report["tolerance"]["text"], "every point of the surface is within ±0.5");
+  EXPECT_EQ(report["tolerance"]["proof"]["faces_without_match"], 0);
   EXPECT_TRUE(report["error_bound"].is_null());
+}
+
+TEST_F(FacingJobs, ProveSymmetricTolerances) {
+  const Outcome proven = run("map", dent, {"--tolerance", "0.5", "--facing"});
+  EXPECT_EQ(proven.code, 0) << proven.err;
+  EXPECT_THAT(proven.out, HasSubstr("PASS: every point of the surface is within ±0.5\n"));
+  EXPECT_THAT(proven.out, HasSubstr("there, all but the verdict is an estimate"));
+  const Outcome sided = run("map", dent, {"--tolerance=-0.5:0.1", "--facing"});
+  EXPECT_EQ(sided.code, 0) << sided.err;
+  EXPECT_THAT(sided.out, HasSubstr("within -0.5 to 0.1, an estimate for those between them"));
+  EXPECT_THAT(sided.out, HasSubstr("there, all is an estimate"));
+  const Json report = Json::parse(run("map", dent, {"--tolerance=-0.5:0.1", "--facing", "--json"}).out);
+  EXPECT_EQ(report["tolerance"]["certified"], false);
+  EXPECT_EQ(report["tolerance"]["proof"]["depends_on_signs"], true);
+}
+
+// A folded face of a scan, so small that no texel is on it.
+TEST_F(FacingJobs, FailBetweenTheTexels) {
+  const std::string file = folder / "folded.obj";
+  std::ofstream(file) << "v 0 0 0.25\nv 5 0 0.25\nv 0 5 0.25\nv 1 1 0.25\nv 1.0001 1 0.25\nv 1 1.0001 0.25\n"
+                         "vt 0 0\nvt 1 0\nvt 0 1\nvt 0.2 0.2\nvt 0.20002 0.2\nvt 0.2 0.20002\n"
+                         "f 1/1 2/2 3/3\nf 4/4 5/5 6/6\nf 4/4 6/6 5/5\n";
+  const Outcome outcome = run("map", file, {"--tolerance", "0.1", "--facing", "--atlas", "uv"});
+  EXPECT_EQ(outcome.code, 3) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("FAIL: a point between the texels is out of ±0.1: "));
+  plate = write_obj(folder / "open.obj", square(10, 0.25));
+  const Outcome open = run("map", file, {"--tolerance", "0.1", "--facing", "--atlas", "uv"});
+  EXPECT_EQ(open.code, 3) << open.out << open.err;
+  EXPECT_THAT(open.out, HasSubstr("FAIL: 1 face has no texel and no value, as no face of the reference faces "
+                                  "as a point does"));
+  const Json report =
+      Json::parse(run("map", file, {"--tolerance", "0.1", "--facing", "--atlas", "uv", "--json"}).out);
+  EXPECT_EQ(report["tolerance"]["reason"], "without match");
+  EXPECT_EQ(report["tolerance"]["proof"]["faces_without_match"], 1);
 }
 
 TEST_F(FacingJobs, BoundTheLargestDistance) {

@@ -65,6 +65,10 @@ TEST_F(GroupTolerancesOption, JudgesEachGroupAndTakesTheWorst) {
   EXPECT_GT(top["exceeded_area_fraction"], 0.5);
   EXPECT_FALSE(report.contains("tolerance") && !report["tolerance"].is_null());
 
+  const auto facing = nlohmann::json::parse(map(file, {"--json", "--facing"}).out, nullptr, false);
+  for (const auto& group : facing["group_tolerances"]["groups"]) EXPECT_EQ(group["certified"], true) << group;
+  EXPECT_EQ(facing["group_tolerances"]["groups"][0]["verdict"], "PASS");
+
   const std::string text = map(file).out;
   EXPECT_THAT(text, HasSubstr("  groups    FAIL\n"));
   EXPECT_THAT(text, HasSubstr("bottom (group): PASS, ±0.001"));

@@ -242,6 +242,11 @@ TEST_F(Page, StatesTheVerdict) {
   const Json open = map({"--resolution", "64", "--tolerance", "2.399999"});
   ASSERT_FALSE(open["tolerance"]["certified"]);
   EXPECT_TRUE(passes("says", page(), {"NOT DECIDED", "No point is out of ±2.4 by more than"}));
+  o2 = write_obj(folder / "ball.obj", sphere(3));
+  map({"--resolution", "64", "--tolerance", "30", "--facing"});
+  EXPECT_TRUE(passes("says", page(), {"PASS", "Every point of the surface is within the tolerance of"}));
+  map({"--resolution", "64", "--tolerance=-30:20", "--facing"});
+  EXPECT_TRUE(passes("says", page(), {"PASS", "Every point of the surface is within the tolerance of"}));
 }
 
 /// The report in a page.

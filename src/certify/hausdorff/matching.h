@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,28 +22,46 @@ class Matching {
   /// `normals`: of the faces of A, unit length or 0. Cost: linear in the faces of B. Throws sdm::Error for an
   /// angle out of range.
   Matching(const sites::SitesData& b, double angle, std::vector<Vec3> normals)
-      : b_(b), search_(b, angle), normals_(std::move(normals)) {}
+      : b_(b),
+        rule_(std::make_shared<const Rule>(Rule{facing::FacingSearch(b, angle), std::move(normals)})) {}
+
+  /// Returns that of a part of A, face f of which is faces[f] of A. `faces` must outlive it. Cost: O(1).
+  [[nodiscard]] Matching of_part(std::span<const std::uint32_t> faces) const {
+    Matching part = *this;
+    part.faces_ = faces;
+    return part;
+  }
 
   /// Whether a face of A has a normal: those without area have no points of their own.
-  [[nodiscard]] bool has_normal(std::uint32_t face) const { return normals_[face] != Vec3{}; }
+  [[nodiscard]] bool has_normal(std::uint32_t face) const { return normal(face) != Vec3{}; }
   [[nodiscard]] bool allows(std::uint32_t face, std::uint32_t other) const {
-    return search_.allows(normals_[face], other);
+    return rule_->search.allows(normal(face), other);
   }
   /// Whether there may be an allowed face below a node of B's tree.
   [[nodiscard]] bool may_allow(std::uint32_t face, std::uint32_t node) const {
-    return search_.may_allow(node, normals_[face]);
+    return rule_->search.may_allow(node, normal(face));
   }
 
   /// Whether a point of a face of A is behind the faces that it is measured to.
   [[nodiscard]] bool behind(std::uint32_t face, const Vec3& p) const {
     constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-    return search_.match(p, normals_[face], kAnywhere, closest::reference_closest(b_, p, kAnywhere)).behind;
+    return rule_->search.match(p, normal(face), kAnywhere, closest::reference_closest(b_, p, kAnywhere))
+        .behind;
   }
 
  private:
+  struct Rule {
+    facing::FacingSearch search;
+    std::vector<Vec3> normals;
+  };
+
+  [[nodiscard]] const Vec3& normal(std::uint32_t face) const {
+    return rule_->normals[faces_.empty() ? face : faces_[face]];
+  }
+
   const sites::SitesData& b_;
-  facing::FacingSearch search_;
-  std::vector<Vec3> normals_;
+  std::shared_ptr<const Rule> rule_;        // of all parts of A
+  std::span<const std::uint32_t> faces_{};  // empty: all of A
 };
 
 }  // namespace sdm::hausdorff

@@ -52,13 +52,6 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> faces) {
   return part;
 }
 
-std::vector<Vec3> of_faces(const std::vector<Vec3>& normals, std::span<const std::uint32_t> faces) {
-  std::vector<Vec3> some;
-  some.reserve(faces.size());
-  for (const std::uint32_t face : faces) some.push_back(normals[face]);
-  return some;
-}
-
 /// All answers together.
 ToleranceProof operator&(const ToleranceProof& a, const ToleranceProof& b) {
   if (a.proof == Proof::outside || b.proof == Proof::inside) return a;
@@ -117,8 +110,10 @@ class Prover {
     }
     if (result.witness && norm(found.lower.closest - found.lower.point) > decision.forgiven)
       result.proof = Proof::outside;
+    else if (!found.unmatched.empty())
+      result.proof = Proof::outside, result.witness.reset();
     else if (!result.witness && found.upper <= limit + scale_.precision)
-      result.proof = found.unmatched.empty() ? Proof::inside : Proof::outside;
+      result.proof = Proof::inside;
     else
       result.undecided_by = std::max(found.upper - limit, 0.0);
     return result;
@@ -205,25 +200,27 @@ void check_question(const Tolerance& tolerance, const ToleranceProofOptions& opt
 
 }  // namespace
 
+hausdorff::Matching tolerance::matching_of(const Mesh& surface, const Sites& sites, double angle) {
+  return {internals(sites), angle, facing::outward_normals(surface)};
+}
+
 ToleranceProof tolerance::prove_valid(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,
-                                      const ToleranceProofOptions& options) try {
+                                      const ToleranceProofOptions& options,
+                                      const hausdorff::Matching* known) try {
   check_question(tolerance, options);
   const SignUsed sign = choose_sign(sites, MapOptions{.sign = options.sign, .facing = options.facing});
   if (sign.method == SignMethod::none && tolerance.needs_sign())
     throw Error("a tolerance that differs by sign needs signed distances, but these are unsigned: " +
                     sign.reason + "; choose another sign method or a symmetric tolerance",
                 Remedy::sign_method);
-  const sites::SitesData& b = internals(sites);
-  std::vector<Vec3> normals;  // outward, which those of a part of a solid would not be
-  if (options.facing) normals = facing::outward_normals(surface);
   std::optional<hausdorff::Matching> matching;
+  if (options.facing) matching.emplace(known ? *known : matching_of(surface, sites, *options.facing));
   const auto prove = [&](const Mesh& mesh) {
-    if (options.facing) matching.emplace(b, *options.facing, std::move(normals));
-    return Prover(mesh, b, sign.method, options, matching ? &*matching : nullptr)(tolerance);
+    return Prover(mesh, internals(sites), sign.method, options, matching ? &*matching : nullptr)(tolerance);
   };
   if (!options.faces) return prove(surface);
   const Mesh part = part_of(surface, *options.faces);
-  if (options.facing) normals = of_faces(normals, *options.faces);
+  if (matching) matching.emplace(matching->of_part(*options.faces));
   ToleranceProof result = prove(part);
   if (result.witness) result.witness->face = (*options.faces)[result.witness->face];
   return result;

@@ -3,11 +3,20 @@
 
 #include <sdm/tolerance_proof.h>
 
+#include "certify/hausdorff/matching.h"
+
 namespace sdm::tolerance {
 
+/// Returns the faces that count with ToleranceProofOptions::facing, for any number of proofs. Their normals
+/// are outward, which those of a part of a solid would not be. Throws sdm::Error for an angle out of range.
+/// Cost: O(n log n) in the faces of the surface and linear in those of O2.
+[[nodiscard]] hausdorff::Matching matching_of(const Mesh& surface, const Sites& sites, double angle);
+
 /// prove_tolerance() of a surface that is usable, as those of a Surface are: the cost is by the faces that
-/// matter, so that there may be many proofs for parts of a surface.
+/// matter, so that there may be many proofs for parts of a surface. `known`: with options.facing, that of
+/// matching_of(), which otherwise is made.
 [[nodiscard]] ToleranceProof prove_valid(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,
-                                         const ToleranceProofOptions& options);
+                                         const ToleranceProofOptions& options,
+                                         const hausdorff::Matching* known = nullptr);
 
 }  // namespace sdm::tolerance

@@ -163,7 +163,8 @@ Json to_json(const Places& places, bool of_points) {
 Json to_json(const ToleranceProof& proof) {
   Json json{{"witness", nullptr},
             {"undecided_by", optional(proof.undecided_by)},
-            {"depends_on_signs", proof.depends_on_signs}};
+            {"depends_on_signs", proof.depends_on_signs},
+            {"faces_without_match", proof.faces_without_match}};
   if (const auto& witness = proof.witness)
     json["witness"] = {{"distance", witness->distance},
                        {"point", witness->point},

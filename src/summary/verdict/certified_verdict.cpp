@@ -14,6 +14,8 @@ bool is_open(const ToleranceVerdict& verdict) {
     case VerdictReason::between_samples:
     case VerdictReason::within_rounding:
       return true;
+    case VerdictReason::all_within:  // of samples only
+      return !verdict.certified;
     case VerdictReason::estimated_signs:  // unless with the other sign a sample is out of the tolerance
       return verdict.margin > 0;
     default:
@@ -33,10 +35,12 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
       result.certified = true;
       break;
     case Proof::outside:
-      result.verdict = Verdict::fail, result.reason = VerdictReason::exceeded;
+      result.verdict = Verdict::fail;
+      result.reason = proof.witness ? VerdictReason::exceeded : VerdictReason::without_match;
       result.certified = true, result.within = false;
       break;
     case Proof::undecided:
+      result.verdict = Verdict::not_decided;
       result.reason =
           proof.depends_on_signs ? VerdictReason::estimated_signs : VerdictReason::within_rounding;
       break;
@@ -44,12 +48,22 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
   return result;
 }
 
-CertifiedVerdict summary::certify(const ToleranceVerdict& verdict, const Mesh& surface, const Sites& sites,
-                                  DistanceKind measured, const ToleranceProofOptions& options) {
+CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict,
+                                                std::optional<std::span<const std::uint32_t>> faces) {
   CertifiedVerdict result{verdict, {}};
-  if (!is_open(result) || measured != DistanceKind::closest) return result;
-  result.proof = tolerance::prove_valid(surface, sites, verdict.tolerance, options);
-  static_cast<Judgement&>(result) = judge(result, *result.proof);
+  const MeasuredDistance& measured = map_.measured;
+  const bool is_facing = measured.kind == DistanceKind::facing && measured.facing;
+  if (!is_open(result) || !(is_facing || measured.kind == DistanceKind::closest)) return result;
+  if (is_facing && !matching_) matching_.emplace(tolerance::matching_of(surface_, sites_, *measured.facing));
+  result.proof = tolerance::prove_valid(surface_, sites_, verdict.tolerance,
+                                        {.sign = map_.sign.method,
+                                         .accuracy = accuracy_,
+                                         .facing = measured.facing,
+                                         .faces = faces,
+                                         .progress = progress_},
+                                        matching_ ? &*matching_ : nullptr);
+  if (!(is_facing && result.proof->depends_on_signs))
+    static_cast<Judgement&>(result) = judge(result, *result.proof);
   return result;
 }
 
@@ -60,9 +74,7 @@ CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, c
       check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance);
   summary::withhold_failures_by_missing_signs({&sampled, 1}, {}, surface, sites, map, vertex_distances,
                                               options.accuracy);
-  return summary::certify(
-      sampled, surface.mesh(), sites, map.measured.kind,
-      {.sign = map.sign.method, .accuracy = options.accuracy, .progress = options.progress});
+  return summary::Certifier(surface.mesh(), sites, map, options.accuracy, options.progress)(sampled);
 }
 
 void withhold_pass(Summary& summary, bool accept_doubts) {

@@ -64,6 +64,7 @@ GroupVerdicts certify_groups(const Surface& surface, const Sites& sites, const D
         judge_samples(surface, sites, map, vertex_distances, groups.layers[l], tolerances, options.accuracy));
   }
   GroupVerdicts result;
+  summary::Certifier certify(surface.mesh(), sites, map, options.accuracy, options.progress);
   for (const GroupRows::Row& row : groups.rows) {
     const auto& [evidence, verdict, area] = sampled[row.layer][row.number];
     result.groups.push_back({.kind = row.named.kind,
@@ -72,11 +73,7 @@ GroupVerdicts certify_groups(const Surface& surface, const Sites& sites, const D
                              .area = area,
                              .lowest = evidence.lowest,
                              .highest = evidence.highest,
-                             .verdict = summary::certify(verdict, surface.mesh(), sites, map.measured.kind,
-                                                         {.sign = map.sign.method,
-                                                          .accuracy = options.accuracy,
-                                                          .faces = std::span(row.named.faces),
-                                                          .progress = options.progress})});
+                             .verdict = certify(verdict, std::span(row.named.faces))});
   }
   result.verdict = summary::worst_of(result.groups, options.doubted);
   return result;

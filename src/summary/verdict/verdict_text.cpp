@@ -35,8 +35,9 @@ std::string open_text(const Summary& summary, const std::string& limits) {
   }
   const std::string accuracy = with_unit(summary.evidence.accuracy, summary.units, 2);
   if (!verdict.proof || !verdict.proof->undecided_by)
-    return "all points are within " + limits + " or out of it by less than the accuracy of a distance, " +
-           accuracy + ", which one is closer to a limit than";
+    return std::string(summary.evidence.samples_only ? "all measured" : "all") + " points are within " +
+           limits + " or out of it by less than the accuracy of a distance, " + accuracy +
+           ", which one is closer to a limit than";
   const std::string by = with_unit(*verdict.proof->undecided_by, summary.units, 2);
   if (*verdict.proof->undecided_by > summary.evidence.accuracy)
     return "no point is out of " + limits + " by more than " + by + ", where the search ended";
@@ -55,7 +56,7 @@ std::string verdict_text(const Summary& summary) {
   if (!summary.tolerance) return {};
   const CertifiedVerdict& verdict = *summary.tolerance;
   const std::string limits = limits_text(verdict.tolerance, summary.units);
-  const bool samples_only = summary.evidence.samples_only;
+  const bool samples_only = summary.evidence.samples_only && !verdict.certified;
   const std::string all = std::string(summary.of_points ? "every point of the cloud"
                                       : samples_only    ? "every measured point of the surface"
                                                         : "every point of the surface") +
