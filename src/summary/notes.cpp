@@ -59,12 +59,12 @@ std::optional<std::string> note_on_walls(const Sites& sites, const Tolerance& to
   const std::optional<WallEstimate> walls = estimate_walls(sites, 2 * limit);
   if (!walls || walls->thin < kLeastShare) return std::nullopt;
   const std::string unit = units.empty() ? "" : " " + units;
-  return "about " + text_of(100 * walls->thin, 2) +
+  return "about " + std::to_string(std::lround(100 * walls->thin)) +
          " % of O2's walls are thinner than twice the tolerance, " + text_of(2 * limit, 5) + unit +
-         " (an estimate: half of these are below " + text_of(walls->median, 3) + unit +
-         "), so that the closest point may be on the other skin, and a defect does not show; measure to "
-         "faces that "
-         "face the same way (--facing)";
+         " (an estimate: half of these are at most " + text_of(walls->median, 3) + unit +
+         " thick), so that the closest point may be on the other skin, and a defect does not show; measure "
+         "to "
+         "faces that face the same way (--facing)";
 }
 
 std::vector<std::string> notes_on(const Box& a, const Box& b) {
