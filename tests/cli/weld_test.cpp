@@ -52,6 +52,7 @@ TEST_F(WeldOption, GivesDistancesASign) {
   EXPECT_GT(weld["largest_move"], 0);
   EXPECT_LE(weld["largest_move"], 4e-6);
   EXPECT_EQ(report["o1"]["weld"]["joined_vertices"], 0);
+  EXPECT_EQ(report["notes"].dump().find(": 0 vertices"), std::string::npos) << "a note on nothing";
 }
 
 TEST_F(WeldOption, IsAdvisedWhereItHelps) {
