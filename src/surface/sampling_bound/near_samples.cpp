@@ -42,8 +42,8 @@ NearSamples::Choice NearSamples::choose(std::uint32_t face, double x, double y, 
   return best;
 }
 
-// A face with an opposite normal may be in contact now, but may move independently, unless both have a
-// vertex.
+// A face with an opposite normal may be in contact now, but may move independently, unless they share
+// a vertex.
 bool NearSamples::same_side(std::uint32_t face, std::uint32_t other) const {
   for (const std::uint32_t v : surface_.mesh().triangles[face])
     if (std::ranges::find(surface_.mesh().triangles[other], v) != surface_.mesh().triangles[other].end())
