@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -21,6 +22,12 @@ using GridTriangle = std::array<GridPoint, 3>;
 /// Twice the signed area.
 constexpr std::int64_t orientation(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
   return std::int64_t{b[0] - a[0]} * (c[1] - a[1]) - std::int64_t{b[1] - a[1]} * (c[0] - a[0]);
+}
+
+/// The tests that a chart of so many faces is worth. Nearly every pair of a fan of many slivers needs one:
+/// such a chart is cut instead of tested in full.
+constexpr std::uint64_t pair_budget(std::size_t faces) {
+  return 10'000'000 + 100 * std::uint64_t{faces};
 }
 
 /// Two triangles whose interiors intersect, if any do. With `slack` > 0, overlaps no deeper than this, in

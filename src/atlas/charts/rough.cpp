@@ -105,12 +105,13 @@ class RoughCharts {
     std::erase_if(chart.faces, [&](std::uint32_t f) { return out_[f] != 0; });
   }
 
-  // Of every two faces that overlap because the surface is folded there, the steeper one. Parts of the chart
-  // that overlap otherwise are for split_overlaps().
+  // Where two faces overlap because the surface is folded there, the steeper one leaves. Parts of the chart
+  // that overlap otherwise are for split_overlaps(), as is a chart that cannot be tested within the budget.
   void take_out_folds(Chart& chart) {
     constexpr std::size_t kMostFolds = 4;  // one of so many faces
     if (chart.faces.size() < 2) return;
-    for (const auto& [i, j] : find_overlaps(snap(mesh_, chart), chart.faces.size() / kMostFolds)) {
+    const std::size_t count = chart.faces.size();
+    for (const auto& [i, j] : find_overlaps(snap(mesh_, chart), count / kMostFolds, pair_budget(count))) {
       const std::uint32_t a = chart.faces[i], b = chart.faces[j];
       if (out_[a] == 0 && out_[b] == 0 && are_close(a, b))
         out_[cosine(chart, a) < cosine(chart, b) ? a : b] = 1;

@@ -12,12 +12,6 @@
 namespace sdm::atlas {
 namespace {
 
-// Nearly every pair of a fan of many slivers needs a box test: such a chart is cut instead of tested in
-// full.
-std::uint64_t pair_budget(std::size_t faces) {
-  return 10'000'000 + 100 * std::uint64_t{faces};
-}
-
 class Splitter {
  public:
   Splitter(const Mesh& mesh, const FaceGeometry& faces) : mesh_(mesh), faces_(faces) {}
