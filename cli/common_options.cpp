@@ -74,8 +74,8 @@ void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::stri
                "uv: refuse coordinates outside of [0, 1] and faces that overlap in the texture");
   app.add_option(
          "--max-stretch", atlas.max_stretch,
-         "Charts: the largest stretch, the factor by which lengths grow from map to surface; up to 4 where "
-         "noise of a scan would leave too little of the atlas")
+         "Charts: the largest stretch, the factor by which lengths grow from map to surface; from 1.1034 on, "
+         "up to 4 where noise of a scan would leave too little of the atlas")
       ->check(number("a number above 1", [](double x) { return x > 1; }))
       ->type_name("S")
       ->capture_default_str();

@@ -26,7 +26,7 @@ struct AtlasOptions {
   std::optional<std::uint32_t> rows{};
   /// charts: bounds the growth of lengths from atlas to surface; in (1, 100]. Where a mesh is so rough, as
   /// scans are, that most of the atlas would be gutters, charts follow the smoothed surface, and faces are
-  /// stretched by up to 4.
+  /// stretched by up to 4, unless this is less than 1.1034.
   double max_stretch = 1.3;
   /// charts, triangles: free texels around each chart, not shared. All: values of files extend at least this
   /// far beyond the charts (see write_exr).

@@ -8,7 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "atlas/charts/cluster.h"
 #include "atlas/charts/overlap.h"
+#include "atlas/charts/rough.h"
 #include "atlas/invariants.h"
 #include "geometry/vec.h"
 #include "support/noise.h"
@@ -77,7 +79,7 @@ void expect_radius(const Surface& surface) {
 TEST(RoughSurfaces, HaveFewChartsAndUseTheAtlas) {
   for (const double noise : {0.3, 0.5}) {
     SCOPED_TRACE(noise);
-    const Surface surface(scan_of_torus(noise), {.resolution = 1024});
+    const Surface surface(scan_of_torus(noise), {.resolution = 512});
     expect_atlas(surface);
     expect_injective(surface);
     expect_radius(surface);
@@ -90,7 +92,7 @@ TEST(RoughSurfaces, HaveFewChartsAndUseTheAtlas) {
 TEST(RoughSurfaces, FoldsAreLaidOutWithoutOverlap) {
   for (const auto& [along, all_ways] : {std::pair(0.3, 0.3), std::pair(1.0, 0.0), std::pair(1.0, 0.7)}) {
     SCOPED_TRACE(all_ways);
-    const Surface surface(scan_of_torus(along, all_ways), {.resolution = 1024});
+    const Surface surface(scan_of_torus(along, all_ways), {.resolution = 512});
     expect_atlas(surface);
     expect_injective(surface);
     expect_radius(surface);
@@ -102,7 +104,7 @@ TEST(RoughSurfaces, HolesBetweenChartsAreThoseOfTheMesh) {
   Mesh sheet = test::with_noise(test::height_field(180), 0.4, 0.1);
   std::erase_if(sheet.triangles, [](const Triangle& t) { return t[0] % 7 == 0 && t[0] / 180 % 9 == 0; });
   sheet.corner_uvs.clear();
-  const Surface surface(std::move(sheet), {.resolution = 1024, .gutter = 2});
+  const Surface surface(std::move(sheet), {.resolution = 512, .gutter = 2});
   expect_atlas(surface);
   expect_injective(surface);
 }
@@ -118,6 +120,69 @@ TEST(RoughSurfaces, TheLayoutIsTheSameForAnyMeshScale) {
 TEST(RoughSurfaces, SmoothOnesKeepTheStretch) {
   const Surface surface(test::torus(448, 224), {.resolution = 512});
   EXPECT_LE(surface.max_stretch(), AtlasOptions{}.max_stretch);
+}
+
+TEST(RoughSurfaces, TheStretchIsKeptWhereTexelsAreMany) {
+  const Surface surface(scan_of_torus(0.3), {.resolution = 1024});
+  expect_atlas(surface);
+  EXPECT_LE(surface.max_stretch(), AtlasOptions{}.max_stretch);
+  EXPECT_GE(surface.utilisation(), 0.4);
+}
+
+TEST(RoughSurfaces, ALittleStretchIsKeptWhateverTheNumberOfClusters) {
+  const Mesh mesh = test::joined(test::sphere(7), test::moved(test::cube(), {3, 0, 0}));
+  for (const double most : {1.0008, 1.001}) {
+    const Surface surface(mesh, {.resolution = 512, .max_stretch = most});
+    EXPECT_LE(surface.max_stretch(), most);
+    EXPECT_GE(surface.chart_count(), 4096u);
+  }
+}
+
+TEST(RoughSurfaces, AssembliesOfSmoothPartsAreLaidOutAsOthers) {
+  constexpr std::size_t kRings = 160, kEnoughClusters = 4096;
+  const Mesh ring = test::ring(48);
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < kRings; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3& p : ring.positions) mesh.positions.push_back(p + Vec3{0, 0, 1.0 * i});
+    for (const Triangle& t : ring.triangles)
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const atlas::FaceGeometry faces = atlas::face_geometry(mesh);
+  const double cos_angle = 1 / AtlasOptions{}.max_stretch;
+  const auto expected = atlas::cluster_faces(mesh, faces, cos_angle);
+  ASSERT_GE(expected.first, kEnoughClusters);
+  const auto [charts, rough] = atlas::cluster_rough_faces(mesh, faces, cos_angle, 512);
+  EXPECT_FALSE(rough);
+  ASSERT_EQ(charts.size(), expected.charts->size());
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    EXPECT_EQ(charts[c].axis, (*expected.charts)[c].axis);
+    EXPECT_EQ(charts[c].faces, (*expected.charts)[c].faces);
+  }
+}
+
+Mesh scan_beside_fan(int slivers) {
+  return test::joined(test::with_noise(test::height_field(180), 0.35),
+                      test::moved(test::fan(slivers), {0, 0, 5}));
+}
+
+TEST(RoughSurfaces, FansOfSliversAreCut) {
+  constexpr int kSlivers = 5000;
+  const Surface surface(scan_beside_fan(kSlivers), {.resolution = 512});
+  expect_atlas(surface);
+  expect_injective(surface);
+  EXPECT_GT(surface.max_stretch(), AtlasOptions{}.max_stretch);
+  const auto charts = surface.face_charts().last(kSlivers);
+  EXPECT_NE(std::ranges::min(charts), std::ranges::max(charts));
+}
+
+TEST(RoughSurfaces, FansOfManySliversAreNotTestedInFull) {
+  constexpr std::size_t kSlivers = 80'000;
+  const Mesh mesh = scan_beside_fan(kSlivers);
+  const auto [charts, rough] =
+      atlas::cluster_rough_faces(mesh, atlas::face_geometry(mesh), 1 / AtlasOptions{}.max_stretch, 512);
+  EXPECT_TRUE(rough);
+  EXPECT_TRUE(std::ranges::any_of(charts, [](const auto& chart) { return chart.faces.size() == kSlivers; }));
 }
 
 }  // namespace

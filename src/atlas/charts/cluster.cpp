@@ -72,9 +72,10 @@ class Clustering {
         label_(faces.normal.size(), kNone) {}
 
   // Lloyd's alternation: the axes from the clusters, the clusters from the axes.
-  std::optional<std::vector<Chart>> run(std::size_t rough) {
+  FaceClusters run(std::size_t too_many) {
     flood_rest();
-    if (axes_.size() >= rough) return std::nullopt;
+    const std::size_t first = axes_.size();
+    if (first >= too_many) return {first, std::nullopt};
     if (axes_.size() < kManyClusters) merge();
     for (int round = 0; round < kRounds; ++round) {
       regrow();
@@ -82,7 +83,7 @@ class Clustering {
       merge();
     }
     straighten_borders();
-    return charts();
+    return {first, charts()};
   }
 
  private:
@@ -373,9 +374,9 @@ class Clustering {
 
 }  // namespace
 
-std::optional<std::vector<Chart>> cluster_faces(const Mesh& mesh, const FaceGeometry& faces, double cos_angle,
-                                                std::size_t rough) {
-  return Clustering(mesh, faces, cos_angle).run(rough);
+FaceClusters cluster_faces(const Mesh& mesh, const FaceGeometry& faces, double cos_angle,
+                           std::size_t too_many) {
+  return Clustering(mesh, faces, cos_angle).run(too_many);
 }
 
 }  // namespace sdm::atlas

@@ -13,10 +13,14 @@
 
 namespace sdm::atlas {
 
-/// Partitions the faces with an area into few, large, compact charts. The projections of a chart's faces may
-/// overlap. Returns nothing if the first clusters, each grown about the normal of one face, are `rough` or
-/// more. Cost: O(n log n).
-[[nodiscard]] std::optional<std::vector<Chart>> cluster_faces(const Mesh& mesh, const FaceGeometry& faces,
-                                                              double cos_angle, std::size_t rough = SIZE_MAX);
+struct FaceClusters {
+  std::size_t first;                         ///< the number of first clusters, each about one face's normal
+  std::optional<std::vector<Chart>> charts;  ///< none if the first clusters are too many
+};
+
+/// Partitions the faces with an area into few, large, compact charts, unless the first clusters are
+/// `too_many` or more. The projections of a chart's faces may overlap. Cost: O(n log n).
+[[nodiscard]] FaceClusters cluster_faces(const Mesh& mesh, const FaceGeometry& faces, double cos_angle,
+                                         std::size_t too_many = SIZE_MAX);
 
 }  // namespace sdm::atlas

@@ -17,10 +17,15 @@ namespace {
 
 // A surface is rough from so many first clusters on: as many gutters, of so many texels each, fill the atlas.
 constexpr std::size_t kFewClusters = 4096;
-constexpr std::uint64_t kTexelsPerCluster = 170;
+constexpr std::uint64_t kTexelsPerGutter = 170;
+// Where first clusters have more texels each, what stretched faces lose is more than what fewer gutters gain.
+constexpr std::uint64_t kTexelsPerCluster = 72;
 // A smoothed surface has fewer clusters than one for so many faces. Triangles that share nothing have more.
 constexpr std::size_t kFacesPerCluster = 32;
-// Between the axis of a chart and smoothed normals: 25°, so that the faces have room to be steeper than
+// The first clusters of a rough surface are more than so many for one of the smoothed surface. A smooth one
+// has fewer.
+constexpr std::size_t kFewerClusters = 2;
+// Smoothed normals are within 25° of the axis of a chart, so that the faces have room to be steeper than
 // these.
 constexpr double kCosSmooth = 0.9063;
 // The least steep faces that a chart loses are those beyond this share; but their stretch is between these.
@@ -90,7 +95,7 @@ class RoughCharts {
     return dot(faces_.normal[face], chart.axis);
   }
 
-  // Of the angle between the axis of a chart and the normal of a face that stays.
+  // The least cosine of the angle between the axis of a chart and the normal of a face that stays.
   [[nodiscard]] double cos_limit() const {
     std::vector<float> cosines;
     for (const Chart& chart : charts_)
@@ -173,7 +178,7 @@ class RoughCharts {
       for (std::uint32_t& next : geometry.neighbours.emplace_back(faces_.neighbours[f]))
         if (next != kNone) next = number(next);
     }
-    std::vector<Chart> charts = *cluster_faces(part, geometry, cos_angle);
+    std::vector<Chart> charts = *cluster_faces(part, geometry, cos_angle).charts;
     for (Chart& chart : charts)
       for (std::uint32_t& f : chart.faces) f = rest[f];
     return charts;
@@ -190,15 +195,18 @@ class RoughCharts {
 
 Clusters cluster_rough_faces(const Mesh& mesh, const FaceGeometry& faces, double cos_angle,
                              std::uint32_t resolution) {
-  const std::size_t rough =
-      std::max<std::size_t>(kFewClusters, std::uint64_t{resolution} * resolution / kTexelsPerCluster);
-  if (auto charts = cluster_faces(mesh, faces, cos_angle, rough)) return {std::move(*charts)};
+  const std::uint64_t texels = std::uint64_t{resolution} * resolution;
+  const std::size_t rough = std::max<std::size_t>(kFewClusters, texels / kTexelsPerGutter);
+  // At smaller angles many clusters are no sign of noise: smooth surfaces have as many.
+  auto [first, charts] = cluster_faces(mesh, faces, cos_angle, cos_angle > kCosSmooth ? SIZE_MAX : rough);
+  if (charts) return {std::move(*charts)};
   FaceGeometry smooth = faces;
   smooth.normal = smoothed_normals(mesh, faces);
-  auto charts =
-      cluster_faces(mesh, smooth, std::max(cos_angle, kCosSmooth), faces.area.size() / kFacesPerCluster);
-  if (!charts) return {*cluster_faces(mesh, faces, cos_angle)};
-  return {RoughCharts(mesh, faces, std::move(*charts)).run(cos_angle), true};
+  const std::size_t too_many = std::min(faces.area.size() / kFacesPerCluster, first / kFewerClusters);
+  auto smoothed = cluster_faces(mesh, smooth, kCosSmooth, too_many);
+  if (!smoothed.charts || first < texels / kTexelsPerCluster)
+    return {*cluster_faces(mesh, faces, cos_angle).charts, smoothed.charts.has_value()};
+  return {RoughCharts(mesh, faces, std::move(*smoothed.charts)).run(cos_angle), true};
 }
 
 }  // namespace sdm::atlas
