@@ -4,6 +4,9 @@
 #include <sdm/summary.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "format.h"
 #include "option_checks.h"
@@ -36,6 +39,30 @@ std::string group_text(const sdm::GroupVerdict& g, const std::string& units, boo
   if (g.verdict.proof && g.verdict.proof->undecided_by)
     text += fmt::format(", not decided by {}{}", number(*g.verdict.proof->undecided_by), unit);
   return text;
+}
+
+// "1 point is" or "7 points are".
+std::string points_are(std::uint64_t points) {
+  return points == 1 ? "1 point is" : fmt::format("{} points are", points);
+}
+
+// Why all groups together fail, whatever the single ones do.
+std::string without_group_text(const sdm::PointsWithoutGroup& points) {
+  std::vector<std::string> reasons;
+  if (points.beyond_max_distance > 0)
+    reasons.push_back(fmt::format("{} of no group, as O2 is farther than --max-distance",
+                                  points_are(points.beyond_max_distance)));
+  if (points.without_match > 0)
+    reasons.push_back(
+        fmt::format("{} of no group, as no face of O2 faces the same way", points_are(points.without_match)));
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+// Null unless points are without a group.
+Json reason_json(const sdm::PointsWithoutGroup& points) {
+  if (!points.any()) return nullptr;
+  return sdm::name_of(points.without_match > 0 ? sdm::VerdictReason::without_match
+                                               : sdm::VerdictReason::beyond_max_distance);
 }
 
 }  // namespace
@@ -96,11 +123,19 @@ Json to_json(const sdm::GroupVerdicts& verdicts, bool of_points) {
                                                             : Json()}});
     groups.push_back(std::move(group));
   }
-  return {{"verdict", sdm::name_of(verdicts.verdict)}, {"groups", groups}};
+  Json all{{"verdict", sdm::name_of(verdicts.verdict)}};
+  if (of_points)
+    all.update({{"reason", reason_json(verdicts.without_group)},
+                {"beyond_max_distance", verdicts.without_group.beyond_max_distance},
+                {"without_match", verdicts.without_group.without_match}});
+  all["groups"] = std::move(groups);
+  return all;
 }
 
 std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units, bool of_points) {
-  std::string text = fmt::format("  groups    {}\n", sdm::name_of(verdicts.verdict));
+  std::string text = fmt::format("  groups    {}", sdm::name_of(verdicts.verdict));
+  if (verdicts.without_group.any()) text += ": " + without_group_text(verdicts.without_group);
+  text += '\n';
   for (const sdm::GroupVerdict& g : verdicts.groups)
     text += fmt::format("            {}\n", group_text(g, units, of_points));
   return text;

@@ -36,11 +36,21 @@ struct GroupVerdict {
   CertifiedVerdict verdict;                   ///< shares are those of the area of the group, or of its points
 };
 
+/// The points of a cloud that have coordinates but no value, and so no closest face: they are of no group.
+struct PointsWithoutGroup {
+  std::uint64_t beyond_max_distance = 0;  ///< O2 is farther than the maximum distance
+  std::uint64_t without_match = 0;        ///< no face of O2 faces as they do
+
+  [[nodiscard]] bool any() const { return beyond_max_distance + without_match > 0; }  ///< whether some are
+};
+
 /// The verdicts on all groups of a table.
 struct GroupVerdicts {
   std::vector<GroupVerdict> groups;  ///< in the order of the table
-  /// Verdict::fail if that of one group is, else Verdict::not_decided if that of one is, else Verdict::pass,
-  /// or Verdict::doubtful instead if there are doubts.
+  PointsWithoutGroup without_group;  ///< of a cloud
+  /// Verdict::fail if that of one group is, or if points are without a group, as a part may be missing or
+  /// defective there; else Verdict::not_decided if that of one group is, else Verdict::pass, or
+  /// Verdict::doubtful instead if there are doubts.
   Verdict verdict = Verdict::pass;
 };
 
@@ -75,9 +85,10 @@ struct CertifyGroupsOptions {
                                                    std::span<const GroupTolerance> table,
                                                    const CertifyGroupsOptions& options);
 
-/// Judges groups of points, whose distances have this sign and kind. Fractions are of the points of the
-/// group. Cost: linear in groups.
-[[nodiscard]] SDM_API GroupVerdicts judge_groups(std::span<const GroupPoints> groups, SignMethod sign,
+/// Judges groups of points, whose distances have this sign and kind, and all of them together with the
+/// points of no group. Fractions are of the points of the group. Cost: linear in groups.
+[[nodiscard]] SDM_API GroupVerdicts judge_groups(std::span<const GroupPoints> groups,
+                                                 const PointsWithoutGroup& without_group, SignMethod sign,
                                                  DistanceKind measured);
 
 /// Makes Verdict::doubtful of a pass on all groups, as there are doubts.

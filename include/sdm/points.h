@@ -175,7 +175,7 @@ struct PointDistances {
   std::optional<PointIslands> islands;  ///< if they were looked for
   std::optional<Places> places;         ///< nothing if no point has a value
   /// The verdicts on the groups of options.table: each point with a value is of the groups of its closest
-  /// face. Doubts are not considered.
+  /// face; those without one are of no group, and fail. Doubts are not considered.
   std::optional<GroupVerdicts> groups;
   double accuracy = 0;  ///< of a distance: that of the engine for the box of O2 and the points
   Box bounds;           ///< of the finite points

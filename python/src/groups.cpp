@@ -141,7 +141,16 @@ void bind_verdicts(nb::module_& module) {
       .def_ro("groups", &GroupVerdicts::groups, "In the order of the table.")
       .def_prop_ro(
           "verdict", [](const GroupVerdicts& self) { return lower(sdm::name_of(self.verdict)); },
-          "'fail' if that of one group is, else 'not decided' if that of one is, else 'pass'.")
+          "'fail' if that of one group is, or if points of a cloud are of no group; else 'not decided' if "
+          "that of one is, else 'pass'.")
+      .def_prop_ro(
+          "beyond_max_distance",
+          [](const GroupVerdicts& self) { return self.without_group.beyond_max_distance; },
+          "Of a cloud: the number of points that are of no group, as the mesh is farther than the maximum "
+          "distance.")
+      .def_prop_ro(
+          "without_match", [](const GroupVerdicts& self) { return self.without_group.without_match; },
+          "Of a cloud: the number of points that are of no group, as no face of the mesh faces as they do.")
       .def("__repr__", [](const GroupVerdicts& self) {
         return nb::str("sdm.GroupVerdicts({!r}, {} groups)")
             .format(lower(sdm::name_of(self.verdict)), self.groups.size());

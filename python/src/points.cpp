@@ -237,7 +237,7 @@ engine, sign, max_distance, facing, along: as of map(); facing and along='normal
 Along a direction, a cloud without normals is measured to any face. tolerance, colormap, range: of the colours, as of DistanceMap.save();
 the tolerance also of ``beyond_tolerance``.
 tolerance_table: a file, or a dict of tolerances by name, of the groups of o2 (``groups``): each point is of those of its
-closest face. names: FaceNames of the faces of o2, or a list of them, as of read_face_names().
+closest face; one without a value is of none, and fails. names: FaceNames of the faces of o2, or a list of them, as of read_face_names().
 island_points: clusters of fewer points are left out: they have no distance and count for nothing. Finding them reads the
 cloud twice more.
 progress: called as progress(step, fraction), on this thread; False cancels.

@@ -87,6 +87,11 @@ def test_clouds(tmp_path):
     assert (left.verdict.verdict, right.verdict.verdict) == ("fail", "pass")
     assert left.points + right.points == 20000
     assert not found.places.by_tolerance
+    assert (found.groups.beyond_max_distance, found.groups.without_match) == (0, 0)
+    options.update(max_distance=1, tolerance_table={"left": 0.6, "right": 0.6})
+    found = sdm.measure_points(tmp_path / "cloud.xyz", o2, tmp_path / "out.ply", **options)
+    assert [g.verdict.verdict for g in found.groups.groups] == ["pass", "pass"]
+    assert (found.groups.verdict, found.groups.beyond_max_distance) == ("fail", 50)
     found = sdm.measure_points(tmp_path / "cloud.xyz", o2, tmp_path / "out.ply", sign="side", tolerance=0.1, names=names)
     assert found.islands is None and found.groups is None
     assert found.places.by_tolerance and found.places.count == 1 and found.places.small_count > 30

@@ -2,7 +2,7 @@
 import { byId, make, table } from './dom';
 import { percent, signedText, text } from './numbers';
 import type { Report } from './page_data';
-import { isCloud, isSigned, limitsText, unitOf } from './verdict';
+import { isCloud, isSigned, limitsText, unitOf, wholeOf } from './verdict';
 import { capital, quantityOf } from './words';
 
 export interface GroupName {
@@ -48,7 +48,7 @@ export function showGroups(report: Report, chosen: GroupName | null = null, show
   ]);
   const what = capital(quantityOf(report));
   byId('groups-table').replaceChildren(
-    table(['Group', 'Named as', 'Limits', 'Verdict', `Least ${quantityOf(report)}`, `Largest ${quantityOf(report)}`, `${isCloud(report) ? 'Points' : 'Area'} out of tolerance`, 'Kind'], rows, `${what} by group`),
+    table(['Group', 'Named as', 'Limits', 'Verdict', `Least ${quantityOf(report)}`, `Largest ${quantityOf(report)}`, `${capital(wholeOf(report))} out of tolerance`, 'Kind'], rows, `${what} by group`),
     make('p', { class: 'hint' }, `${show ? 'Choose a group to see it alone in colours. ' : ''}Of all groups: ${report.group_tolerances!.verdict}. ${isCloud(report) ? 'A point is of the groups of its closest face.' : 'Shares are estimates from the samples of each group.'} The verdict at the top is the worse one of those of the part and of its groups.`),
   );
 }

@@ -80,6 +80,8 @@ export interface Report {
   };
   group_tolerances?: {
     verdict: string;
+    beyond_max_distance?: number; ///< points of a cloud that are of no group
+    without_match?: number; ///< the same
     groups: {
       kind: string;
       group: string;
@@ -90,7 +92,7 @@ export interface Report {
       lowest: number | null;
       highest: number | null;
       exceeded_area_fraction?: number;
-      exceeded_point_fraction?: number;
+      exceeded_point_fraction?: number; ///< of a cloud
       undecided_by?: number | null;
       witness?: { distance: number; point: Vec } | null;
     }[];

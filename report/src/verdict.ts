@@ -155,6 +155,18 @@ function ofPart(report: Report): Stated | null {
   return { verdict, sentence: sentence(t.text ?? '') };
 }
 
+/// The points of a cloud that have no value, and so no group, as sentences.
+function withoutGroup(report: Report): string[] {
+  const { beyond_max_distance: beyond = 0, without_match: unmatched = 0 } = report.group_tolerances!;
+  const points = (count: number) => (count === 1 ? '1 point is' : `${count} points are`);
+  const most = report.max_distance ? ` (${text(report.max_distance)}${unitOf(report)})` : '';
+  const sentences: string[] = [];
+  if (beyond > 0)
+    sentences.push(`${points(beyond)} of no group, as the reference is farther than the largest distance that was measured${most}.`);
+  if (unmatched > 0) sentences.push(`${points(unmatched)} of no group, as no face of the reference faces the same way.`);
+  return sentences;
+}
+
 /// The verdict by the table of tolerances, in words.
 function ofGroups(report: Report): Stated | null {
   const table = report.group_tolerances;
@@ -165,7 +177,7 @@ function ofGroups(report: Report): Stated | null {
   const names = some.slice(0, kMost).join(', ') + (some.length > kMost ? ' and others' : '');
   const count = `${some.length} of ${table.groups.length} groups`;
   const words: Partial<Record<Verdict, string>> = {
-    FAIL: `${count} of the table of tolerances fail: ${names}.`,
+    FAIL: [...(some.length > 0 ? [`${count} of the table of tolerances fail: ${names}.`] : []), ...withoutGroup(report)].join(' '),
     'NOT DECIDED': `${count} of the table of tolerances are not decided: ${names}.`,
     DOUBTFUL: `Every group of the table of tolerances is within its limits, but ${report.doubts?.map((d) => d.text).join('; ') ?? 'in doubt'}.`,
     PASS: 'Every group of the table of tolerances is within its limits.',

@@ -453,6 +453,22 @@ TEST_F(CloudPage, IsUsableByAllAndPrints) {
       passes("says", page(), {"FAIL", "of the points are out of tolerance", "All points of the cloud"}));
 }
 
+TEST_F(CloudPage, StatesThePointsOfNoGroup) {
+  write_cloud(300, 0);
+  std::ofstream(cloud, std::ios::app) << "0 0 50\n";
+  const std::string table = folder / "table.csv";
+  std::ofstream(table) << "group,lower,upper\nplane,-3,3\n";
+  const std::string faces = contents(o2);
+  std::ofstream(o2) << "o plane\n" << faces;
+  measure({"--tolerance-table", table, "--max-distance", "4"});
+  EXPECT_TRUE(
+      passes("says", page(),
+             {"FAIL",
+              "1 point is of no group, as the reference is farther than the largest distance that was "
+              "measured (4).",
+              "Points out of tolerance"}));
+}
+
 TEST_F(CloudPage, ShowsSomeOfManyPoints) {
   write_cloud(400000, 0.01);
   {

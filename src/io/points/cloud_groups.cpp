@@ -40,7 +40,7 @@ void CloudGroups::count(std::uint32_t face, double d, double accuracy) {
   });
 }
 
-GroupVerdicts CloudGroups::verdicts(double accuracy) const {
+GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, double accuracy) const {
   std::vector<GroupPoints> groups;
   for (std::size_t r = 0; r < found_.size(); ++r) {
     const summary::GroupRows::Row& row = rows_.rows[r];
@@ -59,7 +59,7 @@ GroupVerdicts CloudGroups::verdicts(double accuracy) const {
                       .accuracy = accuracy,
                       .is_signed = sign_ != SignMethod::none}});
   }
-  return judge_groups(groups, sign_, measured_);
+  return judge_groups(groups, without_group, sign_, measured_);
 }
 
 }  // namespace sdm::io

@@ -24,7 +24,7 @@ class CloudGroups {
   void add(std::uint32_t face, double d, bool has_sign);
   /// Then, each once more, when the accuracy is known.
   void count(std::uint32_t face, double d, double accuracy);
-  [[nodiscard]] GroupVerdicts verdicts(double accuracy) const;
+  [[nodiscard]] GroupVerdicts verdicts(const PointsWithoutGroup& without_group, double accuracy) const;
 
  private:
   /// What is found of a row.

@@ -337,7 +337,9 @@ class Measurement {
     file.close();
     if (picture.tolerance)
       result_.beyond_with_either_sign = signs_.any_out(*picture.tolerance, result_.accuracy);
-    if (groups_) result_.groups = groups_->verdicts(result_.accuracy);
+    if (groups_)
+      result_.groups =
+          groups_->verdicts({result_.beyond_max_distance, result_.without_match}, result_.accuracy);
     if (result_.min) result_.places = places.places(options_.names);
     if (!file) throw Error(cloud_ + ": the colours cannot be written; the disk may be full");
   }

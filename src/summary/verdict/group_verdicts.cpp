@@ -79,8 +79,10 @@ GroupVerdicts certify_groups(const Surface& surface, const Sites& sites, const D
   return result;
 }
 
-GroupVerdicts judge_groups(std::span<const GroupPoints> groups, SignMethod sign, DistanceKind measured) {
+GroupVerdicts judge_groups(std::span<const GroupPoints> groups, const PointsWithoutGroup& without_group,
+                           SignMethod sign, DistanceKind measured) {
   GroupVerdicts result;
+  result.without_group = without_group;
   for (const GroupPoints& g : groups) {
     Judgement judgement = judge(g.evidence, g.row.tolerance);
     if (summary::may_lack_signs(judgement, measured, sign) && !g.out_with_either_sign)
@@ -102,12 +104,12 @@ GroupVerdicts judge_groups(std::span<const GroupPoints> groups, SignMethod sign,
                              .highest = g.evidence.highest,
                              .verdict = verdict});
   }
-  result.verdict = summary::worst_of(result.groups, false);
+  result.verdict = without_group.any() ? Verdict::fail : summary::worst_of(result.groups, false);
   return result;
 }
 
 void withhold_pass(GroupVerdicts& verdicts) {
-  verdicts.verdict = summary::worst_of(verdicts.groups, true);
+  if (verdicts.verdict == Verdict::pass) verdicts.verdict = Verdict::doubtful;
 }
 
 }  // namespace sdm
