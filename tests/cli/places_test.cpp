@@ -92,6 +92,28 @@ TEST_F(PlacesOutput, IslandsOfACloudCountForNothing) {
   EXPECT_EQ(points(with, {"--ignore-islands", "0"}).code, 2);
 }
 
+// As directions without a measurement in a scan with coordinates of a country are: at 0, 0, 0.
+TEST_F(PlacesOutput, IslandsFarAwayAreLeftOutInAnyOrder) {
+  // More points apart than there may be cells, which therefore are widened.
+  constexpr int kSide = 65;
+  std::string scan, far;
+  for (int i = 0; i < kSide * kSide * kSide; ++i)
+    scan +=
+        fmt::format("{} {} {}\n", 0.16 * (i % kSide), 0.16 * (i / kSide % kSide), 0.16 * (i / kSide / kSide));
+  for (const char* away : {"1.7e6", "1.7e10", "1.7e201"})  // 1e5, 1e9 and 1e200 diagonals
+    for (int i = 0; i < 5; ++i) far += fmt::format("-{} {} -{}\n", away, away, away);
+  for (const std::string& text : {scan + far, far + scan}) {
+    std::ofstream(folder / "far.xyz") << text;
+    const Outcome run = points(folder / "far.xyz", {"--ignore-islands", "10", "--write", "none", "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    const Json report = Json::parse(run.out);
+    EXPECT_EQ(report["o1"]["ignored_islands"]["points"], 15);
+    EXPECT_EQ(report["o1"]["ignored_islands"]["islands"], 3);
+    EXPECT_EQ(report["points_with_value"], kSide * kSide * kSide);
+    EXPECT_NEAR(report["distance"]["max"], 0.16 * (kSide - 1), 0.5);
+  }
+}
+
 TEST_F(PlacesOutput, GroupsOfTheReferenceJudgeACloud) {
   std::ofstream(folder / "table.csv") << "group,lower,upper\nleft,-0.1,0.6\nright,-0.1,0.1\n";
   const Outcome run = points(cloud(0), {"--tolerance-table", folder / "table.csv", "--json"});

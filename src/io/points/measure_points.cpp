@@ -156,8 +156,8 @@ class Measurement {
     // Points without a measurement are replaced by a point of O2, which costs nothing.
     std::vector<Vec3> queries = chunk.points;
     const Vec3 anywhere = sites_.mesh().positions[sites_.mesh().triangles[0][0]];
-    for (Vec3& q : queries)
-      if (!finite(q)) q = anywhere;
+    for (std::size_t i = 0; i < queries.size(); ++i)
+      if (!finite(queries[i]) || is_island(chunk, i)) queries[i] = anywhere;
     MapOptions map = options_.map;
     map.progress = {};
     const FacingPoints found = find(queries, chunk.normals, map);

@@ -10,20 +10,13 @@
 namespace sdm::io {
 namespace {
 
-// A key has 20 bits for each coordinate and 2 for the side of the limits.
-constexpr int kBits = 20;
-constexpr std::int64_t kMiddle = std::int64_t{1} << (kBits - 1), kLast = 2 * kMiddle - 1;
 constexpr std::size_t kMostCells = std::size_t{1} << 18;
 
-std::uint64_t packed(const std::array<std::int64_t, 3>& c, std::uint64_t side) {
-  std::uint64_t key = side;
-  for (const std::int64_t x : c) key = key << kBits | static_cast<std::uint64_t>(x);
-  return key;
-}
-
-std::array<std::int64_t, 3> coordinates(std::uint64_t key) {
-  const auto at = [&](int shift) { return static_cast<std::int64_t>(key >> shift & kLast); };
-  return {at(2 * kBits), at(kBits), at(0)};
+// The coordinate of a cell at the finest level: floor(x), within ±2^62, as a number that does not depend on
+// the level. Only coordinates whose doubles are farther apart than cells are that large.
+std::int64_t finest(double x) {
+  constexpr double kFarthest = 0x1p62;
+  return static_cast<std::int64_t>(std::floor(std::clamp(x, -kFarthest, kFarthest)));
 }
 
 }  // namespace
@@ -57,53 +50,58 @@ void CellPoints::add(const CellPoints& other) {
   points = all;
 }
 
+std::size_t PointCells::CellHash::operator()(const Cell& cell) const {
+  std::uint64_t hash = static_cast<std::uint64_t>(cell.side);
+  for (const std::int64_t x : cell.at) {
+    hash = (hash ^ static_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 32;
+  }
+  return static_cast<std::size_t>(hash);
+}
+
 PointCells::PointCells(const Box& usual, std::uint64_t points) : origin_(usual.lo) {
   constexpr double kFinest = 1.0 / 512, kSpacings = 4;
   const double apart = kSpacings / std::sqrt(static_cast<double>(std::max<std::uint64_t>(points, 1)));
-  const double size = diagonal(usual);
-  width_ = size > 0 && std::isfinite(size) ? size * std::max(kFinest, apart) : 1;
+  const double width = diagonal(usual) * std::max(kFinest, apart);
+  finest_width_ = width > 0 && std::isfinite(width) ? width : 1;
   if (!finite(origin_)) origin_ = {};
 }
 
-PointCells::Key PointCells::key(const Vec3& at, int side) const {
-  std::array<std::int64_t, 3> c{};
-  for (int k = 0; k < 3; ++k) {
-    const double cell = std::floor((at[k] - origin_[k]) / width_);
-    const auto middle = static_cast<double>(kMiddle);
-    c[k] = kMiddle + static_cast<std::int64_t>(std::clamp(cell, -middle, middle - 1));
-  }
-  return packed(c, static_cast<std::uint64_t>(side));
+PointCells::Cell PointCells::cell(const Vec3& at, int side) const {
+  Cell result{side, {}};
+  for (int k = 0; k < 3; ++k) result.at[k] = finest((at[k] - origin_[k]) / finest_width_) >> level_;
+  return result;
 }
 
 void PointCells::add(const Vec3& at, int side, const CellPoints& points) {
-  cells_[key(at, side)].add(points);
-  if (cells_.size() > kMostCells) coarsen();
+  cells_[cell(at, side)].add(points);
+  while (cells_.size() > kMostCells) coarsen();
 }
 
+// The level is the first at which all cells fit, whatever the order of the points. It is below 63: there, all
+// coordinates are -1, 0 or 1.
 void PointCells::coarsen() {
-  // Cells are halved about the origin: c − middle rounds down.
-  std::unordered_map<Key, CellPoints> coarse;
-  for (const auto& [key, points] : cells_) {
-    auto c = coordinates(key);
-    for (std::int64_t& x : c) x = kMiddle + ((x - kMiddle) >> 1);
-    coarse[packed(c, key >> 3 * kBits)].add(points);
+  std::unordered_map<Cell, CellPoints, CellHash> coarse;
+  for (const auto& [fine, points] : cells_) {
+    Cell cell = fine;
+    for (std::int64_t& x : cell.at) x >>= 1;  // rounds down, as the cells of all levels have the same origin
+    coarse[cell].add(points);
   }
   cells_ = std::move(coarse);
-  width_ *= 2;
+  ++level_;
 }
 
-void PointCells::find_clusters(std::vector<Key>& keys, std::vector<std::uint32_t>& cluster) const {
+void PointCells::find_clusters(std::vector<Cell>& keys, std::vector<std::uint32_t>& cluster) const {
   keys.clear();
   for (const auto& cell : cells_) keys.push_back(cell.first);
   std::ranges::sort(keys);
   DisjointSets sets(keys.size());
   for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    const auto c = coordinates(keys[i]);
     for (int n = 0; n < 13; ++n) {  // half of the 26 around it
-      const std::array<std::int64_t, 3> other{c[0] + n / 9 - 1, c[1] + n / 3 % 3 - 1, c[2] + n % 3 - 1};
-      if (std::ranges::any_of(other, [](std::int64_t x) { return x < 0 || x > kLast; })) continue;
-      const auto found = std::ranges::lower_bound(keys, packed(other, keys[i] >> 3 * kBits));
-      if (found != keys.end() && *found == packed(other, keys[i] >> 3 * kBits))
+      Cell other = keys[i];
+      other.at[0] += n / 9 - 1, other.at[1] += n / 3 % 3 - 1, other.at[2] += n % 3 - 1;
+      const auto found = std::ranges::lower_bound(keys, other);
+      if (found != keys.end() && *found == other)
         sets.unite(i, static_cast<std::uint32_t>(found - keys.begin()));
     }
   }
@@ -116,7 +114,7 @@ void PointCells::find_clusters(std::vector<Key>& keys, std::vector<std::uint32_t
 }
 
 std::vector<CellPoints> PointCells::clusters() const {
-  std::vector<Key> keys;
+  std::vector<Cell> keys;
   std::vector<std::uint32_t> cluster;
   find_clusters(keys, cluster);
   std::vector<CellPoints> result;
@@ -128,7 +126,7 @@ std::vector<CellPoints> PointCells::clusters() const {
 }
 
 std::size_t PointCells::keep_below(std::uint64_t points) {
-  std::vector<Key> keys;
+  std::vector<Cell> keys;
   std::vector<std::uint32_t> cluster;
   find_clusters(keys, cluster);
   std::vector<std::uint64_t> sizes;
@@ -142,11 +140,11 @@ std::size_t PointCells::keep_below(std::uint64_t points) {
 }
 
 bool PointCells::contains(const Vec3& at, int side) const {
-  return cells_.contains(key(at, side));
+  return cells_.contains(cell(at, side));
 }
 
 double PointCells::reach() const {
-  return 2 * std::sqrt(3.0) * width_;  // the diagonal of two cells
+  return 2 * std::sqrt(3.0) * std::ldexp(finest_width_, level_);  // the diagonal of two cells
 }
 
 }  // namespace sdm::io

@@ -3,6 +3,9 @@
 
 #include <sdm/types.h>
 
+#include <array>
+#include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -39,6 +42,7 @@ struct CellPoints {
 ///
 /// Cells are four times as wide as points would be apart if they were spread evenly over the faces of their
 /// usual box, and at least 1/512 of its diagonal; twice as wide as often as more than 2^18 cells have points.
+/// Neither depends on the order of the points.
 class PointCells {
  public:
   PointCells(const Box& usual, std::uint64_t points);
@@ -55,17 +59,26 @@ class PointCells {
   [[nodiscard]] double reach() const;
 
  private:
-  using Key = std::uint64_t;
+  struct Cell {
+    int side = 0;
+    std::array<std::int64_t, 3> at{};
 
-  [[nodiscard]] Key key(const Vec3& at, int side) const;
+    auto operator<=>(const Cell&) const = default;
+  };
+  struct CellHash {
+    [[nodiscard]] std::size_t operator()(const Cell& cell) const;
+  };
+
+  [[nodiscard]] Cell cell(const Vec3& at, int side) const;
   /// Twice as wide.
   void coarsen();
-  /// The keys in order, and the number of the cluster of each.
-  void find_clusters(std::vector<Key>& keys, std::vector<std::uint32_t>& cluster) const;
+  /// The cells in order, and the number of the cluster of each.
+  void find_clusters(std::vector<Cell>& keys, std::vector<std::uint32_t>& cluster) const;
 
   Vec3 origin_;
-  double width_;
-  std::unordered_map<Key, CellPoints> cells_;
+  double finest_width_;
+  int level_ = 0;  ///< how often the width was doubled
+  std::unordered_map<Cell, CellPoints, CellHash> cells_;
 };
 
 }  // namespace sdm::io
