@@ -12,161 +12,26 @@
 #include <string>
 #include <utility>
 
-#include "alignment.h"
 #include "along_option.h"
 #include "cad_options.h"
-#include "common_options.h"
-#include "doubts.h"
 #include "exit_codes.h"
 #include "facing.h"
 #include "format.h"
-#include "group_tolerances.h"
 #include "islands.h"
 #include "map_files.h"
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
-#include "places.h"
+#include "points_report.h"
 #include "print.h"
 #include "progress_line.h"
-#include "report.h"
-#include "report_fields.h"
 #include "scenes/placement.h"
 #include "stopwatch.h"
-#include "unit_options.h"
 #include "weld.h"
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct PointsCommand : RunOptions {
-  std::string cloud, o2, transform_o1, transform_o2;
-  std::filesystem::path out;
-  UnitOptions file_units;
-  std::optional<sdm::WeldOptions> weld{};  ///< of O2
-  sdm::TessellationOptions tessellation{};
-  AlignCommand align;
-  DoubtCommand doubts;
-  GroupTolerances groups;
-  std::uint64_t island_points = 0;
-  std::optional<sdm::IslandLimits> islands_o2{};
-  sdm::MapOptions map;
-  std::optional<sdm::AlongOptions> along{};
-  sdm::PictureOptions picture;
-  sdm::TextDialect text;
-  ReportFields fields;
-  bool ply = true, html = sdm::can_write_html();
-};
-
-struct PointsOutcome {
-  sdm::PointDistances found;
-  sdm::Summary summary;
-  std::optional<sdm::CoverageMap> coverage;
-  std::optional<AlignOutcome> aligned;
-  double import_ms = 0, align_ms = 0, points_ms = 0;
-
-  [[nodiscard]] ExitCode code() const {
-    return exit_code(judged(summary, found.groups).value_or(sdm::Verdict::pass));
-  }
-};
-
-// How text was read; null for a cloud that is not text.
-Json text_json(const std::optional<sdm::TextDialect>& text) {
-  if (!text) return nullptr;
-  return {{"separator", sdm::name_of(text->separator)},
-          {"decimal", sdm::name_of(text->decimal)},
-          {"columns", text->columns},
-          {"header_line", text->header_line ? Json(*text->header_line) : Json()}};
-}
-
-// How text was read, unless that is the plain way: x, y and z first, between blanks.
-std::string text_summary(const sdm::TextDialect& text) {
-  const bool blank = text.separator == sdm::TextSeparator::blank || text.separator == sdm::TextSeparator::tab;
-  const auto& c = text.columns;
-  const bool plain = blank && text.decimal == sdm::DecimalMark::point && c[0] == "x" && c[1] == "y" &&
-                     c[2] == "z" &&
-                     std::ranges::all_of(c.begin() + 3, c.end(), [](auto& name) { return name == "_"; });
-  if (plain) return {};
-  return fmt::format("  text      separator {}, decimal {}, columns {}{}\n", sdm::name_of(text.separator),
-                     sdm::name_of(text.decimal), fmt::join(c, ","),
-                     text.header_line ? fmt::format(", header in line {}", *text.header_line) : "");
-}
-
-Json report_of(const PointsCommand& command, const Input& o2, const PointsOutcome& outcome) {
-  const sdm::PointDistances& found = outcome.found;
-  Json report;
-  report["version"] = sdm::kVersion;
-  report["o1"] = {{"file", command.cloud},
-                  {"transform", command.transform_o1},
-                  {"points", found.points},
-                  {"invalid_points", found.invalid},
-                  {"normals", found.has_normals}};
-  if (found.islands) report["o1"]["ignored_islands"] = to_json(*found.islands, found.points);
-  report["o1"]["format"] = found.format;
-  report["o1"]["text"] = text_json(found.text);
-  report["o2"] = to_json(o2);
-  if (o2.islands) report["o2"]["ignored_islands"] = to_json(*o2.islands);
-  report["measured_on"] = "o1";
-  if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned, command.picture.units);
-  report["engine"] = "cpu";
-  report.update(Json::parse(sdm::summary_json(outcome.summary)));
-  if (found.groups) report["group_tolerances"] = to_json(*found.groups, true);
-  put_fields(report, command.fields);
-  report["time_ms"] = {
-      {"import", outcome.import_ms}, {"align", outcome.align_ms}, {"points", outcome.points_ms}};
-  return report;
-}
-
-std::string tolerance_line(const PointsOutcome& outcome, const std::string& unit) {
-  const sdm::Summary& summary = outcome.summary;
-  const sdm::CertifiedVerdict& verdict = *summary.tolerance;
-  const std::string word = sdm::name_of(verdict.verdict);
-  if (verdict.verdict != sdm::Verdict::fail) return word + ": " + sdm::verdict_text(summary);
-  const std::string share = fmt::format("{}: {} % of the points are out of it", word,
-                                        number(100 * summary.exceeding_point_fraction));
-  const std::optional<sdm::Extreme> most = decisive_extreme(summary);
-  if (!most) return share + "; no point has a value";
-  return fmt::format("{}; {}{} at point {} {}", share, number(most->distance), unit,
-                     summary.extreme_points[verdict.nearest_is_lower ? 0 : 1],
-                     place(most->point, size_of(outcome.found.bounds)));
-}
-
-std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) {
-  const sdm::PointDistances& found = outcome.found;
-  const sdm::Summary& s = outcome.summary;
-  const sdm::DistanceStatistics& d = s.distance;
-  const std::string unit = unit_suffix(s.units);
-  std::string text = heading(fmt::format("{} -> {}", command.cloud, command.o2), judged(s, found.groups));
-  if (outcome.aligned) text += summary(*outcome.aligned, s.units);
-  if (found.text) text += text_summary(*found.text);
-  text += fmt::format("  points    {}\n", found.points) + measured_line(s);
-  if (found.invalid > 0) text += fmt::format("            {} have no coordinates\n", found.invalid);
-  if (d.texels == 0) {
-    text += "  distance  no point has a value\n";
-  } else {
-    text += fmt::format("  distance  min {}   mean {}   max {}{}\n", number(d.min), number(d.mean),
-                        number(d.max), unit);
-    if (s.sign.method != sdm::SignMethod::none)
-      text += fmt::format("            {} % of the points are {} (negative)\n",
-                          number(100 * d.negative_area_fraction), side_word(s.sign));
-  }
-  if (s.sign.method == sdm::SignMethod::none)
-    text += fmt::format("            unsigned: {}\n", s.sign.reason);
-  if (s.beyond_max_distance > 0)
-    text += fmt::format("            {} points, {} % of them, are farther than --max-distance\n",
-                        s.beyond_max_distance, number(100 * s.beyond_fraction));
-  if (s.without_match > 0)
-    text += fmt::format("            {} points have no face {}\n", s.without_match,
-                        s.measured.kind == sdm::DistanceKind::along ? "on their line that faces the same way"
-                                                                    : "that faces them");
-  if (s.sign.method == sdm::SignMethod::side && s.measured.kind == sdm::DistanceKind::closest)
-    text += "            signs are estimates; points closest to the boundary of O2 have none: |d|\n";
-  if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
-  text += place_lines(s, size_of(found.bounds));
-  if (found.groups) text += group_lines(*found.groups, s.units, true);
-  return text + coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
-}
 
 // How much of O2 was measured, by up to 2^20 of the points, which may be a doubt.
 void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& placement,
@@ -187,8 +52,7 @@ void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& 
 AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& placement,
                           const sdm::Sites& sites, const Input& o2, const sdm::Progress& progress) {
   constexpr std::size_t kSample = 1 << 18;
-  sdm::PointSample sample =
-      sdm::sample_points(command.cloud, kSample, {.text = command.text, .progress = progress});
+  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, {command.text, progress});
   if (sample.points.empty()) throw sdm::Error(command.cloud + ": there are no points with coordinates");
   sdm::transform(sample.points, placement);
   for (sdm::Vec3& n : sample.normals) n = placement.normal(n);
@@ -226,6 +90,50 @@ std::string files(const PointsCommand& command) {
                      command.html ? "report.html " : "");
 }
 
+// The mesh that is measured to, and the tolerances of its groups.
+Input load_reference(PointsCommand& command) {
+  Input o2 = load_input("o2", command.o2, command.transform_o2, {.tessellation = command.tessellation});
+  check_deflection(command.tessellation, {&o2});
+  if (command.weld) weld(o2, *command.weld);
+  if (command.islands_o2) o2.islands = ignore_islands(o2, *command.islands_o2);
+  if (!command.groups.file.empty()) command.groups.rows = sdm::read_tolerance_table(command.groups.file);
+  check_groups(command.groups, {&o2});
+  return o2;
+}
+
+sdm::PointDistancesOptions measuring_options(const PointsCommand& command, const Input& o2) {
+  return {.map = command.map,
+          .along = command.along,
+          .placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1)),
+          .picture = command.picture,
+          .text = command.text,
+          .names = o2.names,
+          .table = command.groups.rows,
+          .island_points = command.island_points};
+}
+
+// Aligns the points, which changes their placement, and writes alignment.json.
+void align_cloud(PointsCommand& command, const sdm::Sites& sites, const Input& o2,
+                 const std::filesystem::path& folder, sdm::PointDistancesOptions& options,
+                 PointsOutcome& outcome, ProgressLine& progress) {
+  progress.step("align");
+  command.align.judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
+  outcome.aligned = align_sample(command, options.placement, sites, o2, progress.callback());
+  options.placement = outcome.aligned->alignment.transform * options.placement;
+  write_text(folder / "alignment.json", to_text(to_json(*outcome.aligned, command.picture.units)));
+}
+
+// Withholds a PASS where there are doubts.
+void judge_doubts(const PointsCommand& command, const sdm::PointDistancesOptions& options, const Input& o2,
+                  PointsOutcome& outcome, ProgressLine& progress) {
+  if (outcome.aligned && command.align.judged) outcome.summary.doubts = doubts_of(*outcome.aligned);
+  if (command.doubts.min_coverage)
+    measure_cloud_coverage(command, options.placement, o2.mesh, outcome, progress);
+  sdm::withhold_pass(outcome.summary, command.doubts.accept);
+  if (outcome.found.groups && !outcome.summary.doubts.empty() && !command.doubts.accept)
+    sdm::withhold_pass(*outcome.found.groups);
+}
+
 /// Returns the exit code.
 int run(PointsCommand command) {
   Stopwatch total, watch;
@@ -237,17 +145,8 @@ int run(PointsCommand command) {
   command.map.progress = progress.callback();
 
   progress.step("import");
-  sdm::PointDistancesOptions options{
-      .map = command.map, .along = command.along, .picture = command.picture, .text = command.text};
-  options.placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1));
-  Input o2 = load_input("o2", command.o2, command.transform_o2, {.tessellation = command.tessellation});
-  check_deflection(command.tessellation, {&o2});
-  if (command.weld) weld(o2, *command.weld);
-  if (command.islands_o2) o2.islands = ignore_islands(o2, *command.islands_o2);
-  if (!command.groups.file.empty()) command.groups.rows = sdm::read_tolerance_table(command.groups.file);
-  check_groups(command.groups, {&o2});
-  options.names = o2.names, options.table = command.groups.rows;
-  options.island_points = command.island_points;
+  Input o2 = load_reference(command);
+  sdm::PointDistancesOptions options = measuring_options(command, o2);
   PointsOutcome outcome;
   Json report;
   out.fill([&] {
@@ -255,23 +154,12 @@ int run(PointsCommand command) {
     inspect(o2);
     if (!command.along) check_sign(command.picture.tolerance, sdm::choose_sign(sites, command.map), o2);
     outcome.import_ms = watch.lap();
-    if (command.align.on) {
-      progress.step("align");
-      command.align.judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
-      outcome.aligned = align_sample(command, options.placement, sites, o2, progress.callback());
-      options.placement = outcome.aligned->alignment.transform * options.placement;
-      write_text(out.staging() / "alignment.json", to_text(to_json(*outcome.aligned, command.picture.units)));
-    }
+    if (command.align.on) align_cloud(command, sites, o2, out.staging(), options, outcome, progress);
     outcome.align_ms = watch.lap();
     const std::filesystem::path ply = out.staging() / "points.ply";
     outcome.found = sdm::measure_points(command.cloud, sites, ply, options);
     outcome.summary = sdm::summarize(outcome.found, options);
-    if (outcome.aligned && command.align.judged) outcome.summary.doubts = doubts_of(*outcome.aligned);
-    if (command.doubts.min_coverage)
-      measure_cloud_coverage(command, options.placement, o2.mesh, outcome, progress);
-    sdm::withhold_pass(outcome.summary, command.doubts.accept);
-    if (outcome.found.groups && !outcome.summary.doubts.empty() && !command.doubts.accept)
-      sdm::withhold_pass(*outcome.found.groups);
+    judge_doubts(command, options, o2, outcome, progress);
     add_notes(command, o2, sites, outcome);
     outcome.points_ms = watch.lap();
     report = report_of(command, o2, outcome);
@@ -329,6 +217,22 @@ void add_text_options(CLI::App& app, sdm::TextDialect& text) {
                                 {"comma", sdm::DecimalMark::comma}});
 }
 
+/// What options do not allow together.
+void check_points_options(const CLI::App& points, const PointsCommand& command) {
+  try {
+    sdm::validate(command.text);
+  } catch (const sdm::Error& fault) {
+    throw CLI::ValidationError("--columns", fault.what());
+  }
+  if (const auto& t = command.picture.tolerance;
+      t && std::max(std::abs(t->lo), std::abs(t->hi)) > command.map.max_distance)
+    throw CLI::ValidationError("--tolerance",
+                               "must not be greater than --max-distance, beyond which points have no value");
+  check_facing(command.map);
+  check_along(points, command.along);
+  check_doubts(command.doubts, command.picture.tolerance);
+}
+
 }  // namespace
 
 void add_points_command(CLI::App& app) {
@@ -381,18 +285,7 @@ void add_points_command(CLI::App& app) {
   add_field_option(*points, c.fields);
   add_run_options(*points, c, "the report (report.json) instead of a summary");
   points->callback([command, points] {
-    try {
-      sdm::validate(command->text);
-    } catch (const sdm::Error& fault) {
-      throw CLI::ValidationError("--columns", fault.what());
-    }
-    if (const auto& t = command->picture.tolerance;
-        t && std::max(std::abs(t->lo), std::abs(t->hi)) > command->map.max_distance)
-      throw CLI::ValidationError(
-          "--tolerance", "must not be greater than --max-distance, beyond which points have no value");
-    check_facing(command->map);
-    check_along(*points, command->along);
-    check_doubts(command->doubts, command->picture.tolerance);
+    check_points_options(*points, *command);
     convert_units(command->file_units, {command->cloud, command->o2, command->transform_o1,
                                         command->transform_o2, command->picture.units});
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
